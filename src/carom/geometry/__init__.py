@@ -1,0 +1,1 @@
+"""Pure mathematics: rotations, autoparallels, transport, connection, splines."""

@@ -1,0 +1,108 @@
+"""Rotations as unit quaternions (w, x, y, z) and 3x3 matrices, in scalars: kernels of the step loop.
+
+`R(Q)` takes body components to world components. Tuples of scalars in, tuples of scalars out.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom.jit import kernel
+
+
+@kernel
+def cross(ax, ay, az, bx, by, bz):
+    """Return a x b."""
+    return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+
+
+@kernel
+def multiply(aw, ax, ay, az, bw, bx, by, bz):
+    """Return the quaternion product a b (first b, then a)."""
+    return (
+        aw * bw - ax * bx - ay * by - az * bz,
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+    )
+
+
+@kernel
+def normalize(w, x, y, z):
+    """Return the quaternion divided by its length."""
+    s = 1.0 / math.sqrt(w * w + x * x + y * y + z * z)
+    return s * w, s * x, s * y, s * z
+
+
+@kernel
+def matrix(w, x, y, z):
+    """Return the nine entries, row by row, of the rotation matrix of a unit quaternion."""
+    xx, yy, zz = x * x, y * y, z * z
+    xy, xz, yz = x * y, x * z, y * z
+    wx, wy, wz = w * x, w * y, w * z
+    return (
+        1.0 - 2.0 * (yy + zz), 2.0 * (xy - wz), 2.0 * (xz + wy),
+        2.0 * (xy + wz), 1.0 - 2.0 * (xx + zz), 2.0 * (yz - wx),
+        2.0 * (xz - wy), 2.0 * (yz + wx), 1.0 - 2.0 * (xx + yy),
+    )  # fmt: skip
+
+
+@kernel
+def rotate(w, x, y, z, ax, ay, az):
+    """Return R a: body components to world components."""
+    tx, ty, tz = 2.0 * (y * az - z * ay), 2.0 * (z * ax - x * az), 2.0 * (x * ay - y * ax)
+    return (
+        ax + w * tx + y * tz - z * ty,
+        ay + w * ty + z * tx - x * tz,
+        az + w * tz + x * ty - y * tx,
+    )
+
+
+@kernel
+def rotate_back(w, x, y, z, ax, ay, az):
+    """Return R^T a: world components to body components."""
+    return rotate(w, -x, -y, -z, ax, ay, az)
+
+
+@kernel
+def exp(ax, ay, az):
+    """Return the unit quaternion exp(a/2) of the rotation vector a; exact to round-off at any angle.
+
+    With t = |a|: (cos(t/2), sin(t/2)/t a); below t = 1e-2 the series of sin(t/2)/t to t^6.
+    """
+    t2 = ax * ax + ay * ay + az * az
+    if t2 < 1e-4:
+        s = 0.5 - t2 * (1.0 / 48.0 - t2 * (1.0 / 3840.0 - t2 / 645120.0))
+        c = 1.0 - t2 * (0.125 - t2 * (1.0 / 384.0 - t2 / 46080.0))
+    else:
+        t = math.sqrt(t2)
+        s = math.sin(0.5 * t) / t
+        c = math.cos(0.5 * t)
+    return c, s * ax, s * ay, s * az
+
+
+@kernel
+def log(w, x, y, z):
+    """Return the rotation vector of a unit quaternion, its angle in [0, pi]; robust at 0 and at pi."""
+    if w < 0.0:
+        w, x, y, z = -w, -x, -y, -z
+    s2 = x * x + y * y + z * z
+    s = math.sqrt(s2)
+    if s < 1e-8:
+        f = 2.0 / w * (1.0 - s2 / (3.0 * w * w))
+    else:
+        f = 2.0 * math.atan2(s, w) / s
+    return f * x, f * y, f * z
+
+
+@kernel
+def spin_tensor(R00, R01, R02, R10, R11, R12, R20, R21, R22, i1, i2, i3):
+    """Return the six entries xx, xy, xz, yy, yz, zz of R diag(i1, i2, i3) R^T."""
+    return (
+        R00 * R00 * i1 + R01 * R01 * i2 + R02 * R02 * i3,
+        R00 * R10 * i1 + R01 * R11 * i2 + R02 * R12 * i3,
+        R00 * R20 * i1 + R01 * R21 * i2 + R02 * R22 * i3,
+        R10 * R10 * i1 + R11 * R11 * i2 + R12 * R12 * i3,
+        R10 * R20 * i1 + R11 * R21 * i2 + R12 * R22 * i3,
+        R20 * R20 * i1 + R21 * R21 * i2 + R22 * R22 * i3,
+    )

@@ -1,0 +1,94 @@
+"""Everything about a run that can be set, with default, unit and meaning."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+from carom import check
+
+
+@dataclass(frozen=True, kw_only=True)
+class Options:
+    """Settings of `simulate`. Tolerances are relative to the scene's own lengths and speeds.
+
+    Parameters
+    ----------
+    layer_width : float or None
+        Width b of the boundary layer [m]. The motion after an impact does not depend on it; it sets
+        the duration of an impact. Default None: 1e-5 of the size of the body.
+    penetration : float
+        Greatest penetration of the layer delta, as a part of its width, in (0, 1). Default 0.2, the
+        paper's for the die. (Paper, section on the boundary layer.)
+    layer_steps : int
+        Cubic-spline steps through the layer for ``method="paper"``, shared by compression and
+        restitution. Default 2, the paper's.
+    add_layer_time : bool
+        Add the duration of each impact to the clock. Default False: the impact takes no time.
+    gap_tolerance : float
+        A contact is located when its gap is in [0, gap_tolerance * size of the body]. Default 1e-13.
+    tie_tolerance : float
+        Points of a body whose gaps differ by less than this part of its size strike together, as
+        their mean. Default 1e-9.
+    hold : bool
+        Hold a contact when all its remaining bounces would end within the present step. Default True.
+        With False, a bouncing body that comes to rest stops the run with a status.
+    constraint_tolerance : float
+        Greatest error of position (relative to the size of the bodies) and of velocity (relative
+        to their speeds) that joints may have at the start. Default 1e-8.
+    drop_tolerance : float
+        A constraint row is redundant when its pivot is below this part of its own diagonal. Default 1e-8.
+    augmentation : float
+        Augmented-Lagrangian parameter of the paper's methods and of reported reactions, as a part of
+        each row's diagonal of A M^-1 A^T. Default 1e-6.
+    natural_frequency : float
+        beta of the paper's ODE form: the multipliers' equation has c_s = 2 zeta w m_RR and
+        k_s = w^2 m_RR with w = beta / step. Only for ``method="paper-ode"``. Default 1.0.
+    damping_ratio : float
+        zeta of the paper's ODE form. Default 1.0.
+    residual_tolerance : float
+        Relative residual at which the block iteration of the paper's methods stops. Default 1e-13.
+    max_iterations : int
+        Most block iterations in one step of the paper's methods. Default 100.
+    max_impacts_per_step : int
+        Most impacts in one step before the run stops with a status. Default 1000.
+    max_cuts : int
+        Most halvings of one step while an impact cannot be excluded. Default 40.
+    """
+
+    layer_width: float | None = None
+    penetration: float = 0.2
+    layer_steps: int = 2
+    add_layer_time: bool = False
+    gap_tolerance: float = 1e-13
+    tie_tolerance: float = 1e-9
+    hold: bool = True
+    constraint_tolerance: float = 1e-8
+    drop_tolerance: float = 1e-8
+    augmentation: float = 1e-6
+    natural_frequency: float = 1.0
+    damping_ratio: float = 1.0
+    residual_tolerance: float = 1e-13
+    max_iterations: int = 100
+    max_impacts_per_step: int = 1000
+    max_cuts: int = 40
+
+    def __post_init__(self):
+        if self.layer_width is not None:
+            check.number("layer_width", self.layer_width, above=0.0, unit="m")
+        check.number("penetration", self.penetration, above=0.0, below=1.0)
+        for name in ("gap_tolerance", "tie_tolerance", "constraint_tolerance", "drop_tolerance"):
+            check.number(name, getattr(self, name), above=0.0, below=1.0)
+        for name in ("augmentation", "residual_tolerance"):
+            check.number(name, getattr(self, name), above=0.0, below=1.0)
+        for name in ("natural_frequency", "damping_ratio"):
+            check.number(name, getattr(self, name), least=0.0)
+        check.integer("layer_steps", self.layer_steps, least=1)
+        for name in ("max_iterations", "max_impacts_per_step", "max_cuts"):
+            check.integer(name, getattr(self, name), least=1)
+        for name in ("add_layer_time", "hold"):
+            if not isinstance(getattr(self, name), bool):
+                raise ValueError(f"{name} must be True or False, got {getattr(self, name)!r}")
+
+    def as_dict(self) -> dict:
+        """All settings by name."""
+        return {f.name: getattr(self, f.name) for f in fields(self)}

@@ -1,0 +1,71 @@
+"""How a run ended, in sentences."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+
+
+class Status(IntEnum):
+    """Why a run stopped. Each member has a `message`: the cause, and what to change."""
+
+    SUCCESS = 0
+    NO_CONVERGENCE = 1
+    STEP_CUT_TO_NOTHING = 2
+    TOO_MANY_IMPACTS = 3
+    NOT_FINITE = 4
+    RETURN_MAP_FAILED = 5
+    IMPACT_FAILED = 6
+    CONSTRAINTS_LOST = 7
+    CORNER = 8
+    INTERRUPTED = 9
+
+    @property
+    def message(self) -> str:
+        """The sentence for this status."""
+        return _MESSAGES[self]
+
+
+_MESSAGES = {
+    Status.SUCCESS: "The run reached its end.",
+    Status.NO_CONVERGENCE: (
+        "The iteration of a step did not converge; take a smaller step, or raise "
+        "Options.max_iterations."
+    ),
+    Status.STEP_CUT_TO_NOTHING: (
+        "The step was cut to nothing while looking for an impact; the motion has an event that "
+        "cannot be located. Take a smaller step, or raise Options.gap_tolerance."
+    ),
+    Status.TOO_MANY_IMPACTS: (
+        "More impacts in one step than Options.max_impacts_per_step: impacts accumulate and no "
+        "contact can be held. Take a smaller step, or a restitution below 1."
+    ),
+    Status.NOT_FINITE: (
+        "A position or velocity is no longer finite: the motion diverged. Take a smaller step, or "
+        "look at forces and stiffnesses."
+    ),
+    Status.RETURN_MAP_FAILED: (
+        "The return map to the surface of contact did not converge; the penetration of one step is "
+        "too deep. Take a smaller step."
+    ),
+    Status.IMPACT_FAILED: (
+        "The equations of the boundary layer were not solved to tolerance; look at the inverse "
+        "mass, the friction and the velocity of the last impact."
+    ),
+    Status.CONSTRAINTS_LOST: (
+        "The bilateral constraints could not be met at the end of a step: the mechanism is in a "
+        "position that it cannot leave, or the step is too large. Take a smaller step."
+    ),
+    Status.CORNER: (
+        "A body that is held by one contact was struck at another, and the blows pass between them "
+        "without end (a corner of the manifold). This version resolves one contact at a time."
+    ),
+    Status.INTERRUPTED: "The run was interrupted; the solution holds what was computed until then.",
+}
+
+
+class SimulationError(RuntimeError):
+    """A run that failed part-way. `solution` holds everything up to the failure."""
+
+    def __init__(self, message: str, solution=None):
+        super().__init__(message)
+        self.solution = solution
