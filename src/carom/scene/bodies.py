@@ -80,6 +80,7 @@ class Ground:
     name: ClassVar[str] = "GROUND"
 
     def __new__(cls) -> Ground:
+        """Return the one ground."""
         return globals().get("GROUND") or super().__new__(cls)
 
     def __repr__(self) -> str:

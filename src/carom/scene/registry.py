@@ -12,16 +12,21 @@ class Registry:
     def __init__(self):
         self._parts = {}
         self._kinds = {}
-        self._numbers = {}
 
-    def name(self, name: str | None, default: str = "") -> str:
-        """Return `name` if it is free; for None, `default` with the next free number."""
-        if name is None:
-            number = self._numbers.get(default, 0) + 1
-            while f"{default}{number}" in self._parts:
-                number += 1
-            self._numbers[default] = number
-            return f"{default}{number}"
+    def new(self, kind: type, name: str | None, default: str) -> tuple[int, str]:
+        """Return index and name of the next part of a `kind`.
+
+        For None the name is `default` with its number, from 1 on, or the next one that is free.
+        """
+        index = self.count(kind)
+        return index, self._numbered(default, index + 1) if name is None else self._free(name)
+
+    def _numbered(self, default: str, number: int) -> str:
+        while f"{default}{number}" in self._parts:
+            number += 1
+        return f"{default}{number}"
+
+    def _free(self, name: str) -> str:
         if not isinstance(name, str) or not name.strip():
             raise ValueError(f"name must be a non-empty string, got {name!r}")
         if name in self._parts:

@@ -55,8 +55,8 @@ class Scene:
         name
             Default ``"half_space1"``, ``"half_space2"``, ...
         """
-        name = self._parts.name(name, "half_space")
-        return self._parts.add(make_half_space(self._parts.count(HalfSpace), name, point, normal))
+        index, name = self._parts.new(HalfSpace, name, "half_space")
+        return self._parts.add(make_half_space(index, name, point, normal))
 
     def add_body(
         self,
@@ -94,9 +94,9 @@ class Scene:
         name
             Default ``"body1"``, ``"body2"``, ...
         """
-        name = self._parts.name(name, "body")
+        index, name = self._parts.new(Body, name, "body")
         motion = (position, orientation, velocity, angular_velocity)
-        body = make_body(self._parts.count(Body), name, shape, mass, density, inertia, *motion)
+        body = make_body(index, name, shape, mass, density, inertia, *motion)
         return self._parts.add(body)
 
     def add_contact(
@@ -133,8 +133,9 @@ class Scene:
                 f"body {body.name!r} and half_space {half_space.name!r} must be given once, "
                 "got a second contact of the two"
             )
-        name = self._parts.name(name or f"{body.name}-{half_space.name}")
-        index, law = self._parts.count(Contact), (restitution, friction, impact_law)
+        name = f"{body.name}-{half_space.name}" if name is None else name
+        index, name = self._parts.new(Contact, name, "contact")
+        law = (restitution, friction, impact_law)
         contact = self._parts.add(make_contact(index, name, body, half_space, *law))
         self._pairs.add((body, half_space))
         return contact
@@ -162,10 +163,8 @@ class Scene:
         """
         check.instance("definition", definition, JOINTS)
         self._parts.pair(parent, child)
-        name = self._parts.name(name, "joint")
-        return self._parts.add(
-            make_joint(self._parts.count(Joint), name, definition, parent, child)
-        )
+        index, name = self._parts.new(Joint, name, "joint")
+        return self._parts.add(make_joint(index, name, definition, parent, child))
 
     def add_force(
         self,
@@ -195,10 +194,8 @@ class Scene:
         if child is None and isinstance(parent, Body):
             parent, child = GROUND, parent
         self._parts.pair(parent, child)
-        name = self._parts.name(name, "force")
-        return self._parts.add(
-            make_force(self._parts.count(AppliedForce), name, definition, parent, child)
-        )
+        index, name = self._parts.new(AppliedForce, name, "force")
+        return self._parts.add(make_force(index, name, definition, parent, child))
 
     @property
     def gravity(self):
