@@ -11,6 +11,8 @@ import numpy as np
 def finite_array(name: str, value, shape: tuple[int | None, ...], unit: str = "") -> np.ndarray:
     """Return `value` as a float array of `shape` (``None`` is any length); refuse NaN and inf."""
     try:
+        if np.iscomplexobj(value):
+            raise TypeError
         array = np.array(value, dtype=np.float64)
     except (TypeError, ValueError):
         raise ValueError(

@@ -118,6 +118,7 @@ BAD_BODIES = [
             (NAN, "be finite, got (0.0, nan, 0.0)"),
             ((0, math.inf, 0), "be finite, got (0, inf, 0)"),
             ((1, 2), "have shape (3,), got shape (2,)"),
+            (np.array([1j, 0, 0]), "be numbers of shape (3,), got array([0.+1.j"),
             ("up", "be numbers of shape (3,), got 'up'"),
         )
     ],

@@ -36,8 +36,10 @@ def test_lookup_by_name():
     scene = example()
     names = ("die", "ground", "die-ground", "joint1", "force1")
     assert [scene[name].name for name in names] == list(names)
-    with pytest.raises(KeyError, match="got 'dei'; did you mean 'die'"):
+    with pytest.raises(KeyError, match="no part called 'dei'; did you mean 'die'"):
         scene["dei"]
+    with pytest.raises(KeyError, match="no part called 3; it has 5 named parts"):
+        scene[3]
 
 
 def test_default_names_count_and_step_aside():

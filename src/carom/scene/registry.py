@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from difflib import get_close_matches
+
 from carom import check
 from carom.scene.bodies import Body, Ground
 
@@ -50,10 +52,9 @@ class Registry:
     def __getitem__(self, name: str):
         if name in self._parts:
             return self._parts[name]
-        try:
-            check.choice("name", name, self._parts)
-        except ValueError as error:
-            raise KeyError(str(error)) from None
+        near = get_close_matches(str(name), self._parts, n=1)
+        hint = f"did you mean {near[0]!r}?" if near else f"it has {len(self._parts)} named parts"
+        raise KeyError(f"the scene has no part called {name!r}; {hint}")
 
     def member(self, argument: str, part, kinds: tuple[type, ...], hint: str = "") -> None:
         """Refuse a `part` that is of none of `kinds`, or of another scene."""
