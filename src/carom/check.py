@@ -11,6 +11,8 @@ import numpy as np
 def finite_array(name: str, value, shape: tuple[int | None, ...], unit: str = "") -> np.ndarray:
     """Return `value` as a float array of `shape` (``None`` is any length); refuse NaN and inf."""
     try:
+        if np.iscomplexobj(value):
+            raise TypeError
         array = np.array(value, dtype=np.float64)
     except (TypeError, ValueError):
         raise ValueError(
@@ -82,10 +84,11 @@ def choice(name: str, value, allowed: Iterable[str]) -> str:
 def unit_vector(name: str, value) -> np.ndarray:
     """Return `value` (3,) divided by its length; refuse a zero vector."""
     vector = finite_array(name, value, (3,))
-    length = float(np.linalg.norm(vector))
-    if not length > 0.0:
+    largest = float(np.max(np.abs(vector)))
+    if not largest > 0.0:
         raise ValueError(f"{name} must not be the zero vector, got {value!r}")
-    return vector / length
+    vector /= largest  # so that neither a tiny nor a huge vector under- or overflows its square
+    return vector / np.linalg.norm(vector)
 
 
 def unit_quaternion(name: str, value) -> np.ndarray:
@@ -97,6 +100,14 @@ def unit_quaternion(name: str, value) -> np.ndarray:
             f"{name} must be a unit quaternion (w, x, y, z), got {value!r} of length {length:.9g}"
         )
     return quaternion / length
+
+
+def instance(name: str, value, kinds: tuple[type, ...], hint: str = "") -> None:
+    """Refuse, by a `TypeError`, a `value` that is of none of `kinds`."""
+    if isinstance(value, kinds):
+        return
+    allowed = " or ".join(kind.__name__ for kind in kinds)
+    raise TypeError(f"{name} must be a {allowed}, got {value!r}{hint}")
 
 
 def _shape(shape) -> str:

@@ -1,0 +1,28 @@
+"""What the user states: shapes, bodies, contacts, joints, forces. NumPy only, no motion."""
+
+from carom.scene import forces, joints
+from carom.scene.bodies import GROUND, Body, Ground, HalfSpace
+from carom.scene.contacts import Contact
+from carom.scene.forces import AppliedForce
+from carom.scene.joints import Joint
+from carom.scene.scene import Scene
+from carom.scene.shapes import Box, Capsule, Convex, Cylinder, Shape, Sphere
+
+__all__ = [
+    "GROUND",
+    "AppliedForce",
+    "Body",
+    "Box",
+    "Capsule",
+    "Contact",
+    "Convex",
+    "Cylinder",
+    "Ground",
+    "HalfSpace",
+    "Joint",
+    "Scene",
+    "Shape",
+    "Sphere",
+    "forces",
+    "joints",
+]

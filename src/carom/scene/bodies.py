@@ -1,0 +1,139 @@
+"""What moves and what stands: bodies, the ground, half-spaces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from carom import check
+from carom.scene.inertia import inertia_matrix
+from carom.scene.shapes import SHAPES, Shape
+from carom.scene.values import keep, point
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Body:
+    """A rigid body as it starts. Made by `Scene.add_body`; arrays are read-only.
+
+    Attributes
+    ----------
+    index : int
+        Place in `Scene.bodies`.
+    name : str
+    shape : Sphere, Box, Capsule, Cylinder, Convex or None
+    mass : float
+        [kg]
+    inertia : (3, 3)
+        About the mass centre, in body axes [kg m^2].
+    position : (3,)
+        Of the mass centre, in the world [m].
+    orientation : (4,)
+        Unit quaternion (w, x, y, z), body to world.
+    velocity, angular_velocity : (3,)
+        In world axes [m/s], [rad/s].
+    """
+
+    index: int
+    name: str
+    shape: Shape | None
+    mass: float
+    inertia: np.ndarray
+    position: np.ndarray
+    orientation: np.ndarray
+    velocity: np.ndarray
+    angular_velocity: np.ndarray
+
+    def __repr__(self) -> str:
+        return f"Body({self.name!r}, {self.shape!r}, mass={self.mass:g})"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class HalfSpace:
+    """A fixed plane with all matter behind it. Made by `Scene.add_half_space`.
+
+    Attributes
+    ----------
+    index : int
+        Place in `Scene.half_spaces`.
+    name : str
+    point : (3,)
+        Any point of the plane [m].
+    normal : (3,)
+        Unit vector from the matter into free space.
+    """
+
+    index: int
+    name: str
+    point: np.ndarray
+    normal: np.ndarray
+
+    def __repr__(self) -> str:
+        return f"HalfSpace({self.name!r}, point={self.point}, normal={self.normal})"
+
+
+class Ground:
+    """The world, as a partner of joints and forces: there is one, `carom.GROUND`."""
+
+    index: ClassVar[int] = -1
+    name: ClassVar[str] = "GROUND"
+
+    def __new__(cls) -> Ground:
+        """Return the one ground."""
+        return globals().get("GROUND") or super().__new__(cls)
+
+    def __repr__(self) -> str:
+        return "carom.GROUND"
+
+    def __reduce__(self) -> str:  # copies and pickles give the one ground again
+        return "GROUND"
+
+
+GROUND = Ground()
+
+
+def make_body(
+    index, name, shape, mass, density, inertia, position, orientation, velocity, angular_velocity
+) -> Body:
+    """Return a checked `Body`; the arguments are those of `Scene.add_body`."""
+    if shape is not None:
+        check.instance("shape", shape, SHAPES)
+    mass = _mass(shape, mass, density)
+    if inertia is None:
+        if shape is None:
+            raise ValueError("inertia must be given for a body without a shape, got None")
+        inertia = shape.inertia(mass)
+    body = Body(
+        index=index,
+        name=name,
+        shape=shape,
+        mass=mass,
+        inertia=inertia_matrix(inertia),
+        position=point("position", position),
+        orientation=check.unit_quaternion("orientation", orientation),
+        velocity=point("velocity", velocity),
+        angular_velocity=point("angular_velocity", angular_velocity),
+    )
+    keep(body, **vars(body))
+    return body
+
+
+def make_half_space(index, name, on_plane, normal) -> HalfSpace:
+    """Return a checked `HalfSpace`; the arguments are those of `Scene.add_half_space`."""
+    plane = HalfSpace(index, name, point("point", on_plane), check.unit_vector("normal", normal))
+    keep(plane, **vars(plane))
+    return plane
+
+
+def _mass(shape: Shape | None, mass, density) -> float:
+    if (mass is None) == (density is None):
+        raise ValueError(
+            f"exactly one of mass and density must be given, got mass={mass!r}, density={density!r}"
+        )
+    if density is None:
+        return check.number("mass", mass, above=0, unit="kg")
+    density = check.number("density", density, above=0, unit="kg/m^3")
+    if shape is None:
+        raise ValueError(f"density needs a shape, got density={density!r} without one; give mass")
+    return density * shape.volume

@@ -1,0 +1,45 @@
+"""What can be the inertia of a rigid body."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom import check
+
+SLACK = 1e-12  # relative to the largest entry or moment: rounding, not physics
+
+
+def inertia_matrix(value) -> np.ndarray:
+    """Return the inertia (3,3) [kg m^2] given by principal moments (3,) or a symmetric (3,3).
+
+    Raises
+    ------
+    ValueError
+        If it is not symmetric, not positive definite, or one principal moment exceeds the sum of
+        the other two: no distribution of mass has such an inertia.
+    """
+    try:
+        shape = np.shape(value)
+    except ValueError:
+        shape = ()
+    if len(shape) == 2:
+        matrix = check.finite_array("inertia", value, (3, 3), unit="kg m^2")
+    elif len(shape) == 1:
+        matrix = np.diag(check.finite_array("inertia", value, (3,), unit="kg m^2"))
+    else:
+        raise ValueError(f"inertia must have shape (3,) or (3, 3) [kg m^2], got {value!r}")
+    if not np.max(np.abs(matrix - matrix.T)) <= SLACK * np.max(np.abs(matrix)):
+        raise ValueError(f"inertia must be symmetric, got {value!r}")
+    matrix = 0.5 * (matrix + matrix.T)
+    small, middle, large = np.linalg.eigvalsh(matrix)
+    moments = f"got {value!r} with principal moments {small:.6g}, {middle:.6g}, {large:.6g}"
+    if not small > SLACK * large:
+        raise ValueError(
+            f"inertia must have principal moments above 0 [kg m^2], {moments}; "
+            "for a thin rod give a small positive moment about its axis"
+        )
+    if not large <= (small + middle) * (1 + SLACK):
+        raise ValueError(
+            f"inertia must have no principal moment above the sum of the other two, {moments}"
+        )
+    return matrix

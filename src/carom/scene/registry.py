@@ -1,0 +1,71 @@
+"""The parts of a scene: names that are unique among all of them, handles that belong to it."""
+
+from __future__ import annotations
+
+from difflib import get_close_matches
+
+from carom import check
+from carom.scene.bodies import Body, Ground
+
+
+class Registry:
+    """Every named part of one scene, in the order in which it was added."""
+
+    def __init__(self):
+        self._parts = {}
+        self._kinds = {}
+
+    def new(self, kind: type, name: str | None, default: str) -> tuple[int, str]:
+        """Return index and name of the next part of a `kind`.
+
+        For None the name is `default` with its number, from 1 on, or the next one that is free.
+        """
+        index = self.count(kind)
+        return index, self._numbered(default, index + 1) if name is None else self._free(name)
+
+    def _numbered(self, default: str, number: int) -> str:
+        while f"{default}{number}" in self._parts:
+            number += 1
+        return f"{default}{number}"
+
+    def _free(self, name: str) -> str:
+        if not isinstance(name, str) or not name.strip():
+            raise ValueError(f"name must be a non-empty string, got {name!r}")
+        if name in self._parts:
+            raise ValueError(f"name must be unique in the scene, got {name!r} once more")
+        return name
+
+    def add(self, part):
+        """Keep `part` under its name, and return it."""
+        self._parts[part.name] = part
+        self._kinds.setdefault(type(part), []).append(part)
+        return part
+
+    def parts(self, kind: type) -> tuple:
+        """Return all parts of a `kind`, in the order added."""
+        return tuple(self._kinds.get(kind, ()))
+
+    def count(self, kind: type) -> int:
+        """Return how many parts there are of a `kind`."""
+        return len(self._kinds.get(kind, ()))
+
+    def __getitem__(self, name: str):
+        if name in self._parts:
+            return self._parts[name]
+        near = get_close_matches(str(name), self._parts, n=1)
+        hint = f"did you mean {near[0]!r}?" if near else f"it has {len(self._parts)} named parts"
+        raise KeyError(f"the scene has no part called {name!r}; {hint}")
+
+    def member(self, argument: str, part, kinds: tuple[type, ...], hint: str = "") -> None:
+        """Refuse a `part` that is of none of `kinds`, or of another scene."""
+        check.instance(argument, part, kinds, hint)
+        if not isinstance(part, Ground) and self._parts.get(part.name) is not part:
+            raise ValueError(f"{argument} must belong to this scene, got {part!r} of another one")
+
+    def pair(self, parent, child) -> None:
+        """Refuse a `parent` and a `child` that cannot be joined."""
+        hint = "; the world itself is carom.GROUND"
+        self.member("parent", parent, (Body, Ground), hint)
+        self.member("child", child, (Body,))
+        if parent is child:
+            raise ValueError(f"parent and child must be two bodies, got {child!r} for both")

@@ -1,0 +1,26 @@
+"""A scene in words."""
+
+from __future__ import annotations
+
+KINDS = ("bodies", "half_spaces", "contacts", "joints", "forces")
+ONE = {"bodies": "body", "half_spaces": "half-space"}
+
+
+def counts(scene) -> str:
+    """Return how many there are of each kind, in a line."""
+    return ", ".join(_count(kind, len(getattr(scene, kind))) for kind in KINDS)
+
+
+def summary(scene) -> str:
+    """Return a line for each part, under its kind."""
+    lines = [f"Scene with gravity {scene.gravity} m/s^2"]
+    for kind in KINDS:
+        parts = getattr(scene, kind)
+        if parts:
+            lines += [f"{_count(kind, len(parts))}:", *(f"  {part!r}" for part in parts)]
+    return "\n".join(lines)
+
+
+def _count(kind: str, n: int) -> str:
+    one = ONE.get(kind, kind.removesuffix("s"))
+    return f"{n} {one if n == 1 else kind.replace('_', '-')}"
