@@ -1,0 +1,93 @@
+"""Build the arrays of the back end that a scene needs."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom.system.arrays import (
+    FIXED,
+    PRISMATIC,
+    REVOLUTE,
+    SPHERICAL,
+    FreeSolver,
+    Joints,
+    LoopSolver,
+    TreeSolver,
+)
+from carom.system.graph import elimination
+
+FREEDOMS = {SPHERICAL: 3, REVOLUTE: 1, FIXED: 0, PRISMATIC: 1}
+SCRATCH = 124  # 39 + 6 * 14 + 1: see carom.motion.tree
+
+
+def free_solver(count: int) -> FreeSolver:
+    """Return the solver of a scene without joints."""
+    return FreeSolver(count)
+
+
+def tree_solver(joints: Joints, order: np.ndarray, joint: np.ndarray) -> TreeSolver:
+    """Return the solver of a forest; `order` and `joint` are those of `forest_order`."""
+    count = order.size
+    parent = np.full(count, -1)
+    freedoms = np.full(count, 6)
+    has_child = np.zeros(count, dtype=np.int64)
+    for b in range(count):
+        if joint[b] >= 0:
+            parent[b] = joints.parent[joint[b]]
+            freedoms[b] = FREEDOMS[int(joints.kind[joint[b]])]
+            if parent[b] >= 0:
+                has_child[parent[b]] = 1
+    return TreeSolver(order, joint, parent, freedoms, has_child, np.zeros((count, SCRATCH)))
+
+
+def loop_solver(count: int, joints: Joints, drop: float) -> LoopSolver:
+    """Return the solver of a scene with closed loops: the symbolic factor of A M^-1 A^T."""
+    number = joints.kind.size
+    order, later = elimination(joints.parent, joints.child)
+    place = np.empty(number, dtype=np.int64)
+    place[order] = np.arange(number)
+    column, row, slot = [0], [], {(j, j): j for j in range(number)}
+    for k in order:
+        for i in sorted(later[k], key=lambda j: place[j]):
+            slot[i, k] = number + len(row)
+            row.append(i)
+        column.append(len(row))
+    update, triple = [0], []
+    for n in range(number):
+        below = range(column[n], column[n + 1])
+        for s in below:
+            for t in below:
+                if place[row[s]] >= place[row[t]]:
+                    triple.append((s, t, slot[row[s], row[t]]))
+        update.append(len(triple))
+    sides: dict[int, list[tuple[int, int]]] = {}
+    for j in range(number):
+        sides.setdefault(int(joints.child[j]), []).append((j, 0))
+        if joints.parent[j] >= 0:
+            sides.setdefault(int(joints.parent[j]), []).append((j, 1))
+    term = [
+        (slot[i, j], i, si, j, sj)
+        for touching in sides.values()
+        for i, si in touching
+        for j, sj in touching
+        if place[i] >= place[j]
+    ]
+    touched = np.zeros(count, dtype=np.int64)
+    touched[list(sides)] = 1
+    return LoopSolver(
+        order=np.array(order, dtype=np.int64),
+        column=np.array(column, dtype=np.int64),
+        row=np.array(row, dtype=np.int64),
+        update=np.array(update, dtype=np.int64),
+        triple=np.array(triple, dtype=np.int64).reshape(-1, 3),
+        term=np.array(term, dtype=np.int64).reshape(-1, 5),
+        touched=touched,
+        rows=np.zeros((number, 2, 6, 6)),
+        scaled=np.zeros((number, 2, 6, 6)),
+        block=np.zeros((number + len(row), 6, 6)),
+        pivot=np.zeros((number, 6)),
+        diagonal=np.zeros((number, 6)),
+        rhs=np.zeros((number, 6)),
+        inverse=np.zeros((count, 6)),
+        drop=drop,
+    )
