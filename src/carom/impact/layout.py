@@ -1,0 +1,42 @@
+"""Where the kernels of an impact write their results, and the codes they return.
+
+Velocities and impulses in contact axes: normal, tangent 1, tangent 2.
+"""
+
+from __future__ import annotations
+
+VELOCITY = 0  #: velocity after the impact, 3 numbers [m/s]
+IMPULSE = 3  #: impulse of the whole impact, 3 numbers [N s]
+COMPRESSION = 6  #: impulse up to the end of compression, 3 numbers [N s]
+WORK_C = 9  #: work of the normal force in compression, A_c <= 0 [J]
+WORK_R = 10  #: work of the normal force in restitution, A_r >= 0 [J]
+FRICTION_LOSS = 11  #: energy dissipated by friction, >= 0 [J]
+ENERGY_CHANGE = 12  #: change of kinetic energy, A_c + A_r - friction loss [J]
+P_C = 13  #: normal impulse at the end of compression [N s]
+PHASES = 14  #: bit mask of the phases passed, below
+STEPS = 15  #: integrator steps, closed-form pieces included
+SLIP_END_P = 16  #: normal impulse where slip first stops, -1 if it does not [N s]
+SLIP_END_UN = 17  #: normal velocity there [m/s]
+DURATION = 18  #: duration of the impact in the layer [s]; 0 from `resolve`
+X_MIN = 19  #: least x in the layer [m]; 0 from `resolve`
+SIZE = 24  #: length of `out`; the rest is free
+
+SLIP = 1  #: the contact slipped
+STICK = 2  #: it stuck, to the end
+RESTART = 4  #: slip stopped and began again at once (reversal)
+JAM = 8  #: the normal force drove the bodies together while slipping (Painleve)
+
+OK = 0
+BAD_INPUT = 1  #: a number is not finite, or W_nn is not positive
+NOT_APPROACHING = 2  #: u_n is not negative
+NO_END = 3  #: the normal velocity cannot be reversed: W is singular along the way
+TOO_MANY_STEPS = 4  #: the integrator did not get to the end
+NO_CONVERGENCE = 5  #: a step of the spline was not solved
+
+MESSAGES = {
+    BAD_INPUT: "a number is not finite, or the inverse mass of the normal is not positive",
+    NOT_APPROACHING: "the normal velocity is not negative: the bodies do not approach",
+    NO_END: "the normal velocity cannot be reversed: the inverse mass is singular along the way",
+    TOO_MANY_STEPS: "the equation of slip was not integrated to its end",
+    NO_CONVERGENCE: "a step of the spline through the layer was not solved to round-off",
+}

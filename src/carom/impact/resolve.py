@@ -1,0 +1,198 @@
+"""One frictional impact by the Darboux-Keller equation, solved to round-off.
+
+The normal impulse p is the time (mathematics page, II.9): du/dp = W (1, tau), tau = -mu u_t/|u_t| in
+slip, tau = -W_tt^-1 W_tn in stick. Where the direction of slip is constant u is linear in p and the
+piece is closed; else it is stepped in tau, dtau = dp/|u_t| (`slip_step`). An impact without jam and
+one with it are the same to this form: p always grows.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom.impact import laws
+from carom.impact import layout as o
+from carom.impact.rays import outgoing, solve_tangential, stick_ratio
+from carom.impact.slip import arc, land, normal_rate
+from carom.jit import kernel
+
+_TOLERANCE = 1e-12  # of a step of slip, relative to |u_t|
+_AT_REST = 1e-12  # slip is over below this part of the speed of impact
+_ON_RAY = 1e-13  # the direction of slip is constant if it turns slower than this (relative)
+_MAX_STEPS = 2000
+
+# What the contact does.
+_CURVED, _STRAIGHT, _STICK = 0, 1, 2
+
+
+@kernel
+def _direction(m, mu, s, size):
+    """Return 1 if slip keeps its direction from here on to round-off, the direction, and its rate.
+
+    f is the turning of slip, |u_t| dtheta/dp, and g its growth d|u_t|/dp. A ray that draws slip in
+    to u_t = 0 is reached to round-off when what remains of the turning, f |u_t|, is.
+    """
+    x, y = s[0], s[1]
+    r = math.sqrt(x * x + y * y)
+    c, n = x / r, y / r
+    fx = m[1] - mu * (m[3] * c + m[4] * n)
+    fy = m[2] - mu * (m[4] * c + m[5] * n)
+    f, g = c * fy - n * fx, c * fx + n * fy
+    bound = _ON_RAY * (abs(m[1]) + abs(m[2]) + mu * (m[3] + m[5]))
+    if abs(f) <= bound:
+        return 1, c, n, g
+    if g < 0.0 and abs(f) * r <= 0.01 * bound * size:
+        turning = mu * ((m[3] - m[5]) * (c * c - n * n) + 4.0 * m[4] * c * n)
+        if turning - (m[1] * c + m[2] * n) < 0.0:  # df/dtheta < 0: the ray attracts
+            return 1, c, n, g
+    return 0, c, n, g
+
+
+@kernel
+def resolve(W, u, mu, e, law, out):
+    """Resolve one impact: inverse mass `W` (3, 3), approach velocity `u` (3,), friction, restitution.
+
+    Normal first, ``u[0] < 0``; `law` as in `laws`; results go to `out` as `layout` says. Returns 0, or
+    the code of what went wrong (then `out` holds no result).
+    """
+    m = (W[0, 0], W[0, 1], W[0, 2], W[1, 1], W[1, 2], W[2, 2])
+    v0 = -u[0]
+    total = m[0] + m[1] + m[2] + m[3] + m[4] + m[5] + u[0] + u[1] + u[2] + mu + e
+    if not (math.isfinite(total) and m[0] > 0.0):
+        return o.BAD_INPUT
+    if not v0 > 0.0:
+        return o.NOT_APPROACHING
+    size = math.sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2])
+    s = (u[1], u[2], u[0], 0.0, 0.0, 0.0, 0.0, 0.0)
+
+    # The rate of slip per tau, a bound of |f| and |g|: the natural step in tau is its inverse.
+    half = 0.5 * (m[3] - m[5])
+    largest = 0.5 * (m[3] + m[5]) + math.sqrt(half * half + m[4] * m[4])
+    speed = math.sqrt(m[1] * m[1] + m[2] * m[2]) + mu * largest
+    h = 0.8 / speed if speed > 0.0 else 0.0
+
+    t1, t2, c, n, grow = 0.0, 0.0, 0.0, 0.0, 0.0
+    phases, steps = 0, 0
+    slip_end_p, slip_end_u = -1.0, 0.0
+    compressing, now, goal = True, laws.NEWTON, 0.0
+    before = (0.0, 0.0, 0.0, 0.0, 0.0)  # p, P_1, P_2, loss, work at the end of compression
+    resting = not math.sqrt(u[1] * u[1] + u[2] * u[2]) > _AT_REST * size
+    mode = _CURVED
+    if mu == 0.0:
+        mode = _STRAIGHT
+        phases = o.SLIP if not resting else 0
+        resting = False
+
+    while True:
+        steps += 1
+        if steps > _MAX_STEPS:
+            return o.TOO_MANY_STEPS
+
+        # At u_t = 0 (II.9, 2 and 3): stick to the end, or start again along the outgoing ray.
+        if resting:
+            resting = False
+            if phases & o.SLIP:
+                slip_end_p, slip_end_u = before[0] + s[3], s[2]
+            # What is left of u_t at the end of slip, round-off of it, goes into the impulse.
+            d1, d2 = solve_tangential(m[3], m[4], m[5], s[0], s[1])
+            s = (0.0, 0.0, s[2], s[3], s[4] - d1, s[5] - d2, s[6], s[7])
+            t1, t2 = stick_ratio(m[1], m[2], m[3], m[4], m[5])
+            if math.sqrt(t1 * t1 + t2 * t2) <= mu:
+                mode = _STICK
+                phases |= o.STICK
+            else:
+                if phases & o.SLIP:
+                    phases |= o.RESTART
+                c, n, grow = outgoing(m[1], m[2], m[3], m[4], m[5], mu)
+                mode = _STRAIGHT
+        elif mode == _CURVED:
+            constant, c, n, grow = _direction(m, mu, s, size)
+            if constant:
+                mode = _STRAIGHT
+        if mode != _STICK and mu > 0.0:
+            phases |= o.SLIP
+
+        # One piece: to the end of the phase, to the end of slip, or one step.
+        done = False
+        if mode == _CURVED:
+            _, k = normal_rate(m, mu, s)
+            if k <= 0.0:
+                phases |= o.JAM
+            new, error = arc(m, mu, s, h)
+            r = max(
+                math.sqrt(s[0] * s[0] + s[1] * s[1]), math.sqrt(new[0] * new[0] + new[1] * new[1])
+            )
+            error /= _TOLERANCE * r
+            if not error <= 1.0:
+                h *= max(0.2, 0.9 * error**-0.125) if error < math.inf else 0.2
+                continue
+            if laws.remaining(now, goal, new[2], new[3], new[7]) <= 0.0:
+                s = land(m, mu, now, goal, s, new, h, speed)
+                done = True
+            else:
+                s = new
+                resting = not math.sqrt(s[0] * s[0] + s[1] * s[1]) > 1e-3 * _AT_REST * size
+                h *= min(4.0, 0.9 * max(error, 1e-9) ** -0.125)
+        else:
+            if mode == _STRAIGHT:
+                t1, t2 = -mu * c, -mu * n
+            k = m[0] + m[1] * t1 + m[2] * t2
+            if k <= 0.0 and mode == _STRAIGHT:
+                phases |= o.JAM
+            left = laws.remaining(now, goal, s[2], s[3], s[7])
+            length = laws.straight(now, left, s[2], k) if left > 0.0 else 0.0
+            done = True
+            r = math.sqrt(s[0] * s[0] + s[1] * s[1])
+            if mode == _STRAIGHT and mu > 0.0 and grow < 0.0 and r <= -grow * length:
+                length = -r / grow
+                done = False
+                resting = True
+            if not length < math.inf:
+                return o.NO_END
+            loss = mu * length * (r + 0.5 * grow * length) if mode == _STRAIGHT else 0.0
+            s = (
+                s[0] + length * (m[1] + m[3] * t1 + m[4] * t2) if mode == _STRAIGHT else 0.0,
+                s[1] + length * (m[2] + m[4] * t1 + m[5] * t2) if mode == _STRAIGHT else 0.0,
+                s[2] + length * k,
+                s[3] + length,
+                s[4] + length * t1,
+                s[5] + length * t2,
+                s[6] + loss,
+                s[7] + length * (s[2] + 0.5 * k * length),
+            )
+
+        if not done:
+            if not compressing and s[2] < 0.0:
+                # Driven together again before restitution was over (strong coupling): compression goes on.
+                compressing, now, goal = True, laws.NEWTON, 0.0
+                s = (s[0], s[1], s[2], s[3] + before[0], s[4] + before[1], s[5] + before[2],
+                     s[6] + before[3], s[7] + before[4])  # fmt: skip
+                before = (0.0, 0.0, 0.0, 0.0, 0.0)
+            continue
+        if not compressing:
+            break
+        compressing = False
+        before = (s[3], s[4], s[5], s[6], s[7])
+        s = (s[0], s[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        if not e > 0.0:
+            break
+        now = law
+        goal = laws.goal(law, e, v0, before[0], before[4])
+
+    p, p1, p2 = before[0] + s[3], before[1] + s[4], before[2] + s[5]
+    out[o.VELOCITY], out[o.VELOCITY + 1], out[o.VELOCITY + 2] = s[2], s[0], s[1]
+    out[o.IMPULSE], out[o.IMPULSE + 1], out[o.IMPULSE + 2] = p, p1, p2
+    out[o.COMPRESSION], out[o.COMPRESSION + 1], out[o.COMPRESSION + 2] = (
+        before[0],
+        before[1],
+        before[2],
+    )
+    out[o.WORK_C], out[o.WORK_R] = before[4], s[7]
+    out[o.FRICTION_LOSS] = before[3] + s[6]
+    out[o.ENERGY_CHANGE] = 0.5 * (p * (u[0] + s[2]) + p1 * (u[1] + s[0]) + p2 * (u[2] + s[1]))
+    out[o.P_C] = before[0]
+    out[o.PHASES] = phases
+    out[o.STEPS] = steps
+    out[o.SLIP_END_P], out[o.SLIP_END_UN] = slip_end_p, slip_end_u
+    out[o.DURATION], out[o.X_MIN] = 0.0, 0.0
+    return o.OK
