@@ -1,1 +1,1 @@
-
+"""Unilateral constraints: gap, exclusion and location of contact, return map, strike."""

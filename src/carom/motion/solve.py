@@ -69,7 +69,7 @@ def solve(system, x, Q, wrench, bias, out, reaction):
 
 def solver_type(system):
     """Return the class of `system.solver` from Numba's type of the system."""
-    if isinstance(system, types.NamedTuple):
+    if isinstance(system, types.BaseNamedTuple):
         index = system.fields.index("solver")
         return system.types[index].instance_class
     return None

@@ -1,1 +1,1 @@
-
+"""The scene compiled into flat arrays."""

@@ -135,6 +135,9 @@ class Held(NamedTuple):
     point: np.ndarray  # (C, 3) point of the core that carries the contact, body axes
     anchor: np.ndarray  # (C, 3) where a sticking point was when it stuck, world
     force: np.ndarray  # (C, 3) contact force of the last solve, contact axes [N]
+    rest: np.ndarray  # (C,) 1 where the body does not move at all
+    near: np.ndarray  # (C,) 1 where something happened at the last event: look before stepping
+    leaving: np.ndarray  # (C,) 1 where the body lifts off without speed: it may touch at the start
 
 
 class Work(NamedTuple):
@@ -157,4 +160,5 @@ class Work(NamedTuple):
     trial: State
     middle: State
     multiplier: np.ndarray  # (J, 6)
+    point: np.ndarray  # (3,) core point of the contact at hand, body axes
     bound: np.ndarray  # (N, 3) greatest linear, angular acceleration and spin of the last step
