@@ -2,7 +2,7 @@
 
 from fractions import Fraction
 from functools import cache
-from math import factorial
+from math import comb, factorial
 
 import numpy as np
 import pytest
@@ -19,8 +19,7 @@ def bernoulli(n):
     """Return B_n (with B_1 = -1/2), from sum over k of binomial(n+1, k) B_k = 0."""
     if n == 0:
         return Fraction(1)
-    binomial = lambda k: factorial(n + 1) // (factorial(k) * factorial(n + 1 - k))
-    return -sum(binomial(k) * bernoulli(k) for k in range(n)) / (n + 1)
+    return -sum(comb(n + 1, k) * bernoulli(k) for k in range(n)) / (n + 1)
 
 
 def exact(a):
