@@ -1,1 +1,7 @@
-"""Pure mathematics: rotations, autoparallels, transport, connection, splines."""
+"""Pure mathematics: rotations, autoparallels, transport, connection, splines.
+
+Kernels for the step loop: `rotation`, `tangent` (one rotation, in scalars) and `autoparallel` (all
+bodies, writing into arrays). NumPy, free of Numba, for scenes, results and the mathematics:
+`quaternion`, `differential`, `spline`, `inertia`, `connection`; and `manifold`, which shows the
+kernels of `autoparallel` as one checked object.
+"""

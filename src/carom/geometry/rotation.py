@@ -1,4 +1,4 @@
-"""Rotations as unit quaternions (w, x, y, z) and 3x3 matrices, in scalars: kernels of the step loop.
+"""Rotations as unit quaternions (w, x, y, z) and 3x3 matrices, in scalars: kernels.
 
 `R(Q)` takes body components to world components. Tuples of scalars in, tuples of scalars out.
 """
@@ -66,7 +66,7 @@ def rotate_back(w, x, y, z, ax, ay, az):
 
 @kernel
 def exp(ax, ay, az):
-    """Return the unit quaternion exp(a/2) of the rotation vector a; exact to round-off at any angle.
+    """Return the unit quaternion exp(a/2) of the rotation vector a, to round-off at any angle.
 
     With t = |a|: (cos(t/2), sin(t/2)/t a); below t = 1e-2 the series of sin(t/2)/t to t^6.
     """
@@ -83,7 +83,7 @@ def exp(ax, ay, az):
 
 @kernel
 def log(w, x, y, z):
-    """Return the rotation vector of a unit quaternion, its angle in [0, pi]; robust at 0 and at pi."""
+    """Return the rotation vector of a unit quaternion, its angle in [0, pi]; safe at 0 and pi."""
     if w < 0.0:
         w, x, y, z = -w, -x, -y, -z
     s2 = x * x + y * y + z * z
