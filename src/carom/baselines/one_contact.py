@@ -88,9 +88,9 @@ def cone_residual(inverse_mass, velocity, friction, impulse) -> float:
 def _project(x, mu):
     """Return the nearest point of the cone ``|x_t| <= mu x_n``."""
     slide = float(np.hypot(x[1], x[2]))
-    if slide <= mu * x[0]:
-        return x
     if mu * slide <= -x[0]:
         return np.zeros(3)
+    if slide <= mu * x[0]:
+        return x
     normal = (x[0] + mu * slide) / (1.0 + mu * mu)
     return np.array([normal, mu * normal * x[1] / slide, mu * normal * x[2] / slide])
