@@ -122,3 +122,19 @@ def test_bad_input_names_the_argument():
     jointed.joints = (object(),)
     with pytest.raises(ValueError, match="no joints"):
         moreau_jean(jointed, 1.0, step=0.1)
+
+
+def test_reads_a_scene_of_the_library():
+    """The same die stated as a `carom.Scene` moves the same."""
+    carom = pytest.importorskip("carom")
+    if not hasattr(carom, "Scene"):
+        pytest.skip("carom.Scene is not in this checkout")
+    scene = carom.Scene()
+    ground = scene.add_half_space((0, 0, 0), (0, 0, 1))
+    body = scene.add_body(
+        carom.Box(0.02, 0.02, 0.02), mass=0.016, position=(0, 0, 0.3),
+        velocity=(0.5, 0, -0.5), angular_velocity=(0, 10, 0),
+    )  # fmt: skip
+    scene.add_contact(body, ground, restitution=0.5, friction=0.2)
+    run, same = moreau_jean(scene, 0.25, step=1e-3), moreau_jean(die(0.2), 0.25, step=1e-3)
+    np.testing.assert_allclose(run.velocity, same.velocity, rtol=1e-12, atol=1e-12)
