@@ -98,7 +98,8 @@ def andrews_data() -> dict:
         centre (x, y) [m], angle about z [rad]; all at rest. ``joints``: list of name, parent, child
         ("ground" or a body), anchor (x, y); all are revolutes about z. ``spring``: stiffness, rest
         length, the ground point, the body and its point in the world. ``torque``: value about z
-        [N m] and body (constant, reaction on the ground). ``minimal``: the published angles at t = 0 (7).
+        [N m] and body (constant, reaction on the ground). ``minimal``: the published angles at
+        t = 0 (7).
         ``reference``: angles, rates and accelerations (7 each) at ``t_end``, as published.
     """
     p, q = PARAMETERS["params"], np.array(PARAMETERS["q0"])

@@ -1,8 +1,8 @@
 """Andrews' mechanism by its published minimal equations, index reduced, by scipy.
 
-``M(q) qdd + G(q)^T lambda = f(q, qd)``, ``g(q) = 0``: the 7 equations of the IVP test set as they are
-published, not derived from the absolute model, whose mass matrix is checked against them. The second
-derivative of g closes the system; the drift is taken out of the state by projection.
+``M(q) qdd + G(q)^T lambda = f(q, qd)``, ``g(q) = 0``: the 7 equations of the IVP test set as they
+are published, not derived from the absolute model, whose mass matrix is checked against them. The
+second derivative of g closes the system; the drift is taken out of the state by projection.
 """
 
 from __future__ import annotations

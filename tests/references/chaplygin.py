@@ -3,7 +3,7 @@
 Conventions. Plane x-y, heading theta (t = 0: 0), blade along e1 = (cos theta, sin theta), e2 normal
 to it. Blade point P; mass centre C = P + a e1. The knife edge forbids the velocity of P along e2,
 so ``v_P = u e1``, ``v_C = u e1 + a w e2``. m, I (about C) and a are 1; at t = 0 u = 0, w = 1: P is
-at rest, the mass centre starts with (0, a w) = (0, 1). No other force acts in the plane. Equations::
+at rest, the mass centre starts with (0, a w) = (0, 1). No other force acts in the plane::
 
     du/dt = a w^2 ,    (I + m a^2) dw/dt = -m a u w
 

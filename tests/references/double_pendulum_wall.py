@@ -3,9 +3,9 @@
 Two uniform rods (length 1 m, mass 1 kg), hinged at the origin and at each other, in the plane
 y = 0, gravity 9.81 m/s^2 along -z. Coordinates: the angles a, b of the rods from the downward
 vertical, positive towards +x: rod 1 ends at (sin a, 0, -cos a), rod 2 adds (sin b, 0, -cos b). A
-rod's angular velocity is -da/dt (or -db/dt) about +y. Released from rest. The wall is the plane x = X with all
-free space at x < X: normal n = (-1, 0, 0), tangents t1 = (0, 0, 1), t2 = (0, 1, 0). The hinges hold
-the tip in the plane, so the third row and column of W are zero.
+rod's angular velocity is -da/dt (or -db/dt) about +y. Released from rest. The wall is the plane
+x = X with all free space at x < X: normal n = (-1, 0, 0), tangents t1 = (0, 0, 1), t2 = (0, 1, 0).
+The hinges hold the tip in the plane, so the third row and column of W are zero.
 
 Run this file to write ``tests/data/double_pendulum_wall.json`` again.
 """
