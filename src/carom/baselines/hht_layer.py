@@ -157,7 +157,7 @@ def completing_steps(speed, restitution, *, penetration, alpha=0.0, most=20) -> 
 def first_completing_steps(speed, restitution, *, penetration, alpha=0.0, most=20) -> int | None:
     """Return the least number of steps that completes, None if it is above `most`.
 
-    Seven for e = 1, delta = 0.8, alpha = 0, as the paper says. For alpha of 0.1 and more it is five,
+    Seven for e = 1, delta = 0.8, alpha = 0, as the paper says. For alpha from 0.1 on it is five,
     by a jump over the layer in one step (errors above 100 %); `completing_steps` shows the gap.
     """
     found = completing_steps(speed, restitution, penetration=penetration, alpha=alpha, most=most)
