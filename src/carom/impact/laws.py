@@ -1,4 +1,4 @@
-"""The restitution laws by number, for kernels. Compression is Newton's law with the goal u_n = 0."""
+"""The restitution laws by number. Compression is Newton's law with the goal u_n = 0."""
 
 from __future__ import annotations
 

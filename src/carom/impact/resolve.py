@@ -1,9 +1,8 @@
 """One frictional impact by the Darboux-Keller equation, solved to round-off.
 
-The normal impulse p is the time (mathematics page, II.9): du/dp = W (1, tau), tau = -mu u_t/|u_t| in
-slip, tau = -W_tt^-1 W_tn in stick. Where the direction of slip is constant u is linear in p and the
-piece is closed; else it is stepped in tau, dtau = dp/|u_t| (`slip_step`). An impact without jam and
-one with it are the same to this form: p always grows.
+The normal impulse p is the time (mathematics page, II.9): du/dp = W (1, tau), tau = -mu u_t/|u_t|
+in slip, tau = -W_tt^-1 W_tn in stick. Where the direction of slip is constant u is linear in p and
+the piece is closed; else it is stepped (`taylor`). A jam needs no care here: p always grows.
 """
 
 from __future__ import annotations
@@ -13,10 +12,11 @@ import math
 from carom.impact import laws
 from carom.impact import layout as o
 from carom.impact.rays import outgoing, solve_tangential, stick_ratio
-from carom.impact.slip import arc, land, normal_rate
+from carom.impact.slip import expand, land, moved, normal_rate
+from carom.impact.taylor import reach
 from carom.jit import kernel
 
-_TOLERANCE = 1e-12  # of a step of slip, relative to |u_t|
+_ACCURACY = 1e-14  # last term of the series of slip, relative to the root of |u_t| |u|
 _AT_REST = 1e-12  # slip is over below this part of the speed of impact
 _ON_RAY = 1e-13  # the direction of slip is constant if it turns slower than this (relative)
 _MAX_STEPS = 2000
@@ -50,10 +50,10 @@ def _direction(m, mu, s, size):
 
 @kernel
 def resolve(W, u, mu, e, law, out):
-    """Resolve one impact: inverse mass `W` (3, 3), approach velocity `u` (3,), friction, restitution.
+    """Resolve one impact of inverse mass `W` (3, 3), approach velocity `u` (3,), friction `mu`.
 
-    Normal first, ``u[0] < 0``; `law` as in `laws`; results go to `out` as `layout` says. Returns 0, or
-    the code of what went wrong (then `out` holds no result).
+    Normal first, ``u[0] < 0``; `e` and `law` (as in `laws`) give the restitution; results go to
+    `out` as `layout` says. Returns 0, or the code of what went wrong (`out` then holds no result).
     """
     m = (W[0, 0], W[0, 1], W[0, 2], W[1, 1], W[1, 2], W[2, 2])
     v0 = -u[0]
@@ -64,12 +64,6 @@ def resolve(W, u, mu, e, law, out):
         return o.NOT_APPROACHING
     size = math.sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2])
     s = (u[1], u[2], u[0], 0.0, 0.0, 0.0, 0.0, 0.0)
-
-    # The rate of slip per tau, a bound of |f| and |g|: the natural step in tau is its inverse.
-    half = 0.5 * (m[3] - m[5])
-    largest = 0.5 * (m[3] + m[5]) + math.sqrt(half * half + m[4] * m[4])
-    speed = math.sqrt(m[1] * m[1] + m[2] * m[2]) + mu * largest
-    h = 0.8 / speed if speed > 0.0 else 0.0
 
     t1, t2, c, n, grow = 0.0, 0.0, 0.0, 0.0, 0.0
     phases, steps = 0, 0
@@ -118,21 +112,17 @@ def resolve(W, u, mu, e, law, out):
             _, k = normal_rate(m, mu, s)
             if k <= 0.0:
                 phases |= o.JAM
-            new, error = arc(m, mu, s, h)
-            r = max(
-                math.sqrt(s[0] * s[0] + s[1] * s[1]), math.sqrt(new[0] * new[0] + new[1] * new[1])
+            t = expand(m, mu, s)
+            h = reach(
+                t[0], t[1], _ACCURACY * math.sqrt(size * math.sqrt(s[0] * s[0] + s[1] * s[1]))
             )
-            error /= _TOLERANCE * r
-            if not error <= 1.0:
-                h *= max(0.2, 0.9 * error**-0.125) if error < math.inf else 0.2
-                continue
+            new = moved(m, mu, s, t, h)
             if laws.remaining(now, goal, new[2], new[3], new[7]) <= 0.0:
-                s = land(m, mu, now, goal, s, new, h, speed)
+                s = land(m, mu, now, goal, s, new, t, h)
                 done = True
             else:
                 s = new
                 resting = not math.sqrt(s[0] * s[0] + s[1] * s[1]) > 1e-3 * _AT_REST * size
-                h *= min(4.0, 0.9 * max(error, 1e-9) ** -0.125)
         else:
             if mode == _STRAIGHT:
                 t1, t2 = -mu * c, -mu * n
@@ -163,7 +153,7 @@ def resolve(W, u, mu, e, law, out):
 
         if not done:
             if not compressing and s[2] < 0.0:
-                # Driven together again before restitution was over (strong coupling): compression goes on.
+                # Driven together again before restitution was over: compression goes on.
                 compressing, now, goal = True, laws.NEWTON, 0.0
                 s = (s[0], s[1], s[2], s[3] + before[0], s[4] + before[1], s[5] + before[2],
                      s[6] + before[3], s[7] + before[4])  # fmt: skip

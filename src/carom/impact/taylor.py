@@ -1,0 +1,217 @@
+"""One step of slip, by the Taylor series of its solution.
+
+With dtau = dp/|u_t| in place of the normal impulse p, Coulomb slip (mathematics page, II.9) is
+
+    du_t/dtau = r W_tn - mu W_tt u_t,    r = |u_t|,
+
+autonomous, and smooth down to u_t = 0, which it reaches only as tau -> infinity. The series follows
+from q := r^2 = u_t.u_t and r r = q, order by order (q_n = sum x_i x_{n-i} + y_i y_{n-i}; r_n from
+sum r_i r_{n-i} = q_n), with no coefficient of a method in it. All else is a quadrature of the
+series: p = int r, P_t = -mu int u_t, friction loss = mu int q. A phase that ends inside a step is
+found on the series, without a further step.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom.jit import kernel
+
+ORDER = 16
+
+
+@kernel
+def series(a1, a2, m11, m12, m22, x0, y0):
+    """Return the coefficients in tau of u_t = (x, y), r and q from u_t = (x0, y0).
+
+    (a1, a2) is W_tn, (m11, m12, m22) is mu W_tt. Four tuples: x and y of orders 0 to ORDER, r and q
+    of orders 0 to ORDER - 1.
+    """
+    q0 = x0 * x0 + y0 * y0
+    r0 = math.sqrt(q0)
+    half = 0.5 / r0
+    x1 = a1 * r0 - (m11 * x0 + m12 * y0)
+    y1 = a2 * r0 - (m12 * x0 + m22 * y0)
+    q1 = 2.0 * (x0 * x1 + y0 * y1)
+    r1 = half * (q1)
+    x2 = (a1 * r1 - (m11 * x1 + m12 * y1)) * 0.5
+    y2 = (a2 * r1 - (m12 * x1 + m22 * y1)) * 0.5
+    q2 = 2.0 * (x0 * x2 + y0 * y2) + (x1 * x1 + y1 * y1)
+    r2 = half * (q2 - (r1 * r1))
+    x3 = (a1 * r2 - (m11 * x2 + m12 * y2)) * 0.3333333333333333
+    y3 = (a2 * r2 - (m12 * x2 + m22 * y2)) * 0.3333333333333333
+    q3 = 2.0 * ((x0 * x3 + x1 * x2) + (y0 * y3 + y1 * y2))
+    r3 = half * (q3 - (2.0 * (r1 * r2)))
+    x4 = (a1 * r3 - (m11 * x3 + m12 * y3)) * 0.25
+    y4 = (a2 * r3 - (m12 * x3 + m22 * y3)) * 0.25
+    q4 = 2.0 * ((x0 * x4 + x1 * x3) + (y0 * y4 + y1 * y3)) + (x2 * x2 + y2 * y2)
+    r4 = half * (q4 - (2.0 * (r1 * r3) + r2 * r2))
+    x5 = (a1 * r4 - (m11 * x4 + m12 * y4)) * 0.2
+    y5 = (a2 * r4 - (m12 * x4 + m22 * y4)) * 0.2
+    q5 = 2.0 * (((x0 * x5 + x1 * x4) + (x2 * x3 + y0 * y5)) + (y1 * y4 + y2 * y3))
+    r5 = half * (q5 - (2.0 * (r1 * r4 + r2 * r3)))
+    x6 = (a1 * r5 - (m11 * x5 + m12 * y5)) * 0.16666666666666666
+    y6 = (a2 * r5 - (m12 * x5 + m22 * y5)) * 0.16666666666666666
+    q6 = 2.0 * (((x0 * x6 + x1 * x5) + (x2 * x4 + y0 * y6)) + (y1 * y5 + y2 * y4)) + (
+        x3 * x3 + y3 * y3
+    )
+    r6 = half * (q6 - (2.0 * (r1 * r5 + r2 * r4) + r3 * r3))
+    x7 = (a1 * r6 - (m11 * x6 + m12 * y6)) * 0.14285714285714285
+    y7 = (a2 * r6 - (m12 * x6 + m22 * y6)) * 0.14285714285714285
+    q7 = 2.0 * (
+        ((x0 * x7 + x1 * x6) + (x2 * x5 + x3 * x4)) + ((y0 * y7 + y1 * y6) + (y2 * y5 + y3 * y4))
+    )
+    r7 = half * (q7 - (2.0 * ((r1 * r6 + r2 * r5) + r3 * r4)))
+    x8 = (a1 * r7 - (m11 * x7 + m12 * y7)) * 0.125
+    y8 = (a2 * r7 - (m12 * x7 + m22 * y7)) * 0.125
+    q8 = 2.0 * (
+        ((x0 * x8 + x1 * x7) + (x2 * x6 + x3 * x5)) + ((y0 * y8 + y1 * y7) + (y2 * y6 + y3 * y5))
+    ) + (x4 * x4 + y4 * y4)
+    r8 = half * (q8 - (2.0 * ((r1 * r7 + r2 * r6) + r3 * r5) + r4 * r4))
+    x9 = (a1 * r8 - (m11 * x8 + m12 * y8)) * 0.1111111111111111
+    y9 = (a2 * r8 - (m12 * x8 + m22 * y8)) * 0.1111111111111111
+    q9 = 2.0 * (
+        (((x0 * x9 + x1 * x8) + (x2 * x7 + x3 * x6)) + ((x4 * x5 + y0 * y9) + (y1 * y8 + y2 * y7)))
+        + (y3 * y6 + y4 * y5)
+    )
+    r9 = half * (q9 - (2.0 * ((r1 * r8 + r2 * r7) + (r3 * r6 + r4 * r5))))
+    x10 = (a1 * r9 - (m11 * x9 + m12 * y9)) * 0.1
+    y10 = (a2 * r9 - (m12 * x9 + m22 * y9)) * 0.1
+    q10 = 2.0 * (
+        (
+            ((x0 * x10 + x1 * x9) + (x2 * x8 + x3 * x7))
+            + ((x4 * x6 + y0 * y10) + (y1 * y9 + y2 * y8))
+        )
+        + (y3 * y7 + y4 * y6)
+    ) + (x5 * x5 + y5 * y5)
+    r10 = half * (q10 - (2.0 * ((r1 * r9 + r2 * r8) + (r3 * r7 + r4 * r6)) + r5 * r5))
+    x11 = (a1 * r10 - (m11 * x10 + m12 * y10)) * 0.09090909090909091
+    y11 = (a2 * r10 - (m12 * x10 + m22 * y10)) * 0.09090909090909091
+    q11 = 2.0 * (
+        (
+            ((x0 * x11 + x1 * x10) + (x2 * x9 + x3 * x8))
+            + ((x4 * x7 + x5 * x6) + (y0 * y11 + y1 * y10))
+        )
+        + ((y2 * y9 + y3 * y8) + (y4 * y7 + y5 * y6))
+    )
+    r11 = half * (q11 - (2.0 * (((r1 * r10 + r2 * r9) + (r3 * r8 + r4 * r7)) + r5 * r6)))
+    x12 = (a1 * r11 - (m11 * x11 + m12 * y11)) * 0.08333333333333333
+    y12 = (a2 * r11 - (m12 * x11 + m22 * y11)) * 0.08333333333333333
+    q12 = 2.0 * (
+        (
+            ((x0 * x12 + x1 * x11) + (x2 * x10 + x3 * x9))
+            + ((x4 * x8 + x5 * x7) + (y0 * y12 + y1 * y11))
+        )
+        + ((y2 * y10 + y3 * y9) + (y4 * y8 + y5 * y7))
+    ) + (x6 * x6 + y6 * y6)
+    r12 = half * (q12 - (2.0 * (((r1 * r11 + r2 * r10) + (r3 * r9 + r4 * r8)) + r5 * r7) + r6 * r6))
+    x13 = (a1 * r12 - (m11 * x12 + m12 * y12)) * 0.07692307692307693
+    y13 = (a2 * r12 - (m12 * x12 + m22 * y12)) * 0.07692307692307693
+    q13 = 2.0 * (
+        (
+            ((x0 * x13 + x1 * x12) + (x2 * x11 + x3 * x10))
+            + ((x4 * x9 + x5 * x8) + (x6 * x7 + y0 * y13))
+        )
+        + (((y1 * y12 + y2 * y11) + (y3 * y10 + y4 * y9)) + (y5 * y8 + y6 * y7))
+    )
+    r13 = half * (
+        q13 - (2.0 * (((r1 * r12 + r2 * r11) + (r3 * r10 + r4 * r9)) + (r5 * r8 + r6 * r7)))
+    )
+    x14 = (a1 * r13 - (m11 * x13 + m12 * y13)) * 0.07142857142857142
+    y14 = (a2 * r13 - (m12 * x13 + m22 * y13)) * 0.07142857142857142
+    q14 = 2.0 * (
+        (
+            ((x0 * x14 + x1 * x13) + (x2 * x12 + x3 * x11))
+            + ((x4 * x10 + x5 * x9) + (x6 * x8 + y0 * y14))
+        )
+        + (((y1 * y13 + y2 * y12) + (y3 * y11 + y4 * y10)) + (y5 * y9 + y6 * y8))
+    ) + (x7 * x7 + y7 * y7)
+    r14 = half * (
+        q14
+        - (2.0 * (((r1 * r13 + r2 * r12) + (r3 * r11 + r4 * r10)) + (r5 * r9 + r6 * r8)) + r7 * r7)
+    )
+    x15 = (a1 * r14 - (m11 * x14 + m12 * y14)) * 0.06666666666666667
+    y15 = (a2 * r14 - (m12 * x14 + m22 * y14)) * 0.06666666666666667
+    q15 = 2.0 * (
+        (
+            ((x0 * x15 + x1 * x14) + (x2 * x13 + x3 * x12))
+            + ((x4 * x11 + x5 * x10) + (x6 * x9 + x7 * x8))
+        )
+        + (
+            ((y0 * y15 + y1 * y14) + (y2 * y13 + y3 * y12))
+            + ((y4 * y11 + y5 * y10) + (y6 * y9 + y7 * y8))
+        )
+    )
+    r15 = half * (
+        q15
+        - (
+            2.0
+            * (((r1 * r14 + r2 * r13) + (r3 * r12 + r4 * r11)) + ((r5 * r10 + r6 * r9) + r7 * r8))
+        )
+    )
+    x16 = (a1 * r15 - (m11 * x15 + m12 * y15)) * 0.0625
+    y16 = (a2 * r15 - (m12 * x15 + m22 * y15)) * 0.0625
+    return (
+        (x0, x1, x2, x3, x4, x5, x6, x7, x8, x9, x10, x11, x12, x13, x14, x15, x16),
+        (y0, y1, y2, y3, y4, y5, y6, y7, y8, y9, y10, y11, y12, y13, y14, y15, y16),
+        (r0, r1, r2, r3, r4, r5, r6, r7, r8, r9, r10, r11, r12, r13, r14, r15),
+        (q0, q1, q2, q3, q4, q5, q6, q7, q8, q9, q10, q11, q12, q13, q14, q15),
+    )
+
+
+@kernel
+def value(c, h):
+    """Return the series `c` of orders 0 to ORDER at `h`."""
+    v = c[16]
+    v = v * h + c[15]
+    v = v * h + c[14]
+    v = v * h + c[13]
+    v = v * h + c[12]
+    v = v * h + c[11]
+    v = v * h + c[10]
+    v = v * h + c[9]
+    v = v * h + c[8]
+    v = v * h + c[7]
+    v = v * h + c[6]
+    v = v * h + c[5]
+    v = v * h + c[4]
+    v = v * h + c[3]
+    v = v * h + c[2]
+    v = v * h + c[1]
+    v = v * h + c[0]
+    return v
+
+
+@kernel
+def integral(c, h):
+    """Return the integral of the series `c` from 0 to `h`; its orders 0 to ORDER - 1 are used."""
+    v = c[15] * 0.0625
+    v = v * h + c[14] * 0.06666666666666667
+    v = v * h + c[13] * 0.07142857142857142
+    v = v * h + c[12] * 0.07692307692307693
+    v = v * h + c[11] * 0.08333333333333333
+    v = v * h + c[10] * 0.09090909090909091
+    v = v * h + c[9] * 0.1
+    v = v * h + c[8] * 0.1111111111111111
+    v = v * h + c[7] * 0.125
+    v = v * h + c[6] * 0.14285714285714285
+    v = v * h + c[5] * 0.16666666666666666
+    v = v * h + c[4] * 0.2
+    v = v * h + c[3] * 0.25
+    v = v * h + c[2] * 0.3333333333333333
+    v = v * h + c[1] * 0.5
+    v = v * h + c[0]
+    return v * h
+
+
+@kernel
+def reach(x, y, accuracy):
+    """Return the step in tau at which each of the last two terms of u_t is at most `accuracy`."""
+    last = max(abs(x[16]), abs(y[16]))
+    other = max(abs(x[15]), abs(y[15]))
+    h = math.inf
+    if last > 0.0:
+        h = (accuracy / last) ** 0.0625
+    if other > 0.0:
+        h = min(h, (accuracy / other) ** 0.06666666666666667)
+    return h
