@@ -14,10 +14,13 @@ from carom.contact.work_mode import restore_work
 from carom.hold.events import CONE, GAP, SEPARATE, find_held_event, slip
 from carom.hold.lifecycle import settle, try_hold
 from carom.jit import kernel
-from carom.motion.acceleration import OPEN, SLIP
+from carom.motion.acceleration import OPEN, SLIP, STICK
+from carom.motion.explicit import keep
+from carom.motion.forces import potential_energy
 from carom.motion.project import project_velocity
 from carom.motion.step import step
 from carom.system import records as r
+from carom.system.notes import begin_event, end_event
 
 LOCATE, PROJECT, WORK = range(3)
 STEP_CUT, TOO_MANY, NOT_FINITE, RETURN_MAP, CORNER = 2, 3, 4, 5, 8
@@ -42,32 +45,32 @@ class Controls(NamedTuple):
 
 
 @kernel
-def run(system, method, controls, held, now, work, clock, records, until):
+def run(system, method, controls, held, now, work, clocks, records, until):
     """Go on from `now` to step number `until`. Returns 0, `records.FULL`, or the number of a `Status`."""
-    count, time = clock.count, clock.time
-    while count[r.STEP] < until:
-        begin = count[r.STEP] * controls.step
+    clock = clocks[0]
+    while clock.step < until:
+        begin = clock.step * controls.step
         length = min(controls.step, controls.duration - begin)
-        while time[r.SPENT] < length:
-            if count[r.STRUCK] >= records.impact.shape[0] - 1:
+        while clock.spent < length:
+            if clock.event >= records.event.shape[0] - 4:
                 return r.FULL
             code = advance(
                 system, method, controls, held, now, begin, length, work, clock, records
             )
             if code != 0:
                 return code
-            if count[r.IN_STEP] > controls.max_impacts:
+            if clock.in_step > controls.max_impacts:
                 return TOO_MANY
-            if count[r.AT_ONCE] > 200:
+            if clock.at_once > 200:
                 return CORNER
-        time[r.SPENT] = 0.0
-        count[r.STEP] += 1
-        count[r.IN_STEP] = 0
-        time[r.NOW] = begin + length
+        clock.spent = 0.0
+        clock.step += 1
+        clock.in_step = 0
+        clock.now = begin + length
         if not finite(now):
             return NOT_FINITE
-        if count[r.STEP] % controls.save_every == 0 or count[r.STEP] == controls.last:
-            save(system, held, now, clock, records)
+        if clock.step % controls.save_every == 0 or clock.step == controls.last:
+            save(held, now, clock, records)
     return 0
 
 
@@ -75,48 +78,55 @@ def run(system, method, controls, held, now, work, clock, records, until):
 def finite(state):
     """Return whether the state is made of numbers."""
     s = 0.0
-    for b in range(state.x.shape[0]):
+    for b in range(state.shape[0]):
         for k in range(3):
-            s += state.x[b, k] + state.v[b, k] + state.w[b, k]
-        s += state.Q[b, 0]
+            s += state[b].x[k] + state[b].v[k] + state[b].w[k]
+        s += state[b].Q[0]
     return math.isfinite(s)
 
 
 @kernel
-def save(system, held, now, clock, records):
-    """Write the present state into the next row."""
-    k = clock.count[r.SAVED]
-    records.t[k] = clock.time[r.NOW]
-    records.x[k], records.Q[k], records.v[k], records.w[k] = now.x, now.Q, now.v, now.w
-    for i in range(clock.ledger.size):
-        records.ledger[k, i] = clock.ledger[i]
-    for c in range(held.mode.size):
-        records.mode[k, c] = held.mode[c]
-        for i in range(3):
-            records.force[k, c, i] = held.force[c, i] if held.mode[c] != OPEN else 0.0
-    clock.count[r.SAVED] += 1
+def save_first(held, now, clocks, records):
+    """Write the state at the start."""
+    save(held, now, clocks[0], records)
 
 
 @kernel
-def accept(system, held, now, end, tau, applied, friction, begin, clock):
+def save(held, now, clock, records):
+    """Write the present state into the next row."""
+    k = clock.saved
+    row = records.series[k]
+    row.t = clock.now
+    row.loads, row.impacts = clock.loads, clock.impacts
+    row.friction, row.bounces = clock.friction, clock.bounces
+    for b in range(now.shape[0]):
+        keep(now[b], records.state[k, b])
+    for c in range(held.shape[0]):
+        touch = records.touch[k, c]
+        touch.mode = held[c].mode
+        for i in range(3):
+            touch.force[i] = held[c].force[i] if held[c].mode != OPEN else 0.0
+            touch.point[i] = held[c].point[i]
+    clock.saved += 1
+
+
+@kernel
+def accept(now, end, tau, applied, friction, begin, clock):
     """Make `end` the present state, a time tau later."""
-    for b in range(now.x.shape[0]):
-        for k in range(3):
-            now.x[b, k], now.v[b, k], now.w[b, k] = end.x[b, k], end.v[b, k], end.w[b, k]
-        for k in range(4):
-            now.Q[b, k] = end.Q[b, k]
-    clock.time[r.SPENT] += tau
-    clock.time[r.NOW] = begin + clock.time[r.SPENT]
-    clock.ledger[r.LOADS] += applied
-    clock.ledger[r.FRICTION] += friction
+    for b in range(now.shape[0]):
+        keep(end[b], now[b])
+    clock.spent += tau
+    clock.now = begin + clock.spent
+    clock.loads += applied
+    clock.friction += friction
     if tau > 0.0:
-        clock.count[r.AT_ONCE] = 0
+        clock.at_once = 0
 
 
 @kernel
 def advance(system, method, controls, held, now, begin, length, work, clock, records):
     """Go on to the next event, or to the end of the step."""
-    remaining = length - clock.time[r.SPENT]
+    remaining = length - clock.spent
     horizon = remaining if controls.location == LOCATE else controls.step
     code, struck = look_near(system, controls, held, now, horizon, work, clock, records)
     if code != 0 or struck:
@@ -124,32 +134,28 @@ def advance(system, method, controls, held, now, begin, length, work, clock, rec
     dt, cuts = remaining, 0
     while True:
         applied, friction, code = step(system, method, held, now, dt, work.trial, work)
-        clock.count[r.TRIALS] += 1
+        clock.trials += 1
         if code != 0:
             return code
         verdict, kind, c, low, d1, d2 = examine(system, controls, held, now, dt, work)
         if verdict == UNSURE:
             cuts += 1
-            clock.count[r.CUTS] += 1
+            clock.cuts += 1
             if cuts > controls.max_cuts:
                 return STEP_CUT
             dt *= 0.5
             continue
-        if verdict == CLEAR:
-            accept(system, held, now, work.trial, dt, applied, friction, begin, clock)
+        if verdict == CLEAR or (kind == GAP and controls.location != LOCATE):
+            accept(now, work.trial, dt, applied, friction, begin, clock)
             if dt == remaining:
-                clock.time[r.SPENT] = length
-            return 0
-        break
-    if kind == GAP and controls.location != LOCATE:
-        accept(system, held, now, work.trial, dt, applied, friction, begin, clock)
-        if dt == remaining:
-            clock.time[r.SPENT] = length
-        return bring_back(system, controls, held, c, now, horizon, work, clock, records)
-    return to_event(
-        system, method, controls, held, kind, c, d1, d2, now, low, dt, begin, work, clock, records,
-        horizon,
-    )  # fmt: skip
+                clock.spent = length
+            if verdict == CLEAR:
+                return 0
+            return bring_back(system, controls, held, c, now, horizon, work, clock, records)
+        return to_event(
+            system, method, controls, held, kind, c, d1, d2, now, low, dt, begin, horizon, work,
+            clock, records,
+        )  # fmt: skip
 
 
 @kernel
@@ -158,30 +164,31 @@ def look_near(system, controls, held, now, horizon, work, clock, records):
 
     Returns a status, and whether a velocity changed.
     """
-    for c in range(held.mode.size):
-        if held.near[c] == 0:
+    for c in range(held.shape[0]):
+        hold, contact = held[c], system.contacts[c]
+        if hold.near == 0:
             continue
-        held.near[c] = 0
-        if held.mode[c] != OPEN:
+        hold.near = 0
+        if hold.mode != OPEN:
             continue
-        tie = controls.tie * system.contacts.size[c]
-        rho, rate = strike_point(system, c, now.x, now.Q, now.v, now.w, tie, work.point)
+        tie, point = controls.tie * contact.size, work.hit[0].point
+        rho, rate = strike_point(contact, system.vertices, now, tie, point)
         if rho > tie:
             continue
-        still = slow(system, c, now.x, now.v, now.w)
+        still = slow(contact, now)
         if rate < -still:
             if controls.location == LOCATE:
-                return strike(system, controls, held, c, now, horizon, work, clock, records), True
-            return (
-                bring_back(system, controls, held, c, now, horizon, work, clock, records),
-                True,
-            )
+                code = strike(system, controls, held, c, now, horizon, work, clock, records)
+            else:
+                code = bring_back(system, controls, held, c, now, horizon, work, clock, records)
+            hold.near = 1
+            return code, True
         if rate <= still:
             for k in range(3):
-                held.point[c, k] = work.point[k]
-            if try_hold(system, controls, held, c, now, horizon, work, clock):
+                hold.point[k] = point[k]
+            if try_hold(system, controls, held, c, now, horizon, work, clock, records):
                 return 0, True
-            held.leaving[c] = 1
+            hold.leaving = 1
     return 0, False
 
 
@@ -189,15 +196,18 @@ def look_near(system, controls, held, now, horizon, work, clock, records):
 def examine(system, controls, held, now, dt, work):
     """Look at the step from `now` to work.trial: verdict, event, contact, a time before it, slip."""
     found, which, low = CLEAR, -1, 0.0
-    for c in range(held.mode.size):
-        tie = controls.tie * system.contacts.size[c]
-        verdict, first = passage(system, held, c, now, work.trial, dt, work, controls.gap, tie)
+    for c in range(held.shape[0]):
+        contact = system.contacts[c]
+        tie = controls.tie * contact.size
+        verdict, first = passage(
+            system, contact, held[c], now, work.trial, dt, work, controls.gap, tie
+        )
         if verdict == UNSURE:
             return UNSURE, GAP, c, 0.0, 0.0, 0.0
         if verdict == BELOW and found == CLEAR:
             found, which, low = BELOW, c, 0.5 * first
-        elif verdict == CLEAR and held.leaving[c] == 1 and first > 0.0:
-            held.leaving[c] = 0
+        elif verdict == CLEAR and held[c].leaving == 1 and first > 0.0:
+            held[c].leaving = 0
     if found == BELOW:
         return BELOW, GAP, which, low, 0.0, 0.0
     kind, c, d1, d2 = find_held_event(system, held, now, work.trial, work)
@@ -208,16 +218,15 @@ def examine(system, controls, held, now, dt, work):
 
 @kernel
 def to_event(
-    system, method, controls, held, kind, c, d1, d2, now, low, high, begin, work, clock, records,
-    horizon,
+    system, method, controls, held, kind, c, d1, d2, now, low, high, begin, horizon, work, clock,
+    records,
 ):  # fmt: skip
     """Locate the event, make sure that none comes before it, and carry it out."""
-    applied, friction = 0.0, 0.0
     for _ in range(2 * controls.max_cuts):
         tau, applied, friction, code = locate(
             system, method, controls, held, kind, c, d1, d2, now, low, high, work, clock
         )
-        clock.count[r.LOCATED] += 1
+        clock.located += 1
         if code != 0:
             return code
         verdict, other_kind, other, low, e1, e2 = examine(system, controls, held, now, tau, work)
@@ -225,93 +234,101 @@ def to_event(
             kind, c, d1, d2, high = other_kind, other, e1, e2, tau
             continue
         if verdict == UNSURE and tau > 1e-9 * horizon:
-            # something may lie before: stop half-way, the next step starts from there
-            clock.count[r.CUTS] += 1
-            tau *= 0.5
-            applied, friction, code = step(system, method, held, now, tau, work.trial, work)
+            # something may lie before: look at the first half, and go on from there
+            clock.cuts += 1
+            high = 0.5 * tau
+            applied, friction, code = step(system, method, held, now, high, work.trial, work)
+            clock.trials += 1
             if code != 0:
                 return code
-            verdict, other_kind, other, low, e1, e2 = examine(
-                system, controls, held, now, tau, work
-            )
+            verdict, kind, c, low, d1, d2 = examine(system, controls, held, now, high, work)
             if verdict == CLEAR:
-                accept(system, held, now, work.trial, tau, applied, friction, begin, clock)
+                accept(now, work.trial, high, applied, friction, begin, clock)
                 return 0
             if verdict == BELOW:
-                kind, c, d1, d2, high = other_kind, other, e1, e2, tau
-            else:
-                high = tau
-                kind, c = GAP, other
-            continue
-        accept(system, held, now, work.trial, tau, applied, friction, begin, clock)
-        horizon = max(horizon - tau, 0.0)
+                continue
+            return halve(system, method, controls, held, now, high, begin, work, clock)
+        accept(now, work.trial, tau, applied, friction, begin, clock)
         if kind == GAP:
-            return land(system, controls, held, c, now, horizon, work, clock, records)
-        return change_mode(system, held, kind, c, d1, d2, now, work, clock)
+            left = max(horizon - tau, 0.0)
+            return land(system, controls, held, c, now, left, work, clock, records)
+        return change_mode(system, controls, held, kind, c, d1, d2, now, work, clock, records)
+    return STEP_CUT
+
+
+@kernel
+def halve(system, method, controls, held, now, dt, begin, work, clock):
+    """Go on by the first part of a step that is surely clear, halving dt until one is."""
+    for _ in range(controls.max_cuts):
+        dt *= 0.5
+        clock.cuts += 1
+        clock.trials += 1
+        applied, friction, code = step(system, method, held, now, dt, work.trial, work)
+        if code != 0:
+            return code
+        if examine(system, controls, held, now, dt, work)[0] == CLEAR:
+            accept(now, work.trial, dt, applied, friction, begin, clock)
+            return 0
     return STEP_CUT
 
 
 @kernel
 def land(system, controls, held, c, now, horizon, work, clock, records):
     """Polish a located contact by the return map, and strike."""
-    tie = controls.tie * system.contacts.size[c]
-    tolerance = max(controls.gap * system.contacts.size[c], round_off(system, c, now.x))
-    rho, _ = strike_point(system, c, now.x, now.Q, now.v, now.w, tie, work.point)
+    contact = system.contacts[c]
+    tie, point = controls.tie * contact.size, work.hit[0].point
+    tolerance = max(controls.gap * contact.size, round_off(contact, now))
+    rho, _ = strike_point(contact, system.vertices, now, tie, point)
     if rho < -tolerance:
-        if return_map(system, c, now.x, now.Q, work.middle, work, tie, tolerance) < 0:
+        if return_map(system, contact, now, work, tie, tolerance) < 0:
             return RETURN_MAP
-    strike_point(system, c, now.x, now.Q, now.v, now.w, tie, work.point)
+        strike_point(contact, system.vertices, now, tie, point)
+    struck = clock.struck
     code = strike(system, controls, held, c, now, horizon, work, clock, records)
-    held.near[c] = 1
-    if controls.layer_time == 1 and code == 0:
-        add_layer_time(clock, records)
+    held[c].near = 1
+    if controls.layer_time == 1 and code == 0 and clock.struck > struck:
+        clock.spent += records.impact[struck].duration  # the position stays
     return code
-
-
-@kernel
-def add_layer_time(clock, records):
-    """Let the last impact take its time on the clock (the position stays)."""
-    k = clock.count[r.STRUCK] - 1
-    if k >= 0:
-        clock.time[r.SPENT] += records.impact[k, r.DURATION]
 
 
 @kernel
 def bring_back(system, controls, held, c, now, horizon, work, clock, records):
     """The paper's way: the step has left the manifold; map back to the boundary, then strike."""
-    tie = controls.tie * system.contacts.size[c]
-    tolerance = max(controls.gap * system.contacts.size[c], round_off(system, c, now.x))
-    height = restore_work(system, now, work, 0.0, c, True)
-    if return_map(system, c, now.x, now.Q, work.middle, work, tie, tolerance) < 0:
+    contact = system.contacts[c]
+    tie, point = controls.tie * contact.size, work.hit[0].point
+    tolerance = max(controls.gap * contact.size, round_off(contact, now))
+    before = potential_energy(system, now)
+    if return_map(system, contact, now, work, tie, tolerance) < 0:
         return RETURN_MAP
-    if system.joints.kind.size > 0:  # the velocity block again, with the position now fixed
-        project_velocity(system, now.x, now.Q, now.v, now.w, work)
-    strike_point(system, c, now.x, now.Q, now.v, now.w, tie, work.point)
+    if system.joints.shape[0] > 0:  # the velocity block again, with the position now fixed
+        project_velocity(system, now, work)
+    strike_point(contact, system.vertices, now, tie, point)
     if controls.location == WORK:
-        restore_work(system, now, work, height, c, False)
+        restore_work(system, contact, now, before - potential_energy(system, now), work)
     code = strike(system, controls, held, c, now, horizon, work, clock, records)
-    for i in range(held.near.size):
-        held.near[i] = 1
+    for i in range(held.shape[0]):
+        held[i].near = 1
     return code
 
 
 @kernel
-def change_mode(system, held, kind, c, d1, d2, now, work, clock):
+def change_mode(system, controls, held, kind, c, d1, d2, now, work, clock, records):
     """Carry out the event of a held contact."""
+    hold = held[c]
+    begin_event(c, now, clock, records)
     if kind == SEPARATE:
-        held.mode[c] = OPEN
-        held.leaving[c] = 1
-        return 0
-    if kind == CONE:
-        held.mode[c] = SLIP
-        return 0
-    u1, u2 = slip(system, held, c, now)
-    across = abs(u1 * d2 - u2 * d1)
-    # slip has stopped if nothing is left across either; the scale is the slip one step would make
-    f = held.force[c]
-    stop = 1e-3 * clock.time[r.SPENT] * math.sqrt(f[0] * f[0]) * work.W[c, 1, 1]
-    if across <= stop:
-        settle(system, held, c, now, 2.0 * stop + across, work, clock)
+        hold.mode = OPEN
+        hold.leaving = 1
+        end_event(r.OPENS, now, clock, records)
+    elif kind == CONE:
+        hold.mode = SLIP
+        end_event(r.SLIPS, now, clock, records)
+    else:
+        u1, u2 = slip(system.contacts[c], hold, now)
+        across = abs(u1 * d2 - u2 * d1)
+        # slip has stopped if nothing is left across either; the scale is what friction does in a step
+        stop = 1e-3 * controls.step * abs(hold.force[0]) * hold.W[1, 1]
+        if across <= stop:
+            settle(system, held, c, now, 2.0 * stop + across, work, clock)
+            end_event(r.STICKS if hold.mode == STICK else r.SLIPS, now, clock, records)
     return 0
-
-

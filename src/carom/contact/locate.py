@@ -12,18 +12,20 @@ from carom.hold.events import GAP, held_value
 from carom.jit import kernel
 from carom.motion.acceleration import acceleration
 from carom.motion.step import step
-from carom.system.records import TRIALS
+
+NOT_FINITE, STEP_CUT = 4, 2
 
 
 @kernel
 def event_value(system, controls, held, kind, c, d1, d2, state, work):
     """Return the event function and, for a gap, its rate, at `state`."""
+    contact = system.contacts[c]
     if kind == GAP:
-        tie = controls.tie * system.contacts.size[c]
-        rho = gap(system, c, state.x, state.Q)
-        return rho, strike_point(system, c, state.x, state.Q, state.v, state.w, tie, work.point)[1]
-    acceleration(system, state.x, state.Q, state.v, state.w, held, work, work.rate[0])
-    return held_value(system, held, c, kind, d1, d2, state), 0.0
+        tie = controls.tie * contact.size
+        rho = gap(contact, system.vertices, state)
+        return rho, strike_point(contact, system.vertices, state, tie, work.hit[0].point)[1]
+    acceleration(system, state, held, work, work.stages[0])
+    return held_value(contact, held[c], kind, d1, d2, state), 0.0
 
 
 @kernel
@@ -35,15 +37,16 @@ def locate(system, method, controls, held, kind, c, d1, d2, start, low, high, wo
     """
     end = work.trial
     f_high, rate = event_value(system, controls, held, kind, c, d1, d2, end, work)
-    f_low = abs(f_high)
+    f_low, tolerance = abs(f_high), 0.0
     if kind == GAP:
-        tolerance = max(controls.gap * system.contacts.size[c], round_off(system, c, end.x))
+        contact = system.contacts[c]
+        tolerance = max(controls.gap * contact.size, round_off(contact, end))
     else:
         f_low, _ = event_value(system, controls, held, kind, c, d1, d2, start, work)
         f_low = max(f_low, 0.0)
         tolerance = 1e-13 * max(f_low, -f_high)
-    t, f, side = high, f_high, 0
-    width = high
+    t, f, side, width = high, f_high, 0, high
+    applied, friction = 0.0, 0.0
     for _ in range(200):
         if kind == GAP and rate < 0.0:
             new = t - f / rate
@@ -53,7 +56,7 @@ def locate(system, method, controls, held, kind, c, d1, d2, start, low, high, wo
             new = 0.5 * (low + high)
         t = new
         applied, friction, code = step(system, method, held, start, t, end, work)
-        clock.count[TRIALS] += 1
+        clock.trials += 1
         if code != 0:
             return t, applied, friction, code
         f, rate = event_value(system, controls, held, kind, c, d1, d2, end, work)
@@ -68,5 +71,5 @@ def locate(system, method, controls, held, kind, c, d1, d2, start, low, high, wo
             f_high *= 0.5 if side == 2 else 1.0
             side = 2
         else:
-            return t, applied, friction, 4
-    return t, applied, friction, 2
+            return t, applied, friction, NOT_FINITE
+    return t, applied, friction, STEP_CUT

@@ -17,22 +17,17 @@ from carom.motion.contact_point import (
     effective_inverse_mass,
     spread,
 )
-from carom.motion.forces import energies
 
 
 @kernel
-def restore_work(system, now, work, before, c, measure):
-    """With `measure`, return the potential energy now; else change u_n for what it lost since `before`."""
-    _, potential = energies(system, now.x, now.Q, now.v, now.w)
-    if measure:
-        return potential
-    p = work.point
-    rx, ry, rz = contact_arm(system, c, now.Q, p[0], p[1], p[2])
-    un = contact_velocity(system, c, now.v, now.w, rx, ry, rz)[0]
+def restore_work(system, contact, state, drop, work):
+    """Change u_n at the core point of `work.hit` for the potential energy `drop` [J] that was lost."""
+    hit = work.hit[0]
+    rx, ry, rz = contact_arm(contact, state, hit.point)
+    un = contact_velocity(contact, state, rx, ry, rz)[0]
     if un < 0.0:
-        effective_inverse_mass(system, c, now.x, now.Q, rx, ry, rz, work, work.small)
-        w_nn = work.small[0, 0]
-        new = -math.sqrt(max(un * un + 2.0 * w_nn * (before - potential), 0.0))
-        spread(system, c, now.x, now.Q, rx, ry, rz, (new - un) / w_nn, 0.0, 0.0, work)
-        add_velocity(system, c, work, now.v, now.w)
-    return potential
+        effective_inverse_mass(system, contact, state, rx, ry, rz, work, hit.W)
+        w_nn = hit.W[0, 0]
+        new = -math.sqrt(max(un * un + 2.0 * w_nn * drop, 0.0))
+        spread(system, contact, state, rx, ry, rz, (new - un) / w_nn, 0.0, 0.0, work)
+        add_velocity(system, contact, work, state)

@@ -16,7 +16,7 @@ import math
 from carom.contact.gap import slow
 from carom.geometry.rotation import rotate
 from carom.jit import kernel
-from carom.motion.acceleration import OPEN, SLIP, STICK, acceleration, stick_force
+from carom.motion.acceleration import OPEN, SLIP, STICK, acceleration
 from carom.motion.contact_point import (
     add_velocity,
     contact_acceleration,
@@ -25,106 +25,103 @@ from carom.motion.contact_point import (
     effective_inverse_mass,
     spread,
 )
-from carom.system.records import HANDOVER, HOLDS
+from carom.motion.friction import stick_force
+from carom.system.notes import begin_event, end_event
+from carom.system.records import HOLD
 
 
 @kernel
 def approach_acceleration(system, held, c, state, work):
     """Return g_i, the acceleration towards the half-space that contact c would have if it were open."""
-    mode = held.mode[c]
-    held.mode[c] = OPEN
-    acc = work.rate[0]
-    acceleration(system, state.x, state.Q, state.v, state.w, held, work, acc)
-    held.mode[c] = mode
-    p = held.point[c]
-    rx, ry, rz = contact_arm(system, c, state.Q, p[0], p[1], p[2])
-    a = contact_acceleration(system, c, state.Q, state.w, acc, p[0], p[1], p[2], rx, ry, rz)
-    return -a[0]
+    contact, mode = system.contacts[c], held[c].mode
+    held[c].mode = OPEN
+    acceleration(system, state, held, work, work.stages[0])
+    held[c].mode = mode
+    p = held[c].point
+    rx, ry, rz = contact_arm(contact, state, p)
+    rate = work.stages[0, contact.body].rate
+    return -contact_acceleration(contact, state, rate, p, rx, ry, rz)[0]
 
 
 @kernel
-def try_hold(system, controls, held, c, state, horizon, work, clock):
-    """Hold contact c, which is closed at `held.point[c]` and does not approach, if the rule says so."""
+def try_hold(system, controls, held, c, state, horizon, work, clock, records):
+    """Hold contact c, which is closed at its point and does not approach, if the rule says so."""
     if controls.hold == 0:
         return False
-    p = held.point[c]
-    rx, ry, rz = contact_arm(system, c, state.Q, p[0], p[1], p[2])
-    rate = contact_velocity(system, c, state.v, state.w, rx, ry, rz)[0]
+    contact = system.contacts[c]
+    rx, ry, rz = contact_arm(contact, state, held[c].point)
+    rate = contact_velocity(contact, state, rx, ry, rz)[0]
     g = approach_acceleration(system, held, c, state, work)
     if not g > 0.0:
         return False
-    e = system.contacts.restitution[c]
-    if rate > slow(system, c, state.x, state.v, state.w) and not (
+    e = contact.restitution
+    if rate > slow(contact, state) and not (
         e < 1.0 and 2.0 * rate < g * (1.0 - e) * horizon
     ):
         return False
-    W = work.small
-    effective_inverse_mass(system, c, state.x, state.Q, rx, ry, rz, work, W)
-    clock.ledger[HANDOVER] -= 0.5 * rate * rate / W[0, 0]
-    clock.count[HOLDS] += 1
-    spread(system, c, state.x, state.Q, rx, ry, rz, -rate / W[0, 0], 0.0, 0.0, work)
-    add_velocity(system, c, work, state.v, state.w)
+    W = work.hit[0].W
+    effective_inverse_mass(system, contact, state, rx, ry, rz, work, W)
+    clock.bounces -= 0.5 * rate * rate / W[0, 0]
+    clock.holds += 1
+    begin_event(c, state, clock, records)
+    spread(system, contact, state, rx, ry, rz, -rate / W[0, 0], 0.0, 0.0, work)
+    add_velocity(system, contact, work, state)
     settle(system, held, c, state, 0.0, work, clock)
+    end_event(HOLD, state, clock, records)
     return True
 
 
 @kernel
 def settle(system, held, c, state, stop, work, clock):
     """Set the mode of a closed contact without normal speed. Slip below `stop` [m/s] has ended."""
-    p = held.point[c]
-    b = system.contacts.body[c]
-    rx, ry, rz = contact_arm(system, c, state.Q, p[0], p[1], p[2])
-    u = contact_velocity(system, c, state.v, state.w, rx, ry, rz)
-    held.leaving[c] = 0
-    held.mode[c] = SLIP
-    slip = math.sqrt(u[1] * u[1] + u[2] * u[2])
-    if slip <= max(stop, 10.0 * slow(system, c, state.x, state.v, state.w)):
-        W = work.small
-        effective_inverse_mass(system, c, state.x, state.Q, rx, ry, rz, work, W)
+    contact, hold = system.contacts[c], held[c]
+    rx, ry, rz = contact_arm(contact, state, hold.point)
+    u = contact_velocity(contact, state, rx, ry, rz)
+    hold.leaving = 0
+    hold.mode = SLIP
+    if math.sqrt(u[1] * u[1] + u[2] * u[2]) <= max(stop, 10.0 * slow(contact, state)):
+        W = work.hit[0].W
+        effective_inverse_mass(system, contact, state, rx, ry, rz, work, W)
         n, t1, t2 = stick_force(W, u[0], u[1], u[2])
-        spread(system, c, state.x, state.Q, rx, ry, rz, n, t1, t2, work)
-        add_velocity(system, c, work, state.v, state.w)
-        clock.ledger[HANDOVER] += 0.5 * (n * u[0] + t1 * u[1] + t2 * u[2])
-        held.mode[c] = STICK
-    acc = work.rate[0]
-    acceleration(system, state.x, state.Q, state.v, state.w, held, work, acc)
-    f = held.force[c]
-    if held.mode[c] == STICK and not (
-        math.sqrt(f[1] * f[1] + f[2] * f[2]) <= system.contacts.friction[c] * f[0]
+        spread(system, contact, state, rx, ry, rz, n, t1, t2, work)
+        add_velocity(system, contact, work, state)
+        clock.bounces += 0.5 * (n * u[0] + t1 * u[1] + t2 * u[2])
+        hold.mode = STICK
+    acceleration(system, state, held, work, work.stages[0])
+    f = hold.force
+    if hold.mode == STICK and not (
+        math.sqrt(f[1] * f[1] + f[2] * f[2]) <= contact.friction * f[0]
     ):
-        held.mode[c] = SLIP
-    mark_anchor(system, held, c, state)
-    if held.mode[c] == STICK and system.bodies.isolated[b] == 1:
-        rest_if_still(system, held, c, state, acc, f[0])
+        hold.mode = SLIP
+    mark_anchor(contact, hold, state)
+    if hold.mode == STICK and system.bodies[contact.body].isolated == 1:
+        mass, rate = system.bodies[contact.body].mass, work.stages[0, contact.body].rate
+        rest_if_still(contact, hold, state[contact.body], rate, f[0] / mass)
 
 
 @kernel
-def mark_anchor(system, held, c, state):
-    """Note where the core point of contact c is in the world."""
-    b, p = system.contacts.body[c], held.point[c]
-    q = state.Q[b]
+def mark_anchor(contact, hold, state):
+    """Note where the core point of the contact is in the world."""
+    q, x, p = state[contact.body].Q, state[contact.body].x, hold.point
     r = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
     for k in range(3):
-        held.anchor[c, k] = state.x[b, k] + r[k]
+        hold.anchor[k] = x[k] + r[k]
 
 
 @kernel
-def rest_if_still(system, held, c, state, acc, normal):
-    """Put the body of contact c to rest, exactly, if neither speed nor acceleration is left.
+def rest_if_still(contact, hold, body, rate, push):
+    """Put a body to rest, exactly, if neither speed nor acceleration is left.
 
     No speed: round-off of the speeds that gravity gives it over its own size. No acceleration: round-off
-    of what the contact force does to it.
+    of `push`, what the contact force does to it.
     """
-    bodies = system.bodies
-    b = system.contacts.body[c]
-    size = system.contacts.size[c]
-    push = normal / bodies.mass[b]
-    speed, rate = 0.0, 0.0
+    size = contact.size
+    speed, change = 0.0, 0.0
     for k in range(3):
-        speed = max(speed, max(abs(state.v[b, k]), size * abs(state.w[b, k])))
-        rate = max(rate, max(abs(acc[b, k]), size * abs(acc[b, 3 + k])))
-    if rate <= 1e-9 * push and speed <= 1e-9 * math.sqrt(push * size):
+        speed = max(speed, max(abs(body.v[k]), size * abs(body.w[k])))
+        change = max(change, max(abs(rate[k]), size * abs(rate[3 + k])))
+    if change <= 1e-9 * push and speed <= 1e-9 * math.sqrt(push * size):
         for k in range(3):
-            state.v[b, k] = 0.0
-            state.w[b, k] = 0.0
-        held.rest[c] = 1
+            body.v[k] = 0.0
+            body.w[k] = 0.0
+        hold.rest = 1

@@ -8,90 +8,102 @@ from __future__ import annotations
 
 from carom.geometry.rotation import cross, rotate
 from carom.jit import kernel
-from carom.motion.solve import solve, write_free
+from carom.motion.forces import point_velocity
+from carom.motion.solve import free_body, solve
 
 
 @kernel
-def contact_arm(system, c, Q, px, py, pz):
+def contact_arm(contact, state, p):
     """Return the arm of the contact point of the core point p (body axes): R p - radius n."""
-    contacts = system.contacts
-    b = contacts.body[c]
-    rx, ry, rz = rotate(Q[b, 0], Q[b, 1], Q[b, 2], Q[b, 3], px, py, pz)
-    r, n = contacts.radius[c], contacts.axes[c]
+    q, n, r = state[contact.body].Q, contact.axes, contact.radius
+    rx, ry, rz = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
     return rx - r * n[0, 0], ry - r * n[0, 1], rz - r * n[0, 2]
 
 
 @kernel
-def point_gap(system, c, x, rx, ry, rz):
-    """Return the gap of the point at arm r."""
-    b, n = system.contacts.body[c], system.contacts.axes[c]
-    s = n[0, 0] * (x[b, 0] + rx) + n[0, 1] * (x[b, 1] + ry) + n[0, 2] * (x[b, 2] + rz)
-    return s - system.contacts.offset[c]
+def in_contact_axes(contact, ax, ay, az):
+    """Return the components (normal, tangent 1, tangent 2) of a world vector."""
+    E = contact.axes
+    return (
+        E[0, 0] * ax + E[0, 1] * ay + E[0, 2] * az,
+        E[1, 0] * ax + E[1, 1] * ay + E[1, 2] * az,
+        E[2, 0] * ax + E[2, 1] * ay + E[2, 2] * az,
+    )
 
 
 @kernel
-def contact_velocity(system, c, v, w, rx, ry, rz):
+def contact_velocity(contact, state, rx, ry, rz):
     """Return u = G v of the point at arm r, in contact axes."""
-    b, E = system.contacts.body[c], system.contacts.axes[c]
-    ux, uy, uz = cross(w[b, 0], w[b, 1], w[b, 2], rx, ry, rz)
-    ux, uy, uz = ux + v[b, 0], uy + v[b, 1], uz + v[b, 2]
-    return (
-        E[0, 0] * ux + E[0, 1] * uy + E[0, 2] * uz,
-        E[1, 0] * ux + E[1, 1] * uy + E[1, 2] * uz,
-        E[2, 0] * ux + E[2, 1] * uy + E[2, 2] * uz,
-    )
+    ux, uy, uz = point_velocity(state, contact.body, rx, ry, rz)
+    return in_contact_axes(contact, ux, uy, uz)
 
 
 @kernel
-def contact_acceleration(system, c, Q, w, acc, px, py, pz, rx, ry, rz):
+def motion_of_point(contact, motion, rx, ry, rz):
+    """Return G of a motion (linear, angular) of the contact's body, in contact axes."""
+    ux, uy, uz = cross(motion[3], motion[4], motion[5], rx, ry, rz)
+    return in_contact_axes(contact, ux + motion[0], uy + motion[1], uz + motion[2])
+
+
+@kernel
+def contact_acceleration(contact, state, motion, p, rx, ry, rz):
     """Return du/dt in contact axes: a + alpha x r + w x (w x R p) (the ball around p does not turn r)."""
-    b, E = system.contacts.body[c], system.contacts.axes[c]
-    cx, cy, cz = rotate(Q[b, 0], Q[b, 1], Q[b, 2], Q[b, 3], px, py, pz)
-    cx, cy, cz = cross(w[b, 0], w[b, 1], w[b, 2], cx, cy, cz)
-    cx, cy, cz = cross(w[b, 0], w[b, 1], w[b, 2], cx, cy, cz)
-    tx, ty, tz = cross(acc[b, 3], acc[b, 4], acc[b, 5], rx, ry, rz)
-    ux, uy, uz = acc[b, 0] + tx + cx, acc[b, 1] + ty + cy, acc[b, 2] + tz + cz
-    return (
-        E[0, 0] * ux + E[0, 1] * uy + E[0, 2] * uz,
-        E[1, 0] * ux + E[1, 1] * uy + E[1, 2] * uz,
-        E[2, 0] * ux + E[2, 1] * uy + E[2, 2] * uz,
+    q, w = state[contact.body].Q, state[contact.body].w
+    cx, cy, cz = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
+    cx, cy, cz = cross(w[0], w[1], w[2], cx, cy, cz)
+    cx, cy, cz = cross(w[0], w[1], w[2], cx, cy, cz)
+    tx, ty, tz = cross(motion[3], motion[4], motion[5], rx, ry, rz)
+    return in_contact_axes(
+        contact, motion[0] + tx + cx, motion[1] + ty + cy, motion[2] + tz + cz
     )
 
 
 @kernel
-def spread(system, c, x, Q, rx, ry, rz, ln, l1, l2, work):
-    """Write work.delta = P G^T lam for lam = (ln, l1, l2); only the own body if nothing is joined to it."""
-    b, E = system.contacts.body[c], system.contacts.axes[c]
+def spread(system, contact, state, rx, ry, rz, ln, l1, l2, work):
+    """Write motion = P G^T (ln, l1, l2): of all bodies, or of the own one if nothing is joined to it."""
+    b, E = contact.body, contact.axes
     fx = E[0, 0] * ln + E[1, 0] * l1 + E[2, 0] * l2
     fy = E[0, 1] * ln + E[1, 1] * l1 + E[2, 1] * l2
     fz = E[0, 2] * ln + E[1, 2] * l1 + E[2, 2] * l2
     tx, ty, tz = cross(rx, ry, rz, fx, fy, fz)
-    wrench = work.wrench
-    if system.bodies.isolated[b] == 0:
-        wrench[:] = 0.0
-    wrench[b, 0], wrench[b, 1], wrench[b, 2] = fx, fy, fz
-    wrench[b, 3], wrench[b, 4], wrench[b, 5] = tx, ty, tz
-    if system.bodies.isolated[b] == 1:
-        write_free(
-            system.bodies.mass[b], system.bodies.inertia[b], Q[b], wrench[b], work.delta[b]
-        )
+    alone = system.bodies[b].isolated == 1
+    if not alone:
+        clear_wrenches(work)
+    wrench = work.body[b].wrench
+    wrench[0], wrench[1], wrench[2], wrench[3], wrench[4], wrench[5] = fx, fy, fz, tx, ty, tz
+    if alone:
+        free_body(system.bodies[b], state[b].Q, work.body[b])
     else:
-        solve(system, x, Q, wrench, work.zero, work.delta, work.reaction)
+        solve(system, state, False, work)
 
 
 @kernel
-def effective_inverse_mass(system, c, x, Q, rx, ry, rz, work, W):
+def clear_wrenches(work):
+    """Zero the wrench of each body."""
+    for b in range(work.body.shape[0]):
+        wrench = work.body[b].wrench
+        for k in range(6):
+            wrench[k] = 0.0
+
+
+@kernel
+def reached(system, contact):
+    """Return the range of bodies that an impulse at the contact may move."""
+    if system.bodies[contact.body].isolated == 1:
+        return contact.body, contact.body + 1
+    return 0, system.bodies.shape[0]
+
+
+@kernel
+def effective_inverse_mass(system, contact, state, rx, ry, rz, work, W):
     """Write W = G P G^T (3, 3) of the point at arm r. Columns are answers to unit impulses."""
-    b, E = system.contacts.body[c], system.contacts.axes[c]
     for k in range(3):
-        one = 1.0
-        spread(system, c, x, Q, rx, ry, rz, one if k == 0 else 0.0, one if k == 1 else 0.0,
-               one if k == 2 else 0.0, work)  # fmt: skip
-        d = work.delta[b]
-        ux, uy, uz = cross(d[3], d[4], d[5], rx, ry, rz)
-        ux, uy, uz = ux + d[0], uy + d[1], uz + d[2]
+        spread(
+            system, contact, state, rx, ry, rz, float(k == 0), float(k == 1), float(k == 2), work
+        )
+        u = motion_of_point(contact, work.body[contact.body].motion, rx, ry, rz)
         for i in range(3):
-            W[i, k] = E[i, 0] * ux + E[i, 1] * uy + E[i, 2] * uz
+            W[i, k] = u[i]
     for i in range(3):
         for k in range(i):
             m = 0.5 * (W[i, k] + W[k, i])
@@ -99,21 +111,11 @@ def effective_inverse_mass(system, c, x, Q, rx, ry, rz, work, W):
 
 
 @kernel
-def add_velocity(system, c, work, v, w):
-    """Add work.delta to the velocities of all bodies (of the own body if nothing is joined to it)."""
-    b = system.contacts.body[c]
-    first, last = (b, b + 1) if system.bodies.isolated[b] == 1 else (0, v.shape[0])
-    for i in range(first, last):
+def add_velocity(system, contact, work, state):
+    """Add the motion that `spread` wrote to the velocities."""
+    first, last = reached(system, contact)
+    for b in range(first, last):
+        v, w, motion = state[b].v, state[b].w, work.body[b].motion
         for k in range(3):
-            v[i, k] += work.delta[i, k]
-            w[i, k] += work.delta[i, 3 + k]
-
-
-@kernel
-def add_acceleration(system, c, work, acc):
-    """Add work.delta to the accelerations (N, 6), as `add_velocity` does to velocities."""
-    b = system.contacts.body[c]
-    first, last = (b, b + 1) if system.bodies.isolated[b] == 1 else (0, acc.shape[0])
-    for i in range(first, last):
-        for k in range(6):
-            acc[i, k] += work.delta[i, k]
+            v[k] += motion[k]
+            w[k] += motion[3 + k]

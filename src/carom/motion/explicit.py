@@ -7,6 +7,7 @@ free flight skip all of it (`carom.motion.free`).
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -36,95 +37,110 @@ def rk4() -> Explicit:
 @kernel
 def explicit_step(system, method, held, start, h, end, work):
     """Write the state a time h after `start` into `end`; return work of loads, of friction, a status."""
-    bodies = system.bodies
-    pending = 0
-    for b in range(bodies.mass.size):
-        if bodies.ballistic[b] == 1:
-            free_flight(bodies, b, h, start, end)
-        else:
-            pending += 1
-    for c in range(held.mode.size):
-        pending += held.mode[c]
-    if pending == 0:
+    if not fly(system, held, start, h, end, work):
         return 0.0, 0.0, 0
-    A, weight = method.A, method.b
-    stages = weight.size
+    return constrained_step(system, method.A, method.b, held, start, h, end, work)
+
+
+@kernel
+def fly(system, held, start, h, end, work):
+    """Move the bodies in free flight, keep those at rest; return whether others are left."""
+    mark_held(system, held, work)
+    pending = False
+    for b in range(system.bodies.shape[0]):
+        status = work.body[b].status
+        if status == 2:
+            keep(start[b], end[b])
+        elif status == 0 and system.bodies[b].ballistic == 1:
+            free_flight(system.bodies[b], system.gravity, h, start[b], end[b])
+        else:
+            pending = True
+    return pending
+
+
+@kernel
+def keep(start, end):
+    """Write the record of a body unchanged."""
+    for k in range(3):
+        end.x[k], end.v[k], end.w[k] = start.x[k], start.v[k], start.w[k]
+    for k in range(4):
+        end.Q[k] = start.Q[k]
+
+
+@kernel
+def mark_held(system, held, work):
+    """Note for each body whether it is free (0), held by a contact (1) or at rest (2)."""
+    for b in range(work.body.shape[0]):
+        work.body[b].status = 0
+    for c in range(held.shape[0]):
+        if held[c].mode != 0:
+            b = system.contacts[c].body
+            work.body[b].status = max(work.body[b].status, 1 + held[c].rest)
+
+
+@kernel
+def constrained_step(system, A, weight, held, start, h, end, work):
+    """Step the bodies that are joined, loaded or held; the others are in `end` already."""
+    stages, stage = weight.size, work.stage
     applied, friction = 0.0, 0.0
-    stage = work.stage
     for s in range(stages):
-        combine(A[s], s, h, start, work, stage)
-        work.speed[s, :, :3] = stage.v
-        work.speed[s, :, 3:] = stage.w
-        p, f = acceleration(system, stage.x, stage.Q, stage.v, stage.w, held, work, work.rate[s])
+        combine(A[s], s, h, start, work.stages, stage)
+        for b in range(stage.shape[0]):
+            speed, attitude = work.stages[s, b].speed, work.stages[s, b].attitude
+            for k in range(3):
+                speed[k], speed[3 + k] = stage[b].v[k], stage[b].w[k]
+            for k in range(4):
+                attitude[k] = stage[b].Q[k]
+        p, f = acceleration(system, stage, held, work, work.stages[s])
         applied += h * weight[s] * p
         friction += h * weight[s] * f
-    combine(weight, stages, h, start, work, stage)
+    combine(weight, stages, h, start, work.stages, stage)
     bound_accelerations(work, stages)
-    for b in range(bodies.mass.size):
-        if bodies.ballistic[b] == 0 or is_held(system, held, b):
-            end.x[b], end.v[b], end.w[b] = stage.x[b], stage.v[b], stage.w[b]
-            end.Q[b] = stage.Q[b]
-    if system.joints.kind.size > 0:
-        error = project_position(system, end.x, end.Q, work, 1e-14)
+    for b in range(stage.shape[0]):
+        status = work.body[b].status
+        if status == 1 or (status == 0 and system.bodies[b].ballistic == 0):
+            keep(stage[b], end[b])
+    if system.joints.shape[0] > 0:
+        error = project_position(system, end, work, 1e-14)
         if not (error <= 1e-9):
             return applied, friction, 7
-        project_velocity(system, end.x, end.Q, end.v, end.w, work)
+        project_velocity(system, end, work)
     return applied, friction, 0
 
 
 @kernel
-def is_held(system, held, b):
-    """Return whether any contact holds body b."""
-    for c in range(held.mode.size):
-        if held.mode[c] != 0 and system.contacts.body[c] == b:
-            return True
-    return False
-
-
-@kernel
-def combine(weight, count, h, start, work, out):
+def combine(weight, count, h, start, stages, out):
     """Write start + h sum of weight[r] * derivative of stage r, r < count."""
-    for b in range(start.x.shape[0]):
+    for b in range(start.shape[0]):
+        x0, v0, w0, q = start[b].x, start[b].v, start[b].w, start[b].Q
+        x, v, w = out[b].x, out[b].v, out[b].w
         for k in range(3):
-            dx, dv, dw = 0.0, 0.0, 0.0
-            for r in range(count):
-                a = weight[r]
-                if a != 0.0:
-                    dx += a * work.speed[r, b, k]
-                    dv += a * work.rate[r, b, k]
-                    dw += a * work.rate[r, b, 3 + k]
-            out.x[b, k] = start.x[b, k] + h * dx
-            out.v[b, k] = start.v[b, k] + h * dv
-            out.w[b, k] = start.w[b, k] + h * dw
-        turn(weight, count, h, start.Q[b], b, work, out.Q[b])
-
-
-@kernel
-def turn(weight, count, h, q, b, work, out):
-    """Write the attitude of a stage: dQ/dt = 1/2 (0, w) Q of each earlier stage, combined."""
-    q0, q1, q2, q3 = q[0], q[1], q[2], q[3]
-    for r in range(count):
-        a = 0.5 * h * weight[r]
-        if a != 0.0:
-            w, p = work.speed[r, b], work.attitude[r, b]
-            d = multiply(0.0, a * w[3], a * w[4], a * w[5], p[0], p[1], p[2], p[3])
-            q0, q1, q2, q3 = q0 + d[0], q1 + d[1], q2 + d[2], q3 + d[3]
-    out[0], out[1], out[2], out[3] = normalize(q0, q1, q2, q3)
-    if count < work.attitude.shape[0]:
-        for k in range(4):
-            work.attitude[count, b, k] = out[k]
+            x[k], v[k], w[k] = x0[k], v0[k], w0[k]
+        q0, q1, q2, q3 = q[0], q[1], q[2], q[3]
+        for r in range(count):
+            a = h * weight[r]
+            if a != 0.0:
+                u, rate, p = stages[r, b].speed, stages[r, b].rate, stages[r, b].attitude
+                for k in range(3):
+                    x[k] += a * u[k]
+                    v[k] += a * rate[k]
+                    w[k] += a * rate[3 + k]
+                f = 0.5 * a  # dQ/dt = 1/2 (0, w) Q
+                d = multiply(0.0, f * u[3], f * u[4], f * u[5], p[0], p[1], p[2], p[3])
+                q0, q1, q2, q3 = q0 + d[0], q1 + d[1], q2 + d[2], q3 + d[3]
+        Q = out[b].Q
+        Q[0], Q[1], Q[2], Q[3] = normalize(q0, q1, q2, q3)
 
 
 @kernel
 def bound_accelerations(work, stages):
     """Write the greatest |linear| and |angular| acceleration and |w| of each body over the stages."""
-    for b in range(work.bound.shape[0]):
+    for b in range(work.body.shape[0]):
         linear, angular, spin = 0.0, 0.0, 0.0
         for s in range(stages):
-            a, u = work.rate[s, b], work.speed[s, b]
+            a, u = work.stages[s, b].rate, work.stages[s, b].speed
             linear = max(linear, a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
             angular = max(angular, a[3] * a[3] + a[4] * a[4] + a[5] * a[5])
             spin = max(spin, u[3] * u[3] + u[4] * u[4] + u[5] * u[5])
-        work.bound[b, 0] = np.sqrt(linear)
-        work.bound[b, 1] = np.sqrt(angular)
-        work.bound[b, 2] = np.sqrt(spin)
+        bound = work.body[b].bound
+        bound[0], bound[1], bound[2] = math.sqrt(linear), math.sqrt(angular), math.sqrt(spin)

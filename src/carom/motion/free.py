@@ -17,24 +17,21 @@ from carom.jit import kernel
 
 
 @kernel
-def free_flight(bodies, b, h, start, end):
-    """Write into `end` the state of body b a time h after `start`."""
-    x0, v0, w0 = start.x[b], start.v[b], start.w[b]
-    x1, v1 = end.x[b], end.v[b]
-    g = bodies.gravity
+def free_flight(body, g, h, start, end):
+    """Write into the record `end` the state of a body a time h after the record `start`."""
+    x0, v0, w0, q0 = start.x, start.v, start.w, start.Q
+    x1, v1, w1, q1 = end.x, end.v, end.w, end.Q
     for k in range(3):
         x1[k] = x0[k] + h * (v0[k] + 0.5 * h * g[k])
         v1[k] = v0[k] + h * g[k]
-    q = start.Q[b, 0], start.Q[b, 1], start.Q[b, 2], start.Q[b, 3]
-    if bodies.isotropic[b] == 1:
+    if body.isotropic == 1:
         r = exp(h * w0[0], h * w0[1], h * w0[2])
-        q = multiply(r[0], r[1], r[2], r[3], q[0], q[1], q[2], q[3])
-        w = w0[0], w0[1], w0[2]
+        q = multiply(r[0], r[1], r[2], r[3], q0[0], q0[1], q0[2], q0[3])
+        w = (w0[0], w0[1], w0[2])
     else:
-        q, w = tumble(bodies.inertia[b], h, q, w0[0], w0[1], w0[2])
-    q = normalize(q[0], q[1], q[2], q[3])
-    end.Q[b, 0], end.Q[b, 1], end.Q[b, 2], end.Q[b, 3] = q
-    end.w[b, 0], end.w[b, 1], end.w[b, 2] = w
+        q, w = tumble(body.inertia, h, (q0[0], q0[1], q0[2], q0[3]), w0[0], w0[1], w0[2])
+    q1[0], q1[1], q1[2], q1[3] = normalize(q[0], q[1], q[2], q[3])
+    w1[0], w1[1], w1[2] = w
 
 
 @kernel

@@ -21,142 +21,142 @@ from carom.system.arrays import DISTANCE, FIXED, KNIFE_EDGE, PRISMATIC, REVOLUTE
 
 
 @kernel
-def arm(Q, b, local, j):
-    """Return `local[j]`, given in the axes of body b (-1: the ground), in world axes."""
+def arm(state, b, local):
+    """Return the vector `local`, given in the axes of body b (-1: the ground), in world axes."""
     if b < 0:
-        return local[j, 0], local[j, 1], local[j, 2]
-    return rotate(Q[b, 0], Q[b, 1], Q[b, 2], Q[b, 3], local[j, 0], local[j, 1], local[j, 2])
+        return local[0], local[1], local[2]
+    q = state[b].Q
+    return rotate(q[0], q[1], q[2], q[3], local[0], local[1], local[2])
 
 
 @kernel
-def axis(Q, b, frame, j, k):
-    """Return column k of `frame[j]`, given in the axes of body b (-1: the ground), in world axes."""
+def axis(state, b, frame, k):
+    """Return column k of `frame`, given in the axes of body b (-1: the ground), in world axes."""
     if b < 0:
-        return frame[j, 0, k], frame[j, 1, k], frame[j, 2, k]
-    return rotate(
-        Q[b, 0], Q[b, 1], Q[b, 2], Q[b, 3], frame[j, 0, k], frame[j, 1, k], frame[j, 2, k]
-    )
+        return frame[0, k], frame[1, k], frame[2, k]
+    q = state[b].Q
+    return rotate(q[0], q[1], q[2], q[3], frame[0, k], frame[1, k], frame[2, k])
 
 
 @kernel
-def anchor_gap(joints, j, x, Q):
+def anchor_gap(joint, state):
     """Return the child's anchor minus the parent's anchor (3)."""
-    c, p = joints.child[j], joints.parent[j]
-    cx, cy, cz = arm(Q, c, joints.child_anchor, j)
-    px, py, pz = arm(Q, p, joints.parent_anchor, j)
+    c, p = joint.child, joint.parent
+    cx, cy, cz = arm(state, c, joint.child_anchor)
+    px, py, pz = arm(state, p, joint.parent_anchor)
     if p >= 0:
-        px, py, pz = px + x[p, 0], py + x[p, 1], pz + x[p, 2]
-    return x[c, 0] + cx - px, x[c, 1] + cy - py, x[c, 2] + cz - pz
+        px, py, pz = px + state[p].x[0], py + state[p].x[1], pz + state[p].x[2]
+    return state[c].x[0] + cx - px, state[c].x[1] + cy - py, state[c].x[2] + cz - pz
 
 
 @kernel
-def parent_arm(joints, j, x, Q):
+def parent_arm(joint, state):
     """Return the arm r_p of the parent (3), world; from the origin if the parent is the ground.
 
     Where the joint slides it reaches to the point of the parent that now lies at the child's anchor.
     """
-    p = joints.parent[j]
-    if joints.kind[j] == PRISMATIC:
-        c = joints.child[j]
-        rx, ry, rz = arm(Q, c, joints.child_anchor, j)
-        rx, ry, rz = rx + x[c, 0], ry + x[c, 1], rz + x[c, 2]
+    p = joint.parent
+    if joint.kind == PRISMATIC:
+        c = joint.child
+        rx, ry, rz = arm(state, c, joint.child_anchor)
+        rx, ry, rz = rx + state[c].x[0], ry + state[c].x[1], rz + state[c].x[2]
         if p >= 0:
-            rx, ry, rz = rx - x[p, 0], ry - x[p, 1], rz - x[p, 2]
+            rx, ry, rz = rx - state[p].x[0], ry - state[p].x[1], rz - state[p].x[2]
         return rx, ry, rz
-    return arm(Q, p, joints.parent_anchor, j)
+    return arm(state, p, joint.parent_anchor)
 
 
 @kernel
-def anchor_speed(joints, j, x, Q, v, w):
+def anchor_speed(joint, state):
     """Return the velocity of the child's anchor minus that of the parent's (3)."""
-    c, p = joints.child[j], joints.parent[j]
-    rx, ry, rz = arm(Q, c, joints.child_anchor, j)
-    ux, uy, uz = cross(w[c, 0], w[c, 1], w[c, 2], rx, ry, rz)
-    ux, uy, uz = ux + v[c, 0], uy + v[c, 1], uz + v[c, 2]
+    c, p = joint.child, joint.parent
+    rx, ry, rz = arm(state, c, joint.child_anchor)
+    ux, uy, uz = cross(state[c].w[0], state[c].w[1], state[c].w[2], rx, ry, rz)
+    ux, uy, uz = ux + state[c].v[0], uy + state[c].v[1], uz + state[c].v[2]
     if p >= 0:
-        rx, ry, rz = parent_arm(joints, j, x, Q)
-        sx, sy, sz = cross(w[p, 0], w[p, 1], w[p, 2], rx, ry, rz)
-        ux, uy, uz = ux - v[p, 0] - sx, uy - v[p, 1] - sy, uz - v[p, 2] - sz
+        rx, ry, rz = parent_arm(joint, state)
+        sx, sy, sz = cross(state[p].w[0], state[p].w[1], state[p].w[2], rx, ry, rz)
+        ux, uy, uz = ux - state[p].v[0] - sx, uy - state[p].v[1] - sy, uz - state[p].v[2] - sz
     return ux, uy, uz
 
 
 @kernel
-def turn_error(joints, j, Q):
+def turn_error(joint, state):
     """Return the rotation vector (world) by which the child is turned against the parent, as far as
     the joint forbids it: the sine of the tilt for a revolute joint, all of it for a fixed one."""
-    kind = joints.kind[j]
-    c, p = joints.child[j], joints.parent[j]
+    kind = joint.kind
+    c, p = joint.child, joint.parent
     if kind == REVOLUTE:
-        ax, ay, az = axis(Q, p, joints.parent_frame, j, 0)
-        bx, by, bz = axis(Q, c, joints.child_frame, j, 0)
+        ax, ay, az = axis(state, p, joint.parent_frame, 0)
+        bx, by, bz = axis(state, c, joint.child_frame, 0)
         return cross(ax, ay, az, bx, by, bz)
     ex, ey, ez = 0.0, 0.0, 0.0
     if kind == FIXED or kind == PRISMATIC:
         # half the sum of e_p x e_c over the three axes: the rotation vector to first order,
         # zero only where the frames agree (or are half a turn apart, excluded at the start)
         for k in range(3):
-            ax, ay, az = axis(Q, p, joints.parent_frame, j, k)
-            bx, by, bz = axis(Q, c, joints.child_frame, j, k)
+            ax, ay, az = axis(state, p, joint.parent_frame, k)
+            bx, by, bz = axis(state, c, joint.child_frame, k)
             sx, sy, sz = cross(ax, ay, az, bx, by, bz)
             ex, ey, ez = ex + 0.5 * sx, ey + 0.5 * sy, ez + 0.5 * sz
     return ex, ey, ez
 
 
 @kernel
-def position_error(joints, j, x, Q, out):
-    """Write the error of position: out[j] = (turn error, anchor gap)."""
-    out[j, 0], out[j, 1], out[j, 2] = turn_error(joints, j, Q)
-    dx, dy, dz = anchor_gap(joints, j, x, Q)
-    kind = joints.kind[j]
+def position_error(joint, state, out):
+    """Write the error of position: out = (turn error, anchor gap)."""
+    out[0], out[1], out[2] = turn_error(joint, state)
+    dx, dy, dz = anchor_gap(joint, state)
+    kind = joint.kind
     if kind == DISTANCE:
         length = math.sqrt(dx * dx + dy * dy + dz * dz)
-        f = (length - joints.length[j]) / length
+        f = (length - joint.length) / length
         dx, dy, dz = f * dx, f * dy, f * dz
     elif kind == KNIFE_EDGE:
         dx, dy, dz = 0.0, 0.0, 0.0
-    out[j, 3], out[j, 4], out[j, 5] = dx, dy, dz
+    out[3], out[4], out[5] = dx, dy, dz
 
 
 @kernel
-def velocity_error(joints, j, x, Q, v, w, out):
-    """Write the relative velocity of the two sides: out[j] = (angular, linear)."""
-    c, p = joints.child[j], joints.parent[j]
+def velocity_error(joint, state, out):
+    """Write the relative velocity of the two sides: out = (angular, linear)."""
+    c, p = joint.child, joint.parent
     for k in range(3):
-        out[j, k] = w[c, k] - (w[p, k] if p >= 0 else 0.0)
-    out[j, 3], out[j, 4], out[j, 5] = anchor_speed(joints, j, x, Q, v, w)
+        out[k] = state[c].w[k] - (state[p].w[k] if p >= 0 else 0.0)
+    out[3], out[4], out[5] = anchor_speed(joint, state)
 
 
 @kernel
-def acceleration_bias(joints, j, x, Q, v, w, out):
-    """Write the bias of the relative acceleration: out[j] = (angular, linear).
+def acceleration_bias(joint, state, out):
+    """Write the bias of the relative acceleration: out = (angular, linear).
 
     Angular: an axis that turns with the parent, w_p x (a qd) = w_p x w_c. Linear: centripetal
     accelerations of the two anchors, w_p x (w_p x r_p) - w_c x (w_c x r_c). A distance adds
     -|u_perp|^2/d along the line, a sliding joint 2 w_p x u, the knife edge the turning of its own row.
     """
-    c, p = joints.child[j], joints.parent[j]
-    kind = joints.kind[j]
-    rx, ry, rz = arm(Q, c, joints.child_anchor, j)
-    tx, ty, tz = cross(w[c, 0], w[c, 1], w[c, 2], rx, ry, rz)
-    sx, sy, sz = cross(w[c, 0], w[c, 1], w[c, 2], tx, ty, tz)
+    c, p = joint.child, joint.parent
+    kind = joint.kind
+    rx, ry, rz = arm(state, c, joint.child_anchor)
+    tx, ty, tz = cross(state[c].w[0], state[c].w[1], state[c].w[2], rx, ry, rz)
+    sx, sy, sz = cross(state[c].w[0], state[c].w[1], state[c].w[2], tx, ty, tz)
     lx, ly, lz = -sx, -sy, -sz
     ax, ay, az = 0.0, 0.0, 0.0
     wx, wy, wz = 0.0, 0.0, 0.0
     if p >= 0:
-        wx, wy, wz = w[p, 0], w[p, 1], w[p, 2]
-        rx, ry, rz = parent_arm(joints, j, x, Q)
+        wx, wy, wz = state[p].w[0], state[p].w[1], state[p].w[2]
+        rx, ry, rz = parent_arm(joint, state)
         tx, ty, tz = cross(wx, wy, wz, rx, ry, rz)
         sx, sy, sz = cross(wx, wy, wz, tx, ty, tz)
         lx, ly, lz = lx + sx, ly + sy, lz + sz
         if kind == REVOLUTE:
-            ax, ay, az = cross(wx, wy, wz, w[c, 0], w[c, 1], w[c, 2])
+            ax, ay, az = cross(wx, wy, wz, state[c].w[0], state[c].w[1], state[c].w[2])
         elif kind == PRISMATIC:
-            ux, uy, uz = anchor_speed(joints, j, x, Q, v, w)
+            ux, uy, uz = anchor_speed(joint, state)
             sx, sy, sz = cross(wx, wy, wz, 2.0 * ux, 2.0 * uy, 2.0 * uz)
             lx, ly, lz = lx + sx, ly + sy, lz + sz
     if kind == DISTANCE:
-        dx, dy, dz = anchor_gap(joints, j, x, Q)
-        ux, uy, uz = anchor_speed(joints, j, x, Q, v, w)
+        dx, dy, dz = anchor_gap(joint, state)
+        ux, uy, uz = anchor_speed(joint, state)
         d2 = dx * dx + dy * dy + dz * dz
         along = (dx * ux + dy * uy + dz * uz) / d2
         # (u.u - (u.d)^2/d^2)/d^2 times d, so that its part along d/|d| is |u_perp|^2/|d|
@@ -164,10 +164,10 @@ def acceleration_bias(joints, j, x, Q, v, w, out):
         lx, ly, lz = lx - f * dx, ly - f * dy, lz - f * dz
     elif kind == KNIFE_EDGE:
         # row e fixed in the child: e . a + (w x e) . u = 0, written as a linear bias along e
-        ex, ey, ez = axis(Q, c, joints.child_frame, j, 1)
-        ux, uy, uz = anchor_speed(joints, j, x, Q, v, w)
-        tx, ty, tz = cross(w[c, 0], w[c, 1], w[c, 2], ex, ey, ez)
+        ex, ey, ez = axis(state, c, joint.child_frame, 1)
+        ux, uy, uz = anchor_speed(joint, state)
+        tx, ty, tz = cross(state[c].w[0], state[c].w[1], state[c].w[2], ex, ey, ez)
         f = tx * ux + ty * uy + tz * uz
         lx, ly, lz = lx - f * ex, ly - f * ey, lz - f * ez
-    out[j, 0], out[j, 1], out[j, 2] = ax, ay, az
-    out[j, 3], out[j, 4], out[j, 5] = lx, ly, lz
+    out[0], out[1], out[2] = ax, ay, az
+    out[3], out[4], out[5] = lx, ly, lz

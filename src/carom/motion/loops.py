@@ -11,51 +11,59 @@ the augmented Lagrangian, repeated by the caller (the paper's way, and the way t
 from __future__ import annotations
 
 from carom.jit import kernel
-from carom.motion.rows import build_rows, row_targets, times_inverse_mass
+from carom.motion.rows import build_rows, row_target, times_inverse_mass
 
 
 @kernel
-def factor(system, x, Q, augment):
-    """Factor A M^-1 A^T + augment * diag in the position (x, Q)."""
-    solver, joints = system.solver, system.joints
-    build_rows(system, x, Q)
-    solver.block[:] = 0.0
+def factor(system, state, augment, work):
+    """Factor A M^-1 A^T + augment * diag in the position of `state`."""
+    solver, joints, block = system.solver, system.joints, system.solver.block
+    build_rows(system, state, work)
+    for k in range(block.shape[0]):
+        clear(block[k])
     for t in range(solver.term.shape[0]):
         i, j = solver.term[t, 1], solver.term[t, 3]
         add_product(
-            solver.block[solver.term[t, 0]], solver.scaled[i, solver.term[t, 2]],
-            solver.rows[j, solver.term[t, 4]], joints.rows[i], joints.rows[j],
+            block[solver.term[t, 0]], solver.rows[i].Y, solver.term[t, 2],
+            solver.rows[j].A, solver.term[t, 4], joints[i].rows, joints[j].rows,
         )  # fmt: skip
-    for j in range(joints.kind.size):
-        for r in range(joints.rows[j]):
-            d = solver.block[j, r, r]
-            solver.diagonal[j, r] = d
-            solver.block[j, r, r] = d * (1.0 + augment)
+    count = joints.shape[0]
+    for j in range(count):
+        for r in range(joints[j].rows):
+            d = block[j, r, r]
+            solver.rows[j].diagonal[r] = d
+            block[j, r, r] = d * (1.0 + augment)
     drop = solver.drop if augment == 0.0 else 0.0
-    for place in range(solver.order.size):
+    for place in range(count):
         k = solver.order[place]
-        n = joints.rows[k]
-        factor_diagonal(solver.block[k], solver.pivot[k], solver.diagonal[k], n, drop)
+        n, pivot = joints[k].rows, solver.rows[k].pivot
+        factor_diagonal(block[k], pivot, solver.rows[k].diagonal, n, drop)
         for s in range(solver.column[place], solver.column[place + 1]):
-            divide(solver.block[joints.kind.size + s], solver.block[k], solver.pivot[k],
-                   joints.rows[solver.row[s]], n)  # fmt: skip
+            divide(block[count + s], block[k], pivot, joints[solver.row[s]].rows, n)
         for t in range(solver.update[place], solver.update[place + 1]):
             i, j = solver.triple[t, 0], solver.triple[t, 1]
             subtract_product(
-                solver.block[solver.triple[t, 2]], solver.block[joints.kind.size + i],
-                solver.block[joints.kind.size + j], solver.pivot[k],
-                joints.rows[solver.row[i]], joints.rows[solver.row[j]], n,
+                block[solver.triple[t, 2]], block[count + i], block[count + j], pivot,
+                joints[solver.row[i]].rows, joints[solver.row[j]].rows, n,
             )  # fmt: skip
 
 
 @kernel
-def add_product(S, Y, A, m, n):
-    """Add Y A^T, m rows of Y and n rows of A, six columns, to S."""
+def clear(S):
+    """Zero a block."""
+    for i in range(6):
+        for j in range(6):
+            S[i, j] = 0.0
+
+
+@kernel
+def add_product(S, Y, p, A, q, m, n):
+    """Add Y[p] A[q]^T, m rows of Y and n rows of A, six columns, to S."""
     for i in range(m):
         for j in range(n):
             S[i, j] += (
-                Y[i, 0] * A[j, 0] + Y[i, 1] * A[j, 1] + Y[i, 2] * A[j, 2]
-                + Y[i, 3] * A[j, 3] + Y[i, 4] * A[j, 4] + Y[i, 5] * A[j, 5]
+                Y[p, i, 0] * A[q, j, 0] + Y[p, i, 1] * A[q, j, 1] + Y[p, i, 2] * A[q, j, 2]
+                + Y[p, i, 3] * A[q, j, 3] + Y[p, i, 4] * A[q, j, 4] + Y[p, i, 5] * A[q, j, 5]
             )  # fmt: skip
 
 
@@ -102,86 +110,94 @@ def subtract_product(S, X, Y, pivot, m, n, q):
 
 
 @kernel
-def substitute(system, rhs):
-    """Solve with the factor: rhs (J, 6) becomes the multipliers."""
-    solver, rows = system.solver, system.joints.rows
-    first = rows.size
-    for place in range(solver.order.size):
+def substitute(system):
+    """Solve with the factor: rhs of all rows becomes the multipliers."""
+    solver, joints = system.solver, system.joints
+    count = joints.shape[0]
+    for place in range(count):
         k = solver.order[place]
-        L, y = solver.block[k], rhs[k]
-        for i in range(rows[k]):
+        L, y = solver.block[k], solver.rows[k].rhs
+        for i in range(joints[k].rows):
             for s in range(i):
                 y[i] -= L[i, s] * y[s]
         for t in range(solver.column[place], solver.column[place + 1]):
             i = solver.row[t]
-            X, z = solver.block[first + t], rhs[i]
-            for r in range(rows[i]):
-                for s in range(rows[k]):
+            X, z = solver.block[count + t], solver.rows[i].rhs
+            for r in range(joints[i].rows):
+                for s in range(joints[k].rows):
                     z[r] -= X[r, s] * y[s]
-    for k in range(rows.size):
-        for r in range(rows[k]):
-            rhs[k, r] *= solver.pivot[k, r]
-    for place in range(solver.order.size - 1, -1, -1):
+    for k in range(count):
+        for r in range(joints[k].rows):
+            solver.rows[k].rhs[r] *= solver.rows[k].pivot[r]
+    for place in range(count - 1, -1, -1):
         k = solver.order[place]
-        L, y = solver.block[k], rhs[k]
+        L, y = solver.block[k], solver.rows[k].rhs
         for t in range(solver.column[place], solver.column[place + 1]):
             i = solver.row[t]
-            X, z = solver.block[first + t], rhs[i]
-            for r in range(rows[i]):
-                for s in range(rows[k]):
+            X, z = solver.block[count + t], solver.rows[i].rhs
+            for r in range(joints[i].rows):
+                for s in range(joints[k].rows):
                     y[s] -= X[r, s] * z[r]
-        for i in range(rows[k] - 1, -1, -1):
-            for s in range(i + 1, rows[k]):
+        for i in range(joints[k].rows - 1, -1, -1):
+            for s in range(i + 1, joints[k].rows):
                 y[i] -= L[s, i] * y[s]
 
 
 @kernel
-def free_motion(system, wrench, out):
-    """Write out = M^-1 wrench."""
-    inverse, mass = system.solver.inverse, system.bodies.mass
-    for b in range(wrench.shape[0]):
-        f = wrench[b]
-        y = times_inverse_mass(mass, inverse, b, f[0], f[1], f[2], f[3], f[4], f[5])
+def free_motion(system, work):
+    """Write motion = M^-1 wrench of each body."""
+    for b in range(system.bodies.shape[0]):
+        f, out = work.body[b].wrench, work.body[b].motion
+        y = times_inverse_mass(
+            system.bodies[b].mass, work.body[b].inverse, f[0], f[1], f[2], f[3], f[4], f[5]
+        )
         for k in range(6):
-            out[b, k] = y[k]
+            out[k] = y[k]
 
 
 @kernel
-def subtract_rows(system, motion, rhs):
+def subtract_rows(system, work):
     """rhs <- rhs - A motion."""
-    joints, A = system.joints, system.solver.rows
-    for j in range(joints.kind.size):
+    for j in range(system.joints.shape[0]):
+        joint, row = system.joints[j], system.solver.rows[j]
         for side in range(2):
-            b = joints.child[j] if side == 0 else joints.parent[j]
+            b = joint.child if side == 0 else joint.parent
             if b < 0:
                 continue
-            for r in range(joints.rows[j]):
+            A, motion, rhs = row.A, work.body[b].motion, row.rhs
+            for r in range(joint.rows):
                 s = 0.0
                 for k in range(6):
-                    s += A[j, side, r, k] * motion[b, k]
-                rhs[j, r] -= s
+                    s += A[side, r, k] * motion[k]
+                rhs[r] -= s
 
 
 @kernel
-def add_reactions(system, multiplier, out):
-    """out <- out + M^-1 A^T multiplier."""
-    joints, Y = system.joints, system.solver.scaled
-    for j in range(joints.kind.size):
+def add_reactions(system, work):
+    """motion <- motion + M^-1 A^T multipliers, where rhs holds the multipliers."""
+    for j in range(system.joints.shape[0]):
+        joint, row = system.joints[j], system.solver.rows[j]
         for side in range(2):
-            b = joints.child[j] if side == 0 else joints.parent[j]
+            b = joint.child if side == 0 else joint.parent
             if b < 0:
                 continue
-            for r in range(joints.rows[j]):
+            Y, motion, multiplier = row.Y, work.body[b].motion, row.rhs
+            for r in range(joint.rows):
                 for k in range(6):
-                    out[b, k] += Y[j, side, r, k] * multiplier[j, r]
+                    motion[k] += Y[side, r, k] * multiplier[r]
 
 
 @kernel
-def solve_factored(system, x, Q, wrench, bias, out):
-    """Write the motion into `out`; the multipliers stay in the solver's rhs."""
-    rhs = system.solver.rhs
-    free_motion(system, wrench, out)
-    row_targets(system, x, Q, bias, rhs)
-    subtract_rows(system, out, rhs)
-    substitute(system, rhs)
-    add_reactions(system, rhs, out)
+def solve_factored(system, state, biased, work):
+    """Write the motion of all bodies; the multipliers stay in rhs."""
+    free_motion(system, work)
+    for j in range(system.joints.shape[0]):
+        rhs = system.solver.rows[j].rhs
+        if biased:
+            row_target(system.joints[j], state, work.joint[j].bias, rhs)
+        else:
+            for r in range(6):
+                rhs[r] = 0.0
+    subtract_rows(system, work)
+    substitute(system)
+    add_reactions(system, work)

@@ -9,65 +9,64 @@ from __future__ import annotations
 
 from carom.geometry.rotation import exp, multiply, normalize
 from carom.jit import kernel
+from carom.motion.contact_point import clear_wrenches
 from carom.motion.joints import position_error, velocity_error
 from carom.motion.solve import solve
 
 
 @kernel
-def displace(xi, x, Q):
-    """Move all bodies by xi (N, 6), world axes: x + xi_x, exp(xi_theta) Q."""
-    for b in range(x.shape[0]):
+def displace(work, state):
+    """Move all bodies by the motion of the last solve, world axes: x + xi_x, exp(xi_theta) Q."""
+    for b in range(state.shape[0]):
+        x, Q, xi = state[b].x, state[b].Q, work.body[b].motion
         for k in range(3):
-            x[b, k] += xi[b, k]
-        r = exp(xi[b, 3], xi[b, 4], xi[b, 5])
-        q = multiply(r[0], r[1], r[2], r[3], Q[b, 0], Q[b, 1], Q[b, 2], Q[b, 3])
-        Q[b, 0], Q[b, 1], Q[b, 2], Q[b, 3] = normalize(q[0], q[1], q[2], q[3])
+            x[k] += xi[k]
+        r = exp(xi[3], xi[4], xi[5])
+        q = multiply(r[0], r[1], r[2], r[3], Q[0], Q[1], Q[2], Q[3])
+        Q[0], Q[1], Q[2], Q[3] = normalize(q[0], q[1], q[2], q[3])
 
 
 @kernel
-def largest_position_error(system, x, Q, bias):
-    """Fill `bias` with minus the errors of position and return the largest, as a length [m]."""
-    joints, size = system.joints, system.bodies.size
+def largest_position_error(system, state, work):
+    """Bias all joints by minus their error of position; return the largest, relative to its body."""
     largest = 0.0
-    for j in range(joints.kind.size):
-        position_error(joints, j, x, Q, bias)
-        length = size[joints.child[j]]
+    for j in range(system.joints.shape[0]):
+        bias, size = work.joint[j].bias, system.bodies[system.joints[j].child].size
+        position_error(system.joints[j], state, bias)
         for k in range(6):
-            e = abs(bias[j, k]) * (length if k < 3 else 1.0)
+            e = abs(bias[k]) / (1.0 if k < 3 else size)
             if not (e <= largest):
                 largest = e
-            bias[j, k] = -bias[j, k]
+            bias[k] = -bias[k]
     return largest
 
 
 @kernel
-def project_position(system, x, Q, work, tolerance):
-    """Bring (x, Q) back to the joints; return the error left, relative to the largest body."""
-    scale = 0.0
-    for b in range(system.bodies.size.size):
-        scale = max(scale, system.bodies.size[b])
+def project_position(system, state, work, tolerance):
+    """Bring the positions back to the joints; return the relative error that is left."""
     error = 0.0
     for _ in range(8):
-        error = largest_position_error(system, x, Q, work.bias) / scale
+        error = largest_position_error(system, state, work)
         if error <= tolerance:
             break
-        work.wrench[:] = 0.0
-        solve(system, x, Q, work.wrench, work.bias, work.delta, work.reaction)
-        displace(work.delta, x, Q)
+        clear_wrenches(work)
+        solve(system, state, True, work)
+        displace(work, state)
     return error
 
 
 @kernel
-def project_velocity(system, x, Q, v, w, work):
+def project_velocity(system, state, work):
     """Take from the velocities what the joints forbid."""
-    joints = system.joints
-    for j in range(joints.kind.size):
-        velocity_error(joints, j, x, Q, v, w, work.bias)
+    for j in range(system.joints.shape[0]):
+        bias = work.joint[j].bias
+        velocity_error(system.joints[j], state, bias)
         for k in range(6):
-            work.bias[j, k] = -work.bias[j, k]
-    work.wrench[:] = 0.0
-    solve(system, x, Q, work.wrench, work.bias, work.delta, work.reaction)
-    for b in range(v.shape[0]):
+            bias[k] = -bias[k]
+    clear_wrenches(work)
+    solve(system, state, True, work)
+    for b in range(state.shape[0]):
+        v, w, motion = state[b].v, state[b].w, work.body[b].motion
         for k in range(3):
-            v[b, k] += work.delta[b, k]
-            w[b, k] += work.delta[b, 3 + k]
+            v[k] += motion[k]
+            w[k] += motion[3 + k]

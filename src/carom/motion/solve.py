@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from numba.core import types
 from numba.extending import overload
 
 from carom.geometry.rotation import rotate, rotate_back
-from carom.jit import kernel
+from carom.jit import OPTIONS, kernel
 from carom.motion.loops import factor, solve_factored
 from carom.motion.rows import direction
 from carom.motion.tree import solve_tree
@@ -14,70 +13,64 @@ from carom.system.arrays import FreeSolver, LoopSolver, TreeSolver
 
 
 @kernel
-def solve_free(system, x, Q, wrench, bias, out, reaction):
-    """Without joints: out = M^-1 wrench."""
-    inertia = system.bodies.inertia
-    mass = system.bodies.mass
-    for b in range(mass.size):
-        write_free(mass[b], inertia[b], Q[b], wrench[b], out[b])
+def solve_free(system, state, biased, work):
+    """Without joints: motion = M^-1 wrench."""
+    for b in range(system.bodies.shape[0]):
+        free_body(system.bodies[b], state[b].Q, work.body[b])
 
 
 @kernel
-def write_free(mass, inertia, Q, wrench, out):
-    """Write M^-1 wrench of one body."""
-    from_world = rotate_back(Q[0], Q[1], Q[2], Q[3], wrench[3], wrench[4], wrench[5])
-    a = from_world[0] / inertia[0], from_world[1] / inertia[1], from_world[2] / inertia[2]
-    t = rotate(Q[0], Q[1], Q[2], Q[3], a[0], a[1], a[2])
+def free_body(body, q, work):
+    """Write M^-1 wrench of one body into its work record."""
+    wrench, motion, J = work.wrench, work.motion, body.inertia
+    a = rotate_back(q[0], q[1], q[2], q[3], wrench[3], wrench[4], wrench[5])
+    t = rotate(q[0], q[1], q[2], q[3], a[0] / J[0], a[1] / J[1], a[2] / J[2])
     for k in range(3):
-        out[k] = wrench[k] / mass
-        out[3 + k] = t[k]
+        motion[k] = wrench[k] / body.mass
+        motion[3 + k] = t[k]
 
 
 @kernel
-def solve_loops(system, x, Q, wrench, bias, out, reaction):
+def solve_loops(system, state, biased, work):
     """With closed loops: factor in this position and solve; the wrench of each joint from its rows."""
-    factor(system, x, Q, 0.0)
-    solve_factored(system, x, Q, wrench, bias, out)
-    joint_wrenches(system, x, Q, system.solver.rhs, reaction)
+    factor(system, state, 0.0, work)
+    solve_factored(system, state, biased, work)
+    for j in range(system.joints.shape[0]):
+        joint_wrench(system.joints[j], state, system.solver.rows[j].rhs, work.joint[j].reaction)
 
 
 @kernel
-def joint_wrenches(system, x, Q, multiplier, reaction):
+def joint_wrench(joint, state, multiplier, reaction):
     """Write the wrench on the child at its anchor: sum of multiplier times direction."""
-    joints = system.joints
-    for j in range(joints.kind.size):
-        for k in range(6):
-            reaction[j, k] = 0.0
-        for r in range(joints.rows[j]):
-            d = direction(joints, j, r, x, Q)
-            for k in range(3):
-                reaction[j, k] += multiplier[j, r] * d[3 + k]
-                reaction[j, 3 + k] += multiplier[j, r] * d[k]
+    for k in range(6):
+        reaction[k] = 0.0
+    for r in range(joint.rows):
+        d = direction(joint, r, state)
+        for k in range(3):
+            reaction[k] += multiplier[r] * d[3 + k]
+            reaction[3 + k] += multiplier[r] * d[k]
 
 
 _BACK_ENDS = {FreeSolver: solve_free, TreeSolver: solve_tree, LoopSolver: solve_loops}
 
 
-def solve(system, x, Q, wrench, bias, out, reaction):
-    """Write the motion of all bodies under `wrench` and joint `bias` into `out (N, 6)`.
+def solve(system, state, biased, work):
+    """Write the motion of all bodies under their wrenches, all in `work.body`.
 
-    See `carom.motion.tree` for the meaning. Compiled code takes the back end from the type of
+    With `biased` the joints move relative to each other as `work.joint` says, else not. See
+    `carom.motion.tree` for the meaning. Compiled code takes the back end from the type of
     `system.solver`, so that a run contains only the one it needs.
     """
-    _BACK_ENDS[type(system.solver)](system, x, Q, wrench, bias, out, reaction)
+    _BACK_ENDS[type(system.solver)](system, state, biased, work)
 
 
 def solver_type(system):
     """Return the class of `system.solver` from Numba's type of the system."""
-    if isinstance(system, types.BaseNamedTuple):
-        index = system.fields.index("solver")
-        return system.types[index].instance_class
-    return None
+    index = system.fields.index("solver")
+    return system.types[index].instance_class
 
 
-@overload(solve)
-def _solve(system, x, Q, wrench, bias, out, reaction):
+@overload(solve, **OPTIONS)
+def _solve(system, state, biased, work):
     back_end = _BACK_ENDS[solver_type(system)]
-    return lambda system, x, Q, wrench, bias, out, reaction: back_end(
-        system, x, Q, wrench, bias, out, reaction
-    )
+    return lambda system, state, biased, work: back_end(system, state, biased, work)

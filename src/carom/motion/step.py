@@ -5,6 +5,7 @@ from __future__ import annotations
 from numba.core import types
 from numba.extending import overload
 
+from carom.jit import OPTIONS
 from carom.motion.explicit import Explicit, explicit_step
 from carom.motion.three_field import ThreeField, three_field_step
 
@@ -20,7 +21,7 @@ def step(system, method, held, start, h, end, work):
     return _STEPS[type(method)](system, method, held, start, h, end, work)
 
 
-@overload(step)
+@overload(step, **OPTIONS)
 def _step(system, method, held, start, h, end, work):
     if not isinstance(method, types.BaseNamedTuple):
         return None

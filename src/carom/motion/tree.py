@@ -4,7 +4,7 @@ One solve gives the accelerations (or velocity changes, or displacements) A of a
 
     M A = wrench + reactions,      relative motion of each joint - bias  in its freedoms S,
 
-for given `wrench (N, 6)` and `bias (J, 6)`. With forces and centripetal terms it is the equation of motion; with an
+for the given wrench of each body and bias of each joint. With forces and centripetal terms it is the equation of motion; with an
 impulse and no bias it is P G^T; with no wrench and minus an error of position or velocity
 it is the correction that is shortest in the kinetic metric. (Featherstone 1983, in absolute coordinates;
 freedoms are eliminated one at a time, rank one each.)
@@ -81,45 +81,45 @@ def eliminate(row, k):
 
 
 @kernel
-def own_inertia(bodies, b, Q, wrench, row):
-    """Start the row of body b: its own inertia in world axes, and minus the wrench on it."""
-    R = matrix(Q[b, 0], Q[b, 1], Q[b, 2], Q[b, 3])
-    m = bodies.mass[b]
+def own_inertia(body, q, wrench, row):
+    """Start the row of a body: its own inertia in world axes, and minus the wrench on it."""
+    R = matrix(q[0], q[1], q[2], q[3])
+    m = body.mass
     xx, xy, xz, yy, yz, zz = spin_tensor(
         R[0], R[1], R[2], R[3], R[4], R[5], R[6], R[7], R[8],
-        bodies.inertia[b, 0], bodies.inertia[b, 1], bodies.inertia[b, 2],
+        body.inertia[0], body.inertia[1], body.inertia[2],
     )  # fmt: skip
     row[0], row[1], row[2], row[3], row[4], row[5] = m, 0.0, 0.0, m, 0.0, m
     for k in range(6, 15):
         row[k] = 0.0
     row[15], row[16], row[17], row[18], row[19], row[20] = xx, xy, xz, yy, yz, zz
     for k in range(6):
-        row[21 + k] = -wrench[b, k]
+        row[21 + k] = -wrench[k]
 
 
 @kernel
-def freedoms(joints, j, Q, row):
-    """Write S of each freedom of joint j at the centre of the child, and return their number.
+def freedoms(joint, state, row):
+    """Write S of each freedom of a joint at the centre of the child, and return their number.
 
     An angular freedom a at the anchor moves the centre by r_c x a (r_c: centre to anchor).
     """
-    kind = joints.kind[j]
-    c, p = joints.child[j], joints.parent[j]
+    kind = joint.kind
+    c, p = joint.child, joint.parent
     rx, ry, rz = row[27], row[28], row[29]
     if kind == REVOLUTE:
-        ax, ay, az = axis(Q, p, joints.parent_frame, j, 0)
+        ax, ay, az = axis(state, p, joint.parent_frame, 0)
         row[FIRST], row[FIRST + 1], row[FIRST + 2] = cross(rx, ry, rz, ax, ay, az)
         row[FIRST + 3], row[FIRST + 4], row[FIRST + 5] = ax, ay, az
         return 1
     if kind == SPHERICAL:
         for k in range(3):
             f = FIRST + WIDTH * k
-            ax, ay, az = axis(Q, c, joints.child_frame, j, k)
+            ax, ay, az = axis(state, c, joint.child_frame, k)
             row[f], row[f + 1], row[f + 2] = cross(rx, ry, rz, ax, ay, az)
             row[f + 3], row[f + 4], row[f + 5] = ax, ay, az
         return 3
     if kind == PRISMATIC:
-        row[FIRST], row[FIRST + 1], row[FIRST + 2] = axis(Q, p, joints.parent_frame, j, 0)
+        row[FIRST], row[FIRST + 1], row[FIRST + 2] = axis(state, p, joint.parent_frame, 0)
         row[FIRST + 3], row[FIRST + 4], row[FIRST + 5] = 0.0, 0.0, 0.0
         return 1
     return 0
@@ -171,74 +171,77 @@ def shift_to_parent(row, above):
 
 
 @kernel
-def solve_tree(system, x, Q, wrench, bias, out, reaction):
-    """Write the motion of all bodies into `out (N, 6)`, the wrench of each joint into `reaction`.
-
-    `reaction (J, 6)`: force and torque on the child at its anchor, world axes.
-    """
-    solver, bodies, joints = system.solver, system.bodies, system.joints
-    scratch = solver.scratch
-    for i in range(solver.order.size):
-        b = solver.order[i]
+def solve_tree(system, state, biased, work):
+    """Write the motion of all bodies and the wrench of each joint on its child at its anchor."""
+    solver, joints = system.solver, system.joints
+    links, scratch = solver.links, solver.scratch
+    for i in range(links.shape[0]):
+        b = links[i].order
         row = scratch[b]
-        own_inertia(bodies, b, Q, wrench, row)
-        j = solver.joint[b]
+        own_inertia(system.bodies[b], state[b].Q, work.body[b].wrench, row)
+        j = links[b].joint
         if j < 0:
             continue
-        rx, ry, rz = arm(Q, b, joints.child_anchor, j)
+        joint = joints[j]
+        rx, ry, rz = arm(state, b, joint.child_anchor)
         row[27], row[28], row[29] = rx, ry, rz
-        px, py, pz = parent_arm(joints, j, x, Q)
+        px, py, pz = parent_arm(joint, state)
         row[30], row[31], row[32] = px - rx, py - ry, pz - rz
-        ax, ay, az = bias[j, 0], bias[j, 1], bias[j, 2]
-        tx, ty, tz = cross(rx, ry, rz, ax, ay, az)
-        row[33], row[34], row[35] = bias[j, 3] + tx, bias[j, 4] + ty, bias[j, 5] + tz
-        row[36], row[37], row[38] = ax, ay, az
-        freedoms(joints, j, Q, row)
-    for i in range(solver.order.size - 1, -1, -1):
-        b = solver.order[i]
-        if solver.joint[b] < 0:
+        for k in range(33, 39):
+            row[k] = 0.0
+        if biased:
+            bias = work.joint[j].bias
+            ax, ay, az = bias[0], bias[1], bias[2]
+            tx, ty, tz = cross(rx, ry, rz, ax, ay, az)
+            row[33], row[34], row[35] = bias[3] + tx, bias[4] + ty, bias[5] + tz
+            row[36], row[37], row[38] = ax, ay, az
+        freedoms(joint, state, row)
+    for i in range(links.shape[0] - 1, -1, -1):
+        b = links[i].order
+        if links[b].joint < 0:
             continue
-        for k in range(solver.freedoms[b]):
+        for k in range(links[b].freedoms):
             eliminate(scratch[b], k)
-        if solver.parent[b] >= 0:
-            shift_to_parent(scratch[b], scratch[solver.parent[b]])
-    for i in range(solver.order.size):
-        b = solver.order[i]
-        row = scratch[b]
-        if solver.joint[b] < 0:
-            solve_floating(row, solver.has_child[b], out[b])
+        if links[b].parent >= 0:
+            shift_to_parent(scratch[b], scratch[links[b].parent])
+    for i in range(links.shape[0]):
+        b = links[i].order
+        link, row = links[b], scratch[b]
+        if link.joint < 0:
+            solve_floating(row, link.has_child, work.body[b].motion)
         else:
-            outward(system, b, row, out, reaction)
+            outward(link, row, b, work)
 
 
 @kernel
-def outward(system, b, row, out, reaction):
+def outward(link, row, b, work):
     """Find the motion of body b from that of its parent, freedoms in reverse order."""
-    p = system.solver.parent[b]
+    p = link.parent
     a0, a1, a2 = row[33], row[34], row[35]
     a3, a4, a5 = row[36], row[37], row[38]
     if p >= 0:
-        tx, ty, tz = cross(out[p, 3], out[p, 4], out[p, 5], row[30], row[31], row[32])
-        a0, a1, a2 = a0 + out[p, 0] + tx, a1 + out[p, 1] + ty, a2 + out[p, 2] + tz
-        a3, a4, a5 = a3 + out[p, 3], a4 + out[p, 4], a5 + out[p, 5]
+        up = work.body[p].motion
+        tx, ty, tz = cross(up[3], up[4], up[5], row[30], row[31], row[32])
+        a0, a1, a2 = a0 + up[0] + tx, a1 + up[1] + ty, a2 + up[2] + tz
+        a3, a4, a5 = a3 + up[3], a4 + up[4], a5 + up[5]
     f0, f1, f2, f3, f4, f5 = times(row, a0, a1, a2, a3, a4, a5)
-    for k in range(system.solver.freedoms[b] - 1, -1, -1):
+    for k in range(link.freedoms - 1, -1, -1):
         f = FIRST + WIDTH * k
         dot = row[f + 6] * a0 + row[f + 7] * a1 + row[f + 8] * a2
         dot += row[f + 9] * a3 + row[f + 10] * a4 + row[f + 11] * a5
         qdd = (row[f + 13] - dot) * row[f + 12]
         a0, a1, a2 = a0 + row[f] * qdd, a1 + row[f + 1] * qdd, a2 + row[f + 2] * qdd
         a3, a4, a5 = a3 + row[f + 3] * qdd, a4 + row[f + 4] * qdd, a5 + row[f + 5] * qdd
-    out[b, 0], out[b, 1], out[b, 2] = a0, a1, a2
-    out[b, 3], out[b, 4], out[b, 5] = a3, a4, a5
+    out = work.body[b].motion
+    out[0], out[1], out[2], out[3], out[4], out[5] = a0, a1, a2, a3, a4, a5
     # the wrench that passes the joint: what is left of the inertia, on the motion without freedoms
-    j = system.solver.joint[b]
+    reaction = work.joint[link.joint].reaction
     f0, f1, f2 = f0 + row[21], f1 + row[22], f2 + row[23]
     tx, ty, tz = cross(row[27], row[28], row[29], f0, f1, f2)
-    reaction[j, 0], reaction[j, 1], reaction[j, 2] = f0, f1, f2
-    reaction[j, 3] = f3 + row[24] - tx
-    reaction[j, 4] = f4 + row[25] - ty
-    reaction[j, 5] = f5 + row[26] - tz
+    reaction[0], reaction[1], reaction[2] = f0, f1, f2
+    reaction[3] = f3 + row[24] - tx
+    reaction[4] = f4 + row[25] - ty
+    reaction[5] = f5 + row[26] - tz
 
 
 @kernel

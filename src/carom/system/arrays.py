@@ -1,7 +1,11 @@
-"""A compiled scene: flat arrays, bodies and joints and contacts each a struct of arrays.
+"""A compiled scene, and what a run writes to: one structured array for each noun.
 
-N bodies, J joints, C contacts. Index -1 stands for the ground. All arrays are contiguous, never
-written to after compile, and shared by any number of runs; what a run writes is in `Work`.
+N bodies, J joints, C contacts. Index -1 stands for the ground. Kernels read ``bodies[b].mass``; Python
+sees the same arrays as columns, ``bodies.mass``.
+
+Records, not a tuple of one array per field: Numba hands each array to each function as seven values
+and types and optimises all of them again at every level of the call tree. (Measured: 110 arrays took 125 s
+to compile and 8.5 microseconds a step; docs/development/decisions.md.)
 """
 
 from __future__ import annotations
@@ -15,87 +19,127 @@ SPHERICAL, REVOLUTE, FIXED, PRISMATIC, DISTANCE, KNIFE_EDGE = range(6)
 #: numbers of constraint rows, by kind
 ROWS = (3, 5, 6, 5, 1, 1)
 
+#: absolute coordinates, world axes; Q takes principal axes of inertia to the world
+STATE = [("x", "f8", 3), ("Q", "f8", 4), ("v", "f8", 3), ("w", "f8", 3)]
 
-class State(NamedTuple):
-    """Absolute coordinates of all bodies, in world axes."""
+BODY = [
+    ("mass", "f8"),
+    ("inertia", "f8", 3),  # principal moments
+    ("size", "f8"),  # a length of the body: its shape, or the arms of its joints
+    ("isotropic", "i8"),  # 1 where the three moments are equal
+    ("isolated", "i8"),  # 1 where no joint acts
+    ("ballistic", "i8"),  # 1 where no joint and no force but gravity acts
+]
 
-    x: np.ndarray  # (N, 3) mass centres [m]
-    Q: np.ndarray  # (N, 4) unit quaternions, principal axes -> world
-    v: np.ndarray  # (N, 3) velocities of the mass centres [m/s]
-    w: np.ndarray  # (N, 3) angular velocities [rad/s]
+JOINT = [
+    ("kind", "i8"),
+    ("parent", "i8"),
+    ("child", "i8"),
+    ("rows", "i8"),  # number of constraint rows
+    ("parent_anchor", "f8", 3),  # in the parent's axes, from its centre
+    ("child_anchor", "f8", 3),
+    ("parent_frame", "f8", (3, 3)),  # columns: axis, second, third direction, in the parent's axes
+    ("child_frame", "f8", (3, 3)),
+    ("length", "f8"),  # of a distance
+]
+
+SPRING = [
+    ("parent", "i8"),
+    ("child", "i8"),
+    ("parent_anchor", "f8", 3),
+    ("child_anchor", "f8", 3),
+    ("stiffness", "f8"),
+    ("damping", "f8"),
+    ("rest_length", "f8"),
+]
+
+#: a constant force and torque (world axes) on a point of a body
+LOAD = [("body", "i8"), ("anchor", "f8", 3), ("force", "f8", 3), ("torque", "f8", 3)]
+
+#: hull of vertices, swollen by a radius, against a half-space
+CONTACT = [
+    ("body", "i8"),
+    ("first", "i8"),  # range of its vertices
+    ("last", "i8"),
+    ("law", "i8"),  # 0 newton, 1 poisson, 2 stronge
+    ("axes", "f8", (3, 3)),  # rows n, t1, t2
+    ("offset", "f8"),  # n . point of the plane
+    ("radius", "f8"),
+    ("friction", "f8"),
+    ("restitution", "f8"),
+    ("size", "f8"),  # largest distance of the shape from the mass centre
+    ("width", "f8"),  # b of the boundary layer
+    ("penetration", "f8"),  # delta
+]
+
+#: place of a body in a forest of joints
+LINK = [
+    ("order", "i8"),  # the body at this place of the walk, parents before children
+    ("joint", "i8"),  # joint that carries the body, -1 where it floats
+    ("parent", "i8"),  # parent body, -1 where that is the ground or none
+    ("freedoms", "i8"),  # of the joint; 6 for a floating body
+    ("has_child", "i8"),
+]
+
+#: what the solve for closed loops writes, for each joint
+ROW = [
+    ("A", "f8", (2, 6, 6)),  # rows, sides child and parent
+    ("Y", "f8", (2, 6, 6)),  # rows times M^-1
+    ("pivot", "f8", 6),  # reciprocal pivots, 0 = dropped
+    ("diagonal", "f8", 6),  # of A M^-1 A^T before elimination
+    ("rhs", "f8", 6),  # right-hand side, then multipliers
+]
+
+#: state of a contact over time (see `carom.hold`)
+HELD = [
+    ("mode", "i8"),  # 0 open, 1 slipping, 2 sticking
+    ("rest", "i8"),  # 1 where the body does not move at all
+    ("near", "i8"),  # 1 where something happened at the last event: look before stepping
+    ("leaving", "i8"),  # 1 where the body lifts off without speed: it may touch at the start
+    ("point", "f8", 3),  # point of the core that carries the contact, body axes
+    ("anchor", "f8", 3),  # where a sticking point was when it stuck, world
+    ("force", "f8", 3),  # of the last solve, contact axes
+    ("W", "f8", (3, 3)),  # effective inverse mass of the last solve
+]
+
+BODY_WORK = [
+    ("wrench", "f8", 6),  # what a solve takes: force and torque, or impulse
+    ("motion", "f8", 6),  # what a solve gives: linear, angular
+    ("bound", "f8", 3),  # greatest linear, angular acceleration and spin of the last step
+    ("inverse", "f8", 6),  # inverse inertia, world axes
+    ("status", "i8"),  # 0 free, 1 held by a contact, 2 at rest
+]
+
+JOINT_WORK = [
+    ("bias", "f8", 6),  # relative motion that a solve shall give: angular, linear
+    ("reaction", "f8", 6),  # wrench on the child at its anchor: force, torque
+    ("multiplier", "f8", 6),  # impulses of the rows in the three-field step
+    ("target", "f8", 6),
+]
+
+#: one stage of a Runge-Kutta step, for one body
+STAGE = [("speed", "f8", 6), ("rate", "f8", 6), ("attitude", "f8", 4)]
+
+#: an impact in the making
+HIT = [("W", "f8", (3, 3)), ("u", "f8", 3), ("point", "f8", 3), ("out", "f8", 32)]
 
 
-class Bodies(NamedTuple):
-    """Inertia of the bodies, in principal axes."""
-
-    mass: np.ndarray  # (N,) [kg]
-    inertia: np.ndarray  # (N, 3) principal moments [kg m^2]
-    size: np.ndarray  # (N,) a length of each body: its shape, or the arms of its joints [m]
-    isotropic: np.ndarray  # (N,) 1 where the three moments are equal
-    isolated: np.ndarray  # (N,) 1 where no joint acts
-    ballistic: np.ndarray  # (N,) 1 where no joint and no force but gravity acts
-    gravity: np.ndarray  # (3,) [m/s^2]
-
-
-class Joints(NamedTuple):
-    """Bilateral constraints. Frames of a joint are columns (axis, second, third) of a 3x3 matrix."""
-
-    kind: np.ndarray  # (J,) one of the codes above
-    parent: np.ndarray  # (J,) body, or -1 for the ground
-    child: np.ndarray  # (J,) body
-    parent_anchor: np.ndarray  # (J, 3) in the parent's axes, from its centre
-    child_anchor: np.ndarray  # (J, 3) in the child's axes, from its centre
-    parent_frame: np.ndarray  # (J, 3, 3) in the parent's axes
-    child_frame: np.ndarray  # (J, 3, 3) in the child's axes
-    length: np.ndarray  # (J,) of a distance joint [m]
-    rows: np.ndarray  # (J,) number of constraint rows
-
-
-class Forces(NamedTuple):
-    """Applied forces other than gravity."""
-
-    spring_parent: np.ndarray  # (F,)
-    spring_child: np.ndarray  # (F,)
-    spring_parent_anchor: np.ndarray  # (F, 3)
-    spring_child_anchor: np.ndarray  # (F, 3)
-    spring_constants: np.ndarray  # (F, 3) stiffness [N/m], damping [N s/m], rest length [m]
-    wrench_body: np.ndarray  # (K,)
-    wrench_anchor: np.ndarray  # (K, 3) point of attack in the body's axes
-    wrench: np.ndarray  # (K, 6) constant force [N] and torque [N m], world
-
-
-class Contacts(NamedTuple):
-    """Unilateral constraints: hull of vertices, swollen by a radius, against a half-space."""
-
-    body: np.ndarray  # (C,)
-    axes: np.ndarray  # (C, 3, 3) rows n, t1, t2 of the contact frame
-    offset: np.ndarray  # (C,) n . point of the plane [m]
-    radius: np.ndarray  # (C,) [m]
-    start: np.ndarray  # (C+1,) range of vertices of each contact
-    vertices: np.ndarray  # (sum, 3) in the body's axes [m]
-    friction: np.ndarray  # (C,)
-    restitution: np.ndarray  # (C,)
-    law: np.ndarray  # (C,) 0 newton, 1 poisson, 2 stronge
-    size: np.ndarray  # (C,) largest distance of the shape from the mass centre [m]
-    width: np.ndarray  # (C,) width b of the boundary layer [m]
-    penetration: np.ndarray  # (C,) penetration ratio delta
+def table(fields: list, *shape: int) -> np.recarray:
+    """Return a zero array of records with the given fields."""
+    return np.zeros(shape, dtype=np.dtype(fields, align=True)).view(np.recarray)
 
 
 class FreeSolver(NamedTuple):
     """No joints: every body answers for itself."""
 
-    count: int  # number of bodies
+    count: int
 
 
 class TreeSolver(NamedTuple):
     """A forest of joints, solved by articulated-body elimination."""
 
-    order: np.ndarray  # (N,) bodies, parents before children
-    joint: np.ndarray  # (N,) joint that carries the body, -1 where it floats
-    parent: np.ndarray  # (N,) parent body, -1 where the parent is the ground or none
-    freedoms: np.ndarray  # (N,) of the joint; 6 for a floating body
-    has_child: np.ndarray  # (N,) 1 where a floating body carries others
-    scratch: np.ndarray  # (N, 132) written by each solve
+    links: np.recarray  # (N,) LINK
+    scratch: np.ndarray  # (N, 124) written by each solve
 
 
 class LoopSolver(NamedTuple):
@@ -107,58 +151,32 @@ class LoopSolver(NamedTuple):
     update: np.ndarray  # (J+1,) ranges of the update triples
     triple: np.ndarray  # (U, 3) blocks i, j of a column and the target they change
     term: np.ndarray  # (P, 5) assembly: target block, joint i, side i, joint j, side j
-    touched: np.ndarray  # (N,) 1 where a joint acts on the body
-    rows: np.ndarray  # (J, 2, 6, 6) rows A, sides child and parent; written by each solve
-    scaled: np.ndarray  # (J, 2, 6, 6) rows times M^-1
+    rows: np.recarray  # (J,) ROW
     block: np.ndarray  # (J+B, 6, 6) diagonal blocks, then the others
-    pivot: np.ndarray  # (J, 6) reciprocal pivots, 0 = dropped
-    diagonal: np.ndarray  # (J, 6) diagonal of A M^-1 A^T before elimination
-    rhs: np.ndarray  # (J, 6)
-    inverse: np.ndarray  # (N, 6) inverse inertia in world axes
     drop: float  # pivots below this part of the row's diagonal are dropped
 
 
 class System(NamedTuple):
-    """All that the kernels know about a scene."""
+    """All that the kernels know about a scene. Never written to after compile, but the solver's scratch."""
 
-    bodies: Bodies
-    joints: Joints
-    forces: Forces
-    contacts: Contacts
+    bodies: np.recarray  # (N,) BODY
+    gravity: np.ndarray  # (3,)
+    joints: np.recarray  # (J,) JOINT
+    springs: np.recarray  # SPRING
+    loads: np.recarray  # LOAD
+    contacts: np.recarray  # (C,) CONTACT
+    vertices: np.ndarray  # (V, 3) of all contacts, body axes
     solver: FreeSolver | TreeSolver | LoopSolver
 
 
-class Held(NamedTuple):
-    """Contacts that persist, and how (see `carom.hold`)."""
-
-    mode: np.ndarray  # (C,) 0 open, 1 slipping, 2 sticking
-    point: np.ndarray  # (C, 3) point of the core that carries the contact, body axes
-    anchor: np.ndarray  # (C, 3) where a sticking point was when it stuck, world
-    force: np.ndarray  # (C, 3) contact force of the last solve, contact axes [N]
-    rest: np.ndarray  # (C,) 1 where the body does not move at all
-    near: np.ndarray  # (C,) 1 where something happened at the last event: look before stepping
-    leaving: np.ndarray  # (C,) 1 where the body lifts off without speed: it may touch at the start
-
-
 class Work(NamedTuple):
-    """What a run writes to: made once, never grown."""
+    """Scratch of one run: made once, never grown."""
 
-    wrench: np.ndarray  # (N, 6)
-    bias: np.ndarray  # (J, 6)
-    delta: np.ndarray  # (N, 6)
-    zero: np.ndarray  # (J, 6) stays zero
-    reaction: np.ndarray  # (J, 6) wrench on the child at its anchor
-    stage: State
-    speed: np.ndarray  # (S, N, 6) velocities of the stages
-    rate: np.ndarray  # (S, N, 6) accelerations of the stages
-    attitude: np.ndarray  # (S, N, 4) attitudes of the stages
-    W: np.ndarray  # (C, 3, 3) effective inverse mass of held contacts
-    small: np.ndarray  # (3, 3)
-    u: np.ndarray  # (3,)
-    out: np.ndarray  # (32,) of the impact
+    body: np.recarray  # (N,) BODY_WORK
+    joint: np.recarray  # (J,) JOINT_WORK
+    stages: np.recarray  # (S, N) STAGE
+    stage: np.recarray  # (N,) STATE
+    trial: np.recarray  # (N,) STATE
+    middle: np.recarray  # (N,) STATE
+    hit: np.recarray  # (1,) HIT
     history: np.ndarray  # (0, 16) no history inside the loop
-    trial: State
-    middle: State
-    multiplier: np.ndarray  # (J, 6)
-    point: np.ndarray  # (3,) core point of the contact at hand, body axes
-    bound: np.ndarray  # (N, 3) greatest linear, angular acceleration and spin of the last step

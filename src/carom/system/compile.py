@@ -13,7 +13,7 @@ from carom.scene.forces import Spring, Torque
 from carom.scene.joints import Distance, Fixed, KnifeEdge, Prismatic, Revolute, Spherical
 from carom.scene.scene import Scene
 from carom.system import arrays, graph, solvers
-from carom.system.arrays import Bodies, Contacts, Forces, Joints, State, System
+from carom.system.arrays import BODY, CONTACT, JOINT, LOAD, SPRING, STATE, System, table
 
 KIND = {
     Spherical: arrays.SPHERICAL,
@@ -29,19 +29,21 @@ class Compiled(NamedTuple):
     """A scene as arrays, and what is needed to speak of it in the scene's own words again."""
 
     system: System
-    start: State
+    start: np.recarray  # (N,) STATE
     to_principal: np.ndarray  # (N, 4) principal axes -> the scene's body axes
     flipped: np.ndarray  # (J,) joints whose parent and child were exchanged
 
 
-def compile_scene(scene: Scene, options: Options) -> Compiled:
-    """Return the arrays of `scene`."""
+def compile_scene(scene: Scene, options: Options, loops: bool = False) -> Compiled:
+    """Return the arrays of `scene`; with `loops` the block-sparse back end even for a forest."""
     start, to_principal, moments = _start(scene)
     frames = _Frames(start)
-    joints, flipped, solver = _joints(scene, frames, options)
-    forces = _forces(scene, frames)
-    bodies = _bodies(scene, moments, joints, forces)
-    system = System(bodies, joints, forces, _contacts(scene, to_principal, options), solver)
+    joints, flipped, solver = _joints(scene, frames, options, loops)
+    springs, loads = _springs(scene, frames), _loads(scene, frames)
+    bodies = _bodies(scene, moments, joints, springs, loads)
+    contacts, vertices = _contacts(scene, to_principal, options)
+    gravity = np.array(scene.gravity)
+    system = System(bodies, gravity, joints, springs, loads, contacts, vertices, solver)
     return Compiled(system, start, to_principal, flipped)
 
 
@@ -67,19 +69,18 @@ def _start(scene):
     moments = np.array([m for m, _ in pairs])
     to_principal = np.array([q for _, q in pairs])
     Q = quaternion.multiply(np.array([b.orientation for b in bodies]), to_principal)
-    start = State(
-        np.array([b.position for b in bodies], dtype=float),
-        np.ascontiguousarray(Q / np.linalg.norm(Q, axis=1, keepdims=True)),
-        np.array([b.velocity for b in bodies], dtype=float),
-        np.array([b.angular_velocity for b in bodies], dtype=float),
-    )
+    start = table(STATE, len(bodies))
+    start.Q = Q / np.linalg.norm(Q, axis=1, keepdims=True)
+    start.x = [b.position for b in bodies]
+    start.v = [b.velocity for b in bodies]
+    start.w = [b.angular_velocity for b in bodies]
     return start, to_principal, moments
 
 
 class _Frames:
     """World points and directions as seen from a body (or the ground) at the start."""
 
-    def __init__(self, start: State):
+    def __init__(self, start: np.recarray):
         self.start = start
 
     def point(self, body, point) -> np.ndarray:
@@ -116,98 +117,87 @@ def _anchors(joint):
     return anchor, anchor, frame
 
 
-def _joints(scene, frames, options):
+def _joints(scene, frames, options, loops):
     defined = scene.joints
     count, number = len(scene.bodies), len(defined)
     kind = np.array([KIND[type(j.definition)] for j in defined], dtype=np.int64)
     parent = np.array([j.parent.index for j in defined], dtype=np.int64)
     child = np.array([j.child.index for j in defined], dtype=np.int64)
     flipped = np.zeros(number, dtype=bool)
-    forest = graph.is_forest(count, kind, parent, child)
+    forest = not loops and graph.is_forest(count, kind, parent, child)
     order, carrier = np.arange(count), np.full(count, -1)
     if forest:
         order, carrier, flipped = graph.forest_order(count, parent, child)
         parent, child = np.where(flipped, child, parent), np.where(flipped, parent, child)
-    anchors = np.zeros((2, number, 3))
-    axes = np.zeros((2, number, 3, 3))
-    length = np.zeros(number)
+    joints = table(JOINT, number)
+    joints.kind, joints.parent, joints.child = kind, parent, child
+    joints.rows = [arrays.ROWS[k] for k in kind]
     for j, joint in enumerate(defined):
         first, second, world = _anchors(joint)
         sides = [(joint.parent, first), (joint.child, second)]
-        for side, (body, point) in enumerate(sides[::-1] if flipped[j] else sides):
-            anchors[side, j] = frames.point(body, point)
-            axes[side, j] = frames.axes(body, world)
-        length[j] = getattr(joint.definition, "length", 0.0)
-    joints = Joints(
-        kind, parent, child, *(np.ascontiguousarray(a) for a in anchors),
-        *(np.ascontiguousarray(a) for a in axes), length,
-        np.array([arrays.ROWS[k] for k in kind], dtype=np.int64),
-    )  # fmt: skip
+        (a, p), (b, q) = sides[::-1] if flipped[j] else sides
+        joints.parent_anchor[j], joints.child_anchor[j] = frames.point(a, p), frames.point(b, q)
+        joints.parent_frame[j], joints.child_frame[j] = frames.axes(a, world), frames.axes(b, world)
+        joints.length[j] = getattr(joint.definition, "length", 0.0)
     if number == 0:
         solver = solvers.free_solver(count)
     elif forest:
         solver = solvers.tree_solver(joints, order, carrier)
     else:
-        solver = solvers.loop_solver(count, joints, options.drop_tolerance)
+        solver = solvers.loop_solver(joints, options.drop_tolerance)
     return joints, flipped, solver
 
 
-def _forces(scene, frames):
-    springs = [f for f in scene.forces if isinstance(f.definition, Spring)]
-    ends, loads = [], []
-    for f in springs:
+def _springs(scene, frames):
+    chosen = [f for f in scene.forces if isinstance(f.definition, Spring)]
+    springs = table(SPRING, len(chosen))
+    for s, f in zip(springs, chosen):
         d = f.definition
-        ends.append((
-            f.parent.index, f.child.index, frames.point(f.parent, d.anchor_parent),
-            frames.point(f.child, d.anchor_child), (d.stiffness, d.damping, d.rest_length),
-        ))  # fmt: skip
+        s.parent, s.child = f.parent.index, f.child.index
+        s.parent_anchor[:] = frames.point(f.parent, d.anchor_parent)
+        s.child_anchor[:] = frames.point(f.child, d.anchor_child)
+        s.stiffness, s.damping, s.rest_length = d.stiffness, d.damping, d.rest_length
+    return springs
+
+
+def _loads(scene, frames):
+    rows = []
     for f in scene.forces:
-        d = f.definition
+        d, none = f.definition, np.zeros(3)
         if isinstance(d, Torque):
-            wrench = np.concatenate([np.zeros(3), d.vector])
-            loads.append((f.child.index, np.zeros(3), wrench))
+            rows.append((f.child.index, none, none, d.vector))
             if f.parent.index >= 0:
-                loads.append((f.parent.index, np.zeros(3), -wrench))
+                rows.append((f.parent.index, none, none, -d.vector))
         elif not isinstance(d, Spring):
             anchor = f.child.position if d.anchor is None else d.anchor
-            wrench = np.concatenate([d.vector, np.zeros(3)])
-            loads.append((f.child.index, frames.point(f.child, anchor), wrench))
-    return Forces(
-        np.array([e[0] for e in ends], dtype=np.int64),
-        np.array([e[1] for e in ends], dtype=np.int64),
-        np.array([e[2] for e in ends]).reshape(-1, 3),
-        np.array([e[3] for e in ends]).reshape(-1, 3),
-        np.array([e[4] for e in ends]).reshape(-1, 3),
-        np.array([e[0] for e in loads], dtype=np.int64),
-        np.array([e[1] for e in loads]).reshape(-1, 3),
-        np.array([e[2] for e in loads]).reshape(-1, 6),
-    )
+            rows.append((f.child.index, frames.point(f.child, anchor), d.vector, none))
+    loads = table(LOAD, len(rows))
+    for k, (body, anchor, force, torque) in enumerate(rows):
+        loads.body[k] = body
+        loads.anchor[k], loads.force[k], loads.torque[k] = anchor, force, torque
+    return loads
 
 
-def _bodies(scene, moments, joints, forces):
-    count = len(scene.bodies)
+def _bodies(scene, moments, joints, springs, loads):
+    bodies = table(BODY, len(scene.bodies))
     size = np.array([0.0 if b.shape is None else b.shape.size for b in scene.bodies])
-    isolated = np.ones(count, dtype=np.int64)
-    for bodies, anchors in (
+    isolated = np.ones(len(scene.bodies), dtype=np.int64)
+    for sides, anchors in (
         (joints.parent, joints.parent_anchor),
         (joints.child, joints.child_anchor),
     ):
-        inside = bodies >= 0
-        isolated[bodies[inside]] = 0
-        np.maximum.at(size, bodies[inside], np.linalg.norm(anchors[inside], axis=1))
+        inside = sides >= 0
+        isolated[sides[inside]] = 0
+        np.maximum.at(size, sides[inside], np.linalg.norm(anchors[inside], axis=1))
     size[size == 0.0] = 1.0
     ballistic = isolated.copy()
-    for bodies in (forces.spring_parent, forces.spring_child, forces.wrench_body):
-        ballistic[bodies[bodies >= 0]] = 0
-    return Bodies(
-        mass=np.array([b.mass for b in scene.bodies]),
-        inertia=np.ascontiguousarray(moments),
-        size=size,
-        isotropic=(np.ptp(moments, axis=1) == 0.0).astype(np.int64),
-        isolated=isolated,
-        ballistic=ballistic,
-        gravity=np.array(scene.gravity),
-    )
+    for loaded in (springs.parent, springs.child, loads.body):
+        ballistic[loaded[loaded >= 0]] = 0
+    bodies.mass = [b.mass for b in scene.bodies]
+    bodies.inertia, bodies.size = moments, size
+    bodies.isotropic = np.ptp(moments, axis=1) == 0.0
+    bodies.isolated, bodies.ballistic = isolated, ballistic
+    return bodies
 
 
 def contact_axes(normal: np.ndarray) -> np.ndarray:
@@ -216,25 +206,19 @@ def contact_axes(normal: np.ndarray) -> np.ndarray:
 
 
 def _contacts(scene, to_principal, options):
-    contacts = scene.contacts
-    start, vertices = [0], [np.zeros((0, 3))]
-    for c in contacts:
-        points = c.body.shape.vertices
-        vertices.append(quaternion.rotate_back(to_principal[c.body.index], points))
-        start.append(start[-1] + len(points))
-    size = np.array([c.body.shape.size for c in contacts], dtype=float)
-    width = 1e-5 * size if options.layer_width is None else np.full(size.shape, options.layer_width)
-    return Contacts(
-        body=np.array([c.body.index for c in contacts], dtype=np.int64),
-        axes=np.array([contact_axes(c.half_space.normal) for c in contacts]).reshape(-1, 3, 3),
-        offset=np.array([c.half_space.point @ c.half_space.normal for c in contacts], dtype=float),
-        radius=np.array([c.body.shape.radius for c in contacts], dtype=float),
-        start=np.array(start, dtype=np.int64),
-        vertices=np.concatenate(vertices),
-        friction=np.array([c.friction for c in contacts], dtype=float),
-        restitution=np.array([c.restitution for c in contacts], dtype=float),
-        law=np.array([IMPACT_LAWS.index(c.impact_law) for c in contacts], dtype=np.int64),
-        size=size,
-        width=width,
-        penetration=np.full(len(contacts), options.penetration),
-    )
+    contacts, vertices = table(CONTACT, len(scene.contacts)), [np.zeros((0, 3))]
+    count = 0
+    for k, c in enumerate(scene.contacts):
+        shape, plane = c.body.shape, c.half_space
+        points = quaternion.rotate_back(to_principal[c.body.index], shape.vertices)
+        vertices.append(points)
+        row = contacts[k]
+        row.body, row.first, row.last = c.body.index, count, count + len(points)
+        count += len(points)
+        contacts.axes[k] = contact_axes(plane.normal)
+        row.offset, row.radius, row.size = plane.point @ plane.normal, shape.radius, shape.size
+        row.friction, row.restitution = c.friction, c.restitution
+        row.law = IMPACT_LAWS.index(c.impact_law)
+        row.width = 1e-5 * shape.size if options.layer_width is None else options.layer_width
+        row.penetration = options.penetration
+    return contacts, np.concatenate(vertices)

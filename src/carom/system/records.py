@@ -6,113 +6,143 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom.system.arrays import Held, State, System, Work
+from carom.system.arrays import (
+    BODY_WORK,
+    HELD,
+    HIT,
+    JOINT_WORK,
+    STAGE,
+    STATE,
+    System,
+    Work,
+    table,
+)
 
-#: columns of a row of `Records.impact`
-TIME, CONTACT, POINT, INVERSE_MASS, BEFORE, AFTER, IMPULSE = 0, 1, 2, 5, 14, 17, 20
-ENERGY, DURATION, WORK_C, WORK_R, FRICTION_LOSS, PHASES = 23, 24, 25, 26, 27, 28
-IMPACT_COLUMNS = 29
+#: kinds of events, by code
+EVENTS = ("impact", "held", "slips", "sticks", "opens")
+IMPACT, HOLD, SLIPS, STICKS, OPENS = range(5)
 
-#: columns of the ledger
-LOADS, IMPACTS, FRICTION, HANDOVER = range(4)
-LEDGER_COLUMNS = 4
+#: energy, summed since the start
+LEDGER = [("loads", "f8"), ("impacts", "f8"), ("friction", "f8"), ("bounces", "f8")]
 
-#: places in `Clock.count`
-STEP, SAVED, STRUCK, IN_STEP, AT_ONCE, CUTS, TRIALS, LOCATED, HOLDS, STATUS = range(10)
-#: places in `Clock.time`
-NOW, SPENT = 0, 1
+#: where a run stands; kept between calls of the loop
+CLOCK = [
+    ("now", "f8"),
+    ("spent", "f8"),  # of the present step
+    *LEDGER,
+    ("step", "i8"),  # finished steps
+    ("saved", "i8"),
+    ("struck", "i8"),
+    ("event", "i8"),
+    ("in_step", "i8"),  # impacts in the present step
+    ("at_once", "i8"),  # impacts since time last went on
+    ("cuts", "i8"),
+    ("trials", "i8"),
+    ("located", "i8"),
+    ("holds", "i8"),
+]
+
+SERIES = [("t", "f8"), *LEDGER]
+TOUCH = [("mode", "i8"), ("force", "f8", 3), ("point", "f8", 3)]
+
+IMPACTS = [
+    ("time", "f8"),
+    ("contact", "i8"),
+    ("point", "f8", 3),
+    ("W", "f8", (3, 3)),
+    ("before", "f8", 3),
+    ("after", "f8", 3),
+    ("impulse", "f8", 3),
+    ("energy_change", "f8"),
+    ("duration", "f8"),
+    ("compression_work", "f8"),
+    ("restitution_work", "f8"),
+    ("friction_loss", "f8"),
+    ("phases", "i8"),
+]
+
+EVENT = [("time", "f8"), ("kind", "i8"), ("contact", "i8"), ("saved", "i8")]
+
+#: a body at an event, velocities before and after
+SNAPSHOT = [
+    ("x", "f8", 3),
+    ("Q", "f8", 4),
+    ("v0", "f8", 3),
+    ("w0", "f8", 3),
+    ("v1", "f8", 3),
+    ("w1", "f8", 3),
+]
 
 FULL = 100  # a record is full: the caller makes it longer and goes on
 
 
 class Records(NamedTuple):
-    """Saved steps (T rows) and impacts (K rows)."""
+    """T saved steps, K impacts, E events."""
 
-    t: np.ndarray  # (T,)
-    x: np.ndarray  # (T, N, 3)
-    Q: np.ndarray  # (T, N, 4)
-    v: np.ndarray  # (T, N, 3)
-    w: np.ndarray  # (T, N, 3)
-    ledger: np.ndarray  # (T, 4) work of loads, of impacts, of friction in held contacts, bounces dropped
-    mode: np.ndarray  # (T, C) 0 open, 1 slipping, 2 sticking
-    force: np.ndarray  # (T, C, 3) force of held contacts, contact axes [N]
-    impact: np.ndarray  # (K, 29)
-    impact_pose: np.ndarray  # (K, N, 7) x, Q
-    impact_speed: np.ndarray  # (K, N, 12) v, w before; v, w after
+    series: np.recarray  # (T,) SERIES
+    state: np.recarray  # (T, N) STATE
+    touch: np.recarray  # (T, C) TOUCH
+    impact: np.recarray  # (K,) IMPACTS
+    event: np.recarray  # (E,) EVENT
+    snapshot: np.recarray  # (E, N) SNAPSHOT
 
 
-class Clock(NamedTuple):
-    """Where a run stands; kept between calls of the loop."""
-
-    time: np.ndarray  # (2,) time, time spent in the present step
-    count: np.ndarray  # (10,)
-    ledger: np.ndarray  # (4,)
+def new_clock() -> np.recarray:
+    """Return the clock of a run that has not begun, (1,)."""
+    return table(CLOCK, 1)
 
 
-def new_clock() -> Clock:
-    """Return the clock of a run that has not begun."""
-    return Clock(np.zeros(2), np.zeros(10, dtype=np.int64), np.zeros(LEDGER_COLUMNS))
-
-
-def new_state(count: int) -> State:
-    """Return a state of `count` bodies, all zero."""
-    return State(*(np.zeros((count, n)) for n in (3, 4, 3, 3)))
-
-
-def new_held(count: int) -> Held:
+def new_held(count: int) -> np.recarray:
     """Return the record of `count` contacts, all open, to be looked at before the first step."""
-    whole = dict.fromkeys(("mode", "rest", "near", "leaving"))
-    arrays = {name: np.zeros(count, dtype=np.int64) for name in whole}
-    arrays["near"][:] = 1
-    return Held(
-        point=np.zeros((count, 3)), anchor=np.zeros((count, 3)), force=np.zeros((count, 3)), **arrays
-    )
+    held = table(HELD, count)
+    held.near = 1
+    return held
 
 
 def new_work(system: System, stages: int) -> Work:
-    """Return the scratch arrays of one run."""
-    n, j, c = system.bodies.mass.size, system.joints.kind.size, system.contacts.body.size
+    """Return the scratch of one run."""
+    n, j = system.bodies.size, system.joints.size
     return Work(
-        wrench=np.zeros((n, 6)),
-        bias=np.zeros((j, 6)),
-        delta=np.zeros((n, 6)),
-        zero=np.zeros((j, 6)),
-        reaction=np.zeros((j, 6)),
-        stage=new_state(n),
-        speed=np.zeros((stages, n, 6)),
-        rate=np.zeros((stages, n, 6)),
-        attitude=np.zeros((stages, n, 4)),
-        W=np.zeros((c, 3, 3)),
-        small=np.zeros((3, 3)),
-        u=np.zeros(3),
-        out=np.zeros(32),
+        body=table(BODY_WORK, n),
+        joint=table(JOINT_WORK, j),
+        stages=table(STAGE, stages, n),
+        stage=table(STATE, n),
+        trial=table(STATE, n),
+        middle=table(STATE, n),
+        hit=table(HIT, 1),
         history=np.zeros((0, 16)),
-        trial=new_state(n),
-        middle=new_state(n),
-        multiplier=np.zeros((j, 6)),
-        point=np.zeros(3),
-        bound=np.zeros((n, 3)),
     )
 
 
-def new_records(system: System, saves: int, impacts: int) -> Records:
-    """Return empty records for `saves` saved steps and `impacts` impacts."""
-    n, c = system.bodies.mass.size, system.contacts.body.size
-    state = (np.zeros((saves, n, k)) for k in (3, 4, 3, 3))
+def new_records(system: System, saves: int, events: int) -> Records:
+    """Return empty records for `saves` saved steps and `events` impacts and events."""
+    n, c = system.bodies.size, system.contacts.size
     return Records(
-        np.zeros(saves), *state, np.zeros((saves, LEDGER_COLUMNS)),
-        np.zeros((saves, c), dtype=np.int64), np.zeros((saves, c, 3)),
-        np.zeros((impacts, IMPACT_COLUMNS)), np.zeros((impacts, n, 7)), np.zeros((impacts, n, 12)),
-    )  # fmt: skip
+        series=table(SERIES, saves),
+        state=table(STATE, saves, n),
+        touch=table(TOUCH, saves, c),
+        impact=table(IMPACTS, events),
+        event=table(EVENT, events),
+        snapshot=table(SNAPSHOT, events, n),
+    )
 
 
 def longer(records: Records) -> Records:
-    """Return the records with room for twice as many impacts."""
-    def grow(a):
-        return np.concatenate([a, np.zeros_like(a)] if len(a) else [np.zeros((64, *a.shape[1:]))])
-
+    """Return the records with room for twice as many impacts and events."""
     return records._replace(
-        impact=grow(records.impact),
-        impact_pose=grow(records.impact_pose),
-        impact_speed=grow(records.impact_speed),
+        **{
+            name: np.concatenate([a, np.zeros_like(a)]).view(np.recarray)
+            for name in ("impact", "event", "snapshot")
+            for a in [getattr(records, name)]
+        }
+    )
+
+
+def trimmed(records: Records, clock: np.recarray) -> Records:
+    """Return copies of the rows that were written."""
+    ends = {
+        "impact": clock[0].struck, "event": clock[0].event, "snapshot": clock[0].event,
+    }  # fmt: skip
+    return Records(
+        **{k: a[: ends.get(k, clock[0].saved)].copy() for k, a in records._asdict().items()}
     )

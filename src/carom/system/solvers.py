@@ -6,13 +6,15 @@ import numpy as np
 
 from carom.system.arrays import (
     FIXED,
+    LINK,
     PRISMATIC,
     REVOLUTE,
+    ROW,
     SPHERICAL,
     FreeSolver,
-    Joints,
     LoopSolver,
     TreeSolver,
+    table,
 )
 from carom.system.graph import elimination
 
@@ -25,22 +27,21 @@ def free_solver(count: int) -> FreeSolver:
     return FreeSolver(count)
 
 
-def tree_solver(joints: Joints, order: np.ndarray, joint: np.ndarray) -> TreeSolver:
+def tree_solver(joints: np.recarray, order: np.ndarray, joint: np.ndarray) -> TreeSolver:
     """Return the solver of a forest; `order` and `joint` are those of `forest_order`."""
-    count = order.size
-    parent = np.full(count, -1)
-    freedoms = np.full(count, 6)
-    has_child = np.zeros(count, dtype=np.int64)
-    for b in range(count):
-        if joint[b] >= 0:
-            parent[b] = joints.parent[joint[b]]
-            freedoms[b] = FREEDOMS[int(joints.kind[joint[b]])]
-            if parent[b] >= 0:
-                has_child[parent[b]] = 1
-    return TreeSolver(order, joint, parent, freedoms, has_child, np.zeros((count, SCRATCH)))
+    links = table(LINK, order.size)
+    links.order, links.joint = order, joint
+    links.parent, links.freedoms = -1, 6
+    for b, j in enumerate(joint):
+        if j >= 0:
+            links.parent[b] = p = joints.parent[j]
+            links.freedoms[b] = FREEDOMS[int(joints.kind[j])]
+            if p >= 0:
+                links.has_child[p] = 1
+    return TreeSolver(links, np.zeros((order.size, SCRATCH)))
 
 
-def loop_solver(count: int, joints: Joints, drop: float) -> LoopSolver:
+def loop_solver(joints: np.recarray, drop: float) -> LoopSolver:
     """Return the solver of a scene with closed loops: the symbolic factor of A M^-1 A^T."""
     number = joints.kind.size
     order, later = elimination(joints.parent, joints.child)
@@ -72,8 +73,6 @@ def loop_solver(count: int, joints: Joints, drop: float) -> LoopSolver:
         for j, sj in touching
         if place[i] >= place[j]
     ]
-    touched = np.zeros(count, dtype=np.int64)
-    touched[list(sides)] = 1
     return LoopSolver(
         order=np.array(order, dtype=np.int64),
         column=np.array(column, dtype=np.int64),
@@ -81,13 +80,7 @@ def loop_solver(count: int, joints: Joints, drop: float) -> LoopSolver:
         update=np.array(update, dtype=np.int64),
         triple=np.array(triple, dtype=np.int64).reshape(-1, 3),
         term=np.array(term, dtype=np.int64).reshape(-1, 5),
-        touched=touched,
-        rows=np.zeros((number, 2, 6, 6)),
-        scaled=np.zeros((number, 2, 6, 6)),
+        rows=table(ROW, number),
         block=np.zeros((number + len(row), 6, 6)),
-        pivot=np.zeros((number, 6)),
-        diagonal=np.zeros((number, 6)),
-        rhs=np.zeros((number, 6)),
-        inverse=np.zeros((count, 6)),
         drop=drop,
     )

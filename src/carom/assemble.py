@@ -1,0 +1,128 @@
+"""From the records of a run to the arrays of a solution."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom.geometry import quaternion
+from carom.ledger import Ledger
+from carom.status import Status
+from carom.system import records as r
+from carom.tables import LAWS, EventTable, ImpactTable
+
+
+def assemble(run, status: Status) -> dict:
+    """Return the fields of a `Solution`."""
+    from carom.run import to_scene_axes
+
+    rec = r.trimmed(run.records, run.clock)
+    state, clock = rec.state, run.clock[0]
+    kinetic, potential = energies(run.compiled.system, state)
+    ledger = Ledger(
+        kinetic, potential, *(rec.series[name].copy() for name, _ in r.LEDGER)
+    )
+    return {
+        "t": rec.series.t.copy(),
+        "position": state.x.copy(),
+        "orientation": to_scene_axes(state.Q, run.compiled.to_principal),
+        "velocity": state.v.copy(),
+        "angular_velocity": state.w.copy(),
+        "kinetic_energy": kinetic,
+        "potential_energy": potential,
+        "impacts": impact_table(run, rec),
+        "events": EventTable(
+            rec.event.time.copy(), np.array(r.EVENTS)[rec.event.kind], rec.event.contact.copy(),
+        ),
+        "contact_mode": rec.touch.mode.copy(),
+        "contact_force": rec.touch.force.copy(),
+        "ledger": ledger,
+        "status": status,
+        "stats": {
+            "steps": int(clock.step), "trial_steps": int(clock.trials), "cuts": int(clock.cuts),
+            "located": int(clock.located), "impacts": int(clock.struck), "holds": int(clock.holds),
+        },
+        "scene": run.scene,
+        "settings": dict(run.settings),
+        "_run": run,
+    }  # fmt: skip
+
+
+def energies(system, state) -> tuple[np.ndarray, np.ndarray]:
+    """Return kinetic and potential energy (T,) of states (T, N)."""
+    bodies, x, Q = system.bodies, state.x, state.Q
+    W = quaternion.rotate_back(Q, state.w)
+    kinetic = 0.5 * np.einsum("n,tnk->t", bodies.mass, state.v**2)
+    kinetic += 0.5 * np.einsum("nk,tnk->t", bodies.inertia, W**2)
+    potential = -np.einsum("n,tnk,k->t", bodies.mass, x, system.gravity)
+    for s in system.springs:
+        ends = [
+            anchor if b < 0 else x[:, b] + quaternion.rotate(Q[:, b], anchor)
+            for b, anchor in ((s.parent, s.parent_anchor), (s.child, s.child_anchor))
+        ]
+        stretch = np.linalg.norm(ends[1] - ends[0], axis=-1) - s.rest_length
+        potential += 0.5 * s.stiffness * stretch**2
+    return kinetic, potential
+
+
+def impact_table(run, rec) -> ImpactTable:
+    """Return the impacts with all that the scene knows of their contacts."""
+    rows, contacts = rec.impact, run.compiled.system.contacts
+    c = rows.contact.copy()
+    return ImpactTable(
+        time=rows.time.copy(),
+        contact=c,
+        point=rows.point.copy(),
+        normal=contacts.axes[c, 0],
+        relative_velocity_before=rows.before.copy(),
+        relative_velocity_after=rows.after.copy(),
+        impulse=rows.impulse.copy(),
+        energy_change=rows.energy_change.copy(),
+        penetration=contacts.penetration[c] * contacts.width[c],
+        duration=rows.duration.copy(),
+        law=np.array(LAWS)[contacts.law[c]],
+        inverse_mass=rows.W.copy(),
+        restitution=contacts.restitution[c],
+        friction=contacts.friction[c],
+        compression_work=rows.compression_work.copy(),
+        restitution_work=rows.restitution_work.copy(),
+        friction_loss=rows.friction_loss.copy(),
+    )
+
+
+def nodes(run):
+    """Return times (M,), poses (M, N, 7), velocities before and after (M, N, 6) of saved steps and events."""
+    rec = r.trimmed(run.records, run.clock)
+    state, event = rec.state, rec.snapshot
+    time = np.concatenate([rec.series.t, rec.event.time])
+    pose = np.concatenate([np.dstack([state.x, state.Q]), np.dstack([event.x, event.Q])])
+    speed = np.dstack([state.v, state.w])
+    before = np.concatenate([speed, np.dstack([event.v0, event.w0])])
+    after = np.concatenate([speed, np.dstack([event.v1, event.w1])])
+    # an event stands after the saved rows that were written before it
+    place = np.concatenate([np.arange(1.0, len(state) + 1), rec.event.saved + 0.5])
+    order = np.argsort(place, kind="stable")
+    return time[order], pose[order], before[order], after[order]
+
+
+def joint_reactions(solution) -> np.ndarray:
+    """Return force and torque (T, J, 6) on the children, world axes, in the scene's order."""
+    from carom.motion.reactions import reactions
+
+    run = solution._run
+    system, rec = run.compiled.system, r.trimmed(run.records, run.clock)
+    out = np.zeros((len(rec.state), system.joints.size, 6))
+    work = r.new_work(system, run.method.b.size)
+    reactions(system, run.options.augmentation, rec.state, rec.touch, work, out)
+    out[:, run.compiled.flipped] *= -1.0  # the scene's child is the parent of the tree there
+    return out
+
+
+def constraint_errors(solution) -> tuple[np.ndarray, np.ndarray]:
+    """Return the largest errors of position and velocity of all joint rows at saved times."""
+    from carom.motion.reactions import row_errors
+
+    run = solution._run
+    system, rec = run.compiled.system, r.trimmed(run.records, run.clock)
+    out = np.zeros((len(rec.state), 2))
+    row_errors(system, rec.state, r.new_work(system, run.method.b.size), out)
+    return out[:, 0], out[:, 1]

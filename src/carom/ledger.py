@@ -1,0 +1,43 @@
+"""The energy ledger of a run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True, eq=False)
+class Ledger:
+    """Where the energy went, at each saved time; all [J], all (T,), sums since the start.
+
+    ``kinetic + potential = start + loads + impacts + friction + bounces + residual``
+
+    Attributes
+    ----------
+    kinetic, potential
+        What there is. Potential: gravity and springs.
+    loads
+        Work of constant forces and torques, and of dampers (negative).
+    impacts
+        Change by impacts, negative where they dissipate.
+    friction
+        Work of friction in held contacts, not above zero.
+    bounces
+        Energy of bounces that were not resolved when a contact was held, not above zero.
+    residual
+        What is left: the error of the time integration.
+    """
+
+    kinetic: np.ndarray
+    potential: np.ndarray
+    loads: np.ndarray
+    impacts: np.ndarray
+    friction: np.ndarray
+    bounces: np.ndarray
+
+    @property
+    def residual(self) -> np.ndarray:
+        """Energy that no entry explains (T,) [J]."""
+        total = self.kinetic + self.potential
+        return total - total[0] - self.loads - self.impacts - self.friction - self.bounces

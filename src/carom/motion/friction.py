@@ -1,0 +1,56 @@
+"""The force of one held contact from its 3 x 3 inverse mass W: all of it, or Coulomb's law in slip."""
+
+from __future__ import annotations
+
+import math
+
+from carom.jit import kernel
+
+
+@kernel
+def stick_force(W, an, a1, a2):
+    """Return lam with W lam = -a. A tangent direction of no compliance (W_ii = 0) gets no force."""
+    # symmetric elimination, normal first; a pivot at round-off of its diagonal is left out
+    l10, l20 = W[1, 0] / W[0, 0], W[2, 0] / W[0, 0]
+    d1 = W[1, 1] - l10 * W[1, 0]
+    c21 = W[2, 1] - l20 * W[1, 0]
+    y0, y1, y2 = -an, -a1 + l10 * an, -a2 + l20 * an
+    free1 = d1 > 1e-13 * W[1, 1]
+    l21 = c21 / d1 if free1 else 0.0
+    d2 = W[2, 2] - l20 * W[2, 0] - l21 * c21
+    y2 -= l21 * y1
+    t2 = y2 / d2 if d2 > 1e-13 * W[2, 2] else 0.0
+    t1 = y1 / d1 - l21 * t2 if free1 else 0.0
+    n = y0 / W[0, 0] - l10 * t1 - l20 * t2
+    return n, t1, t2
+
+
+@kernel
+def slip_force(W, an, a1, a2, u1, u2, mu):
+    """Return lam = N (1, -mu e) with the normal row at rest; e along the slip, or where slip will start.
+
+    N = -a_n / (W_nn - mu W_nt.e). At u_t = 0 the direction is that of the slip acceleration itself,
+    e = (a_t + N (W_tn - mu W_tt e))/|..|, the fixed point from the stick force.
+    """
+    speed = math.sqrt(u1 * u1 + u2 * u2)
+    if speed > 0.0:
+        e1, e2 = u1 / speed, u2 / speed
+        n = -an / (W[0, 0] - mu * (W[0, 1] * e1 + W[0, 2] * e2))
+        return n, -mu * n * e1, -mu * n * e2
+    n, t1, t2 = stick_force(W, an, a1, a2)
+    size = math.sqrt(t1 * t1 + t2 * t2)
+    if size <= mu * n or size == 0.0:
+        return n, t1, t2
+    e1, e2 = -t1 / size, -t2 / size
+    for _ in range(100):
+        n = -an / (W[0, 0] - mu * (W[0, 1] * e1 + W[0, 2] * e2))
+        d1 = a1 + n * (W[1, 0] - mu * (W[1, 1] * e1 + W[1, 2] * e2))
+        d2 = a2 + n * (W[2, 0] - mu * (W[2, 1] * e1 + W[2, 2] * e2))
+        size = math.sqrt(d1 * d1 + d2 * d2)
+        if size == 0.0:
+            break
+        change = abs(d1 / size - e1) + abs(d2 / size - e2)
+        e1, e2 = d1 / size, d2 / size
+        if change < 1e-14:
+            break
+    return n, -mu * n * e1, -mu * n * e2

@@ -1,0 +1,118 @@
+"""Reactions and errors of joints at a given state, for reports: not part of the step loop."""
+
+from __future__ import annotations
+
+from numba.extending import overload
+
+from carom.jit import OPTIONS, kernel
+from carom.motion.contact_point import contact_arm
+from carom.motion.forces import add_force, applied_wrenches
+from carom.motion.joints import acceleration_bias, position_error, velocity_error
+from carom.motion.loops import add_reactions, factor, free_motion, substitute, subtract_rows
+from carom.motion.rows import row_target
+from carom.motion.solve import joint_wrench, solve, solver_type
+from carom.system.arrays import LoopSolver
+
+
+@kernel
+def keep_shares(system, augment, state, work):
+    """Reactions of a forest are unique."""
+
+
+@kernel
+def least_norm(system, augment, state, work):
+    """Share reactions by the augmented Lagrangian, started from zero.
+
+    Each pass adds (A M^-1 A^T + eps)^-1 of what is missing in A a = target; the sum stays in the
+    range of A M^-1 A^T and so converges to the solution of least norm, rows weighed by eps.
+    """
+    factor(system, state, augment, work)
+    for j in range(system.joints.shape[0]):
+        for k in range(6):
+            work.joint[j].multiplier[k] = 0.0
+    for _ in range(8):
+        free_motion(system, work)
+        swap(system, work)
+        add_reactions(system, work)
+        for j in range(system.joints.shape[0]):
+            rhs = system.solver.rows[j].rhs
+            row_target(system.joints[j], state, work.joint[j].bias, rhs)
+        subtract_rows(system, work)
+        substitute(system)
+        for j in range(system.joints.shape[0]):
+            for k in range(6):
+                work.joint[j].multiplier[k] += system.solver.rows[j].rhs[k]
+    for j in range(system.joints.shape[0]):
+        record = work.joint[j]
+        joint_wrench(system.joints[j], state, record.multiplier, record.reaction)
+
+
+@kernel
+def swap(system, work):
+    """Put the multipliers where the solver takes them."""
+    for j in range(system.joints.shape[0]):
+        for k in range(6):
+            system.solver.rows[j].rhs[k] = work.joint[j].multiplier[k]
+
+
+def share(system, augment, state, work):
+    """Share reactions that are not unique with least norm; wrenches and bias must be in place."""
+    chosen = least_norm if isinstance(system.solver, LoopSolver) else keep_shares
+    chosen(system, augment, state, work)
+
+
+@overload(share, **OPTIONS)
+def _share(system, augment, state, work):
+    chosen = least_norm if solver_type(system) is LoopSolver else keep_shares
+    return lambda system, augment, state, work: chosen(system, augment, state, work)
+
+
+@kernel
+def reactions(system, augment, states, touch, work, out):
+    """Write the wrench (T, J, 6) of each joint on its child at saved states."""
+    for k in range(states.shape[0]):
+        state = states[k]
+        applied_wrenches(system, state, True, work)
+        for c in range(touch.shape[1]):
+            if touch[k, c].mode != 0:
+                contact, f, E = system.contacts[c], touch[k, c].force, system.contacts[c].axes
+                rx, ry, rz = contact_arm(contact, state, touch[k, c].point)
+                add_force(
+                    work, contact.body, rx, ry, rz,
+                    f[0] * E[0, 0] + f[1] * E[1, 0] + f[2] * E[2, 0],
+                    f[0] * E[0, 1] + f[1] * E[1, 1] + f[2] * E[2, 1],
+                    f[0] * E[0, 2] + f[1] * E[1, 2] + f[2] * E[2, 2],
+                )  # fmt: skip
+        for j in range(system.joints.shape[0]):
+            acceleration_bias(system.joints[j], state, work.joint[j].bias)
+        solve(system, state, True, work)
+        share(system, augment, state, work)
+        for j in range(system.joints.shape[0]):
+            for i in range(6):
+                out[k, j, i] = work.joint[j].reaction[i]
+
+
+@kernel
+def row_errors(system, states, work, out):
+    """Write the largest error of position and of velocity over all rows, (T, 2)."""
+    for k in range(states.shape[0]):
+        position, velocity = 0.0, 0.0
+        for j in range(system.joints.shape[0]):
+            joint, record = system.joints[j], work.joint[j]
+            position_error(joint, states[k], record.bias)
+            row_target(joint, states[k], record.bias, record.target)
+            for r in range(joint.rows):
+                position = max(position, abs(record.target[r]))
+            velocity_error(joint, states[k], record.bias)
+            row_target(joint, states[k], record.bias, record.target)
+            for r in range(joint.rows):
+                velocity = max(velocity, abs(record.target[r]))
+        out[k, 0], out[k, 1] = position, velocity
+
+
+@kernel
+def velocity_rows(system, state, work, out):
+    """Write the velocity of each row of each joint, (J, 6)."""
+    for j in range(system.joints.shape[0]):
+        velocity_error(system.joints[j], state, work.joint[j].bias)
+        row_target(system.joints[j], state, work.joint[j].bias, out[j])

@@ -1,0 +1,120 @@
+"""One run: the compiled scene, its scratch and records, and the way in and out of the compiled loop."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom import loop
+from carom.geometry import quaternion
+from carom.motion.explicit import rk4
+from carom.motion.reactions import velocity_rows
+from carom.motion.three_field import ThreeField
+from carom.options import Options
+from carom.scene.scene import Scene
+from carom.solution import Solution
+from carom.status import Status
+from carom.system import records as r
+from carom.system.compile import compile_scene
+
+LOCATIONS = {"locate": loop.LOCATE, "project": loop.PROJECT, "work": loop.WORK}
+
+
+def make_method(name: str, options: Options):
+    """Return the settings of a method by its name."""
+    tableau = rk4()
+    if name == "rk4":
+        return tableau
+    return ThreeField(
+        int(name == "paper-ode"),
+        options.natural_frequency,
+        options.damping_ratio,
+        options.augmentation,
+        options.residual_tolerance,
+        options.max_iterations,
+        *tableau,
+    )
+
+
+class Run:
+    """A run that can be continued step by step; `solution` may be taken at any time."""
+
+    def __init__(
+        self, scene: Scene, duration, step, steps, method, impact_location, save_every, options
+    ):
+        self.scene, self.options = scene, options
+        self.settings = {
+            "duration": duration, "step": step, "method": method,
+            "impact_location": impact_location, "save_every": save_every,
+        }  # fmt: skip
+        paper = method != "rk4"
+        self.compiled = compile_scene(scene, options, loops=paper)
+        system, self.now = self.compiled.system, self.compiled.start
+        self.method = make_method(method, options)
+        self.controls = loop.Controls(
+            step=step,
+            duration=duration,
+            location=LOCATIONS[impact_location],
+            save_every=save_every,
+            last=steps,
+            gap=options.gap_tolerance,
+            tie=options.tie_tolerance,
+            hold=int(options.hold),
+            layer=int(paper),
+            layer_steps=options.layer_steps,
+            layer_time=int(options.add_layer_time),
+            max_impacts=options.max_impacts_per_step,
+            max_cuts=options.max_cuts,
+        )
+        self.held = r.new_held(system.contacts.size)
+        self.work = r.new_work(system, self.method.b.size)
+        check_start(scene, self.compiled, self.work, options)
+        self.clock = r.new_clock()
+        self.records = r.new_records(system, -(-steps // save_every) + 1, 64)
+        loop.save_first(self.held, self.now, self.clock, self.records)
+
+    @property
+    def steps_done(self) -> int:
+        """Number of finished steps."""
+        return int(self.clock[0].step)
+
+    def go_on(self, until: int) -> Status:
+        """Go on to step number `until`, or to a failure."""
+        while True:
+            code = loop.run(
+                self.compiled.system, self.method, self.controls, self.held, self.now, self.work,
+                self.clock, self.records, until,
+            )  # fmt: skip
+            if code != r.FULL:
+                return Status(code)
+            self.records = r.longer(self.records)
+
+    def solution(self, status: Status) -> Solution:
+        """Return what was computed."""
+        return Solution.from_run(self, status)
+
+
+def check_start(scene: Scene, compiled, work, options: Options) -> None:
+    """Refuse an initial velocity that breaks a joint, naming the joint and by how much."""
+    system, start = compiled.system, compiled.start
+    if not scene.joints:
+        return
+    errors = np.zeros((len(scene.joints), 6))
+    velocity_rows(system, start, work, errors)
+    size = system.bodies["size"]
+    speed = np.max(np.abs(start.v)) + np.max(np.abs(start.w) * size[:, None])
+    for j, joint in enumerate(scene.joints):
+        # angular rows come after the linear ones where there are any: as a speed at the body's size
+        worst = np.max(np.abs(errors[j])) * max(1.0, size[system.joints.child[j]])
+        if not worst <= options.constraint_tolerance * speed + 1e-300:
+            raise ValueError(
+                f"velocity of {joint.child.name!r} breaks joint {joint.name!r} ({joint.kind}): the "
+                f"joint's own velocity must be 0, got {np.max(np.abs(errors[j])):.6g}; give velocity "
+                "and angular_velocity of all joined bodies that fit their joints"
+            )
+
+
+def to_scene_axes(Q: np.ndarray, to_principal: np.ndarray) -> np.ndarray:
+    """Return attitudes (T, N, 4) of the scene's body axes, from those of the principal axes."""
+    if np.all(to_principal == np.array([1.0, 0.0, 0.0, 0.0])):
+        return Q.copy()
+    return quaternion.multiply(Q, quaternion.conjugate(to_principal)[None])

@@ -1,0 +1,184 @@
+"""What a run hands back: the motion, the impacts, the energy ledger, and how it ended."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from carom.geometry import quaternion, spline
+from carom.ledger import Ledger
+from carom.status import Status
+from carom.tables import EventTable, ImpactTable
+
+if TYPE_CHECKING:
+    from carom.run import Run
+    from carom.scene.scene import Scene
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """The motion of N bodies at T saved times, with K impacts.
+
+    Attributes
+    ----------
+    t : (T,)
+        Saved times [s].
+    position : (T, N, 3)
+        Mass centres, world [m].
+    orientation : (T, N, 4)
+        Unit quaternions (w, x, y, z), body to world.
+    velocity, angular_velocity : (T, N, 3)
+        World axes [m/s], [rad/s]. At a time where an impact happened: after it.
+    kinetic_energy, potential_energy, total_energy : (T,)
+        Of all bodies, gravity and springs [J].
+    impacts : ImpactTable
+        One record for each impact.
+    events : EventTable
+        Impacts and changes of held contacts, in their order.
+    contact_mode : (T, C)
+        0 open, 1 slipping, 2 sticking (or rolling, or at rest).
+    contact_force : (T, C, 3)
+        Force of held contacts in contact axes (normal, tangent 1, tangent 2) [N].
+    ledger : Ledger
+        Where the energy went.
+    status : Status
+        How the run ended; `success` and `message` say it shorter and longer.
+    stats : dict
+        Counts: steps, trial steps, cuts, located events, impacts, holds.
+    """
+
+    t: np.ndarray
+    position: np.ndarray
+    orientation: np.ndarray
+    velocity: np.ndarray
+    angular_velocity: np.ndarray
+    kinetic_energy: np.ndarray
+    potential_energy: np.ndarray
+    impacts: ImpactTable
+    events: EventTable
+    contact_mode: np.ndarray
+    contact_force: np.ndarray
+    ledger: Ledger
+    status: Status
+    stats: dict[str, int]
+    scene: Scene = field(repr=False)
+    settings: dict[str, Any]
+    _run: Run = field(repr=False)
+
+    @classmethod
+    def from_run(cls, run: Run, status: Status) -> Solution:
+        """Collect what a run has written down."""
+        from carom.assemble import assemble
+
+        return cls(**assemble(run, status))
+
+    @property
+    def success(self) -> bool:
+        """Whether the run reached its end."""
+        return self.status is Status.SUCCESS
+
+    @property
+    def message(self) -> str:
+        """How the run ended, in a sentence; if it failed, with the time it reached."""
+        if self.success:
+            return self.status.message
+        return f"{self.status.message} (reached t = {self.t[-1]:.9g} s)"
+
+    @property
+    def total_energy(self) -> np.ndarray:
+        """Kinetic plus potential energy (T,) [J]."""
+        return self.kinetic_energy + self.potential_energy
+
+    @cached_property
+    def joint_reactions(self) -> np.ndarray:
+        """Force and torque (T, J, 6) of each joint on its child at its anchor, world axes [N], [N m].
+
+        In the order of `Scene.joints`. Where redundant joints leave it open, the one of least norm, each row
+        weighed by its own stiffness against motion (the diagonal of A M^-1 A^T).
+        """
+        from carom.assemble import joint_reactions
+
+        return joint_reactions(self)
+
+    @cached_property
+    def constraint_errors(self) -> tuple[np.ndarray, np.ndarray]:
+        """Largest error of the joints at each saved time: position (T,) [m] and velocity (T,) [m/s]."""
+        from carom.assemble import constraint_errors
+
+        return constraint_errors(self)
+
+    def evaluate(self, t, side: str = "right"):
+        """Return (position, orientation, velocity, angular_velocity) at times between saved ones.
+
+        Cubic in each interval between saved steps and events, so continuous except at impacts; error
+        of order 4 in the saved interval, none for free flight of the mass centre.
+
+        Parameters
+        ----------
+        t : float or (n,)
+            Times within the run [s].
+        side : {"right", "left"}
+            Which velocity at the time of an event: after it (default) or before it.
+
+        Returns
+        -------
+        tuple of arrays
+            (n, N, 3), (n, N, 4), (n, N, 3), (n, N, 3); without the first axis for a single time.
+        """
+        from carom.assemble import nodes
+
+        if side not in ("right", "left"):
+            raise ValueError(f"side must be 'right' or 'left', got {side!r}")
+        times = np.atleast_1d(np.asarray(t, dtype=float))
+        if not np.all((times >= self.t[0]) & (times <= self.t[-1])):
+            raise ValueError(f"t must be within [{self.t[0]:g}, {self.t[-1]:g}] s, got {t!r}")
+        at, pose, left, right = self._nodes
+        i = np.searchsorted(at, times, side="right" if side == "right" else "left") - 1
+        i = np.clip(i, 0, max(len(at) - 2, 0))
+        n = np.minimum(i + 1, len(at) - 1)
+        start = (pose[i, :, :3], pose[i, :, 3:], right[i, :, :3], right[i, :, 3:])
+        end = (pose[n, :, :3], pose[n, :, 3:], left[n, :, :3], left[n, :, 3:])
+        x, Q, v, w = spline.interpolate(times, at[i], at[n], start, end)
+        last = times == at[-1]
+        if side == "right" and np.any(last):
+            v[last], w[last] = right[-1, :, :3], right[-1, :, 3:]
+        Q = quaternion.multiply(Q, quaternion.conjugate(self._run.compiled.to_principal))
+        result = (x, Q, v, w)
+        assert nodes is not None
+        return tuple(a[0] for a in result) if np.ndim(t) == 0 else result
+
+    @cached_property
+    def _nodes(self):
+        from carom.assemble import nodes
+
+        return nodes(self._run)
+
+    def impact_history(self, k: int, steps: int | None = None):
+        """Return impact k resolved in time inside its boundary layer, a `LayerHistory`.
+
+        Parameters
+        ----------
+        k : int
+            Number of the impact.
+        steps : int, optional
+            Spline steps through the layer. Default: `Options.layer_steps`.
+        """
+        from carom.impact import impact_layer
+
+        record = self.impacts[k]
+        contacts = self._run.compiled.system.contacts
+        return impact_layer(
+            record.inverse_mass, record.relative_velocity_before, record.friction,
+            record.restitution, penetration=float(contacts.penetration[record.contact]),
+            width=float(contacts.width[record.contact]), law=record.law,
+            steps=self._run.options.layer_steps if steps is None else steps,
+        )  # fmt: skip
+
+    def __repr__(self) -> str:
+        return (
+            f"<Solution: {self.position.shape[1]} bodies, t = {self.t[0]:g} .. {self.t[-1]:g} s in "
+            f"{len(self.t)} saved steps, {len(self.impacts)} impacts; {self.message}>"
+        )

@@ -1,0 +1,89 @@
+"""Tables of impacts and of events: columns as arrays, rows as records."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+LAWS = ("newton", "poisson", "stronge")
+
+
+class ImpactRecord(NamedTuple):
+    """One impact. Vectors are in contact axes (normal, tangent 1, tangent 2) unless said otherwise."""
+
+    time: float  #: [s]
+    contact: int  #: index of the contact in `Scene.contacts`
+    point: np.ndarray  #: (3,) where, world [m]
+    normal: np.ndarray  #: (3,) from the half-space into free space, world
+    relative_velocity_before: np.ndarray  #: (3,) [m/s], approach negative
+    relative_velocity_after: np.ndarray  #: (3,) [m/s]
+    impulse: np.ndarray  #: (3,) on the body [N s]
+    energy_change: float  #: of the whole system [J]
+    penetration: float  #: greatest penetration of the boundary layer, delta b [m]
+    duration: float  #: in the boundary layer [s]
+    law: str  #: law of restitution
+    inverse_mass: np.ndarray  #: (3, 3) W of the contact [1/kg]
+    restitution: float
+    friction: float
+    compression_work: float  #: of the normal force [J]
+    restitution_work: float  #: of the normal force [J]
+    friction_loss: float  #: [J]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ImpactTable:
+    """All impacts of a run in the order of time; fields of `ImpactRecord` as columns (K, ...)."""
+
+    time: np.ndarray
+    contact: np.ndarray
+    point: np.ndarray
+    normal: np.ndarray
+    relative_velocity_before: np.ndarray
+    relative_velocity_after: np.ndarray
+    impulse: np.ndarray
+    energy_change: np.ndarray
+    penetration: np.ndarray
+    duration: np.ndarray
+    law: np.ndarray
+    inverse_mass: np.ndarray
+    restitution: np.ndarray
+    friction: np.ndarray
+    compression_work: np.ndarray
+    restitution_work: np.ndarray
+    friction_loss: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def __getitem__(self, k: int) -> ImpactRecord:
+        if not -len(self) <= k < len(self):
+            raise IndexError(f"impact {k} of {len(self)}")
+        return ImpactRecord(*(_plain(getattr(self, name)[k]) for name in ImpactRecord._fields))
+
+    def __iter__(self) -> Iterator[ImpactRecord]:
+        return (self[k] for k in range(len(self)))
+
+    def __repr__(self) -> str:
+        head = f"<ImpactTable: {len(self)} impacts"
+        rows = [
+            f"  t = {r.time:.9f} s  contact {r.contact}  u_n {r.relative_velocity_before[0]:+.6g} -> "
+            f"{r.relative_velocity_after[0]:+.6g} m/s  dE = {r.energy_change:.6g} J"
+            for r in (self[k] for k in range(min(len(self), 8)))
+        ]
+        more = [f"  ... {len(self) - 8} more"] if len(self) > 8 else []
+        return "\n".join([head, *rows, *more]) + ">"
+
+
+class EventTable(NamedTuple):
+    """Events of contacts in the order of time."""
+
+    time: np.ndarray  #: (E,) [s]
+    kind: np.ndarray  #: (E,) "impact", "held", "slips", "sticks" or "opens"
+    contact: np.ndarray  #: (E,) index of the contact
+
+
+def _plain(value):
+    return value.item() if isinstance(value, np.generic) else value
