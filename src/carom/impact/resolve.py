@@ -184,5 +184,5 @@ def resolve(W, u, mu, e, law, out):
     out[o.PHASES] = phases
     out[o.STEPS] = steps
     out[o.SLIP_END_P], out[o.SLIP_END_UN] = slip_end_p, slip_end_u
-    out[o.DURATION], out[o.X_MIN] = 0.0, 0.0
+    out[o.DURATION], out[o.X_MIN], out[o.KNOTS] = 0.0, 0.0, 0.0
     return o.OK
