@@ -24,19 +24,20 @@ from carom.impact.spline import force, slip_ratio
 from carom.jit import kernel
 
 _AT_REST = 1e-12  # as in `resolve`
+_DOUBLINGS = 8  # of the steps, if a phase was not solved
 E_MIN = 1e-6  # below this restitution the impact ends with compression: T_r = T_c/e
 
 
 @kernel
 def _final_friction(m, mu):
-    """Return the constant friction ratio once u_t = 0: of stick, or of the outgoing ray."""
+    """Return the constant friction ratio once u_t = 0, and whether it is that of stick."""
     if not mu > 0.0:
-        return 0.0, 0.0
+        return 0.0, 0.0, False
     f1, f2 = stick_ratio(m[1], m[2], m[3], m[4], m[5])
     if math.sqrt(f1 * f1 + f2 * f2) <= mu:
-        return f1, f2
+        return f1, f2, True
     c, s, _ = outgoing(m[1], m[2], m[3], m[4], m[5], mu)
-    return -mu * c, -mu * s
+    return -mu * c, -mu * s, False
 
 
 @kernel
@@ -51,13 +52,17 @@ def traverse(W, u, mu, e, law, b, delta, steps, history, out):
     code = resolve(W, u, mu, e, law, out)
     if code != o.OK:
         return code
-    impulse_form = law != laws.NEWTON or (int(out[o.PHASES]) & o.JAM) != 0
-    if not impulse_form:
-        code = _pass(W, u, mu, e, law, False, b, delta, steps, history, out)
+    jam = (int(out[o.PHASES]) & o.JAM) != 0
+    code = o.NO_CONVERGENCE
+    for _ in range(_DOUBLINGS):
+        if law == laws.NEWTON and not jam:
+            code = _pass(W, u, mu, e, law, False, b, delta, steps, history, out)
+        if code != o.OK:  # or so near a jam that law A fails at this number of steps
+            code = _pass(W, u, mu, e, law, True, b, delta, steps, history, out)
         if code == o.OK:
             return code
-        # So near a jam that law A fails at this number of steps.
-    return _pass(W, u, mu, e, law, True, b, delta, steps, history, out)
+        steps *= 2  # slip passes too near u_t = 0 for steps of this length
+    return code
 
 
 @kernel
@@ -74,8 +79,7 @@ def _pass(W, u, mu, e, law, impulse_form, b, delta, steps, history, out):
     size = math.sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2])
     at_rest = not math.sqrt(u[1] * u[1] + u[2] * u[2]) > _AT_REST * size
     fixed = at_rest or mu == 0.0
-    f1, f2 = _final_friction(m, mu)
-    sticks = mu > 0.0 and math.sqrt(f1 * f1 + f2 * f2) <= mu
+    f1, f2, sticks = _final_friction(m, mu)
 
     # Compression, from u_n = -v0 to 0.
     start = (u[1], u[2], u[0])
