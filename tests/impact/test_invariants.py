@@ -35,7 +35,8 @@ def test_momentum_work_energy_and_cone(problem, law):
     assert a.energy_change == pytest.approx(ledger, abs=1e-10 * scale)
     change = kinetic(W, a.velocity_after) - kinetic(W, u)
     assert a.energy_change == pytest.approx(change, abs=1e-8 * kinetic(W, u))
-    assert a.compression_work < 0 <= a.restitution_work
+    assert a.compression_work < 0
+    assert a.restitution_work >= -1e-15 * scale  # e near round-off
     assert a.friction_loss >= 0
 
 
