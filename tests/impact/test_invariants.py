@@ -29,7 +29,8 @@ def test_momentum_work_energy_and_cone(problem, law):
     # u+ = u- + W P;  |P_t| <= mu P_n;  dE = A_c + A_r - friction loss = E(u+) - E(u-).
     size = np.linalg.norm(u) + np.linalg.norm(a.velocity_after)
     np.testing.assert_allclose(a.velocity_after, u + W @ a.impulse, rtol=0, atol=1e-10 * size)
-    assert np.hypot(*a.impulse[1:]) <= mu * a.impulse[0] * (1 + 1e-12)
+    # Slip below 1e-12 of the speed counts as rest: that much goes into the impulse.
+    assert np.hypot(*a.impulse[1:]) <= (mu + 1e-9) * a.impulse[0]
     scale = abs(a.compression_work) + a.restitution_work + a.friction_loss
     ledger = a.compression_work + a.restitution_work - a.friction_loss
     assert a.energy_change == pytest.approx(ledger, abs=1e-10 * scale)

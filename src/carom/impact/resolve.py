@@ -120,9 +120,9 @@ def resolve(W, u, mu, e, law, out):
             if k <= 0.0:
                 phases |= o.JAM
             t = expand(m, mu, s)
-            h = reach(
-                t[0], t[1], _ACCURACY * math.sqrt(size * math.sqrt(s[0] * s[0] + s[1] * s[1]))
-            )
+            r = math.sqrt(s[0] * s[0] + s[1] * s[1])
+            h = reach(t[0], t[1], _ACCURACY * math.sqrt(size * r))
+            h = min(h, 4.0 * size / (m[0] * r))  # hardly any friction: not far beyond the end
             new = moved(m, mu, s, t, h)
             if laws.remaining(now, goal, new[2], new[3], new[7]) <= 0.0:
                 s = land(m, mu, now, goal, s, new, t, h)
