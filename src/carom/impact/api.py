@@ -20,9 +20,11 @@ class Impact:
     impulse : ndarray, shape (3,)
         Impulse of the whole impact [N s].
     compression_impulse : ndarray, shape (3,)
-        Impulse up to the end of compression, where the normal velocity is zero [N s].
+        Impulse up to the end of compression, where the normal velocity is zero [N s]; for the last
+        time, if strong coupling (a jam) drives the bodies together again.
     compression_work, restitution_work : float
-        Work of the normal force in compression (negative) and in restitution [J].
+        Work of the normal force in compression (negative if it is not resumed) and in restitution
+        [J].
     friction_loss : float
         Energy dissipated by friction, not negative [J].
     energy_change : float

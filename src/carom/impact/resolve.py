@@ -160,7 +160,8 @@ def resolve(W, u, mu, e, law, out):
 
         if not done:
             if not compressing and s[2] < 0.0:
-                # Driven together again before restitution was over: compression goes on.
+                # Driven together again before restitution was over (jam): compression goes on, and
+                # what came back counts to it. So p_c and A_c belong to the last zero of u_n.
                 compressing, now, goal = True, laws.NEWTON, 0.0
                 s = (s[0], s[1], s[2], s[3] + before[0], s[4] + before[1], s[5] + before[2],
                      s[6] + before[3], s[7] + before[4])  # fmt: skip
