@@ -19,6 +19,7 @@ SLIP_END_P = 16  #: normal impulse where slip first stops, -1 if it does not [N 
 SLIP_END_UN = 17  #: normal velocity there [m/s]
 DURATION = 18  #: duration of the impact in the layer [s]; 0 from `resolve`
 X_MIN = 19  #: least x in the layer [m]; 0 from `resolve`
+KNOTS = 20  #: knots of the history; 0 from `resolve`
 SIZE = 24  #: length of `out`; the rest is free
 
 SLIP = 1  #: the contact slipped

@@ -29,8 +29,9 @@ _CURVED, _STRAIGHT, _STICK = 0, 1, 2
 def _direction(m, mu, s, size):
     """Return 1 if slip keeps its direction from here on to round-off, the direction, and its rate.
 
-    f is the turning of slip, |u_t| dtheta/dp, and g its growth d|u_t|/dp. A ray that draws slip in
-    to u_t = 0 is reached to round-off when what remains of the turning, f |u_t|, is.
+    f is the turning of slip, |u_t| dtheta/dp, and g its growth d|u_t|/dp. A ray that attracts
+    (df/dtheta < 0) is taken as soon as the distance of u_t from it is round-off: waiting longer
+    would cost many steps where slip grows or fades slowly.
     """
     x, y = s[0], s[1]
     r = math.sqrt(x * x + y * y)
@@ -38,13 +39,19 @@ def _direction(m, mu, s, size):
     fx = m[1] - mu * (m[3] * c + m[4] * n)
     fy = m[2] - mu * (m[4] * c + m[5] * n)
     f, g = c * fy - n * fx, c * fx + n * fy
-    bound = _ON_RAY * (abs(m[1]) + abs(m[2]) + mu * (m[3] + m[5]))
-    if abs(f) <= bound:
+    if abs(f) <= _ON_RAY * (abs(m[1]) + abs(m[2]) + mu * (m[3] + m[5])):
         return 1, c, n, g
-    if g < 0.0 and abs(f) * r <= 0.01 * bound * size:
-        turning = mu * ((m[3] - m[5]) * (c * c - n * n) + 4.0 * m[4] * c * n)
-        if turning - (m[1] * c + m[2] * n) < 0.0:  # df/dtheta < 0: the ray attracts
-            return 1, c, n, g
+    slope = mu * ((m[3] - m[5]) * (c * c - n * n) + 4.0 * m[4] * c * n) - (m[1] * c + m[2] * n)
+    if slope < 0.0 and abs(f) * r <= -1e-14 * slope * size and abs(f) <= -1e-3 * slope:
+        for _ in range(3):  # Newton onto the ray itself
+            turn = -f / slope
+            c, n = c - turn * n, n + turn * c
+            norm = math.sqrt(c * c + n * n)
+            c, n = c / norm, n / norm
+            fx = m[1] - mu * (m[3] * c + m[4] * n)
+            fy = m[2] - mu * (m[4] * c + m[5] * n)
+            f, g = c * fy - n * fx, c * fx + n * fy
+        return 1, c, n, g
     return 0, c, n, g
 
 
@@ -113,9 +120,9 @@ def resolve(W, u, mu, e, law, out):
             if k <= 0.0:
                 phases |= o.JAM
             t = expand(m, mu, s)
-            h = reach(
-                t[0], t[1], _ACCURACY * math.sqrt(size * math.sqrt(s[0] * s[0] + s[1] * s[1]))
-            )
+            r = math.sqrt(s[0] * s[0] + s[1] * s[1])
+            h = reach(t[0], t[1], _ACCURACY * math.sqrt(size * r))
+            h = min(h, 4.0 * size / (m[0] * r))  # hardly any friction: not far beyond the end
             new = moved(m, mu, s, t, h)
             if laws.remaining(now, goal, new[2], new[3], new[7]) <= 0.0:
                 s = land(m, mu, now, goal, s, new, t, h)
@@ -153,7 +160,8 @@ def resolve(W, u, mu, e, law, out):
 
         if not done:
             if not compressing and s[2] < 0.0:
-                # Driven together again before restitution was over: compression goes on.
+                # Driven together again before restitution was over (jam): compression goes on, and
+                # what came back counts to it. So p_c and A_c belong to the last zero of u_n.
                 compressing, now, goal = True, laws.NEWTON, 0.0
                 s = (s[0], s[1], s[2], s[3] + before[0], s[4] + before[1], s[5] + before[2],
                      s[6] + before[3], s[7] + before[4])  # fmt: skip
@@ -184,5 +192,5 @@ def resolve(W, u, mu, e, law, out):
     out[o.PHASES] = phases
     out[o.STEPS] = steps
     out[o.SLIP_END_P], out[o.SLIP_END_UN] = slip_end_p, slip_end_u
-    out[o.DURATION], out[o.X_MIN] = 0.0, 0.0
+    out[o.DURATION], out[o.X_MIN], out[o.KNOTS] = 0.0, 0.0, 0.0
     return o.OK

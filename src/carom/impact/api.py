@@ -1,0 +1,141 @@
+"""One frictional impact on its own: `resolve_impact`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from carom import check
+
+
+@dataclass(frozen=True)
+class Impact:
+    """What an impact did. Vectors in contact axes: normal, tangent 1, tangent 2.
+
+    Parameters
+    ----------
+    velocity_after : ndarray, shape (3,)
+        Relative velocity after the impact [m/s].
+    impulse : ndarray, shape (3,)
+        Impulse of the whole impact [N s].
+    compression_impulse : ndarray, shape (3,)
+        Impulse up to the end of compression, where the normal velocity is zero [N s]; for the last
+        time, if strong coupling (a jam) drives the bodies together again.
+    compression_work, restitution_work : float
+        Work of the normal force in compression (negative if it is not resumed) and in restitution
+        [J].
+    friction_loss : float
+        Energy dissipated by friction, not negative [J].
+    energy_change : float
+        Change of kinetic energy: compression_work + restitution_work - friction_loss [J].
+    phases : tuple of str
+        What the contact did, in order: "slip", "jam" (the normal force drove the bodies together
+        while slipping), then "stick" or "reversal" (slip stopped and began again at once).
+    """
+
+    velocity_after: np.ndarray
+    impulse: np.ndarray
+    compression_impulse: np.ndarray
+    compression_work: float
+    restitution_work: float
+    friction_loss: float
+    energy_change: float
+    phases: tuple[str, ...]
+
+
+def resolve_impact(
+    inverse_mass, velocity, friction: float, restitution: float, law: str = "newton"
+) -> Impact:
+    """Resolve one impact with Coulomb friction to round-off (Darboux-Keller equation).
+
+    Parameters
+    ----------
+    inverse_mass : array_like, shape (3, 3)
+        W of the contact [1/kg], symmetric, positive semidefinite, normal first. A tangential
+        direction in which nothing can move has zeros.
+    velocity : array_like, shape (3,)
+        Relative velocity before [m/s], normal first and negative (approach).
+    friction : float
+        Coulomb coefficient mu, at least 0.
+    restitution : float
+        Coefficient e in [0, 1]. 0 ends the impact with compression, for every law.
+    law : {"newton", "poisson", "stronge"}
+        What e compares: normal velocities (kinematic, default), normal impulses (kinetic), works of
+        the normal force (energetic). Equal if the direction of slip is constant. Newton's law can
+        raise the energy where slip stops or reverses; Stronge's never does.
+
+    Returns
+    -------
+    Impact
+
+    Raises
+    ------
+    ValueError
+        If an argument is not as above, or the normal velocity cannot be reversed (W singular).
+
+    Notes
+    -----
+    Mathematics page, II.9 and II.10. Slip follows its Taylor series and ends where the contact
+    sticks, if the friction suffices to hold it, or else starts anew along the one direction that
+    leads away from rest.
+    """
+    from carom.impact import layout as o
+    from carom.impact.resolve import resolve
+
+    W, u, mu, e, number = checked_impact(inverse_mass, velocity, friction, restitution, law)
+    out = np.zeros(o.SIZE)
+    raise_for(resolve(W, u, mu, e, number, out))
+    return Impact(
+        velocity_after=out[o.VELOCITY : o.VELOCITY + 3].copy(),
+        impulse=out[o.IMPULSE : o.IMPULSE + 3].copy(),
+        compression_impulse=out[o.COMPRESSION : o.COMPRESSION + 3].copy(),
+        compression_work=float(out[o.WORK_C]),
+        restitution_work=float(out[o.WORK_R]),
+        friction_loss=float(out[o.FRICTION_LOSS]),
+        energy_change=float(out[o.ENERGY_CHANGE]),
+        phases=phase_names(int(out[o.PHASES])),
+    )
+
+
+def checked_impact(inverse_mass, velocity, friction, restitution, law):
+    """Return the arguments of an impact as the kernels take them; raise ValueError if unsound."""
+    from carom.impact.laws import NUMBERS
+
+    W = checked_inverse_mass(inverse_mass)
+    u = check.finite_array("velocity", velocity, (3,), "m/s")
+    check.number("velocity[0] (normal velocity, approach is negative)", u[0], below=0.0, unit="m/s")
+    mu = check.number("friction", friction, least=0.0)
+    e = check.number("restitution", restitution, least=0.0, most=1.0)
+    return W, u, mu, e, NUMBERS[check.choice("law", law, NUMBERS)]
+
+
+def checked_inverse_mass(inverse_mass) -> np.ndarray:
+    """Return W as a symmetric array; raise ValueError unless W >= 0 and W_nn > 0."""
+    W = check.finite_array("inverse_mass", inverse_mass, (3, 3), "1/kg")
+    if np.max(np.abs(W - W.T)) > 1e-9 * np.max(np.abs(W)):
+        raise ValueError(f"inverse_mass must be symmetric, got {inverse_mass!r}")
+    W = np.ascontiguousarray(0.5 * (W + W.T))
+    check.number("inverse_mass[0, 0] (normal)", W[0, 0], above=0.0, unit="1/kg")
+    least, *_, most = np.linalg.eigvalsh(W)
+    if least < -1e-9 * most:
+        raise ValueError(
+            f"inverse_mass must be positive semidefinite, got an eigenvalue {least:.6g} [1/kg]"
+        )
+    return W
+
+
+def raise_for(code: int) -> None:
+    """Raise ValueError with the sentence of a kernel's code, unless it is 0."""
+    from carom.impact.layout import MESSAGES, OK
+
+    if code != OK:
+        raise ValueError(f"the impact was not resolved: {MESSAGES[code]}")
+
+
+def phase_names(mask: int) -> tuple[str, ...]:
+    """Return the phases of a bit mask, in the order in which they are passed."""
+    from carom.impact.layout import JAM, RESTART, SLIP, STICK
+
+    names = ((SLIP, "slip"), (JAM, "jam"), (RESTART, "reversal"), (STICK, "stick"))
+    return tuple(name for bit, name in names if mask & bit)

@@ -1,0 +1,155 @@
+"""One impact resolved in time inside the boundary layer: `impact_layer`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from carom import check
+from carom.impact.api import checked_impact, phase_names, raise_for
+
+
+@dataclass(frozen=True)
+class LayerHistory:
+    """An impact in the time of the layer. Vectors in contact axes: normal, tangent 1, tangent 2.
+
+    Parameters
+    ----------
+    t : ndarray, shape (K,)
+        Times of the knots of the spline, from entry [s].
+    x : ndarray, shape (K,)
+        Normal coordinate in the layer, from its width b at entry and back [m].
+    velocity : ndarray, shape (K, 3)
+        Velocity in the flat coordinates [m/s]; the normal one is u_n = b xdot/x, which is xdot at
+        entry and exit.
+    normal_force : ndarray, shape (K,)
+        Normal force right of each knot, at the last one left of it [N].
+    friction_force : ndarray, shape (K, 2)
+        Friction force, likewise [N].
+    x_min : float
+        Least x, (1 - penetration) b [m].
+    duration : float
+        Time spent in the layer [s].
+    velocity_after, impulse : ndarray, shape (3,)
+        Velocity at exit [m/s] and impulse [N s].
+    energy_change : float
+        Change of kinetic energy [J].
+    phases : tuple of str
+        As for `Impact`.
+    """
+
+    t: np.ndarray
+    x: np.ndarray
+    velocity: np.ndarray
+    normal_force: np.ndarray
+    friction_force: np.ndarray
+    x_min: float
+    duration: float
+    velocity_after: np.ndarray
+    impulse: np.ndarray
+    energy_change: float
+    phases: tuple[str, ...]
+    width: float
+    _flat: np.ndarray = field(repr=False)
+
+    def evaluate(self, t) -> tuple[np.ndarray, np.ndarray]:
+        """Return x and velocity at times `t` on the geometric cubic spline.
+
+        The spline is the cubic Hermite of (s, x^2, x^3), s = b ln(x/b), on each step; the velocity
+        is its derivative.
+
+        Parameters
+        ----------
+        t : array_like
+            Times in [0, duration] [s].
+
+        Returns
+        -------
+        x : ndarray, shape of t
+        velocity : ndarray, shape of t + (3,)
+        """
+        t = np.asarray(t, dtype=np.float64)
+        if not np.all((t >= 0.0) & (t <= self.duration)):
+            raise ValueError(f"t must be within [0, duration = {self.duration:.9g}] [s], got {t!r}")
+        i = np.clip(np.searchsorted(self.t, t, side="right") - 1, 0, len(self.t) - 2)
+        d = (self.t[i + 1] - self.t[i])[..., None]
+        z = ((t - self.t[i])[..., None]) / d
+        y0, y1 = self._flat[i], self._flat[i + 1]
+        u0, u1 = self.velocity[i], self.velocity[i + 1]
+        mean = (y1 - y0) / d
+        # Cubic Hermite about its left end, and its derivative.
+        y = y0 + d * z * (u0 + z * (3.0 * mean - 2.0 * u0 - u1 + z * (u0 + u1 - 2.0 * mean)))
+        u = u0 + z * (2.0 * (3.0 * mean - 2.0 * u0 - u1) + 3.0 * z * (u0 + u1 - 2.0 * mean))
+        return self.width * np.exp(y[..., 0] / self.width), u
+
+
+def impact_layer(
+    inverse_mass,
+    velocity,
+    friction: float,
+    restitution: float,
+    *,
+    penetration: float,
+    width: float,
+    law: str = "newton",
+    steps: int = 2,
+) -> LayerHistory:
+    """Pass one impact through the boundary layer, in time, by geometric cubic splines.
+
+    Parameters
+    ----------
+    inverse_mass, velocity, friction, restitution, law
+        As for `resolve_impact`. A restitution below 1e-6 ends the impact with compression.
+    penetration : float
+        Greatest penetration delta as a part of the width, in (0, 1).
+    width : float
+        Width b of the layer [m]. Neither it nor delta changes the velocity after the impact.
+    steps : int
+        Steps of the spline, shared equally by compression and restitution; at least 2. A step is
+        split where slip ends, and halved where slip turns sharply. Default 2, the paper's: exact
+        where the direction of slip is constant, of order 4 otherwise.
+
+    Returns
+    -------
+    LayerHistory
+
+    Raises
+    ------
+    ValueError
+        If an argument is not as above, or the impact cannot be resolved.
+
+    Notes
+    -----
+    Mathematics page, II.8 to II.11; the paper, section on the boundary layer.
+    """
+    from carom.impact import layout as o
+    from carom.impact.layer import traverse
+    from carom.impact.phase import COLUMNS
+
+    W, u, mu, e, number = checked_impact(inverse_mass, velocity, friction, restitution, law)
+    delta = check.number("penetration", penetration, above=0.0, below=1.0)
+    b = check.number("width", width, above=0.0, unit="m")
+    steps = check.integer("steps", steps, least=2)
+    out = np.zeros(o.SIZE)
+    rows = np.zeros((steps + 32, COLUMNS))
+    raise_for(traverse(W, u, mu, e, number, b, delta, steps, rows, out))
+    if out[o.KNOTS] > len(rows):  # steps were halved: there are more knots than foreseen
+        rows = np.zeros((int(out[o.KNOTS]), COLUMNS))
+        raise_for(traverse(W, u, mu, e, number, b, delta, steps, rows, out))
+    rows = rows[: int(out[o.KNOTS])]
+    return LayerHistory(
+        t=rows[:, 0].copy(),
+        x=b * np.exp(rows[:, 1] / b),
+        velocity=rows[:, 2:5].copy(),
+        normal_force=rows[:, 7].copy(),
+        friction_force=rows[:, 8:10].copy(),
+        x_min=float(out[o.X_MIN]),
+        duration=float(out[o.DURATION]),
+        velocity_after=out[o.VELOCITY : o.VELOCITY + 3].copy(),
+        impulse=out[o.IMPULSE : o.IMPULSE + 3].copy(),
+        energy_change=float(out[o.ENERGY_CHANGE]),
+        phases=phase_names(int(out[o.PHASES])),
+        width=b,
+        _flat=rows[:, [1, 5, 6]].copy(),
+    )
