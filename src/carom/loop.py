@@ -171,7 +171,7 @@ def look_near(system, controls, held, now, horizon, work, clock, records):
         hold.near = 0
         if hold.mode != OPEN:
             continue
-        tie, point = controls.tie * contact.size, work.hit[0].point
+        tie, point = controls.tie * contact.extent, work.hit[0].point
         rho, rate = strike_point(contact, system.vertices, now, tie, point)
         if rho > tie:
             continue
@@ -198,7 +198,7 @@ def examine(system, controls, held, now, dt, work):
     found, which, low = CLEAR, -1, 0.0
     for c in range(held.shape[0]):
         contact = system.contacts[c]
-        tie = controls.tie * contact.size
+        tie = controls.tie * contact.extent
         verdict, first = passage(
             system, contact, held[c], now, work.trial, dt, work, controls.gap, tie
         )
@@ -276,8 +276,8 @@ def halve(system, method, controls, held, now, dt, begin, work, clock):
 def land(system, controls, held, c, now, horizon, work, clock, records):
     """Polish a located contact by the return map, and strike."""
     contact = system.contacts[c]
-    tie, point = controls.tie * contact.size, work.hit[0].point
-    tolerance = max(controls.gap * contact.size, round_off(contact, now))
+    tie, point = controls.tie * contact.extent, work.hit[0].point
+    tolerance = max(controls.gap * contact.extent, round_off(contact, now))
     rho, _ = strike_point(contact, system.vertices, now, tie, point)
     if rho < -tolerance:
         if return_map(system, contact, now, work, tie, tolerance) < 0:
@@ -295,8 +295,8 @@ def land(system, controls, held, c, now, horizon, work, clock, records):
 def bring_back(system, controls, held, c, now, horizon, work, clock, records):
     """The paper's way: the step has left the manifold; map back to the boundary, then strike."""
     contact = system.contacts[c]
-    tie, point = controls.tie * contact.size, work.hit[0].point
-    tolerance = max(controls.gap * contact.size, round_off(contact, now))
+    tie, point = controls.tie * contact.extent, work.hit[0].point
+    tolerance = max(controls.gap * contact.extent, round_off(contact, now))
     before = potential_energy(system, now)
     if return_map(system, contact, now, work, tie, tolerance) < 0:
         return RETURN_MAP

@@ -100,7 +100,7 @@ def check_start(scene: Scene, compiled, work, options: Options) -> None:
         return
     errors = np.zeros((len(scene.joints), 6))
     velocity_rows(system, start, work, errors)
-    size = system.bodies["size"]
+    size = system.bodies.extent
     speed = np.max(np.abs(start.v)) + np.max(np.abs(start.w) * size[:, None])
     for j, joint in enumerate(scene.joints):
         # angular rows come after the linear ones where there are any: as a speed at the body's size

@@ -24,7 +24,7 @@ CLEAR, BELOW, UNSURE = range(3)
 @kernel
 def greatest_acceleration(system, contact, state, work):
     """Return bounds of the normal acceleration of the mass centre and of any point of the body."""
-    body, r = system.bodies[contact.body], contact.size
+    body, r = system.bodies[contact.body], contact.extent
     status, bound = work.body[contact.body].status, work.body[contact.body].bound
     if body.ballistic == 1 and status == 0:
         w, J = state[contact.body].w, body.inertia
@@ -52,7 +52,7 @@ def reach(z, rate, a):
 @kernel
 def ball_clears(system, contact, start, end, h, centre, work):
     """Return whether the ball around the body keeps clear: the first look, and mostly the last."""
-    b, margin = contact.body, contact.size + contact.radius + contact.offset
+    b, margin = contact.body, contact.extent + contact.radius + contact.offset
     z0, z1 = along_normal(contact, start[b].x) - margin, along_normal(contact, end[b].x) - margin
     if not (z0 > 0.0 and z1 > 0.0):
         return False
@@ -75,7 +75,7 @@ def passage(system, contact, hold, start, end, h, work, tolerance, tie):
     if ball_clears(system, contact, start, end, h, centre, work):
         return CLEAR, h
     verdict, first = CLEAR, h
-    tiny = max(tolerance * contact.size, round_off(contact, end))
+    tiny = max(tolerance * contact.extent, round_off(contact, end))
     for i in range(contact.first, contact.last):
         z0, rate0 = point_state(contact, system.vertices[i], start)
         z1, rate1 = point_state(contact, system.vertices[i], end)

@@ -41,7 +41,7 @@ def point_state(contact, p, state):
 def round_off(contact, state):
     """Return the round-off of a gap: of the order of the unit of the coordinates it is made of [m]."""
     x = state[contact.body].x
-    return 1e-15 * (abs(contact.offset) + abs(x[0]) + abs(x[1]) + abs(x[2]) + contact.size)
+    return 1e-15 * (abs(contact.offset) + abs(x[0]) + abs(x[1]) + abs(x[2]) + contact.extent)
 
 
 @kernel
@@ -49,7 +49,7 @@ def slow(contact, state):
     """Return the speed [m/s] that counts as none: round-off of the speeds of the body."""
     v, w = state[contact.body].v, state[contact.body].w
     s = math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
-    return 1e-13 * (s + contact.size * math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]))
+    return 1e-13 * (s + contact.extent * math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]))
 
 
 @kernel

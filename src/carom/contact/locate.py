@@ -21,7 +21,7 @@ def event_value(system, controls, held, kind, c, d1, d2, state, work):
     """Return the event function and, for a gap, its rate, at `state`."""
     contact = system.contacts[c]
     if kind == GAP:
-        tie = controls.tie * contact.size
+        tie = controls.tie * contact.extent
         rho = gap(contact, system.vertices, state)
         return rho, strike_point(contact, system.vertices, state, tie, work.hit[0].point)[1]
     acceleration(system, state, held, work, work.stages[0])
@@ -40,7 +40,7 @@ def locate(system, method, controls, held, kind, c, d1, d2, start, low, high, wo
     f_low, tolerance = abs(f_high), 0.0
     if kind == GAP:
         contact = system.contacts[c]
-        tolerance = max(controls.gap * contact.size, round_off(contact, end))
+        tolerance = max(controls.gap * contact.extent, round_off(contact, end))
     else:
         f_low, _ = event_value(system, controls, held, kind, c, d1, d2, start, work)
         f_low = max(f_low, 0.0)

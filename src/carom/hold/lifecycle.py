@@ -115,7 +115,7 @@ def rest_if_still(contact, hold, body, rate, push):
     No speed: round-off of the speeds that gravity gives it over its own size. No acceleration: round-off
     of `push`, what the contact force does to it.
     """
-    size = contact.size
+    size = contact.extent
     speed, change = 0.0, 0.0
     for k in range(3):
         speed = max(speed, max(abs(body.v[k]), size * abs(body.w[k])))

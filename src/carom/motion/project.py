@@ -31,7 +31,7 @@ def largest_position_error(system, state, work):
     """Bias all joints by minus their error of position; return the largest, relative to its body."""
     largest = 0.0
     for j in range(system.joints.shape[0]):
-        bias, size = work.joint[j].bias, system.bodies[system.joints[j].child].size
+        bias, size = work.joint[j].bias, system.bodies[system.joints[j].child].extent
         position_error(system.joints[j], state, bias)
         for k in range(6):
             e = abs(bias[k]) / (1.0 if k < 3 else size)

@@ -175,7 +175,7 @@ def set_velocities(system, end, work):
         if work.body[b].status == 2:
             continue
         free_body(system.bodies[b], end[b].Q, work.body[b])
-        size, motion, v, w = system.bodies[b].size, work.body[b].motion, end[b].v, end[b].w
+        size, motion, v, w = system.bodies[b].extent, work.body[b].motion, end[b].v, end[b].w
         for k in range(3):
             change = max(change, max(abs(motion[k] - v[k]), size * abs(motion[3 + k] - w[k])))
             speed = max(speed, max(abs(motion[k]), size * abs(motion[3 + k])))
@@ -254,7 +254,7 @@ def position_block(system, method, start, h, end, work):
     if method.ode == 0 and system.joints.shape[0] > 0:
         project_position(system, end, work, 1e-15)
     for b in range(start.shape[0]):
-        size = system.bodies[b].size
+        size = system.bodies[b].extent
         for k in range(3):
             change = max(change, abs(end[b].x[k] - last[b].x[k]) / size)
         for k in range(4):

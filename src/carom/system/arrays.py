@@ -25,7 +25,7 @@ STATE = [("x", "f8", 3), ("Q", "f8", 4), ("v", "f8", 3), ("w", "f8", 3)]
 BODY = [
     ("mass", "f8"),
     ("inertia", "f8", 3),  # principal moments
-    ("size", "f8"),  # a length of the body: its shape, or the arms of its joints
+    ("extent", "f8"),  # a length of the body: its shape, or the arms of its joints
     ("isotropic", "i8"),  # 1 where the three moments are equal
     ("isolated", "i8"),  # 1 where no joint acts
     ("ballistic", "i8"),  # 1 where no joint and no force but gravity acts
@@ -67,7 +67,7 @@ CONTACT = [
     ("radius", "f8"),
     ("friction", "f8"),
     ("restitution", "f8"),
-    ("size", "f8"),  # largest distance of the shape from the mass centre
+    ("extent", "f8"),  # largest distance of the shape from the mass centre
     ("width", "f8"),  # b of the boundary layer
     ("penetration", "f8"),  # delta
 ]

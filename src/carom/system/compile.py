@@ -194,7 +194,7 @@ def _bodies(scene, moments, joints, springs, loads):
     for loaded in (springs.parent, springs.child, loads.body):
         ballistic[loaded[loaded >= 0]] = 0
     bodies.mass = [b.mass for b in scene.bodies]
-    bodies.inertia, bodies.size = moments, size
+    bodies.inertia, bodies.extent = moments, size
     bodies.isotropic = np.ptp(moments, axis=1) == 0.0
     bodies.isolated, bodies.ballistic = isolated, ballistic
     return bodies
@@ -216,7 +216,7 @@ def _contacts(scene, to_principal, options):
         row.body, row.first, row.last = c.body.index, count, count + len(points)
         count += len(points)
         contacts.axes[k] = contact_axes(plane.normal)
-        row.offset, row.radius, row.size = plane.point @ plane.normal, shape.radius, shape.size
+        row.offset, row.radius, row.extent = plane.point @ plane.normal, shape.radius, shape.size
         row.friction, row.restitution = c.friction, c.restitution
         row.law = IMPACT_LAWS.index(c.impact_law)
         row.width = 1e-5 * shape.size if options.layer_width is None else options.layer_width
