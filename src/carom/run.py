@@ -59,7 +59,6 @@ class Run:
             gap=options.gap_tolerance,
             tie=options.tie_tolerance,
             hold=int(options.hold),
-            layer=int(paper),
             layer_steps=options.layer_steps,
             layer_time=int(options.add_layer_time),
             max_impacts=options.max_impacts_per_step,

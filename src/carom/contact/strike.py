@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 
-from carom.contact.gap import slow
-from carom.hold.lifecycle import try_hold
+from numba.extending import overload
+
+from carom.contact.gap import round_off, slow, strike_point
+from carom.contact.return_map import return_map
+from carom.contact.work_mode import restore_work
 from carom.impact import layout
 from carom.impact.layer import traverse
 from carom.impact.resolve import resolve
-from carom.jit import kernel
+from carom.jit import OPTIONS, kernel
 from carom.motion.acceleration import OPEN
 from carom.motion.contact_point import (
     add_velocity,
@@ -18,11 +21,15 @@ from carom.motion.contact_point import (
     effective_inverse_mass,
     spread,
 )
+from carom.motion.explicit import Explicit
+from carom.motion.forces import potential_energy
 from carom.motion.project import project_velocity
+from carom.motion.three_field import ThreeField
 from carom.system.notes import begin_event, end_event
 from carom.system.records import IMPACT
 
-IMPACT_FAILED = 6
+LOCATE, WORK = 0, 2
+RETURN_MAP_FAILED, IMPACT_FAILED = 5, 6
 
 
 @kernel
@@ -40,42 +47,94 @@ def release(system, held, c):
 
 
 @kernel
-def strike(system, controls, held, c, state, horizon, work, clock, records):
-    """Resolve the impact of contact c at the core point work.hit; then hold it if its bounces are over.
+def onto_surface(system, controls, c, state, work):
+    """Put the body on the surface and its striking point into work.hit. Returns 0 or a status.
 
-    `state` is changed in its velocities only. Returns 0 or the number of a `Status`.
+    After a located impact this is the last polish; after a whole step it is the paper's return map, and the
+    velocity block is solved again with the position now fixed.
     """
-    contact, hit = system.contacts[c], work.hit[0]
-    for k in range(3):
-        held[c].point[k] = hit.point[k]
+    contact, point = system.contacts[c], work.hit[0].point
+    tie = controls.tie * contact.extent
+    tolerance = max(controls.gap * contact.extent, round_off(contact, state))
+    rho, _ = strike_point(contact, system.vertices, state, tie, point)
+    if rho >= -tolerance:
+        return 0
+    before = potential_energy(system, state)
+    if return_map(system, contact, state, work, tie, tolerance) < 0:
+        return RETURN_MAP_FAILED
+    if system.joints.shape[0] > 0:
+        project_velocity(system, state, work)
+    strike_point(contact, system.vertices, state, tie, point)
+    if controls.location == WORK:
+        restore_work(system, contact, state, before - potential_energy(system, state), work)
+    return 0
+
+
+@kernel
+def strike(system, method, controls, held, c, state, work, clock, records):
+    """Resolve the impact of contact c. Returns 0 or the number of a `Status`.
+
+    Velocities of `state` change; its position only by the return map.
+    """
+    contact, hit, hold = system.contacts[c], work.hit[0], held[c]
+    code = onto_surface(system, controls, c, state, work)
+    if code != 0:
+        return code
     rx, ry, rz = contact_arm(contact, state, hit.point)
     u = contact_velocity(contact, state, rx, ry, rz)
-    if not (u[0] < -slow(contact, state)):
-        try_hold(system, controls, held, c, state, horizon, work, clock, records)
-        return 0
-    release(system, held, c)
-    effective_inverse_mass(system, contact, state, rx, ry, rz, work, hit.W)
-    hit.u[0], hit.u[1], hit.u[2] = u
-    out, mu, e, law = hit.out, contact.friction, contact.restitution, contact.law
-    if controls.layer == 1:
-        code = traverse(
-            hit.W, hit.u, mu, e, law, contact.width, contact.penetration, controls.layer_steps,
-            work.history, out,
-        )  # fmt: skip
-    else:
-        code = resolve(hit.W, hit.u, mu, e, law, out)
-    if code != layout.OK:
-        return IMPACT_FAILED
-    write_impact(contact, c, state, rx, ry, rz, hit, clock, records)
-    begin_event(c, state, clock, records)
-    P = layout.IMPULSE
-    spread(system, contact, state, rx, ry, rz, out[P], out[P + 1], out[P + 2], work)
-    add_velocity(system, contact, work, state)
-    if system.bodies[contact.body].isolated == 0:
-        project_velocity(system, state, work)
-    end_event(IMPACT, state, clock, records)
-    try_hold(system, controls, held, c, state, horizon, work, clock, records)
+    if u[0] < -slow(contact, state):
+        release(system, held, c)
+        effective_inverse_mass(system, contact, state, rx, ry, rz, work, hit.W)
+        hit.u[0], hit.u[1], hit.u[2] = u
+        if collide(method, controls, contact, hit, work.history) != layout.OK:
+            return IMPACT_FAILED
+        write_impact(contact, c, state, rx, ry, rz, hit, clock, records)
+        begin_event(c, state, clock, records)
+        out, P = hit.out, layout.IMPULSE
+        spread(system, contact, state, rx, ry, rz, out[P], out[P + 1], out[P + 2], work)
+        add_velocity(system, contact, work, state)
+        if system.bodies[contact.body].isolated == 0:
+            project_velocity(system, state, work)
+        end_event(IMPACT, state, clock, records)
+    if controls.location != LOCATE:  # others may be inside as well
+        for i in range(held.shape[0]):
+            held[i].near = 1
+    for k in range(3):
+        hold.point[k] = hit.point[k]
     return 0
+
+
+@kernel
+def by_impulse(method, controls, contact, hit, history):
+    """Solve the impact to round-off."""
+    return resolve(
+        hit.W, hit.u, contact.friction, contact.restitution, contact.law, hit.out
+    )
+
+
+@kernel
+def by_layer(method, controls, contact, hit, history):
+    """Pass the boundary layer by cubic splines, as the paper does."""
+    return traverse(
+        hit.W, hit.u, contact.friction, contact.restitution, contact.law, contact.width,
+        contact.penetration, controls.layer_steps, history, hit.out,
+    )  # fmt: skip
+
+
+_WAYS = {Explicit: by_impulse, ThreeField: by_layer}
+
+
+def collide(method, controls, contact, hit, history):
+    """Resolve the impact in work.hit the way the method does it."""
+    return _WAYS[type(method)](method, controls, contact, hit, history)
+
+
+@overload(collide, **OPTIONS)
+def _collide(method, controls, contact, hit, history):
+    way = _WAYS[method.instance_class]
+    return lambda method, controls, contact, hit, history: way(
+        method, controls, contact, hit, history
+    )
 
 
 @kernel

@@ -39,15 +39,17 @@ def held_value(contact, hold, kind, d1, d2, state):
 
 
 @kernel
-def find_held_event(system, held, start, end, work):
-    """Return (event, contact, d1, d2) of the first held contact whose mode ends; contact -1 if none."""
-    moving = False
+def end_forces(system, held, state, work):
+    """Put the forces of held contacts at `state` in place, if any moves."""
     for c in range(held.shape[0]):
         if held[c].mode != OPEN and held[c].rest == 0:
-            moving = True
-    if not moving:
-        return GAP, -1, 0.0, 0.0
-    acceleration(system, end, held, work, work.stages[0])
+            acceleration(system, state, held, work, work.stages[0])
+            return
+
+
+@kernel
+def find_held_event(system, held, start, end):
+    """Return (event, contact, d1, d2) of the first held contact whose mode ends; contact -1 if none."""
     for c in range(held.shape[0]):
         contact, hold = system.contacts[c], held[c]
         if hold.mode == OPEN or hold.rest == 1:

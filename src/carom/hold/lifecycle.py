@@ -27,76 +27,88 @@ from carom.motion.contact_point import (
 )
 from carom.motion.friction import stick_force
 from carom.system.notes import begin_event, end_event
-from carom.system.records import HOLD
+from carom.system.records import HOLD, SLIPS, STICKS
 
 
 @kernel
-def approach_acceleration(system, held, c, state, work):
-    """Return g_i, the acceleration towards the half-space that contact c would have if it were open."""
-    contact, mode = system.contacts[c], held[c].mode
-    held[c].mode = OPEN
-    acceleration(system, state, held, work, work.stages[0])
-    held[c].mode = mode
-    p = held[c].point
-    rx, ry, rz = contact_arm(contact, state, p)
-    rate = work.stages[0, contact.body].rate
-    return -contact_acceleration(contact, state, rate, p, rx, ry, rz)[0]
+def hold_contact(system, controls, held, c, state, horizon, settle, work, clock, records):
+    """Hold contact c, closed at its point, if it does not approach and the rule says so.
 
-
-@kernel
-def try_hold(system, controls, held, c, state, horizon, work, clock, records):
-    """Hold contact c, which is closed at its point and does not approach, if the rule says so."""
-    if controls.hold == 0:
-        return False
-    contact = system.contacts[c]
-    rx, ry, rz = contact_arm(contact, state, held[c].point)
-    rate = contact_velocity(contact, state, rx, ry, rz)[0]
-    g = approach_acceleration(system, held, c, state, work)
-    if not g > 0.0:
-        return False
-    e = contact.restitution
-    if rate > slow(contact, state) and not (
-        e < 1.0 and 2.0 * rate < g * (1.0 - e) * horizon
-    ):
-        return False
-    W = work.hit[0].W
-    effective_inverse_mass(system, contact, state, rx, ry, rz, work, W)
-    clock.bounces -= 0.5 * rate * rate / W[0, 0]
-    clock.holds += 1
-    begin_event(c, state, clock, records)
-    spread(system, contact, state, rx, ry, rz, -rate / W[0, 0], 0.0, 0.0, work)
-    add_velocity(system, contact, work, state)
-    settle(system, held, c, state, 0.0, work, clock)
-    end_event(HOLD, state, clock, records)
-    return True
-
-
-@kernel
-def settle(system, held, c, state, stop, work, clock):
-    """Set the mode of a closed contact without normal speed. Slip below `stop` [m/s] has ended."""
+    With `settle` it is held already and slip has come to a stop or has turned: only its mode is found anew.
+    """
     contact, hold = system.contacts[c], held[c]
     rx, ry, rz = contact_arm(contact, state, hold.point)
     u = contact_velocity(contact, state, rx, ry, rz)
-    hold.leaving = 0
-    hold.mode = SLIP
-    if math.sqrt(u[1] * u[1] + u[2] * u[2]) <= max(stop, 10.0 * slow(contact, state)):
-        W = work.hit[0].W
-        effective_inverse_mass(system, contact, state, rx, ry, rz, work, W)
-        n, t1, t2 = stick_force(W, u[0], u[1], u[2])
-        spread(system, contact, state, rx, ry, rz, n, t1, t2, work)
-        add_velocity(system, contact, work, state)
-        clock.bounces += 0.5 * (n * u[0] + t1 * u[1] + t2 * u[2])
-        hold.mode = STICK
-    acceleration(system, state, held, work, work.stages[0])
+    still, stop = slow(contact, state), 0.0
+    # once with the contact open: would it approach? once held: does it slip or stick?
+    for look in range(2):
+        if look == 0:
+            if settle:
+                # slip below what friction does in a thousandth of a step has stopped
+                stop = 1e-3 * controls.step * abs(hold.force[0]) * hold.W[1, 1]
+            else:
+                hold.mode = OPEN
+        else:
+            begin_event(c, state, clock, records)
+            if not begin_hold(system, contact, hold, state, u, stop, still, work, clock):
+                return
+        acceleration(system, state, held, work, work.stages[0])
+        if look == 0 and not settle:
+            rate = work.stages[0, contact.body].rate
+            p = hold.point
+            g = -contact_acceleration(contact, state, rate, p, rx, ry, rz)[0]
+            if not bounces_end(contact, u[0], g, still, horizon):
+                return
     f = hold.force
     if hold.mode == STICK and not (
         math.sqrt(f[1] * f[1] + f[2] * f[2]) <= contact.friction * f[0]
     ):
         hold.mode = SLIP
     mark_anchor(contact, hold, state)
-    if hold.mode == STICK and system.bodies[contact.body].isolated == 1:
-        mass, rate = system.bodies[contact.body].mass, work.stages[0, contact.body].rate
-        rest_if_still(contact, hold, state[contact.body], rate, f[0] / mass)
+    body = system.bodies[contact.body]
+    if hold.mode == STICK and body.isolated == 1:
+        rate = work.stages[0, contact.body].rate
+        rest_if_still(contact, hold, state[contact.body], rate, f[0] / body.mass)
+    kind = HOLD if not settle else (STICKS if hold.mode == STICK else SLIPS)
+    clock.holds += 0 if settle else 1
+    end_event(kind, state, clock, records)
+
+
+@kernel
+def bounces_end(contact, rate, g, still, horizon):
+    """Return whether a contact leaving at `rate` and drawn back by g is closed for good by `horizon`."""
+    if not (g > 0.0 and rate >= -still):
+        return False
+    e = contact.restitution
+    return rate <= still or (e < 1.0 and 2.0 * rate < g * (1.0 - e) * horizon)
+
+
+@kernel
+def begin_hold(system, contact, hold, state, u, stop, still, work, clock):
+    """Take out the normal velocity, and slip that has stopped; set the mode to try first.
+
+    Slip has stopped when all of it is below `stop` (or round-off). Returns False if a contact that was
+    to settle goes on slipping.
+    """
+    rx, ry, rz = contact_arm(contact, state, hold.point)
+    W = work.hit[0].W
+    effective_inverse_mass(system, contact, state, rx, ry, rz, work, W)
+    n, t1, t2 = -u[0] / W[0, 0], 0.0, 0.0
+    s1, s2 = u[1] + W[1, 0] * n, u[2] + W[2, 0] * n  # slip once the normal velocity is out
+    slip = math.sqrt(s1 * s1 + s2 * s2)
+    stops = slip <= max(stop, 10.0 * still)
+    if stop > 0.0 and not stops:
+        return False
+    if stops:
+        n, t1, t2 = stick_force(W, u[0], u[1], u[2])
+        s1, s2 = 0.0, 0.0
+    hold.mode = STICK if stops else SLIP
+    hold.leaving = 0
+    spread(system, contact, state, rx, ry, rz, n, t1, t2, work)
+    add_velocity(system, contact, work, state)
+    # work of the impulse: half of it times the sum of the velocities before and after
+    clock.bounces += 0.5 * (n * u[0] + t1 * (u[1] + s1) + t2 * (u[2] + s2))
+    return True
 
 
 @kernel

@@ -98,9 +98,8 @@ def reached(system, contact):
 def effective_inverse_mass(system, contact, state, rx, ry, rz, work, W):
     """Write W = G P G^T (3, 3) of the point at arm r. Columns are answers to unit impulses."""
     for k in range(3):
-        spread(
-            system, contact, state, rx, ry, rz, float(k == 0), float(k == 1), float(k == 2), work
-        )
+        e0, e1, e2 = 1.0 if k == 0 else 0.0, 1.0 if k == 1 else 0.0, 1.0 if k == 2 else 0.0
+        spread(system, contact, state, rx, ry, rz, e0, e1, e2, work)
         u = motion_of_point(contact, work.body[contact.body].motion, rx, ry, rz)
         for i in range(3):
             W[i, k] = u[i]

@@ -17,7 +17,7 @@ import math
 
 from carom.geometry.rotation import cross, rotate
 from carom.jit import kernel
-from carom.system.arrays import DISTANCE, FIXED, KNIFE_EDGE, PRISMATIC, REVOLUTE, SPHERICAL
+from carom.system.arrays import DISTANCE, FIXED, KNIFE_EDGE, PRISMATIC, REVOLUTE
 
 
 @kernel

@@ -33,8 +33,8 @@ def direction(joint, r, state):
         ex, ey, ez = axis(state, p, joint.parent_frame, r - 2)
         return ex, ey, ez, 0.0, 0.0, 0.0
     if r < 3:  # spherical, revolute, fixed: the anchors coincide
-        one = 1.0
-        return 0.0, 0.0, 0.0, one if r == 0 else 0.0, one if r == 1 else 0.0, one if r == 2 else 0.0
+        e0, e1, e2 = 1.0 if r == 0 else 0.0, 1.0 if r == 1 else 0.0, 1.0 if r == 2 else 0.0
+        return 0.0, 0.0, 0.0, e0, e1, e2
     # revolute: no turning about the second and third axis; fixed: about none
     ex, ey, ez = axis(state, p, joint.parent_frame, r - 2 if kind == REVOLUTE else r - 3)
     return ex, ey, ez, 0.0, 0.0, 0.0

@@ -120,6 +120,25 @@ JOINT_WORK = [
 #: one stage of a Runge-Kutta step, for one body
 STAGE = [("speed", "f8", 6), ("rate", "f8", 6), ("attitude", "f8", 4)]
 
+#: search for an event inside a step
+SEARCH = [
+    ("active", "i8"),
+    ("kind", "i8"),
+    ("contact", "i8"),
+    ("side", "i8"),  # which end of the bracket moved last
+    ("low", "f8"),
+    ("high", "f8"),
+    ("f_low", "f8"),
+    ("f_high", "f8"),
+    ("t", "f8"),  # last trial
+    ("f", "f8"),
+    ("rate", "f8"),
+    ("d1", "f8"),  # direction of slip at the start
+    ("d2", "f8"),
+    ("width", "f8"),
+    ("tolerance", "f8"),
+]
+
 #: an impact in the making
 HIT = [("W", "f8", (3, 3)), ("u", "f8", 3), ("point", "f8", 3), ("out", "f8", 32)]
 
@@ -179,4 +198,5 @@ class Work(NamedTuple):
     trial: np.recarray  # (N,) STATE
     middle: np.recarray  # (N,) STATE
     hit: np.recarray  # (1,) HIT
+    search: np.recarray  # (1,) SEARCH
     history: np.ndarray  # (0, 16) no history inside the loop

@@ -11,6 +11,7 @@ from carom.system.arrays import (
     HELD,
     HIT,
     JOINT_WORK,
+    SEARCH,
     STAGE,
     STATE,
     System,
@@ -110,6 +111,7 @@ def new_work(system: System, stages: int) -> Work:
         trial=table(STATE, n),
         middle=table(STATE, n),
         hit=table(HIT, 1),
+        search=table(SEARCH, 1),
         history=np.zeros((0, 16)),
     )
 

@@ -43,7 +43,7 @@ def tree_solver(joints: np.recarray, order: np.ndarray, joint: np.ndarray) -> Tr
 
 def loop_solver(joints: np.recarray, drop: float) -> LoopSolver:
     """Return the solver of a scene with closed loops: the symbolic factor of A M^-1 A^T."""
-    number = joints.kind.size
+    number = len(joints)
     order, later = elimination(joints.parent, joints.child)
     place = np.empty(number, dtype=np.int64)
     place[order] = np.arange(number)

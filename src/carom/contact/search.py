@@ -1,0 +1,97 @@
+"""Search for the first event inside a step: examination of a trial step, and the root of an event function.
+
+For a gap the rate is known: Newton's method, kept inside the bracket. For held contacts: regula falsi
+with the Illinois rule. Every trial is a step of the method itself from the start of the step, so that
+an event is as exact as the method.
+"""
+
+from __future__ import annotations
+
+from carom.contact.exclude import BELOW, CLEAR, UNSURE, passage
+from carom.contact.gap import gap, round_off, strike_point
+from carom.hold.events import GAP, find_held_event, held_value
+from carom.jit import kernel
+
+
+@kernel
+def examine(system, controls, held, now, dt, work):
+    """Look at the step from `now` to work.trial: verdict, event, contact, a time before it, slip."""
+    found, which, low = CLEAR, -1, 0.0
+    for c in range(held.shape[0]):
+        contact = system.contacts[c]
+        tie = controls.tie * contact.extent
+        verdict, first = passage(
+            system, contact, held[c], now, work.trial, dt, work, controls.gap, tie
+        )
+        if verdict == UNSURE:
+            return UNSURE, GAP, c, 0.0, 0.0, 0.0
+        if verdict == BELOW and found == CLEAR:
+            found, which, low = BELOW, c, 0.5 * first
+        elif verdict == CLEAR and held[c].leaving == 1 and first > 0.0:
+            held[c].leaving = 0
+    if found == BELOW:
+        return BELOW, GAP, which, low, 0.0, 0.0
+    kind, c, d1, d2 = find_held_event(system, held, now, work.trial)
+    if c >= 0:
+        return BELOW, kind, c, 0.0, d1, d2
+    return CLEAR, GAP, -1, 0.0, 0.0, 0.0
+
+
+@kernel
+def event_value(system, controls, held, search, state, work):
+    """Return the event function and, for a gap, its rate; forces of held contacts are those of `state`."""
+    contact = system.contacts[search.contact]
+    if search.kind == GAP:
+        tie, point = controls.tie * contact.extent, work.hit[0].point
+        rho = gap(contact, system.vertices, state)
+        search.tolerance = max(controls.gap * contact.extent, round_off(contact, state))
+        return rho, strike_point(contact, system.vertices, state, tie, point)[1]
+    hold = held[search.contact]
+    return held_value(contact, hold, search.kind, search.d1, search.d2, state), 0.0
+
+
+@kernel
+def begin_search(search, kind, contact, low, high, d1, d2):
+    """Start to look for an event between `low` and `high`, where its function is negative."""
+    search.active, search.kind, search.contact = 1, kind, contact
+    search.low, search.high, search.width = low, high, high
+    search.d1, search.d2 = d1, d2
+    search.f_low, search.side, search.tolerance = -1.0, 0, -1.0
+
+
+@kernel
+def narrow(search, t, f, rate):
+    """Take in the value f at t. Returns 1 if that is the event, 0 if not yet, -1 if f is not a number."""
+    search.t, search.f, search.rate = t, f, rate
+    if search.f_low < 0.0:  # the first value; nothing is known at the low end but the sign
+        search.f_low = abs(f)
+        if search.kind != GAP:
+            search.tolerance = 1e-13 * abs(f)
+    if abs(f) <= search.tolerance or search.high - search.low <= 1e-15 * search.width:
+        return 1
+    if f < 0.0:
+        search.high, search.f_high = t, f
+        if search.side == 1:
+            search.f_low *= 0.5
+        search.side = 1
+    elif f > 0.0:
+        search.low, search.f_low = t, f
+        if search.side == 2:
+            search.f_high *= 0.5
+        search.side = 2
+    else:
+        return -1
+    return 0
+
+
+@kernel
+def propose(search):
+    """Return the next time to try: Newton's, else the regula falsi's, else the middle."""
+    if search.kind == GAP and search.rate < 0.0:
+        t = search.t - search.f / search.rate
+    else:
+        low, high = search.low, search.high
+        t = (low * search.f_high - high * search.f_low) / (search.f_high - search.f_low)
+    if not (search.low < t < search.high):
+        t = 0.5 * (search.low + search.high)
+    return t
