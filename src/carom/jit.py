@@ -1,4 +1,4 @@
-"""The one decorator for compiled kernels.
+"""The two decorators for compiled code: `kernel`, and `entry` where Python calls it.
 
 Kernels are plain functions on scalars and arrays. They call only other kernels, and also run
 uncompiled (``NUMBA_DISABLE_JIT=1``). They are compiled without Numba's memory manager: a kernel that
@@ -12,6 +12,7 @@ hash of every source file of the package, so any change of carom, or an upgrade,
 
 from __future__ import annotations
 
+import contextlib
 import hashlib
 from functools import cache
 from pathlib import Path
@@ -19,8 +20,11 @@ from pathlib import Path
 import numba
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 
-#: for `numba.extending.overload`, whose functions are compiled by their callers' rules
-OPTIONS = {"jit_options": {"nogil": True, "error_model": "numpy", "_nrt": False}}
+_RULES = {"nogil": True, "error_model": "numpy", "_nrt": False}
+_INSIDE = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+
+#: for `numba.extending.overload`, whose functions are compiled by these rules
+OPTIONS = {"jit_options": {**_RULES, **_INSIDE}}
 
 
 @cache
@@ -47,17 +51,22 @@ class _StampedCache(FunctionCache):
 
 
 def kernel(function):
-    """Compile `function` at its first call; release the GIL; keep the result on disk.
+    """Compile `function` for calls from other kernels only.
 
-    Division follows IEEE (``error_model="numpy"``), no fast-math: results are the same on every
-    run. Where no directory can be written (a read-only install without a user cache) the function
-    is compiled in each process.
+    Division follows IEEE (``error_model="numpy"``), no fast-math: results are the same on every run.
     """
-    compiled = numba.njit(**OPTIONS["jit_options"])(function)
+    return numba.njit(**_RULES, **_INSIDE)(function)
+
+
+def entry(function):
+    """Compile `function` for calls from Python as well, and keep it on disk with all that it calls.
+
+    Where no directory can be written (a read-only install without a user cache) it is compiled in each
+    process.
+    """
+    compiled = numba.njit(**_RULES, no_cfunc_wrapper=True)(function)
     if compiled is function:  # NUMBA_DISABLE_JIT=1
         return function
-    try:
+    with contextlib.suppress(RuntimeError):  # no writable place for a cache
         compiled._cache = _StampedCache(function)
-    except RuntimeError:  # no writable place for a cache
-        pass
     return compiled

@@ -15,7 +15,7 @@ from carom.contact.search import begin_search, event_value, examine, narrow, pro
 from carom.contact.strike import strike
 from carom.hold.events import CONE, GAP, REVERSE, SEPARATE, end_forces
 from carom.hold.lifecycle import hold_contact
-from carom.jit import kernel
+from carom.jit import entry, kernel
 from carom.motion.acceleration import OPEN, SLIP
 from carom.motion.explicit import keep
 from carom.motion.step import step
@@ -44,7 +44,7 @@ class Controls(NamedTuple):
     max_cuts: int
 
 
-@kernel
+@entry
 def run(system, method, controls, held, now, work, clocks, records, until):
     """Go on from `now` to step number `until`. Returns 0, `records.FULL`, or the number of a `Status`."""
     clock, search, trial = clocks[0], work.search[0], work.trial
@@ -189,7 +189,7 @@ def finite(state):
     return math.isfinite(s)
 
 
-@kernel
+@entry
 def save_first(held, now, clocks, records):
     """Write the state at the start."""
     save(held, now, clocks[0], records)

@@ -10,10 +10,10 @@ from __future__ import annotations
 import math
 
 from carom.geometry import rotation, tangent
-from carom.jit import kernel
+from carom.jit import entry
 
 
-@kernel
+@entry
 def exp(x, Q, xi, out_x, out_Q):
     """Write the end point (x + xi_x, R exp(hat xi_theta)) of the arc xi from (x, Q)."""
     for i in range(x.shape[0]):
@@ -24,7 +24,7 @@ def exp(x, Q, xi, out_x, out_Q):
             out_x[i, j] = x[i, j] + xi[i, j]
 
 
-@kernel
+@entry
 def log(x0, Q0, x1, Q1, out):
     """Write the arc from (x0, Q0) to (x1, Q1) that turns each body by an angle in [0, pi]."""
     for i in range(x0.shape[0]):
@@ -36,7 +36,7 @@ def log(x0, Q0, x1, Q1, out):
             out[i, j] = x1[i, j] - x0[i, j]
 
 
-@kernel
+@entry
 def transport_vector(xi, vector, out):
     """Write `vector` (N, 6) moved in parallel along the arc xi: exp(-hat xi_theta) on the turns.
 
@@ -51,7 +51,7 @@ def transport_vector(xi, vector, out):
         )
 
 
-@kernel
+@entry
 def transport_covector(xi, covector, out):
     """Write `covector` (N, 6) moved in parallel along the arc xi, so that <p, w> is kept.
 
@@ -60,7 +60,7 @@ def transport_covector(xi, covector, out):
     transport_vector(xi, covector, out)
 
 
-@kernel
+@entry
 def differential(xi, rate, out):
     """Write the velocity (N, 6) of the arc's end point when xi changes at `rate` (N, 6)."""
     for i in range(xi.shape[0]):
@@ -71,7 +71,7 @@ def differential(xi, rate, out):
         )
 
 
-@kernel
+@entry
 def differential_inverse(xi, velocity, out):
     """Write the rate of xi at which the arc's end point has `velocity` (N, 6); angles < 2 pi."""
     for i in range(xi.shape[0]):
@@ -82,7 +82,7 @@ def differential_inverse(xi, velocity, out):
         )
 
 
-@kernel
+@entry
 def length(m, J, xi):
     """Return the length sqrt(xi . M xi) [sqrt(kg) m] of the arc; m (N,), principal J (N, 3)."""
     total = 0.0

@@ -7,16 +7,16 @@ from __future__ import annotations
 
 import math
 
-from carom.jit import kernel
+from carom.jit import entry
 
 
-@kernel
+@entry
 def cross(ax, ay, az, bx, by, bz):
     """Return a x b."""
     return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
 
 
-@kernel
+@entry
 def multiply(aw, ax, ay, az, bw, bx, by, bz):
     """Return the quaternion product a b (first b, then a)."""
     return (
@@ -27,14 +27,14 @@ def multiply(aw, ax, ay, az, bw, bx, by, bz):
     )
 
 
-@kernel
+@entry
 def normalize(w, x, y, z):
     """Return the quaternion divided by its length."""
     s = 1.0 / math.sqrt(w * w + x * x + y * y + z * z)
     return s * w, s * x, s * y, s * z
 
 
-@kernel
+@entry
 def matrix(w, x, y, z):
     """Return the nine entries, row by row, of the rotation matrix of a unit quaternion."""
     xx, yy, zz = x * x, y * y, z * z
@@ -47,7 +47,7 @@ def matrix(w, x, y, z):
     )  # fmt: skip
 
 
-@kernel
+@entry
 def rotate(w, x, y, z, ax, ay, az):
     """Return R a: body components to world components."""
     tx, ty, tz = 2.0 * (y * az - z * ay), 2.0 * (z * ax - x * az), 2.0 * (x * ay - y * ax)
@@ -58,13 +58,13 @@ def rotate(w, x, y, z, ax, ay, az):
     )
 
 
-@kernel
+@entry
 def rotate_back(w, x, y, z, ax, ay, az):
     """Return R^T a: world components to body components."""
     return rotate(w, -x, -y, -z, ax, ay, az)
 
 
-@kernel
+@entry
 def exp(ax, ay, az):
     """Return the unit quaternion exp(a/2) of the rotation vector a, to round-off at any angle.
 
@@ -81,7 +81,7 @@ def exp(ax, ay, az):
     return c, s * ax, s * ay, s * az
 
 
-@kernel
+@entry
 def log(w, x, y, z):
     """Return the rotation vector of a unit quaternion, its angle in [0, pi]; safe at 0 and pi."""
     if w < 0.0:
@@ -95,7 +95,7 @@ def log(w, x, y, z):
     return f * x, f * y, f * z
 
 
-@kernel
+@entry
 def spin_tensor(R00, R01, R02, R10, R11, R12, R20, R21, R22, i1, i2, i3):
     """Return the six entries xx, xy, xz, yy, yz, zz of R diag(i1, i2, i3) R^T."""
     return (

@@ -8,10 +8,10 @@ from __future__ import annotations
 import math
 
 from carom.geometry.rotation import cross
-from carom.jit import kernel
+from carom.jit import entry
 
 
-@kernel
+@entry
 def coefficients(t2):
     """Return (1 - cos t)/t^2 and (t - sin t)/t^3 of the squared angle; below t = 1 by series."""
     if t2 < 1.0:
@@ -26,7 +26,7 @@ def coefficients(t2):
     return 2.0 * half * half / t2, (t - math.sin(t)) / (t2 * t)
 
 
-@kernel
+@entry
 def inverse_coefficient(t2):
     """Return (1 - (t/2) cot(t/2))/t^2 of the squared angle; below t = 2 by series."""
     u2 = 0.25 * t2
@@ -39,7 +39,7 @@ def inverse_coefficient(t2):
     return (math.sin(u) - u * math.cos(u)) / (4.0 * u2 * math.sin(u))
 
 
-@kernel
+@entry
 def apply(ax, ay, az, bx, by, bz):
     """Return T(a) b: the rate b of the rotation vector a to body angular velocity."""
     first, second = coefficients(ax * ax + ay * ay + az * az)
@@ -52,7 +52,7 @@ def apply(ax, ay, az, bx, by, bz):
     )
 
 
-@kernel
+@entry
 def apply_inverse(ax, ay, az, bx, by, bz):
     """Return T(a)^-1 b, for |a| < 2 pi: body angular velocity b to the rate of a."""
     f = inverse_coefficient(ax * ax + ay * ay + az * az)

@@ -21,7 +21,7 @@ from carom.impact.phase import replay, run, shoot, write
 from carom.impact.rays import outgoing, stick_ratio
 from carom.impact.resolve import resolve
 from carom.impact.spline import force, slip_ratio
-from carom.jit import kernel
+from carom.jit import entry, kernel
 
 _AT_REST = 1e-12  # as in `resolve`
 _DOUBLINGS = 8  # of the steps, if a phase was not solved
@@ -40,7 +40,7 @@ def _final_friction(m, mu):
     return -mu * c, -mu * s, False
 
 
-@kernel
+@entry
 def traverse(W, u, mu, e, law, b, delta, steps, history, out):
     """Pass one impact through the layer of width `b`, to the depth `delta` b, in `steps` steps.
 

@@ -14,7 +14,7 @@ from carom.impact import layout as o
 from carom.impact.rays import outgoing, solve_tangential, stick_ratio
 from carom.impact.slip import expand, land, moved, normal_rate
 from carom.impact.taylor import reach
-from carom.jit import kernel
+from carom.jit import entry, kernel
 
 _ACCURACY = 1e-14  # last term of the series of slip, relative to the root of |u_t| |u|
 _AT_REST = 1e-12  # slip is over below this part of the speed of impact
@@ -55,7 +55,7 @@ def _direction(m, mu, s, size):
     return 0, c, n, g
 
 
-@kernel
+@entry
 def resolve(W, u, mu, e, law, out):
     """Resolve one impact of inverse mass `W` (3, 3), approach velocity `u` (3,), friction `mu`.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from numba.extending import overload
 
-from carom.jit import OPTIONS, kernel
+from carom.jit import OPTIONS, entry, kernel
 from carom.motion.contact_point import contact_arm
 from carom.motion.forces import add_force, applied_wrenches
 from carom.motion.joints import acceleration_bias, position_error, velocity_error
@@ -67,7 +67,7 @@ def _share(system, augment, state, work):
     return lambda system, augment, state, work: chosen(system, augment, state, work)
 
 
-@kernel
+@entry
 def reactions(system, augment, states, touch, work, out):
     """Write the wrench (T, J, 6) of each joint on its child at saved states."""
     for k in range(states.shape[0]):
@@ -92,7 +92,7 @@ def reactions(system, augment, states, touch, work, out):
                 out[k, j, i] = work.joint[j].reaction[i]
 
 
-@kernel
+@entry
 def row_errors(system, states, work, out):
     """Write the largest error of position and of velocity over all rows, (T, 2)."""
     for k in range(states.shape[0]):
@@ -110,7 +110,7 @@ def row_errors(system, states, work, out):
         out[k, 0], out[k, 1] = position, velocity
 
 
-@kernel
+@entry
 def velocity_rows(system, state, work, out):
     """Write the velocity of each row of each joint, (J, 6)."""
     for j in range(system.joints.shape[0]):
