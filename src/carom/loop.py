@@ -54,10 +54,8 @@ def run(system, method, controls, held, now, work, clocks, records, until):
         while clock.spent < length:
             if clock.event >= records.event.shape[0] - 4:
                 return r.FULL
-            if clock.in_step > controls.max_impacts:
-                return TOO_MANY
-            if clock.at_once > 200:
-                return CORNER
+            if clock.in_step > controls.max_impacts or clock.at_once > 200:
+                return CORNER if clock.released > 10 else TOO_MANY
             remaining = length - clock.spent
             horizon = remaining if controls.location == LOCATE else controls.step
             action, c = look_near(system, controls, held, now, work)
@@ -128,7 +126,7 @@ def run(system, method, controls, held, now, work, clocks, records, until):
                 )
         clock.spent = 0.0
         clock.step += 1
-        clock.in_step = 0
+        clock.in_step, clock.released = 0, 0
         clock.now = begin + length
         if not finite(now):
             return NOT_FINITE

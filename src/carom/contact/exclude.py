@@ -79,7 +79,7 @@ def passage(system, contact, hold, start, end, h, work, tolerance, tie):
     for i in range(contact.first, contact.last):
         z0, rate0 = point_state(contact, system.vertices[i], start)
         z1, rate1 = point_state(contact, system.vertices[i], end)
-        if hold.mode != OPEN and z0 <= tie and z1 <= tie:
+        if hold.mode != OPEN and abs(z0) <= tie and abs(z1) <= tie:
             continue
         t0 = reach(z0, rate0, a)
         first = min(first, t0)

@@ -9,7 +9,9 @@ after each pass. (Paper, contact detection; Eq. (10).)
 
 from __future__ import annotations
 
-from carom.contact.gap import strike_point
+import math
+
+from carom.contact.gap import point_state, strike_point
 from carom.geometry.rotation import exp, multiply, normalize
 from carom.jit import kernel
 from carom.motion.contact_point import contact_arm, motion_of_point, reached, spread
@@ -18,15 +20,21 @@ from carom.motion.project import project_position
 
 @kernel
 def return_map(system, contact, state, work, tie, tolerance):
-    """Move `state` onto the surface of the contact. Returns the number of iterations, or -1."""
+    """Move `state` onto the surface of the contact. Returns the number of iterations, or -1.
+
+    The point that is brought back stays the same until it is on the surface; if the turn of the body has
+    then brought another one lower, it is the next.
+    """
     origin, point = work.middle, work.hit[0].point
-    copy_pose(state, origin)
     joined = system.bodies[contact.body].isolated == 0
-    kappa = 0.0
-    for iteration in range(50):
-        rho, _ = strike_point(contact, system.vertices, state, tie, point)
-        if abs(rho) <= tolerance:
-            return iteration
+    kappa, rho = 0.0, -math.inf
+    for iteration in range(100):
+        if not (abs(rho) > tolerance and iteration > 0):
+            rho, _ = strike_point(contact, system.vertices, state, tie, point)
+            copy_pose(state, origin)
+            kappa = 0.0
+            if rho >= -tolerance and (iteration > 0 or rho <= tolerance):
+                return iteration
         rx, ry, rz = contact_arm(contact, state, point)
         spread(system, contact, state, rx, ry, rz, 1.0, 0.0, 0.0, work)
         w_nn = motion_of_point(contact, work.body[contact.body].motion, rx, ry, rz)[0]
@@ -39,6 +47,7 @@ def return_map(system, contact, state, work, tie, tolerance):
         else:
             kappa -= rho / w_nn
             carry(system, contact, kappa, origin, state, work)
+        rho, _ = point_state(contact, point, state)
     return -1
 
 

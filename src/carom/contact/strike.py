@@ -33,13 +33,14 @@ RETURN_MAP_FAILED, IMPACT_FAILED = 5, 6
 
 
 @kernel
-def release(system, held, c):
+def release(system, held, c, clock):
     """Open all held contacts that the impact at c reaches, and have them looked at again."""
     b = system.contacts[c].body
     joined = system.bodies[b].isolated == 0
     for i in range(held.shape[0]):
         other = system.contacts[i].body
         if other == b or (joined and system.bodies[other].isolated == 0):
+            clock.released += 1 if held[i].mode != OPEN else 0
             held[i].mode = OPEN
             held[i].rest = 0
             held[i].near = 1
@@ -57,7 +58,7 @@ def onto_surface(system, controls, c, state, work):
     tie = controls.tie * contact.extent
     tolerance = max(controls.gap * contact.extent, round_off(contact, state))
     rho, _ = strike_point(contact, system.vertices, state, tie, point)
-    if rho >= -tolerance:
+    if rho >= -(tie if controls.location == LOCATE else tolerance):
         return 0
     before = potential_energy(system, state)
     if return_map(system, contact, state, work, tie, tolerance) < 0:
@@ -83,7 +84,7 @@ def strike(system, method, controls, held, c, state, work, clock, records):
     rx, ry, rz = contact_arm(contact, state, hit.point)
     u = contact_velocity(contact, state, rx, ry, rz)
     if u[0] < -slow(contact, state):
-        release(system, held, c)
+        release(system, held, c, clock)
         effective_inverse_mass(system, contact, state, rx, ry, rz, work, hit.W)
         hit.u[0], hit.u[1], hit.u[2] = u
         if collide(method, controls, contact, hit, work.history) != layout.OK:

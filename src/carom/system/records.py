@@ -37,6 +37,7 @@ CLOCK = [
     ("event", "i8"),
     ("in_step", "i8"),  # impacts in the present step
     ("at_once", "i8"),  # impacts since time last went on
+    ("released", "i8"),  # held contacts opened by impacts in the present step
     ("cuts", "i8"),
     ("trials", "i8"),
     ("located", "i8"),
