@@ -39,7 +39,7 @@ class Options:
         A constraint row is redundant when its pivot is below this part of its own diagonal. Default 1e-8.
     augmentation : float
         Augmented-Lagrangian parameter of the paper's methods and of reported reactions, as a part of
-        each row's diagonal of A M^-1 A^T. Default 1e-6.
+        each row's diagonal of A M^-1 A^T. Default 1e-3.
     natural_frequency : float
         beta of the paper's ODE form: the multipliers' equation has c_s = 2 zeta w m_RR and
         k_s = w^2 m_RR with w = beta / step. Only for ``method="paper-ode"``. Default 1.0.
@@ -64,7 +64,7 @@ class Options:
     hold: bool = True
     constraint_tolerance: float = 1e-8
     drop_tolerance: float = 1e-8
-    augmentation: float = 1e-6
+    augmentation: float = 1e-3
     natural_frequency: float = 1.0
     damping_ratio: float = 1.0
     residual_tolerance: float = 1e-13

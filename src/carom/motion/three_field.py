@@ -78,7 +78,9 @@ def three_field_step(system, method, held, start, h, end, work):
         previous = change
         change = velocity_block(system, method, h, end, work)
         change = max(change, position_block(system, method, start, h, end, work))
-        if change <= method.tolerance or (change < 100.0 * method.tolerance and change >= previous):
+        if change <= method.tolerance or (
+            change <= 1e4 * method.tolerance and change >= 0.5 * previous
+        ):
             mean_accelerations(start, h, end, work)
             return applied, 0.0, 0
     return applied, 0.0, NO_CONVERGENCE
