@@ -68,28 +68,30 @@ def chain(count, *, axis=(0, 1, 0), angles=None, gravity=(0, 0, -G), order=None,
     return scene
 
 
-def four_bar(count=2, speed=1.0):
-    """Parallelogram chain (IFToMM A02): `count` + 1 upright bars on the ground, `count` bars across.
+def four_bar(count=2, angle=0.0, speed=1.0):
+    """Parallelogram chain (IFToMM A02): `count` + 1 upright bars, `count` bars across their tips.
 
-    All bars 1 m, 1 kg, uniform; gravity along -y; the tips move at `speed` along +x. Bars are
-    "up0", "up1", ... and "across0", ...
+    All bars 1 m, 1 kg, uniform; gravity along -y. The upright ones lean by `angle` towards +x, which
+    grows at `speed` [rad/s]. Bars are "up0", "up1", ... and "across0", ...
     """
     scene = Scene(gravity=(0, -G, 0))
     rod = dict(mass=1.0, inertia=[1 / 12, 1e-3, 1 / 12])  # along its own y
-    hinge = (0, 0, 1)
-    for k in range(count + 1):
+    hinge, feet = np.array([0.0, 0.0, 1.0]), np.arange(count + 1.0)[:, None] * [1.0, 0.0, 0.0]
+    along = np.array([np.sin(angle), np.cos(angle), 0.0])
+    swing = speed * np.array([np.cos(angle), -np.sin(angle), 0.0])
+    for k, foot in enumerate(feet):
         up = scene.add_body(
-            position=(k, 0.5, 0), velocity=(0.5 * speed, 0, 0), angular_velocity=(0, 0, -speed),
-            name=f"up{k}", **rod,
+            position=foot + 0.5 * along, orientation=about(hinge, -angle), velocity=0.5 * swing,
+            angular_velocity=-speed * hinge, name=f"up{k}", **rod,
         )  # fmt: skip
-        scene.add_joint(joints.Revolute((k, 0, 0), hinge), GROUND, up, name=f"foot{k}")
+        scene.add_joint(joints.Revolute(foot, hinge), GROUND, up, name=f"foot{k}")
     for k in range(count):
         bar = scene.add_body(
-            position=(k + 0.5, 1, 0), velocity=(speed, 0, 0), orientation=about(hinge, -np.pi / 2),
-            name=f"across{k}", **rod,
+            position=feet[k] + along + [0.5, 0, 0], orientation=about(hinge, -np.pi / 2),
+            velocity=swing, name=f"across{k}", **rod,
         )  # fmt: skip
         for n in (k, k + 1):
-            joint = joints.Revolute((n, 1, 0), hinge)
+            joint = joints.Revolute(feet[n] + along, hinge)
             scene.add_joint(joint, scene[f"up{n}"], bar, name=f"pin{k}{n}")
     return scene
 

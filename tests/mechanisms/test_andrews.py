@@ -1,15 +1,15 @@
-"""Andrews' squeezing mechanism (IVP test set; IFToMM A03): ten hinges in space, three closed loops.
+"""Andrews' squeezing mechanism (IVP test set; IFToMM A03): ten hinges, three closed loops.
 
-A planar mechanism with spatial hinges: 50 rows for 42 coordinates and one freedom, so nine rows are redundant.
+Planar, with hinges in space: 50 rows for 42 coordinates and one freedom, so nine are redundant.
 """
 
 import numpy as np
 import pytest
 from mechanism_scenes import about, orders
-from references.andrews import andrews_data, minimal_from_absolute
 
 import carom
 from carom import GROUND, Scene, forces, joints
+from references.andrews import andrews_data, minimal_from_absolute
 
 DATA = andrews_data()
 ANGLES, RATES = (np.array(DATA["reference"][key]) for key in ("angles", "rates"))
