@@ -73,7 +73,7 @@ def entry(function):
     Where no directory can be written (a read-only install without a user cache) it is compiled in each
     process.
     """
-    compiled = numba.njit(**_RULES, no_cfunc_wrapper=True)(function)
+    compiled = numba.njit(**{**_RULES, "no_cfunc_wrapper": True})(function)
     if compiled is function:  # NUMBA_DISABLE_JIT=1
         return function
     with contextlib.suppress(RuntimeError):  # no writable place for a cache
