@@ -19,17 +19,31 @@ from carom.motion.contact_point import (
 from carom.motion.forces import applied_wrenches
 from carom.motion.friction import slip_force, stick_force
 from carom.motion.joints import acceleration_bias
-from carom.motion.solve import solve
+from carom.motion.solve import only_with_joints, solve
 
 OPEN, SLIP, STICK = range(3)
+
+
+@kernel
+def _bias_joints(system, state, work):
+    """Write the bias of the relative acceleration of each joint."""
+    for j in range(system.joints.shape[0]):
+        acceleration_bias(system.joints[j], state, work.joint[j].bias)
+
+
+@kernel
+def _no_joints(system, state, work):
+    """Without joints there is none."""
+
+
+bias_joints = only_with_joints(_bias_joints, _no_joints)
 
 
 @kernel
 def acceleration(system, state, held, work, stage):
     """Write the accelerations into `rate` of `stage`; return the powers of loads and of friction."""
     applied = applied_wrenches(system, state, True, work)
-    for j in range(system.joints.shape[0]):
-        acceleration_bias(system.joints[j], state, work.joint[j].bias)
+    bias_joints(system, state, work)
     solve(system, state, True, work)
     for b in range(system.bodies.shape[0]):
         motion, rate = work.body[b].motion, stage[b].rate

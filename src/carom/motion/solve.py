@@ -70,6 +70,24 @@ def solver_type(system):
     return system.types[index].instance_class
 
 
+def only_with_joints(function, without):
+    """Return a function that is `function` in systems with joints and `without` in those without.
+
+    So that a scene of free bodies does not wait for the compiler to go through its joints.
+    """
+
+    def choose(system, *arguments):
+        chosen = without if isinstance(system.solver, FreeSolver) else function
+        return chosen(system, *arguments)
+
+    @overload(choose, **OPTIONS)
+    def _choose(system, *arguments):
+        chosen = without if solver_type(system) is FreeSolver else function
+        return lambda system, *arguments: chosen(system, *arguments)
+
+    return choose
+
+
 @overload(solve, **OPTIONS)
 def _solve(system, state, biased, work):
     back_end = _BACK_ENDS[solver_type(system)]
