@@ -117,7 +117,7 @@ FIGURES = (
             f"Greatest error of the spline's velocity {_spline_errors()[1]:.0e} of the speed of entry; of "
             "HHT-alpha "
             + ", ".join(f"{hht(n).velocity_error:.2g} ({n} steps)" for n in (8, 20, 40, 80, 320))
-            + ". Curves with few steps fall behind at the turn and gain speed at the exit."
+            + ". Runs with few steps turn too early and leave too fast."
         ),
     ),
 )

@@ -24,22 +24,35 @@ def _squares(axes, run, times, colour):
         axes.plot(centre[0] + across, centre[2] + up, color=colour, lw=0.7)
 
 
+def _ground(axes):
+    axes.axhspan(-0.012, 0.0, color="#e6e6e6", lw=0)
+    axes.axhline(0.0, color=style.BLACK, lw=0.6)
+
+
 def _trajectory():
-    figure, both = style.new(style.PAGE, 3.5, 1, 2, sharey=True)
-    for axes, letter, mu in zip(both, "ab", FRICTIONS):
-        run = die_run(mu, "planar")
+    """Draw the whole throw at the left, the bounces of each friction at the right."""
+    figure, axes = style.mosaic(style.PAGE, 4.1, [["all", "0"], ["all", "1"]], (1, 1.4))
+    whole = axes["all"]
+    _ground(whole)
+    for k, mu in enumerate(FRICTIONS):
+        run, part = die_run(mu, "planar"), axes[str(k)]
+        first = run.impacts.time[0]
         t, x, *_ = with_jumps(run, END)
-        axes.axhspan(-0.012, 0.0, color="#e6e6e6", lw=0)
-        axes.axhline(0.0, color=style.BLACK, lw=0.6)
-        axes.plot(x[:, 0], x[:, 2], color=COLOURS[mu])
         impacts = run.impacts.time[run.impacts.time < END]
-        shown = np.unique(np.concatenate([np.arange(0.0, END, 0.03), impacts]))
-        shown = shown[[True, *(np.diff(shown) > 0.008)]]
-        _squares(axes, run, shown, style.GREY)
-        _squares(axes, run, impacts, style.BLACK)
-        axes.set(xlabel="$x$ [m]", aspect="equal", ylim=(-0.012, 0.32), xlim=(-0.02, 0.22))
-        axes.set_title(rf"$\mu = {mu:.2f}$")
-    both[0].set_ylabel("$z$ [m]")
+        whole.plot(x[:, 0], x[:, 2], color=COLOURS[mu], label=rf"$\mu = {mu:.2f}$")
+        _ground(part)
+        _squares(part, run, np.linspace(first, END, 12)[1:], "#b8b8b8")
+        _squares(part, run, impacts, style.BLACK)
+        part.plot(x[:, 0], x[:, 2], color=COLOURS[mu])
+        part.plot(*run.evaluate(impacts)[0][:, 0, [0, 2]].T, "o", color=COLOURS[mu], ms=3)
+        part.set(aspect="equal", xlim=(0.058, 0.186), ylim=(-0.006, 0.066), ylabel="$z$ [m]")
+        part.set_title(rf"$\mu = {mu:.2f}$, $t \leq {END:g}$ s", loc="left")
+    _squares(whole, run, np.arange(0.0, first, 0.03), style.GREY)
+    _squares(whole, run, [first], style.BLACK)
+    whole.set(aspect="equal", xlim=(-0.02, 0.19), ylim=(-0.012, 0.32))
+    whole.set(xlabel="$x$ [m]", ylabel="$z$ [m]")
+    whole.legend(loc="upper right")
+    axes["1"].set_xlabel("$x$ [m]")
     return figure
 
 
@@ -66,6 +79,7 @@ def _inside(upper, lower, labels):
     for axes, label in zip(both, labels):
         axes.set_ylabel(label)
         axes.axvline(turn, color=style.BLACK, lw=0.4, ls=":")
+    figure.align_ylabels(both)
     both[1].set_xlabel("time in the layer $t$ [ns]")
     both[0].set_xlim(0, 1e9 * history.duration)
     return figure, both
@@ -87,7 +101,7 @@ def _normal():
         t, _, u = _path(history)
         yield None, "-" if mu == FRICTIONS[0] else "--", 1e9 * t, u[:, 0]
 
-    labels = ("normal coordinate $x^1$ [nm]", "normal velocity $u_n$ [m/s]")
+    labels = ("coordinate $x^1$ [nm]", "velocity $u_n$ [m/s]")
     figure, both = _inside(gap, rate, labels)
     both[0].legend(ncols=2, loc="lower center", bbox_to_anchor=(0.5, 1.0))
     both[1].axhline(0.0, color=style.BLACK, lw=0.4)
@@ -143,8 +157,8 @@ _THROW = (
 FIGURES = (
     FigureOfPaper(
         "fig4a",
-        _THROW + "path of the centre and outlines of the die in the plane of motion (grey: every 0.03 s; "
-        "black: at impacts).",
+        _THROW + "path of the centre and outlines of the die in the plane of motion. Left: the throw, outlines every "
+        "0.03 s up to the first impact. Right: the bounces from there on (black outlines and dots: impacts).",
         "The die strikes with an edge; friction decides where it goes.",
         _trajectory,
         lambda: (

@@ -29,24 +29,33 @@ def _outlines(axes, run, times, up, colour):
 
 
 def _trajectory():
-    figure, (side, top) = style.new(style.PAGE, 3.3, 1, 2)
+    """Draw the whole throw at the left; the bounces from the side and from above at the right."""
+    layout, heights = [["all", "side"], ["all", "top"]], (0.076, 0.093)
+    figure, axes = style.mosaic(style.PAGE, 4.1, layout, (1, 1.4), heights)
+    whole, side, top = axes["all"], axes["side"], axes["top"]
     for mu in FRICTIONS:
         run = die_run(mu, "spatial")
-        t, x, *_ = with_jumps(run, END)
-        for axes, up in ((side, 2), (top, 1)):
-            axes.plot(x[:, 0], x[:, up], color=COLOURS[mu], label=rf"$\mu = {mu:.2f}$", zorder=4)
-            shown = np.array([0.25, 0.3, 0.34, END])
-            _outlines(axes, run, shown, up, COLOURS[mu])
-    before = np.array([0.0, 0.06, 0.12, 0.16, run.impacts.time[0]])
-    _outlines(side, run, before, 2, style.GREY)
-    _outlines(top, run, before, 1, style.GREY)
-    side.axhline(0.0, color=style.BLACK, lw=0.6)
-    side.axhspan(-0.012, 0.0, color="#e6e6e6", lw=0)
-    side.set(xlabel="$x$ [m]", ylabel="$z$ [m]", aspect="equal")
-    top.set(xlabel="$x$ [m]", ylabel="$y$ [m]", aspect="equal")
-    side.legend(loc="upper right")
-    style.panel(side, "side view")
-    style.panel(top, "from above")
+        first = run.impacts.time[0]
+        _, x, *_ = with_jumps(run, END)
+        for part, up in ((whole, 2), (side, 2), (top, 1)):
+            part.plot(x[:, 0], x[:, up], color=COLOURS[mu], label=rf"$\mu = {mu:.2f}$", zorder=4)
+            if part is not whole:
+                _outlines(part, run, [0.24, 0.32, END], up, COLOURS[mu])
+    _outlines(whole, run, np.arange(0.0, first, 0.03), 2, style.GREY)
+    for part, up in ((whole, 2), (side, 2), (top, 1)):
+        _outlines(part, run, [first], up, style.BLACK)
+        if up == 2:
+            part.axhline(0.0, color=style.BLACK, lw=0.6)
+            part.axhspan(-0.012, 0.0, color="#e6e6e6", lw=0)
+    whole.set(aspect="equal", xlim=(-0.02, 0.23), ylim=(-0.012, 0.32))
+    whole.set(xlabel="$x$ [m]", ylabel="$z$ [m]")
+    whole.legend(loc="upper right")
+    side.set(aspect="equal", xlim=(0.075, 0.235), ylim=(-0.006, 0.07), ylabel="$z$ [m]")
+    side.set_title("from the side", loc="left")
+    top.set(aspect="equal", xlim=(0.075, 0.235), ylim=(-0.073, 0.02))
+    top.set(xlabel="$x$ [m]", ylabel="$y$ [m]")
+    top.set_title("from above", loc="left")
+    figure.align_ylabels([side, top])
     return figure
 
 
@@ -81,42 +90,44 @@ def invariant_rays(W, friction) -> list[tuple[float, bool]]:
 
 
 def _hodograph():
-    figure, (axes, spin) = style.new(style.PAGE, 2.9, 1, 2, width_ratios=(1, 1.25))
+    layout = [["slip", "x"], ["slip", "y"], ["slip", "z"]]
+    figure, parts = style.mosaic(style.PAGE, 3.1, layout, (1, 1.1))
+    _slip(parts["slip"])
+    for k, name in enumerate("xyz"):
+        axes = parts[name]
+        for mu in FRICTIONS:
+            t, _, _, _, w = with_jumps(die_run(mu, "spatial"), END)
+            axes.plot(t, w[:, k], color=COLOURS[mu], lw=1.0)
+        axes.axhline(0, color=style.BLACK, lw=0.4)
+        axes.set(xlim=(0, END), ylabel=rf"$\omega_{name}$ [rad/s]")
+        axes.tick_params(labelbottom=name == "z")
+    parts["z"].set_xlabel("time $t$ [s]")
+    figure.align_ylabels([parts[name] for name in "xyz"])
+    return figure
+
+
+def _slip(axes):
+    """Draw the path of the slip velocity in the first impact, and the invariant directions."""
     record = die_run(FRICTIONS[0], "spatial").impacts[0]
     W, u = record.inverse_mass, record.relative_velocity_before
-    reach = 2.5
     for mu, colour, turned in (
-        (0.05, style.BLUE, (8, 6)), (0.2, style.RED, (-66, -4)), (0.6, style.GREEN, (6, -12)),
+        (0.05, style.BLUE, (6, 2)), (0.2, style.RED, (-40, -15)), (0.6, style.GREEN, (-50, -11)),
     ):  # fmt: skip
         history = impact_layer(W, u, mu, DIE_E, penetration=DIE_DELTA, width=1e-6, steps=64)
-        t = np.linspace(0.0, history.duration, 400)
-        path = history.evaluate(t)[1]
+        path = history.evaluate(np.linspace(0.0, history.duration, 400))[1]
         axes.plot(path[:, 1], path[:, 2], color=colour, lw=1.4, zorder=3)
         axes.plot(*path[-1, 1:], "o", color=colour, zorder=4)
         axes.annotate(rf"$\mu = {mu:.2f}$", path[-1, 1:], turned, textcoords="offset points",
                       color=colour)  # fmt: skip
-        if mu < 0.6:
-            for angle, grows in invariant_rays(W, mu):
-                ray = reach * np.array([np.cos(angle), np.sin(angle)])
-                line = "--" if grows else ":"
-                axes.plot([0, ray[0]], [0, ray[1]], line, color=colour, lw=0.7)
+        for angle, grows in invariant_rays(W, mu) if mu in FRICTIONS else ():
+            x, y = 4.0 * np.cos(angle), 4.0 * np.sin(angle)
+            axes.plot([0, x], [0, y], "--" if grows else ":", color=style.GREY, lw=0.8)
     axes.plot(*u[1:], "s", color=style.BLACK, zorder=5)
-    axes.annotate("start", u[1:], (6, 2), textcoords="offset points")
+    axes.annotate("start", u[1:], (2, 6), textcoords="offset points")
     axes.axhline(0, color=style.BLACK, lw=0.4)
     axes.axvline(0, color=style.BLACK, lw=0.4)
     axes.set(xlabel="slip velocity $u_{t1}$ [m/s]", ylabel="slip velocity $u_{t2}$ [m/s]",
-             aspect="equal", xlim=(-2.3, 0.9), ylim=(-0.6, 2.4))  # fmt: skip
-    for mu in FRICTIONS:
-        t, _, _, _, w = with_jumps(die_run(mu, "spatial"), END)
-        for k, line in enumerate(("-", "--", ":")):
-            spin.plot(t, w[:, k], line, color=COLOURS[mu])
-    for k, line in enumerate(("-", "--", ":")):
-        spin.plot([], [], line, color=style.BLACK, label=rf"$\omega_{'xyz'[k]}$")
-    spin.legend(ncols=1, loc="upper left")
-    spin.set(xlabel="time $t$ [s]", ylabel="angular velocity [rad/s]", xlim=(0, END))
-    style.panel(axes, "first impact")
-    style.panel(spin, "motion")
-    return figure
+             aspect="equal", xlim=(-2.1, 0.7), ylim=(-0.5, 2.3))  # fmt: skip
 
 
 def _second() -> str:
@@ -126,14 +137,16 @@ def _second() -> str:
     )
 
 
+def velocity_error(steps: int, friction: float) -> float:
+    """Greatest error of v [m/s] and w L/2 [m/s] after the first impact, by that many spline steps."""
+    run = die_run(friction, "spatial", layer_steps=steps)
+    _, _, v, w = run.evaluate(run.impacts.time[0])
+    error = np.abs(np.concatenate([v[0], w[0]]) - die_after("spatial", friction))
+    return float(np.max(error * np.repeat((1.0, 0.5 * EDGE), 3)))
+
+
 def _error(steps: int) -> float:
-    worst = 0.0
-    for mu in FRICTIONS:
-        run = die_run(mu, "spatial", layer_steps=steps)
-        _, _, v, w = run.evaluate(run.impacts.time[0])
-        found = np.concatenate([v[0], w[0]])
-        worst = max(worst, float(np.max(np.abs(found / die_after("spatial", mu) - 1.0))))
-    return worst
+    return max(velocity_error(steps, mu) for mu in FRICTIONS)
 
 
 def _limit() -> float:
@@ -144,7 +157,8 @@ FIGURES = (
     FigureOfPaper(
         "fig6a",
         "Die, spatial (section 4.2): as the planar one, but w = (10, 10, 0) rad/s. Path of the centre and "
-        "outlines of the die, seen from the side and from above (grey: before the first impact).",
+        "outlines of the die. Left: the throw, outlines every 0.03 s up to the first impact (black). Right: from "
+        "the first impact (black) on, seen from the side and from above, outlines at t = 0.24, 0.32, 0.40 s.",
         "The die strikes with a corner and leaves the plane of its throw.",
         _trajectory,
         lambda: (
@@ -155,15 +169,15 @@ FIGURES = (
     FigureOfPaper(
         "fig6b",
         "Die, spatial. Left: slip velocity of the corner during the first impact (hodograph), with the "
-        "invariant directions of slip (dashed: outgoing, dotted: incoming) for mu = 0.05 and 0.20, and, to "
-        "compare, mu = 0.60. Right: angular velocity in world axes against time (blue mu = 0.05, red 0.20).",
+        "invariant directions of slip (dashed: outgoing, dotted: incoming; by the symmetry of this impact the same "
+        "for both mu) for mu = 0.05 and 0.20, and, to compare, mu = 0.60. Right: angular velocity in world axes against time (blue mu = 0.05, red 0.20).",
         "The direction of slip changes during the impact.",
         _hodograph,
         lambda: (
             "Slip bends towards the outgoing invariant direction. The friction that can hold the corner is "
             f"{_limit():.6f}: for both mu of the paper slip goes on, for 0.60 it stops and the corner "
-            "sticks. Because slip turns, two spline steps are no longer exact: greatest relative error "
-            f"after the first impact {_error(2):.0e} with 2 steps, {_error(16):.0e} with 16, {_error(64):.0e} "
+            "sticks. Because slip turns, two spline steps are no longer exact: greatest error "
+            f"of velocity after the first impact {_error(2):.0e} m/s with 2 steps, {_error(16):.0e} with 16, {_error(64):.0e} "
             "with 64."
         ),
     ),

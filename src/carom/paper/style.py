@@ -63,14 +63,17 @@ def new(width=COLUMN, height=2.3, rows=1, columns=1, **options):
     return figure, figure.subplots(rows, columns, **options)
 
 
+def mosaic(width, height, layout, columns, rows=None):
+    """Return a figure and its axes by name, from a layout of names and the sizes of its columns and rows."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width, height), layout="constrained")
+    return figure, figure.subplot_mosaic(layout, width_ratios=columns, height_ratios=rows)
+
+
 def save(figure, folder: Path, name: str) -> list[Path]:
     """Write a figure as PDF and PNG; the same input gives the same bytes."""
     files = [folder / f"{name}.pdf", folder / f"{name}.png"]
     figure.savefig(files[0], metadata={"CreationDate": None})
     figure.savefig(files[1], dpi=DPI)
     return files
-
-
-def panel(axes, letter: str) -> None:
-    """Write a panel's letter above its upper left corner."""
-    axes.set_title(f"({letter})", loc="left", fontsize=8.5, pad=4)
