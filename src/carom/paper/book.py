@@ -16,10 +16,13 @@ impacts through the boundary layer by cubic splines. [The table](table.md) puts 
 the production method (`method="rk4"`, impacts solved to round-off), each against a closed form or an
 independent computation. [Impacts of a real cube](real_impacts.md) are on a page of their own.
 
-The numbers of the figures and the data of the examples are the paper's. Where its text does not say which
-curves a figure holds, or leaves a datum open (radius and height of the sphere), the choice is ours: the
-sphere falls from a gap of 0.4 m, and each caption says what is drawn.
+The numbering of the figures follows the paper, and so do the data of the examples. Where its text is silent
+on which curves a figure holds, or leaves a datum open (the sphere: here it falls from a gap of 0.4 m), the
+choice is ours; each caption says what is drawn.
 """
+
+
+_SILENT = "says nothing of this curve in its text; the choice is ours."
 
 
 def names() -> tuple[str, ...]:
@@ -94,6 +97,6 @@ def _index(known: dict) -> str:
         pieces.append(
             f"## {title[0].upper()}{title[1:]}\n\n![{figure.name}]({figure.name}.png)\n\n"
             f"{figure.caption} ([PDF]({figure.name}.pdf))\n\n"
-            f"- **Said of it:** {figure.paper}\n- **Seen here:** {figure.seen()}\n"
+            f"- **The paper:** {figure.paper or _SILENT}\n- **Seen here:** {figure.seen()}\n"
         )
     return "\n".join(pieces)

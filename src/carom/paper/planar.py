@@ -157,9 +157,10 @@ _THROW = (
 FIGURES = (
     FigureOfPaper(
         "fig4a",
-        _THROW + "path of the centre and outlines of the die in the plane of motion. Left: the throw, outlines every "
+        _THROW
+        + "path of the centre and outlines of the die in the plane of motion. Left: the throw, outlines every "
         "0.03 s up to the first impact. Right: the bounces from there on (black outlines and dots: impacts).",
-        "The die strikes with an edge; friction decides where it goes.",
+        "Example 2, mu = 0.05 and mu = 0.20.",
         _trajectory,
         lambda: (
             f"Impacts at t = {_impacts(0.05)} s (mu = 0.05) and {_impacts(0.2)} s (mu = 0.20). With the "
@@ -168,8 +169,9 @@ FIGURES = (
     ),
     FigureOfPaper(
         "fig4b",
-        _THROW + "horizontal velocity of the centre against time.",
-        "For mu = 0.20 the horizontal velocity is reversed by the impact.",
+        _THROW
+        + "horizontal velocity of the centre against time (the same up to the first impact).",
+        "The horizontal velocity reverses for mu = 0.20.",
         lambda: _history(2, 0, "$v_x$ [m/s]"),
         lambda: (
             f"After the first impact v_x = {_after(0.05)[0]:+.9f} m/s for mu = 0.05 and "
@@ -179,7 +181,7 @@ FIGURES = (
     FigureOfPaper(
         "fig4c",
         _THROW + "vertical velocity of the centre against time.",
-        "The centre rebounds; the jump depends on friction although e is the same.",
+        "",
         lambda: _history(2, 2, "$v_z$ [m/s]"),
         lambda: (
             f"After the first impact v_z = {_after(0.05)[2]:.9f} m/s (mu = 0.05) and "
@@ -190,7 +192,7 @@ FIGURES = (
     FigureOfPaper(
         "fig4d",
         _THROW + "angular velocity against time.",
-        "The impact makes the die spin, the other way round.",
+        "",
         lambda: _history(3, 1, r"$\omega_y$ [rad/s]"),
         lambda: (
             f"From 10 rad/s to {_after(0.05)[4]:.6f} (mu = 0.05) and {_after(0.2)[4]:.6f} rad/s "
@@ -201,7 +203,7 @@ FIGURES = (
         "fig5a",
         "Inside the first impact of the planar die: normal coordinate and normal velocity of the edge "
         "against time, two spline steps; dotted: end of compression. Both frictions give the same curves.",
-        "The coordinate goes to (1 - delta) b and back; the velocity leaves with e times that of entry.",
+        "delta is the greatest penetration, e the ratio of normal velocities.",
         _normal,
         lambda: (
             "Both frictions share the normal motion: the layer prescribes it. Restitution lasts 1/e = 2 "
@@ -211,8 +213,8 @@ FIGURES = (
     FigureOfPaper(
         "fig5b",
         "Inside the first impact of the planar die: slip velocity of the edge, and normal and friction "
-        "forces, against time.",
-        "Friction acts through the impact and changes the tangential velocity.",
+        "forces, against time. (Forces grow as 1/b; here b is 1e-5 of the size of the die.)",
+        "",
         _tangential,
         lambda: (
             "Slip keeps its direction, so forces are constant in each phase and T = -mu N. In compression N = "

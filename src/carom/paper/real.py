@@ -114,9 +114,7 @@ def simulated(restitution: float, friction: float, law: str = "newton") -> np.nd
             velocity=state[:3],
             angular_velocity=state[3:],
         )
-        scene.add_contact(
-            cube, table, restitution=restitution, friction=friction, impact_law=law
-        )
+        scene.add_contact(cube, table, restitution=restitution, friction=friction, impact_law=law)
         run = carom.simulate(scene, tosses.flight[k], step=1e-3, throw=False)
         result[k] = np.concatenate([run.velocity[-1, 0], run.angular_velocity[-1, 0]])
     return result

@@ -120,15 +120,15 @@ velocities after it come out.
   not squared, so that single bad impacts do not lead it.
 
 An independent computation on such impacts had medians of 0.26 m/s and 1.9 rad/s at nominal e = 0.125, mu = 0.18, of
-0.105 m/s and 2.2 rad/s at e = 0.3, and of 1.09 m/s and 8.2 rad/s without impact. The differences to the table are
-those of the conventions above (time of the impact, and how gravity is counted: without gravity between the samples
-"no impact" would have {still_v:.2f} m/s).
+0.105 m/s and 2.2 rad/s at e = 0.3, and of 1.09 m/s and 8.2 rad/s without impact. Its conventions are not known in every
+detail; those above (the time of the impact, how gravity is counted) move our medians by about as much: without
+gravity between the samples "no impact" would have {still_v:.2f} m/s.
 
 ## What one sees
 
 {seen} The cube of the recording rebounds more than its nominal restitution says: the same e for all impacts, about
 a third, brings the velocities to a few times the noise of the recording (about 0.01 m/s and 0.1 rad/s). What is left
-in the angular velocity is scatter, not bias: it does not depend on the law.
+in the angular velocity is the same for all three laws, and for the whole simulation.
 """
 
 
@@ -150,7 +150,10 @@ def write(folder: Path) -> list[Path]:
         csv.writer(file).writerows(
             [("prediction", "e", "mu", "median |dv| [m/s]", "median |dw| [rad/s]"), *table]
         )
-    lines = ["| prediction | e | mu | median of dv [m/s] | median of dw [rad/s] |", "|---|---|---|---|---|"]
+    lines = [
+        "| prediction | e | mu | median of dv [m/s] | median of dw [rad/s] |",
+        "|---|---|---|---|---|",
+    ]
     for name, e, mu, dv, dw in table:
         numbers = "- | -" if e is None else f"{e:.3f} | {mu:.3f}"
         lines.append(f"| {name} | {numbers} | {dv:.3f} | {dw:.2f} |")

@@ -159,7 +159,7 @@ FIGURES = (
         "Die, spatial (section 4.2): as the planar one, but w = (10, 10, 0) rad/s. Path of the centre and "
         "outlines of the die. Left: the throw, outlines every 0.03 s up to the first impact (black). Right: from "
         "the first impact (black) on, seen from the side and from above, outlines at t = 0.24, 0.32, 0.40 s.",
-        "The die strikes with a corner and leaves the plane of its throw.",
+        "Example 2, mu = 0.05 and mu = 0.20, in space.",
         _trajectory,
         lambda: (
             "The first impact does not turn the centre round: another corner strikes "
@@ -171,7 +171,7 @@ FIGURES = (
         "Die, spatial. Left: slip velocity of the corner during the first impact (hodograph), with the "
         "invariant directions of slip (dashed: outgoing, dotted: incoming; by the symmetry of this impact the same "
         "for both mu) for mu = 0.05 and 0.20, and, to compare, mu = 0.60. Right: angular velocity in world axes against time (blue mu = 0.05, red 0.20).",
-        "The direction of slip changes during the impact.",
+        "",
         _hodograph,
         lambda: (
             "Slip bends towards the outgoing invariant direction. The friction that can hold the corner is "

@@ -54,7 +54,7 @@ FIGURES = (
         "fig2a",
         "Bouncing sphere (section 4.1), dropped from 0.4 m: gap against time for e = 1 and e = 0.8. "
         "Lines: computed; circles: closed form.",
-        "The sphere bounces without loss for e = 1 and with decreasing height for e = 0.8.",
+        "Example 1, e = 1 and e = 0.8.",
         _height,
         lambda: (
             f"Computed and exact gap agree to {_errors(0):.1e} m. For e = 0.8 infinitely many impacts "
@@ -65,7 +65,7 @@ FIGURES = (
         "fig2b",
         "Bouncing sphere: velocity of the centre against time. Lines: computed, with the jumps of the "
         "impacts; circles: closed form.",
-        "Each impact turns the velocity round, multiplied by e.",
+        "Example 1, e = 1 and e = 0.8.",
         _velocity,
         lambda: (
             f"Computed and exact velocity agree to {_errors(1):.1e} m/s. The slope between impacts is "

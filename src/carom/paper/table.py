@@ -18,7 +18,7 @@ from carom.paper.runs import FRICTIONS, STEP, die_run, sphere_run
 METHODS = ("paper", "rk4")
 ALPHAS = (0.0, 0.05, 0.1, 0.2, 0.3)
 COUNTS = (8, 20, 40, 80, 320)
-FINE = 256  # spline steps of the rows that show the paper's method converged
+FINE = 512  # spline steps of the rows that show the paper's method converged
 
 
 class Row(NamedTuple):
@@ -36,7 +36,9 @@ class Row(NamedTuple):
     def errors(self) -> tuple[float | None, float | None]:
         """Absolute errors of both methods."""
         reference = self.reference
-        return tuple(None if x is None else abs(x - reference) for x in (self.paper, self.production))  # type: ignore[return-value]
+        return tuple(
+            None if x is None else abs(x - reference) for x in (self.paper, self.production)
+        )  # type: ignore[return-value]
 
 
 @cache
@@ -123,7 +125,7 @@ def _planar():
             yield Row(f"planar die, mu = {mu:.2f}: {_STATE[k]} after impact 1", _UNITS[k],
                       "Routh, closed form", exact[k], *(f[k] for f in found), 1e-8)  # fmt: skip
         off = [_out_of_plane(run) for run in runs]
-        yield Row(f"planar die, mu = {mu:.2f}: greatest |y| through impacts 1 to 3", "m", "symmetry",
+        yield Row(f"planar die, mu = {mu:.2f}: greatest abs(y) through impacts 1 to 3", "m", "symmetry",
                   0.0, *off, 1e-12)  # fmt: skip
 
 
