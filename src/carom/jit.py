@@ -28,12 +28,17 @@ _INSIDE: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 OPTIONS: dict[str, Any] = {"jit_options": {**_RULES, **_INSIDE, "forceinline": True}}
 
 
+_WITHOUT_KERNELS = ("paper", "cli")  # folders that no compiled function calls
+
+
 @cache
 def _package_stamp() -> str:
     """Hash of all sources of the package that can be part of a compiled function."""
     digest = hashlib.sha256()
     root = Path(__file__).parent
     for path in sorted(root.rglob("*.py")):
+        if path.relative_to(root).parts[0] in _WITHOUT_KERNELS:
+            continue
         digest.update(path.relative_to(root).as_posix().encode())
         digest.update(path.read_bytes())
     return digest.hexdigest()
