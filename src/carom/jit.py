@@ -72,6 +72,25 @@ def inlined(function):
     return numba.njit(**_RULES, **_INSIDE, forceinline=True)(function)
 
 
+def unit(function):
+    """Compile `function` on its own, to be called through its address (`carom.dispatch.by_address`).
+
+    What is called directly is compiled again into each of its callers, and theirs; a solve that is
+    reached from twenty places cost a minute that way.
+    """
+    compiled = numba.njit(**_RULES, **_INSIDE)(function)
+    return _keep_on_disk(compiled, function)
+
+
+def address(function, *arguments) -> int:
+    """Return the address of a unit for arguments of these types, compiled if need be; 0 without the JIT."""
+    if numba.config.DISABLE_JIT:
+        return 0
+    given = numba.types.void(*(numba.typeof(a) for a in arguments))
+    compiled = function.get_compile_result(given)
+    return compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name)
+
+
 def entry(function):
     """Compile `function` for calls from Python as well, and keep it on disk with all that it calls.
 
@@ -79,8 +98,11 @@ def entry(function):
     process.
     """
     compiled = numba.njit(**{**_RULES, "no_cfunc_wrapper": True})(function)
-    if compiled is function:  # NUMBA_DISABLE_JIT=1
-        return function
-    with contextlib.suppress(RuntimeError):  # no writable place for a cache
-        compiled._cache = _StampedCache(function)
+    return _keep_on_disk(compiled, function)
+
+
+def _keep_on_disk(compiled, function):
+    if compiled is not function:  # it is with NUMBA_DISABLE_JIT=1
+        with contextlib.suppress(RuntimeError):  # no writable place for a cache
+            compiled._cache = _StampedCache(function)
     return compiled
