@@ -54,7 +54,7 @@ def run(given) -> int:
     return 0
 
 
-class _bar:  # noqa: N801
+class _bar:
     """A progress bar that names what is being made; without tqdm, nothing."""
 
     def __init__(self, total: int):

@@ -143,7 +143,7 @@ SEARCH = [
 ]
 
 #: an impact in the making
-HIT = [("W", "f8", (3, 3)), ("u", "f8", 3), ("point", "f8", 3), ("out", "f8", 32)]
+HIT = [("W", "f8", (3, 3)), ("u", "f8", 3), ("point", "f8", 3), ("out", "f8", 32), ("code", "i8")]
 
 
 def table(fields: list, *shape: int) -> np.recarray:
