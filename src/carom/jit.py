@@ -24,7 +24,7 @@ _RULES = {"nogil": True, "error_model": "numpy", "_nrt": False}
 _INSIDE = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 #: for `numba.extending.overload`, whose functions are compiled by these rules
-OPTIONS = {"jit_options": {**_RULES, **_INSIDE}}
+OPTIONS = {"jit_options": {**_RULES, **_INSIDE, "forceinline": True}}
 
 
 @cache
@@ -56,6 +56,14 @@ def kernel(function):
     Division follows IEEE (``error_model="numpy"``), no fast-math: results are the same on every run.
     """
     return numba.njit(**_RULES, **_INSIDE)(function)
+
+
+def inlined(function):
+    """Compile `function` as `kernel` does, always inlined: for what every step passes.
+
+    A call that hands on a system costs more than a free step (some 150 values go on the stack).
+    """
+    return numba.njit(**_RULES, **_INSIDE, forceinline=True)(function)
 
 
 def entry(function):
