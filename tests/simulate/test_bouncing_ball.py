@@ -14,8 +14,8 @@ STEPS = (0.5, 0.1, 0.03, 0.01, 0.001)
 @pytest.mark.parametrize("e", [1.0, 0.8])
 @pytest.mark.parametrize("step", [0.5, 0.1, 0.013, 1e-3, 1e-4])
 def test_times_and_speeds_of_impacts(e, step):
-    # t_1 = sqrt(2h/g), t_k+1 = t_k + 2 t_1 e^k; approach speed e^(k-1) g t_1: for any step, also one
-    # longer than a flight. At e = .8 a step must end before all bounces do, else they are not resolved.
+    # t_1 = sqrt(2h/g), t_k+1 = t_k + 2 t_1 e^k; approach speed e^(k-1) g t_1: for any step,
+    # also one longer than a flight. (A step in which all bounces end resolves none of them.)
     count = 5 if e == 1 else 3
     duration = 2.6 if e == 1 else min(1.2, zeno_time(e) - step)
     a = carom.simulate(ball(e), duration, step=step)
