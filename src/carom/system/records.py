@@ -35,8 +35,8 @@ CLOCK = [
     ("saved", "i8"),
     ("struck", "i8"),
     ("event", "i8"),
-    ("in_step", "i8"),  # impacts in the present step
-    ("at_once", "i8"),  # impacts since time last went on
+    ("in_step", "i8"),  # impacts and events in the present step
+    ("at_once", "i8"),  # impacts and events since time last went on
     ("released", "i8"),  # held contacts opened by impacts in the present step
     ("cuts", "i8"),
     ("trials", "i8"),
