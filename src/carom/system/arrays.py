@@ -86,7 +86,7 @@ ROW = [
     ("A", "f8", (2, 6, 6)),  # rows, sides child and parent
     ("Y", "f8", (2, 6, 6)),  # rows times M^-1
     ("pivot", "f8", 6),  # reciprocal pivots, 0 = dropped
-    ("diagonal", "f8", 6),  # of A M^-1 A^T before elimination
+    ("weight", "f8", 6),  # diagonal of A M^-1 A^T before elimination
     ("rhs", "f8", 6),  # right-hand side, then multipliers
 ]
 
