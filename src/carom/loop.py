@@ -64,7 +64,7 @@ def run(system, method, controls, held, now, work, clocks, records, until):
                 dt, cuts, found = remaining, 0, False
                 search.active = 0
                 while True:
-                    applied, friction, code = step(system, method, held, now, dt, trial, work)
+                    applied, friction, code = step(method, system, held, now, dt, trial, work)
                     clock.trials += 1
                     if code != 0:
                         return code

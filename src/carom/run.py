@@ -8,6 +8,7 @@ from carom import loop
 from carom.geometry import quaternion
 from carom.motion.explicit import rk4
 from carom.motion.reactions import velocity_rows
+from carom.motion.solve import with_address
 from carom.motion.three_field import ThreeField
 from carom.options import Options
 from carom.scene.scene import Scene
@@ -66,6 +67,8 @@ class Run:
         )
         self.held = r.new_held(system.contacts.size)
         self.work = r.new_work(system, self.method.b.size)
+        system = with_address(system, self.now, self.work)
+        self.compiled = self.compiled._replace(system=system)
         check_start(scene, self.compiled, self.work, options)
         self.clock = r.new_clock()
         self.records = r.new_records(system, -(-steps // save_every) + 1, 64)

@@ -7,6 +7,7 @@ brought together by block Gauss-Seidel.
 
 from __future__ import annotations
 
+from carom.dispatch import only_with_joints
 from carom.jit import kernel
 from carom.motion.contact_point import (
     contact_acceleration,
@@ -19,7 +20,7 @@ from carom.motion.contact_point import (
 from carom.motion.forces import applied_wrenches
 from carom.motion.friction import slip_force, stick_force
 from carom.motion.joints import acceleration_bias
-from carom.motion.solve import only_with_joints, solve
+from carom.motion.solve import solve
 
 OPEN, SLIP, STICK = range(3)
 

@@ -7,11 +7,12 @@ both by the one constrained solve with the error as its bias.
 
 from __future__ import annotations
 
+from carom.dispatch import only_with_joints
 from carom.geometry.rotation import exp, multiply, normalize
 from carom.jit import kernel
 from carom.motion.contact_point import clear_wrenches
 from carom.motion.joints import position_error, velocity_error
-from carom.motion.solve import only_with_joints, solve
+from carom.motion.solve import solve
 
 
 @kernel
