@@ -16,7 +16,7 @@ def test_only_clean_impacts_and_all_approach():
 
 
 def test_impact_laws_are_far_better_than_none():
-    """An independent computation: 0.26 m/s and 1.9 rad/s, at e = 0.3 0.105 and 2.2, none 1.09 and 8.2."""
+    """Elsewhere: 0.26 m/s and 1.9 rad/s, at e = 0.3 0.105 and 2.2, without impact 1.09 and 8.2."""
     assert real.medians(real.predict(*real.NOMINAL)) == pytest.approx((0.26, 1.9), rel=0.15)
     assert real.medians(real.predict(0.3, 0.18)) == pytest.approx((0.105, 2.2), rel=0.15)
     assert real.medians(real.no_impact()) == pytest.approx((1.09, 8.2), rel=0.15)

@@ -1,4 +1,4 @@
-"""The command ``carom``. Each command is a file here with `add` (its arguments) and `run` (its work)."""
+"""The command ``carom``. Each command is a file here: `add` its arguments, `run` its work."""
 
 from __future__ import annotations
 

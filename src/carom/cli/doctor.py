@@ -10,8 +10,8 @@ from importlib import metadata
 from pathlib import Path
 
 _ABOUT = """\
-Say which versions are installed and where compiled code is kept, and run a bouncing sphere against its
-closed form. Exit code 1 if something is wrong."""
+Say which versions are installed and where compiled code is kept, and run a bouncing sphere against
+its closed form. Exit code 1 if something is wrong."""
 _NEEDED = ("numpy", "scipy", "numba")
 _OPTIONAL = ("matplotlib", "tqdm")
 

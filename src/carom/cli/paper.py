@@ -8,8 +8,8 @@ import time
 from pathlib import Path
 
 _ABOUT = """\
-Reproduce the paper: Figs. 2a to 6b as PDF and PNG, the table of numbers (Markdown and CSV), impacts of a
-real cube, and index.md, a page that shows and explains them all.
+Reproduce the paper: Figs. 2a to 6b as PDF and PNG, the table of numbers (Markdown and CSV),
+impacts of a real cube, and index.md, a page that shows and explains them all.
 
   carom paper                          everything, under out/paper
   carom paper --figure fig3a fig6b     these figures only
@@ -43,7 +43,7 @@ def run(given) -> int:
     from carom.paper.book import make, parts
 
     start = time.perf_counter()
-    bar = _bar(parts(given.figure))
+    bar = _Bar(parts(given.figure))
     try:
         written = make(given.out, given.figure, bar)
     finally:
@@ -54,7 +54,7 @@ def run(given) -> int:
     return 0
 
 
-class _bar:
+class _Bar:
     """A progress bar that names what is being made; without tqdm, nothing."""
 
     def __init__(self, total: int):

@@ -5,8 +5,8 @@ from __future__ import annotations
 import time
 
 _ABOUT = """\
-Compile the library for every kind of system (free bodies, trees of joints, loops of joints) and every method.
-Compiled code is kept on disk: later processes load it in a fraction of a second."""
+Compile the library for every kind of system (free bodies, trees of joints, loops of joints) and
+every method. Compiled code is kept on disk: later processes load it in a fraction of a second."""
 
 
 def add(commands) -> None:
@@ -47,8 +47,8 @@ def _free():
     scene = carom.Scene()
     ground = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1))
     die = scene.add_body(
-        shape=carom.Box(0.02, 0.02, 0.02), mass=0.016, position=(0, 0, 0.03), velocity=(0.5, 0, -0.5),
-        angular_velocity=(10, 10, 0),
+        shape=carom.Box(0.02, 0.02, 0.02), mass=0.016, position=(0, 0, 0.03),
+        velocity=(0.5, 0, -0.5), angular_velocity=(10, 10, 0),
     )  # fmt: skip
     scene.add_contact(die, ground, restitution=0.5, friction=0.2)
     return scene

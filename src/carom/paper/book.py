@@ -1,4 +1,4 @@
-"""All of the paper into one folder: figures, table of numbers, real impacts, and a page over them."""
+"""All of the paper into one folder: figures, tables, real impacts, and a page over them."""
 
 from __future__ import annotations
 
@@ -11,14 +11,15 @@ _HEAD = f"""# {TITLE}
 
 Reproduction by `carom paper` (carom {{version}}). The paper: doi 10.1007/978-3-030-81166-2_44.
 
-All figures come from `method="paper"`: three fields and exact constraints in free motion, return map,
-impacts through the boundary layer by cubic splines. [The table](table.md) puts the same numbers beside those of
-the production method (`method="rk4"`, impacts solved to round-off), each against a closed form or an
-independent computation. [Impacts of a real cube](real_impacts.md) are on a page of their own.
+All figures come from `method="paper"`: three fields and exact constraints in free motion, return
+map, impacts through the boundary layer by cubic splines. [The table](table.md) puts the same
+numbers beside those of the production method (`method="rk4"`, impacts solved to round-off), each
+against a closed form or an independent computation. [Impacts of a real cube](real_impacts.md) are
+on a page of their own.
 
-The numbering of the figures follows the paper, and so do the data of the examples. Where its text is silent
-on which curves a figure holds, or leaves a datum open (the sphere: here it falls from a gap of 0.4 m), the
-choice is ours; each caption says what is drawn.
+The numbering of the figures follows the paper, and so do the data of the examples. Where its text
+is silent on which curves a figure holds, or leaves a datum open (the sphere: here it falls from a
+gap of 0.4 m), the choice is ours; each caption says what is drawn.
 """
 
 

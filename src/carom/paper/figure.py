@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 
 class FigureOfPaper(NamedTuple):
-    """One figure. `draw` returns a matplotlib figure; `seen` says what it shows, numbers computed."""
+    """One figure. `draw` returns a matplotlib figure; `seen` says what it shows, computed."""
 
     name: str
     caption: str

@@ -1,4 +1,4 @@
-"""Figs. 4a-d and 5a, 5b: the die that turns in a plane (section 4.2), its motion and its first impact."""
+"""Figs. 4a-d, 5a, 5b: the die that turns in a plane (section 4.2), and its first impact."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def _trajectory():
     for k, mu in enumerate(FRICTIONS):
         run, part = die_run(mu, "planar"), axes[str(k)]
         first = run.impacts.time[0]
-        t, x, *_ = with_jumps(run, END)
+        _, x, *_ = with_jumps(run, END)
         impacts = run.impacts.time[run.impacts.time < END]
         whole.plot(x[:, 0], x[:, 2], color=COLOURS[mu], label=rf"$\mu = {mu:.2f}$")
         _ground(part)
@@ -150,21 +150,22 @@ def _forces() -> str:
 
 
 _THROW = (
-    "Die, planar (section 4.2): edge 0.02 m, 0.016 kg, from z = 0.3 m with v = (0.5, 0, -0.5) m/s and "
-    "w = (0, 10, 0) rad/s, e = 0.5, delta = 0.2, mu = 0.05 and 0.20: "
+    "Die, planar (section 4.2): edge 0.02 m, 0.016 kg, from z = 0.3 m with v = (0.5, 0, -0.5) "
+    "m/s and w = (0, 10, 0) rad/s, e = 0.5, delta = 0.2, mu = 0.05 and 0.20: "
 )
 
 FIGURES = (
     FigureOfPaper(
         "fig4a",
         _THROW
-        + "path of the centre and outlines of the die in the plane of motion. Left: the throw, outlines every "
-        "0.03 s up to the first impact. Right: the bounces from there on (black outlines and dots: impacts).",
+        + "path of the centre and outlines of the die in the plane of motion. Left: the throw, "
+        "outlines every 0.03 s up to the first impact. Right: the bounces from there on (black "
+        "outlines and dots: impacts).",
         "Example 2, mu = 0.05 and mu = 0.20.",
         _trajectory,
         lambda: (
-            f"Impacts at t = {_impacts(0.05)} s (mu = 0.05) and {_impacts(0.2)} s (mu = 0.20). With the "
-            "larger friction the die turns back after its first impact."
+            f"Impacts at t = {_impacts(0.05)} s (mu = 0.05) and {_impacts(0.2)} s (mu = 0.20). "
+            "With the larger friction the die turns back after its first impact."
         ),
     ),
     FigureOfPaper(
@@ -185,8 +186,8 @@ FIGURES = (
         lambda: _history(2, 2, "$v_z$ [m/s]"),
         lambda: (
             f"After the first impact v_z = {_after(0.05)[2]:.9f} m/s (mu = 0.05) and "
-            f"{_after(0.2)[2]:.9f} m/s (mu = 0.20). e relates the velocities of the edge that strikes, not "
-            "of the centre."
+            f"{_after(0.2)[2]:.9f} m/s (mu = 0.20). e relates the velocities of the edge that "
+            "strikes, not of the centre."
         ),
     ),
     FigureOfPaper(
@@ -201,25 +202,27 @@ FIGURES = (
     ),
     FigureOfPaper(
         "fig5a",
-        "Inside the first impact of the planar die: normal coordinate and normal velocity of the edge "
-        "against time, two spline steps; dotted: end of compression. Both frictions give the same curves.",
+        "Inside the first impact of the planar die: normal coordinate and normal velocity of the "
+        "edge against time, two spline steps; dotted: end of compression. Both frictions give "
+        "the same curves.",
         "delta is the greatest penetration, e the ratio of normal velocities.",
         _normal,
         lambda: (
-            "Both frictions share the normal motion: the layer prescribes it. Restitution lasts 1/e = 2 "
-            "times as long as compression."
+            "Both frictions share the normal motion: the layer prescribes it. Restitution lasts "
+            "1/e = 2 times as long as compression."
         ),
     ),
     FigureOfPaper(
         "fig5b",
-        "Inside the first impact of the planar die: slip velocity of the edge, and normal and friction "
-        "forces, against time. (Forces grow as 1/b; here b is 1e-5 of the size of the die.)",
+        "Inside the first impact of the planar die: slip velocity of the edge, and normal and "
+        "friction forces, against time. (Forces grow as 1/b; here b is 1e-5 of the size of the "
+        "die.)",
         "",
         _tangential,
         lambda: (
-            "Slip keeps its direction, so forces are constant in each phase and T = -mu N. In compression N = "
-            f"{_forces()}: friction couples into the normal direction. The slip grows, because the normal "
-            "impulse itself drives the edge forward."
+            "Slip keeps its direction, so forces are constant in each phase and T = -mu N. In "
+            f"compression N = {_forces()}: friction couples into the normal direction. The slip "
+            "grows, because the normal impulse itself drives the edge forward."
         ),
     ),
 )

@@ -1,17 +1,19 @@
 """First impacts of a real cube: the impact laws against motion capture.
 
-Data: 285 tosses of an acrylic cube at 148 Hz (ContactNets, Pfrommer, Halm and Posa 2020; licence beside the
-file), cut to the first impact of each toss: the state one sample before the first sample at which a corner is
-at the table or below, and three samples after that one. Velocities are backward differences, so
-they belong to half a sample before their time. Attitudes are those of the sample itself.
+Data: 285 tosses of an acrylic cube at 148 Hz (ContactNets, Pfrommer, Halm and Posa 2020; licence
+beside the file), cut to the first impact of each toss: the state one sample before the first
+sample at which a corner is at the table or below, and three samples after that one. Velocities are
+backward differences, so they belong to half a sample before their time. Attitudes are those of the
+sample itself.
 
 What is decided here:
 
 - only clean impacts: the second-lowest corner at least 15 mm above the table;
-- the corner reaches the table within the sample interval, at dt + z/|u_n| after its beginning (z is its
-  height at the end, not above zero), to which the attitude is carried on with constant angular velocity;
-- gravity acts all the time: up to the impact it changes the approach, after it the velocities that are
-  measured. Between the two recorded velocities there are four samples.
+- the corner reaches the table within the sample interval, at dt + z/|u_n| after its beginning (z
+  is its height at the end, not above zero), to which the attitude is carried on with constant
+  angular velocity;
+- gravity acts all the time: up to the impact it changes the approach, after it the velocities that
+  are measured. Between the two recorded velocities there are four samples.
 """
 
 from __future__ import annotations
@@ -88,7 +90,7 @@ def load() -> Tosses:
 
 
 def predict(restitution: float, friction: float, law: str = "newton") -> np.ndarray:
-    """Return (v, w) (K, 6) at the times of the measured velocities: one impact, then free flight."""
+    """Return (v, w) (K, 6) when velocities were measured: one impact, then free flight."""
     tosses = load()
     result = tosses.before.copy()
     for k, (G, state) in enumerate(zip(tosses.jacobian, tosses.before)):
@@ -137,7 +139,7 @@ def errors(predicted: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def objective(parameters, law: str) -> float:
-    """Mean of |dv| + r |dw|, r = sqrt(J / m) the radius of gyration [m/s]; sum of distances, so robust."""
+    """Mean of |dv| + r |dw| [m/s], r = sqrt(J / m) the radius of gyration; not squared."""
     e, mu = parameters
     if not (0.0 <= e <= 1.0 and mu >= 0.0):
         return np.inf

@@ -75,19 +75,20 @@ def _seen() -> str:
     )
     e, mu = real.fit("stronge")
     return (
-        f"Median errors of Stronge's law: {nominal[0]:.3f} m/s and {nominal[1]:.2f} rad/s at nominal "
-        f"e = 0.125, mu = 0.18; {fitted[0]:.3f} m/s and {fitted[1]:.2f} rad/s at fitted e = {e:.3f}, "
-        f"mu = {mu:.3f}; without an impact {nothing[0]:.2f} m/s and {nothing[1]:.2f} rad/s. The three laws "
-        "differ by far less than any of them from the measurement."
+        f"Median errors of Stronge's law: {nominal[0]:.3f} m/s and {nominal[1]:.2f} rad/s at "
+        f"nominal e = 0.125, mu = 0.18; {fitted[0]:.3f} m/s and {fitted[1]:.2f} rad/s at fitted e "
+        f"= {e:.3f}, mu = {mu:.3f}; without an impact {nothing[0]:.2f} m/s and {nothing[1]:.2f} "
+        "rad/s. The three laws differ by far less than any of them from the measurement."
     )
 
 
 FIGURES = (
     FigureOfPaper(
         "real_impacts",
-        "First impacts of a real acrylic cube (motion capture, 148 Hz), clean single-corner ones. Above: "
-        "components after the impact, predicted (Stronge's law, fitted e and mu) against measured. Below: share "
-        "of impacts whose error is below the abscissa (broken: nominal parameters; grey: no impact).",
+        "First impacts of a real acrylic cube (motion capture, 148 Hz), clean single-corner "
+        "ones. Above: components after the impact, predicted (Stronge's law, fitted e and mu) "
+        "against measured. Below: share of impacts whose error is below the abscissa (broken: "
+        "nominal parameters; grey: no impact).",
         "Not in the paper: its impact law against measured impacts.",
         _draw,
         _seen,
@@ -98,37 +99,42 @@ _PAGE = """# Impacts of a real cube
 
 ![predicted against measured](real_impacts.png)
 
-{count} clean single-corner impacts out of 285 tosses of an acrylic cube (edge 0.1048 m, 0.37 kg, inertia 8.1e-4 kg m^2)
-recorded at 148 Hz. Data: ContactNets (S. Pfrommer, M. Halm, M. Posa), BSD-3; the file and its licence are part of
-the package (`carom/paper/data`). One impact each, `carom.resolve_impact`; the measured state just before goes in,
-velocities after it come out.
+{count} clean single-corner impacts out of 285 tosses of an acrylic cube (edge 0.1048 m, 0.37 kg,
+inertia 8.1e-4 kg m^2) recorded at 148 Hz. Data: ContactNets (S. Pfrommer, M. Halm, M. Posa),
+BSD-3; the file and its licence are part of the package (`carom/paper/data`). One impact each,
+`carom.resolve_impact`; the measured state just before goes in, velocities after it come out.
 
 {table}
 
-"Simulated" runs `carom.simulate` from the impact to the time of the measurement, further impacts and rest included.
+"Simulated" runs `carom.simulate` from the impact to the time of the measurement, further impacts
+and rest included.
 
 ## How measured states are used
 
-- Velocities of the recording are backward differences: they belong to half a sample before their time.
-- The state before is that of the last sample above the table, the state after that of four samples later.
-  The corner reaches the table in between, at the fraction of the first interval that its height and speed give; the
-  attitude is carried on to there.
-- Gravity acts over all four samples ({span:.1f} ms, {gravity:.2f} m/s), shared between before and after the impact.
-  Leave it out, and the medians at nominal parameters seem much better ({wrong_v:.3f} m/s): for a reason that is
-  none, the missing gravity making good for a restitution that is too small.
-- Fit: the mean of |dv| + r |dw| over all impacts, r = sqrt(J/m) = {radius:.4f} m, by Nelder and Mead; distances are
-  not squared, so that single bad impacts do not lead it.
+- Velocities of the recording are backward differences: they belong to half a sample before their
+  time.
+- The state before is that of the last sample above the table, the state after that of four samples
+  later. The corner reaches the table in between, at the fraction of the first interval that its
+  height and speed give; the attitude is carried on to there.
+- Gravity acts over all four samples ({span:.1f} ms, {gravity:.2f} m/s), shared between before and
+  after the impact. Leave it out, and the medians at nominal parameters seem much better
+  ({wrong_v:.3f} m/s): for a reason that is none, the missing gravity making good for a restitution
+  that is too small.
+- Fit: the mean of |dv| + r |dw| over all impacts, r = sqrt(J/m) = {radius:.4f} m, by Nelder and
+  Mead; distances are not squared, so that single bad impacts do not lead it.
 
-An independent computation on such impacts had medians of 0.26 m/s and 1.9 rad/s at nominal e = 0.125, mu = 0.18, of
-0.105 m/s and 2.2 rad/s at e = 0.3, and of 1.09 m/s and 8.2 rad/s without impact. Its conventions are not known in every
-detail; those above (the time of the impact, how gravity is counted) move our medians by about as much: without
-gravity between the samples "no impact" would have {still_v:.2f} m/s.
+An independent computation on such impacts had medians of 0.26 m/s and 1.9 rad/s at nominal e =
+0.125, mu = 0.18, of 0.105 m/s and 2.2 rad/s at e = 0.3, and of 1.09 m/s and 8.2 rad/s without
+impact. Its conventions are not known in every detail; those above (the time of the impact, how
+gravity is counted) move our medians by about as much: without gravity between the samples "no
+impact" would have {still_v:.2f} m/s.
 
 ## What one sees
 
-{seen} The cube of the recording rebounds more than its nominal restitution says: the same e for all impacts, about
-a third, brings the velocities to a few times the noise of the recording (about 0.01 m/s and 0.1 rad/s). What is left
-in the angular velocity is the same for all three laws, and for the whole simulation.
+{seen} The cube of the recording rebounds more than its nominal restitution says: the same e for
+all impacts, about a third, brings the velocities to a few times the noise of the recording (about
+0.01 m/s and 0.1 rad/s). What is left in the angular velocity is the same for all three laws, and
+for the whole simulation.
 """
 
 

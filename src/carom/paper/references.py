@@ -1,4 +1,4 @@
-"""What the runs are compared with: closed forms, and an integration that shares no code with carom."""
+"""What the runs are compared with: closed forms, and an integration without any code of carom."""
 
 from __future__ import annotations
 
@@ -69,6 +69,11 @@ _MASSES = np.array([MASS] * 3 + [MASS * EDGE**2 / 6.0] * 3)
 _CORNERS = 0.5 * EDGE * np.array(np.meshgrid(*[(-1, 1)] * 3)).reshape(3, 8).T
 
 
+def root(function, low: float, high: float) -> float:
+    """Return the root of a function between two points of opposite sign, to round-off."""
+    return float(np.asarray(brentq(function, low, high, xtol=1e-16, rtol=np.float64(1e-15))))
+
+
 @cache
 def die_impact(kind: str) -> DieImpact:
     """Free flight of the die, and the corner or edge that strikes first.
@@ -86,7 +91,7 @@ def die_impact(kind: str) -> DieImpact:
     def gap(t):
         return 0.3 - 0.5 * t - 0.5 * GRAVITY * t * t + arms(t)[:, 2].min()
 
-    t = float(brentq(gap, 0.1, 0.25, xtol=1e-16, rtol=1e-15))
+    t = root(gap, 0.1, 0.25)
     corners = arms(t)
     tied = corners[:, 2] < corners[:, 2].min() + 1e-9
     r = corners[tied].mean(axis=0)
@@ -101,8 +106,9 @@ def die_after(kind: str, friction: float) -> np.ndarray:
     """Return (v, w) (6,) after the first impact, Newton's law.
 
     In the plane Routh's closed form: slip keeps its direction, so N grows from 0 to
-    (1 + e) |u_n| / (W_nn - mu s W_nt). In space the Darboux-Keller equation with u_n as the variable,
-    du_t/du_n = (W_tn + W_tt tau)/(W_nn + W_nt.tau), tau = -mu u_t/|u_t|, by a Runge-Kutta method of order 8.
+    (1 + e) |u_n| / (W_nn - mu s W_nt). In space the Darboux-Keller equation with u_n as the
+    variable, du_t/du_n = (W_tn + W_tt tau)/(W_nn + W_nt.tau), tau = -mu u_t/|u_t|, by a
+    Runge-Kutta method of order 8.
     """
     at = die_impact(kind)
     W, u = at.inverse_mass, at.approach

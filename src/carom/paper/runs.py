@@ -64,7 +64,7 @@ def die_run(
 
 
 def with_jumps(solution: carom.Solution, end: float | None = None):
-    """Return t, position, orientation, velocity, angular velocity of body 0, impacts as vertical jumps."""
+    """Return t, position, attitude, velocity, angular velocity of body 0; impacts are jumps."""
     end = solution.t[-1] if end is None else end
     impacts = solution.impacts.time[solution.impacts.time < end]
     saved = solution.t[solution.t <= end]

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from carom import impact_layer
 from carom.geometry import quaternion
 from carom.paper import style
 from carom.paper.figure import FigureOfPaper
-from carom.paper.references import die_after
+from carom.paper.references import die_after, root
 from carom.paper.runs import DIE_DELTA, DIE_E, EDGE, FRICTIONS, die_run, with_jumps
 
 COLOURS = dict(zip(FRICTIONS, (style.BLUE, style.RED)))
@@ -69,7 +71,6 @@ def invariant_rays(W, friction) -> list[tuple[float, bool]]:
 
     Roots of ``e x (W_tn - mu W_tt e)`` over the angle of e.
     """
-    from scipy.optimize import brentq
 
     def rate(angle):
         e = np.array([np.cos(angle), np.sin(angle)])
@@ -81,9 +82,9 @@ def invariant_rays(W, friction) -> list[tuple[float, bool]]:
 
     grid = np.linspace(0.0, 2.0 * np.pi, 721) + 1e-3
     found = []
-    for a, b in zip(grid[:-1], grid[1:]):
+    for a, b in pairwise(grid):
         if turn(a) * turn(b) < 0.0:
-            angle = float(brentq(turn, a, b, xtol=1e-14))
+            angle = root(turn, a, b)
             r, e = rate(angle)
             found.append((angle, bool(r @ e > 0.0)))
     return found
@@ -138,7 +139,7 @@ def _second() -> str:
 
 
 def velocity_error(steps: int, friction: float) -> float:
-    """Greatest error of v [m/s] and w L/2 [m/s] after the first impact, by that many spline steps."""
+    """Greatest error of v and w L/2 [m/s] after the first impact, by that many spline steps."""
     run = die_run(friction, "spatial", layer_steps=steps)
     _, _, v, w = run.evaluate(run.impacts.time[0])
     error = np.abs(np.concatenate([v[0], w[0]]) - die_after("spatial", friction))
@@ -156,29 +157,31 @@ def _limit() -> float:
 FIGURES = (
     FigureOfPaper(
         "fig6a",
-        "Die, spatial (section 4.2): as the planar one, but w = (10, 10, 0) rad/s. Path of the centre and "
-        "outlines of the die. Left: the throw, outlines every 0.03 s up to the first impact (black). Right: from "
-        "the first impact (black) on, seen from the side and from above, outlines at t = 0.24, 0.32, 0.40 s.",
+        "Die, spatial (section 4.2): as the planar one, but w = (10, 10, 0) rad/s. Path of the "
+        "centre and outlines of the die. Left: the throw, outlines every 0.03 s up to the first "
+        "impact (black). Right: from the first impact (black) on, seen from the side and from "
+        "above, outlines at t = 0.24, 0.32, 0.40 s.",
         "Example 2, mu = 0.05 and mu = 0.20, in space.",
         _trajectory,
         lambda: (
-            "The first impact does not turn the centre round: another corner strikes "
-            f"{_second()} later. The die leaves the plane y = 0 sideways."
+            f"The first impact does not turn the centre round: another corner strikes {_second()} "
+            "later. The die leaves the plane y = 0 sideways."
         ),
     ),
     FigureOfPaper(
         "fig6b",
-        "Die, spatial. Left: slip velocity of the corner during the first impact (hodograph), with the "
-        "invariant directions of slip (dashed: outgoing, dotted: incoming; by the symmetry of this impact the same "
-        "for both mu) for mu = 0.05 and 0.20, and, to compare, mu = 0.60. Right: angular velocity in world axes against time (blue mu = 0.05, red 0.20).",
+        "Die, spatial. Left: slip velocity of the corner during the first impact (hodograph) for "
+        "mu = 0.05 and 0.20, and, to compare, mu = 0.60, with the invariant directions of slip "
+        "(dashed: outgoing, dotted: incoming; by the symmetry of this impact the same for every "
+        "mu). Right: angular velocity in world axes against time, in the same colours.",
         "",
         _hodograph,
         lambda: (
-            "Slip bends towards the outgoing invariant direction. The friction that can hold the corner is "
-            f"{_limit():.6f}: for both mu of the paper slip goes on, for 0.60 it stops and the corner "
-            "sticks. Because slip turns, two spline steps are no longer exact: greatest error "
-            f"of velocity after the first impact {_error(2):.0e} m/s with 2 steps, {_error(16):.0e} with 16, {_error(64):.0e} "
-            "with 64."
+            "Slip bends towards the outgoing invariant direction. The friction that can hold the "
+            f"corner is {_limit():.6f}: for both mu of the paper slip goes on, for 0.60 it stops "
+            "and the corner sticks. Because slip turns, two spline steps are no longer exact: "
+            f"greatest error of velocity after the first impact {_error(2):.0e} m/s with 2 steps, "
+            f"{_error(16):.0e} with 16, {_error(64):.0e} with 64."
         ),
     ),
 )

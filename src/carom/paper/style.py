@@ -1,13 +1,14 @@
 """One style for every figure: sizes of a two-column journal, colours that all eyes tell apart.
 
-Figures are made as objects, never through pyplot, and the settings hold only inside `style`: nothing of
-the caller's matplotlib is touched and no display is needed.
+Figures are made as objects, never through pyplot, and the settings hold only inside `style`:
+nothing of the caller's matplotlib is touched and no display is needed.
 """
 
 from __future__ import annotations
 
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 COLUMN, PAGE = 3.4, 6.9  # widths of one and of two columns [in]
 
@@ -17,7 +18,7 @@ BLUE, RED, GREEN, ORANGE, SKY, PURPLE = (
     "#0072B2", "#D55E00", "#009E73", "#E69F00", "#56B4E9", "#CC79A7",
 )  # fmt: skip
 
-SETTINGS = {
+SETTINGS: dict[Any, Any] = {
     "font.family": "DejaVu Sans",
     "font.size": 8.0,
     "mathtext.fontset": "dejavusans",
@@ -55,7 +56,7 @@ def style():
         yield
 
 
-def new(width=COLUMN, height=2.3, rows=1, columns=1, **options):
+def new(width=COLUMN, height=2.3, rows=1, columns=1, **options) -> tuple[Any, Any]:
     """Return a figure and its axes (one, or an array) of the given size [in]."""
     from matplotlib.figure import Figure
 
@@ -63,8 +64,8 @@ def new(width=COLUMN, height=2.3, rows=1, columns=1, **options):
     return figure, figure.subplots(rows, columns, **options)
 
 
-def mosaic(width, height, layout, columns, rows=None):
-    """Return a figure and its axes by name, from a layout of names and the sizes of its columns and rows."""
+def mosaic(width, height, layout, columns, rows=None) -> tuple[Any, Any]:
+    """Return a figure and its axes by name, from their layout and the sizes of columns and rows."""
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(width, height), layout="constrained")
