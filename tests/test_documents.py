@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-PAGES = ["README.md", "docs/start.md", *sorted(
-    str(p.relative_to(ROOT)) for d in ("tutorial", "howto") for p in (ROOT / "docs" / d).glob("*.md")
-)]  # fmt: skip
+FOLDERS = (ROOT / "docs" / "tutorial", ROOT / "docs" / "howto")
+PAGES = ["README.md", "docs/start.md"]
+PAGES += sorted(str(p.relative_to(ROOT)) for folder in FOLDERS for p in folder.glob("*.md"))
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 
 
