@@ -18,9 +18,7 @@ def assemble(run, status: Status) -> dict:
     rec = r.trimmed(run.records, run.clock)
     state, clock = rec.state, run.clock[0]
     kinetic, potential = energies(run.compiled.system, state)
-    ledger = Ledger(
-        kinetic, potential, *(rec.series[name].copy() for name, _ in r.LEDGER)
-    )
+    ledger = Ledger(kinetic, potential, *(rec.series[name].copy() for name, _ in r.LEDGER))
     return {
         "t": rec.series.t.copy(),
         "position": state.x.copy(),

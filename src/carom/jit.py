@@ -16,15 +16,16 @@ import contextlib
 import hashlib
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numba
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 
-_RULES = {"nogil": True, "error_model": "numpy", "_nrt": False}
-_INSIDE = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_RULES: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
+_INSIDE: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 #: for `numba.extending.overload`, whose functions are compiled by these rules
-OPTIONS = {"jit_options": {**_RULES, **_INSIDE}}
+OPTIONS: dict[str, Any] = {"jit_options": {**_RULES, **_INSIDE, "forceinline": True}}
 
 
 @cache
@@ -56,6 +57,14 @@ def kernel(function):
     Division follows IEEE (``error_model="numpy"``), no fast-math: results are the same on every run.
     """
     return numba.njit(**_RULES, **_INSIDE)(function)
+
+
+def inlined(function):
+    """Compile `function` as `kernel` does, always inlined: for what every step passes.
+
+    A call that hands on a system costs more than a free step (some 150 values go on the stack).
+    """
+    return numba.njit(**_RULES, **_INSIDE, forceinline=True)(function)
 
 
 def entry(function):

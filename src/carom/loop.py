@@ -15,7 +15,7 @@ from carom.contact.search import begin_search, event_value, examine, narrow, pro
 from carom.contact.strike import strike
 from carom.hold.events import CONE, GAP, REVERSE, SEPARATE, end_forces
 from carom.hold.lifecycle import hold_contact
-from carom.jit import entry, kernel
+from carom.jit import entry, inlined, kernel
 from carom.motion.acceleration import OPEN, SLIP
 from carom.motion.explicit import keep
 from carom.motion.step import step
@@ -64,7 +64,7 @@ def run(system, method, controls, held, now, work, clocks, records, until):
                 dt, cuts, found = remaining, 0, False
                 search.active = 0
                 while True:
-                    applied, friction, code = step(system, method, held, now, dt, trial, work)
+                    applied, friction, code = step(method, system, held, now, dt, trial, work)
                     clock.trials += 1
                     if code != 0:
                         return code
@@ -135,7 +135,7 @@ def run(system, method, controls, held, now, work, clocks, records, until):
     return 0
 
 
-@kernel
+@inlined
 def look_near(system, controls, held, now, work):
     """Find an open contact that is closed already, at the start or after an event: strike or hold it."""
     for c in range(held.shape[0]):
@@ -176,7 +176,7 @@ def change_mode(hold, c, kind, now, clock, records):
     return NOTHING
 
 
-@kernel
+@inlined
 def finite(state):
     """Return whether the state is made of numbers."""
     s = 0.0
@@ -193,7 +193,7 @@ def save_first(held, now, clocks, records):
     save(held, now, clocks[0], records)
 
 
-@kernel
+@inlined
 def save(held, now, clock, records):
     """Write the present state into the next row."""
     k = clock.saved
@@ -212,7 +212,7 @@ def save(held, now, clock, records):
     clock.saved += 1
 
 
-@kernel
+@inlined
 def accept(now, end, tau, applied, friction, begin, clock):
     """Make `end` the present state, a time tau later."""
     for b in range(now.shape[0]):

@@ -82,7 +82,9 @@ def simulate(
     if not isinstance(options, Options):
         raise TypeError(f"options must be carom.Options, got {type(options).__name__}")
     if not duration / step < 1e12:
-        raise ValueError(f"step must be above duration / 1e12 = {duration / 1e12:g} s, got {step!r}")
+        raise ValueError(
+            f"step must be above duration / 1e12 = {duration / 1e12:g} s, got {step!r}"
+        )
     scene.validate()
 
     from carom.run import Run

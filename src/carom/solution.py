@@ -128,8 +128,6 @@ class Solution:
         tuple of arrays
             (n, N, 3), (n, N, 4), (n, N, 3), (n, N, 3); without the first axis for a single time.
         """
-        from carom.assemble import nodes
-
         if side not in ("right", "left"):
             raise ValueError(f"side must be 'right' or 'left', got {side!r}")
         times = np.atleast_1d(np.asarray(t, dtype=float))
@@ -147,7 +145,6 @@ class Solution:
             v[last], w[last] = right[-1, :, :3], right[-1, :, 3:]
         Q = quaternion.multiply(Q, quaternion.conjugate(self._run.compiled.to_principal))
         result = (x, Q, v, w)
-        assert nodes is not None
         return tuple(a[0] for a in result) if np.ndim(t) == 0 else result
 
     @cached_property
@@ -166,7 +163,7 @@ class Solution:
         steps : int, optional
             Spline steps through the layer. Default: `Options.layer_steps`.
         """
-        from carom.impact import impact_layer
+        from carom.impact.history import impact_layer
 
         record = self.impacts[k]
         contacts = self._run.compiled.system.contacts

@@ -15,13 +15,13 @@ from __future__ import annotations
 import math
 
 from carom.contact.gap import along_normal, point_state, round_off
-from carom.jit import kernel
+from carom.jit import inlined
 from carom.motion.acceleration import OPEN
 
 CLEAR, BELOW, UNSURE = range(3)
 
 
-@kernel
+@inlined
 def greatest_acceleration(system, contact, state, work):
     """Return bounds of the normal acceleration of the mass centre and of any point of the body."""
     body, r = system.bodies[contact.body], contact.extent
@@ -40,7 +40,7 @@ def greatest_acceleration(system, contact, state, work):
     return centre, centre + 2.0 * r * (bound[1] + bound[2] * bound[2])
 
 
-@kernel
+@inlined
 def reach(z, rate, a):
     """Return for how long z + rate t - a t^2/2 stays positive."""
     z = max(z, 0.0)
@@ -49,7 +49,7 @@ def reach(z, rate, a):
     return (rate + math.sqrt(rate * rate + 2.0 * a * z)) / a
 
 
-@kernel
+@inlined
 def ball_clears(system, contact, start, end, h, centre, work):
     """Return whether the ball around the body keeps clear: the first look, and mostly the last."""
     b, margin = contact.body, contact.extent + contact.radius + contact.offset
@@ -63,7 +63,7 @@ def ball_clears(system, contact, start, end, h, centre, work):
     return reach(z0, s0, centre) + reach(z1, -s1, centre) >= h
 
 
-@kernel
+@inlined
 def passage(system, contact, hold, start, end, h, work, tolerance, tie):
     """Return CLEAR, BELOW (the end is inside the half-space) or UNSURE, and a time before any contact.
 
@@ -85,7 +85,11 @@ def passage(system, contact, hold, start, end, h, work, tolerance, tie):
         first = min(first, t0)
         if not (z1 >= -tiny):
             verdict = BELOW
-        elif verdict == CLEAR and t0 + reach(z1, -rate1, a) < h * (1.0 - 1e-12):
-            if a * h * h > 8.0 * tiny and hold.leaving == 0:
-                verdict = UNSURE
+        elif (
+            verdict == CLEAR
+            and t0 + reach(z1, -rate1, a) < h * (1.0 - 1e-12)
+            and a * h * h > 8.0 * tiny  # what could be missed is more than the tolerance
+            and hold.leaving == 0
+        ):
+            verdict = UNSURE
     return verdict, first

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 
 from carom.geometry.rotation import rotate
-from carom.jit import kernel
+from carom.jit import inlined, kernel
 from carom.motion.contact_point import contact_arm, contact_velocity
 
 
-@kernel
+@inlined
 def along_normal(contact, a):
     """Return n . a for a world vector."""
     n = contact.axes

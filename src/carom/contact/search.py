@@ -10,10 +10,10 @@ from __future__ import annotations
 from carom.contact.exclude import BELOW, CLEAR, UNSURE, passage
 from carom.contact.gap import gap, round_off, strike_point
 from carom.hold.events import GAP, find_held_event, held_value
-from carom.jit import kernel
+from carom.jit import inlined, kernel
 
 
-@kernel
+@inlined
 def examine(system, controls, held, now, dt, work):
     """Look at the step from `now` to work.trial: verdict, event, contact, a time before it, slip."""
     found, which, low = CLEAR, -1, 0.0

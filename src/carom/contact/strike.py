@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import math
 
-from numba.extending import overload
-
 from carom.contact.gap import round_off, slow, strike_point
 from carom.contact.return_map import return_map
 from carom.contact.work_mode import restore_work
+from carom.dispatch import by_method
 from carom.impact import layout
 from carom.impact.layer import traverse
 from carom.impact.resolve import resolve
-from carom.jit import OPTIONS, kernel
+from carom.jit import kernel
 from carom.motion.acceleration import OPEN
 from carom.motion.contact_point import (
     add_velocity,
@@ -108,9 +107,7 @@ def strike(system, method, controls, held, c, state, work, clock, records):
 @kernel
 def by_impulse(method, controls, contact, hit, history):
     """Solve the impact to round-off."""
-    return resolve(
-        hit.W, hit.u, contact.friction, contact.restitution, contact.law, hit.out
-    )
+    return resolve(hit.W, hit.u, contact.friction, contact.restitution, contact.law, hit.out)
 
 
 @kernel
@@ -122,20 +119,8 @@ def by_layer(method, controls, contact, hit, history):
     )  # fmt: skip
 
 
-_WAYS = {Explicit: by_impulse, ThreeField: by_layer}
-
-
-def collide(method, controls, contact, hit, history):
-    """Resolve the impact in work.hit the way the method does it."""
-    return _WAYS[type(method)](method, controls, contact, hit, history)
-
-
-@overload(collide, **OPTIONS)
-def _collide(method, controls, contact, hit, history):
-    way = _WAYS[method.instance_class]
-    return lambda method, controls, contact, hit, history: way(
-        method, controls, contact, hit, history
-    )
+#: collide(method, controls, contact, hit, history): resolve the impact in work.hit the way the method does it
+collide = by_method({Explicit: by_impulse, ThreeField: by_layer})
 
 
 @kernel

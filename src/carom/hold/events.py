@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 
-from carom.jit import kernel
+from carom.jit import inlined, kernel
 from carom.motion.acceleration import OPEN, SLIP, STICK, acceleration
 from carom.motion.contact_point import contact_arm, contact_velocity
 
@@ -38,7 +38,7 @@ def held_value(contact, hold, kind, d1, d2, state):
     return u1 * d1 + u2 * d2
 
 
-@kernel
+@inlined
 def end_forces(system, held, state, work):
     """Put the forces of held contacts at `state` in place, if any moves."""
     for c in range(held.shape[0]):
@@ -47,7 +47,7 @@ def end_forces(system, held, state, work):
             return
 
 
-@kernel
+@inlined
 def find_held_event(system, held, start, end):
     """Return (event, contact, d1, d2) of the first held contact whose mode ends; contact -1 if none."""
     for c in range(held.shape[0]):

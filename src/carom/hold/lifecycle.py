@@ -60,9 +60,7 @@ def hold_contact(system, controls, held, c, state, horizon, settle, work, clock,
             if not bounces_end(contact, u[0], g, still, horizon):
                 return
     f = hold.force
-    if hold.mode == STICK and not (
-        math.sqrt(f[1] * f[1] + f[2] * f[2]) <= contact.friction * f[0]
-    ):
+    if hold.mode == STICK and not (math.sqrt(f[1] * f[1] + f[2] * f[2]) <= contact.friction * f[0]):
         hold.mode = SLIP
     mark_anchor(contact, hold, state)
     body = system.bodies[contact.body]

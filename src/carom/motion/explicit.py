@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from carom.geometry.rotation import multiply, normalize
-from carom.jit import kernel
+from carom.jit import inlined, kernel
 from carom.motion.acceleration import acceleration
 from carom.motion.free import free_flight
 from carom.motion.project import project_position, project_velocity
@@ -34,15 +34,15 @@ def rk4() -> Explicit:
     return Explicit(A, np.array([1.0, 2.0, 2.0, 1.0]) / 6.0)
 
 
-@kernel
-def explicit_step(system, method, held, start, h, end, work):
+@inlined
+def explicit_step(method, system, held, start, h, end, work):
     """Write the state a time h after `start` into `end`; return work of loads, of friction, a status."""
     if not fly(system, held, start, h, end, work):
         return 0.0, 0.0, 0
     return constrained_step(system, method.A, method.b, held, start, h, end, work)
 
 
-@kernel
+@inlined
 def fly(system, held, start, h, end, work):
     """Move the bodies in free flight, keep those at rest; return whether others are left."""
     mark_held(system, held, work)
@@ -52,13 +52,13 @@ def fly(system, held, start, h, end, work):
         if status == 2:
             keep(start[b], end[b])
         elif status == 0 and system.bodies[b].ballistic == 1:
-            free_flight(system.bodies[b], system.gravity, h, start[b], end[b])
+            free_flight(system.bodies[b], system.gravity, h, start[b], end[b], work.body[b])
         else:
             pending = True
     return pending
 
 
-@kernel
+@inlined
 def keep(start, end):
     """Write the record of a body unchanged."""
     for k in range(3):
@@ -67,7 +67,7 @@ def keep(start, end):
         end.Q[k] = start.Q[k]
 
 
-@kernel
+@inlined
 def mark_held(system, held, work):
     """Note for each body whether it is free (0), held by a contact (1) or at rest (2)."""
     for b in range(work.body.shape[0]):

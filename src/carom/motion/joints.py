@@ -82,8 +82,10 @@ def anchor_speed(joint, state):
 
 @kernel
 def turn_error(joint, state):
-    """Return the rotation vector (world) by which the child is turned against the parent, as far as
-    the joint forbids it: the sine of the tilt for a revolute joint, all of it for a fixed one."""
+    """Return the rotation vector (world) of the child against the parent, as far as it is forbidden.
+
+    The sine of the tilt for a revolute joint, all of it for a fixed one.
+    """
     kind = joint.kind
     c, p = joint.child, joint.parent
     if kind == REVOLUTE:
@@ -91,7 +93,7 @@ def turn_error(joint, state):
         bx, by, bz = axis(state, c, joint.child_frame, 0)
         return cross(ax, ay, az, bx, by, bz)
     ex, ey, ez = 0.0, 0.0, 0.0
-    if kind == FIXED or kind == PRISMATIC:
+    if kind in (FIXED, PRISMATIC):
         # half the sum of e_p x e_c over the three axes: the rotation vector to first order,
         # zero only where the frames agree (or are half a turn apart, excluded at the start)
         for k in range(3):

@@ -4,8 +4,9 @@ The same solve as in `carom.motion.tree`, through the multipliers: A M^-1 A^T la
 motion = M^-1 (wrench + A^T lam). Bodies are eliminated first (that is A M^-1 A^T), then the joints in
 an order of low fill that was chosen when the scene was compiled. A pivot below `drop` times
 its own diagonal belongs to a row that depends on earlier ones and is left out: redundant
-constraints and singular positions need no help. `augment` > 0 adds that part of each diagonal instead: one pass of
-the augmented Lagrangian, repeated by the caller (the paper's way, and the way to reactions of minimal norm).
+constraints and singular positions need no help. `augment` > 0 adds that part of each diagonal instead:
+one pass of the augmented Lagrangian, repeated by the caller (the paper's way, and the way to reactions of
+minimal norm).
 """
 
 from __future__ import annotations
@@ -157,7 +158,7 @@ def free_motion(system, work):
 
 @kernel
 def subtract_rows(system, work):
-    """rhs <- rhs - A motion."""
+    """Rhs <- rhs - A motion."""
     for j in range(system.joints.shape[0]):
         joint, row = system.joints[j], system.solver.rows[j]
         for side in range(2):
@@ -174,7 +175,7 @@ def subtract_rows(system, work):
 
 @kernel
 def add_reactions(system, work):
-    """motion <- motion + M^-1 A^T multipliers, where rhs holds the multipliers."""
+    """Motion <- motion + M^-1 A^T multipliers, where rhs holds the multipliers."""
     for j in range(system.joints.shape[0]):
         joint, row = system.joints[j], system.solver.rows[j]
         for side in range(2):

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from numba.extending import overload
-
+from carom.dispatch import by_solver
 from carom.geometry.rotation import rotate, rotate_back
-from carom.jit import OPTIONS, kernel
+from carom.jit import kernel
 from carom.motion.loops import factor, solve_factored
 from carom.motion.rows import direction
 from carom.motion.tree import solve_tree
@@ -51,26 +50,6 @@ def joint_wrench(joint, state, multiplier, reaction):
             reaction[3 + k] += multiplier[r] * d[k]
 
 
-_BACK_ENDS = {FreeSolver: solve_free, TreeSolver: solve_tree, LoopSolver: solve_loops}
-
-
-def solve(system, state, biased, work):
-    """Write the motion of all bodies under their wrenches, all in `work.body`.
-
-    With `biased` the joints move relative to each other as `work.joint` says, else not. See
-    `carom.motion.tree` for the meaning. Compiled code takes the back end from the type of
-    `system.solver`, so that a run contains only the one it needs.
-    """
-    _BACK_ENDS[type(system.solver)](system, state, biased, work)
-
-
-def solver_type(system):
-    """Return the class of `system.solver` from Numba's type of the system."""
-    index = system.fields.index("solver")
-    return system.types[index].instance_class
-
-
-@overload(solve, **OPTIONS)
-def _solve(system, state, biased, work):
-    back_end = _BACK_ENDS[solver_type(system)]
-    return lambda system, state, biased, work: back_end(system, state, biased, work)
+#: write the motion of all bodies under their wrenches, all in `work.body`: solve(system, state, biased, work).
+#: With `biased` the joints move relative to each other as `work.joint` says, else not (`carom.motion.tree`).
+solve = by_solver({FreeSolver: solve_free, TreeSolver: solve_tree, LoopSolver: solve_loops})

@@ -108,6 +108,9 @@ BODY_WORK = [
     ("bound", "f8", 3),  # greatest linear, angular acceleration and spin of the last step
     ("inverse", "f8", 6),  # inverse inertia, world axes
     ("status", "i8"),  # 0 free, 1 held by a contact, 2 at rest
+    ("spin", "f8", 3),  # angular velocity for which the invariants of free flight below hold
+    ("momentum", "f8", 3),  # spatial angular momentum
+    ("energy", "f8"),  # twice the energy of rotation
 ]
 
 JOINT_WORK = [

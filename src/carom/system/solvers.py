@@ -31,7 +31,7 @@ def tree_solver(joints: np.recarray, order: np.ndarray, joint: np.ndarray) -> Tr
     """Return the solver of a forest; `order` and `joint` are those of `forest_order`."""
     links = table(LINK, order.size)
     links.order, links.joint = order, joint
-    links.parent, links.freedoms = -1, 6
+    links["parent"], links["freedoms"] = -1, 6
     for b, j in enumerate(joint):
         if j >= 0:
             links.parent[b] = p = joints.parent[j]
