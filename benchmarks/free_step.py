@@ -79,7 +79,7 @@ def main() -> None:
     report(
         "free_step", "One free step of a die with contact check", ["", "ns a step"], rows,
         "Far: the ball around the die clears the table. Near: it does not, so each corner is "
-        "bounded. The step is 1 ms; cost of a call taken out by a difference of two lengths of run.",
+        "bounded. The step is 1 ms; what a call costs is taken out by two lengths of run.",
     )  # fmt: skip
 
 
