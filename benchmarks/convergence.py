@@ -1,4 +1,4 @@
-"""Work-precision: error against wall time, for the planar die and for a pendulum."""
+"""Work-precision: error against time, for the planar die and for a pendulum."""
 
 from __future__ import annotations
 
@@ -95,20 +95,20 @@ def main() -> None:
         (axes[1], f"pendulum, t = {END_PENDULUM} s", pendulum_runs()),
     ):
         for method, cases in runs.items():
-            walls, errors = [], []
+            times, errors = [], []
             for step, function in cases:
                 try:
                     errors.append(max(error(function(step)), 1e-16))
                 except carom.SimulationError as failure:
                     rows.append([title, method, f"{step:g}", failure.solution.status.name, ""])
                     continue
-                walls.append(float(np.median(seconds(lambda f=function, h=step: f(h)))))
-                wall, off = f"{1e3 * walls[-1]:.3g}", f"{errors[-1]:.1e}"
-                rows.append([title, method, f"{step:g}", off, wall])
+                times.append(float(np.median(seconds(lambda f=function, h=step: f(h)))))
+                time, off = f"{1e3 * times[-1]:.3g}", f"{errors[-1]:.1e}"
+                rows.append([title, method, f"{step:g}", off, time])
             style, color = STYLE[method]
-            ax.loglog(walls, errors, style, color=color, label=method, ms=5, lw=1.3)
+            ax.loglog(times, errors, style, color=color, label=method, ms=5, lw=1.3)
         ax.set_title(title, fontsize=10)
-        ax.set_xlabel("wall time [s]")
+        ax.set_xlabel("processor time [s]")
         ax.set_ylabel("error of the mass centre [m]")
         ax.grid(alpha=0.3)
         ax.legend(fontsize=8)
@@ -116,7 +116,7 @@ def main() -> None:
     figure.savefig(OUT / "convergence.png", dpi=150)
     report(
         "convergence", "Work and precision",
-        ["problem", "method", "step [s]", "error [m]", "wall [ms]"], rows,
+        ["problem", "method", "step [s]", "error [m]", "time [ms]"], rows,
         "Baselines are plain NumPy: their times say nothing about the methods, their errors do.",
     )  # fmt: skip
     print(machine())

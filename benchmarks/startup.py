@@ -54,7 +54,7 @@ def main() -> None:
     report(
         "startup", "First result in a fresh process",
         ["scene", "import carom [s]", "first simulate, warm [s]", "cold, once [s]"], rows,
-        "Cold: an empty cache, all kernels of this kind of scene are compiled.",
+        "Wall time here. Cold: an empty cache, all kernels of this kind of scene are compiled.",
     )  # fmt: skip
 
 
