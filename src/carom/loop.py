@@ -194,8 +194,8 @@ def finite(state):
 
 
 @entry
-def save_first(held, now, clocks, records):
-    """Write the state at the start."""
+def save_now(held, now, clocks, records):
+    """Write the present state: at the start, and after a failure."""
     save(held, now, clocks[0], records)
 
 

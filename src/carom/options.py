@@ -69,7 +69,7 @@ class Options:
     augmentation: float = 1e-3
     natural_frequency: float = 1.0
     damping_ratio: float = 1.0
-    residual_tolerance: float = 1e-13
+    residual_tolerance: float = 1e-15
     max_iterations: int = 100
     max_impacts_per_step: int = 1000
     max_cuts: int = 40

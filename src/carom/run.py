@@ -79,7 +79,7 @@ class Run:
         self.records = r.new_records(system, -(-steps // save_every) + 1, 64)
         if scene.contacts:
             self.find_units()
-        loop.save_first(self.held, self.now, self.clock, self.records)
+        loop.save_now(self.held, self.now, self.clock, self.records)
 
     def find_units(self) -> None:
         """Compile what only a scene with contacts needs, and note where it is."""
@@ -108,7 +108,11 @@ class Run:
             self.records = r.longer(self.records)
 
     def solution(self, status: Status) -> Solution:
-        """Return what was computed."""
+        """Return what was computed; after a failure up to the last state, between saved steps or not."""
+        clock = self.clock[0]
+        if status is not Status.SUCCESS and clock.now > self.records.series.t[clock.saved - 1]:
+            self.records = r.room_for_one(self.records, clock.saved)
+            loop.save_now(self.held, self.now, self.clock, self.records)
         return Solution.from_run(self, status)
 
 
