@@ -18,6 +18,9 @@ from carom.motion.acceleration import acceleration
 from carom.motion.free import free_flight
 from carom.motion.project import project_position, project_velocity
 
+#: parts of a step that meets a singular position at its first stage, at its last one, between
+FIRST_PART, LAST_PART, MIDDLE_PART = 0.0625, 0.9375, 0.375
+
 
 class Explicit(NamedTuple):
     """A Runge-Kutta method: strictly lower triangular A, weights b."""
@@ -80,9 +83,47 @@ def mark_held(system, held, work):
 
 @kernel
 def constrained_step(system, A, weight, held, start, h, end, work):
-    """Step the bodies that are joined, loaded or held; the others are in `end` already."""
+    """Step the bodies that are joined, loaded or held; the others are in `end` already.
+
+    Where a stage falls into a singular position of closed loops, more rows depend on others there
+    than elsewhere, and its acceleration is not determined. The step is then made in two parts, so that the
+    stages lie beside it, or the part that begins or ends there is short.
+    """
+    applied, friction, code, singular = ambient_step(system, A, weight, held, start, h, end, work)
+    bound_accelerations(work, weight.size)
+    if singular == 0:
+        return applied, friction, code
+    first = h * (FIRST_PART if singular == 1 else LAST_PART if singular == 2 else MIDDLE_PART)
+    between = work.middle
+    for b in range(start.shape[0]):
+        keep(start[b], between[b])
+    a, f, code, _ = ambient_step(system, A, weight, held, start, first, between, work)
+    if code != 0:
+        return a, f, code
+    applied, friction, code, _ = ambient_step(
+        system, A, weight, held, between, h - first, end, work
+    )
+    return applied + a, friction + f, code
+
+
+@kernel
+def dropped_rows(work):
+    """Return how many constraint rows the last solve found to depend on others."""
+    count = 0
+    for j in range(work.joint.shape[0]):
+        count += work.joint[j].dropped
+    return count
+
+
+@kernel
+def ambient_step(system, A, weight, held, start, h, end, work):
+    """Make one step; return works, a status, and 0, or where more rows depend on others than elsewhere.
+
+    1: at the first stage, 2: at the last one, 3: between.
+    """
     stages, stage = weight.size, work.stage
     applied, friction = 0.0, 0.0
+    least, most, at_first, at_last = 1 << 30, 0, 0, 0
     for s in range(stages):
         combine(A[s], s, h, start, work.stages, stage)
         for b in range(stage.shape[0]):
@@ -94,8 +135,14 @@ def constrained_step(system, A, weight, held, start, h, end, work):
         p, f = acceleration(system, stage, held, work, work.stages[s])
         applied += h * weight[s] * p
         friction += h * weight[s] * f
+        count = dropped_rows(work)
+        least, most, at_last = min(least, count), max(most, count), count
+        if s == 0:
+            at_first = count
     combine(weight, stages, h, start, work.stages, stage)
-    bound_accelerations(work, stages)
+    singular = 0
+    if most > least:
+        singular = 1 if at_first > least else 2 if at_last > least else 3
     for b in range(stage.shape[0]):
         status = work.body[b].status
         if status == 1 or (status == 0 and system.bodies[b].ballistic == 0):
@@ -103,9 +150,9 @@ def constrained_step(system, A, weight, held, start, h, end, work):
     if system.joints.shape[0] > 0:
         error = project_position(system, end, work, 1e-14)
         if not (error <= 1e-9):
-            return applied, friction, 7
+            return applied, friction, 7, singular
         project_velocity(system, end, work)
-    return applied, friction, 0
+    return applied, friction, 0, singular
 
 
 @kernel

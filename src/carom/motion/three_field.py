@@ -138,7 +138,10 @@ def middle_of_arc(start, h, end, middle):
 
 @kernel
 def momenta(system, start, h, work):
-    """Turn the wrenches into p0 + h f + Abar^T Lam: momenta at the end, about each centre, world."""
+    """Turn the wrenches into p0 + h f + Abar^T Lam: momenta at the end, about each centre, world.
+
+    Keeps in `bound` the speed each body would have without reactions: the measure of convergence.
+    """
     for b in range(system.bodies.shape[0]):
         body, q, w, wrench = system.bodies[b], start[b].Q, start[b].w, work.body[b].wrench
         J = body.inertia
@@ -147,6 +150,11 @@ def momenta(system, start, h, work):
         for k in range(3):
             wrench[k] = h * wrench[k] + body.mass * start[b].v[k]
             wrench[3 + k] = h * wrench[3 + k] + l[k]
+        bound, speed = work.body[b].bound, 0.0
+        for k in range(3):
+            spin = body.extent * abs(wrench[3 + k]) / max(J[0], max(J[1], J[2]))
+            speed = max(speed, max(abs(wrench[k]) / body.mass, spin))
+        bound[0] = speed
     for j in range(system.joints.shape[0]):
         add_row_impulses(system.joints[j], work.middle, work.joint[j].multiplier, work)
 
@@ -181,6 +189,7 @@ def set_velocities(system, end, work):
         for k in range(3):
             change = max(change, max(abs(motion[k] - v[k]), size * abs(motion[3 + k] - w[k])))
             speed = max(speed, max(abs(motion[k]), size * abs(motion[3 + k])))
+            speed = max(speed, work.body[b].bound[0])  # also where all is in equilibrium
             v[k], w[k] = motion[k], motion[3 + k]
     return change / speed if speed > 0.0 else 0.0
 

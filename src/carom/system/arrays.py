@@ -118,6 +118,7 @@ JOINT_WORK = [
     ("reaction", "f8", 6),  # wrench on the child at its anchor: force, torque
     ("multiplier", "f8", 6),  # impulses of the rows in the three-field step
     ("target", "f8", 6),
+    ("dropped", "i8"),  # rows that the last solve found to depend on others
 ]
 
 #: one stage of a Runge-Kutta step, for one body
