@@ -42,14 +42,17 @@ def by_solver(table: Mapping[type, Callable]) -> Callable:
     return _overloaded(choose, chosen)
 
 
-def by_address(table: Mapping[type, Callable]) -> Callable:
-    """Return as `by_solver` does, but call the unit at `system.solver.address` (see `carom.jit.unit`)."""
+def by_address(function: Callable) -> Callable:
+    """Return a function that calls a unit (`carom.jit.unit`) at the address in its first argument.
 
-    def choose(system, *arguments):
-        return table[type(system.solver)](system, *arguments)
+    `function` does the same uncompiled.
+    """
 
-    def chosen(system, *arguments):
-        return lambda system, *arguments: _call(system.solver.address, system, *arguments)
+    def choose(address, *arguments):
+        function(*arguments)
+
+    def chosen(address, *arguments):
+        return lambda address, *arguments: _call(address, *arguments)
 
     return _overloaded(choose, chosen)
 

@@ -65,6 +65,8 @@ def simulate(
 
     Raises
     ------
+    TypeError
+        If `scene`, `options` or `progress` is of another type.
     ValueError
         For an argument outside its range, a body inside a half-space at the start, or an initial
         velocity that breaks a joint. Nothing has run then.

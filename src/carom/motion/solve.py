@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from carom.dispatch import by_address
 from carom.geometry.rotation import rotate, rotate_back
-from carom.jit import address, kernel, unit
+from carom.jit import address, inlined, kernel, unit
 from carom.motion.loops import factor, solve_factored
 from carom.motion.rows import direction
 from carom.motion.tree import solve_tree
@@ -51,14 +51,20 @@ def joint_wrench(joint, state, multiplier, reaction):
 
 
 BACK_ENDS = {FreeSolver: solve_free, TreeSolver: solve_tree, LoopSolver: solve_loops}
+_solve_at = by_address(lambda system, *rest: BACK_ENDS[type(system.solver)](system, *rest))
 
-#: solve(system, state, biased, work): write the motion of all bodies under their wrenches, all in `work.body`.
-#: With `biased` the joints move relative to each other as `work.joint` says, else not (`carom.motion.tree`).
-solve = by_address(BACK_ENDS)
+
+@inlined
+def solve(system, state, biased, work):
+    """Write the motion of all bodies under their wrenches, all in `work.body`.
+
+    With `biased` the joints move relative to each other as `work.joint` says, else not. See
+    `carom.motion.tree` for the meaning.
+    """
+    _solve_at(system.solver.address, system, state, biased, work)
 
 
 def with_address(system, state, work):
-    """Return the system with the address of the back end for arrays like these."""
-    back_end = BACK_ENDS[type(system.solver)]
-    found = address(back_end, system, state, True, work)
+    """Return the system with the address of its back end for arrays like these."""
+    found = address(BACK_ENDS[type(system.solver)], system, state, True, work)
     return system._replace(solver=system.solver._replace(address=found))

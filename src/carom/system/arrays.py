@@ -86,7 +86,7 @@ ROW = [
     ("A", "f8", (2, 6, 6)),  # rows, sides child and parent
     ("Y", "f8", (2, 6, 6)),  # rows times M^-1
     ("pivot", "f8", 6),  # reciprocal pivots, 0 = dropped
-    ("diagonal", "f8", 6),  # of A M^-1 A^T before elimination
+    ("weight", "f8", 6),  # diagonal of A M^-1 A^T before elimination
     ("rhs", "f8", 6),  # right-hand side, then multipliers
 ]
 
@@ -143,7 +143,7 @@ SEARCH = [
 ]
 
 #: an impact in the making
-HIT = [("W", "f8", (3, 3)), ("u", "f8", 3), ("point", "f8", 3), ("out", "f8", 32)]
+HIT = [("W", "f8", (3, 3)), ("u", "f8", 3), ("point", "f8", 3), ("out", "f8", 32), ("code", "i8")]
 
 
 def table(fields: list, *shape: int) -> np.recarray:
