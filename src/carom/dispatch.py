@@ -8,7 +8,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from numba.extending import overload
+from numba.core import types
+from numba.extending import intrinsic, overload
 
 from carom.jit import OPTIONS
 from carom.system.arrays import FreeSolver, LoopSolver, TreeSolver
@@ -39,6 +40,39 @@ def by_solver(table: Mapping[type, Callable]) -> Callable:
         return lambda system, *arguments: implementation(system, *arguments)
 
     return _overloaded(choose, chosen)
+
+
+def by_address(function: Callable) -> Callable:
+    """Return a function that calls a unit (`carom.jit.unit`) at the address in its first argument.
+
+    `function` does the same uncompiled.
+    """
+
+    def choose(address, *arguments):
+        function(*arguments)
+
+    def chosen(address, *arguments):
+        return lambda address, *arguments: _call(address, *arguments)
+
+    return _overloaded(choose, chosen)
+
+
+@intrinsic
+def _call(typing, address, *arguments):
+    """Call a unit that returns nothing, by Numba's own calling convention."""
+    given = arguments[0] if len(arguments) == 1 else arguments  # *arguments come as one tuple
+    kinds = tuple(types.unliteral(kind) for kind in given)
+    signature = types.none(address, types.StarArgTuple(kinds))
+
+    def generate(context, builder, signature, values):
+        pointer, packed = values
+        function = context.call_conv.get_function_type(types.none, kinds)
+        pointer = builder.inttoptr(pointer, function.as_pointer())
+        unpacked = [builder.extract_value(packed, i) for i in range(len(kinds))]
+        context.call_conv.call_function(builder, pointer, types.none, kinds, unpacked)
+        return context.get_dummy_value()
+
+    return signature, generate
 
 
 def only_with_joints(function: Callable, without: Callable) -> Callable:

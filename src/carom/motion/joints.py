@@ -114,6 +114,10 @@ def position_error(joint, state, out):
         length = math.sqrt(dx * dx + dy * dy + dz * dz)
         f = (length - joint.length) / length
         dx, dy, dz = f * dx, f * dy, f * dz
+    elif kind == PRISMATIC:  # sliding is no error
+        ax, ay, az = axis(state, joint.parent, joint.parent_frame, 0)
+        f = ax * dx + ay * dy + az * dz
+        dx, dy, dz = dx - f * ax, dy - f * ay, dz - f * az
     elif kind == KNIFE_EDGE:
         dx, dy, dz = 0.0, 0.0, 0.0
     out[3], out[4], out[5] = dx, dy, dz

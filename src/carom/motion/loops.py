@@ -32,13 +32,13 @@ def factor(system, state, augment, work):
     for j in range(count):
         for r in range(joints[j].rows):
             d = block[j, r, r]
-            solver.rows[j].diagonal[r] = d
+            solver.rows[j].weight[r] = d
             block[j, r, r] = d * (1.0 + augment)
     drop = solver.drop if augment == 0.0 else 0.0
     for place in range(count):
         k = solver.order[place]
         n, pivot = joints[k].rows, solver.rows[k].pivot
-        factor_diagonal(block[k], pivot, solver.rows[k].diagonal, n, drop)
+        factor_diagonal(block[k], pivot, solver.rows[k].weight, n, drop)
         for s in range(solver.column[place], solver.column[place + 1]):
             divide(block[count + s], block[k], pivot, joints[solver.row[s]].rows, n)
         for t in range(solver.update[place], solver.update[place + 1]):

@@ -18,7 +18,7 @@ S (6), U (6), 1/D, u.
 from __future__ import annotations
 
 from carom.geometry.rotation import cross, matrix, spin_tensor
-from carom.jit import kernel
+from carom.jit import kernel, unit
 from carom.motion.joints import arm, axis, parent_arm
 from carom.system.arrays import PRISMATIC, REVOLUTE, SPHERICAL
 
@@ -183,7 +183,7 @@ def shift_to_parent(row, above):
     above[26] += row[26] + c5 + tz
 
 
-@kernel
+@unit
 def solve_tree(system, state, biased, work):
     """Write the motion of all bodies and the wrench of each joint on its child at its anchor."""
     solver, joints = system.solver, system.joints

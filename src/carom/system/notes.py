@@ -31,7 +31,7 @@ def end_event(kind, state, clock, records):
         for i in range(3):
             row.v1[i], row.w1[i] = state[b].v[i], state[b].w[i]
     clock.event += 1
+    clock.in_step += 1
+    clock.at_once += 1
     if kind == IMPACT:
         clock.struck += 1
-        clock.in_step += 1
-        clock.at_once += 1

@@ -35,8 +35,8 @@ CLOCK = [
     ("saved", "i8"),
     ("struck", "i8"),
     ("event", "i8"),
-    ("in_step", "i8"),  # impacts in the present step
-    ("at_once", "i8"),  # impacts since time last went on
+    ("in_step", "i8"),  # impacts and events in the present step
+    ("at_once", "i8"),  # impacts and events since time last went on
     ("released", "i8"),  # held contacts opened by impacts in the present step
     ("cuts", "i8"),
     ("trials", "i8"),
@@ -136,6 +136,19 @@ def longer(records: Records) -> Records:
         **{
             name: np.concatenate([a, np.zeros_like(a)]).view(np.recarray)
             for name in ("impact", "event", "snapshot")
+            for a in [getattr(records, name)]
+        }
+    )
+
+
+def room_for_one(records: Records, saved: int) -> Records:
+    """Return the records with room for one more saved step."""
+    if saved < len(records.series):
+        return records
+    return records._replace(
+        **{
+            name: np.concatenate([a, np.zeros_like(a[:1])]).view(np.recarray)
+            for name in ("series", "state", "touch")
             for a in [getattr(records, name)]
         }
     )
