@@ -18,9 +18,7 @@ def assemble(run, status: Status) -> dict:
     rec = r.trimmed(run.records, run.clock)
     state, clock = rec.state, run.clock[0]
     kinetic, potential = energies(run.compiled.system, state)
-    ledger = Ledger(
-        kinetic, potential, *(rec.series[name].copy() for name, _ in r.LEDGER)
-    )
+    ledger = Ledger(kinetic, potential, *(rec.series[name].copy() for name, _ in r.LEDGER))
     return {
         "t": rec.series.t.copy(),
         "position": state.x.copy(),
@@ -113,7 +111,17 @@ def joint_reactions(solution) -> np.ndarray:
     out = np.zeros((len(rec.state), system.joints.size, 6))
     work = r.new_work(system, run.method.b.size)
     reactions(system, run.options.augmentation, rec.state, rec.touch, work, out)
-    out[:, run.compiled.flipped] *= -1.0  # the scene's child is the parent of the tree there
+    for j in np.flatnonzero(run.compiled.flipped):  # the scene's child is the tree's parent there
+        out[:, j] *= -1.0
+        joint = system.joints[j]
+        anchors = [
+            rec.state.x[:, b] + quaternion.rotate(rec.state.Q[:, b], anchor)
+            for b, anchor in (
+                (joint.parent, joint.parent_anchor),
+                (joint.child, joint.child_anchor),
+            )
+        ]
+        out[:, j, 3:] += np.cross(anchors[1] - anchors[0], out[:, j, :3])  # where it slides
     return out
 
 

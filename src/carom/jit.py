@@ -16,15 +16,19 @@ import contextlib
 import hashlib
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numba
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 
-_RULES = {"nogil": True, "error_model": "numpy", "_nrt": False}
-_INSIDE = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_RULES: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
+_INSIDE: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 #: for `numba.extending.overload`, whose functions are compiled by these rules
-OPTIONS = {"jit_options": {**_RULES, **_INSIDE, "forceinline": True}}
+OPTIONS: dict[str, Any] = {"jit_options": {**_RULES, **_INSIDE, "forceinline": True}}
+
+
+_WITHOUT_KERNELS = ("paper", "cli")  # folders that no compiled function calls
 
 
 @cache
@@ -33,6 +37,8 @@ def _package_stamp() -> str:
     digest = hashlib.sha256()
     root = Path(__file__).parent
     for path in sorted(root.rglob("*.py")):
+        if path.relative_to(root).parts[0] in _WITHOUT_KERNELS:
+            continue
         digest.update(path.relative_to(root).as_posix().encode())
         digest.update(path.read_bytes())
     return digest.hexdigest()
@@ -66,15 +72,37 @@ def inlined(function):
     return numba.njit(**_RULES, **_INSIDE, forceinline=True)(function)
 
 
+def unit(function):
+    """Compile `function` on its own, to be called through its address (`carom.dispatch.by_address`).
+
+    What is called directly is compiled again into each of its callers, and theirs; a solve that is
+    reached from twenty places cost a minute that way.
+    """
+    compiled = numba.njit(**_RULES, **_INSIDE)(function)
+    return _keep_on_disk(compiled, function)
+
+
+def address(function, *arguments) -> int:
+    """Return the address of a unit for arguments of these types, compiled if need be; 0 without the JIT."""
+    if numba.config.DISABLE_JIT:
+        return 0
+    given = numba.types.void(*(numba.typeof(a) for a in arguments))
+    compiled = function.get_compile_result(given)
+    return compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name)
+
+
 def entry(function):
     """Compile `function` for calls from Python as well, and keep it on disk with all that it calls.
 
     Where no directory can be written (a read-only install without a user cache) it is compiled in each
     process.
     """
-    compiled = numba.njit(**_RULES, no_cfunc_wrapper=True)(function)
-    if compiled is function:  # NUMBA_DISABLE_JIT=1
-        return function
-    with contextlib.suppress(RuntimeError):  # no writable place for a cache
-        compiled._cache = _StampedCache(function)
+    compiled = numba.njit(**{**_RULES, "no_cfunc_wrapper": True})(function)
+    return _keep_on_disk(compiled, function)
+
+
+def _keep_on_disk(compiled, function):
+    if compiled is not function:  # it is with NUMBA_DISABLE_JIT=1
+        with contextlib.suppress(RuntimeError):  # no writable place for a cache
+            compiled._cache = _StampedCache(function)
     return compiled

@@ -42,6 +42,8 @@ class Controls(NamedTuple):
     layer_time: int  # 1: add the duration of impacts to the clock
     max_impacts: int
     max_cuts: int
+    strike_at: int  # addresses of two units
+    hold_at: int
 
 
 @entry
@@ -64,7 +66,7 @@ def run(system, method, controls, held, now, work, clocks, records, until):
                 dt, cuts, found = remaining, 0, False
                 search.active = 0
                 while True:
-                    applied, friction, code = step(system, method, held, now, dt, trial, work)
+                    applied, friction, code = step(method, system, held, now, dt, trial, work)
                     clock.trials += 1
                     if code != 0:
                         return code
@@ -115,15 +117,19 @@ def run(system, method, controls, held, now, work, clocks, records, until):
                     action = change_mode(held[c], c, search.kind, now, clock, records)
             if action == STRIKE:
                 struck = clock.struck
-                code = strike(system, method, controls, held, c, now, work, clock, records)
-                if code != 0:
-                    return code
+                strike(
+                    controls.strike_at, method, system, controls, held, c, now, work, clocks,
+                    records,
+                )  # fmt: skip
+                if work.hit[0].code != 0:
+                    return work.hit[0].code
                 if controls.layer_time == 1 and clock.struck > struck:
                     clock.spent += records.impact[struck].duration  # the position stays
             if action != NOTHING and controls.hold == 1:
                 hold_contact(
-                    system, controls, held, c, now, horizon, action == SETTLE, work, clock, records
-                )
+                    controls.hold_at, system, controls, held, c, now, horizon, action == SETTLE,
+                    work, clocks, records,
+                )  # fmt: skip
         clock.spent = 0.0
         clock.step += 1
         clock.in_step, clock.released = 0, 0
@@ -188,8 +194,8 @@ def finite(state):
 
 
 @entry
-def save_first(held, now, clocks, records):
-    """Write the state at the start."""
+def save_now(held, now, clocks, records):
+    """Write the present state: at the start, and after a failure."""
     save(held, now, clocks[0], records)
 
 

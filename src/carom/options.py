@@ -25,7 +25,8 @@ class Options:
     add_layer_time : bool
         Add the duration of each impact to the clock. Default False: the impact takes no time.
     gap_tolerance : float
-        A contact is located when its gap is in [0, gap_tolerance * size of the body]. Default 1e-13.
+        An impact is located when the gap is within gap_tolerance * size of the body of zero, or within
+        the round-off of the coordinates where that is larger. Default 1e-13.
     tie_tolerance : float
         Points of a body whose gaps differ by less than this part of its size strike together, as
         their mean. Default 1e-9.
@@ -50,7 +51,8 @@ class Options:
     max_iterations : int
         Most block iterations in one step of the paper's methods. Default 100.
     max_impacts_per_step : int
-        Most impacts in one step before the run stops with a status. Default 1000.
+        Most impacts in one step before the run stops with a status. Default 1000. (More than 200 at one
+        instant stop it too.)
     max_cuts : int
         Most halvings of one step while an impact cannot be excluded. Default 40.
     """
@@ -67,7 +69,7 @@ class Options:
     augmentation: float = 1e-3
     natural_frequency: float = 1.0
     damping_ratio: float = 1.0
-    residual_tolerance: float = 1e-13
+    residual_tolerance: float = 1e-15
     max_iterations: int = 100
     max_impacts_per_step: int = 1000
     max_cuts: int = 40

@@ -5,9 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from carom import loop
+from carom.contact.strike import strike_unit
 from carom.geometry import quaternion
+from carom.hold.lifecycle import hold_unit
+from carom.jit import address
 from carom.motion.explicit import rk4
 from carom.motion.reactions import velocity_rows
+from carom.motion.solve import with_address
 from carom.motion.three_field import ThreeField
 from carom.options import Options
 from carom.scene.scene import Scene
@@ -63,13 +67,29 @@ class Run:
             layer_time=int(options.add_layer_time),
             max_impacts=options.max_impacts_per_step,
             max_cuts=options.max_cuts,
+            strike_at=0,
+            hold_at=0,
         )
         self.held = r.new_held(system.contacts.size)
         self.work = r.new_work(system, self.method.b.size)
+        system = with_address(system, self.now, self.work)
+        self.compiled = self.compiled._replace(system=system)
         check_start(scene, self.compiled, self.work, options)
         self.clock = r.new_clock()
         self.records = r.new_records(system, -(-steps // save_every) + 1, 64)
-        loop.save_first(self.held, self.now, self.clock, self.records)
+        if scene.contacts:
+            self.find_units()
+        loop.save_now(self.held, self.now, self.clock, self.records)
+
+    def find_units(self) -> None:
+        """Compile what only a scene with contacts needs, and note where it is."""
+        system, controls = self.compiled.system, self.controls
+        rest = (self.work, self.clock, self.records)
+        strike_at = address(
+            strike_unit, self.method, system, controls, self.held, 0, self.now, *rest
+        )
+        hold_at = address(hold_unit, system, controls, self.held, 0, self.now, 0.0, True, *rest)
+        self.controls = controls._replace(strike_at=strike_at, hold_at=hold_at)
 
     @property
     def steps_done(self) -> int:
@@ -88,7 +108,11 @@ class Run:
             self.records = r.longer(self.records)
 
     def solution(self, status: Status) -> Solution:
-        """Return what was computed."""
+        """Return what was computed; after a failure up to the last state, between saved steps or not."""
+        clock = self.clock[0]
+        if status is not Status.SUCCESS and clock.now > self.records.series.t[clock.saved - 1]:
+            self.records = r.room_for_one(self.records, clock.saved)
+            loop.save_now(self.held, self.now, self.clock, self.records)
         return Solution.from_run(self, status)
 
 

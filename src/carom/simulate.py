@@ -65,6 +65,8 @@ def simulate(
 
     Raises
     ------
+    TypeError
+        If `scene`, `options` or `progress` is of another type.
     ValueError
         For an argument outside its range, a body inside a half-space at the start, or an initial
         velocity that breaks a joint. Nothing has run then.
@@ -82,7 +84,9 @@ def simulate(
     if not isinstance(options, Options):
         raise TypeError(f"options must be carom.Options, got {type(options).__name__}")
     if not duration / step < 1e12:
-        raise ValueError(f"step must be above duration / 1e12 = {duration / 1e12:g} s, got {step!r}")
+        raise ValueError(
+            f"step must be above duration / 1e12 = {duration / 1e12:g} s, got {step!r}"
+        )
     scene.validate()
 
     from carom.run import Run

@@ -114,7 +114,8 @@ class Solution:
         """Return (position, orientation, velocity, angular_velocity) at times between saved ones.
 
         Cubic in each interval between saved steps and events, so continuous except at impacts; error
-        of order 4 in the saved interval, none for free flight of the mass centre.
+        of order 4 in the saved interval for positions and orientations, of order 3 for velocities; none for
+        free flight of the mass centre.
 
         Parameters
         ----------
@@ -127,9 +128,12 @@ class Solution:
         -------
         tuple of arrays
             (n, N, 3), (n, N, 4), (n, N, 3), (n, N, 3); without the first axis for a single time.
-        """
-        from carom.assemble import nodes
 
+        Raises
+        ------
+        ValueError
+            If a time is outside the run, or `side` is another word.
+        """
         if side not in ("right", "left"):
             raise ValueError(f"side must be 'right' or 'left', got {side!r}")
         times = np.atleast_1d(np.asarray(t, dtype=float))
@@ -147,7 +151,6 @@ class Solution:
             v[last], w[last] = right[-1, :, :3], right[-1, :, 3:]
         Q = quaternion.multiply(Q, quaternion.conjugate(self._run.compiled.to_principal))
         result = (x, Q, v, w)
-        assert nodes is not None
         return tuple(a[0] for a in result) if np.ndim(t) == 0 else result
 
     @cached_property
@@ -165,8 +168,13 @@ class Solution:
             Number of the impact.
         steps : int, optional
             Spline steps through the layer. Default: `Options.layer_steps`.
+
+        Raises
+        ------
+        IndexError
+            If there is no impact k.
         """
-        from carom.impact import impact_layer
+        from carom.impact.history import impact_layer
 
         record = self.impacts[k]
         contacts = self._run.compiled.system.contacts

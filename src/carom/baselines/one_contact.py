@@ -73,7 +73,7 @@ def cone_residual(inverse_mass, velocity, friction, impulse) -> float:
     """Return how far an impulse is from solving the contact, in m/s, whatever solver it came from.
 
     The natural map ``|p - P_K(p - rho (w + mu |w_t| e_n))| / rho`` with ``rho = 3 / trace W``; P_K
-    is the projection onto the friction cone, w + mu |w_t| e_n the velocity in De Saxce's form.
+    is the projection onto the friction cone, ``w + mu |w_t| e_n`` the velocity in De Saxce's form.
     """
     W = check.finite_array("inverse_mass", inverse_mass, (3, 3), "1/kg")
     c = check.finite_array("velocity", velocity, (3,), "m/s")

@@ -85,7 +85,11 @@ def passage(system, contact, hold, start, end, h, work, tolerance, tie):
         first = min(first, t0)
         if not (z1 >= -tiny):
             verdict = BELOW
-        elif verdict == CLEAR and t0 + reach(z1, -rate1, a) < h * (1.0 - 1e-12):
-            if a * h * h > 8.0 * tiny and hold.leaving == 0:
-                verdict = UNSURE
+        elif (
+            verdict == CLEAR
+            and t0 + reach(z1, -rate1, a) < h * (1.0 - 1e-12)
+            and a * h * h > 8.0 * tiny  # what could be missed is more than the tolerance
+            and hold.leaving == 0
+        ):
+            verdict = UNSURE
     return verdict, first

@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import math
 
-from numba.extending import overload
-
 from carom.contact.gap import round_off, slow, strike_point
 from carom.contact.return_map import return_map
 from carom.contact.work_mode import restore_work
+from carom.dispatch import by_address, by_method
 from carom.impact import layout
 from carom.impact.layer import traverse
 from carom.impact.resolve import resolve
-from carom.jit import OPTIONS, kernel
+from carom.jit import kernel, unit
 from carom.motion.acceleration import OPEN
 from carom.motion.contact_point import (
     add_velocity,
@@ -71,16 +70,16 @@ def onto_surface(system, controls, c, state, work):
     return 0
 
 
-@kernel
-def strike(system, method, controls, held, c, state, work, clock, records):
-    """Resolve the impact of contact c. Returns 0 or the number of a `Status`.
+@unit
+def strike_unit(method, system, controls, held, c, state, work, clocks, records):
+    """Resolve the impact of contact c; 0 or the number of a `Status` goes to work.hit.
 
     Velocities of `state` change; its position only by the return map.
     """
-    contact, hit, hold = system.contacts[c], work.hit[0], held[c]
-    code = onto_surface(system, controls, c, state, work)
-    if code != 0:
-        return code
+    contact, hit, hold, clock = system.contacts[c], work.hit[0], held[c], clocks[0]
+    hit.code = onto_surface(system, controls, c, state, work)
+    if hit.code != 0:
+        return
     rx, ry, rz = contact_arm(contact, state, hit.point)
     u = contact_velocity(contact, state, rx, ry, rz)
     if u[0] < -slow(contact, state):
@@ -88,7 +87,8 @@ def strike(system, method, controls, held, c, state, work, clock, records):
         effective_inverse_mass(system, contact, state, rx, ry, rz, work, hit.W)
         hit.u[0], hit.u[1], hit.u[2] = u
         if collide(method, controls, contact, hit, work.history) != layout.OK:
-            return IMPACT_FAILED
+            hit.code = IMPACT_FAILED
+            return
         write_impact(contact, c, state, rx, ry, rz, hit, clock, records)
         begin_event(c, state, clock, records)
         out, P = hit.out, layout.IMPULSE
@@ -102,15 +102,16 @@ def strike(system, method, controls, held, c, state, work, clock, records):
             held[i].near = 1
     for k in range(3):
         hold.point[k] = hit.point[k]
-    return 0
+
+
+#: strike(address, method, system, controls, held, c, state, work, clocks, records)
+strike = by_address(strike_unit)
 
 
 @kernel
 def by_impulse(method, controls, contact, hit, history):
     """Solve the impact to round-off."""
-    return resolve(
-        hit.W, hit.u, contact.friction, contact.restitution, contact.law, hit.out
-    )
+    return resolve(hit.W, hit.u, contact.friction, contact.restitution, contact.law, hit.out)
 
 
 @kernel
@@ -122,20 +123,8 @@ def by_layer(method, controls, contact, hit, history):
     )  # fmt: skip
 
 
-_WAYS = {Explicit: by_impulse, ThreeField: by_layer}
-
-
-def collide(method, controls, contact, hit, history):
-    """Resolve the impact in work.hit the way the method does it."""
-    return _WAYS[type(method)](method, controls, contact, hit, history)
-
-
-@overload(collide, **OPTIONS)
-def _collide(method, controls, contact, hit, history):
-    way = _WAYS[method.instance_class]
-    return lambda method, controls, contact, hit, history: way(
-        method, controls, contact, hit, history
-    )
+#: collide(method, controls, contact, hit, history): resolve the impact in work.hit the way the method does it
+collide = by_method({Explicit: by_impulse, ThreeField: by_layer})
 
 
 @kernel

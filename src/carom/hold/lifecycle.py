@@ -14,8 +14,9 @@ from __future__ import annotations
 import math
 
 from carom.contact.gap import slow
+from carom.dispatch import by_address
 from carom.geometry.rotation import rotate
-from carom.jit import kernel
+from carom.jit import kernel, unit
 from carom.motion.acceleration import OPEN, SLIP, STICK, acceleration
 from carom.motion.contact_point import (
     add_velocity,
@@ -30,13 +31,13 @@ from carom.system.notes import begin_event, end_event
 from carom.system.records import HOLD, SLIPS, STICKS
 
 
-@kernel
-def hold_contact(system, controls, held, c, state, horizon, settle, work, clock, records):
+@unit
+def hold_unit(system, controls, held, c, state, horizon, settle, work, clocks, records):
     """Hold contact c, closed at its point, if it does not approach and the rule says so.
 
     With `settle` it is held already and slip has come to a stop or has turned: only its mode is found anew.
     """
-    contact, hold = system.contacts[c], held[c]
+    contact, hold, clock = system.contacts[c], held[c], clocks[0]
     rx, ry, rz = contact_arm(contact, state, hold.point)
     u = contact_velocity(contact, state, rx, ry, rz)
     still, stop = slow(contact, state), 0.0
@@ -60,9 +61,7 @@ def hold_contact(system, controls, held, c, state, horizon, settle, work, clock,
             if not bounces_end(contact, u[0], g, still, horizon):
                 return
     f = hold.force
-    if hold.mode == STICK and not (
-        math.sqrt(f[1] * f[1] + f[2] * f[2]) <= contact.friction * f[0]
-    ):
+    if hold.mode == STICK and not (math.sqrt(f[1] * f[1] + f[2] * f[2]) <= contact.friction * f[0]):
         hold.mode = SLIP
     mark_anchor(contact, hold, state)
     body = system.bodies[contact.body]
@@ -72,6 +71,10 @@ def hold_contact(system, controls, held, c, state, horizon, settle, work, clock,
     kind = HOLD if not settle else (STICKS if hold.mode == STICK else SLIPS)
     clock.holds += 0 if settle else 1
     end_event(kind, state, clock, records)
+
+
+#: hold_contact(address, system, controls, held, c, state, horizon, settle, work, clocks, records)
+hold_contact = by_address(hold_unit)
 
 
 @kernel

@@ -76,7 +76,7 @@ def invariant_directions(inverse_mass, friction: float) -> InvariantDirections:
 
 
 def critical_friction(inverse_mass) -> float:
-    """Return mu_crit = |W_tt^-1 W_tn|: from this friction on, slip that stops stays stopped.
+    """Return ``mu_crit = |W_tt^-1 W_tn|``: from this friction on, slip that stops stays stopped.
 
     Parameters
     ----------

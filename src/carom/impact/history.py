@@ -37,6 +37,8 @@ class LayerHistory:
         Change of kinetic energy [J].
     phases : tuple of str
         As for `Impact`.
+    width : float
+        Width b of the layer [m].
     """
 
     t: np.ndarray

@@ -1,7 +1,7 @@
 """Kinematic restitution: the bodies part with e times the speed of approach.
 
 I. Newton, Philosophiae Naturalis Principia Mathematica (1687), scholium to the laws of motion. The
-law of the paper. With friction it can raise the energy (mathematics page, V8): that is the law.
+law of the paper. With friction it can raise the energy (mathematics page, II.10): that is the law.
 
 Every law is four functions. `goal`: the value at which restitution ends. `remaining`: how far it
 is. `rate`: how fast it comes, per unit of normal impulse. `straight`: the normal impulse still to

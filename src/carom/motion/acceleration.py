@@ -7,6 +7,7 @@ brought together by block Gauss-Seidel.
 
 from __future__ import annotations
 
+from carom.dispatch import only_with_joints
 from carom.jit import kernel
 from carom.motion.contact_point import (
     contact_acceleration,
@@ -25,11 +26,25 @@ OPEN, SLIP, STICK = range(3)
 
 
 @kernel
+def _bias_joints(system, state, work):
+    """Write the bias of the relative acceleration of each joint."""
+    for j in range(system.joints.shape[0]):
+        acceleration_bias(system.joints[j], state, work.joint[j].bias)
+
+
+@kernel
+def _no_joints(system, state, work):
+    """Without joints there is none."""
+
+
+bias_joints = only_with_joints(_bias_joints, _no_joints)
+
+
+@kernel
 def acceleration(system, state, held, work, stage):
     """Write the accelerations into `rate` of `stage`; return the powers of loads and of friction."""
     applied = applied_wrenches(system, state, True, work)
-    for j in range(system.joints.shape[0]):
-        acceleration_bias(system.joints[j], state, work.joint[j].bias)
+    bias_joints(system, state, work)
     solve(system, state, True, work)
     for b in range(system.bodies.shape[0]):
         motion, rate = work.body[b].motion, stage[b].rate

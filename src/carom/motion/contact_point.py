@@ -53,9 +53,7 @@ def contact_acceleration(contact, state, motion, p, rx, ry, rz):
     cx, cy, cz = cross(w[0], w[1], w[2], cx, cy, cz)
     cx, cy, cz = cross(w[0], w[1], w[2], cx, cy, cz)
     tx, ty, tz = cross(motion[3], motion[4], motion[5], rx, ry, rz)
-    return in_contact_axes(
-        contact, motion[0] + tx + cx, motion[1] + ty + cy, motion[2] + tz + cz
-    )
+    return in_contact_axes(contact, motion[0] + tx + cx, motion[1] + ty + cy, motion[2] + tz + cz)
 
 
 @kernel

@@ -35,7 +35,7 @@ def rk4() -> Explicit:
 
 
 @inlined
-def explicit_step(system, method, held, start, h, end, work):
+def explicit_step(method, system, held, start, h, end, work):
     """Write the state a time h after `start` into `end`; return work of loads, of friction, a status."""
     if not fly(system, held, start, h, end, work):
         return 0.0, 0.0, 0

@@ -12,7 +12,15 @@ for any number of steps.
 
 from __future__ import annotations
 
-from carom.geometry.rotation import cross, exp, multiply, normalize, renormalize, rotate, rotate_back
+from carom.geometry.rotation import (
+    cross,
+    exp,
+    multiply,
+    normalize,
+    renormalize,
+    rotate,
+    rotate_back,
+)
 from carom.jit import inlined, kernel
 
 
@@ -38,7 +46,9 @@ def free_flight(body, g, h, start, end, memory):
 def turning(i, q, l):
     """Return dQ/dt = 1/2 Q (0, W) for spatial momentum l, W = J^-1 R^T l, with i = 1/J."""
     a = rotate_back(q[0], q[1], q[2], q[3], l[0], l[1], l[2])
-    return multiply(q[0], q[1], q[2], q[3], 0.0, 0.5 * a[0] * i[0], 0.5 * a[1] * i[1], 0.5 * a[2] * i[2])
+    return multiply(
+        q[0], q[1], q[2], q[3], 0.0, 0.5 * a[0] * i[0], 0.5 * a[1] * i[1], 0.5 * a[2] * i[2]
+    )
 
 
 @kernel

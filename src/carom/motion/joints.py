@@ -82,8 +82,10 @@ def anchor_speed(joint, state):
 
 @kernel
 def turn_error(joint, state):
-    """Return the rotation vector (world) by which the child is turned against the parent, as far as
-    the joint forbids it: the sine of the tilt for a revolute joint, all of it for a fixed one."""
+    """Return the rotation vector (world) of the child against the parent, as far as it is forbidden.
+
+    The sine of the tilt for a revolute joint, all of it for a fixed one.
+    """
     kind = joint.kind
     c, p = joint.child, joint.parent
     if kind == REVOLUTE:
@@ -91,7 +93,7 @@ def turn_error(joint, state):
         bx, by, bz = axis(state, c, joint.child_frame, 0)
         return cross(ax, ay, az, bx, by, bz)
     ex, ey, ez = 0.0, 0.0, 0.0
-    if kind == FIXED or kind == PRISMATIC:
+    if kind in (FIXED, PRISMATIC):
         # half the sum of e_p x e_c over the three axes: the rotation vector to first order,
         # zero only where the frames agree (or are half a turn apart, excluded at the start)
         for k in range(3):
@@ -112,6 +114,10 @@ def position_error(joint, state, out):
         length = math.sqrt(dx * dx + dy * dy + dz * dz)
         f = (length - joint.length) / length
         dx, dy, dz = f * dx, f * dy, f * dz
+    elif kind == PRISMATIC:  # sliding is no error
+        ax, ay, az = axis(state, joint.parent, joint.parent_frame, 0)
+        f = ax * dx + ay * dy + az * dz
+        dx, dy, dz = dx - f * ax, dy - f * ay, dz - f * az
     elif kind == KNIFE_EDGE:
         dx, dy, dz = 0.0, 0.0, 0.0
     out[3], out[4], out[5] = dx, dy, dz

@@ -4,8 +4,9 @@ The same solve as in `carom.motion.tree`, through the multipliers: A M^-1 A^T la
 motion = M^-1 (wrench + A^T lam). Bodies are eliminated first (that is A M^-1 A^T), then the joints in
 an order of low fill that was chosen when the scene was compiled. A pivot below `drop` times
 its own diagonal belongs to a row that depends on earlier ones and is left out: redundant
-constraints and singular positions need no help. `augment` > 0 adds that part of each diagonal instead: one pass of
-the augmented Lagrangian, repeated by the caller (the paper's way, and the way to reactions of minimal norm).
+constraints and singular positions need no help. `augment` > 0 adds that part of each diagonal instead:
+one pass of the augmented Lagrangian, repeated by the caller (the paper's way, and the way to reactions of
+minimal norm).
 """
 
 from __future__ import annotations
@@ -31,13 +32,13 @@ def factor(system, state, augment, work):
     for j in range(count):
         for r in range(joints[j].rows):
             d = block[j, r, r]
-            solver.rows[j].diagonal[r] = d
+            solver.rows[j].weight[r] = d
             block[j, r, r] = d * (1.0 + augment)
     drop = solver.drop if augment == 0.0 else 0.0
     for place in range(count):
         k = solver.order[place]
         n, pivot = joints[k].rows, solver.rows[k].pivot
-        factor_diagonal(block[k], pivot, solver.rows[k].diagonal, n, drop)
+        factor_diagonal(block[k], pivot, solver.rows[k].weight, n, drop)
         for s in range(solver.column[place], solver.column[place + 1]):
             divide(block[count + s], block[k], pivot, joints[solver.row[s]].rows, n)
         for t in range(solver.update[place], solver.update[place + 1]):
@@ -157,7 +158,7 @@ def free_motion(system, work):
 
 @kernel
 def subtract_rows(system, work):
-    """rhs <- rhs - A motion."""
+    """Rhs <- rhs - A motion."""
     for j in range(system.joints.shape[0]):
         joint, row = system.joints[j], system.solver.rows[j]
         for side in range(2):
@@ -174,7 +175,7 @@ def subtract_rows(system, work):
 
 @kernel
 def add_reactions(system, work):
-    """motion <- motion + M^-1 A^T multipliers, where rhs holds the multipliers."""
+    """Motion <- motion + M^-1 A^T multipliers, where rhs holds the multipliers."""
     for j in range(system.joints.shape[0]):
         joint, row = system.joints[j], system.solver.rows[j]
         for side in range(2):

@@ -7,6 +7,7 @@ both by the one constrained solve with the error as its bias.
 
 from __future__ import annotations
 
+from carom.dispatch import only_with_joints
 from carom.geometry.rotation import exp, multiply, normalize
 from carom.jit import kernel
 from carom.motion.contact_point import clear_wrenches
@@ -42,7 +43,7 @@ def largest_position_error(system, state, work):
 
 
 @kernel
-def project_position(system, state, work, tolerance):
+def _project_position(system, state, work, tolerance):
     """Bring the positions back to the joints; return the relative error that is left."""
     error = 0.0
     for _ in range(8):
@@ -56,7 +57,7 @@ def project_position(system, state, work, tolerance):
 
 
 @kernel
-def project_velocity(system, state, work):
+def _project_velocity(system, state, work):
     """Take from the velocities what the joints forbid."""
     for j in range(system.joints.shape[0]):
         bias = work.joint[j].bias
@@ -70,3 +71,18 @@ def project_velocity(system, state, work):
         for k in range(3):
             v[k] += motion[k]
             w[k] += motion[3 + k]
+
+
+@kernel
+def _position_is_free(system, state, work, tolerance):
+    """Without joints there is no error of position."""
+    return 0.0
+
+
+@kernel
+def _velocity_is_free(system, state, work):
+    """Without joints nothing is forbidden."""
+
+
+project_position = only_with_joints(_project_position, _position_is_free)
+project_velocity = only_with_joints(_project_velocity, _velocity_is_free)

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from numba.extending import overload
-
-from carom.jit import OPTIONS, entry, kernel
+from carom.dispatch import by_solver
+from carom.jit import entry, kernel
 from carom.motion.contact_point import contact_arm
 from carom.motion.forces import add_force, applied_wrenches
 from carom.motion.joints import acceleration_bias, position_error, velocity_error
 from carom.motion.loops import add_reactions, factor, free_motion, substitute, subtract_rows
 from carom.motion.rows import row_target
-from carom.motion.solve import joint_wrench, solve, solver_type
-from carom.system.arrays import LoopSolver
+from carom.motion.solve import joint_wrench, solve
+from carom.system.arrays import FreeSolver, LoopSolver, TreeSolver
 
 
 @kernel
@@ -55,16 +54,8 @@ def swap(system, work):
             system.solver.rows[j].rhs[k] = work.joint[j].multiplier[k]
 
 
-def share(system, augment, state, work):
-    """Share reactions that are not unique with least norm; wrenches and bias must be in place."""
-    chosen = least_norm if isinstance(system.solver, LoopSolver) else keep_shares
-    chosen(system, augment, state, work)
-
-
-@overload(share, **OPTIONS)
-def _share(system, augment, state, work):
-    chosen = least_norm if solver_type(system) is LoopSolver else keep_shares
-    return lambda system, augment, state, work: chosen(system, augment, state, work)
+#: share reactions that are not unique with least norm; wrenches and bias must be in place
+share = by_solver({FreeSolver: keep_shares, TreeSolver: keep_shares, LoopSolver: least_norm})
 
 
 @entry

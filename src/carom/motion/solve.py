@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from numba.extending import overload
-
+from carom.dispatch import by_address
 from carom.geometry.rotation import rotate, rotate_back
-from carom.jit import OPTIONS, kernel
+from carom.jit import address, inlined, kernel, unit
 from carom.motion.loops import factor, solve_factored
 from carom.motion.rows import direction
 from carom.motion.tree import solve_tree
 from carom.system.arrays import FreeSolver, LoopSolver, TreeSolver
 
 
-@kernel
+@unit
 def solve_free(system, state, biased, work):
     """Without joints: motion = M^-1 wrench."""
     for b in range(system.bodies.shape[0]):
@@ -30,7 +29,7 @@ def free_body(body, q, work):
         motion[3 + k] = t[k]
 
 
-@kernel
+@unit
 def solve_loops(system, state, biased, work):
     """With closed loops: factor in this position and solve; the wrench of each joint from its rows."""
     factor(system, state, 0.0, work)
@@ -51,26 +50,21 @@ def joint_wrench(joint, state, multiplier, reaction):
             reaction[3 + k] += multiplier[r] * d[k]
 
 
-_BACK_ENDS = {FreeSolver: solve_free, TreeSolver: solve_tree, LoopSolver: solve_loops}
+BACK_ENDS = {FreeSolver: solve_free, TreeSolver: solve_tree, LoopSolver: solve_loops}
+_solve_at = by_address(lambda system, *rest: BACK_ENDS[type(system.solver)](system, *rest))
 
 
+@inlined
 def solve(system, state, biased, work):
     """Write the motion of all bodies under their wrenches, all in `work.body`.
 
     With `biased` the joints move relative to each other as `work.joint` says, else not. See
-    `carom.motion.tree` for the meaning. Compiled code takes the back end from the type of
-    `system.solver`, so that a run contains only the one it needs.
+    `carom.motion.tree` for the meaning.
     """
-    _BACK_ENDS[type(system.solver)](system, state, biased, work)
+    _solve_at(system.solver.address, system, state, biased, work)
 
 
-def solver_type(system):
-    """Return the class of `system.solver` from Numba's type of the system."""
-    index = system.fields.index("solver")
-    return system.types[index].instance_class
-
-
-@overload(solve, **OPTIONS)
-def _solve(system, state, biased, work):
-    back_end = _BACK_ENDS[solver_type(system)]
-    return lambda system, state, biased, work: back_end(system, state, biased, work)
+def with_address(system, state, work):
+    """Return the system with the address of its back end for arrays like these."""
+    found = address(BACK_ENDS[type(system.solver)], system, state, True, work)
+    return system._replace(solver=system.solver._replace(address=found))

@@ -29,17 +29,17 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba.extending import overload
 
+from carom.dispatch import by_solver
 from carom.geometry.rotation import exp, multiply, normalize, rotate, rotate_back
-from carom.jit import OPTIONS, kernel
+from carom.jit import kernel
 from carom.motion.explicit import constrained_step, fly, keep, mark_held
 from carom.motion.forces import add_force, applied_wrenches
 from carom.motion.joints import arm, parent_arm, position_error, velocity_error
 from carom.motion.loops import factor, substitute, subtract_rows
 from carom.motion.project import project_position
 from carom.motion.rows import direction, row_target
-from carom.motion.solve import free_body, solver_type
+from carom.motion.solve import free_body
 from carom.system.arrays import FreeSolver, LoopSolver
 
 NO_CONVERGENCE = 1
@@ -59,7 +59,7 @@ class ThreeField(NamedTuple):
 
 
 @kernel
-def three_field_step(system, method, held, start, h, end, work):
+def three_field_step(method, system, held, start, h, end, work):
     """Write the state a time h after `start` into `end`; return work of loads, of friction, a status."""
     for c in range(held.shape[0]):
         if held[c].mode != 0 and held[c].rest == 0:
@@ -212,18 +212,7 @@ def velocity_block_loops(system, method, h, end, work):
     return max(change, set_velocities(system, end, work))
 
 
-_BLOCKS = {FreeSolver: velocity_block_free, LoopSolver: velocity_block_loops}
-
-
-def velocity_block(system, method, h, end, work):
-    """Solve velocities (and multipliers) at the frozen position; return the largest relative change."""
-    return _BLOCKS[type(system.solver)](system, method, h, end, work)
-
-
-@overload(velocity_block, **OPTIONS)
-def _velocity_block(system, method, h, end, work):
-    block = _BLOCKS[solver_type(system)]
-    return lambda system, method, h, end, work: block(system, method, h, end, work)
+velocity_block = by_solver({FreeSolver: velocity_block_free, LoopSolver: velocity_block_loops})
 
 
 @kernel

@@ -4,20 +4,21 @@ One solve gives the accelerations (or velocity changes, or displacements) A of a
 
     M A = wrench + reactions,      relative motion of each joint - bias  in its freedoms S,
 
-for the given wrench of each body and bias of each joint. With forces and centripetal terms it is the equation of motion; with an
-impulse and no bias it is P G^T; with no wrench and minus an error of position or velocity
-it is the correction that is shortest in the kinetic metric. (Featherstone 1983, in absolute coordinates;
-freedoms are eliminated one at a time, rank one each.)
+for the given wrench of each body and bias of each joint. With forces and centripetal terms it is the
+equation of motion; with an impulse and no bias it is P G^T; with no wrench and minus an error of
+position or velocity it is the correction that is shortest in the kinetic metric. (Featherstone 1983, in
+absolute coordinates; freedoms are eliminated one at a time, rank one each.)
 
 A row of scratch holds for each body: 0-5 M, 6-14 H, 15-20 I (articulated inertia
-at the mass centre, f = M a + H alpha, t = H^T a + I alpha), 21-26 force bias, 27-29 arm of the child, 30-32 centre of the
-child from the parent's, 33-38 motion bias at the centre, then 14 for each freedom: S (6), U (6), 1/D, u.
+at the mass centre, f = M a + H alpha, t = H^T a + I alpha), 21-26 force bias, 27-29 arm of the child,
+30-32 centre of the child from the parent's, 33-38 motion bias at the centre, then 14 for each freedom:
+S (6), U (6), 1/D, u.
 """
 
 from __future__ import annotations
 
 from carom.geometry.rotation import cross, matrix, spin_tensor
-from carom.jit import kernel
+from carom.jit import kernel, unit
 from carom.motion.joints import arm, axis, parent_arm
 from carom.system.arrays import PRISMATIC, REVOLUTE, SPHERICAL
 
@@ -131,9 +132,21 @@ def shift_to_parent(row, above):
     dx, dy, dz = row[30], row[31], row[32]
     # H' = H - M hat(d): columns of -M hat(d) are -(M e) x d with rows taken from M
     m0, m1, m2, m3, m4, m5 = row[0], row[1], row[2], row[3], row[4], row[5]
-    g0, g1, g2 = row[6] - (m1 * dz - m2 * dy), row[7] - (m2 * dx - m0 * dz), row[8] - (m0 * dy - m1 * dx)
-    g3, g4, g5 = row[9] - (m3 * dz - m4 * dy), row[10] - (m4 * dx - m1 * dz), row[11] - (m1 * dy - m3 * dx)
-    g6, g7, g8 = row[12] - (m4 * dz - m5 * dy), row[13] - (m5 * dx - m2 * dz), row[14] - (m2 * dy - m4 * dx)
+    g0, g1, g2 = (
+        row[6] - (m1 * dz - m2 * dy),
+        row[7] - (m2 * dx - m0 * dz),
+        row[8] - (m0 * dy - m1 * dx),
+    )
+    g3, g4, g5 = (
+        row[9] - (m3 * dz - m4 * dy),
+        row[10] - (m4 * dx - m1 * dz),
+        row[11] - (m1 * dy - m3 * dx),
+    )
+    g6, g7, g8 = (
+        row[12] - (m4 * dz - m5 * dy),
+        row[13] - (m5 * dx - m2 * dz),
+        row[14] - (m2 * dy - m4 * dx),
+    )
     above[0] += m0
     above[1] += m1
     above[2] += m2
@@ -150,8 +163,8 @@ def shift_to_parent(row, above):
     above[13] += g7
     above[14] += g8
     # I' = I - H^T hat(d) + hat(d) H'
-    h0, h1, h2, h3, h4, h5, h6, h7, h8 = (
-        row[6], row[7], row[8], row[9], row[10], row[11], row[12], row[13], row[14],
+    h0, h1, h2, h3, h4, h5, h6, h7 = (
+        row[6], row[7], row[8], row[9], row[10], row[11], row[12], row[13],
     )  # fmt: skip
     above[15] += row[15] - (h3 * dz - h6 * dy) + (dy * g6 - dz * g3)
     above[16] += row[16] - (h6 * dx - h0 * dz) + (dy * g7 - dz * g4)
@@ -170,7 +183,7 @@ def shift_to_parent(row, above):
     above[26] += row[26] + c5 + tz
 
 
-@kernel
+@unit
 def solve_tree(system, state, biased, work):
     """Write the motion of all bodies and the wrench of each joint on its child at its anchor."""
     solver, joints = system.solver, system.joints

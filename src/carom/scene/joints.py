@@ -1,8 +1,8 @@
 """Joints, placed in the world as the system stands at the start.
 
 Give a definition to `Scene.add_joint` with the two bodies it joins. Anchors are points [m], axes
-directions (made unit vectors; the zero vector is refused), all in world axes. ``anchor=None`` is
-the mass centre of the child.
+directions (made unit vectors; the zero vector is refused), all in world axes. Where an anchor
+may be left out, it is the mass centre of the child.
 """
 
 from __future__ import annotations

@@ -82,7 +82,7 @@ class Scene:
             Exactly one of the two: [kg], or [kg/m^3] of the shape; above 0.
         inertia : (3,) or (3, 3)
             Principal moments along the body axes, or the symmetric matrix in body axes, about the
-            mass centre [kg m^2]. Default: that of the solid shape.
+            mass centre [kg m^2]. Default: that of the solid shape; needed where there is none.
         position : (3,)
             Of the mass centre, in the world [m].
         orientation : (4,)
@@ -93,6 +93,11 @@ class Scene:
             In world axes [rad/s].
         name
             Default ``"body1"``, ``"body2"``, ...
+
+        Raises
+        ------
+        ValueError
+            If an argument is outside its range, the inertia is that of no body, or the name is taken.
         """
         index, name = self._parts.new(Body, name, "body")
         motion = (position, orientation, velocity, angular_velocity)

@@ -86,7 +86,7 @@ ROW = [
     ("A", "f8", (2, 6, 6)),  # rows, sides child and parent
     ("Y", "f8", (2, 6, 6)),  # rows times M^-1
     ("pivot", "f8", 6),  # reciprocal pivots, 0 = dropped
-    ("diagonal", "f8", 6),  # of A M^-1 A^T before elimination
+    ("weight", "f8", 6),  # diagonal of A M^-1 A^T before elimination
     ("rhs", "f8", 6),  # right-hand side, then multipliers
 ]
 
@@ -143,7 +143,7 @@ SEARCH = [
 ]
 
 #: an impact in the making
-HIT = [("W", "f8", (3, 3)), ("u", "f8", 3), ("point", "f8", 3), ("out", "f8", 32)]
+HIT = [("W", "f8", (3, 3)), ("u", "f8", 3), ("point", "f8", 3), ("out", "f8", 32), ("code", "i8")]
 
 
 def table(fields: list, *shape: int) -> np.recarray:
@@ -154,12 +154,13 @@ def table(fields: list, *shape: int) -> np.recarray:
 class FreeSolver(NamedTuple):
     """No joints: every body answers for itself."""
 
-    count: int
+    address: int  # of the compiled solve
 
 
 class TreeSolver(NamedTuple):
     """A forest of joints, solved by articulated-body elimination."""
 
+    address: int
     links: np.recarray  # (N,) LINK
     scratch: np.ndarray  # (N, 124) written by each solve
 
@@ -167,6 +168,7 @@ class TreeSolver(NamedTuple):
 class LoopSolver(NamedTuple):
     """Closed loops: block-sparse Cholesky factor of A M^-1 A^T, joints in an order of low fill."""
 
+    address: int
     order: np.ndarray  # (J,) joints in the order of elimination
     column: np.ndarray  # (J+1,) ranges of the blocks below the diagonal, by place in the order
     row: np.ndarray  # (B,) joint of each block below the diagonal

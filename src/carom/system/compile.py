@@ -140,7 +140,7 @@ def _joints(scene, frames, options, loops):
         joints.parent_frame[j], joints.child_frame[j] = frames.axes(a, world), frames.axes(b, world)
         joints.length[j] = getattr(joint.definition, "length", 0.0)
     if number == 0:
-        solver = solvers.free_solver(count)
+        solver = arrays.FreeSolver(0)
     elif forest:
         solver = solvers.tree_solver(joints, order, carrier)
     else:

@@ -141,6 +141,19 @@ def longer(records: Records) -> Records:
     )
 
 
+def room_for_one(records: Records, saved: int) -> Records:
+    """Return the records with room for one more saved step."""
+    if saved < len(records.series):
+        return records
+    return records._replace(
+        **{
+            name: np.concatenate([a, np.zeros_like(a[:1])]).view(np.recarray)
+            for name in ("series", "state", "touch")
+            for a in [getattr(records, name)]
+        }
+    )
+
+
 def trimmed(records: Records, clock: np.recarray) -> Records:
     """Return copies of the rows that were written."""
     ends = {

@@ -11,7 +11,6 @@ from carom.system.arrays import (
     REVOLUTE,
     ROW,
     SPHERICAL,
-    FreeSolver,
     LoopSolver,
     TreeSolver,
     table,
@@ -22,23 +21,18 @@ FREEDOMS = {SPHERICAL: 3, REVOLUTE: 1, FIXED: 0, PRISMATIC: 1}
 SCRATCH = 124  # 39 + 6 * 14 + 1: see carom.motion.tree
 
 
-def free_solver(count: int) -> FreeSolver:
-    """Return the solver of a scene without joints."""
-    return FreeSolver(count)
-
-
 def tree_solver(joints: np.recarray, order: np.ndarray, joint: np.ndarray) -> TreeSolver:
     """Return the solver of a forest; `order` and `joint` are those of `forest_order`."""
     links = table(LINK, order.size)
     links.order, links.joint = order, joint
-    links.parent, links.freedoms = -1, 6
+    links["parent"], links["freedoms"] = -1, 6
     for b, j in enumerate(joint):
         if j >= 0:
             links.parent[b] = p = joints.parent[j]
             links.freedoms[b] = FREEDOMS[int(joints.kind[j])]
             if p >= 0:
                 links.has_child[p] = 1
-    return TreeSolver(links, np.zeros((order.size, SCRATCH)))
+    return TreeSolver(0, links, np.zeros((order.size, SCRATCH)))
 
 
 def loop_solver(joints: np.recarray, drop: float) -> LoopSolver:
@@ -74,6 +68,7 @@ def loop_solver(joints: np.recarray, drop: float) -> LoopSolver:
         if place[i] >= place[j]
     ]
     return LoopSolver(
+        address=0,
         order=np.array(order, dtype=np.int64),
         column=np.array(column, dtype=np.int64),
         row=np.array(row, dtype=np.int64),

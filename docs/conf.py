@@ -1,0 +1,42 @@
+"""Sphinx configuration."""
+
+from __future__ import annotations
+
+import carom
+
+project = "carom"
+author = "The carom developers"
+copyright = "The carom developers"
+version = release = carom.__version__
+
+extensions = [
+    "myst_parser",
+    "numpydoc",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx.ext.mathjax",
+    "sphinx.ext.viewcode",
+]
+source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
+exclude_patterns = ["_build", "_templates"]
+templates_path = ["_templates"]
+
+myst_enable_extensions = ["amsmath", "deflist", "dollarmath"]
+myst_heading_anchors = 3
+suppress_warnings = ["myst.strikethrough"]
+
+autosummary_generate = True
+autodoc_typehints = "none"  # the docstrings say it, with shapes and units
+autodoc_member_order = "bysource"
+numpydoc_show_class_members = False
+default_role = "literal"
+
+html_theme = "pydata_sphinx_theme"
+html_title = "carom"
+html_static_path = ["_static"]
+html_theme_options = {
+    "show_toc_level": 2,
+    "navigation_with_keys": False,
+    "secondary_sidebar_items": ["page-toc"],
+}
+html_show_sourcelink = False

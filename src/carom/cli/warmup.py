@@ -1,0 +1,75 @@
+"""``carom warmup``: compile everything once."""
+
+from __future__ import annotations
+
+import time
+
+_ABOUT = """\
+Compile the library for every kind of system (free bodies, trees of joints, loops of joints) and
+every method. Compiled code is kept on disk: later processes load it in a fraction of a second."""
+
+
+def add(commands) -> None:
+    """Add the command to the parser."""
+    this = commands.add_parser(
+        "warmup", help="compile everything once", description=_ABOUT, epilog="Takes a few minutes."
+    )
+    this.set_defaults(run=run)
+
+
+def scenes() -> dict:
+    """Return a small scene of each kind, with an impact within 0.05 s."""
+    return {"free": _free(), "tree": _linked(False), "loops": _linked(True)}
+
+
+def run(given) -> int:
+    """Run each scene by each method, and say how long the first run took."""
+    import carom
+    from carom.simulate import METHODS
+
+    for kind, scene in scenes().items():
+        for method in METHODS:
+            start = time.perf_counter()
+            carom.simulate(scene, 0.05, step=5e-3, method=method)
+            print(f"{kind:6} {method:10} {time.perf_counter() - start:7.2f} s", flush=True)
+    start = time.perf_counter()
+    carom.impact_layer(
+        [[1, 0, 0], [0, 3.5, 0], [0, 0, 3.5]], (-1, 0.5, 0.1), 0.3, 0.5, penetration=0.2, width=1e-6
+    )
+    carom.resolve_impact([[1, 0, 0], [0, 3.5, 0], [0, 0, 3.5]], (-1, 0.5, 0.1), 0.3, 0.5)
+    print(f"{'impact':17} {time.perf_counter() - start:7.2f} s")
+    return 0
+
+
+def _free():
+    import carom
+
+    scene = carom.Scene()
+    ground = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1))
+    die = scene.add_body(
+        shape=carom.Box(0.02, 0.02, 0.02), mass=0.016, position=(0, 0, 0.03),
+        velocity=(0.5, 0, -0.5), angular_velocity=(10, 10, 0),
+    )  # fmt: skip
+    scene.add_contact(die, ground, restitution=0.5, friction=0.2)
+    return scene
+
+
+def _linked(loop: bool):
+    """Two balls on rods from the ground, one of which strikes it; as a loop, joined by a rod."""
+    import carom
+
+    scene = carom.Scene()
+    ground = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1))
+    balls = []
+    for x in (0.0, 1.0):
+        ball = scene.add_body(
+            shape=carom.Sphere(0.1), mass=1.0, position=(x, 0, 0.105), velocity=(0, 0, -1.0),
+            angular_velocity=(0, 1.0, 0),
+        )  # fmt: skip
+        joint = carom.joints.Revolute(anchor=(x - 1.0, 0, 0.105), axis=(0, 1, 0))
+        scene.add_joint(joint, carom.GROUND, ball)
+        balls.append(ball)
+    scene.add_contact(balls[0], ground, restitution=0.5, friction=0.2)
+    if loop:
+        scene.add_joint(carom.joints.Distance((0, 0, 0.105), (1, 0, 0.105)), *balls)
+    return scene

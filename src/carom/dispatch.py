@@ -1,0 +1,89 @@
+"""Functions that are chosen by a type, once, when the caller is compiled.
+
+A run contains only the back end and the method that it needs; uncompiled, the same choice is made at each call.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from numba.core import types
+from numba.extending import intrinsic, overload
+
+from carom.jit import OPTIONS
+from carom.system.arrays import FreeSolver, LoopSolver, TreeSolver
+
+
+def by_method(table: Mapping[type, Callable]) -> Callable:
+    """Return a function whose first argument is a method; `table` has an implementation for each class."""
+
+    def choose(method, *arguments):
+        return table[type(method)](method, *arguments)
+
+    def chosen(method, *arguments):
+        implementation = table[method.instance_class]
+        return lambda method, *arguments: implementation(method, *arguments)
+
+    return _overloaded(choose, chosen)
+
+
+def by_solver(table: Mapping[type, Callable]) -> Callable:
+    """Return a function whose first argument is a system; `table` is keyed by the class of its solver."""
+
+    def choose(system, *arguments):
+        return table[type(system.solver)](system, *arguments)
+
+    def chosen(system, *arguments):
+        solver = system.types[system.fields.index("solver")]
+        implementation = table[solver.instance_class]
+        return lambda system, *arguments: implementation(system, *arguments)
+
+    return _overloaded(choose, chosen)
+
+
+def by_address(function: Callable) -> Callable:
+    """Return a function that calls a unit (`carom.jit.unit`) at the address in its first argument.
+
+    `function` does the same uncompiled.
+    """
+
+    def choose(address, *arguments):
+        function(*arguments)
+
+    def chosen(address, *arguments):
+        return lambda address, *arguments: _call(address, *arguments)
+
+    return _overloaded(choose, chosen)
+
+
+@intrinsic
+def _call(typing, address, *arguments):
+    """Call a unit that returns nothing, by Numba's own calling convention."""
+    given = arguments[0] if len(arguments) == 1 else arguments  # *arguments come as one tuple
+    kinds = tuple(types.unliteral(kind) for kind in given)
+    signature = types.none(address, types.StarArgTuple(kinds))
+
+    def generate(context, builder, signature, values):
+        pointer, packed = values
+        function = context.call_conv.get_function_type(types.none, kinds)
+        pointer = builder.inttoptr(pointer, function.as_pointer())
+        unpacked = [builder.extract_value(packed, i) for i in range(len(kinds))]
+        context.call_conv.call_function(builder, pointer, types.none, kinds, unpacked)
+        return context.get_dummy_value()
+
+    return signature, generate
+
+
+def only_with_joints(function: Callable, without: Callable) -> Callable:
+    """Return `function` for systems with joints and `without` for those without.
+
+    So that a scene of free bodies does not wait for the compiler to go through its joints.
+    """
+    return by_solver({FreeSolver: without, TreeSolver: function, LoopSolver: function})
+
+
+def _overloaded(choose: Callable, chosen: Callable) -> Callable:
+    options: Any = OPTIONS
+    overload(choose, **options)(chosen)
+    return choose

@@ -1,0 +1,164 @@
+"""First impacts of a real cube: the impact laws against motion capture.
+
+Data: 285 tosses of an acrylic cube at 148 Hz (ContactNets, Pfrommer, Halm and Posa 2020; licence
+beside the file), cut to the first impact of each toss: the state one sample before the first
+sample at which a corner is at the table or below, and three samples after that one. Velocities are
+backward differences, so they belong to half a sample before their time. Attitudes are those of the
+sample itself.
+
+What is decided here:
+
+- only clean impacts: the second-lowest corner at least 15 mm above the table;
+- the corner reaches the table within the sample interval, at dt + z/|u_n| after its beginning (z
+  is its height at the end, not above zero), to which the attitude is carried on with constant
+  angular velocity;
+- gravity acts all the time: up to the impact it changes the approach, after it the velocities that
+  are measured. Between the two recorded velocities there are four samples.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+from importlib.resources import files
+from typing import NamedTuple
+
+import numpy as np
+
+import carom
+from carom.geometry import quaternion
+
+GRAVITY, DT = 9.81, 1.0 / 148.0
+MASS, INERTIA, HALF = 0.37, 8.1e-4, 0.0524  # [kg], [kg m^2], [m]
+NOMINAL = (0.125, 0.18)  # e, mu: drop test and tilt test of those who made the data
+LAWS = ("newton", "poisson", "stronge")
+CLEAN = 0.015  # least height of the second corner [m]
+SAMPLES = 4  # between the two recorded velocities
+
+_AXES = np.array([[0, 0, 1.0], [1, 0, 0], [0, 1, 0]])  # n, t1, t2
+_CORNERS = HALF * np.array(np.meshgrid(*[(-1, 1)] * 3)).reshape(3, 8).T
+_INVERSE = np.repeat((1.0 / MASS, 1.0 / INERTIA), 3)
+
+
+class Tosses(NamedTuple):
+    """K impacts, all in world axes."""
+
+    toss: np.ndarray  # (K,) number of the toss
+    before: np.ndarray  # (K, 6) v [m/s], w [rad/s] at the impact
+    after: np.ndarray  # (K, 6) measured, `flight` later
+    attitude: np.ndarray  # (K, 4) at the impact
+    height: np.ndarray  # (K,) of the centre at the impact [m]
+    jacobian: np.ndarray  # (K, 3, 6) G of the corner that strikes
+    flight: np.ndarray  # (K,) from the impact to the measured velocity [s]
+
+
+@cache
+def load() -> Tosses:
+    """Read the clean single-corner impacts and build the state just before each."""
+    path = files("carom.paper") / "data" / "first_impacts_even.csv"
+    with path.open(encoding="utf-8") as file:
+        table = np.genfromtxt(file, delimiter=",", names=True)
+    table = table[table["gap_to_2nd_corner"] > CLEAN]
+
+    def columns(when, names):
+        return np.stack([table[f"{when}_{name}"] for name in names.split()], axis=1)
+
+    q, q_after = (quaternion.normalize(columns(w, "qw qx qy qz")) for w in ("pre", "post"))
+    v, v_after = (columns(w, "vx vy vz") for w in ("pre", "post"))
+    w, w_after = (columns(w, "wxb wyb wzb") for w in ("pre", "post"))
+    w, w_after = quaternion.rotate(q, w), quaternion.rotate(q_after, w_after)
+
+    since = np.full(len(table), DT)  # from the sample before to the impact
+    for _ in range(3):  # the approach speed depends on the corner, a little
+        now = quaternion.multiply(quaternion.exp(w * since[:, None]), q)
+        arms = np.einsum("kij,cj->kci", quaternion.matrix(now), _CORNERS)
+        arm = arms[np.arange(len(arms)), np.argmin(arms[:, :, 2], axis=1)]
+        fall = v - np.outer(GRAVITY * (since + 0.5 * DT), _AXES[0])
+        approach = (fall + np.cross(w, arm))[:, 2]
+        since = np.clip(DT + np.minimum(table["min_corner_z"], 0.0) / -approach, 0.0, DT)
+    G = np.concatenate(
+        [np.broadcast_to(_AXES, (len(arm), 3, 3)), np.cross(arm[:, None], _AXES)], axis=2
+    )
+    return Tosses(
+        table["toss"].astype(int),
+        np.hstack([fall, w]),
+        np.hstack([v_after, w_after]),
+        now,
+        -arm[:, 2],
+        G,
+        SAMPLES * DT - (since + 0.5 * DT),
+    )
+
+
+def predict(restitution: float, friction: float, law: str = "newton") -> np.ndarray:
+    """Return (v, w) (K, 6) when velocities were measured: one impact, then free flight."""
+    tosses = load()
+    result = tosses.before.copy()
+    for k, (G, state) in enumerate(zip(tosses.jacobian, tosses.before)):
+        W = (G * _INVERSE) @ G.T
+        impulse = carom.resolve_impact(W, G @ state, friction, restitution, law).impulse
+        result[k] += _INVERSE * (G.T @ impulse)
+    return _fly(result)
+
+
+def simulated(restitution: float, friction: float, law: str = "newton") -> np.ndarray:
+    """As `predict`, by `carom.simulate` from the impact on: with whatever strikes next."""
+    tosses = load()
+    result = np.empty_like(tosses.before)
+    for k, state in enumerate(tosses.before):
+        scene = carom.Scene(gravity=(0, 0, -GRAVITY))
+        table = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1))
+        cube = scene.add_body(
+            shape=carom.Box(2 * HALF, 2 * HALF, 2 * HALF),
+            mass=MASS,
+            inertia=np.full(3, INERTIA),
+            position=(0, 0, tosses.height[k] + 1e-9),
+            orientation=tosses.attitude[k],
+            velocity=state[:3],
+            angular_velocity=state[3:],
+        )
+        scene.add_contact(cube, table, restitution=restitution, friction=friction, impact_law=law)
+        run = carom.simulate(scene, tosses.flight[k], step=1e-3, throw=False)
+        result[k] = np.concatenate([run.velocity[-1, 0], run.angular_velocity[-1, 0]])
+    return result
+
+
+def no_impact() -> np.ndarray:
+    """Return what there would be without a table."""
+    return _fly(load().before.copy())
+
+
+def _fly(states: np.ndarray) -> np.ndarray:
+    states[:, 2] -= GRAVITY * load().flight
+    return states
+
+
+def errors(predicted: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return |dv| [m/s] and |dw| [rad/s] of each impact (K,)."""
+    difference = predicted - load().after
+    return np.linalg.norm(difference[:, :3], axis=1), np.linalg.norm(difference[:, 3:], axis=1)
+
+
+def objective(parameters, law: str) -> float:
+    """Mean of |dv| + r |dw| [m/s], r = sqrt(J / m) the radius of gyration; not squared."""
+    e, mu = parameters
+    if not (0.0 <= e <= 1.0 and mu >= 0.0):
+        return np.inf
+    dv, dw = errors(predict(e, mu, law))
+    return float(np.mean(dv + np.sqrt(INERTIA / MASS) * dw))
+
+
+@cache
+def fit(law: str) -> tuple[float, float]:
+    """Return (e, mu) that minimise `objective` (Nelder and Mead, from the nominal values)."""
+    from scipy.optimize import minimize
+
+    start = np.array([NOMINAL, (0.35, 0.18), (0.125, 0.24)])
+    options = {"initial_simplex": start, "xatol": 5e-4, "fatol": 1e-6}
+    best = minimize(objective, NOMINAL, args=(law,), method="Nelder-Mead", options=options)
+    return float(best.x[0]), float(best.x[1])
+
+
+def medians(predicted: np.ndarray) -> tuple[float, float]:
+    """Return the medians of |dv| [m/s] and |dw| [rad/s]."""
+    dv, dw = errors(predicted)
+    return float(np.median(dv)), float(np.median(dw))

@@ -1,0 +1,187 @@
+"""Figs. 6a, 6b: the die that turns in space (section 4.2)."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from carom import impact_layer
+from carom.geometry import quaternion
+from carom.paper import style
+from carom.paper.figure import FigureOfPaper
+from carom.paper.references import die_after, root
+from carom.paper.runs import DIE_DELTA, DIE_E, EDGE, FRICTIONS, die_run, with_jumps
+
+COLOURS = dict(zip(FRICTIONS, (style.BLUE, style.RED)))
+END = 0.4  # [s]
+_CORNERS = 0.5 * EDGE * np.array(np.meshgrid(*[(-1, 1)] * 3)).reshape(3, 8).T
+
+
+def _outlines(axes, run, times, up, colour):
+    """Draw the outline of the cube, seen along the axis that is not shown."""
+    from scipy.spatial import ConvexHull
+
+    x, Q, _, _ = run.evaluate(times)
+    for centre, q in zip(x[:, 0], Q[:, 0]):
+        points = (centre + _CORNERS @ quaternion.matrix(q).T)[:, [0, up]]
+        hull = points[ConvexHull(points).vertices]
+        hull = np.vstack([hull, hull[:1]])
+        axes.plot(hull[:, 0], hull[:, 1], color=colour, lw=0.6)
+
+
+def _trajectory():
+    """Draw the whole throw at the left; the bounces from the side and from above at the right."""
+    layout, heights = [["all", "side"], ["all", "top"]], (0.076, 0.093)
+    figure, axes = style.mosaic(style.PAGE, 4.1, layout, (1, 1.4), heights)
+    whole, side, top = axes["all"], axes["side"], axes["top"]
+    for mu in FRICTIONS:
+        run = die_run(mu, "spatial")
+        first = run.impacts.time[0]
+        _, x, *_ = with_jumps(run, END)
+        for part, up in ((whole, 2), (side, 2), (top, 1)):
+            part.plot(x[:, 0], x[:, up], color=COLOURS[mu], label=rf"$\mu = {mu:.2f}$", zorder=4)
+            if part is not whole:
+                _outlines(part, run, [0.24, 0.32, END], up, COLOURS[mu])
+    _outlines(whole, run, np.arange(0.0, first, 0.03), 2, style.GREY)
+    for part, up in ((whole, 2), (side, 2), (top, 1)):
+        _outlines(part, run, [first], up, style.BLACK)
+        if up == 2:
+            part.axhline(0.0, color=style.BLACK, lw=0.6)
+            part.axhspan(-0.012, 0.0, color="#e6e6e6", lw=0)
+    whole.set(aspect="equal", xlim=(-0.02, 0.23), ylim=(-0.012, 0.32))
+    whole.set(xlabel="$x$ [m]", ylabel="$z$ [m]")
+    whole.legend(loc="upper right")
+    side.set(aspect="equal", xlim=(0.075, 0.235), ylim=(-0.006, 0.07), ylabel="$z$ [m]")
+    side.set_title("from the side", loc="left")
+    top.set(aspect="equal", xlim=(0.075, 0.235), ylim=(-0.073, 0.02))
+    top.set(xlabel="$x$ [m]", ylabel="$y$ [m]")
+    top.set_title("from above", loc="left")
+    figure.align_ylabels([side, top])
+    return figure
+
+
+def stick_limit(W) -> float:
+    """Return mu_crit = |W_tt^-1 W_tn|: friction above it can hold the corner."""
+    return float(np.linalg.norm(np.linalg.solve(W[1:, 1:], W[1:, 0])))
+
+
+def invariant_rays(W, friction) -> list[tuple[float, bool]]:
+    """Return the directions of slip that do not turn: angle [rad], and whether slip grows along it.
+
+    Roots of ``e x (W_tn - mu W_tt e)`` over the angle of e.
+    """
+
+    def rate(angle):
+        e = np.array([np.cos(angle), np.sin(angle)])
+        return W[1:, 0] - friction * W[1:, 1:] @ e, e
+
+    def turn(angle):
+        r, e = rate(angle)
+        return e[0] * r[1] - e[1] * r[0]
+
+    grid = np.linspace(0.0, 2.0 * np.pi, 721) + 1e-3
+    found = []
+    for a, b in pairwise(grid):
+        if turn(a) * turn(b) < 0.0:
+            angle = root(turn, a, b)
+            r, e = rate(angle)
+            found.append((angle, bool(r @ e > 0.0)))
+    return found
+
+
+def _hodograph():
+    layout = [["slip", "x"], ["slip", "y"], ["slip", "z"]]
+    figure, parts = style.mosaic(style.PAGE, 3.1, layout, (1, 1.1))
+    _slip(parts["slip"])
+    for k, name in enumerate("xyz"):
+        axes = parts[name]
+        for mu in FRICTIONS:
+            t, _, _, _, w = with_jumps(die_run(mu, "spatial"), END)
+            axes.plot(t, w[:, k], color=COLOURS[mu], lw=1.0)
+        axes.axhline(0, color=style.BLACK, lw=0.4)
+        axes.set(xlim=(0, END), ylabel=rf"$\omega_{name}$ [rad/s]")
+        axes.tick_params(labelbottom=name == "z")
+    parts["z"].set_xlabel("time $t$ [s]")
+    figure.align_ylabels([parts[name] for name in "xyz"])
+    return figure
+
+
+def _slip(axes):
+    """Draw the path of the slip velocity in the first impact, and the invariant directions."""
+    record = die_run(FRICTIONS[0], "spatial").impacts[0]
+    W, u = record.inverse_mass, record.relative_velocity_before
+    for mu, colour, turned in (
+        (0.05, style.BLUE, (6, 2)), (0.2, style.RED, (-40, -15)), (0.6, style.GREEN, (-50, -11)),
+    ):  # fmt: skip
+        history = impact_layer(W, u, mu, DIE_E, penetration=DIE_DELTA, width=1e-6, steps=64)
+        path = history.evaluate(np.linspace(0.0, history.duration, 400))[1]
+        axes.plot(path[:, 1], path[:, 2], color=colour, lw=1.4, zorder=3)
+        axes.plot(*path[-1, 1:], "o", color=colour, zorder=4)
+        axes.annotate(rf"$\mu = {mu:.2f}$", path[-1, 1:], turned, textcoords="offset points",
+                      color=colour)  # fmt: skip
+        for angle, grows in invariant_rays(W, mu) if mu in FRICTIONS else ():
+            x, y = 4.0 * np.cos(angle), 4.0 * np.sin(angle)
+            axes.plot([0, x], [0, y], "--" if grows else ":", color=style.GREY, lw=0.8)
+    axes.plot(*u[1:], "s", color=style.BLACK, zorder=5)
+    axes.annotate("start", u[1:], (2, 6), textcoords="offset points")
+    axes.axhline(0, color=style.BLACK, lw=0.4)
+    axes.axvline(0, color=style.BLACK, lw=0.4)
+    axes.set(xlabel="slip velocity $u_{t1}$ [m/s]", ylabel="slip velocity $u_{t2}$ [m/s]",
+             aspect="equal", xlim=(-2.1, 0.7), ylim=(-0.5, 2.3))  # fmt: skip
+
+
+def _second() -> str:
+    return " and ".join(
+        f"{1e3 * np.diff(die_run(mu, 'spatial').impacts.time[:2])[0]:.2f} ms (mu = {mu:g})"
+        for mu in FRICTIONS
+    )
+
+
+def velocity_error(steps: int, friction: float) -> float:
+    """Greatest error of v and w L/2 [m/s] after the first impact, by that many spline steps."""
+    run = die_run(friction, "spatial", layer_steps=steps)
+    _, _, v, w = run.evaluate(run.impacts.time[0])
+    error = np.abs(np.concatenate([v[0], w[0]]) - die_after("spatial", friction))
+    return float(np.max(error * np.repeat((1.0, 0.5 * EDGE), 3)))
+
+
+def _error(steps: int) -> float:
+    return max(velocity_error(steps, mu) for mu in FRICTIONS)
+
+
+def _limit() -> float:
+    return stick_limit(die_run(FRICTIONS[0], "spatial").impacts[0].inverse_mass)
+
+
+FIGURES = (
+    FigureOfPaper(
+        "fig6a",
+        "Die, spatial (section 4.2): as the planar one, but w = (10, 10, 0) rad/s. Path of the "
+        "centre and outlines of the die. Left: the throw, outlines every 0.03 s up to the first "
+        "impact (black). Right: from the first impact (black) on, seen from the side and from "
+        "above, outlines at t = 0.24, 0.32, 0.40 s.",
+        "Example 2, mu = 0.05 and mu = 0.20, in space.",
+        _trajectory,
+        lambda: (
+            f"The first impact does not turn the centre round: another corner strikes {_second()} "
+            "later. The die leaves the plane y = 0 sideways."
+        ),
+    ),
+    FigureOfPaper(
+        "fig6b",
+        "Die, spatial. Left: slip velocity of the corner during the first impact (hodograph) for "
+        "mu = 0.05 and 0.20, and, to compare, mu = 0.60, with the invariant directions of slip "
+        "(dashed: outgoing, dotted: incoming; by the symmetry of this impact the same for every "
+        "mu). Right: angular velocity in world axes against time, in the same colours.",
+        "",
+        _hodograph,
+        lambda: (
+            "Slip bends towards the outgoing invariant direction. The friction that can hold the "
+            f"corner is {_limit():.6f}: for both mu of the paper slip goes on, for 0.60 it stops "
+            "and the corner sticks. Because slip turns, two spline steps are no longer exact: "
+            f"greatest error of velocity after the first impact {_error(2):.0e} m/s with 2 steps, "
+            f"{_error(16):.0e} with 16, {_error(64):.0e} with 64."
+        ),
+    ),
+)

@@ -1,0 +1,76 @@
+"""Figs. 2a, 2b: the bouncing sphere of section 4.1."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom.paper import style
+from carom.paper.figure import FigureOfPaper
+from carom.paper.references import Bounce
+from carom.paper.runs import sphere_run, with_jumps
+
+CASES = ((1.0, style.BLUE), (0.8, style.RED))
+_MARKS = np.linspace(0.0, 3.0, 61)
+
+
+def _draw(column: int, label: str):
+    figure, axes = style.new(style.COLUMN, 2.4)
+    for e, colour in CASES:
+        t, x, _, v, _ = with_jumps(sphere_run(e))
+        computed = (x[:, 2] - 0.1, v[:, 2])[column]
+        axes.plot(t, computed, color=colour, label=f"$e = {e:g}$")
+        axes.plot(_MARKS, Bounce(e).motion(_MARKS)[column], "o", color=colour, mfc="white",
+                  mew=0.7, ms=2.8)  # fmt: skip
+    axes.plot([], [], "o", color=style.BLACK, mfc="white", mew=0.7, ms=2.8, label="exact")
+    axes.set(xlabel="time $t$ [s]", ylabel=label, xlim=(0, 3))
+    axes.legend(ncols=3, loc="lower center", bbox_to_anchor=(0.5, 1.0))
+    return figure
+
+
+def _height():
+    figure = _draw(0, "gap [m]")
+    figure.axes[0].set_ylim(0, None)
+    return figure
+
+
+def _velocity():
+    return _draw(1, "velocity [m/s]")
+
+
+def _errors(column: int) -> float:
+    """Greatest error of the computed motion at times that are not those of impacts."""
+    worst = 0.0
+    for e, _ in CASES:
+        run = sphere_run(e)
+        t = run.t[run.t < min(3.0, 0.98 * Bounce(e).rest)]
+        x, _, v, _ = run.evaluate(t)
+        value = (x[:, 0, 2] - 0.1, v[:, 0, 2])[column]
+        worst = max(worst, float(np.max(np.abs(value - Bounce(e).motion(t)[column]))))
+    return worst
+
+
+FIGURES = (
+    FigureOfPaper(
+        "fig2a",
+        "Bouncing sphere (section 4.1), dropped from 0.4 m: gap against time for e = 1 and e = "
+        "0.8. Lines: computed; circles: closed form.",
+        "Example 1, e = 1 and e = 0.8.",
+        _height,
+        lambda: (
+            f"Computed and exact gap agree to {_errors(0):.1e} m. For e = 0.8 infinitely many "
+            f"impacts end at t = {Bounce(0.8).rest:.6f} s, and the sphere stays at rest from then "
+            "on."
+        ),
+    ),
+    FigureOfPaper(
+        "fig2b",
+        "Bouncing sphere: velocity of the centre against time. Lines: computed, with the jumps "
+        "of the impacts; circles: closed form.",
+        "Example 1, e = 1 and e = 0.8.",
+        _velocity,
+        lambda: (
+            f"Computed and exact velocity agree to {_errors(1):.1e} m/s. The slope between "
+            "impacts is that of gravity for both."
+        ),
+    ),
+)

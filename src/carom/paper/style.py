@@ -1,0 +1,80 @@
+"""One style for every figure: sizes of a two-column journal, colours that all eyes tell apart.
+
+Figures are made as objects, never through pyplot, and the settings hold only inside `style`:
+nothing of the caller's matplotlib is touched and no display is needed.
+"""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+COLUMN, PAGE = 3.4, 6.9  # widths of one and of two columns [in]
+
+# Okabe and Ito's palette
+BLACK, GREY = "#000000", "#8c8c8c"
+BLUE, RED, GREEN, ORANGE, SKY, PURPLE = (
+    "#0072B2", "#D55E00", "#009E73", "#E69F00", "#56B4E9", "#CC79A7",
+)  # fmt: skip
+
+SETTINGS: dict[Any, Any] = {
+    "font.family": "DejaVu Sans",
+    "font.size": 8.0,
+    "mathtext.fontset": "dejavusans",
+    "axes.labelsize": 8.5,
+    "axes.titlesize": 8.5,
+    "axes.linewidth": 0.6,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "xtick.labelsize": 8.0,
+    "ytick.labelsize": 8.0,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "xtick.major.size": 3.0,
+    "ytick.major.size": 3.0,
+    "legend.fontsize": 8.0,
+    "legend.frameon": False,
+    "legend.handlelength": 1.6,
+    "legend.borderaxespad": 0.2,
+    "legend.labelspacing": 0.3,
+    "lines.linewidth": 1.2,
+    "lines.markersize": 3.5,
+    "pdf.fonttype": 42,
+    "savefig.bbox": "tight",
+    "savefig.pad_inches": 0.02,
+}
+DPI = 250
+
+
+@contextmanager
+def style():
+    """Within this context matplotlib draws in the style of the paper's figures."""
+    import matplotlib as mpl
+
+    with mpl.rc_context(SETTINGS):
+        yield
+
+
+def new(width=COLUMN, height=2.3, rows=1, columns=1, **options) -> tuple[Any, Any]:
+    """Return a figure and its axes (one, or an array) of the given size [in]."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width, height), layout="constrained")
+    return figure, figure.subplots(rows, columns, **options)
+
+
+def mosaic(width, height, layout, columns, rows=None) -> tuple[Any, Any]:
+    """Return a figure and its axes by name, from their layout and the sizes of columns and rows."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(width, height), layout="constrained")
+    return figure, figure.subplot_mosaic(layout, width_ratios=columns, height_ratios=rows)
+
+
+def save(figure, folder: Path, name: str) -> list[Path]:
+    """Write a figure as PDF and PNG; the same input gives the same bytes."""
+    files = [folder / f"{name}.pdf", folder / f"{name}.png"]
+    figure.savefig(files[0], metadata={"CreationDate": None})
+    figure.savefig(files[1], dpi=DPI)
+    return files

@@ -1,0 +1,89 @@
+"""Random forests of joints, with velocities that fit them."""
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from carom import GROUND, Scene, joints
+
+KINDS = ("Revolute", "Spherical", "Fixed", "Prismatic")
+
+
+def unit(rng):
+    e = rng.normal(size=3)
+    return e / np.linalg.norm(e)
+
+
+def plan(rng, count, floating=0.2):
+    """Draw a forest: for each body its parent (-1 ground, None floating), joint, pose and inertia.
+
+    Positions and velocities are those of the whole, by rigid motion from parent to child.
+    """
+    rows, motion = [], []
+    for k in range(count):
+        parent = None if rng.random() < floating else int(rng.integers(-1, k))
+        kind = KINDS[rng.integers(len(KINDS))]
+        x, anchor, axis = rng.normal(size=3), rng.normal(size=3), unit(rng)
+        if parent is None:
+            v, w = rng.normal(size=3), rng.normal(size=3)
+        else:
+            xp, vp, wp = motion[parent] if parent >= 0 else np.zeros((3, 3))
+            w = wp + {
+                "Revolute": rng.normal() * axis,
+                "Spherical": rng.normal(size=3),
+                "Fixed": np.zeros(3),
+                "Prismatic": np.zeros(3),
+            }[kind]
+            v = vp + np.cross(wp, anchor - xp) + np.cross(w, x - anchor)
+            if kind == "Prismatic":
+                v = v + rng.normal() * axis
+        motion.append((x, v, w))
+        a, b = rng.uniform(0.3, 1.0, 2)
+        turn = Rotation.random(random_state=rng).as_matrix()
+        inertia = turn @ np.diag([a, b, rng.uniform(1.01 * abs(a - b), a + b)]) @ turn.T
+        q = np.roll(Rotation.random(random_state=rng).as_quat(), 1)
+        rows.append(
+            dict(
+                name=f"b{k}", parent=parent, kind=kind, anchor=anchor, axis=axis,
+                mass=rng.uniform(0.5, 2.0), inertia=0.5 * (inertia + inertia.T), position=x,
+                orientation=q, velocity=v, angular_velocity=w,
+            )
+        )  # fmt: skip
+    return rows
+
+
+def build(rows, *, gravity=(0.3, -0.2, -9.81), bodies=None, edges=None, flips=(), turn=None):
+    """Return the scene of a plan; bodies and joints may be added in any order, joints flipped.
+
+    `turn` (a matrix) turns the whole world.
+    """
+    R = np.eye(3) if turn is None else turn
+    scene = Scene(gravity=R @ gravity)
+    for k in range(len(rows)) if bodies is None else bodies:
+        row = rows[k]
+        q = (Rotation.from_matrix(R) * Rotation.from_quat(np.roll(row["orientation"], -1))).as_quat()
+        scene.add_body(
+            name=row["name"], mass=row["mass"], inertia=row["inertia"], orientation=np.roll(q, 1),
+            **{key: R @ row[key] for key in ("position", "velocity", "angular_velocity")},
+        )  # fmt: skip
+    for k in range(len(rows)) if edges is None else edges:
+        row = rows[k]
+        if row["parent"] is None:
+            continue
+        make = getattr(joints, row["kind"])
+        where = dict(anchor=R @ row["anchor"])
+        if row["kind"] in ("Revolute", "Prismatic"):
+            where["axis"] = R @ row["axis"]
+        parent = GROUND if row["parent"] < 0 else scene[f"b{row['parent']}"]
+        pair = (parent, scene[row["name"]])
+        if k in flips and row["parent"] >= 0:
+            pair = pair[::-1]
+        scene.add_joint(make(**where), *pair, name=f"j{k}")
+    return scene
+
+
+def with_loop(scene):
+    """Add a pendulum far away on a rod without mass: it takes the scene out of the tree back end."""
+    x = np.array([50.0, 0.0, 0.0])
+    bob = scene.add_body(mass=1.0, inertia=[1, 1, 1], position=x, name="far")
+    scene.add_joint(joints.Distance(x + [0, 0, 1], x), GROUND, bob, name="rod")
+    return scene

@@ -1,0 +1,90 @@
+"""Parallelogram chain (IFToMM A02): redundant rows, and a singular position in every turn.
+
+One freedom: theta'' = g sin(theta) ((N+1)/2 + N)/((N+1)/3 + N), tip (sin, cos) theta. When all bars
+are in line, each loop could fold: two more rows become dependent for a moment.
+"""
+
+import functools
+
+import numpy as np
+import pytest
+from mechanism_scenes import G, four_bar, orders, run
+from scipy.integrate import solve_ivp
+
+import carom
+
+TIP = (0.328458111536, 0.944518538180)  # N = 2, t = 10 s: elliptic motion, independent program
+
+
+@functools.cache
+def motion(count=2):
+    """The angle as a function of time, dense."""
+    factor = G * ((count + 1) / 2 + count) / ((count + 1) / 3 + count)
+    return solve_ivp(
+        lambda t, y: [y[1], factor * np.sin(y[0])], (0.0, 10.0), [0.0, 1.0], "DOP853",
+        rtol=3e-14, atol=1e-14, t_eval=np.linspace(0.0, 10.0, 2001),
+    ).y  # fmt: skip
+
+
+def angle(solution, bar=0):
+    q = solution.orientation[:, bar]
+    return np.unwrap(-2.0 * np.arctan2(q[:, 3], q[:, 0]))
+
+
+def test_place_of_the_tip_after_ten_seconds():
+    end = motion()[0, -1]
+    np.testing.assert_allclose([np.sin(end), np.cos(end)], TIP, atol=1e-10)
+    tip = 2.0 * run(four_bar(), 10.0, 0.0025).position[-1, 0, :2]
+    np.testing.assert_allclose(tip, TIP, atol=1e-8)
+
+
+def test_order_four_through_the_singular_position():
+    # passed twice a turn, ten times in all
+    runs = [carom.simulate(four_bar(), 10.0, step=h) for h in (0.01, 0.005, 0.0025)]
+    drift = [np.max(np.abs(s.ledger.residual)) for s in runs]
+    wrong = []
+    for s in runs:
+        here = np.isin(np.round(s.t / 0.01, 9) % 1.0, 0.0)  # at every 10 ms
+        wrong.append(np.max(np.abs(angle(s)[here] - motion()[0, ::2])))
+    assert orders(drift)[-1] == pytest.approx(4.0, abs=0.2)
+    assert np.all(orders(wrong) > 3.8)
+    assert drift[-1] < 2e-8
+
+
+@pytest.mark.parametrize("count", [1, 2, 4])
+def test_loops_stay_closed(count):
+    solution = carom.simulate(four_bar(count), 3.0, step=0.01)
+    position, velocity = solution.constraint_errors
+    assert np.max(position) < 1e-12
+    assert np.max(velocity) < 1e-12
+    assert np.max(np.abs(solution.position[..., 2])) < 1e-13
+    # all upright bars turn alike, those across stay level
+    for bar in range(1, count + 1):
+        np.testing.assert_allclose(angle(solution, bar), angle(solution), atol=1e-10)
+    level = solution.angular_velocity[:, count + 1 :]
+    np.testing.assert_allclose(level, 0.0, atol=1e-10)
+
+
+@pytest.mark.parametrize("offset", [0.0, 1e-6, -1e-5, 1e-4, -1e-3, 0.01])
+@pytest.mark.parametrize("count", [1, 2])
+def test_one_step_across_the_singular_position(count, offset):
+    """Wherever the stages fall: the energy error of a step is what it is elsewhere, O(h^5)."""
+    speed, step = 4.88, 0.00125
+    start = 0.5 * np.pi - 0.5 * speed * step + offset
+    solution = run(four_bar(count, start, speed), step, step)
+    assert abs(solution.ledger.residual[-1]) < 5e-11
+
+
+@pytest.mark.parametrize("method", ["paper", "paper-ode"])
+def test_papers_methods_converge_before_the_singular_position(method):
+    exact = motion()[0]
+    ends = [run(four_bar(), 0.6, h, method=method) for h in (0.01, 0.005, 0.0025)]
+    errors = [abs(angle(s)[-1] - exact[120]) for s in ends]
+    np.testing.assert_allclose(orders(errors), 2.0, atol=0.3)
+
+
+@pytest.mark.parametrize("method", ["paper", "paper-ode"])
+def test_papers_methods_pass_the_singular_position(method):
+    tip = 2.0 * run(four_bar(), 1.0, 0.0025, method=method).position[-1, 0, :2]
+    end = motion()[0, 200]
+    np.testing.assert_allclose(tip, [np.sin(end), np.cos(end)], atol=1e-3)
