@@ -3,8 +3,9 @@
 import ast
 from pathlib import Path
 
-import carom
 import pytest
+
+import carom
 
 INNER = {"kernel", "inlined", "unit"}
 COMPILED = {*INNER, "entry"}

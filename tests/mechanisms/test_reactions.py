@@ -37,7 +37,9 @@ def test_hinge_of_a_body(kind):
 @pytest.mark.parametrize("method", ["rk4", "paper"])
 def test_hanging_chain_carries_what_is_below(method):
     count = 5
-    s = carom.simulate(chain(count, angles=np.full(count, np.pi / 2)), 0.01, step=0.01, method=method)
+    s = carom.simulate(
+        chain(count, angles=np.full(count, np.pi / 2)), 0.01, step=0.01, method=method
+    )
     below = G * np.arange(count, 0, -1.0)
     expected = np.zeros((count, 6))
     expected[:, 2] = below

@@ -16,7 +16,11 @@ from carom.geometry.rotation import multiply, normalize
 from carom.jit import inlined, kernel
 from carom.motion.acceleration import acceleration, aim
 from carom.motion.free import free_flight
+from carom.motion.loops import dropped_rows
 from carom.motion.project import project_position, project_velocity
+
+CONSTRAINTS_LOST = 7
+UNEQUAL = 0.38  # first part of a step that is taken in two
 
 
 class Explicit(NamedTuple):
@@ -39,7 +43,32 @@ def explicit_step(method, system, held, start, h, end, work):
     """Write the state a time h after `start` into `end`; return work of loads, of friction, a status."""
     if not fly(system, held, start, h, end, work):
         return 0.0, 0.0, 0
-    return constrained_step(system, method.A, method.b, held, start, h, end, work)
+    return whole_or_parts(method.A, method.b, system, held, start, h, end, work)
+
+
+@inlined
+def whole_or_parts(A, weight, system, held, start, h, end, work):
+    """Step at once; or in two unequal parts, if some stages fell into a singular position.
+
+    There rows depend on each other that do not elsewhere, and are left out: the acceleration of that
+    stage is not the limit of its neighbours. The parts have their stages at other times.
+    """
+    applied, friction, code = 0.0, 0.0, 0
+    for part in range(3):
+        first, last, dt = start, end, h
+        if part == 1:
+            for b in range(start.shape[0]):
+                keep(start[b], work.middle[b])
+            last, dt = work.middle, UNEQUAL * h
+        elif part == 2:
+            first, dt = work.middle, (1.0 - UNEQUAL) * h
+        p, f, code, even = constrained_step(system, A, weight, held, first, dt, last, work)
+        if part == 1:  # what the whole step gave is void
+            applied, friction = 0.0, 0.0
+        applied, friction = applied + p, friction + f
+        if code != 0 or (part == 0 and even):
+            break
+    return applied, friction, code
 
 
 @inlined
@@ -80,10 +109,14 @@ def mark_held(system, held, work):
 
 @kernel
 def constrained_step(system, A, weight, held, start, h, end, work):
-    """Step the bodies that are joined, loaded or held; the others are in `end` already."""
+    """Step the bodies that are joined, loaded or held; the others are in `end` already.
+
+    Returns work of loads, of friction, a status, and whether all stages left out as many rows.
+    """
     stages, stage = weight.size, work.stage
     applied, friction = 0.0, 0.0
     aim(system, held, start)
+    dropped, even = 0, True
     for s in range(stages):
         combine(A[s], s, h, start, work.stages, stage)
         for b in range(stage.shape[0]):
@@ -95,6 +128,9 @@ def constrained_step(system, A, weight, held, start, h, end, work):
         p, f = acceleration(system, stage, held, work, work.stages[s])
         applied += h * weight[s] * p
         friction += h * weight[s] * f
+        count = dropped_rows(system)
+        even = even and (s == 0 or count == dropped)
+        dropped = count
     combine(weight, stages, h, start, work.stages, stage)
     bound_accelerations(work, stages)
     for b in range(stage.shape[0]):
@@ -104,9 +140,9 @@ def constrained_step(system, A, weight, held, start, h, end, work):
     if system.joints.shape[0] > 0:
         error = project_position(system, end, work, 1e-14)
         if not (error <= 1e-9):
-            return applied, friction, 7
+            return applied, friction, CONSTRAINTS_LOST, True
         project_velocity(system, end, work)
-    return applied, friction, 0
+    return applied, friction, 0, even
 
 
 @kernel

@@ -33,7 +33,7 @@ import numpy as np
 from carom.dispatch import by_solver
 from carom.geometry.rotation import exp, multiply, normalize, rotate, rotate_back
 from carom.jit import kernel
-from carom.motion.explicit import constrained_step, fly, keep, mark_held
+from carom.motion.explicit import fly, keep, mark_held, whole_or_parts
 from carom.motion.forces import add_force, applied_wrenches
 from carom.motion.joints import arm, parent_arm, position_error, velocity_error
 from carom.motion.loops import factor, substitute, subtract_rows
@@ -65,7 +65,7 @@ def three_field_step(method, system, held, start, h, end, work):
         if held[c].mode != 0 and held[c].rest == 0:
             if not fly(system, held, start, h, end, work):
                 return 0.0, 0.0, 0
-            return constrained_step(system, method.A, method.b, held, start, h, end, work)
+            return whole_or_parts(method.A, method.b, system, held, start, h, end, work)
     mark_held(system, held, work)
     first_guess(system, start, h, end, work)
     if method.ode == 1:
@@ -79,7 +79,7 @@ def three_field_step(method, system, held, start, h, end, work):
         change = velocity_block(system, method, h, end, work)
         change = max(change, position_block(system, method, start, h, end, work))
         if change <= method.tolerance or (
-            change <= 1e4 * method.tolerance and change >= 0.5 * previous
+            change <= 1e6 * method.tolerance and change >= 0.5 * previous
         ):
             mean_accelerations(start, h, end, work)
             return applied, 0.0, 0
