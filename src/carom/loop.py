@@ -130,6 +130,8 @@ def run(system, method, controls, held, now, work, clocks, records, until):
                     controls.hold_at, system, controls, held, c, now, horizon, action == SETTLE,
                     work, clocks, records,
                 )  # fmt: skip
+                if clock.now == 0.0:  # touching from the start: the first row says so
+                    save_contacts(held, 0, records)
         clock.spent = 0.0
         clock.step += 1
         clock.in_step, clock.released = 0, 0
@@ -209,13 +211,19 @@ def save(held, now, clock, records):
     row.friction, row.bounces = clock.friction, clock.bounces
     for b in range(now.shape[0]):
         keep(now[b], records.state[k, b])
+    save_contacts(held, k, records)
+    clock.saved += 1
+
+
+@inlined
+def save_contacts(held, k, records):
+    """Write modes and forces of the contacts into row k."""
     for c in range(held.shape[0]):
         touch = records.touch[k, c]
         touch.mode = held[c].mode
         for i in range(3):
             touch.force[i] = held[c].force[i] if held[c].mode != OPEN else 0.0
             touch.point[i] = held[c].point[i]
-    clock.saved += 1
 
 
 @inlined

@@ -14,7 +14,7 @@ import numpy as np
 
 from carom.geometry.rotation import multiply, normalize
 from carom.jit import inlined, kernel
-from carom.motion.acceleration import acceleration
+from carom.motion.acceleration import acceleration, aim
 from carom.motion.free import free_flight
 from carom.motion.project import project_position, project_velocity
 
@@ -83,6 +83,7 @@ def constrained_step(system, A, weight, held, start, h, end, work):
     """Step the bodies that are joined, loaded or held; the others are in `end` already."""
     stages, stage = weight.size, work.stage
     applied, friction = 0.0, 0.0
+    aim(system, held, start)
     for s in range(stages):
         combine(A[s], s, h, start, work.stages, stage)
         for b in range(stage.shape[0]):

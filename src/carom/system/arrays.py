@@ -99,6 +99,7 @@ HELD = [
     ("point", "f8", 3),  # point of the core that carries the contact, body axes
     ("anchor", "f8", 3),  # where a sticking point was when it stuck, world
     ("force", "f8", 3),  # of the last solve, contact axes
+    ("heading", "f8", 2),  # direction of slip at the start of the step; 0 where it does not slip
     ("W", "f8", (3, 3)),  # effective inverse mass of the last solve
 ]
 
