@@ -23,6 +23,7 @@ from numba.core.caching import FunctionCache, IndexDataCacheFile
 
 _RULES: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
 _INSIDE: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_OUTSIDE: dict[str, Any] = {"no_cfunc_wrapper": True}
 
 #: for `numba.extending.overload`, whose functions are compiled by these rules
 OPTIONS: dict[str, Any] = {"jit_options": {**_RULES, **_INSIDE, "forceinline": True}}
@@ -84,7 +85,7 @@ def unit(function):
 
 def address(function, *arguments) -> int:
     """Return the address of a unit for arguments of these types, compiled if need be; 0 without the JIT."""
-    if numba.config.DISABLE_JIT:
+    if not hasattr(function, "get_compile_result"):  # NUMBA_DISABLE_JIT=1
         return 0
     given = numba.types.void(*(numba.typeof(a) for a in arguments))
     compiled = function.get_compile_result(given)
@@ -97,7 +98,7 @@ def entry(function):
     Where no directory can be written (a read-only install without a user cache) it is compiled in each
     process.
     """
-    compiled = numba.njit(**{**_RULES, "no_cfunc_wrapper": True})(function)
+    compiled = numba.njit(**_RULES, **_OUTSIDE)(function)
     return _keep_on_disk(compiled, function)
 
 

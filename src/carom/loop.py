@@ -11,10 +11,10 @@ from typing import NamedTuple
 
 from carom.contact.exclude import CLEAR, UNSURE
 from carom.contact.gap import slow, strike_point
-from carom.contact.search import begin_search, event_value, examine, narrow, propose
-from carom.contact.strike import strike
 from carom.hold.events import CONE, GAP, REVERSE, SEPARATE, end_forces
 from carom.hold.lifecycle import hold_contact
+from carom.hold.search import begin_search, event_value, examine, narrow, propose
+from carom.impact.strike import strike
 from carom.jit import entry, inlined, kernel
 from carom.motion.acceleration import OPEN, SLIP
 from carom.motion.explicit import keep

@@ -47,7 +47,7 @@ class Options:
     damping_ratio : float
         zeta of the paper's ODE form. Default 1.0.
     residual_tolerance : float
-        Relative residual at which the block iteration of the paper's methods stops. Default 1e-13.
+        Relative residual at which the block iteration of the paper's methods stops. Default 1e-15.
     max_iterations : int
         Most block iterations in one step of the paper's methods. Default 100.
     max_impacts_per_step : int

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from carom import loop
-from carom.contact.strike import strike_unit
 from carom.geometry import quaternion
 from carom.hold.lifecycle import hold_unit
+from carom.impact.strike import strike_unit
 from carom.jit import address
 from carom.motion.explicit import rk4
 from carom.motion.reactions import velocity_rows

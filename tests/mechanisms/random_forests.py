@@ -27,12 +27,15 @@ def plan(rng, count, floating=0.2):
             v, w = rng.normal(size=3), rng.normal(size=3)
         else:
             xp, vp, wp = motion[parent] if parent >= 0 else np.zeros((3, 3))
-            w = wp + {
-                "Revolute": rng.normal() * axis,
-                "Spherical": rng.normal(size=3),
-                "Fixed": np.zeros(3),
-                "Prismatic": np.zeros(3),
-            }[kind]
+            w = (
+                wp
+                + {
+                    "Revolute": rng.normal() * axis,
+                    "Spherical": rng.normal(size=3),
+                    "Fixed": np.zeros(3),
+                    "Prismatic": np.zeros(3),
+                }[kind]
+            )
             v = vp + np.cross(wp, anchor - xp) + np.cross(w, x - anchor)
             if kind == "Prismatic":
                 v = v + rng.normal() * axis
@@ -60,7 +63,9 @@ def build(rows, *, gravity=(0.3, -0.2, -9.81), bodies=None, edges=None, flips=()
     scene = Scene(gravity=R @ gravity)
     for k in range(len(rows)) if bodies is None else bodies:
         row = rows[k]
-        q = (Rotation.from_matrix(R) * Rotation.from_quat(np.roll(row["orientation"], -1))).as_quat()
+        q = (
+            Rotation.from_matrix(R) * Rotation.from_quat(np.roll(row["orientation"], -1))
+        ).as_quat()
         scene.add_body(
             name=row["name"], mass=row["mass"], inertia=row["inertia"], orientation=np.roll(q, 1),
             **{key: R @ row[key] for key in ("position", "velocity", "angular_velocity")},

@@ -1,1 +1,1 @@
-"""Unilateral constraints: gap, exclusion and location of contact, return map, strike."""
+"""Unilateral constraints: gap, exclusion of contact between two states, return map."""
