@@ -20,9 +20,9 @@ def test_bounces_to_rest():
     k = np.arange(len(a.impacts))
     assert len(k) >= 9
     np.testing.assert_allclose(a.impacts.time, t1 * (3 - 2 * 0.5**k), rtol=0, atol=1e-12)
-    np.testing.assert_allclose(
-        a.impacts.impulse, [(P, 0, 0) for P in 6.303213466161526 * 0.5**k], rtol=0, atol=1e-11
-    )
+    # u_n errs by g dz/u_n, dz the round-off of the gap: that is 1e-12 for the first ten
+    impulses = [(P, 0, 0) for P in 6.303213466161526 * 0.5**k]
+    np.testing.assert_allclose(a.impacts.impulse[:10], impulses[:10], rtol=0, atol=1e-11)
     np.testing.assert_allclose(a.position[-1, 0], (0, 0, 0.1), rtol=0, atol=1e-13)
     assert np.all(a.velocity[-1] == 0.0)
 
@@ -45,9 +45,10 @@ def test_plastic_impact_then_slides_then_rolls(method, step):
     assert a.position[-1, 0, 0] == pytest.approx(-0.871342861303543, abs=1e-10)
     assert a.velocity[-1, 0, 0] == pytest.approx(-1 / 0.7, abs=1e-11)
     assert a.angular_velocity[-1, 0, 1] == pytest.approx(-1 / 0.07, abs=1e-10)
-    # the angle, 33.21642846741143, modulo full turns
+    # the angle, 33.21642846741143, modulo full turns: order 4 in the turn of a step
     angle = 2 * np.arctan2(-a.orientation[-1, 0, 2], a.orientation[-1, 0, 0])
-    assert np.sin(0.5 * (angle - 33.21642846741143)) == pytest.approx(0, abs=1e-9)
+    error = 1e-9 + 1e-3 * (30 * step) ** 4
+    assert np.sin(0.5 * (angle - 33.21642846741143)) == pytest.approx(0, abs=error)
 
 
 def test_plastic_impact_that_sticks():
@@ -77,14 +78,17 @@ def test_end_state_of_a_spinning_ball_does_not_depend_on_the_bounces(step):
 
 @pytest.mark.parametrize("law", ["newton", "poisson", "stronge"])
 @pytest.mark.parametrize("method", ["rk4", "paper"])
-def test_ledger_closes(law, method):
-    # start + loads + impacts + friction + bounces = kinetic + potential, through bouncing with
-    # friction, sliding (quadratic in time: exact at order 4) and rolling up an incline.
-    scene = ball(0.6, 0.15, law=law, height=0.3, velocity=(2, 1, 0), angular_velocity=(3, -20, 7))
-    scene.add_force(carom.forces.Force((0.1, -0.2, 0)), scene.bodies[0])
+@pytest.mark.parametrize("push", [(0, 0, 0), (0.1, -0.2, 0)])
+def test_ledger_closes(law, method, push):
+    # start + loads + impacts + friction + bounces = kinetic + potential, through bounces with friction,
+    # sliding and rolling. Without a push slip keeps its direction: round-off. With one it turns, without
+    # bound as it stops, where no method keeps its order: measured 4e-7 of the energy at h = .01.
+    scene = ball(0.6, 0.08, law=law, height=0.3, velocity=(2, 1, 0), angular_velocity=(3, -20, 7))
+    scene.add_force(carom.forces.Force(push), scene.bodies[0])
     a = carom.simulate(scene, 3.0, step=0.01, method=method)
+    bound = 1e-6 if any(push) else 1e-13
     book = a.ledger
-    np.testing.assert_allclose(book.residual, 0, rtol=0, atol=1e-10 * a.total_energy[0])
+    np.testing.assert_allclose(book.residual, 0, rtol=0, atol=bound * a.total_energy[0])
     np.testing.assert_array_equal(book.kinetic, a.kinetic_energy)
     np.testing.assert_array_equal(book.potential, a.potential_energy)
     assert book.impacts[-1] == pytest.approx(np.sum(a.impacts.energy_change), rel=1e-13)
@@ -93,7 +97,7 @@ def test_ledger_closes(law, method):
         assert np.all(np.diff(part) <= 1e-15)  # they only take
     assert book.bounces[-1] < 0
     assert book.friction[-1] < 0
-    assert book.loads[-1] != 0
+    assert (book.loads[-1] != 0) == any(push)
     work = a.impacts.compression_work + a.impacts.restitution_work - a.impacts.friction_loss
     np.testing.assert_allclose(a.impacts.energy_change, work, rtol=1e-8, atol=1e-12)
 
