@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import carom
-from simulate.scenes import G, ball, event_times, on_plane, turn
+from simulate.scenes import G, ball, event_times, on_plane
 
 OPEN, SLIP, STICK = 0, 1, 2
 
@@ -215,8 +215,7 @@ def test_contact_opens_on_the_way():
 
 
 def test_rolling_up_to_the_cone():
-    # A torque about y grows by a spring? Constant torque M on a rolling ball: T = 5/7 M/r (to drive
-    # it), sticks while T <= mu m g.
+    # A constant torque M about y drives a rolling ball with T = 5/7 M/r, while that is at most mu m g.
     mu = 0.3
     limit = 7 / 5 * mu * G * 0.1
     for factor, mode in ((0.9, STICK), (1.1, SLIP)):
@@ -229,16 +228,42 @@ def test_rolling_up_to_the_cone():
         np.testing.assert_allclose(a.ledger.residual, 0, rtol=0, atol=1e-12)
 
 
-def test_tilted_box_corner_slides_down():
-    # Attitude given by a turn: the lowest corner strikes alone, and is not held while it tips.
-    scene = on_plane(
-        {
-            "shape": carom.Box(0.2, 0.1, 0.06),
-            "mass": 1,
-            "position": (0, 0, 0.3),
-            "orientation": turn((1, 2, 0.5), 0.7),
-        },
-        contact={"restitution": 0.5, "friction": 0.3},
-    )
-    a = carom.simulate(scene, 0.35, step=1e-3, throw=False)
-    assert len(a.impacts) >= 1
+def test_rolling_gives_way_to_slip():
+    # A ball rolls against a spring F = -k x: x = A sin(w t), w^2 = 5k/(7m), friction 2/7 k x. Slip
+    # starts at x = 7/2 mu m g/k, against the motion; the time is of order 4 in the step.
+    k, mu, v0 = 40.0, 0.1, 2.0
+    w = np.sqrt(5 * k / 7)
+    start = np.arcsin(3.5 * mu * G / k * w / v0) / w
+    errors = []
+    for step in (0.02, 0.01):
+        scene = ball(0, mu, height=0, velocity=(v0, 0, 0), angular_velocity=(0, v0 / 0.1, 0))
+        spring = carom.forces.Spring(k, (-5, 0, 0.1), (0, 0, 0.1))
+        scene.add_force(spring, scene.bodies[0])
+        a = carom.simulate(scene, 2.0, step=step)
+        errors.append(abs(event_times(a, "slips")[0] - start))
+        # far out, where stick would need too much friction, slip turns without a stop
+        assert list(a.events.kind) == ["held", "slips", "slips", "slips", "slips"]
+        assert np.max(np.abs(a.ledger.residual)) < 1e-5 * a.total_energy[0]
+        N, T = (
+            a.contact_force[:, 0, 0],
+            np.hypot(a.contact_force[:, 0, 1], a.contact_force[:, 0, 2]),
+        )
+        np.testing.assert_allclose(N, G, rtol=1e-12)
+        assert np.max(T - mu * N) < 1e-9
+    assert errors[0] < 1e-5
+    assert errors[0] / errors[1] > 10
+
+
+@pytest.mark.parametrize("push", [0.9, 1.1])
+def test_push_at_the_cone(push):
+    # A force F on the centre of a ball at rest. Friction of rolling is 2/7 F, so it slips from
+    # F = 7/2 mu m g on, with v' = F/m - mu g.
+    mu = 0.1
+    force = push * 3.5 * mu * G
+    scene = ball(0, mu, height=0)
+    scene.add_force(carom.forces.Force((force, 0, 0)), scene.bodies[0])
+    a = carom.simulate(scene, 0.5, step=0.01)
+    rate = 5 / 7 * force if push < 1 else force - mu * G
+    np.testing.assert_allclose(a.velocity[:, 0, 0], rate * a.t, rtol=0, atol=1e-12)
+    np.testing.assert_array_equal(a.contact_mode[:, 0], STICK if push < 1 else SLIP)
+    assert len(a.events.time) == 1

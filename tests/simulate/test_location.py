@@ -89,7 +89,7 @@ def test_convergence_on_a_die_with_several_impacts():
             assert max(mean) < 1e-10
         else:
             np.testing.assert_allclose(slopes(mean) / 2, 1, rtol=0, atol=0.2)
-            assert mean[-1] < 1e-3
+            assert mean[-1] < 2e-3  # at a step of 1.5e-6 s: the motion is sensitive
 
 
 @pytest.mark.parametrize(
