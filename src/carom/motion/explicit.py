@@ -12,8 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom.dispatch import by_address
 from carom.geometry.rotation import multiply, normalize
-from carom.jit import inlined, kernel
+from carom.jit import inlined, kernel, unit
 from carom.motion.acceleration import acceleration, aim
 from carom.motion.free import free_flight
 from carom.motion.loops import dropped_rows
@@ -28,6 +29,7 @@ class Explicit(NamedTuple):
 
     A: np.ndarray  # (S, S)
     b: np.ndarray  # (S,)
+    address: int  # of the step for bodies that are joined, loaded or held; 0 while none is
 
 
 def rk4() -> Explicit:
@@ -35,7 +37,7 @@ def rk4() -> Explicit:
     A = np.zeros((4, 4))
     A[1, 0] = A[2, 1] = 0.5
     A[3, 2] = 1.0
-    return Explicit(A, np.array([1.0, 2.0, 2.0, 1.0]) / 6.0)
+    return Explicit(A, np.array([1.0, 2.0, 2.0, 1.0]) / 6.0, 0)
 
 
 @inlined
@@ -43,11 +45,19 @@ def explicit_step(method, system, held, start, h, end, work):
     """Write the state a time h after `start` into `end`; return work of loads, of friction, a status."""
     if not fly(system, held, start, h, end, work):
         return 0.0, 0.0, 0
-    return whole_or_parts(method.A, method.b, system, held, start, h, end, work)
+    return constrained(method, system, held, start, h, end, work)
 
 
 @inlined
-def whole_or_parts(A, weight, system, held, start, h, end, work):
+def constrained(method, system, held, start, h, end, work):
+    """Step the bodies that are joined, loaded or held; as `explicit_step` gives back."""
+    whole_or_parts(method.address, method.A, method.b, system, held, start, h, end, work)
+    result = work.result[0]
+    return result.applied, result.friction, result.code
+
+
+@unit
+def constrained_unit(A, weight, system, held, start, h, end, work):
     """Step at once; or in two unequal parts, if some stages fell into a singular position.
 
     There rows depend on each other that do not elsewhere, and are left out: the acceleration of that
@@ -68,7 +78,12 @@ def whole_or_parts(A, weight, system, held, start, h, end, work):
         applied, friction = applied + p, friction + f
         if code != 0 or (part == 0 and even):
             break
-    return applied, friction, code
+    result = work.result[0]
+    result.applied, result.friction, result.code = applied, friction, code
+
+
+#: whole_or_parts(address, A, weight, system, held, start, h, end, work)
+whole_or_parts = by_address(constrained_unit)
 
 
 @inlined

@@ -33,7 +33,7 @@ import numpy as np
 from carom.dispatch import by_solver
 from carom.geometry.rotation import exp, multiply, normalize, rotate, rotate_back
 from carom.jit import kernel
-from carom.motion.explicit import fly, keep, mark_held, whole_or_parts
+from carom.motion.explicit import constrained, fly, keep, mark_held
 from carom.motion.forces import add_force, applied_wrenches
 from carom.motion.joints import arm, parent_arm, position_error, velocity_error
 from carom.motion.loops import factor, substitute, subtract_rows
@@ -56,6 +56,7 @@ class ThreeField(NamedTuple):
     most: int  # iterations
     A: np.ndarray
     b: np.ndarray
+    address: int
 
 
 @kernel
@@ -65,7 +66,7 @@ def three_field_step(method, system, held, start, h, end, work):
         if held[c].mode != 0 and held[c].rest == 0:
             if not fly(system, held, start, h, end, work):
                 return 0.0, 0.0, 0
-            return whole_or_parts(method.A, method.b, system, held, start, h, end, work)
+            return constrained(method, system, held, start, h, end, work)
     mark_held(system, held, work)
     first_guess(system, start, h, end, work)
     if method.ode == 1:

@@ -124,6 +124,9 @@ JOINT_WORK = [
 #: one stage of a Runge-Kutta step, for one body
 STAGE = [("speed", "f8", 6), ("rate", "f8", 6), ("attitude", "f8", 4)]
 
+#: what a step of joined, loaded or held bodies gives back
+RESULT = [("applied", "f8"), ("friction", "f8"), ("code", "i8")]
+
 #: search for an event inside a step
 SEARCH = [
     ("active", "i8"),
@@ -141,6 +144,8 @@ SEARCH = [
     ("d2", "f8"),
     ("width", "f8"),
     ("tolerance", "f8"),
+    ("pending", "i8"),  # an action that waits for its unit to be compiled
+    ("horizon", "f8"),
 ]
 
 #: an impact in the making
@@ -204,5 +209,6 @@ class Work(NamedTuple):
     trial: np.recarray  # (N,) STATE
     middle: np.recarray  # (N,) STATE
     hit: np.recarray  # (1,) HIT
+    result: np.recarray  # (1,) RESULT
     search: np.recarray  # (1,) SEARCH
     history: np.ndarray  # (0, 16) no history inside the loop
