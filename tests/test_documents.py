@@ -20,17 +20,16 @@ def blocks(page: str) -> list[tuple[str, str]]:
 
 
 def words(text: str) -> list[str]:
-    """Return the words of an output; spaces and line breaks do not matter."""
-    return text.split()
+    """Return the words of an output; spaces, line breaks and brackets do not matter."""
+    return re.sub(r"[\[\](),;<>]", " ", text).split()
 
 
 def same(shown: str, printed: str) -> bool:
     """Whether two words are equal; numbers to 1e-6, or both round-off."""
     if shown == printed:
         return True
-    numbers = [re.sub(r"[\[\](),;<>]", "", w) for w in (shown, printed)]
     try:
-        a, b = (float(n) for n in numbers)
+        a, b = float(shown), float(printed)
     except ValueError:
         return False
     return abs(a - b) <= 1e-6 * max(abs(a), abs(b)) or max(abs(a), abs(b)) < 1e-12

@@ -45,6 +45,7 @@ def assemble(run, status: Status) -> dict:
     }  # fmt: skip
 
 
+@np.errstate(over="ignore", invalid="ignore")  # of a motion that diverged
 def energies(system, state) -> tuple[np.ndarray, np.ndarray]:
     """Return kinetic and potential energy (T,) of states (T, N)."""
     bodies, x, Q = system.bodies, state.x, state.Q

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from carom.contact.exclude import CLEAR, UNSURE
+from carom.contact.exclude import CLEAR, UNSURE, greatest_acceleration
 from carom.contact.gap import slow, strike_point
 from carom.hold.events import CONE, GAP, REVERSE, SEPARATE, end_forces
 from carom.hold.lifecycle import hold_contact
@@ -17,6 +17,7 @@ from carom.hold.search import begin_search, event_value, examine, narrow, propos
 from carom.impact.strike import strike
 from carom.jit import entry, inlined, kernel
 from carom.motion.acceleration import OPEN, SLIP
+from carom.motion.contact_point import contact_arm, contact_velocity
 from carom.motion.explicit import keep
 from carom.motion.step import step
 from carom.system import records as r
@@ -60,7 +61,12 @@ def run(system, method, controls, held, now, work, clocks, records, until):
                 return CORNER if clock.released > 10 else TOO_MANY
             remaining = length - clock.spent
             horizon = remaining if controls.location == LOCATE else controls.step
-            action, c = look_near(system, controls, held, now, work)
+            action, c = search.pending, search.contact
+            if action != NOTHING:  # what was put off until its unit was compiled
+                horizon = search.horizon
+                search.pending = NOTHING
+            else:
+                action, c = look_near(system, controls, held, now, work)
             if action == NOTHING:
                 # a trial step, cut until nothing can lie inside it, or shortened to its first event
                 dt, cuts, found = remaining, 0, False
@@ -125,11 +131,21 @@ def run(system, method, controls, held, now, work, clocks, records, until):
                     return work.hit[0].code
                 if controls.layer_time == 1 and clock.struck > struck:
                     clock.spent += records.impact[struck].duration  # the position stays
+            if action == STRIKE and not may_end(
+                system.contacts[c], system, held[c], now, horizon, work
+            ):
+                continue
             if action != NOTHING and controls.hold == 1:
+                if controls.hold_at == 0:
+                    search.pending, search.contact = max(action, HOLD), c
+                    search.horizon = horizon
+                    return r.NEEDS_HOLD
                 hold_contact(
                     controls.hold_at, system, controls, held, c, now, horizon, action == SETTLE,
                     work, clocks, records,
                 )  # fmt: skip
+                if clock.now == 0.0:  # touching from the start: the first row says so
+                    save_contacts(held, 0, records)
         clock.spent = 0.0
         clock.step += 1
         clock.in_step, clock.released = 0, 0
@@ -164,6 +180,21 @@ def look_near(system, controls, held, now, work):
             hold.leaving = 1  # unless it is held now
             return HOLD, c
     return NOTHING, -1
+
+
+@inlined
+def may_end(contact, system, hold, state, horizon, work):
+    """Return whether the bounces of a contact that was just struck could end within the horizon.
+
+    A first look, with a bound of the acceleration where there is one, before the forces are worked out.
+    """
+    rx, ry, rz = contact_arm(contact, state, hold.point)
+    rate = contact_velocity(contact, state, rx, ry, rz)[0]
+    if rate <= slow(contact, state) or system.bodies[contact.body].ballistic == 0:
+        return True
+    work.body[contact.body].status = 0
+    _, most = greatest_acceleration(system, contact, state, work)
+    return 2.0 * rate < most * (1.0 - contact.restitution) * horizon
 
 
 @kernel
@@ -209,13 +240,19 @@ def save(held, now, clock, records):
     row.friction, row.bounces = clock.friction, clock.bounces
     for b in range(now.shape[0]):
         keep(now[b], records.state[k, b])
+    save_contacts(held, k, records)
+    clock.saved += 1
+
+
+@inlined
+def save_contacts(held, k, records):
+    """Write modes and forces of the contacts into row k."""
     for c in range(held.shape[0]):
         touch = records.touch[k, c]
         touch.mode = held[c].mode
         for i in range(3):
             touch.force[i] = held[c].force[i] if held[c].mode != OPEN else 0.0
             touch.point[i] = held[c].point[i]
-    clock.saved += 1
 
 
 @inlined

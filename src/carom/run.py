@@ -9,7 +9,7 @@ from carom.geometry import quaternion
 from carom.hold.lifecycle import hold_unit
 from carom.impact.strike import strike_unit
 from carom.jit import address
-from carom.motion.explicit import rk4
+from carom.motion.explicit import constrained_unit, rk4
 from carom.motion.reactions import velocity_rows
 from carom.motion.solve import with_address
 from carom.motion.three_field import ThreeField
@@ -78,18 +78,35 @@ class Run:
         self.clock = r.new_clock()
         self.records = r.new_records(system, -(-steps // save_every) + 1, 64)
         if scene.contacts:
-            self.find_units()
+            self.find_strike()
+        if not np.all(system.bodies.ballistic):
+            self.find_constrained_step()
         loop.save_now(self.held, self.now, self.clock, self.records)
 
-    def find_units(self) -> None:
-        """Compile what only a scene with contacts needs, and note where it is."""
-        system, controls = self.compiled.system, self.controls
-        rest = (self.work, self.clock, self.records)
-        strike_at = address(
-            strike_unit, self.method, system, controls, self.held, 0, self.now, *rest
-        )
-        hold_at = address(hold_unit, system, controls, self.held, 0, self.now, 0.0, True, *rest)
-        self.controls = controls._replace(strike_at=strike_at, hold_at=hold_at)
+    def find_strike(self) -> None:
+        """Compile what a scene with contacts needs, and note where it is."""
+        found = address(
+            strike_unit, self.method, self.compiled.system, self.controls, self.held, 0, self.now,
+            self.work, self.clock, self.records,
+        )  # fmt: skip
+        self.controls = self.controls._replace(strike_at=found)
+
+    def find_constrained_step(self) -> None:
+        """Compile the step of bodies that are joined, loaded or held."""
+        tableau = (self.method.A, self.method.b)
+        found = address(
+            constrained_unit, *tableau, self.compiled.system, self.held, self.now, 0.0, self.now,
+            self.work,
+        )  # fmt: skip
+        self.method = self.method._replace(address=found)
+
+    def find_hold(self) -> None:
+        """Compile what a held contact needs: only when the first one is to be held."""
+        found = address(
+            hold_unit, self.compiled.system, self.controls, self.held, 0, self.now, 0.0, True,
+            self.work, self.clock, self.records,
+        )  # fmt: skip
+        self.controls = self.controls._replace(hold_at=found or 1)
 
     @property
     def steps_done(self) -> int:
@@ -103,9 +120,13 @@ class Run:
                 self.compiled.system, self.method, self.controls, self.held, self.now, self.work,
                 self.clock, self.records, until,
             )  # fmt: skip
-            if code != r.FULL:
+            if code == r.FULL:
+                self.records = r.longer(self.records)
+            elif code == r.NEEDS_HOLD:
+                self.find_constrained_step()
+                self.find_hold()
+            else:
                 return Status(code)
-            self.records = r.longer(self.records)
 
     def solution(self, status: Status) -> Solution:
         """Return what was computed; after a failure up to the last state, between saved steps or not."""

@@ -80,6 +80,8 @@ def simulate(
     check.choice("method", method, METHODS)
     check.choice("impact_location", impact_location, LOCATIONS)
     check.integer("save_every", save_every, least=1)
+    if not isinstance(throw, bool):
+        raise TypeError(f"throw must be True or False, got {throw!r}")
     options = Options() if options is None else options
     if not isinstance(options, Options):
         raise TypeError(f"options must be carom.Options, got {type(options).__name__}")

@@ -74,3 +74,19 @@ def test_spline_steps_converge():
 def test_horizontal_velocity_reverses():
     signs = [np.sign(die_run(mu, "planar").velocity[-1, 0, 0]) for mu in FRICTIONS]
     assert signs == [1.0, -1.0]
+
+
+def test_slip_of_the_spatial_die_stops_only_above_the_limit():
+    """What the page says of Fig. 6b: 0.497453 holds the corner; outgoing direction below it."""
+    import carom
+    from carom.paper.spatial import invariant_rays, stick_limit
+
+    record = die_run(0.2, "spatial").impacts[0]
+    W, u = record.inverse_mass, record.relative_velocity_before
+    assert stick_limit(W) == pytest.approx(0.497453, abs=1e-6)
+    for mu, sticks in ((0.05, False), (0.2, False), (0.6, True)):
+        assert ("stick" in carom.resolve_impact(W, u, mu, 0.5).phases) == sticks
+    for mu in FRICTIONS:
+        rays = invariant_rays(W, mu)
+        assert sorted(grows for _, grows in rays) == [False, True]
+        assert [np.cos(2 * angle) for angle, _ in rays] == pytest.approx([0.0, 0.0], abs=1e-9)

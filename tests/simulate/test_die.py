@@ -89,11 +89,12 @@ def test_a_plane_that_is_not_along_the_axes():
         (-10 * s, 10 * c, 0), 0.2,
         orientation=(np.cos(0.35), 0, 0, np.sin(0.35)), velocity=(0.5 * c, 0.5 * s, -0.5),
     )  # fmt: skip
-    a = carom.simulate(scene, 0.6, step=1e-3, throw=False)
-    assert len(a.impacts) >= 3
+    a = carom.simulate(scene, 0.53, step=1e-3)
+    assert len(a.impacts) >= 6
     across = np.array([-s, c, 0])
-    assert np.max(np.abs(a.position[:, 0] @ across)) <= 1e-12
-    assert np.max(np.abs(a.velocity[:, 0] @ across)) <= 1e-12
+    # (the last state is that of the corner at which the run ends, within hundreds of blows)
+    assert np.max(np.abs(a.position[:-1, 0] @ across)) <= 1e-12
+    assert np.max(np.abs(a.velocity[:-1, 0] @ across)) <= 1e-12
     np.testing.assert_allclose(a.impacts.time[0], T1[PLANE], rtol=0, atol=1e-12)
 
 

@@ -48,8 +48,8 @@ def momentum(a, inertia):
     [("rk4", 0.01, 1e-12), ("rk4", 0.1, 1e-12), ("paper", 0.01, 1e-10)],
 )
 def test_invariants_over_many_steps(method, step, tolerance):
-    # T = w.Jw/2 and L = R J R^T w are constant. rk4 keeps them over a flight; the block
-    # iteration of the paper's scheme leaves a round-off of 1e-15 a step, all of one sign: 1e5 steps.
+    # T = w.Jw/2 and L = R J R^T w are constant. rk4 keeps them over a flight; the block iteration
+    # of the paper's scheme leaves a round-off of 1e-15 a step, all of one sign.
     a = carom.simulate(top(), 1e5 * step, step=step, method=method, save_every=500)
     energy = a.kinetic_energy / a.kinetic_energy[0] - 1
     assert np.max(np.abs(energy)) < tolerance

@@ -20,8 +20,8 @@ def skimmer(spin=(0, 40, 0), height=0.1, velocity=(1, 0, 0), gravity=(0, 0, 0), 
 
 def test_a_vertex_that_dips_and_returns():
     # A cube of edge .1 turns at 40 rad/s, its centre just below the half-diagonal r = .1/sqrt(2).
-    # With steps of a quarter turn it stands flat at the end of each, r - .05 above the plane. An edge
-    # is r cos(phi) below the centre, inside where cos(phi) > 1 - 1e-5: it strikes that much before pi/4.
+    # With steps of a quarter turn it stands flat at the end of each, r - .05 above the plane. An
+    # edge is r cos(phi) below the centre: it strikes at cos(phi) = 1 - 1e-5, so much before pi/4.
     r, rate = 0.1 / np.sqrt(2), 40.0
     step = np.pi / 2 / rate
     cube = {"shape": carom.Box(0.1, 0.1, 0.1), "height": r * (1 - 1e-5)}

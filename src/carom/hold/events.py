@@ -48,7 +48,7 @@ def end_forces(system, held, state, work):
 
 
 @inlined
-def find_held_event(system, held, start, end):
+def find_held_event(system, held, end):
     """Return (event, contact, d1, d2) of the first held contact whose mode ends; contact -1 if none."""
     for c in range(held.shape[0]):
         contact, hold = system.contacts[c], held[c]
@@ -61,10 +61,7 @@ def find_held_event(system, held, start, end):
             if held_value(contact, hold, CONE, 0.0, 0.0, end) < -1e-12 * hold.force[0]:
                 return CONE, c, 0.0, 0.0
         elif hold.mode == SLIP:
-            d1, d2 = slip(contact, hold, start)
-            size = math.sqrt(d1 * d1 + d2 * d2)
-            if size > 0.0:
-                d1, d2 = d1 / size, d2 / size
-                if held_value(contact, hold, REVERSE, d1, d2, end) < 0.0:
-                    return REVERSE, c, d1, d2
+            d1, d2 = hold.heading[0], hold.heading[1]
+            if held_value(contact, hold, REVERSE, d1, d2, end) < 0.0:
+                return REVERSE, c, d1, d2
     return GAP, -1, 0.0, 0.0

@@ -41,18 +41,26 @@ def hold_unit(system, controls, held, c, state, horizon, settle, work, clocks, r
     rx, ry, rz = contact_arm(contact, state, hold.point)
     u = contact_velocity(contact, state, rx, ry, rz)
     still, stop = slow(contact, state), 0.0
-    # once with the contact open: would it approach? once held: does it slip or stick?
-    for look in range(2):
+    hold.heading[0], hold.heading[1] = 0.0, 0.0
+    # once with the contact open: would it approach? once held: does it stick? if not: it slips
+    for look in range(3):
+        f = hold.force
         if look == 0:
             if settle:
                 # slip below what friction does in a thousandth of a step has stopped
-                stop = 1e-3 * controls.step * abs(hold.force[0]) * hold.W[1, 1]
+                stop = 1e-3 * controls.step * abs(f[0]) * hold.W[1, 1]
             else:
                 hold.mode = OPEN
-        else:
+        elif look == 1:
             begin_event(c, state, clock, records)
             if not begin_hold(system, contact, hold, state, u, stop, still, work, clock):
                 return
+        elif hold.mode == STICK and not (
+            math.sqrt(f[1] * f[1] + f[2] * f[2]) <= contact.friction * f[0]
+        ):
+            hold.mode = SLIP
+        else:
+            break
         acceleration(system, state, held, work, work.stages[0])
         if look == 0 and not settle:
             rate = work.stages[0, contact.body].rate
@@ -60,14 +68,11 @@ def hold_unit(system, controls, held, c, state, horizon, settle, work, clocks, r
             g = -contact_acceleration(contact, state, rate, p, rx, ry, rz)[0]
             if not bounces_end(contact, u[0], g, still, horizon):
                 return
-    f = hold.force
-    if hold.mode == STICK and not (math.sqrt(f[1] * f[1] + f[2] * f[2]) <= contact.friction * f[0]):
-        hold.mode = SLIP
     mark_anchor(contact, hold, state)
     body = system.bodies[contact.body]
     if hold.mode == STICK and body.isolated == 1:
         rate = work.stages[0, contact.body].rate
-        rest_if_still(contact, hold, state[contact.body], rate, f[0] / body.mass)
+        rest_if_still(contact, hold, state[contact.body], rate, hold.force[0] / body.mass)
     kind = HOLD if not settle else (STICKS if hold.mode == STICK else SLIPS)
     clock.holds += 0 if settle else 1
     end_event(kind, state, clock, records)

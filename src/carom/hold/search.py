@@ -31,7 +31,7 @@ def examine(system, controls, held, now, dt, work):
             held[c].leaving = 0
     if found == BELOW:
         return BELOW, GAP, which, low, 0.0, 0.0
-    kind, c, d1, d2 = find_held_event(system, held, now, work.trial)
+    kind, c, d1, d2 = find_held_event(system, held, work.trial)
     if c >= 0:
         return BELOW, kind, c, 0.0, d1, d2
     return CLEAR, GAP, -1, 0.0, 0.0, 0.0

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from carom.jit import kernel
+from carom.jit import entry, kernel
 
 # Pivots of B below this part of its trace are zero: a rail, or a planar problem in space.
 _EMPTY = 1e-13
@@ -27,7 +27,7 @@ def solve_tangential(b11, b12, b22, x, y):
     return (b11 * x + b12 * y) / trace / trace, (b12 * x + b22 * y) / trace / trace
 
 
-@kernel
+@entry
 def stick_ratio(a1, a2, b11, b12, b22):
     """Return tau = -B^+ a: the friction impulse per normal impulse that keeps u_t = 0."""
     t1, t2 = solve_tangential(b11, b12, b22, a1, a2)

@@ -8,8 +8,8 @@ from carom.contact.gap import round_off, slow, strike_point
 from carom.contact.return_map import return_map
 from carom.contact.work_mode import restore_work
 from carom.dispatch import by_address, by_method
-from carom.impact import layout
-from carom.impact.layer import traverse
+from carom.impact import laws, layout
+from carom.impact.layer import E_MIN, traverse
 from carom.impact.resolve import resolve
 from carom.jit import kernel, unit
 from carom.motion.acceleration import OPEN
@@ -145,14 +145,21 @@ def write_impact(contact, c, state, rx, ry, rz, hit, clock, records):
     row.restitution_work = out[layout.WORK_R]
     row.friction_loss = out[layout.FRICTION_LOSS]
     row.phases = int(out[layout.PHASES])
-    row.duration = layer_time(contact, out)
+    row.duration = layer_time(contact, hit.u[0], out)
     clock.impacts += out[layout.ENERGY_CHANGE]
 
 
 @kernel
-def layer_time(contact, out):
-    """Return the duration in the layer: constant N in each phase, N_c = |A_c|/(b l), N_r = A_r/(b l)."""
+def layer_time(contact, un, out):
+    """Return the duration in the layer.
+
+    Newton: law A, T_c = 2 b l/v_0, T_r = T_c/e. Else (and after a jam): constant N in each phase,
+    N_c = |A_c|/(b l), N_r = A_r/(b l).
+    """
     depth = -contact.width * math.log1p(-contact.penetration)
+    if contact.law == laws.NEWTON and (int(out[layout.PHASES]) & layout.JAM) == 0:
+        e = contact.restitution
+        return 2.0 * depth / -un * (1.0 + (1.0 / e if e >= E_MIN else 0.0))
     compression, p_c = out[layout.WORK_C], out[layout.P_C]
     restitution, p_r = out[layout.WORK_R], out[layout.IMPULSE] - out[layout.P_C]
     time = 0.0

@@ -7,6 +7,9 @@ brought together by block Gauss-Seidel.
 
 from __future__ import annotations
 
+import math
+
+from carom.contact.gap import slow
 from carom.dispatch import only_with_joints
 from carom.jit import kernel
 from carom.motion.contact_point import (
@@ -85,6 +88,37 @@ def friction_power(system, state, held):
 
 
 @kernel
+def aim(system, held, state):
+    """Note the directions of slip at the start of a step."""
+    for c in range(held.shape[0]):
+        heading = held[c].heading
+        heading[0], heading[1] = 0.0, 0.0
+        if held[c].mode == SLIP:
+            contact = system.contacts[c]
+            rx, ry, rz = contact_arm(contact, state, held[c].point)
+            u1, u2 = slip_direction(contact, held[c], state, rx, ry, rz)
+            speed = math.sqrt(u1 * u1 + u2 * u2)
+            if speed > 0.0:
+                heading[0], heading[1] = u1 / speed, u2 / speed
+
+
+@kernel
+def slip_direction(contact, hold, state, rx, ry, rz):
+    """Return a vector along the slip that friction opposes; 0 where slip has yet to start.
+
+    Once slip has turned against the direction it had at the start of the step, friction goes on as before: a
+    smooth force up to the end of the step, where the reversal is seen and located. (A force that turned with
+    the slip would hold the slip near zero, and the end of the step would show no reversal.)
+    """
+    _, u1, u2 = contact_velocity(contact, state, rx, ry, rz)
+    if not math.sqrt(u1 * u1 + u2 * u2) > 10.0 * slow(contact, state):
+        return hold.heading[0], hold.heading[1]
+    if u1 * hold.heading[0] + u2 * hold.heading[1] < 0.0:
+        return -u1, -u2
+    return u1, u2
+
+
+@kernel
 def relax(system, contact, hold, state, work, stage):
     """Change the force of one held contact so that its own rows are met; return the change."""
     f, W = hold.force, hold.W
@@ -97,8 +131,8 @@ def relax(system, contact, hold, state, work, stage):
     if hold.mode == STICK:
         n, t1, t2 = stick_force(W, an, a1, a2)
     else:
-        u = contact_velocity(contact, state, rx, ry, rz)
-        n, t1, t2 = slip_force(W, an, a1, a2, u[1], u[2], contact.friction)
+        u1, u2 = slip_direction(contact, hold, state, rx, ry, rz)
+        n, t1, t2 = slip_force(W, an, a1, a2, u1, u2, contact.friction)
     change = max(abs(n - f[0]), max(abs(t1 - f[1]), abs(t2 - f[2])))
     spread(system, contact, state, rx, ry, rz, n - f[0], t1 - f[1], t2 - f[2], work)
     first, last = reached(system, contact)

@@ -12,14 +12,16 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom.dispatch import by_address
 from carom.geometry.rotation import multiply, normalize
-from carom.jit import inlined, kernel
-from carom.motion.acceleration import acceleration
+from carom.jit import inlined, kernel, unit
+from carom.motion.acceleration import acceleration, aim
 from carom.motion.free import free_flight
+from carom.motion.loops import dropped_rows
 from carom.motion.project import project_position, project_velocity
 
-#: parts of a step that meets a singular position at its first stage, at its last one, between
-FIRST_PART, LAST_PART, MIDDLE_PART = 0.0625, 0.9375, 0.375
+CONSTRAINTS_LOST = 7
+UNEQUAL = 0.38  # first part of a step that is taken in two
 
 
 class Explicit(NamedTuple):
@@ -27,6 +29,7 @@ class Explicit(NamedTuple):
 
     A: np.ndarray  # (S, S)
     b: np.ndarray  # (S,)
+    address: int  # of the step for bodies that are joined, loaded or held; 0 while none is
 
 
 def rk4() -> Explicit:
@@ -34,7 +37,7 @@ def rk4() -> Explicit:
     A = np.zeros((4, 4))
     A[1, 0] = A[2, 1] = 0.5
     A[3, 2] = 1.0
-    return Explicit(A, np.array([1.0, 2.0, 2.0, 1.0]) / 6.0)
+    return Explicit(A, np.array([1.0, 2.0, 2.0, 1.0]) / 6.0, 0)
 
 
 @inlined
@@ -42,7 +45,45 @@ def explicit_step(method, system, held, start, h, end, work):
     """Write the state a time h after `start` into `end`; return work of loads, of friction, a status."""
     if not fly(system, held, start, h, end, work):
         return 0.0, 0.0, 0
-    return constrained_step(system, method.A, method.b, held, start, h, end, work)
+    return constrained(method, system, held, start, h, end, work)
+
+
+@inlined
+def constrained(method, system, held, start, h, end, work):
+    """Step the bodies that are joined, loaded or held; as `explicit_step` gives back."""
+    whole_or_parts(method.address, method.A, method.b, system, held, start, h, end, work)
+    result = work.result[0]
+    return result.applied, result.friction, result.code
+
+
+@unit
+def constrained_unit(A, weight, system, held, start, h, end, work):
+    """Step at once; or in two unequal parts, if some stages fell into a singular position.
+
+    There rows depend on each other that do not elsewhere, and are left out: the acceleration of that
+    stage is not the limit of its neighbours. The parts have their stages at other times.
+    """
+    applied, friction, code = 0.0, 0.0, 0
+    for part in range(3):
+        first, last, dt = start, end, h
+        if part == 1:
+            for b in range(start.shape[0]):
+                keep(start[b], work.middle[b])
+            last, dt = work.middle, UNEQUAL * h
+        elif part == 2:
+            first, dt = work.middle, (1.0 - UNEQUAL) * h
+        p, f, code, even = constrained_step(system, A, weight, held, first, dt, last, work)
+        if part == 1:  # what the whole step gave is void
+            applied, friction = 0.0, 0.0
+        applied, friction = applied + p, friction + f
+        if code != 0 or (part == 0 and even):
+            break
+    result = work.result[0]
+    result.applied, result.friction, result.code = applied, friction, code
+
+
+#: whole_or_parts(address, A, weight, system, held, start, h, end, work)
+whole_or_parts = by_address(constrained_unit)
 
 
 @inlined
@@ -85,45 +126,12 @@ def mark_held(system, held, work):
 def constrained_step(system, A, weight, held, start, h, end, work):
     """Step the bodies that are joined, loaded or held; the others are in `end` already.
 
-    Where a stage falls into a singular position of closed loops, more rows depend on others there
-    than elsewhere, and its acceleration is not determined. The step is then made in two parts, so that the
-    stages lie beside it, or the part that begins or ends there is short.
-    """
-    applied, friction, code, singular = ambient_step(system, A, weight, held, start, h, end, work)
-    bound_accelerations(work, weight.size)
-    if singular == 0:
-        return applied, friction, code
-    first = h * (FIRST_PART if singular == 1 else LAST_PART if singular == 2 else MIDDLE_PART)
-    between = work.middle
-    for b in range(start.shape[0]):
-        keep(start[b], between[b])
-    a, f, code, _ = ambient_step(system, A, weight, held, start, first, between, work)
-    if code != 0:
-        return a, f, code
-    applied, friction, code, _ = ambient_step(
-        system, A, weight, held, between, h - first, end, work
-    )
-    return applied + a, friction + f, code
-
-
-@kernel
-def dropped_rows(work):
-    """Return how many constraint rows the last solve found to depend on others."""
-    count = 0
-    for j in range(work.joint.shape[0]):
-        count += work.joint[j].dropped
-    return count
-
-
-@kernel
-def ambient_step(system, A, weight, held, start, h, end, work):
-    """Make one step; return works, a status, and 0, or where more rows depend on others than elsewhere.
-
-    1: at the first stage, 2: at the last one, 3: between.
+    Returns work of loads, of friction, a status, and whether all stages left out as many rows.
     """
     stages, stage = weight.size, work.stage
     applied, friction = 0.0, 0.0
-    least, most, at_first, at_last = 1 << 30, 0, 0, 0
+    aim(system, held, start)
+    dropped, even = 0, True
     for s in range(stages):
         combine(A[s], s, h, start, work.stages, stage)
         for b in range(stage.shape[0]):
@@ -135,14 +143,11 @@ def ambient_step(system, A, weight, held, start, h, end, work):
         p, f = acceleration(system, stage, held, work, work.stages[s])
         applied += h * weight[s] * p
         friction += h * weight[s] * f
-        count = dropped_rows(work)
-        least, most, at_last = min(least, count), max(most, count), count
-        if s == 0:
-            at_first = count
+        count = dropped_rows(system)
+        even = even and (s == 0 or count == dropped)
+        dropped = count
     combine(weight, stages, h, start, work.stages, stage)
-    singular = 0
-    if most > least:
-        singular = 1 if at_first > least else 2 if at_last > least else 3
+    bound_accelerations(work, stages)
     for b in range(stage.shape[0]):
         status = work.body[b].status
         if status == 1 or (status == 0 and system.bodies[b].ballistic == 0):
@@ -150,9 +155,9 @@ def ambient_step(system, A, weight, held, start, h, end, work):
     if system.joints.shape[0] > 0:
         error = project_position(system, end, work, 1e-14)
         if not (error <= 1e-9):
-            return applied, friction, 7, singular
+            return applied, friction, CONSTRAINTS_LOST, True
         project_velocity(system, end, work)
-    return applied, friction, 0, singular
+    return applied, friction, 0, even
 
 
 @kernel

@@ -11,8 +11,10 @@ minimal norm).
 
 from __future__ import annotations
 
+from carom.dispatch import by_solver
 from carom.jit import kernel
 from carom.motion.rows import build_rows, row_target, times_inverse_mass
+from carom.system.arrays import FreeSolver, LoopSolver, TreeSolver
 
 
 @kernel
@@ -202,3 +204,26 @@ def solve_factored(system, state, biased, work):
     subtract_rows(system, work)
     substitute(system)
     add_reactions(system, work)
+
+
+@kernel
+def _dropped_rows(system):
+    """Return how many rows the last factor left out."""
+    count = 0
+    for j in range(system.joints.shape[0]):
+        for r in range(system.joints[j].rows):
+            if system.solver.rows[j].pivot[r] == 0.0:
+                count += 1
+    return count
+
+
+@kernel
+def _none_dropped(system):
+    """Only the loops' back end leaves rows out."""
+    return 0
+
+
+#: dropped_rows(system): how many rows the last solve left out
+dropped_rows = by_solver(
+    {FreeSolver: _none_dropped, TreeSolver: _none_dropped, LoopSolver: _dropped_rows}
+)

@@ -161,9 +161,9 @@ def constraint_rows(system: System, x, Q, v, w):
 
 
 def _directions(joint, x, Q, v, w):
-    """Return directions (angular, linear; lists of (T, 3)), arms, and the bias (angular, linear).
+    """Return constrained directions, arms of child and parent, and the bias of the relative acceleration.
 
-    The arms are those of the child and of the parent.
+    Directions and bias are pairs (angular, linear); directions are lists of (T, 3).
     """
     p, c, kind = int(joint.parent), int(joint.child), joint.kind
     zero = np.zeros_like(x[:, 0])

@@ -35,13 +35,7 @@ def solve_loops(system, state, biased, work):
     factor(system, state, 0.0, work)
     solve_factored(system, state, biased, work)
     for j in range(system.joints.shape[0]):
-        row = system.solver.rows[j]
-        joint_wrench(system.joints[j], state, row.rhs, work.joint[j].reaction)
-        dropped = 0
-        for r in range(system.joints[j].rows):
-            if row.pivot[r] == 0.0:
-                dropped += 1
-        work.joint[j].dropped = dropped
+        joint_wrench(system.joints[j], state, system.solver.rows[j].rhs, work.joint[j].reaction)
 
 
 @kernel

@@ -33,7 +33,7 @@ import numpy as np
 from carom.dispatch import by_solver
 from carom.geometry.rotation import exp, multiply, normalize, rotate, rotate_back
 from carom.jit import kernel
-from carom.motion.explicit import constrained_step, fly, keep, mark_held
+from carom.motion.explicit import constrained, fly, keep, mark_held
 from carom.motion.forces import add_force, applied_wrenches
 from carom.motion.joints import arm, parent_arm, position_error, velocity_error
 from carom.motion.loops import factor, substitute, subtract_rows
@@ -56,6 +56,7 @@ class ThreeField(NamedTuple):
     most: int  # iterations
     A: np.ndarray
     b: np.ndarray
+    address: int
 
 
 @kernel
@@ -65,7 +66,7 @@ def three_field_step(method, system, held, start, h, end, work):
         if held[c].mode != 0 and held[c].rest == 0:
             if not fly(system, held, start, h, end, work):
                 return 0.0, 0.0, 0
-            return constrained_step(system, method.A, method.b, held, start, h, end, work)
+            return constrained(method, system, held, start, h, end, work)
     mark_held(system, held, work)
     first_guess(system, start, h, end, work)
     if method.ode == 1:
@@ -79,7 +80,7 @@ def three_field_step(method, system, held, start, h, end, work):
         change = velocity_block(system, method, h, end, work)
         change = max(change, position_block(system, method, start, h, end, work))
         if change <= method.tolerance or (
-            change <= 1e4 * method.tolerance and change >= 0.5 * previous
+            change <= 1e6 * method.tolerance and change >= 0.5 * previous
         ):
             mean_accelerations(start, h, end, work)
             return applied, 0.0, 0
@@ -140,7 +141,8 @@ def middle_of_arc(start, h, end, middle):
 def momenta(system, start, h, work):
     """Turn the wrenches into p0 + h f + Abar^T Lam: momenta at the end, about each centre, world.
 
-    Keeps in `bound` the speed each body would have without reactions: the measure of convergence.
+    Keeps in `bound` the measure of convergence: the speed each body would have without reactions, at
+    least that of 1e-6 of its size a step (round-off of positions is 1e-10 of that).
     """
     for b in range(system.bodies.shape[0]):
         body, q, w, wrench = system.bodies[b], start[b].Q, start[b].w, work.body[b].wrench
@@ -150,7 +152,7 @@ def momenta(system, start, h, work):
         for k in range(3):
             wrench[k] = h * wrench[k] + body.mass * start[b].v[k]
             wrench[3 + k] = h * wrench[3 + k] + l[k]
-        bound, speed = work.body[b].bound, 0.0
+        bound, speed = work.body[b].bound, 1e-6 * body.extent / h
         for k in range(3):
             spin = body.extent * abs(wrench[3 + k]) / max(J[0], max(J[1], J[2]))
             speed = max(speed, max(abs(wrench[k]) / body.mass, spin))

@@ -23,7 +23,7 @@ gap of 0.4 m), the choice is ours; each caption says what is drawn.
 """
 
 
-_SILENT = "says nothing of this curve in its text; the choice is ours."
+_SILENT = "its text, as far as we know it, does not speak of this curve; the choice is ours."
 
 
 def names() -> tuple[str, ...]:

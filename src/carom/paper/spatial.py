@@ -172,8 +172,8 @@ FIGURES = (
         "fig6b",
         "Die, spatial. Left: slip velocity of the corner during the first impact (hodograph) for "
         "mu = 0.05 and 0.20, and, to compare, mu = 0.60, with the invariant directions of slip "
-        "(dashed: outgoing, dotted: incoming; by the symmetry of this impact the same for every "
-        "mu). Right: angular velocity in world axes against time, in the same colours.",
+        "(dashed: outgoing, dotted: incoming; by the symmetry of this impact the same for both "
+        "mu of the paper). Right: angular velocity in world axes against time, in the same colours.",
         "",
         _hodograph,
         lambda: (

@@ -99,6 +99,7 @@ HELD = [
     ("point", "f8", 3),  # point of the core that carries the contact, body axes
     ("anchor", "f8", 3),  # where a sticking point was when it stuck, world
     ("force", "f8", 3),  # of the last solve, contact axes
+    ("heading", "f8", 2),  # direction of slip at the start of the step; 0 where it does not slip
     ("W", "f8", (3, 3)),  # effective inverse mass of the last solve
 ]
 
@@ -118,11 +119,13 @@ JOINT_WORK = [
     ("reaction", "f8", 6),  # wrench on the child at its anchor: force, torque
     ("multiplier", "f8", 6),  # impulses of the rows in the three-field step
     ("target", "f8", 6),
-    ("dropped", "i8"),  # rows that the last solve found to depend on others
 ]
 
 #: one stage of a Runge-Kutta step, for one body
 STAGE = [("speed", "f8", 6), ("rate", "f8", 6), ("attitude", "f8", 4)]
+
+#: what a step of joined, loaded or held bodies gives back
+RESULT = [("applied", "f8"), ("friction", "f8"), ("code", "i8")]
 
 #: search for an event inside a step
 SEARCH = [
@@ -141,6 +144,8 @@ SEARCH = [
     ("d2", "f8"),
     ("width", "f8"),
     ("tolerance", "f8"),
+    ("pending", "i8"),  # an action that waits for its unit to be compiled
+    ("horizon", "f8"),
 ]
 
 #: an impact in the making
@@ -204,5 +209,6 @@ class Work(NamedTuple):
     trial: np.recarray  # (N,) STATE
     middle: np.recarray  # (N,) STATE
     hit: np.recarray  # (1,) HIT
+    result: np.recarray  # (1,) RESULT
     search: np.recarray  # (1,) SEARCH
     history: np.ndarray  # (0, 16) no history inside the loop

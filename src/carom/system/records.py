@@ -11,6 +11,7 @@ from carom.system.arrays import (
     HELD,
     HIT,
     JOINT_WORK,
+    RESULT,
     SEARCH,
     STAGE,
     STATE,
@@ -76,6 +77,7 @@ SNAPSHOT = [
 ]
 
 FULL = 100  # a record is full: the caller makes it longer and goes on
+NEEDS_HOLD = 101  # a contact is to be held: the caller compiles what that needs and goes on
 
 
 class Records(NamedTuple):
@@ -112,6 +114,7 @@ def new_work(system: System, stages: int) -> Work:
         trial=table(STATE, n),
         middle=table(STATE, n),
         hit=table(HIT, 1),
+        result=table(RESULT, 1),
         search=table(SEARCH, 1),
         history=np.zeros((0, 16)),
     )

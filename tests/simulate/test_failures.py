@@ -1,0 +1,162 @@
+"""Runs that end early: status, message, solution up to there; progress and interruption."""
+
+import numpy as np
+import pytest
+
+import carom
+from carom import SimulationError, Status
+from simulate.scenes import ball, die, on_plane, turn, zeno_time
+
+
+def check_failure(status, scene, duration, **settings):
+    """The same run with throw=False and throw=True; returns the solution."""
+    a = carom.simulate(scene, duration, throw=False, **settings)
+    assert a.status is status
+    assert not a.success
+    assert a.message.startswith(status.message)
+    assert "reached t = " in a.message
+    with pytest.raises(SimulationError, match="reached t = ") as error:
+        carom.simulate(scene, duration, **settings)
+    solution = error.value.solution
+    assert solution.status is status
+    np.testing.assert_array_equal(solution.t, a.t)
+    assert str(error.value) == a.message
+    assert 0 <= a.t[-1] < duration
+    return a
+
+
+@pytest.mark.parametrize("method", ["rk4", "paper"])
+def test_bounces_without_hold(method):
+    # e = .5 comes to rest at .856705873756; without holding, impacts accumulate there.
+    options = carom.Options(hold=False, max_impacts_per_step=30)
+    a = check_failure(
+        Status.TOO_MANY_IMPACTS, ball(0.5), 2.0, step=0.01, options=options, method=method
+    )
+    assert len(a.impacts) > 30
+    # the last bounces are of the round-off of the gap, 1e-14 m, that is of 1e-7 s each
+    assert a.impacts.time[-1] == pytest.approx(zeno_time(0.5), abs=2e-6)
+    assert abs(a.t[-1] - zeno_time(0.5)) <= 0.01
+    # before the Zeno time the run is whole
+    assert carom.simulate(ball(0.5), 0.8, step=0.01, options=options, method=method).success
+
+
+def test_no_convergence():
+    scene = carom.Scene()
+    scene.add_body(mass=1, inertia=(1, 2, 3), angular_velocity=(1, 2, 3))
+    options = carom.Options(max_iterations=1)
+    a = check_failure(Status.NO_CONVERGENCE, scene, 1.0, step=0.1, method="paper", options=options)
+    assert a.t[-1] == 0.0
+    assert "max_iterations" in a.message
+
+
+def test_step_cut_to_nothing():
+    # A cube spins a hair above the plane; two halvings cannot exclude a touch.
+    cube = {
+        "shape": carom.Box(0.1, 0.1, 0.1), "mass": 1, "angular_velocity": (0, 40, 0),
+        "position": (0, 0, 0.1 / np.sqrt(2) * (1 + 1e-6)),
+    }  # fmt: skip
+    scene = on_plane(cube, gravity=(0, 0, 0))
+    options = carom.Options(max_cuts=2)
+    check_failure(Status.STEP_CUT_TO_NOTHING, scene, 1.0, step=np.pi / 80, options=options)
+
+
+def test_motion_that_diverges():
+    # An explicit step of 10 w^-1 on a spring: grows by some 1e3 a step until it overflows.
+    scene = carom.Scene(gravity=(0, 0, 0))
+    body = scene.add_body(mass=1, inertia=(1, 1, 1), velocity=(1, 0, 0))
+    spring = carom.forces.Spring(1e4, (-1, 0, 0), (0, 0, 0))
+    scene.add_force(spring, body)
+    a = check_failure(Status.NOT_FINITE, scene, 100.0, step=0.1)
+    assert len(a.t) > 10
+
+
+@pytest.mark.parametrize(
+    "attitude", [turn((0, 1, 0), 0.6), turn((1, 2, 0.5), 0.7)], ids=["edge", "vertex"]
+)
+def test_a_box_that_needs_several_points(attitude):
+    # One point of contact is held at a time. A box that falls on an edge or a vertex and then on
+    # others needs more: the run stops and says so, and keeps what came before.
+    box = {
+        "shape": carom.Box(0.1, 0.1, 0.1), "mass": 1, "position": (0, 0, 0.2),
+        "orientation": attitude,
+    }  # fmt: skip
+    scene = on_plane(box, contact={"restitution": 0.2, "friction": 0.5})
+    a = carom.simulate(scene, 5.0, step=1e-3, throw=False)
+    assert a.status in (Status.CORNER, Status.TOO_MANY_IMPACTS)
+    assert len(a.impacts) > 3
+    assert 0.1 < a.t[-1] < 5.0
+    assert np.all(np.isfinite(a.position))
+    assert np.max(a.ledger.residual) < 1e-6 * a.total_energy[0]
+    with pytest.raises(SimulationError) as error:
+        carom.simulate(scene, 5.0, step=1e-3)
+    assert len(error.value.solution.impacts) == len(a.impacts)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_every_thrown_die_ends(seed):
+    # Whatever the throw: the run ends, by itself or with a status, its states finite and above the plane.
+    rng = np.random.default_rng(seed)
+    q = rng.normal(size=4)
+    scene = die(rng.normal(size=3) * 20, 0.2, law="stronge", orientation=q / np.linalg.norm(q))
+    a = carom.simulate(scene, 1.0, step=1e-3, throw=False)
+    assert a.status in (Status.SUCCESS, Status.CORNER, Status.TOO_MANY_IMPACTS)
+    assert np.all(np.isfinite(a.position))
+    assert np.min(a.position[:, 0, 2]) > 0.01 * (1 - 1e-6)
+    assert np.all(np.diff(a.ledger.impacts) <= 1e-15)
+    # held motion is of order 4 in the step; events are exact
+    assert np.max(np.abs(a.ledger.residual)) < 1e-7 * a.total_energy[0]
+    assert np.all(np.diff(a.t) > 0)
+
+
+@pytest.mark.plain
+def test_progress_is_called():
+    calls = []
+    carom.simulate(
+        ball(1.0), 0.2, step=0.02, progress=lambda done, total: calls.append((done, total))
+    )
+    assert calls[-1] == (10, 10)
+    done = [d for d, _ in calls]
+    assert done == sorted(done)
+    assert {total for _, total in calls} == {10}
+
+
+def test_progress_does_not_change_the_run():
+    a = carom.simulate(ball(0.8), 2.0, step=0.001, progress=lambda done, total: None)
+    b = carom.simulate(ball(0.8), 2.0, step=0.001)
+    np.testing.assert_array_equal(a.position, b.position)
+    np.testing.assert_array_equal(a.impacts.time, b.impacts.time)
+
+
+def test_progress_bar(capsys):
+    pytest.importorskip("tqdm")
+    assert carom.simulate(ball(0.8), 0.2, step=0.001, progress=True).success
+    assert "200/200" in capsys.readouterr().err
+
+
+def test_interruption_hands_back_what_there_is():
+    def stop(done, total):
+        if done >= 500:
+            raise KeyboardInterrupt
+
+    a = carom.simulate(ball(0.8), 2.0, step=0.001, progress=stop, throw=False)
+    assert a.status is Status.INTERRUPTED
+    assert a.t[-1] == pytest.approx(0.5, abs=0.05)
+    whole = carom.simulate(ball(0.8), 2.0, step=0.001)
+    np.testing.assert_array_equal(a.position, whole.position[: len(a.t)])
+    with pytest.raises(SimulationError, match="interrupted") as error:
+        carom.simulate(ball(0.8), 2.0, step=0.001, progress=stop)
+    assert error.value.solution.status is Status.INTERRUPTED
+
+
+def test_an_error_in_the_progress_function_comes_out():
+    def broken(done, total):
+        raise RuntimeError("mine")
+
+    with pytest.raises(RuntimeError, match="mine"):
+        carom.simulate(ball(0.8), 1.0, step=0.01, progress=broken)
+
+
+def test_every_status_has_a_sentence():
+    for status in Status:
+        assert status.message[0].isupper()
+        assert status.message.endswith(".")
