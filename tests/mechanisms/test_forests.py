@@ -40,12 +40,12 @@ def test_reactions_and_accelerations_equal_a_dense_solve(seed, looped):
     solution = carom.simulate(scene, h, step=h)
     scale = np.max(np.abs(wrenches))
     np.testing.assert_allclose(
-        wrench_on_centre(scene, solution), wrenches[:, 0], atol=2e-7 * scale
+        wrench_on_centre(scene, solution), wrenches[:, 0], rtol=0, atol=2e-7 * scale
     )  # fmt: skip
     # accelerations by differences of the motion forward and backward in time, two steps combined
     found = [central(scene, k * h) for k in (1.0, 0.5)]
     found = (4.0 * found[1] - found[0]) / 3.0
-    np.testing.assert_allclose(found, a, atol=1e-6 * np.max(np.abs(a)))
+    np.testing.assert_allclose(found, a, rtol=0, atol=1e-6 * np.max(np.abs(a)))
 
 
 def central(scene, h):
@@ -72,9 +72,9 @@ def test_both_back_ends_move_alike(seed):
     rows = forest(seed)
     tree, loop = run(build(rows), 0.1, 1e-3), run(with_loop(build(rows)), 0.1, 1e-3)
     n = len(rows)
-    np.testing.assert_allclose(loop.position[-1, :n], tree.position[-1], atol=1e-10)
-    np.testing.assert_allclose(loop.velocity[-1, :n], tree.velocity[-1], atol=1e-9)
-    np.testing.assert_allclose(loop.orientation[-1, :n], tree.orientation[-1], atol=1e-10)
+    np.testing.assert_allclose(loop.position[-1, :n], tree.position[-1], rtol=0, atol=1e-10)
+    np.testing.assert_allclose(loop.velocity[-1, :n], tree.velocity[-1], rtol=0, atol=1e-9)
+    np.testing.assert_allclose(loop.orientation[-1, :n], tree.orientation[-1], rtol=0, atol=1e-10)
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -106,8 +106,8 @@ def test_momentum_of_a_floating_tree(seed):
         spin = spin + np.einsum("tij,tj->ti", R, W @ row["inertia"])
         spin = spin + mass[k] * np.cross(s.position[:, k], s.velocity[:, k])
     scale = np.max(np.abs(spin)) + np.max(np.abs(linear))
-    np.testing.assert_allclose(linear, linear[[0]] + 0 * linear, atol=1e-12 * scale)
-    np.testing.assert_allclose(spin, spin[[0]] + 0 * spin, atol=1e-8 * scale)
+    np.testing.assert_allclose(linear, linear[[0]] + 0 * linear, rtol=0, atol=1e-12 * scale)
+    np.testing.assert_allclose(spin, spin[[0]] + 0 * spin, rtol=0, atol=1e-8 * scale)
     centre = np.einsum("n,tnk->tk", mass, s.position)
     drift = centre - centre[0] - s.t[:, None] * linear[0]
     assert np.max(np.abs(drift)) < 1e-11 * scale
@@ -136,16 +136,16 @@ def test_order_of_bodies_and_joints_and_flips_do_not_matter(seed):
     a, b = run(plain, 0.1, 1e-3), run(mixed, 0.1, 1e-3)
     for body in plain.bodies:
         i, j = body.index, mixed[body.name].index
-        np.testing.assert_allclose(b.position[-1, j], a.position[-1, i], atol=1e-10)
-        np.testing.assert_allclose(b.velocity[-1, j], a.velocity[-1, i], atol=1e-9)
+        np.testing.assert_allclose(b.position[-1, j], a.position[-1, i], rtol=0, atol=1e-10)
+        np.testing.assert_allclose(b.velocity[-1, j], a.velocity[-1, i], rtol=0, atol=1e-9)
     scale = np.max(np.abs(a.joint_reactions)) if plain.joints else 1.0
     for joint in plain.joints:
         same = mixed[joint.name]
         sign = 1.0 if same.child.name == joint.child.name else -1.0
         f, g = a.joint_reactions[:, joint.index], b.joint_reactions[:, same.index]
-        np.testing.assert_allclose(sign * g[:, :3], f[:, :3], atol=1e-8 * scale)
+        np.testing.assert_allclose(sign * g[:, :3], f[:, :3], rtol=0, atol=1e-8 * scale)
         if joint.kind != "Prismatic" or sign > 0:  # else the torques are about other points
-            np.testing.assert_allclose(sign * g[:, 3:], f[:, 3:], atol=1e-8 * scale)
+            np.testing.assert_allclose(sign * g[:, 3:], f[:, 3:], rtol=0, atol=1e-8 * scale)
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -153,8 +153,10 @@ def test_frame_does_not_matter(seed):
     rows = forest(seed)
     turn = Rotation.random(random_state=seed).as_matrix()
     a, b = run(build(rows), 0.1, 1e-3), run(build(rows, turn=turn), 0.1, 1e-3)
-    np.testing.assert_allclose(b.position[-1], a.position[-1] @ turn.T, atol=1e-10)
-    np.testing.assert_allclose(b.angular_velocity[-1], a.angular_velocity[-1] @ turn.T, atol=1e-9)
+    np.testing.assert_allclose(b.position[-1], a.position[-1] @ turn.T, rtol=0, atol=1e-10)
     np.testing.assert_allclose(
-        b.joint_reactions[-1, :, :3], a.joint_reactions[-1, :, :3] @ turn.T, atol=1e-8
+        b.angular_velocity[-1], a.angular_velocity[-1] @ turn.T, rtol=0, atol=1e-9
+    )
+    np.testing.assert_allclose(
+        b.joint_reactions[-1, :, :3], a.joint_reactions[-1, :, :3] @ turn.T, rtol=0, atol=1e-8
     )

@@ -33,9 +33,9 @@ def angle(solution, bar=0):
 
 def test_place_of_the_tip_after_ten_seconds():
     end = motion()[0, -1]
-    np.testing.assert_allclose([np.sin(end), np.cos(end)], TIP, atol=1e-10)
+    np.testing.assert_allclose([np.sin(end), np.cos(end)], TIP, rtol=0, atol=1e-10)
     tip = 2.0 * run(four_bar(), 10.0, 0.0025).position[-1, 0, :2]
-    np.testing.assert_allclose(tip, TIP, atol=1e-8)
+    np.testing.assert_allclose(tip, TIP, rtol=0, atol=1e-8)
 
 
 def test_order_four_through_the_singular_position():
@@ -60,9 +60,9 @@ def test_loops_stay_closed(count):
     assert np.max(np.abs(solution.position[..., 2])) < 1e-13
     # all upright bars turn alike, those across stay level
     for bar in range(1, count + 1):
-        np.testing.assert_allclose(angle(solution, bar), angle(solution), atol=1e-10)
+        np.testing.assert_allclose(angle(solution, bar), angle(solution), rtol=0, atol=1e-10)
     level = solution.angular_velocity[:, count + 1 :]
-    np.testing.assert_allclose(level, 0.0, atol=1e-10)
+    np.testing.assert_allclose(level, 0.0, rtol=0, atol=1e-10)
 
 
 @pytest.mark.parametrize("step", [0.01, 0.00125])
@@ -70,21 +70,24 @@ def test_loops_stay_closed(count):
 @pytest.mark.parametrize("part", [0.0, 0.5, 1.0])
 @pytest.mark.parametrize("count", [1, 2])
 def test_steps_across_the_singular_position(count, part, offset, step):
-    """Wherever the stages of the first of three steps fall: the energy error stays O(h^5) a step.
+    """Wherever the stages of the first of three steps fall, rows are dropped and little is lost.
 
-    Beside the singular position three steps have 5e-7 J at 10 ms, 1e-11 J at 1.25 ms.
+    Beside the singular position three steps have 3e-7 J at 10 ms, 1e-11 J at 1.25 ms, order 5 a step;
+    with a stage at the middle of a step in it (part 1/2) no more. A step that begins or ends
+    there costs up to 4e-8 J (it was 1e-2 and 9e-7 J without the parts).
     """
     speed = 4.88
     start = 0.5 * np.pi - part * speed * step + offset
     solution = run(four_bar(count, start, speed), 3 * step, step)
-    assert abs(solution.ledger.residual[-1]) < 2e-6 * (step / 0.01) ** 5 + 1e-12
+    beside = 1e-6 * (step / 0.01) ** 5 + 1e-12
+    assert abs(solution.ledger.residual[-1]) < (beside if part == 0.5 else beside + 5e-8)
 
 
 @pytest.mark.parametrize("step", [0.00125, 0.000625])
 def test_small_steps_meet_the_singular_position_too(step):
     # here stages do fall within 1e-4 rad of it, where rows are dropped
     tip = 2.0 * run(four_bar(), 10.0, step).position[-1, 0, :2]
-    np.testing.assert_allclose(tip, TIP, atol=5e-9)
+    np.testing.assert_allclose(tip, TIP, rtol=0, atol=5e-9)
 
 
 @pytest.mark.parametrize("method", ["paper", "paper-ode"])
@@ -92,7 +95,7 @@ def test_papers_methods_converge_before_the_singular_position(method):
     exact = motion()[0]
     ends = [run(four_bar(), 0.6, h, method=method) for h in (0.01, 0.005, 0.0025)]
     errors = [abs(angle(s)[-1] - exact[120]) for s in ends]
-    np.testing.assert_allclose(orders(errors), 2.0, atol=0.3)
+    np.testing.assert_allclose(orders(errors), 2.0, rtol=0, atol=0.3)
 
 
 @pytest.mark.xfail(
@@ -103,4 +106,4 @@ def test_papers_methods_converge_before_the_singular_position(method):
 def test_papers_methods_pass_the_singular_position(method):
     tip = 2.0 * run(four_bar(), 1.0, 0.0025, method=method).position[-1, 0, :2]
     end = motion()[0, 200]
-    np.testing.assert_allclose(tip, [np.sin(end), np.cos(end)], atol=1e-3)
+    np.testing.assert_allclose(tip, [np.sin(end), np.cos(end)], rtol=0, atol=1e-3)

@@ -13,7 +13,7 @@ with c_R is the equation of that one-dimensional motion; its right-hand side is 
 On the constraints a^R v = 0, and what is left of the law is
 
     h_R + sum over S != R of a^S(c_R) h_S + f_R + affinity_R = 0,
-    affinity_R = m_RR (nabla_v a^R)(v) + gyroscopic part along c_R.
+    affinity_R = m_RR (nabla_v a^R)(v) - c_R . (W x J W).
 
 So h_R is Lagrange's multiplier, whatever lambda; (lambda, mu) are another code of its history. Where
 rows depend on each other h is the solution of least norm, rows weighed by (a^R M^-1 a^R)^(1/2). All in
@@ -99,7 +99,7 @@ def second_order_multipliers(solution) -> Multipliers:
     f = applied_force(system, x, Q, v, w)
     gyro = np.zeros_like(f)
     gyro[..., 3:] = np.cross(W, system.bodies.inertia * W)
-    affinity = np.einsum("tknc,tnc->tk", c, gyro) - mass * bias
+    affinity = -np.einsum("tknc,tnc->tk", c, gyro) - mass * bias
     force = np.einsum("tknc,tnc->tk", c, f)
     root = np.sqrt(mass)
     scaled = S * root[:, :, None] * root[:, None, :]
