@@ -65,14 +65,26 @@ def test_loops_stay_closed(count):
     np.testing.assert_allclose(level, 0.0, atol=1e-10)
 
 
-@pytest.mark.parametrize("offset", [0.0, 1e-6, -1e-5, 1e-4, -1e-3, 0.01])
+@pytest.mark.parametrize("step", [0.01, 0.00125])
+@pytest.mark.parametrize("offset", [0.0, 1e-6, -1e-5, 1e-4, -1e-3])
+@pytest.mark.parametrize("part", [0.0, 0.5, 1.0])
 @pytest.mark.parametrize("count", [1, 2])
-def test_one_step_across_the_singular_position(count, offset):
-    """Wherever the stages fall: the energy error of a step is what it is elsewhere, O(h^5)."""
-    speed, step = 4.88, 0.00125
-    start = 0.5 * np.pi - 0.5 * speed * step + offset
-    solution = run(four_bar(count, start, speed), step, step)
-    assert abs(solution.ledger.residual[-1]) < 5e-11
+def test_steps_across_the_singular_position(count, part, offset, step):
+    """Wherever the stages of the first of three steps fall: the energy error stays O(h^5) a step.
+
+    Beside the singular position three steps have 5e-7 J at 10 ms, 1e-11 J at 1.25 ms.
+    """
+    speed = 4.88
+    start = 0.5 * np.pi - part * speed * step + offset
+    solution = run(four_bar(count, start, speed), 3 * step, step)
+    assert abs(solution.ledger.residual[-1]) < 2e-6 * (step / 0.01) ** 5 + 1e-12
+
+
+@pytest.mark.parametrize("step", [0.00125, 0.000625])
+def test_small_steps_meet_the_singular_position_too(step):
+    # here stages do fall within 1e-4 rad of it, where rows are dropped
+    tip = 2.0 * run(four_bar(), 10.0, step).position[-1, 0, :2]
+    np.testing.assert_allclose(tip, TIP, atol=5e-9)
 
 
 @pytest.mark.parametrize("method", ["paper", "paper-ode"])
@@ -83,6 +95,10 @@ def test_papers_methods_converge_before_the_singular_position(method):
     np.testing.assert_allclose(orders(errors), 2.0, atol=0.3)
 
 
+@pytest.mark.xfail(
+    raises=carom.SimulationError, strict=True,
+    reason="rows at mid-step against rows at its end: ill-posed where bars are nearly in line",
+)  # fmt: skip
 @pytest.mark.parametrize("method", ["paper", "paper-ode"])
 def test_papers_methods_pass_the_singular_position(method):
     tip = 2.0 * run(four_bar(), 1.0, 0.0025, method=method).position[-1, 0, :2]

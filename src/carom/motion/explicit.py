@@ -21,7 +21,7 @@ from carom.motion.loops import dropped_rows
 from carom.motion.project import project_position, project_velocity
 
 CONSTRAINTS_LOST = 7
-UNEQUAL = 0.38  # first part of a step that is taken in two
+EVEN, FIRST, LAST, MIDDLE = range(4)  # which stages leave out more rows than others
 
 
 class Explicit(NamedTuple):
@@ -61,23 +61,27 @@ def constrained_unit(A, weight, system, held, start, h, end, work):
     """Step at once; or in two unequal parts, if some stages fell into a singular position.
 
     There rows depend on each other that do not elsewhere, and are left out: the acceleration of that
-    stage is not the limit of its neighbours. The parts have their stages at other times.
+    stage is not the limit of its neighbours. The parts have their stages at other times; where the
+    step itself starts or ends in such a position, the part that does so is short.
     """
+    share = 1.0
     applied, friction, code = 0.0, 0.0, 0
     for part in range(3):
         first, last, dt = start, end, h
         if part == 1:
             for b in range(start.shape[0]):
                 keep(start[b], work.middle[b])
-            last, dt = work.middle, UNEQUAL * h
+            last, dt = work.middle, share * h
         elif part == 2:
-            first, dt = work.middle, (1.0 - UNEQUAL) * h
-        p, f, code, even = constrained_step(system, A, weight, held, first, dt, last, work)
+            first, dt = work.middle, (1.0 - share) * h
+        p, f, code, where = constrained_step(system, A, weight, held, first, dt, last, work)
         if part == 1:  # what the whole step gave is void
             applied, friction = 0.0, 0.0
         applied, friction = applied + p, friction + f
-        if code != 0 or (part == 0 and even):
+        if code != 0 or (part == 0 and where == EVEN):
             break
+        if part == 0:
+            share = 0.0625 if where == FIRST else 0.9375 if where == LAST else 0.375
     result = work.result[0]
     result.applied, result.friction, result.code = applied, friction, code
 
@@ -126,12 +130,12 @@ def mark_held(system, held, work):
 def constrained_step(system, A, weight, held, start, h, end, work):
     """Step the bodies that are joined, loaded or held; the others are in `end` already.
 
-    Returns work of loads, of friction, a status, and whether all stages left out as many rows.
+    Returns work of loads, of friction, a status, and which stages left out more rows than others.
     """
     stages, stage = weight.size, work.stage
     applied, friction = 0.0, 0.0
     aim(system, held, start)
-    dropped, even = 0, True
+    least, most, at_first, at_last = 1 << 30, 0, 0, 0
     for s in range(stages):
         combine(A[s], s, h, start, work.stages, stage)
         for b in range(stage.shape[0]):
@@ -143,9 +147,9 @@ def constrained_step(system, A, weight, held, start, h, end, work):
         p, f = acceleration(system, stage, held, work, work.stages[s])
         applied += h * weight[s] * p
         friction += h * weight[s] * f
-        count = dropped_rows(system)
-        even = even and (s == 0 or count == dropped)
-        dropped = count
+        at_last = dropped_rows(system)
+        at_first = at_last if s == 0 else at_first
+        least, most = min(least, at_last), max(most, at_last)
     combine(weight, stages, h, start, work.stages, stage)
     bound_accelerations(work, stages)
     for b in range(stage.shape[0]):
@@ -155,9 +159,11 @@ def constrained_step(system, A, weight, held, start, h, end, work):
     if system.joints.shape[0] > 0:
         error = project_position(system, end, work, 1e-14)
         if not (error <= 1e-9):
-            return applied, friction, CONSTRAINTS_LOST, True
+            return applied, friction, CONSTRAINTS_LOST, EVEN
         project_velocity(system, end, work)
-    return applied, friction, 0, even
+    if most == least:
+        return applied, friction, 0, EVEN
+    return applied, friction, 0, FIRST if at_first > least else LAST if at_last > least else MIDDLE
 
 
 @kernel

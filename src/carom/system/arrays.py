@@ -124,8 +124,8 @@ JOINT_WORK = [
 #: one stage of a Runge-Kutta step, for one body
 STAGE = [("speed", "f8", 6), ("rate", "f8", 6), ("attitude", "f8", 4)]
 
-#: what a step of joined, loaded or held bodies gives back; `speed`: what forces and momentum could make of it
-RESULT = [("applied", "f8"), ("friction", "f8"), ("code", "i8"), ("speed", "f8")]
+#: what a step of joined, loaded or held bodies gives back
+RESULT = [("applied", "f8"), ("friction", "f8"), ("code", "i8")]
 
 #: search for an event inside a step
 SEARCH = [
