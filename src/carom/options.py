@@ -26,7 +26,7 @@ class Options:
         Add the duration of each impact to the clock. Default False: the impact takes no time.
     gap_tolerance : float
         An impact is located when the gap is within gap_tolerance * size of the body of zero, or within
-        the round-off of the coordinates where that is larger. Default 1e-13.
+        the round-off of the coordinates where that is larger. Default 1e-15.
     tie_tolerance : float
         Points of a body whose gaps differ by less than this part of its size strike together, as
         their mean. Default 1e-9.
@@ -61,7 +61,7 @@ class Options:
     penetration: float = 0.2
     layer_steps: int = 2
     add_layer_time: bool = False
-    gap_tolerance: float = 1e-13
+    gap_tolerance: float = 1e-15
     tie_tolerance: float = 1e-9
     hold: bool = True
     constraint_tolerance: float = 1e-8
