@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from carom.geometry.rotation import rotate
+from carom.geometry.rotation import rotate_back
 from carom.jit import inlined, kernel
 from carom.motion.contact_point import contact_arm, contact_velocity
 
@@ -17,14 +17,17 @@ def along_normal(contact, a):
 
 
 @kernel
-def gap(contact, vertices, state):
-    """Return rho, the least distance of the body from the half-space; negative inside."""
+def lowest(contact, vertices, state):
+    """Return rho, the least distance of the body from the half-space (negative inside), and its vertex."""
     x, q, n = state[contact.body].x, state[contact.body].Q, contact.axes
-    least = math.inf
+    # n in body axes, so that a vertex costs one product
+    nx, ny, nz = rotate_back(q[0], q[1], q[2], q[3], n[0, 0], n[0, 1], n[0, 2])
+    least, which = math.inf, contact.first
     for i in range(contact.first, contact.last):
-        r = rotate(q[0], q[1], q[2], q[3], vertices[i, 0], vertices[i, 1], vertices[i, 2])
-        least = min(least, n[0, 0] * r[0] + n[0, 1] * r[1] + n[0, 2] * r[2])
-    return least + along_normal(contact, x) - contact.offset - contact.radius
+        height = nx * vertices[i, 0] + ny * vertices[i, 1] + nz * vertices[i, 2]
+        if height < least:
+            least, which = height, i
+    return least + along_normal(contact, x) - contact.offset - contact.radius, which
 
 
 @kernel
@@ -59,7 +62,7 @@ def strike_point(contact, vertices, state, tie, out):
     Vertices within `tie` of the lowest are one contact, their mean: an edge or a face strikes at its
     centre, so that planar motion stays planar. If only some of them approach, they alone count.
     """
-    least = gap(contact, vertices, state)
+    least, _ = lowest(contact, vertices, state)
     still = slow(contact, state)
     approaching = False
     for i in range(contact.first, contact.last):
