@@ -35,6 +35,7 @@ from carom.geometry.rotation import exp, multiply, normalize, rotate, rotate_bac
 from carom.jit import kernel
 from carom.motion.explicit import constrained, fly, keep, mark_held
 from carom.motion.forces import add_force, applied_wrenches
+from carom.motion.free import invariants
 from carom.motion.joints import arm, parent_arm, position_error, velocity_error
 from carom.motion.loops import factor, substitute, subtract_rows
 from carom.motion.project import project_position
@@ -82,7 +83,7 @@ def three_field_step(method, system, held, start, h, end, work):
         if change <= method.tolerance or (
             change <= 1e6 * method.tolerance and change >= 0.5 * previous
         ):
-            mean_accelerations(start, h, end, work)
+            leave_for_later(system, start, h, end, work)
             return applied, 0.0, 0
     return applied, 0.0, NO_CONVERGENCE
 
@@ -145,10 +146,9 @@ def momenta(system, start, h, work):
     least that of 1e-6 of its size a step (round-off of positions is 1e-10 of that).
     """
     for b in range(system.bodies.shape[0]):
-        body, q, w, wrench = system.bodies[b], start[b].Q, start[b].w, work.body[b].wrench
+        body, wrench, l = system.bodies[b], work.body[b].wrench, work.body[b].momentum
         J = body.inertia
-        W = rotate_back(q[0], q[1], q[2], q[3], w[0], w[1], w[2])
-        l = rotate(q[0], q[1], q[2], q[3], J[0] * W[0], J[1] * W[1], J[2] * W[2])
+        invariants(J, start[b].Q, start[b].w, work.body[b])
         for k in range(3):
             wrench[k] = h * wrench[k] + body.mass * start[b].v[k]
             wrench[3 + k] = h * wrench[3 + k] + l[k]
@@ -265,8 +265,8 @@ def position_block(system, method, start, h, end, work):
 
 
 @kernel
-def mean_accelerations(start, h, end, work):
-    """Leave bounds of the accelerations for the search of contacts: means over the step, doubled."""
+def leave_for_later(system, start, h, end, work):
+    """Keep the momentum of free bodies, and bounds of accelerations (means over the step, doubled)."""
     for b in range(start.shape[0]):
         linear, angular, spin = 0.0, 0.0, 0.0
         for k in range(3):
@@ -278,3 +278,9 @@ def mean_accelerations(start, h, end, work):
         bound = work.body[b].bound
         bound[0], bound[1] = 2.0 * math.sqrt(linear), 2.0 * math.sqrt(angular)
         bound[2] = math.sqrt(spin)
+        if system.bodies[b].isolated == 1:  # the next step takes up this momentum, not its round-off
+            memory = work.body[b]
+            memory.energy = 0.0
+            for k in range(3):
+                memory.spin[k], memory.momentum[k] = end[b].w[k], memory.wrench[3 + k]
+                memory.energy += memory.momentum[k] * end[b].w[k]
