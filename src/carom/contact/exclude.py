@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 
-from carom.contact.gap import along_normal, point_state, round_off
+from carom.contact.gap import along_normal, gap_and_rate, plane_in_body, round_off
 from carom.jit import inlined
 from carom.motion.acceleration import OPEN
 
@@ -76,9 +76,13 @@ def passage(system, contact, hold, start, end, h, work, tolerance, tie):
         return CLEAR, h
     verdict, first = CLEAR, h
     tiny = max(tolerance * contact.extent, round_off(contact, end))
+    sag = 0.125 * a * h * h  # a path keeps this near its chord
+    before, after = plane_in_body(contact, start), plane_in_body(contact, end)
     for i in range(contact.first, contact.last):
-        z0, rate0 = point_state(contact, system.vertices[i], start)
-        z1, rate1 = point_state(contact, system.vertices[i], end)
+        z0, rate0 = gap_and_rate(before, system.vertices[i])
+        z1, rate1 = gap_and_rate(after, system.vertices[i])
+        if min(z0, z1) > sag:
+            continue
         if hold.mode != OPEN and abs(z0) <= tie and abs(z1) <= tie:
             continue
         t0 = reach(z0, rate0, a)
@@ -88,7 +92,7 @@ def passage(system, contact, hold, start, end, h, work, tolerance, tie):
         elif (
             verdict == CLEAR
             and t0 + reach(z1, -rate1, a) < h * (1.0 - 1e-12)
-            and a * h * h > 8.0 * tiny  # what could be missed is more than the tolerance
+            and sag > tiny  # what could be missed is more than the tolerance
             and hold.leaving == 0
         ):
             verdict = UNSURE

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import math
 
-from carom.geometry.rotation import rotate_back
+from carom.geometry.rotation import cross, rotate_back
 from carom.jit import inlined, kernel
-from carom.motion.contact_point import contact_arm, contact_velocity
 
 
 @inlined
@@ -17,27 +16,46 @@ def along_normal(contact, a):
 
 
 @kernel
-def lowest(contact, vertices, state):
-    """Return rho, the least distance of the body from the half-space (negative inside), and its vertex."""
-    x, q, n = state[contact.body].x, state[contact.body].Q, contact.axes
-    # n in body axes, so that a vertex costs one product
+def plane_in_body(contact, state):
+    """Return the plane as a body sees it: n and n x w in body axes, height and speed of the mass centre.
+
+    A core point p then has the gap height + n.p and the rate speed + (n x w).p, for (w x R p).n = R p.(n x w):
+    two products a vertex instead of two rotations.
+    """
+    body, n = state[contact.body], contact.axes
+    q, w = body.Q, body.w
     nx, ny, nz = rotate_back(q[0], q[1], q[2], q[3], n[0, 0], n[0, 1], n[0, 2])
-    least, which = math.inf, contact.first
+    wx, wy, wz = rotate_back(q[0], q[1], q[2], q[3], w[0], w[1], w[2])
+    cx, cy, cz = cross(nx, ny, nz, wx, wy, wz)
+    height = along_normal(contact, body.x) - contact.offset - contact.radius
+    return nx, ny, nz, cx, cy, cz, height, along_normal(contact, body.v)
+
+
+@kernel
+def gap_and_rate(plane, p):
+    """Return the gap of the core point p (body axes) and its rate; `plane` is from `plane_in_body`."""
+    return (
+        plane[6] + plane[0] * p[0] + plane[1] * p[1] + plane[2] * p[2],
+        plane[7] + plane[3] * p[0] + plane[4] * p[1] + plane[5] * p[2],
+    )
+
+
+@kernel
+def lowest(contact, vertices, state):
+    """Return rho, the least distance of the body from the half-space (negative inside), and its rate."""
+    plane = plane_in_body(contact, state)
+    least, its_rate = math.inf, 0.0
     for i in range(contact.first, contact.last):
-        height = nx * vertices[i, 0] + ny * vertices[i, 1] + nz * vertices[i, 2]
-        if height < least:
-            least, which = height, i
-    return least + along_normal(contact, x) - contact.offset - contact.radius, which
+        z, rate = gap_and_rate(plane, vertices[i])
+        if z < least:
+            least, its_rate = z, rate
+    return least, its_rate
 
 
 @kernel
 def point_state(contact, p, state):
-    """Return the gap of the core point p (body axes) and its rate."""
-    rx, ry, rz = contact_arm(contact, state, p)
-    n = contact.axes
-    z = n[0, 0] * rx + n[0, 1] * ry + n[0, 2] * rz
-    z += along_normal(contact, state[contact.body].x) - contact.offset
-    return z, contact_velocity(contact, state, rx, ry, rz)[0]
+    """Return the gap of one core point p (body axes) and its rate."""
+    return gap_and_rate(plane_in_body(contact, state), p)
 
 
 @kernel
@@ -62,17 +80,19 @@ def strike_point(contact, vertices, state, tie, out):
     Vertices within `tie` of the lowest are one contact, their mean: an edge or a face strikes at its
     centre, so that planar motion stays planar. If only some of them approach, they alone count.
     """
-    least, _ = lowest(contact, vertices, state)
+    plane = plane_in_body(contact, state)
     still = slow(contact, state)
-    approaching = False
+    least, approaching = math.inf, False
     for i in range(contact.first, contact.last):
-        z, rate = point_state(contact, vertices[i], state)
+        least = min(least, gap_and_rate(plane, vertices[i])[0])
+    for i in range(contact.first, contact.last):
+        z, rate = gap_and_rate(plane, vertices[i])
         if z <= least + tie and rate < -still:
             approaching = True
     count, z_mean, rate_mean = 0, 0.0, 0.0
     p0, p1, p2 = 0.0, 0.0, 0.0
     for i in range(contact.first, contact.last):
-        z, rate = point_state(contact, vertices[i], state)
+        z, rate = gap_and_rate(plane, vertices[i])
         if z <= least + tie and (rate < -still or not approaching):
             count += 1
             z_mean += z

@@ -8,7 +8,7 @@ an event is as exact as the method.
 from __future__ import annotations
 
 from carom.contact.exclude import BELOW, CLEAR, UNSURE, passage
-from carom.contact.gap import lowest, point_state, round_off
+from carom.contact.gap import lowest, round_off
 from carom.hold.events import GAP, find_held_event, held_value
 from carom.jit import inlined, kernel
 
@@ -42,9 +42,8 @@ def event_value(system, controls, held, search, state, work):
     """Return the event function and, for a gap, its rate; forces of held contacts are those of `state`."""
     contact = system.contacts[search.contact]
     if search.kind == GAP:
-        rho, vertex = lowest(contact, system.vertices, state)
         search.tolerance = max(controls.gap * contact.extent, round_off(contact, state))
-        return rho, point_state(contact, system.vertices[vertex], state)[1]
+        return lowest(contact, system.vertices, state)
     hold = held[search.contact]
     return held_value(contact, hold, search.kind, search.d1, search.d2, state), 0.0
 

@@ -278,7 +278,9 @@ def leave_for_later(system, start, h, end, work):
         bound = work.body[b].bound
         bound[0], bound[1] = 2.0 * math.sqrt(linear), 2.0 * math.sqrt(angular)
         bound[2] = math.sqrt(spin)
-        if system.bodies[b].isolated == 1:  # the next step takes up this momentum, not its round-off
+        if (
+            system.bodies[b].isolated == 1
+        ):  # the next step takes up this momentum, not its round-off
             memory = work.body[b]
             memory.energy = 0.0
             for k in range(3):
