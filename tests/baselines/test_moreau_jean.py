@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from baseline_scenes import die, sphere
 
+import carom
 from carom.baselines import moreau_jean
 
 FALL = np.sqrt(2 * 0.4 / 9.81)  # the sphere's first impact
@@ -126,9 +127,6 @@ def test_bad_input_names_the_argument():
 
 def test_reads_a_scene_of_the_library():
     """The same die stated as a `carom.Scene` moves the same."""
-    carom = pytest.importorskip("carom")
-    if not hasattr(carom, "Scene"):
-        pytest.skip("carom.Scene is not in this checkout")
     scene = carom.Scene()
     ground = scene.add_half_space((0, 0, 0), (0, 0, 1))
     body = scene.add_body(

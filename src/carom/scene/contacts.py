@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from carom import check
+from carom.geometry import quaternion
 from carom.scene.bodies import Body, HalfSpace
-from carom.scene.values import rotation_matrix
 
 IMPACT_LAWS = ("newton", "poisson", "stronge")
 TOUCH = 1e-12  # relative to the lengths at hand: rounding of a body placed on the plane
@@ -68,7 +68,7 @@ def initial_gap(contact: Contact) -> float:
     """Return the distance [m] of the body from the half-space at the start; inside is negative."""
     body, plane = contact.body, contact.half_space
     assert body.shape is not None
-    offsets = body.shape.vertices @ rotation_matrix(body.orientation).T
+    offsets = quaternion.rotate(body.orientation, body.shape.vertices)
     lowest = float(np.min(offsets @ plane.normal))
     return lowest + float((body.position - plane.point) @ plane.normal) - body.shape.radius
 

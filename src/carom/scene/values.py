@@ -1,4 +1,4 @@
-"""Values of frozen records: read-only arrays, and the rotation matrix of a quaternion."""
+"""Values of frozen records: read-only arrays."""
 
 from __future__ import annotations
 
@@ -23,15 +23,3 @@ def point(name: str, value) -> np.ndarray:
 def optional_point(name: str, value) -> np.ndarray | None:
     """Return `value` as a point (3,), or None."""
     return None if value is None else point(name, value)
-
-
-def rotation_matrix(orientation: np.ndarray) -> np.ndarray:
-    """Return the matrix (3,3), body to world, of a unit quaternion (w, x, y, z)."""
-    w, x, y, z = orientation
-    return np.array(
-        [
-            [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-            [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-            [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)],
-        ]
-    )
