@@ -192,7 +192,7 @@ def may_end(contact, system, hold, state, horizon, work):
     rate = contact_velocity(contact, state, rx, ry, rz)[0]
     if rate <= slow(contact, state) or system.bodies[contact.body].ballistic == 0:
         return True
-    work.body[contact.body].status = 0
+    work.body[contact.body].status = 0  # in flight again: the strike has opened its contacts
     _, most = greatest_acceleration(system, contact, state, work)
     return 2.0 * rate < most * (1.0 - contact.restitution) * horizon
 

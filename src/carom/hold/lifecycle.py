@@ -15,7 +15,6 @@ import math
 
 from carom.contact.gap import slow
 from carom.dispatch import by_address
-from carom.geometry.rotation import rotate
 from carom.jit import kernel, unit
 from carom.motion.acceleration import OPEN, SLIP, STICK, acceleration
 from carom.motion.contact_point import (
@@ -68,7 +67,6 @@ def hold_unit(system, controls, held, c, state, horizon, settle, work, clocks, r
             g = -contact_acceleration(contact, state, rate, p, rx, ry, rz)[0]
             if not bounces_end(contact, u[0], g, still, horizon):
                 return
-    mark_anchor(contact, hold, state)
     body = system.bodies[contact.body]
     if hold.mode == STICK and body.isolated == 1:
         rate = work.stages[0, contact.body].rate
@@ -117,15 +115,6 @@ def begin_hold(system, contact, hold, state, u, stop, still, work, clock):
     # work of the impulse: half of it times the sum of the velocities before and after
     clock.bounces += 0.5 * (n * u[0] + t1 * (u[1] + s1) + t2 * (u[2] + s2))
     return True
-
-
-@kernel
-def mark_anchor(contact, hold, state):
-    """Note where the core point of the contact is in the world."""
-    q, x, p = state[contact.body].Q, state[contact.body].x, hold.point
-    r = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
-    for k in range(3):
-        hold.anchor[k] = x[k] + r[k]
 
 
 @kernel

@@ -97,7 +97,6 @@ HELD = [
     ("near", "i8"),  # 1 where something happened at the last event: look before stepping
     ("leaving", "i8"),  # 1 where the body lifts off without speed: it may touch at the start
     ("point", "f8", 3),  # point of the core that carries the contact, body axes
-    ("anchor", "f8", 3),  # where a sticking point was when it stuck, world
     ("force", "f8", 3),  # of the last solve, contact axes
     ("heading", "f8", 2),  # direction of slip at the start of the step; 0 where it does not slip
     ("W", "f8", (3, 3)),  # effective inverse mass of the last solve
