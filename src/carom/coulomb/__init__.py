@@ -1,0 +1,1 @@
+"""Many contacts at once: w = W p + c with Coulomb's cones."""
