@@ -10,21 +10,25 @@ import math
 from typing import NamedTuple
 
 from carom.contact.exclude import CLEAR, UNSURE, greatest_acceleration
-from carom.contact.gap import slow, strike_point
+from carom.contact.gap import gap_and_rate, plane_in_body, slow
 from carom.hold.events import CONE, GAP, REVERSE, SEPARATE, end_forces
-from carom.hold.lifecycle import hold_contact
+from carom.hold.lifecycle import hold_contact, settle
+from carom.hold.press import press
+from carom.hold.roster import regroup, set_anchor, strike_off
 from carom.hold.search import begin_search, event_value, examine, narrow, propose
 from carom.impact.strike import strike
+from carom.geometry.rotation import cross
 from carom.jit import entry, inlined, kernel
-from carom.motion.acceleration import OPEN, SLIP
-from carom.motion.contact_point import contact_arm, contact_velocity
+from carom.motion.acceleration import OPEN, SLIP, STICK
+from carom.motion.contact_point import contact_velocity, place
 from carom.motion.explicit import keep
 from carom.motion.step import step
 from carom.system import records as r
+from carom.system.arrays import FREE
 from carom.system.notes import begin_event, end_event
 
 LOCATE, PROJECT, WORK = range(3)
-STEP_CUT, TOO_MANY, NOT_FINITE, CORNER = 2, 3, 4, 8
+STEP_CUT, TOO_MANY, NOT_FINITE = 2, 3, 4
 NOTHING, STRIKE, HOLD, SETTLE = range(4)
 
 
@@ -39,26 +43,29 @@ class Controls(NamedTuple):
     gap: float  # tolerance of a located gap, relative to the body
     tie: float  # vertices this near the lowest strike together, relative to the body
     hold: int
+    rest: float  # speeds below this part of what forces give in a step are none
     layer_steps: int
     layer_time: int  # 1: add the duration of impacts to the clock
     max_impacts: int
     max_cuts: int
-    strike_at: int  # addresses of two units
+    strike_at: int  # addresses of units
     hold_at: int
+    settle_at: int
+    press_at: int
 
 
 @entry
-def run(system, method, controls, held, now, work, clocks, records, until):
+def run(system, method, controls, held, now, work, cluster, clocks, records, until):
     """Go on from `now` to step number `until`. Returns 0, `records.FULL`, or the number of a `Status`."""
     clock, search, trial = clocks[0], work.search[0], work.trial
     while clock.step < until:
         begin = clock.step * controls.step
         length = min(controls.step, controls.duration - begin)
         while clock.spent < length:
-            if clock.event >= records.event.shape[0] - 4:
+            if max(clock.event, clock.struck) >= records.event.shape[0] - r.MARGIN:
                 return r.FULL
-            if clock.in_step > controls.max_impacts or clock.at_once > 200:
-                return CORNER if clock.released > 10 else TOO_MANY
+            if clock.in_step > controls.max_impacts or clock.at_once > 1000:
+                return TOO_MANY
             remaining = length - clock.spent
             horizon = remaining if controls.location == LOCATE else controls.step
             action, c = search.pending, search.contact
@@ -76,7 +83,16 @@ def run(system, method, controls, held, now, work, clocks, records, until):
                     clock.trials += 1
                     if code != 0:
                         return code
-                    end_forces(system, held, trial, work)
+                    if held.count[0] > 0:
+                        end_forces(system, held, trial, work)
+                        press(
+                            controls.press_at, system, controls, held, now, dt, trial, cluster,
+                            work, clocks,
+                        )  # fmt: skip
+                        if work.result[0].code != 0:
+                            return work.result[0].code
+                        applied += work.result[0].applied
+                        friction += work.result[0].friction
                     if search.active == 1:
                         f, rate = event_value(system, controls, held, search, trial, work)
                         state = narrow(search, dt, f, rate)
@@ -88,7 +104,7 @@ def run(system, method, controls, held, now, work, clocks, records, until):
                     verdict, kind, other, low, d1, d2 = examine(
                         system, controls, held, now, dt, work
                     )
-                    own = search.active == 1 and other == search.contact
+                    own = search.active == 1 and kind == search.kind and other == search.contact
                     if verdict == CLEAR or (own and verdict != UNSURE):
                         found = search.active == 1
                         break
@@ -113,6 +129,8 @@ def run(system, method, controls, held, now, work, clocks, records, until):
                 accept(now, trial, dt, applied, friction, begin, clock)
                 if dt == remaining:
                     clock.spent = length
+                if held.count[0] > 0:
+                    turn_modes(system, held, now, work, clock, records)
                 if not found:
                     continue
                 clock.located += 1
@@ -120,19 +138,21 @@ def run(system, method, controls, held, now, work, clocks, records, until):
                 horizon = horizon if controls.location != LOCATE else max(horizon - dt, 0.0)
                 action = STRIKE
                 if search.kind != GAP:
-                    action = change_mode(held[c], c, search.kind, now, clock, records)
+                    action = change_mode(system, held, c, search.kind, now, work, clock, records)
+            closed = 0
             if action == STRIKE:
                 struck = clock.struck
                 strike(
-                    controls.strike_at, method, system, controls, held, c, now, work, clocks,
-                    records,
+                    controls.strike_at, method, system, controls, held, c, now, cluster, work,
+                    clocks, records,
                 )  # fmt: skip
+                closed = work.hit[0].closed
                 if work.hit[0].code != 0:
                     return work.hit[0].code
                 if controls.layer_time == 1 and clock.struck > struck:
                     clock.spent += records.impact[struck].duration  # the position stays
-            if action == STRIKE and not may_end(
-                system.contacts[c], system, held[c], now, horizon, work
+            if action == STRIKE and not (
+                closed > 1 or may_end(system.contacts[c], system, now, horizon, work)
             ):
                 continue
             if action != NOTHING and controls.hold == 1:
@@ -140,77 +160,111 @@ def run(system, method, controls, held, now, work, clocks, records, until):
                     search.pending, search.contact = max(action, HOLD), c
                     search.horizon = horizon
                     return r.NEEDS_HOLD
-                hold_contact(
-                    controls.hold_at, system, controls, held, c, now, horizon, action == SETTLE,
-                    work, clocks, records,
-                )  # fmt: skip
+                if action == SETTLE:
+                    settle(
+                        controls.settle_at, system, controls, held, c, now, work, clocks, records
+                    )
+                else:
+                    hold_contact(
+                        controls.hold_at, system, controls, held, c, now, horizon, cluster, work,
+                        clocks, records,
+                    )  # fmt: skip
+                    if work.hit[0].code != 0:
+                        return work.hit[0].code
                 if clock.now == 0.0:  # touching from the start: the first row says so
-                    save_contacts(held, 0, records)
+                    save_contacts(system, held, now, 0, work, records)
         clock.spent = 0.0
         clock.step += 1
-        clock.in_step, clock.released = 0, 0
+        clock.in_step = 0
         clock.now = begin + length
         if not finite(now):
             return NOT_FINITE
         if clock.step % controls.save_every == 0 or clock.step == controls.last:
-            save(held, now, clock, records)
+            save(system, held, now, clock, work, records)
     return 0
 
 
 @inlined
 def look_near(system, controls, held, now, work):
-    """Find an open contact that is closed already, at the start or after an event: strike or hold it."""
-    for c in range(held.shape[0]):
-        hold, contact = held[c], system.contacts[c]
-        if hold.near == 0:
+    """Find a closed point that is not held, at the start or after an event: strike or hold it."""
+    for c in range(held.brinks.shape[0]):
+        brink, contact = held.brinks[c], system.contacts[c]
+        if brink.near == 0:
             continue
-        hold.near = 0
-        if hold.mode != OPEN:
-            continue
-        tie, point = controls.tie * contact.extent, work.hit[0].point
-        rho, rate = strike_point(contact, system.vertices, now, tie, point)
-        if rho > tie:
-            continue
-        still = slow(contact, now)
-        if rate < -still:
-            return STRIKE, c
-        if rate <= still:
-            for k in range(3):
-                hold.point[k] = point[k]
-            hold.leaving = 1  # unless it is held now
-            return HOLD, c
+        tie, still = controls.tie * contact.extent, slow(contact, now)
+        plane = plane_in_body(contact, now)
+        action = NOTHING
+        for i in range(contact.first, contact.last):
+            z, rate = gap_and_rate(plane, system.vertices[i])
+            if z <= tie:
+                if rate < -still:
+                    action = STRIKE
+                elif rate <= still and held.carries[i] == 0 and action == NOTHING:
+                    action = HOLD
+        brink.near = 0
+        if action == HOLD:
+            brink.leaving = 1  # unless it is held now
+        if action != NOTHING:
+            return action, c
     return NOTHING, -1
 
 
 @inlined
-def may_end(contact, system, hold, state, horizon, work):
-    """Return whether the bounces of a contact that was just struck could end within the horizon.
+def may_end(contact, system, state, horizon, work):
+    """Return whether the bounces of a contact that was just struck, alone, could end within the horizon.
 
     A first look, with a bound of the acceleration where there is one, before the forces are worked out.
     """
-    rx, ry, rz = contact_arm(contact, state, hold.point)
-    rate = contact_velocity(contact, state, rx, ry, rz)[0]
+    point = work.point[0]
+    rate = contact_velocity(point, state)[0]
     if rate <= slow(contact, state) or system.bodies[contact.body].ballistic == 0:
         return True
-    work.body[contact.body].status = 0  # in flight again: the strike has opened its contacts
+    work.body[contact.body].status = FREE
     _, most = greatest_acceleration(system, contact, state, work)
     return 2.0 * rate < most * (1.0 - contact.restitution) * horizon
 
 
 @kernel
-def change_mode(hold, c, kind, now, clock, records):
-    """Carry out the event of a held contact; return what is left to do."""
+def change_mode(system, held, i, kind, now, work, clock, records):
+    """Carry out the event of a held point; return what is left to do."""
     if kind == REVERSE:
         return SETTLE
-    begin_event(c, now, clock, records)
+    hold = held.points[i]
+    begin_event(hold.contact, hold.feature, now, clock, records)
     if kind == SEPARATE:
-        hold.mode = OPEN
-        hold.leaving = 1
+        strike_off(held, i)
+        regroup(system, held)
         end_event(r.OPENS, now, clock, records)
     elif kind == CONE:
         hold.mode = SLIP
         end_event(r.SLIPS, now, clock, records)
     return NOTHING
+
+
+@kernel
+def turn_modes(system, held, now, work, clock, records):
+    """Take over the modes that a step of several held points has ended with."""
+    opened = False
+    for i in range(held.count[0] - 1, -1, -1):
+        hold = held.points[i]
+        if hold.several == 0 or hold.rest == 1:
+            continue
+        if hold.settles == 1:
+            hold.rest = system.bodies[hold.body].ballistic
+        if hold.next == hold.mode:
+            continue
+        begin_event(hold.contact, hold.feature, now, clock, records)
+        if hold.next == OPEN:
+            strike_off(held, i)
+            opened = True
+            end_event(r.OPENS, now, clock, records)
+        else:
+            hold.mode = hold.next
+            if hold.mode == STICK:
+                set_anchor(system, hold, now, work)
+            end_event(r.STICKS if hold.mode == STICK else r.SLIPS, now, clock, records)
+    if opened:
+        regroup(system, held)
 
 
 @inlined
@@ -225,13 +279,13 @@ def finite(state):
 
 
 @entry
-def save_now(held, now, clocks, records):
+def save_now(system, held, now, clocks, work, records):
     """Write the present state: at the start, and after a failure."""
-    save(held, now, clocks[0], records)
+    save(system, held, now, clocks[0], work, records)
 
 
 @inlined
-def save(held, now, clock, records):
+def save(system, held, now, clock, work, records):
     """Write the present state into the next row."""
     k = clock.saved
     row = records.series[k]
@@ -240,19 +294,34 @@ def save(held, now, clock, records):
     row.friction, row.bounces = clock.friction, clock.bounces
     for b in range(now.shape[0]):
         keep(now[b], records.state[k, b])
-    save_contacts(held, k, records)
+    if held.count[0] > 0:
+        save_contacts(system, held, now, k, work, records)
     clock.saved += 1
 
 
-@inlined
-def save_contacts(held, k, records):
-    """Write modes and forces of the contacts into row k."""
-    for c in range(held.shape[0]):
+@kernel
+def save_contacts(system, held, now, k, work, records):
+    """Write modes, forces and moments of the contacts into row k: sums over their held points."""
+    for c in range(records.touch.shape[1]):
         touch = records.touch[k, c]
-        touch.mode = held[c].mode
-        for i in range(3):
-            touch.force[i] = held[c].force[i] if held[c].mode != OPEN else 0.0
-            touch.point[i] = held[c].point[i]
+        touch.mode = OPEN
+        for j in range(3):
+            touch.force[j], touch.moment[j] = 0.0, 0.0
+    for i in range(held.count[0]):
+        hold, point = held.points[i], work.point[0]
+        touch, f = records.touch[k, hold.contact], hold.force
+        place(system.contacts[hold.contact], hold.point, now, point)
+        E, arm = point.axes, point.arm_a
+        touch.mode = max(touch.mode, hold.mode)
+        fx = f[0] * E[0, 0] + f[1] * E[1, 0] + f[2] * E[2, 0]
+        fy = f[0] * E[0, 1] + f[1] * E[1, 1] + f[2] * E[2, 1]
+        fz = f[0] * E[0, 2] + f[1] * E[1, 2] + f[2] * E[2, 2]
+        tx, ty, tz = cross(arm[0], arm[1], arm[2], fx, fy, fz)
+        touch.moment[0] += tx
+        touch.moment[1] += ty
+        touch.moment[2] += tz
+        for j in range(3):
+            touch.force[j] += f[j]
 
 
 @inlined

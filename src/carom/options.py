@@ -33,6 +33,9 @@ class Options:
     hold : bool
         Hold a contact when all its remaining bounces would end within the present step. Default True.
         With False, a bouncing body that comes to rest stops the run with a status.
+    rest_tolerance : float
+        Bodies held at several points come to rest, exactly, when their speed is below this part of the speed
+        that applied forces would give them in one step; slip below it has stopped. Default 1e-9.
     constraint_tolerance : float
         Greatest error of position (relative to the size of the bodies) and of velocity (relative
         to their speeds) that joints may have at the start. Default 1e-8.
@@ -64,6 +67,7 @@ class Options:
     gap_tolerance: float = 1e-15
     tie_tolerance: float = 1e-9
     hold: bool = True
+    rest_tolerance: float = 1e-9
     constraint_tolerance: float = 1e-8
     drop_tolerance: float = 1e-8
     augmentation: float = 1e-3
@@ -80,7 +84,7 @@ class Options:
         check.number("penetration", self.penetration, above=0.0, below=1.0)
         for name in ("gap_tolerance", "tie_tolerance", "constraint_tolerance", "drop_tolerance"):
             check.number(name, getattr(self, name), above=0.0, below=1.0)
-        for name in ("augmentation", "residual_tolerance"):
+        for name in ("rest_tolerance", "augmentation", "residual_tolerance"):
             check.number(name, getattr(self, name), above=0.0, below=1.0)
         for name in ("natural_frequency", "damping_ratio"):
             check.number(name, getattr(self, name), least=0.0)

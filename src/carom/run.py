@@ -6,7 +6,8 @@ import numpy as np
 
 from carom import loop
 from carom.geometry import quaternion
-from carom.hold.lifecycle import hold_unit
+from carom.hold.lifecycle import hold_unit, settle_unit
+from carom.hold.press import press_unit
 from carom.impact.strike import strike_unit
 from carom.jit import address
 from carom.motion.explicit import constrained_unit, rk4
@@ -18,6 +19,7 @@ from carom.scene.scene import Scene
 from carom.solution import Solution
 from carom.status import Status
 from carom.system import records as r
+from carom.system.cluster import new_cluster
 from carom.system.compile import compile_scene
 
 LOCATIONS = {"locate": loop.LOCATE, "project": loop.PROJECT, "work": loop.WORK}
@@ -63,31 +65,41 @@ class Run:
             gap=options.gap_tolerance,
             tie=options.tie_tolerance,
             hold=int(options.hold),
+            rest=options.rest_tolerance,
             layer_steps=options.layer_steps,
             layer_time=int(options.add_layer_time),
             max_impacts=options.max_impacts_per_step,
             max_cuts=options.max_cuts,
             strike_at=0,
             hold_at=0,
+            settle_at=0,
+            press_at=0,
         )
-        self.held = r.new_held(system.contacts.size)
+        self.held = r.new_held(system)
         self.work = r.new_work(system, self.method.b.size)
         system = with_address(system, self.now, self.work)
         self.compiled = self.compiled._replace(system=system)
         check_start(scene, self.compiled, self.work, options)
+        self.cluster = new_cluster(system)
         self.clock = r.new_clock()
-        self.records = r.new_records(system, -(-steps // save_every) + 1, 64)
+        self.records = r.new_records(system, -(-steps // save_every) + 1, 512)
         if scene.contacts:
             self.find_strike()
         if not np.all(system.bodies.ballistic):
             self.find_constrained_step()
-        loop.save_now(self.held, self.now, self.clock, self.records)
+        self.save_now()
+
+    def save_now(self) -> None:
+        """Write the present state into the records."""
+        loop.save_now(
+            self.compiled.system, self.held, self.now, self.clock, self.work, self.records
+        )
 
     def find_strike(self) -> None:
         """Compile what a scene with contacts needs, and note where it is."""
         found = address(
             strike_unit, self.method, self.compiled.system, self.controls, self.held, 0, self.now,
-            self.work, self.clock, self.records,
+            self.cluster, self.work, self.clock, self.records,
         )  # fmt: skip
         self.controls = self.controls._replace(strike_at=found)
 
@@ -102,11 +114,16 @@ class Run:
 
     def find_hold(self) -> None:
         """Compile what a held contact needs: only when the first one is to be held."""
-        found = address(
-            hold_unit, self.compiled.system, self.controls, self.held, 0, self.now, 0.0, True,
-            self.work, self.clock, self.records,
-        )  # fmt: skip
-        self.controls = self.controls._replace(hold_at=found or 1)
+        system, held, now = self.compiled.system, self.held, self.now
+        scratch = (self.cluster, self.work, self.clock)
+        hold = address(hold_unit, system, self.controls, held, 0, now, 0.0, *scratch, self.records)
+        settle = address(
+            settle_unit, system, self.controls, held, 0, now, self.work, self.clock, self.records
+        )
+        press = address(press_unit, system, self.controls, held, now, 0.0, now, *scratch)
+        self.controls = self.controls._replace(
+            hold_at=hold or 1, settle_at=settle, press_at=press
+        )
 
     @property
     def steps_done(self) -> int:
@@ -118,7 +135,7 @@ class Run:
         while True:
             code = loop.run(
                 self.compiled.system, self.method, self.controls, self.held, self.now, self.work,
-                self.clock, self.records, until,
+                self.cluster, self.clock, self.records, until,
             )  # fmt: skip
             if code == r.FULL:
                 self.records = r.longer(self.records)
@@ -133,7 +150,7 @@ class Run:
         clock = self.clock[0]
         if status is not Status.SUCCESS and clock.now > self.records.series.t[clock.saved - 1]:
             self.records = r.room_for_one(self.records, clock.saved)
-            loop.save_now(self.held, self.now, self.clock, self.records)
+            self.save_now()
         return Solution.from_run(self, status)
 
 

@@ -16,7 +16,7 @@ import math
 
 from carom.contact.gap import along_normal, gap_and_rate, plane_in_body, round_off
 from carom.jit import inlined
-from carom.motion.acceleration import OPEN
+from carom.system.arrays import FREE, RESTS
 
 CLEAR, BELOW, UNSURE = range(3)
 
@@ -26,7 +26,7 @@ def greatest_acceleration(system, contact, state, work):
     """Return bounds of the normal acceleration of the mass centre and of any point of the body."""
     body, r = system.bodies[contact.body], contact.extent
     status, bound = work.body[contact.body].status, work.body[contact.body].bound
-    if body.ballistic == 1 and status == 0:
+    if body.ballistic == 1 and status == FREE:
         w, J = state[contact.body].w, body.inertia
         centre = abs(along_normal(contact, system.gravity))
         spin2 = w[0] * w[0] + w[1] * w[1] + w[2] * w[2]
@@ -57,19 +57,19 @@ def ball_clears(system, contact, start, end, h, centre, work):
     if not (z0 > 0.0 and z1 > 0.0):
         return False
     s0, s1 = along_normal(contact, start[b].v), along_normal(contact, end[b].v)
-    flying = system.bodies[b].ballistic == 1 and work.body[b].status == 0
+    flying = system.bodies[b].ballistic == 1 and work.body[b].status == FREE
     if flying and (s1 <= 0.0 or s0 >= 0.0):  # constant acceleration: least at an end
         return True
     return reach(z0, s0, centre) + reach(z1, -s1, centre) >= h
 
 
 @inlined
-def passage(system, contact, hold, start, end, h, work, tolerance, tie):
+def passage(system, contact, held, leaving, start, end, h, work, tolerance):
     """Return CLEAR, BELOW (the end is inside the half-space) or UNSURE, and a time before any contact.
 
-    Vertices that carry a held contact (gap below `tie` at both ends) are left out.
+    Vertices that carry a held contact are left out.
     """
-    if hold.rest == 1:
+    if work.body[contact.body].status == RESTS:
         return CLEAR, h
     centre, a = greatest_acceleration(system, contact, start, work)
     if ball_clears(system, contact, start, end, h, centre, work):
@@ -83,7 +83,7 @@ def passage(system, contact, hold, start, end, h, work, tolerance, tie):
         z1, rate1 = gap_and_rate(after, system.vertices[i])
         if min(z0, z1) > sag:
             continue
-        if hold.mode != OPEN and abs(z0) <= tie and abs(z1) <= tie:
+        if held.carries[i] == 1:
             continue
         t0 = reach(z0, rate0, a)
         first = min(first, t0)
@@ -93,7 +93,7 @@ def passage(system, contact, hold, start, end, h, work, tolerance, tie):
             verdict == CLEAR
             and t0 + reach(z1, -rate1, a) < h * (1.0 - 1e-12)
             and sag > tiny  # what could be missed is more than the tolerance
-            and hold.leaving == 0
+            and leaving == 0
         ):
             verdict = UNSURE
     return verdict, first

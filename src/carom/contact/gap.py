@@ -53,12 +53,6 @@ def lowest(contact, vertices, state):
 
 
 @kernel
-def point_state(contact, p, state):
-    """Return the gap of one core point p (body axes) and its rate."""
-    return gap_and_rate(plane_in_body(contact, state), p)
-
-
-@kernel
 def round_off(contact, state):
     """Return the round-off of a gap: of the order of the unit of the coordinates it is made of [m]."""
     x = state[contact.body].x

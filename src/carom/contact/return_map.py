@@ -11,10 +11,10 @@ from __future__ import annotations
 
 import math
 
-from carom.contact.gap import point_state, strike_point
+from carom.contact.gap import strike_point
 from carom.geometry.rotation import exp, multiply, normalize
 from carom.jit import kernel
-from carom.motion.contact_point import contact_arm, motion_of_point, reached, spread
+from carom.motion.contact_point import alone, contact_motion, place, spread
 from carom.motion.project import project_position
 
 
@@ -25,29 +25,30 @@ def return_map(system, contact, state, work, tie, tolerance):
     The point that is brought back stays the same until it is on the surface; if the turn of the body has
     then brought another one lower, it is the next.
     """
-    origin, point = work.middle, work.hit[0].point
+    origin, core, point = work.middle, work.hit[0].point, work.point[0]
     joined = system.bodies[contact.body].isolated == 0
     kappa, rho = 0.0, -math.inf
     for iteration in range(100):
         if not (abs(rho) > tolerance and iteration > 0):
-            rho, _ = strike_point(contact, system.vertices, state, tie, point)
+            rho, _ = strike_point(contact, system.vertices, state, tie, core)
             copy_pose(state, origin)
             kappa = 0.0
             if rho >= -tolerance and (iteration > 0 or rho <= tolerance):
                 return iteration
-        rx, ry, rz = contact_arm(contact, state, point)
-        spread(system, contact, state, rx, ry, rz, 1.0, 0.0, 0.0, work)
-        w_nn = motion_of_point(contact, work.body[contact.body].motion, rx, ry, rz)[0]
+        place(contact, core, state, point)
+        spread(system, point, state, 1.0, 0.0, 0.0, work)
+        w_nn = contact_motion(point, work)[0]
         if not w_nn > 0.0:
             return -1
         if joined:
-            carry(system, contact, -rho / w_nn, state, state, work)
+            carry(system, point, -rho / w_nn, state, state, work)
             if not (project_position(system, state, work, 1e-14) <= 1e-9):
                 return -1
         else:
             kappa -= rho / w_nn
-            carry(system, contact, kappa, origin, state, work)
-        rho, _ = point_state(contact, point, state)
+            carry(system, point, kappa, origin, state, work)
+        place(contact, core, state, point)
+        rho = point.gap
     return -1
 
 
@@ -62,14 +63,23 @@ def copy_pose(start, end):
 
 
 @kernel
-def carry(system, contact, kappa, origin, state, work):
+def carry(system, point, kappa, origin, state, work):
     """Put `state` at Exp of kappa times the motion of the last solve, from `origin`."""
-    first, last = reached(system, contact)
-    for b in range(first, last):
-        d, x0, Q0 = work.body[b].motion, origin[b].x, origin[b].Q
-        x, Q = state[b].x, state[b].Q
-        for k in range(3):
-            x[k] = x0[k] + kappa * d[k]
-        r = exp(kappa * d[3], kappa * d[4], kappa * d[5])
-        q = multiply(r[0], r[1], r[2], r[3], Q0[0], Q0[1], Q0[2], Q0[3])
-        Q[0], Q[1], Q[2], Q[3] = normalize(q[0], q[1], q[2], q[3])
+    if alone(system, point):
+        move(work.body[point.a].motion, kappa, origin[point.a], state[point.a])
+        if point.b >= 0:
+            move(work.body[point.b].motion, kappa, origin[point.b], state[point.b])
+    else:
+        for b in range(state.shape[0]):
+            move(work.body[b].motion, kappa, origin[b], state[b])
+
+
+@kernel
+def move(xi, kappa, start, end):
+    """Put one body at Exp of kappa xi from `start`."""
+    Q0, Q = start.Q, end.Q
+    for k in range(3):
+        end.x[k] = start.x[k] + kappa * xi[k]
+    r = exp(kappa * xi[3], kappa * xi[4], kappa * xi[5])
+    q = multiply(r[0], r[1], r[2], r[3], Q0[0], Q0[1], Q0[2], Q0[3])
+    Q[0], Q[1], Q[2], Q[3] = normalize(q[0], q[1], q[2], q[3])

@@ -12,9 +12,9 @@ import math
 from carom.jit import kernel
 from carom.motion.contact_point import (
     add_velocity,
-    contact_arm,
     contact_velocity,
     effective_inverse_mass,
+    place,
     spread,
 )
 
@@ -22,12 +22,12 @@ from carom.motion.contact_point import (
 @kernel
 def restore_work(system, contact, state, drop, work):
     """Change u_n at the core point of `work.hit` for the potential energy `drop` [J] that was lost."""
-    hit = work.hit[0]
-    rx, ry, rz = contact_arm(contact, state, hit.point)
-    un = contact_velocity(contact, state, rx, ry, rz)[0]
+    hit, point = work.hit[0], work.point[0]
+    place(contact, hit.point, state, point)
+    un = contact_velocity(point, state)[0]
     if un < 0.0:
-        effective_inverse_mass(system, contact, state, rx, ry, rz, work, hit.W)
+        effective_inverse_mass(system, point, state, work, hit.W)
         w_nn = hit.W[0, 0]
         new = -math.sqrt(max(un * un + 2.0 * w_nn * drop, 0.0))
-        spread(system, contact, state, rx, ry, rz, (new - un) / w_nn, 0.0, 0.0, work)
-        add_velocity(system, contact, work, state)
+        spread(system, point, state, (new - un) / w_nn, 0.0, 0.0, work)
+        add_velocity(system, point, work, state)

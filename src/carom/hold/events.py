@@ -12,56 +12,52 @@ from __future__ import annotations
 import math
 
 from carom.jit import inlined, kernel
-from carom.motion.acceleration import OPEN, SLIP, STICK, acceleration
-from carom.motion.contact_point import contact_arm, contact_velocity
+from carom.motion.acceleration import OPEN, SLIP, acceleration
+from carom.motion.contact_point import contact_velocity, place
 
 GAP, SEPARATE, CONE, REVERSE = range(4)
 
 
 @kernel
-def slip(contact, hold, state):
-    """Return the tangential velocity (2) of a held contact."""
-    rx, ry, rz = contact_arm(contact, state, hold.point)
-    u = contact_velocity(contact, state, rx, ry, rz)
-    return u[1], u[2]
-
-
-@kernel
-def held_value(contact, hold, kind, d1, d2, state):
+def held_value(system, hold, kind, d1, d2, state, work):
     """Return the event function `kind`; the force of the contact must be that of `state`."""
-    f = hold.force
+    f, contact = hold.force, system.contacts[hold.contact]
     if kind == SEPARATE:
         return f[0]
     if kind == CONE:
-        return contact.friction * f[0] - math.sqrt(f[1] * f[1] + f[2] * f[2])
-    u1, u2 = slip(contact, hold, state)
+        return contact.friction_held * f[0] - math.sqrt(f[1] * f[1] + f[2] * f[2])
+    point = work.point[0]
+    place(contact, hold.point, state, point)
+    _, u1, u2 = contact_velocity(point, state)
     return u1 * d1 + u2 * d2
 
 
 @inlined
 def end_forces(system, held, state, work):
-    """Put the forces of held contacts at `state` in place, if any moves."""
-    for c in range(held.shape[0]):
-        if held[c].mode != OPEN and held[c].rest == 0:
+    """Put the forces of points that are held one to a body, at `state`, in place if any moves."""
+    for i in range(held.count[0]):
+        hold = held.points[i]
+        if hold.mode != OPEN and hold.rest == 0 and hold.several == 0:
             acceleration(system, state, held, work, work.stages[0])
             return
 
 
 @inlined
-def find_held_event(system, held, end):
-    """Return (event, contact, d1, d2) of the first held contact whose mode ends; contact -1 if none."""
-    for c in range(held.shape[0]):
-        contact, hold = system.contacts[c], held[c]
-        if hold.mode == OPEN or hold.rest == 1:
+def find_held_event(system, held, end, work):
+    """Return (event, place in the list, d1, d2) of the first held point whose mode ends; place -1 if none."""
+    for i in range(held.count[0]):
+        hold = held.points[i]
+        if hold.mode == OPEN or hold.rest == 1 or (hold.several == 1 and hold.locate == 0):
             continue
-        if hold.force[0] < 0.0:
-            return SEPARATE, c, 0.0, 0.0
-        if hold.mode == STICK:
-            # a cone met to round-off (a body on the verge of slip) is no event
-            if held_value(contact, hold, CONE, 0.0, 0.0, end) < -1e-12 * hold.force[0]:
-                return CONE, c, 0.0, 0.0
-        elif hold.mode == SLIP:
+        if hold.several == 0 and hold.force[0] < 0.0:
+            return SEPARATE, i, 0.0, 0.0
+        if hold.mode == SLIP:
             d1, d2 = hold.heading[0], hold.heading[1]
-            if held_value(contact, hold, REVERSE, d1, d2, end) < 0.0:
-                return REVERSE, c, d1, d2
+            if held_value(system, hold, REVERSE, d1, d2, end, work) < 0.0:
+                return REVERSE, i, d1, d2
+        # a cone met to round-off (a body on the verge of slip) is no event
+        elif hold.several == 0 and (
+            held_value(system, hold, CONE, 0.0, 0.0, end, work) < -1e-12 * hold.force[0]
+        ):
+            return CONE, i, 0.0, 0.0
     return GAP, -1, 0.0, 0.0

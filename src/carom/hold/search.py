@@ -17,35 +17,35 @@ from carom.jit import inlined, kernel
 def examine(system, controls, held, now, dt, work):
     """Look at the step from `now` to work.trial: verdict, event, contact, a time before it, slip."""
     found, which, low = CLEAR, -1, 0.0
-    for c in range(held.shape[0]):
+    for c in range(held.brinks.shape[0]):
         contact = system.contacts[c]
-        tie = controls.tie * contact.extent
+        leaving = held.brinks[c].leaving
         verdict, first = passage(
-            system, contact, held[c], now, work.trial, dt, work, controls.gap, tie
+            system, contact, held, leaving, now, work.trial, dt, work, controls.gap
         )
         if verdict == UNSURE:
             return UNSURE, GAP, c, 0.0, 0.0, 0.0
         if verdict == BELOW and found == CLEAR:
             found, which, low = BELOW, c, 0.5 * first
-        elif verdict == CLEAR and held[c].leaving == 1 and first > 0.0:
-            held[c].leaving = 0
+        elif verdict == CLEAR and leaving == 1 and first > 0.0:
+            held.brinks[c].leaving = 0
     if found == BELOW:
         return BELOW, GAP, which, low, 0.0, 0.0
-    kind, c, d1, d2 = find_held_event(system, held, work.trial)
-    if c >= 0:
-        return BELOW, kind, c, 0.0, d1, d2
+    kind, i, d1, d2 = find_held_event(system, held, work.trial, work)
+    if i >= 0:
+        return BELOW, kind, i, 0.0, d1, d2
     return CLEAR, GAP, -1, 0.0, 0.0, 0.0
 
 
 @kernel
 def event_value(system, controls, held, search, state, work):
     """Return the event function and, for a gap, its rate; forces of held contacts are those of `state`."""
-    contact = system.contacts[search.contact]
     if search.kind == GAP:
+        contact = system.contacts[search.contact]
         search.tolerance = max(controls.gap * contact.extent, round_off(contact, state))
         return lowest(contact, system.vertices, state)
-    hold = held[search.contact]
-    return held_value(contact, hold, search.kind, search.d1, search.d2, state), 0.0
+    hold = held.points[search.contact]
+    return held_value(system, hold, search.kind, search.d1, search.d2, state, work), 0.0
 
 
 @kernel

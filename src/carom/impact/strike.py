@@ -2,24 +2,19 @@
 
 from __future__ import annotations
 
-import math
-
+from carom.contact.closed import gather_closed
 from carom.contact.gap import round_off, slow, strike_point
 from carom.contact.return_map import return_map
 from carom.contact.work_mode import restore_work
 from carom.dispatch import by_address, by_method
-from carom.impact import laws, layout
-from carom.impact.layer import E_MIN, traverse
+from carom.impact import layout
+from carom.impact.layer import traverse
 from carom.impact.resolve import resolve
 from carom.jit import kernel, unit
-from carom.motion.acceleration import OPEN
-from carom.motion.contact_point import (
-    add_velocity,
-    contact_arm,
-    contact_velocity,
-    effective_inverse_mass,
-    spread,
-)
+from carom.impact.alike import as_one
+from carom.impact.strike_several import strike_several
+from carom.impact.write import write_impact
+from carom.motion.contact_point import add_velocity, contact_velocity, spread
 from carom.motion.explicit import Explicit
 from carom.motion.forces import potential_energy
 from carom.motion.project import project_velocity
@@ -28,22 +23,7 @@ from carom.system.notes import begin_event, end_event
 from carom.system.records import IMPACT
 
 LOCATE, WORK = 0, 2
-RETURN_MAP_FAILED, IMPACT_FAILED = 5, 6
-
-
-@kernel
-def release(system, held, c, clock):
-    """Open all held contacts that the impact at c reaches, and have them looked at again."""
-    b = system.contacts[c].body
-    joined = system.bodies[b].isolated == 0
-    for i in range(held.shape[0]):
-        other = system.contacts[i].body
-        if other == b or (joined and system.bodies[other].isolated == 0):
-            clock.released += 1 if held[i].mode != OPEN else 0
-            held[i].mode = OPEN
-            held[i].rest = 0
-            held[i].near = 1
-            held[i].leaving = 0
+RETURN_MAP_FAILED, IMPACT_FAILED, TOO_MANY_POINTS = 5, 6, 10
 
 
 @kernel
@@ -71,41 +51,62 @@ def onto_surface(system, controls, c, state, work):
 
 
 @unit
-def strike_unit(method, system, controls, held, c, state, work, clocks, records):
-    """Resolve the impact of contact c; 0 or the number of a `Status` goes to work.hit.
+def strike_unit(method, system, controls, held, c, state, cluster, work, clocks, records):
+    """Resolve the impact of contact c, together with all that is closed in its group.
 
+    0 or the number of a `Status` goes to work.hit, and how many points were closed, if one was struck.
     Velocities of `state` change; its position only by the return map.
     """
-    contact, hit, hold, clock = system.contacts[c], work.hit[0], held[c], clocks[0]
+    contact, hit, clock = system.contacts[c], work.hit[0], clocks[0]
+    hit.closed = 0
     hit.code = onto_surface(system, controls, c, state, work)
     if hit.code != 0:
         return
-    rx, ry, rz = contact_arm(contact, state, hit.point)
-    u = contact_velocity(contact, state, rx, ry, rz)
-    if u[0] < -slow(contact, state):
-        release(system, held, c, clock)
-        effective_inverse_mass(system, contact, state, rx, ry, rz, work, hit.W)
-        hit.u[0], hit.u[1], hit.u[2] = u
-        if collide(method, controls, contact, hit, work.history) != layout.OK:
-            hit.code = IMPACT_FAILED
+    k = gather_closed(system, held, contact.group, state, controls.tie, cluster)
+    if k < 0:
+        hit.code = TOO_MANY_POINTS
+        return
+    approach = 0.0
+    for i in range(k):
+        seat = cluster.seats[i]
+        u = contact_velocity(cluster.points[i], state)[0]
+        if u < -slow(system.contacts[seat.contact], state):
+            approach = min(approach, u)
+    if approach < 0.0:
+        hit.closed = k
+        begin_event(c, cluster.seats[0].feature, state, clock, records)
+        if as_one(system, k, state, cluster, work):
+            strike_one(method, system, controls, c, state, work, clock, records)
+        else:
+            strike_several(system, controls, k, state, cluster, work, clock, records)
+        if hit.code != 0:
             return
-        write_impact(contact, c, state, rx, ry, rz, hit, clock, records)
-        begin_event(c, state, clock, records)
-        out, P = hit.out, layout.IMPULSE
-        spread(system, contact, state, rx, ry, rz, out[P], out[P + 1], out[P + 2], work)
-        add_velocity(system, contact, work, state)
         if system.bodies[contact.body].isolated == 0:
             project_velocity(system, state, work)
         end_event(IMPACT, state, clock, records)
+        for i in range(held.brinks.shape[0]):
+            if system.contacts[i].group == contact.group:
+                held.brinks[i].near = 1
     if controls.location != LOCATE:  # others may be inside as well
-        for i in range(held.shape[0]):
-            held[i].near = 1
-    for k in range(3):
-        hold.point[k] = hit.point[k]
+        for i in range(held.brinks.shape[0]):
+            held.brinks[i].near = 1
 
 
-#: strike(address, method, system, controls, held, c, state, work, clocks, records)
+#: strike(address, method, system, controls, held, c, state, cluster, work, clocks, records)
 strike = by_address(strike_unit)
+
+
+@kernel
+def strike_one(method, system, controls, c, state, work, clock, records):
+    """Resolve the impact of the one point in work.point, with W and u in work.hit."""
+    contact, hit, point = system.contacts[c], work.hit[0], work.point[0]
+    if collide(method, controls, contact, hit, work.history) != layout.OK:
+        hit.code = IMPACT_FAILED
+        return
+    write_impact(contact, c, state, point, hit, clock, records)
+    out, P = hit.out, layout.IMPULSE
+    spread(system, point, state, out[P], out[P + 1], out[P + 2], work)
+    add_velocity(system, point, work, state)
 
 
 @kernel
@@ -125,46 +126,3 @@ def by_layer(method, controls, contact, hit, history):
 
 #: collide(method, controls, contact, hit, history): resolve the impact in work.hit the way the method does it
 collide = by_method({Explicit: by_impulse, ThreeField: by_layer})
-
-
-@kernel
-def write_impact(contact, c, state, rx, ry, rz, hit, clock, records):
-    """Write what the boundary layer was given and what it gave."""
-    row, x, out = records.impact[clock.struck], state[contact.body].x, hit.out
-    row.time = clock.now
-    row.contact = c
-    row.point[0], row.point[1], row.point[2] = x[0] + rx, x[1] + ry, x[2] + rz
-    for i in range(3):
-        row.before[i] = hit.u[i]
-        row.after[i] = out[layout.VELOCITY + i]
-        row.impulse[i] = out[layout.IMPULSE + i]
-        for k in range(3):
-            row.W[i, k] = hit.W[i, k]
-    row.energy_change = out[layout.ENERGY_CHANGE]
-    row.compression_work = out[layout.WORK_C]
-    row.restitution_work = out[layout.WORK_R]
-    row.friction_loss = out[layout.FRICTION_LOSS]
-    row.phases = int(out[layout.PHASES])
-    row.duration = layer_time(contact, hit.u[0], out)
-    clock.impacts += out[layout.ENERGY_CHANGE]
-
-
-@kernel
-def layer_time(contact, un, out):
-    """Return the duration in the layer.
-
-    Newton: law A, T_c = 2 b l/v_0, T_r = T_c/e. Else (and after a jam): constant N in each phase,
-    N_c = |A_c|/(b l), N_r = A_r/(b l).
-    """
-    depth = -contact.width * math.log1p(-contact.penetration)
-    if contact.law == laws.NEWTON and (int(out[layout.PHASES]) & layout.JAM) == 0:
-        e = contact.restitution
-        return 2.0 * depth / -un * (1.0 + (1.0 / e if e >= E_MIN else 0.0))
-    compression, p_c = out[layout.WORK_C], out[layout.P_C]
-    restitution, p_r = out[layout.WORK_R], out[layout.IMPULSE] - out[layout.P_C]
-    time = 0.0
-    if compression < 0.0:
-        time += p_c * depth / -compression
-    if restitution > 0.0:
-        time += p_r * depth / restitution
-    return time

@@ -1,8 +1,8 @@
-"""Accelerations of all bodies: applied forces, joints, and the forces of held contacts.
+"""Accelerations of all bodies: applied forces, joints, and the force of a contact held at one point.
 
 A held contact answers with lam = (N, T). While it slips, T = -mu N u_t/|u_t| and the normal row of
-du/dt vanishes; while it sticks (or rolls) all three rows vanish. Contacts that share a mechanism are
-brought together by block Gauss-Seidel.
+du/dt vanishes; while it sticks (or rolls) all three rows vanish. Where several points share their bodies
+the step is another one (`carom.hold.press`), and they are left out here.
 """
 
 from __future__ import annotations
@@ -13,11 +13,11 @@ from carom.contact.gap import slow
 from carom.dispatch import only_with_joints
 from carom.jit import kernel
 from carom.motion.contact_point import (
+    alone,
     contact_acceleration,
-    contact_arm,
     contact_velocity,
     effective_inverse_mass,
-    reached,
+    place,
     spread,
 )
 from carom.motion.forces import applied_wrenches
@@ -53,64 +53,45 @@ def acceleration(system, state, held, work, stage):
         motion, rate = work.body[b].motion, stage[b].rate
         for k in range(6):
             rate[k] = motion[k]
-    count = 0
-    for c in range(held.shape[0]):
-        if held[c].mode != OPEN:
-            count += 1
-            contact, force = system.contacts[c], held[c].force
-            rx, ry, rz = contact_arm(contact, state, held[c].point)
-            effective_inverse_mass(system, contact, state, rx, ry, rz, work, held[c].W)
-            for k in range(3):
-                force[k] = 0.0
-    if count == 0:
-        return applied, 0.0
-    for _sweep in range(1 if count == 1 else 200):
-        change, largest = 0.0, 0.0
-        for c in range(held.shape[0]):
-            if held[c].mode != OPEN:
-                change = max(change, relax(system, system.contacts[c], held[c], state, work, stage))
-                largest = max(largest, abs(held[c].force[0]))
-        if not (change > 1e-15 * largest):
-            break
-    return applied, friction_power(system, state, held)
+    friction = 0.0
+    for i in range(held.count[0]):
+        hold = held.points[i]
+        if hold.mode != OPEN and hold.several == 0 and hold.rest == 0:
+            contact, point = system.contacts[hold.contact], work.point[0]
+            place(contact, hold.point, state, point)
+            effective_inverse_mass(system, point, state, work, hold.W)
+            press_one(system, contact, hold, point, state, work, stage)
+            if hold.mode == SLIP:
+                _, u1, u2 = contact_velocity(point, state)
+                friction += hold.force[1] * u1 + hold.force[2] * u2
+    return applied, friction
 
 
 @kernel
-def friction_power(system, state, held):
-    """Return the power of friction in slipping contacts."""
-    power = 0.0
-    for c in range(held.shape[0]):
-        if held[c].mode == SLIP:
-            rx, ry, rz = contact_arm(system.contacts[c], state, held[c].point)
-            u = contact_velocity(system.contacts[c], state, rx, ry, rz)
-            power += held[c].force[1] * u[1] + held[c].force[2] * u[2]
-    return power
-
-
-@kernel
-def aim(system, held, state):
+def aim(system, held, state, work):
     """Note the directions of slip at the start of a step."""
-    for c in range(held.shape[0]):
-        heading = held[c].heading
+    for i in range(held.count[0]):
+        hold = held.points[i]
+        heading = hold.heading
         heading[0], heading[1] = 0.0, 0.0
-        if held[c].mode == SLIP:
-            contact = system.contacts[c]
-            rx, ry, rz = contact_arm(contact, state, held[c].point)
-            u1, u2 = slip_direction(contact, held[c], state, rx, ry, rz)
+        if hold.mode == SLIP:
+            contact, point = system.contacts[hold.contact], work.point[0]
+            place(contact, hold.point, state, point)
+            u1, u2 = slip_direction(contact, hold, point, state)
             speed = math.sqrt(u1 * u1 + u2 * u2)
             if speed > 0.0:
                 heading[0], heading[1] = u1 / speed, u2 / speed
 
 
 @kernel
-def slip_direction(contact, hold, state, rx, ry, rz):
+def slip_direction(contact, hold, point, state):
     """Return a vector along the slip that friction opposes; 0 where slip has yet to start.
 
     Once slip has turned against the direction it had at the start of the step, friction goes on as before: a
     smooth force up to the end of the step, where the reversal is seen and located. (A force that turned with
     the slip would hold the slip near zero, and the end of the step would show no reversal.)
     """
-    _, u1, u2 = contact_velocity(contact, state, rx, ry, rz)
+    _, u1, u2 = contact_velocity(point, state)
     if not math.sqrt(u1 * u1 + u2 * u2) > 10.0 * slow(contact, state):
         return hold.heading[0], hold.heading[1]
     if u1 * hold.heading[0] + u2 * hold.heading[1] < 0.0:
@@ -119,26 +100,26 @@ def slip_direction(contact, hold, state, rx, ry, rz):
 
 
 @kernel
-def relax(system, contact, hold, state, work, stage):
-    """Change the force of one held contact so that its own rows are met; return the change."""
+def press_one(system, contact, hold, point, state, work, stage):
+    """Work out the force that meets the rows of one held point; add what it does to the accelerations."""
     f, W = hold.force, hold.W
-    rx, ry, rz = contact_arm(contact, state, hold.point)
-    a = contact_acceleration(contact, state, stage[contact.body].rate, hold.point, rx, ry, rz)
-    # what the acceleration would be without this contact's own force
-    an = a[0] - W[0, 0] * f[0] - W[0, 1] * f[1] - W[0, 2] * f[2]
-    a1 = a[1] - W[1, 0] * f[0] - W[1, 1] * f[1] - W[1, 2] * f[2]
-    a2 = a[2] - W[2, 0] * f[0] - W[2, 1] * f[1] - W[2, 2] * f[2]
+    an, a1, a2 = contact_acceleration(point, state, stage)
     if hold.mode == STICK:
         n, t1, t2 = stick_force(W, an, a1, a2)
     else:
-        u1, u2 = slip_direction(contact, hold, state, rx, ry, rz)
-        n, t1, t2 = slip_force(W, an, a1, a2, u1, u2, contact.friction)
-    change = max(abs(n - f[0]), max(abs(t1 - f[1]), abs(t2 - f[2])))
-    spread(system, contact, state, rx, ry, rz, n - f[0], t1 - f[1], t2 - f[2], work)
-    first, last = reached(system, contact)
-    for b in range(first, last):
-        rate, motion = stage[b].rate, work.body[b].motion
-        for k in range(6):
-            rate[k] += motion[k]
+        u1, u2 = slip_direction(contact, hold, point, state)
+        n, t1, t2 = slip_force(W, an, a1, a2, u1, u2, contact.friction_held)
     f[0], f[1], f[2] = n, t1, t2
-    return change
+    spread(system, point, state, n, t1, t2, work)
+    if alone(system, point):
+        accelerate(work.body[point.a].motion, stage[point.a].rate)
+    else:
+        for b in range(stage.shape[0]):
+            accelerate(work.body[b].motion, stage[b].rate)
+
+
+@kernel
+def accelerate(motion, rate):
+    """Add a motion to the accelerations of a body."""
+    for k in range(6):
+        rate[k] += motion[k]

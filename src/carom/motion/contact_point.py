@@ -1,106 +1,149 @@
-"""A point of contact: its arm, velocity, effective inverse mass W = G P G^T, and what an impulse does.
+"""A point of contact: its velocity, its effective inverse mass W = G P G^T, and what an impulse does.
 
-G maps the velocities of all bodies to u = (u_n, u_t1, u_t2) at the point, P is the inverse mass with the
-joints active. (Paper, change of coordinates at contact.)
+G maps the velocities of all bodies to u = (u_n, u_t1, u_t2), the velocity of body a relative to body b at
+the point; P is the inverse mass with the joints active. (Paper, change of coordinates at contact.)
 """
 
 from __future__ import annotations
 
 from carom.geometry.rotation import cross, rotate
 from carom.jit import kernel
-from carom.motion.forces import point_velocity
+from carom.motion.forces import add_force, point_velocity
 from carom.motion.solve import free_body, solve
 
 
 @kernel
-def contact_arm(contact, state, p):
-    """Return the arm of the contact point of the core point p (body axes): R p - radius n."""
-    q, n, r = state[contact.body].Q, contact.axes, contact.radius
-    rx, ry, rz = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
-    return rx - r * n[0, 0], ry - r * n[0, 1], rz - r * n[0, 2]
+def place(contact, p, state, point):
+    """Write the point at which the core point p (body axes) touches the half-space, or would."""
+    b, n, r = contact.body, contact.axes, contact.radius
+    q, x, core, arm, axes = state[b].Q, state[b].x, point.core, point.arm_a, point.axes
+    core[0], core[1], core[2] = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
+    point.a, point.b = b, -1
+    gap = -contact.offset
+    for k in range(3):
+        arm[k] = core[k] - r * n[0, k]
+        gap += n[0, k] * (x[k] + arm[k])
+        for i in range(3):
+            axes[i, k] = n[i, k]
+    point.gap = gap
 
 
 @kernel
-def in_contact_axes(contact, ax, ay, az):
+def copy_point(p, q):
+    """Copy a point."""
+    q.a, q.b, q.gap = p.a, p.b, p.gap
+    for k in range(3):
+        q.arm_a[k], q.arm_b[k], q.core[k] = p.arm_a[k], p.arm_b[k], p.core[k]
+        for i in range(3):
+            q.axes[i, k] = p.axes[i, k]
+
+
+@kernel
+def in_axes(point, x, y, z):
     """Return the components (normal, tangent 1, tangent 2) of a world vector."""
-    E = contact.axes
+    E = point.axes
     return (
-        E[0, 0] * ax + E[0, 1] * ay + E[0, 2] * az,
-        E[1, 0] * ax + E[1, 1] * ay + E[1, 2] * az,
-        E[2, 0] * ax + E[2, 1] * ay + E[2, 2] * az,
+        E[0, 0] * x + E[0, 1] * y + E[0, 2] * z,
+        E[1, 0] * x + E[1, 1] * y + E[1, 2] * z,
+        E[2, 0] * x + E[2, 1] * y + E[2, 2] * z,
     )
 
 
 @kernel
-def contact_velocity(contact, state, rx, ry, rz):
-    """Return u = G v of the point at arm r, in contact axes."""
-    ux, uy, uz = point_velocity(state, contact.body, rx, ry, rz)
-    return in_contact_axes(contact, ux, uy, uz)
+def contact_velocity(point, state):
+    """Return u = G v, in contact axes."""
+    r, s = point.arm_a, point.arm_b
+    ux, uy, uz = point_velocity(state, point.a, r[0], r[1], r[2])
+    vx, vy, vz = point_velocity(state, point.b, s[0], s[1], s[2])
+    return in_axes(point, ux - vx, uy - vy, uz - vz)
 
 
 @kernel
-def motion_of_point(contact, motion, rx, ry, rz):
-    """Return G of a motion (linear, angular) of the contact's body, in contact axes."""
-    ux, uy, uz = cross(motion[3], motion[4], motion[5], rx, ry, rz)
-    return in_contact_axes(contact, ux + motion[0], uy + motion[1], uz + motion[2])
+def motion_there(motion, r):
+    """Return the world velocity at arm r of a motion (linear, angular)."""
+    ux, uy, uz = cross(motion[3], motion[4], motion[5], r[0], r[1], r[2])
+    return ux + motion[0], uy + motion[1], uz + motion[2]
 
 
 @kernel
-def contact_acceleration(contact, state, motion, p, rx, ry, rz):
-    """Return du/dt in contact axes: a + alpha x r + w x (w x R p) (the ball around p does not turn r)."""
-    q, w = state[contact.body].Q, state[contact.body].w
-    cx, cy, cz = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
+def contact_motion(point, work):
+    """Return G of the motions that the last solve wrote, in contact axes."""
+    ux, uy, uz = motion_there(work.body[point.a].motion, point.arm_a)
+    if point.b >= 0:
+        vx, vy, vz = motion_there(work.body[point.b].motion, point.arm_b)
+        ux, uy, uz = ux - vx, uy - vy, uz - vz
+    return in_axes(point, ux, uy, uz)
+
+
+@kernel
+def contact_acceleration(point, state, stage):
+    """Return du/dt in contact axes: a + alpha x r + w x (w x core) (a ball around the core does not turn).
+
+    For a half-space: the normal stays.
+    """
+    w, c = state[point.a].w, point.core
+    cx, cy, cz = cross(w[0], w[1], w[2], c[0], c[1], c[2])
     cx, cy, cz = cross(w[0], w[1], w[2], cx, cy, cz)
-    cx, cy, cz = cross(w[0], w[1], w[2], cx, cy, cz)
-    tx, ty, tz = cross(motion[3], motion[4], motion[5], rx, ry, rz)
-    return in_contact_axes(contact, motion[0] + tx + cx, motion[1] + ty + cy, motion[2] + tz + cz)
+    ux, uy, uz = motion_there(stage[point.a].rate, point.arm_a)
+    return in_axes(point, ux + cx, uy + cy, uz + cz)
 
 
 @kernel
-def spread(system, contact, state, rx, ry, rz, ln, l1, l2, work):
-    """Write motion = P G^T (ln, l1, l2): of all bodies, or of the own one if nothing is joined to it."""
-    b, E = contact.body, contact.axes
+def alone(system, point):
+    """Return whether an impulse at the point moves its own bodies only."""
+    b = point.b
+    return system.bodies[point.a].isolated == 1 and (b < 0 or system.bodies[b].isolated == 1)
+
+
+@kernel
+def spread(system, point, state, ln, l1, l2, work):
+    """Write motion = P G^T (ln, l1, l2): of all bodies, or of the point's own if nothing is joined to them."""
+    if not alone(system, point):
+        clear_wrenches(work)
+        add_impulse(point, ln, l1, l2, work)
+        solve(system, state, False, work)
+        return
+    clear_wrench(work.body[point.a])
+    if point.b >= 0:
+        clear_wrench(work.body[point.b])
+    add_impulse(point, ln, l1, l2, work)
+    free_body(system.bodies[point.a], state[point.a].Q, work.body[point.a])
+    if point.b >= 0:
+        free_body(system.bodies[point.b], state[point.b].Q, work.body[point.b])
+
+
+@kernel
+def add_impulse(point, ln, l1, l2, work):
+    """Add G^T (ln, l1, l2) to the wrenches."""
+    E, r, s = point.axes, point.arm_a, point.arm_b
     fx = E[0, 0] * ln + E[1, 0] * l1 + E[2, 0] * l2
     fy = E[0, 1] * ln + E[1, 1] * l1 + E[2, 1] * l2
     fz = E[0, 2] * ln + E[1, 2] * l1 + E[2, 2] * l2
-    tx, ty, tz = cross(rx, ry, rz, fx, fy, fz)
-    alone = system.bodies[b].isolated == 1
-    if not alone:
-        clear_wrenches(work)
-    wrench = work.body[b].wrench
-    wrench[0], wrench[1], wrench[2], wrench[3], wrench[4], wrench[5] = fx, fy, fz, tx, ty, tz
-    if alone:
-        free_body(system.bodies[b], state[b].Q, work.body[b])
-    else:
-        solve(system, state, False, work)
+    add_force(work, point.a, r[0], r[1], r[2], fx, fy, fz)
+    add_force(work, point.b, s[0], s[1], s[2], -fx, -fy, -fz)
+
+
+@kernel
+def clear_wrench(memory):
+    """Zero the wrench of one body."""
+    for k in range(6):
+        memory.wrench[k] = 0.0
 
 
 @kernel
 def clear_wrenches(work):
     """Zero the wrench of each body."""
     for b in range(work.body.shape[0]):
-        wrench = work.body[b].wrench
-        for k in range(6):
-            wrench[k] = 0.0
+        clear_wrench(work.body[b])
 
 
 @kernel
-def reached(system, contact):
-    """Return the range of bodies that an impulse at the contact may move."""
-    if system.bodies[contact.body].isolated == 1:
-        return contact.body, contact.body + 1
-    return 0, system.bodies.shape[0]
-
-
-@kernel
-def effective_inverse_mass(system, contact, state, rx, ry, rz, work, W):
-    """Write W = G P G^T (3, 3) of the point at arm r. Columns are answers to unit impulses."""
+def effective_inverse_mass(system, point, state, work, W):
+    """Write W = G P G^T (3, 3) of one point. Columns are answers to unit impulses."""
     for k in range(3):
         e0, e1, e2 = 1.0 if k == 0 else 0.0, 1.0 if k == 1 else 0.0, 1.0 if k == 2 else 0.0
-        spread(system, contact, state, rx, ry, rz, e0, e1, e2, work)
-        u = motion_of_point(contact, work.body[contact.body].motion, rx, ry, rz)
-        for i in range(3):
-            W[i, k] = u[i]
+        spread(system, point, state, e0, e1, e2, work)
+        W[0, k], W[1, k], W[2, k] = contact_motion(point, work)
     for i in range(3):
         for k in range(i):
             m = 0.5 * (W[i, k] + W[k, i])
@@ -108,11 +151,20 @@ def effective_inverse_mass(system, contact, state, rx, ry, rz, work, W):
 
 
 @kernel
-def add_velocity(system, contact, work, state):
+def add_velocity(system, point, work, state):
     """Add the motion that `spread` wrote to the velocities."""
-    first, last = reached(system, contact)
-    for b in range(first, last):
-        v, w, motion = state[b].v, state[b].w, work.body[b].motion
-        for k in range(3):
-            v[k] += motion[k]
-            w[k] += motion[3 + k]
+    if alone(system, point):
+        gain(work.body[point.a].motion, state[point.a])
+        if point.b >= 0:
+            gain(work.body[point.b].motion, state[point.b])
+    else:
+        for b in range(state.shape[0]):
+            gain(work.body[b].motion, state[b])
+
+
+@kernel
+def gain(motion, body):
+    """Add a motion to the velocity of a body."""
+    for k in range(3):
+        body.v[k] += motion[k]
+        body.w[k] += motion[3 + k]

@@ -19,6 +19,8 @@ from carom.motion.acceleration import acceleration, aim
 from carom.motion.free import free_flight
 from carom.motion.loops import dropped_rows
 from carom.motion.project import project_position, project_velocity
+from carom.motion.stay import return_held, stay_held
+from carom.system.arrays import FREE, ONE, RESTS, SEVERAL
 
 CONSTRAINTS_LOST = 7
 EVEN, FIRST, LAST, MIDDLE = range(4)  # which stages leave out more rows than others
@@ -97,9 +99,9 @@ def fly(system, held, start, h, end, work):
     pending = False
     for b in range(system.bodies.shape[0]):
         status = work.body[b].status
-        if status == 2:
+        if status == RESTS:
             keep(start[b], end[b])
-        elif status == 0 and system.bodies[b].ballistic == 1:
+        elif status != ONE and system.bodies[b].ballistic == 1:
             free_flight(system.bodies[b], system.gravity, h, start[b], end[b], work.body[b])
         else:
             pending = True
@@ -117,13 +119,14 @@ def keep(start, end):
 
 @inlined
 def mark_held(system, held, work):
-    """Note for each body whether it is free (0), held by a contact (1) or at rest (2)."""
+    """Note for each body whether it is free, held at one point or at several, or at rest."""
     for b in range(work.body.shape[0]):
-        work.body[b].status = 0
-    for c in range(held.shape[0]):
-        if held[c].mode != 0:
-            b = system.contacts[c].body
-            work.body[b].status = max(work.body[b].status, 1 + held[c].rest)
+        work.body[b].status = FREE
+    for i in range(held.count[0]):
+        hold = held.points[i]
+        work.body[hold.body].status = (
+            RESTS if hold.rest == 1 else SEVERAL if hold.several == 1 else ONE
+        )
 
 
 @kernel
@@ -134,7 +137,7 @@ def constrained_step(system, A, weight, held, start, h, end, work):
     """
     stages, stage = weight.size, work.stage
     applied, friction = 0.0, 0.0
-    aim(system, held, start)
+    aim(system, held, start, work)
     least, most, at_first, at_last = 1 << 30, 0, 0, 0
     for s in range(stages):
         combine(A[s], s, h, start, work.stages, stage)
@@ -154,13 +157,16 @@ def constrained_step(system, A, weight, held, start, h, end, work):
     bound_accelerations(work, stages)
     for b in range(stage.shape[0]):
         status = work.body[b].status
-        if status == 1 or (status == 0 and system.bodies[b].ballistic == 0):
+        if status == ONE or (status != RESTS and system.bodies[b].ballistic == 0):
             keep(stage[b], end[b])
     if system.joints.shape[0] > 0:
         error = project_position(system, end, work, 1e-14)
         if not (error <= 1e-9):
             return applied, friction, CONSTRAINTS_LOST, EVEN
+    return_held(system, held, end, work)
+    if system.joints.shape[0] > 0:
         project_velocity(system, end, work)
+    stay_held(system, held, end, work)
     if most == least:
         return applied, friction, 0, EVEN
     return applied, friction, 0, FIRST if at_first > least else LAST if at_last > least else MIDDLE

@@ -16,15 +16,14 @@ from carom.motion.solve import solve
 
 
 @kernel
-def displace(work, state):
-    """Move all bodies by the motion of the last solve, world axes: x + xi_x, exp(xi_theta) Q."""
-    for b in range(state.shape[0]):
-        x, Q, xi = state[b].x, state[b].Q, work.body[b].motion
-        for k in range(3):
-            x[k] += xi[k]
-        r = exp(xi[3], xi[4], xi[5])
-        q = multiply(r[0], r[1], r[2], r[3], Q[0], Q[1], Q[2], Q[3])
-        Q[0], Q[1], Q[2], Q[3] = normalize(q[0], q[1], q[2], q[3])
+def shift(xi, body):
+    """Move one body by a displacement in world axes: x + xi_x, exp(xi_theta) Q."""
+    Q = body.Q
+    for k in range(3):
+        body.x[k] += xi[k]
+    r = exp(xi[3], xi[4], xi[5])
+    q = multiply(r[0], r[1], r[2], r[3], Q[0], Q[1], Q[2], Q[3])
+    Q[0], Q[1], Q[2], Q[3] = normalize(q[0], q[1], q[2], q[3])
 
 
 @kernel
@@ -52,7 +51,8 @@ def _project_position(system, state, work, tolerance):
             break
         clear_wrenches(work)
         solve(system, state, True, work)
-        displace(work, state)
+        for b in range(state.shape[0]):
+            shift(work.body[b].motion, state[b])
     return error
 
 

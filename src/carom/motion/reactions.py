@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from carom.dispatch import by_solver
 from carom.jit import entry, kernel
-from carom.motion.contact_point import contact_arm
-from carom.motion.forces import add_force, applied_wrenches
+from carom.motion.forces import applied_wrenches
 from carom.motion.joints import acceleration_bias, position_error, velocity_error
 from carom.motion.loops import add_reactions, factor, free_motion, substitute, subtract_rows
 from carom.motion.rows import row_target
@@ -58,6 +57,15 @@ def swap(system, work):
 share = by_solver({FreeSolver: keep_shares, TreeSolver: keep_shares, LoopSolver: least_norm})
 
 
+@kernel
+def add_touch(contact, touch, work):
+    """Add what a contact does to its body: force (contact axes) and moment about the centre (world)."""
+    f, E, wrench = touch.force, contact.axes, work.body[contact.body].wrench
+    for k in range(3):
+        wrench[k] += f[0] * E[0, k] + f[1] * E[1, k] + f[2] * E[2, k]
+        wrench[3 + k] += touch.moment[k]
+
+
 @entry
 def reactions(system, augment, states, touch, work, out):
     """Write the wrench (T, J, 6) of each joint on its child at saved states."""
@@ -66,14 +74,7 @@ def reactions(system, augment, states, touch, work, out):
         applied_wrenches(system, state, True, work)
         for c in range(touch.shape[1]):
             if touch[k, c].mode != 0:
-                contact, f, E = system.contacts[c], touch[k, c].force, system.contacts[c].axes
-                rx, ry, rz = contact_arm(contact, state, touch[k, c].point)
-                add_force(
-                    work, contact.body, rx, ry, rz,
-                    f[0] * E[0, 0] + f[1] * E[1, 0] + f[2] * E[2, 0],
-                    f[0] * E[0, 1] + f[1] * E[1, 1] + f[2] * E[2, 1],
-                    f[0] * E[0, 2] + f[1] * E[1, 2] + f[2] * E[2, 2],
-                )  # fmt: skip
+                add_touch(system.contacts[c], touch[k, c], work)
         for j in range(system.joints.shape[0]):
             acceleration_bias(system.joints[j], state, work.joint[j].bias)
         solve(system, state, True, work)

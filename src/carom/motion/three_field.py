@@ -41,7 +41,7 @@ from carom.motion.loops import factor, substitute, subtract_rows
 from carom.motion.project import project_position
 from carom.motion.rows import direction, row_target
 from carom.motion.solve import free_body
-from carom.system.arrays import FreeSolver, LoopSolver
+from carom.system.arrays import RESTS, FreeSolver, LoopSolver
 
 NO_CONVERGENCE = 1
 
@@ -63,8 +63,8 @@ class ThreeField(NamedTuple):
 @kernel
 def three_field_step(method, system, held, start, h, end, work):
     """Write the state a time h after `start` into `end`; return work of loads, of friction, a status."""
-    for c in range(held.shape[0]):
-        if held[c].mode != 0 and held[c].rest == 0:
+    for i in range(held.count[0]):
+        if held.points[i].rest == 0:
             if not fly(system, held, start, h, end, work):
                 return 0.0, 0.0, 0
             return constrained(method, system, held, start, h, end, work)
@@ -96,7 +96,7 @@ def first_guess(system, start, h, end, work):
             work.joint[j].multiplier[k] = 0.0
     for b in range(start.shape[0]):
         keep(start[b], end[b])
-        if work.body[b].status == 2:
+        if work.body[b].status == RESTS:
             continue
         x, Q, v, w = end[b].x, end[b].Q, end[b].v, end[b].w
         for k in range(3):
@@ -184,7 +184,7 @@ def set_velocities(system, end, work):
     """Take v1 = M(q^j)^-1 p1; return the largest change, relative to the largest speed."""
     change, speed = 0.0, 0.0
     for b in range(system.bodies.shape[0]):
-        if work.body[b].status == 2:
+        if work.body[b].status == RESTS:
             continue
         free_body(system.bodies[b], end[b].Q, work.body[b])
         size, motion, v, w = system.bodies[b].extent, work.body[b].motion, end[b].v, end[b].w
@@ -251,7 +251,7 @@ def position_block(system, method, start, h, end, work):
     last, change = work.stage, 0.0
     for b in range(start.shape[0]):
         keep(end[b], last[b])
-        if work.body[b].status != 2:
+        if work.body[b].status != RESTS:
             move_along(start[b], last[b], h, end[b])
     if method.ode == 0 and system.joints.shape[0] > 0:
         project_position(system, end, work, 1e-15)

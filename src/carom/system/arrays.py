@@ -59,6 +59,7 @@ LOAD = [("body", "i8"), ("anchor", "f8", 3), ("force", "f8", 3), ("torque", "f8"
 #: hull of vertices, swollen by a radius, against a half-space
 CONTACT = [
     ("body", "i8"),
+    ("group", "i8"),  # bodies that an impulse on it may move: its own number, or N for all joined ones
     ("first", "i8"),  # range of its vertices
     ("last", "i8"),
     ("law", "i8"),  # 0 newton, 1 poisson, 2 stronge
@@ -66,7 +67,9 @@ CONTACT = [
     ("offset", "f8"),  # n . point of the plane
     ("radius", "f8"),
     ("friction", "f8"),
+    ("friction_held", "f8"),
     ("restitution", "f8"),
+    ("stiffness", "f8"),  # of its boundary layer, relative to the others
     ("extent", "f8"),  # largest distance of the shape from the mass centre
     ("width", "f8"),  # b of the boundary layer
     ("penetration", "f8"),  # delta
@@ -90,16 +93,39 @@ ROW = [
     ("rhs", "f8", 6),  # right-hand side, then multipliers
 ]
 
-#: state of a contact over time (see `carom.hold`)
-HELD = [
-    ("mode", "i8"),  # 0 open, 1 slipping, 2 sticking
-    ("rest", "i8"),  # 1 where the body does not move at all
+#: a contact between looks
+BRINK = [
     ("near", "i8"),  # 1 where something happened at the last event: look before stepping
     ("leaving", "i8"),  # 1 where the body lifts off without speed: it may touch at the start
+]
+
+#: a point that is held, over time (see `carom.hold`)
+HELD = [
+    ("contact", "i8"),
+    ("feature", "i8"),  # what touches, the same as long as it does: number of the vertex
+    ("body", "i8"),  # of the contact
+    ("mode", "i8"),  # 0 open, 1 slipping, 2 sticking
+    ("next", "i8"),  # mode after the step on trial
+    ("settles", "i8"),  # 1 where that step puts the body to rest
+    ("several", "i8"),  # 1 where it shares its bodies with other held points
+    ("rest", "i8"),  # 1 where the body does not move at all
+    ("locate", "i8"),  # 1 where the end of slip inside a step is looked for
     ("point", "f8", 3),  # point of the core that carries the contact, body axes
+    ("anchor", "f8", 3),  # where it is in the world since it sticks
     ("force", "f8", 3),  # of the last solve, contact axes
     ("heading", "f8", 2),  # direction of slip at the start of the step; 0 where it does not slip
     ("W", "f8", (3, 3)),  # effective inverse mass of the last solve
+]
+
+#: a point of contact as it is in one state
+POINT = [
+    ("a", "i8"),  # body on the side that the normal points to
+    ("b", "i8"),  # the other, -1 for the ground
+    ("arm_a", "f8", 3),  # from the mass centre, world axes
+    ("arm_b", "f8", 3),
+    ("core", "f8", 3),  # from the mass centre of a: the part of the arm that turns with it
+    ("axes", "f8", (3, 3)),  # rows n, t1, t2
+    ("gap", "f8"),
 ]
 
 BODY_WORK = [
@@ -107,7 +133,8 @@ BODY_WORK = [
     ("motion", "f8", 6),  # what a solve gives: linear, angular
     ("bound", "f8", 3),  # greatest linear, angular acceleration and spin of the last step
     ("inverse", "f8", 6),  # inverse inertia, world axes
-    ("status", "i8"),  # 0 free, 1 held by a contact, 2 at rest
+    ("status", "i8"),  # FREE, ONE, RESTS or SEVERAL held points
+    ("push", "f8", 6),  # change of momentum (linear, angular about the centre) in a step
     ("spin", "f8", 3),  # angular velocity for which the invariants of free flight below hold
     ("momentum", "f8", 3),  # spatial angular momentum
     ("energy", "f8"),  # twice the energy of rotation
@@ -147,8 +174,11 @@ SEARCH = [
     ("horizon", "f8"),
 ]
 
+#: what a body does: FREE flight, held at ONE point, RESTS, held at SEVERAL points
+FREE, ONE, RESTS, SEVERAL = range(4)
+
 #: an impact in the making
-HIT = [("W", "f8", (3, 3)), ("u", "f8", 3), ("point", "f8", 3), ("out", "f8", 32), ("code", "i8")]
+HIT = [("W", "f8", (3, 3)), ("u", "f8", 3), ("point", "f8", 3), ("out", "f8", 32), ("closed", "i8"), ("code", "i8")]
 
 
 def table(fields: list, *shape: int) -> np.recarray:
@@ -198,6 +228,15 @@ class System(NamedTuple):
     solver: FreeSolver | TreeSolver | LoopSolver
 
 
+class Held(NamedTuple):
+    """What is held, and what may be: the first `count[0]` of `points` are in use."""
+
+    points: np.recarray  # (P,) HELD
+    brinks: np.recarray  # (C,) BRINK
+    carries: np.ndarray  # (V,) 1 for vertices that carry a held contact
+    count: np.ndarray  # (1,)
+
+
 class Work(NamedTuple):
     """Scratch of one run: made once, never grown."""
 
@@ -207,6 +246,7 @@ class Work(NamedTuple):
     stage: np.recarray  # (N,) STATE
     trial: np.recarray  # (N,) STATE
     middle: np.recarray  # (N,) STATE
+    point: np.recarray  # (1,) POINT, the one that strikes, or is looked at
     hit: np.recarray  # (1,) HIT
     result: np.recarray  # (1,) RESULT
     search: np.recarray  # (1,) SEARCH

@@ -41,7 +41,7 @@ def compile_scene(scene: Scene, options: Options, loops: bool = False) -> Compil
     joints, flipped, solver = _joints(scene, frames, options, loops)
     springs, loads = _springs(scene, frames), _loads(scene, frames)
     bodies = _bodies(scene, moments, joints, springs, loads)
-    contacts, vertices = _contacts(scene, to_principal, options)
+    contacts, vertices = _contacts(scene, to_principal, bodies, options)
     gravity = np.array(scene.gravity)
     system = System(bodies, gravity, joints, springs, loads, contacts, vertices, solver)
     return Compiled(system, start, to_principal, flipped)
@@ -205,7 +205,7 @@ def contact_axes(normal: np.ndarray) -> np.ndarray:
     return np.ascontiguousarray(triad(normal).T)
 
 
-def _contacts(scene, to_principal, options):
+def _contacts(scene, to_principal, bodies, options):
     contacts, vertices = table(CONTACT, len(scene.contacts)), [np.zeros((0, 3))]
     count = 0
     for k, c in enumerate(scene.contacts):
@@ -217,7 +217,9 @@ def _contacts(scene, to_principal, options):
         count += len(points)
         contacts.axes[k] = contact_axes(plane.normal)
         row.offset, row.radius, row.extent = plane.point @ plane.normal, shape.radius, shape.size
-        row.friction, row.restitution = c.friction, c.restitution
+        row.group = c.body.index if bodies.isolated[c.body.index] else len(bodies)
+        row.friction = row.friction_held = c.friction
+        row.restitution, row.stiffness = c.restitution, 1.0
         row.law = IMPACT_LAWS.index(c.impact_law)
         row.width = 1e-5 * shape.size if options.layer_width is None else options.layer_width
         row.penetration = options.penetration

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from carom.jit import kernel
-from carom.system.records import IMPACT
 
 
 @kernel
-def begin_event(c, state, clock, records):
+def begin_event(c, feature, state, clock, records):
     """Write the state before an event into the next row."""
     k = clock.event
     records.event[k].time = clock.now
-    records.event[k].contact = c
+    records.event[k].contact, records.event[k].feature = c, feature
     records.event[k].saved = clock.saved
     for b in range(state.shape[0]):
         row = records.snapshot[k, b]
@@ -33,5 +32,3 @@ def end_event(kind, state, clock, records):
     clock.event += 1
     clock.in_step += 1
     clock.at_once += 1
-    if kind == IMPACT:
-        clock.struck += 1

@@ -8,13 +8,16 @@ import numpy as np
 
 from carom.system.arrays import (
     BODY_WORK,
+    BRINK,
     HELD,
     HIT,
     JOINT_WORK,
+    POINT,
     RESULT,
     SEARCH,
     STAGE,
     STATE,
+    Held,
     System,
     Work,
     table,
@@ -38,7 +41,6 @@ CLOCK = [
     ("event", "i8"),
     ("in_step", "i8"),  # impacts and events in the present step
     ("at_once", "i8"),  # impacts and events since time last went on
-    ("released", "i8"),  # held contacts opened by impacts in the present step
     ("cuts", "i8"),
     ("trials", "i8"),
     ("located", "i8"),
@@ -46,7 +48,8 @@ CLOCK = [
 ]
 
 SERIES = [("t", "f8"), *LEDGER]
-TOUCH = [("mode", "i8"), ("force", "f8", 3), ("point", "f8", 3)]
+#: a contact: the sum over its held points, moment about the mass centre of the body (world axes)
+TOUCH = [("mode", "i8"), ("force", "f8", 3), ("moment", "f8", 3)]
 
 IMPACTS = [
     ("time", "f8"),
@@ -64,7 +67,7 @@ IMPACTS = [
     ("phases", "i8"),
 ]
 
-EVENT = [("time", "f8"), ("kind", "i8"), ("contact", "i8"), ("saved", "i8")]
+EVENT = [("time", "f8"), ("kind", "i8"), ("contact", "i8"), ("feature", "i8"), ("saved", "i8")]
 
 #: a body at an event, velocities before and after
 SNAPSHOT = [
@@ -76,6 +79,7 @@ SNAPSHOT = [
     ("w1", "f8", 3),
 ]
 
+MARGIN = 260  # rows that one turn of the loop may write
 FULL = 100  # a record is full: the caller makes it longer and goes on
 NEEDS_HOLD = 101  # a contact is to be held: the caller compiles what that needs and goes on
 
@@ -96,10 +100,15 @@ def new_clock() -> np.recarray:
     return table(CLOCK, 1)
 
 
-def new_held(count: int) -> np.recarray:
-    """Return the record of `count` contacts, all open, to be looked at before the first step."""
-    held = table(HELD, count)
-    held.near = 1
+def new_held(system: System) -> Held:
+    """Return what is held at the start: nothing, and all contacts are to be looked at first."""
+    held = Held(
+        points=table(HELD, len(system.vertices)),
+        brinks=table(BRINK, system.contacts.size),
+        carries=np.zeros(len(system.vertices), dtype=np.int64),
+        count=np.zeros(1, dtype=np.int64),
+    )
+    held.brinks.near = 1
     return held
 
 
@@ -113,6 +122,7 @@ def new_work(system: System, stages: int) -> Work:
         stage=table(STATE, n),
         trial=table(STATE, n),
         middle=table(STATE, n),
+        point=table(POINT, 1),
         hit=table(HIT, 1),
         result=table(RESULT, 1),
         search=table(SEARCH, 1),

@@ -1,0 +1,68 @@
+"""Forces of several held points in one state: the contact problem at the level of accelerations.
+
+    a = W f + c,    0 <= f_n _|_ a_n >= 0,    Coulomb's law for f_t:
+
+against the slip where there is slip, in the cone against the acceleration of slip where there is none. Forces
+need not be unique (four corners of a box); accelerations are.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom.contact.gap import slow
+from carom.coulomb.layout import CONE, SLIDING
+from carom.coulomb.solve import solve_cones
+from carom.jit import kernel
+from carom.motion.acceleration import acceleration
+from carom.motion.several import accelerations, inverse_masses, velocities
+
+
+@kernel
+def pose_forces(system, controls, held, k, state, cluster, work):
+    """Write W, u, and c = du/dt without contact forces, of the k points of the cluster, and how each slips."""
+    acceleration(system, state, held, work, work.stages[0])
+    inverse_masses(system, k, cluster.points, state, work, cluster.W)
+    velocities(k, cluster.points, state, cluster.u)
+    accelerations(k, cluster.points, state, work.stages[0], cluster.c)
+    push = 0.0
+    for i in range(3 * k):
+        push = max(push, abs(cluster.c[i]))
+    for i in range(k):
+        contact = system.contacts[cluster.seats[i].contact]
+        cluster.mu[i] = contact.friction_held
+        still = max(10.0 * slow(contact, state), controls.rest * push * controls.step)
+        set_heading(cluster, i, cluster.u[3 * i + 1], cluster.u[3 * i + 2], still)
+
+
+@kernel
+def set_heading(cluster, i, u1, u2, still):
+    """Let point i slide along (u1, u2), or look for its direction where that is below `still`."""
+    speed = math.sqrt(u1 * u1 + u2 * u2)
+    if speed > still:
+        cluster.kind[i] = SLIDING
+        cluster.heading[i, 0], cluster.heading[i, 1] = u1 / speed, u2 / speed
+    else:
+        cluster.kind[i] = CONE
+        cluster.heading[i, 0], cluster.heading[i, 1] = 0.0, 0.0
+
+
+@kernel
+def solve_forces(k, cluster):
+    """Write the forces of the points that stay into p, and the accelerations of all k into `old`."""
+    W, M, b, p = cluster.W, cluster.L, cluster.old, cluster.p
+    n = 3 * k
+    for i in range(n):
+        stays = cluster.seats[i // 3].stays == 1
+        for j in range(n):
+            both = stays and cluster.seats[j // 3].stays == 1
+            M[i, j] = W[i, j] if both else 1.0 if i == j else 0.0
+        b[i] = cluster.c[i] if stays else 1.0 if i % 3 == 0 else 0.0
+        p[i] = 0.0
+    status, _, _ = solve_cones(k, M, b, cluster.mu, cluster.kind, cluster.heading, p, cluster.cone)
+    for i in range(n):
+        a = cluster.c[i]
+        for j in range(n):
+            a += W[i, j] * p[j]
+        b[i] = a
+    return status

@@ -1,0 +1,127 @@
+"""A body that is held at one point: from its last bounce to slip, stick or rest."""
+
+from __future__ import annotations
+
+import math
+
+from carom.contact.gap import slow
+from carom.hold.roster import enlist
+from carom.jit import kernel
+from carom.motion.acceleration import SLIP, STICK, acceleration
+from carom.motion.contact_point import (
+    add_velocity,
+    contact_acceleration,
+    contact_velocity,
+    effective_inverse_mass,
+    place,
+    spread,
+)
+from carom.motion.friction import stick_force
+from carom.system.notes import begin_event, end_event
+from carom.system.records import HOLD, SLIPS, STICKS
+
+
+@kernel
+def hold_one(system, controls, held, state, horizon, cluster, work, clock, records):
+    """Hold the one closed point, in seat 0, if it does not approach and the rule says so."""
+    seat, point = cluster.seats[0], cluster.points[0]
+    contact = system.contacts[seat.contact]
+    u, still = contact_velocity(point, state), slow(contact, state)
+    acceleration(system, state, held, work, work.stages[0])
+    g = -contact_acceleration(point, state, work.stages[0])[0]
+    if not bounces_end(contact, u[0], g, still, horizon):
+        return
+    begin_event(seat.contact, seat.feature, state, clock, records)
+    i = enlist(system, held, seat, STICK, state, work)
+    hold = held.points[i]
+    begin_hold(system, contact, hold, state, 0.0, work, clock)
+    find_mode(system, contact, hold, held, state, work)
+    clock.holds += 1
+    end_event(HOLD, state, clock, records)
+
+
+@kernel
+def settle_one(system, controls, hold, held, state, work, clock, records):
+    """Find anew how a point goes on, whose slip has stopped or turned."""
+    contact = system.contacts[hold.contact]
+    # slip below what friction does in a thousandth of a step has stopped
+    stop = 1e-3 * controls.step * abs(hold.force[0]) * hold.W[1, 1]
+    hold.heading[0], hold.heading[1] = 0.0, 0.0
+    acceleration(system, state, held, work, work.stages[0])
+    begin_event(hold.contact, hold.feature, state, clock, records)
+    if begin_hold(system, contact, hold, state, stop, work, clock):
+        find_mode(system, contact, hold, held, state, work)
+    end_event(STICKS if hold.mode == STICK else SLIPS, state, clock, records)
+
+
+@kernel
+def bounces_end(contact, rate, g, still, horizon):
+    """Return whether a contact leaving at `rate` and drawn back by g is closed for good by `horizon`."""
+    if not (g > 0.0 and rate >= -still):
+        return False
+    e = contact.restitution
+    return rate <= still or (e < 1.0 and 2.0 * rate < g * (1.0 - e) * horizon)
+
+
+@kernel
+def begin_hold(system, contact, hold, state, stop, work, clock):
+    """Take out the normal velocity, and slip that has stopped; set the mode to try first.
+
+    Slip has stopped when all of it is below `stop` (or round-off). Returns False if a contact that was
+    to settle goes on slipping.
+    """
+    point, still = work.point[0], slow(contact, state)
+    place(contact, hold.point, state, point)
+    u = contact_velocity(point, state)
+    W = work.hit[0].W
+    effective_inverse_mass(system, point, state, work, W)
+    n, t1, t2 = -u[0] / W[0, 0], 0.0, 0.0
+    s1, s2 = u[1] + W[1, 0] * n, u[2] + W[2, 0] * n  # slip once the normal velocity is out
+    slip = math.sqrt(s1 * s1 + s2 * s2)
+    stops = slip <= max(stop, 10.0 * still)
+    if stop > 0.0 and not stops:
+        return False
+    if stops:
+        n, t1, t2 = stick_force(W, u[0], u[1], u[2])
+        s1, s2 = 0.0, 0.0
+    hold.mode = STICK if stops else SLIP
+    spread(system, point, state, n, t1, t2, work)
+    add_velocity(system, point, work, state)
+    # work of the impulse: half of it times the sum of the velocities before and after
+    clock.bounces += 0.5 * (n * u[0] + t1 * (u[1] + s1) + t2 * (u[2] + s2))
+    return True
+
+
+@kernel
+def find_mode(system, contact, hold, held, state, work):
+    """Let a contact slip whose friction cannot hold it; put its body to rest where nothing is left."""
+    acceleration(system, state, held, work, work.stages[0])
+    f = hold.force
+    if hold.mode == STICK and not (
+        math.sqrt(f[1] * f[1] + f[2] * f[2]) <= contact.friction_held * f[0]
+    ):
+        hold.mode = SLIP
+        acceleration(system, state, held, work, work.stages[0])
+    body = system.bodies[contact.body]
+    if hold.mode == STICK and body.isolated == 1:
+        rate = work.stages[0, contact.body].rate
+        rest_if_still(contact, hold, state[contact.body], rate, hold.force[0] / body.mass)
+
+
+@kernel
+def rest_if_still(contact, hold, body, rate, push):
+    """Put a body to rest, exactly, if neither speed nor acceleration is left.
+
+    No speed: round-off of the speeds that gravity gives it over its own size. No acceleration: round-off
+    of `push`, what the contact force does to it.
+    """
+    size = contact.extent
+    speed, change = 0.0, 0.0
+    for k in range(3):
+        speed = max(speed, max(abs(body.v[k]), size * abs(body.w[k])))
+        change = max(change, max(abs(rate[k]), size * abs(rate[3 + k])))
+    if change <= 1e-9 * push and speed <= 1e-9 * math.sqrt(push * size):
+        for k in range(3):
+            body.v[k] = 0.0
+            body.w[k] = 0.0
+        hold.rest = 1

@@ -1,0 +1,312 @@
+"""A step of bodies that are held at several points: midpoint rows carry the impulse, end rows the constraint.
+
+The step without the contacts is known (any method). With the impulses p of all k points,
+
+    pi_1 = pi_free + G_0^T p,    v_1 = M(q_1)^-1 pi_1,    q_1 = Exp_q_free(h/2 P G_0^T p), then gap_i = 0,
+    w = G_1 v_1,    0 <= p_n _|_ w_n >= 0,    p_t in -mu p_n d|w_t|,
+
+G_0 at the middle of the step, G_1 at its end, momenta pi about each centre in world axes. A point that slips
+throughout takes the direction of friction from the velocity at the middle of the step; where slip has stopped,
+the cone holds with the velocity at the end. Each round solves with the symmetric W = G_0 P G_0^T for
+
+    w = w(p_old) + W (p - p_old),
+
+so that the fixed point is exact. Order 2. (Mathematics page, VI.1.)
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom.contact.closed import gather_held
+from carom.contact.gap import slow
+from carom.coulomb.layout import CONE, SLIDING
+from carom.coulomb.solve import solve_cones
+from carom.dispatch import by_address
+from carom.geometry.rotation import exp, log, multiply, normalize, rotate, rotate_back
+from carom.hold.forces import pose_forces, set_heading, solve_forces
+from carom.hold.surface import onto_surfaces
+from carom.jit import kernel, unit
+from carom.motion.acceleration import OPEN, SLIP, STICK
+from carom.motion.contact_point import contact_velocity, place
+from carom.motion.explicit import keep
+from carom.motion.forces import applied_wrenches
+from carom.motion.project import project_velocity, shift
+from carom.motion.several import inverse_masses, members, spread_all, velocities
+
+ROUNDS = 50
+
+
+@unit
+def press_unit(system, controls, held, start, h, end, cluster, work, clocks):
+    """Correct the step from `start` to `end` of all bodies that are held at several points.
+
+    Forces at the end go to the held points; work of friction, of loads and a status to `work.result`.
+    """
+    result = work.result[0]
+    result.applied, result.friction, result.code = 0.0, 0.0, 0
+    for i in range(held.count[0]):
+        hold = held.points[i]
+        group = system.contacts[hold.contact].group
+        if hold.several == 0 or hold.rest == 1 or seen(system, held, i, group):
+            continue
+        press_group(system, controls, held, group, start, h, end, cluster, work, clocks[0])
+        if result.code != 0:
+            return
+
+
+#: press(address, system, controls, held, start, h, end, cluster, work, clocks)
+press = by_address(press_unit)
+
+
+@kernel
+def seen(system, held, i, group):
+    """Return whether an earlier held point is of the same group."""
+    for j in range(i):
+        if system.contacts[held.points[j].contact].group == group:
+            return True
+    return False
+
+
+@kernel
+def press_group(system, controls, held, group, start, h, end, cluster, work, clock):
+    """Correct the step of one group."""
+    k = gather_held(system, held, group, start, cluster)
+    count = members(system, group, cluster.member)
+    loaded = system.bodies[cluster.member[0]].ballistic == 0
+    begin(system, held, k, start, h, end, count, loaded, cluster, work)
+    size, before = 3 * k, math.inf
+    for _ in range(ROUNDS):
+        for m in range(count):
+            halfway(start[cluster.member[m]], end[cluster.member[m]], work.stage[cluster.member[m]])
+        for i in range(k):
+            seat = cluster.seats[i]
+            place(system.contacts[seat.contact], seat.point, work.stage, cluster.points[i])
+        inverse_masses(system, k, cluster.points, work.stage, work, cluster.W)
+        impose(system, held, k, h, end, count, loaded, cluster, work)
+        for i in range(size):
+            w = cluster.u[i]
+            for j in range(size):
+                w -= cluster.W[i, j] * cluster.p[j]
+            cluster.c[i], cluster.old[i] = w, cluster.p[i]
+        choose(system, held, k, start, cluster, work)
+        solve_cones(
+            k, cluster.W, cluster.c, cluster.mu, cluster.kind, cluster.heading, cluster.p,
+            cluster.cone,
+        )  # fmt: skip
+        change, largest = 0.0, 0.0
+        for i in range(size):
+            change = max(change, abs(cluster.p[i] - cluster.old[i]))
+            largest = max(largest, abs(cluster.p[i]))
+        if change <= 1e-15 * largest or (change <= 1e-9 * largest and change >= 0.5 * before):
+            break
+        before = change
+    impose(system, held, k, h, end, count, loaded, cluster, work)
+    finish(system, controls, held, k, start, h, end, count, cluster, work)
+    if loaded:
+        work.result[0].applied += extra_work(system, h, start, end, cluster, work)
+    forces_at_end(system, controls, held, k, end, cluster, work)
+
+
+@kernel
+def begin(system, held, k, start, h, end, count, loaded, cluster, work):
+    """Note the step without contacts, the directions of slip, and the last forces as a first guess."""
+    for m in range(count):
+        keep(end[cluster.member[m]], cluster.flight[cluster.member[m]])
+    if loaded:  # springs may lead to any body
+        for b in range(start.shape[0]):
+            halfway(start[b], end[b], work.stage[b])
+            halfway(start[b], end[b], work.middle[b])
+    for i in range(k):
+        hold = held.points[cluster.seats[i].held]
+        cluster.mu[i] = system.contacts[hold.contact].friction_held
+        for r in range(3):
+            cluster.p[3 * i + r] = h * hold.force[r]
+        _, u1, u2 = contact_velocity(cluster.points[i], start)
+        speed = math.sqrt(u1 * u1 + u2 * u2)
+        slips = hold.mode == SLIP and speed > 0.0
+        hold.heading[0] = u1 / speed if slips else 0.0
+        hold.heading[1] = u2 / speed if slips else 0.0
+
+
+@kernel
+def halfway(start, end, out):
+    """Write the state of a body half-way: mean position and velocities, half the turn."""
+    p, q, Q = start.Q, end.Q, out.Q
+    t = multiply(q[0], q[1], q[2], q[3], p[0], -p[1], -p[2], -p[3])
+    a = log(t[0], t[1], t[2], t[3])
+    r = exp(0.5 * a[0], 0.5 * a[1], 0.5 * a[2])
+    q = multiply(r[0], r[1], r[2], r[3], p[0], p[1], p[2], p[3])
+    Q[0], Q[1], Q[2], Q[3] = normalize(q[0], q[1], q[2], q[3])
+    for k in range(3):
+        out.x[k] = 0.5 * (start.x[k] + end.x[k])
+        out.v[k] = 0.5 * (start.v[k] + end.v[k])
+        out.w[k] = 0.5 * (start.w[k] + end.w[k])
+
+
+@kernel
+def spin_momentum(body, q, w0, w1, w2):
+    """Return the angular momentum J w about the centre, world axes."""
+    J = body.inertia
+    a = rotate_back(q[0], q[1], q[2], q[3], w0, w1, w2)
+    return rotate(q[0], q[1], q[2], q[3], J[0] * a[0], J[1] * a[1], J[2] * a[2])
+
+
+@kernel
+def impose(system, held, k, h, end, count, loaded, cluster, work):
+    """Put `end` where the impulses p of the middle rows bring it; write u = G_1 v_1."""
+    member, flight = cluster.member, cluster.flight
+    spread_all(system, k, cluster.points, cluster.p, count, member, work.stage, work)
+    for m in range(count):
+        b = member[m]
+        body, motion, push = system.bodies[b], work.body[b].motion, work.body[b].push
+        for i in range(3):
+            push[i] = body.mass * motion[i]
+        push[3], push[4], push[5] = spin_momentum(body, work.stage[b].Q, motion[3], motion[4], motion[5])
+        for i in range(6):
+            motion[i] *= 0.5 * h
+        keep(flight[b], end[b])
+        shift(motion, end[b])
+    if loaded:
+        add_difference(system, h, count, cluster, work)
+    onto_surfaces(system, held, k, count, end, cluster, work)
+    for m in range(count):
+        b = member[m]
+        body, push, J = system.bodies[b], work.body[b].push, system.bodies[b].inertia
+        v, w, q = end[b].v, end[b].w, end[b].Q
+        l = spin_momentum(body, flight[b].Q, flight[b].w[0], flight[b].w[1], flight[b].w[2])
+        for i in range(3):
+            v[i] = flight[b].v[i] + push[i] / body.mass
+        a = rotate_back(q[0], q[1], q[2], q[3], l[0] + push[3], l[1] + push[4], l[2] + push[5])
+        w[0], w[1], w[2] = rotate(q[0], q[1], q[2], q[3], a[0] / J[0], a[1] / J[1], a[2] / J[2])
+    if system.bodies[member[0]].isolated == 0:
+        project_velocity(system, end, work)
+    for i in range(k):
+        seat = cluster.seats[i]
+        place(system.contacts[seat.contact], seat.point, end, cluster.ends[i])
+    velocities(k, cluster.ends, end, cluster.u)
+
+
+@kernel
+def add_difference(system, h, count, cluster, work):
+    """Add to the push what applied forces do on the path that is taken, less on the one without contacts."""
+    applied_wrenches(system, work.stage, False, work)
+    for m in range(count):
+        b = cluster.member[m]
+        for i in range(6):
+            work.body[b].push[i] += h * work.body[b].wrench[i]
+    applied_wrenches(system, work.middle, False, work)
+    for m in range(count):
+        b = cluster.member[m]
+        for i in range(6):
+            work.body[b].push[i] -= h * work.body[b].wrench[i]
+
+
+@kernel
+def choose(system, held, k, start, cluster, work):
+    """Choose how each point slips: along the velocity at the middle, or by the cone at the end."""
+    for i in range(k):
+        hold, contact = held.points[cluster.seats[i].held], system.contacts[cluster.seats[i].contact]
+        cluster.kind[i] = CONE
+        cluster.heading[i, 0], cluster.heading[i, 1] = 0.0, 0.0
+        if hold.mode != SLIP:
+            continue
+        _, m1, m2 = contact_velocity(cluster.points[i], work.stage)
+        d1, d2 = hold.heading[0], hold.heading[1]
+        e1, e2 = cluster.u[3 * i + 1], cluster.u[3 * i + 2]
+        if hold.locate == 0 and e1 * d1 + e2 * d2 <= 0.0:
+            continue  # slip stops within this step, and nobody looks when
+        if m1 * d1 + m2 * d2 > 0.0:
+            set_heading(cluster, i, m1, m2, 10.0 * slow(contact, start))
+        else:  # on trial beyond the reversal: friction goes on as it was
+            cluster.kind[i] = SLIDING
+            cluster.heading[i, 0], cluster.heading[i, 1] = d1, d2
+
+
+@kernel
+def finish(system, controls, held, k, start, h, end, count, cluster, work):
+    """Put the bodies to rest if nothing is left to move them; note modes, friction's work, bounds."""
+    gained, friction = 0.0, 0.0
+    for m in range(count):
+        b = cluster.member[m]
+        for r in range(3):
+            gained = max(gained, abs(cluster.flight[b].v[r] - start[b].v[r]))
+    at_rest = settle(system, controls.rest * gained, start, end, count, cluster)
+    stop = controls.rest * gained * controls.step / h
+    for i in range(k):
+        hold, p, u = held.points[cluster.seats[i].held], cluster.p, cluster.u
+        contact = system.contacts[hold.contact]
+        s1, s2 = u[3 * i + 1], u[3 * i + 2]
+        _, m1, m2 = contact_velocity(cluster.points[i], start)
+        _, e1, e2 = contact_velocity(cluster.points[i], end)
+        friction += 0.5 * (p[3 * i + 1] * (m1 + e1) + p[3 * i + 2] * (m2 + e2))
+        still = max(stop, 10.0 * max(slow(contact, start), slow(contact, end)))
+        if p[3 * i] <= 0.0 and u[3 * i] > 0.0:
+            hold.next = OPEN
+        else:
+            hold.next = SLIP if math.sqrt(s1 * s1 + s2 * s2) > still else STICK
+        if at_rest:
+            hold.next = STICK
+        hold.settles = 1 if at_rest else 0
+    work.result[0].friction += friction
+    for m in range(count):
+        b = cluster.member[m]
+        linear, angular, spin = 0.0, 0.0, 0.0
+        for r in range(3):
+            linear += (end[b].v[r] - start[b].v[r]) ** 2
+            angular += (end[b].w[r] - start[b].w[r]) ** 2
+            spin += max(end[b].w[r] ** 2, start[b].w[r] ** 2)
+        bound = work.body[b].bound
+        bound[0], bound[1] = 2.0 * math.sqrt(linear) / h, 2.0 * math.sqrt(angular) / h
+        bound[2] = math.sqrt(spin)
+
+
+@kernel
+def settle(system, tolerance, start, end, count, cluster):
+    """Stop the bodies, exactly, if all their speed at the end is below the tolerance.
+
+    If they had none at the start they have not moved either. Returns whether so.
+    """
+    speed, before = 0.0, 0.0
+    for m in range(count):
+        b = cluster.member[m]
+        size = system.bodies[b].extent
+        for r in range(3):
+            speed = max(speed, max(abs(end[b].v[r]), size * abs(end[b].w[r])))
+            before = max(before, max(abs(start[b].v[r]), abs(start[b].w[r])))
+    if not speed <= tolerance:
+        return False
+    for m in range(count):
+        b = cluster.member[m]
+        if before == 0.0:
+            keep(start[b], end[b])
+        for r in range(3):
+            end[b].v[r], end[b].w[r] = 0.0, 0.0
+    return before == 0.0
+
+
+@kernel
+def extra_work(system, h, start, end, cluster, work):
+    """Return the work of loads on the path that was taken, less that on the one without contacts."""
+    for b in range(start.shape[0]):
+        halfway(start[b], end[b], work.stage[b])
+    taken = applied_wrenches(system, work.stage, False, work)
+    return h * (taken - applied_wrenches(system, work.middle, False, work))
+
+
+@kernel
+def forces_at_end(system, controls, held, k, end, cluster, work):
+    """Put the forces in the state at the end into the list of held points."""
+    for i in range(k):
+        seat = cluster.seats[i]
+        hold = held.points[seat.held]
+        seat.stays = 1 if hold.next != OPEN else 0
+        place(system.contacts[seat.contact], seat.point, end, cluster.points[i])
+    pose_forces(system, controls, held, k, end, cluster, work)
+    solve_forces(k, cluster)
+    for i in range(k):
+        hold = held.points[cluster.seats[i].held]
+        for r in range(3):
+            hold.force[r] = cluster.p[3 * i + r] if hold.next != OPEN else 0.0
+            for j in range(3):
+                hold.W[r, j] = cluster.W[3 * i + r, 3 * i + j]

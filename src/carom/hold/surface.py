@@ -1,0 +1,86 @@
+"""Return a group of bodies to the surfaces of its held points, and sticking vertices to where they stick.
+
+    xi = -P G^T lam,   W lam = phi,    phi: the gap of each point that presses, and for a vertex that sticks the
+                                       tangential way from its anchor too,
+
+with the rows of the middle of the step, repeated to round-off. Redundant rows are left out of the factor.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom.contact.gap import round_off
+from carom.jit import kernel
+from carom.motion.acceleration import STICK
+from carom.motion.contact_point import in_axes, place
+from carom.motion.project import project_position, shift
+from carom.motion.several import factor, spread_all, substitute
+
+DROP = 1e-10  # of a pivot, relative to its row: what is left of a redundant one is round-off
+
+
+@kernel
+def mark_rows(system, held, k, cluster):
+    """Mark in `place` what each point gives: 0 nothing, 1 its gap, 3 its gap and its place; return if any."""
+    some = False
+    for i in range(k):
+        hold, p, q = held.points[cluster.seats[i].held], cluster.p, 3 * i
+        cluster.place[i] = 0
+        if p[q] > 0.0:
+            some = True
+            friction = math.sqrt(p[q + 1] * p[q + 1] + p[q + 2] * p[q + 2])
+            core = system.contacts[hold.contact].radius == 0.0
+            sticks = hold.mode == STICK and friction < (1.0 - 1e-9) * cluster.mu[i] * p[q]
+            cluster.place[i] = 3 if core and sticks else 1
+    return some
+
+
+@kernel
+def onto_surfaces(system, held, k, count, state, cluster, work):
+    """Bring the bodies of the group back to the points that press."""
+    if not mark_rows(system, held, k, cluster):
+        return
+    n, L = 3 * k, cluster.L
+    for i in range(n):
+        row = i % 3 < cluster.place[i // 3]
+        for j in range(n):
+            both = row and j % 3 < cluster.place[j // 3]
+            L[i, j] = cluster.W[i, j] if both else 1.0 if i == j else 0.0
+    factor(n, DROP, L)
+    x = cluster.u
+    for _ in range(10):
+        if errors(system, held, k, state, cluster, x):
+            break
+        substitute(n, L, x)
+        for i in range(n):
+            x[i] = -x[i] if i % 3 < cluster.place[i // 3] else 0.0
+        spread_all(system, k, cluster.points, x, count, cluster.member, work.stage, work)
+        for m in range(count):
+            shift(work.body[cluster.member[m]].motion, state[cluster.member[m]])
+        if system.joints.shape[0] > 0 and system.bodies[cluster.member[0]].isolated == 0:
+            project_position(system, state, work, 1e-14)
+
+
+@kernel
+def errors(system, held, k, state, cluster, x):
+    """Write the errors of all rows (0 where there is none); return whether all are round-off."""
+    small = True
+    for i in range(k):
+        hold, point = held.points[cluster.seats[i].held], cluster.ends[i]
+        contact = system.contacts[hold.contact]
+        place(contact, hold.point, state, point)
+        tiny = round_off(contact, state)
+        x[3 * i], x[3 * i + 1], x[3 * i + 2] = 0.0, 0.0, 0.0
+        if cluster.place[i] == 0:
+            continue
+        x[3 * i] = point.gap
+        small = small and abs(point.gap) <= tiny
+        if cluster.place[i] == 3:
+            c, a, r = state[hold.body].x, hold.anchor, point.arm_a
+            _, t1, t2 = in_axes(
+                point, c[0] + r[0] - a[0], c[1] + r[1] - a[1], c[2] + r[2] - a[2]
+            )
+            x[3 * i + 1], x[3 * i + 2] = t1, t2
+            small = small and max(abs(t1), abs(t2)) <= tiny
+    return small

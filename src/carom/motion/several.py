@@ -1,0 +1,130 @@
+"""Several points of contact together: velocities, the full W = G P G^T, and what their impulses do."""
+
+from __future__ import annotations
+
+from carom.jit import kernel
+from carom.motion.contact_point import (
+    add_impulse,
+    alone,
+    clear_wrench,
+    clear_wrenches,
+    contact_acceleration,
+    contact_motion,
+    contact_velocity,
+    spread,
+)
+from carom.motion.solve import free_body, solve
+
+
+@kernel
+def members(system, group, member):
+    """List the bodies of a group: one that is alone, or all that are joined; return how many."""
+    n = system.bodies.shape[0]
+    if group < n:
+        member[0] = group
+        return 1
+    count = 0
+    for b in range(n):
+        if system.bodies[b].isolated == 0:
+            member[count] = b
+            count += 1
+    return count
+
+
+@kernel
+def velocities(k, points, state, u):
+    """Write u = G v of k points."""
+    for i in range(k):
+        u[3 * i], u[3 * i + 1], u[3 * i + 2] = contact_velocity(points[i], state)
+
+
+@kernel
+def accelerations(k, points, state, stage, a):
+    """Write du/dt of k points under the accelerations of a stage."""
+    for i in range(k):
+        a[3 * i], a[3 * i + 1], a[3 * i + 2] = contact_acceleration(points[i], state, stage)
+
+
+@kernel
+def still(motion):
+    """Zero the motion of one body."""
+    for k in range(6):
+        motion[k] = 0.0
+
+
+@kernel
+def inverse_masses(system, k, points, state, work, W):
+    """Write W (3k, 3k) = G P G^T. Columns are answers to unit impulses, then made symmetric."""
+    for i in range(k):
+        still(work.body[points[i].a].motion)
+        if points[i].b >= 0:
+            still(work.body[points[i].b].motion)
+    for j in range(k):
+        for r in range(3):
+            e0, e1, e2 = 1.0 if r == 0 else 0.0, 1.0 if r == 1 else 0.0, 1.0 if r == 2 else 0.0
+            spread(system, points[j], state, e0, e1, e2, work)
+            m = 3 * j + r
+            for i in range(k):
+                W[3 * i, m], W[3 * i + 1, m], W[3 * i + 2, m] = contact_motion(points[i], work)
+        still(work.body[points[j].a].motion)
+        if points[j].b >= 0:
+            still(work.body[points[j].b].motion)
+    for i in range(3 * k):
+        for j in range(i):
+            m = 0.5 * (W[i, j] + W[j, i])
+            W[i, j], W[j, i] = m, m
+
+
+@kernel
+def spread_all(system, k, points, p, count, member, state, work):
+    """Write motion = P G^T p of the bodies of a group, for impulses of all k points at once."""
+    joined = not alone(system, points[0])
+    if joined:
+        clear_wrenches(work)
+    else:
+        for m in range(count):
+            clear_wrench(work.body[member[m]])
+    for i in range(k):
+        add_impulse(points[i], p[3 * i], p[3 * i + 1], p[3 * i + 2], work)
+    if joined:
+        solve(system, state, False, work)
+    else:
+        for m in range(count):
+            b = member[m]
+            free_body(system.bodies[b], state[b].Q, work.body[b])
+
+
+@kernel
+def factor(n, drop, L):
+    """Turn a matrix (n, n) into its factor L D L^T, L unit below the diagonal and D on it.
+
+    Pivots below `drop` of their row are left out: such a row depends on those before it, and gets no impulse of
+    its own.
+    """
+    for j in range(n):
+        d = L[j, j]
+        most = drop * d
+        for s in range(j):
+            d -= L[j, s] * L[j, s] * L[s, s]
+        kept = d > most
+        L[j, j] = d if kept else 0.0
+        for i in range(j + 1, n):
+            t = L[i, j]
+            for s in range(j):
+                t -= L[i, s] * L[j, s] * L[s, s]
+            L[i, j] = t / d if kept else 0.0
+
+
+@kernel
+def substitute(n, L, x):
+    """Solve L D L^T x = x in place; rows that were left out get 0."""
+    for i in range(n):
+        for s in range(i):
+            x[i] -= L[i, s] * x[s]
+    for i in range(n):
+        x[i] = x[i] / L[i, i] if L[i, i] > 0.0 else 0.0
+    for i in range(n - 1, -1, -1):
+        for s in range(i + 1, n):
+            x[i] -= L[s, i] * x[s]
+        if not L[i, i] > 0.0:
+            x[i] = 0.0

@@ -1,0 +1,68 @@
+"""Scratch for the closed points of one group of bodies, taken together: made once for a run."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from carom.coulomb.layout import new_cone_work
+from carom.system.arrays import POINT, STATE, System, table
+
+#: most points that are solved for together
+MOST = 64
+
+#: a closed point: what touches, and where it stands in the list of held points
+SEAT = [
+    ("contact", "i8"),
+    ("feature", "i8"),
+    ("held", "i8"),  # place among the held points, -1 where it is open
+    ("stays", "i8"),  # 1 where it is to be held
+    ("point", "f8", 3),  # of the core, body axes
+]
+
+
+class Cluster(NamedTuple):
+    """K points at most, of N bodies. Vectors (3K,) and matrices (3K, 3K) have rows n, t1, t2 a point."""
+
+    seats: np.recarray  # (K,) SEAT
+    points: np.recarray  # (K,) POINT in the state at hand, or in the middle of a step
+    ends: np.recarray  # (K,) POINT at the end of a step
+    W: np.ndarray
+    c: np.ndarray  # velocities, or accelerations, without the unknown impulses
+    u: np.ndarray
+    p: np.ndarray  # impulses, or forces
+    old: np.ndarray  # p of the last round
+    L: np.ndarray  # (3K, 3K) factor
+    mu: np.ndarray  # (K,)
+    kind: np.ndarray  # (K,) of `carom.coulomb`
+    heading: np.ndarray  # (K, 2)
+    place: np.ndarray  # (K,) points that take part
+    member: np.ndarray  # (N,) bodies of the group
+    flight: np.recarray  # (N,) STATE at the end of the step without the contacts
+    cone: Any
+
+
+def new_cluster(system: System) -> Cluster:
+    """Return the scratch for the largest group of `system`."""
+    n, count = system.bodies.size, np.zeros(system.bodies.size + 1, dtype=np.int64)
+    np.add.at(count, system.contacts.group, system.contacts.last - system.contacts.first)
+    k = max(1, min(MOST, int(count.max())))
+    return Cluster(
+        seats=table(SEAT, k),
+        points=table(POINT, k),
+        ends=table(POINT, k),
+        W=np.zeros((3 * k, 3 * k)),
+        c=np.zeros(3 * k),
+        u=np.zeros(3 * k),
+        p=np.zeros(3 * k),
+        old=np.zeros(3 * k),
+        L=np.zeros((3 * k, 3 * k)),
+        mu=np.zeros(k),
+        kind=np.zeros(k, dtype=np.int64),
+        heading=np.zeros((k, 2)),
+        place=np.zeros(k, dtype=np.int64),
+        member=np.zeros(n, dtype=np.int64),
+        flight=table(STATE, n),
+        cone=new_cone_work(k),
+    )
