@@ -29,11 +29,13 @@ class ConeWork(NamedTuple):
     c: np.ndarray  # (3K,)
     p: np.ndarray  # (3K,) iterate
     best: np.ndarray  # (3K,) the best iterate so far
+    kept: np.ndarray  # (3K,) the best of one try
     centre: np.ndarray  # (3K,) of the proximal term
     w: np.ndarray  # (3K,) W p + c
     f: np.ndarray  # (3K,) p - projection
     step: np.ndarray  # (3K,)
     change: np.ndarray  # (3K,) W step
+    rhs: np.ndarray  # (3K,) of a linear system
     jacobian: np.ndarray  # (3K, 3K)
     scale: np.ndarray  # (K,) impulse of a contact = scale * scaled impulse
     active: np.ndarray  # (3K,) rows in the reduced system
@@ -43,7 +45,7 @@ class ConeWork(NamedTuple):
 def new_cone_work(capacity: int) -> ConeWork:
     """Return work arrays for up to `capacity` contacts."""
     n = 3 * max(capacity, 1)
-    vectors = [np.zeros(n) for _ in range(8)]
+    vectors = [np.zeros(n) for _ in range(10)]
     return ConeWork(
         np.zeros((n, n)),
         *vectors,

@@ -44,33 +44,50 @@ def load(k, W, c, p, work):
 
 
 @kernel
-def velocity(k, work):
-    """Write w = W p + c (the columns of a symmetric W are its rows)."""
-    n, w = 3 * k, work.w
-    for i in range(n):
-        w[i] = work.c[i]
+def add_columns(k, W, p, out):
+    """Add W p to `out`, column by column (they are the rows of a symmetric W)."""
+    n = 3 * k
     for j in range(n):
-        q, column = work.p[j], work.W[j]
+        q, column = p[j], W[j]
         if q != 0.0:
             for i in range(n):
-                w[i] += q * column[i]
+                out[i] += q * column[i]
 
 
 @kernel
-def natural(k, mu, kind, heading, work):
-    """Return the residual of work.p in velocity, in units of gamma; w must belong to p."""
-    worst = 0.0
+def velocity(k, work):
+    """Write w = W p + c."""
+    for i in range(3 * k):
+        work.w[i] = work.c[i]
+    add_columns(k, work.W, work.p, work.w)
+
+
+@kernel
+def residual(k, mu, kind, heading, work):
+    """Return (residual, goal, tolerance) of work.p in velocity, in units of gamma; work.w becomes W p + c.
+
+    The goal is what round-off allows; the tolerance is that of `carom.coulomb.residual`.
+    """
+    velocity(k, work)
     p, w = work.p, work.w
+    worst, largest, size = 0.0, 0.0, 0.0
     for i in range(k):
         n = 3 * i
         r = natural_residual(
             kind[i], mu[i], heading[i, 0], heading[i, 1], 1.0,
             p[n], p[n + 1], p[n + 2], w[n], w[n + 1], w[n + 2],
         )  # fmt: skip
-        r /= work.scale[i]
-        if not r <= worst and worst == worst:
-            worst = r
-    return worst
+        s = work.scale[i]
+        if not r / s <= worst and worst == worst:
+            worst = r / s
+        for a in range(n, n + 3):
+            largest = max(largest, abs(work.c[a]) / s)
+            row, total = work.W[a], 0.0
+            for j in range(3 * k):
+                total += abs(row[j] * p[j])
+            size = max(size, total / s)
+    size *= 2.220446049250313e-16
+    return worst, 4.0 * size, 1e-10 * largest + 50.0 * size
 
 
 @kernel

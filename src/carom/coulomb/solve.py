@@ -7,13 +7,18 @@ import math
 from carom.coulomb.layout import NOT_FINITE, NOT_SOLVED, SOLVED
 from carom.coulomb.newton import newton
 from carom.coulomb.residual import measure
-from carom.coulomb.scaled import load, natural, onto_cone, velocity
+from carom.coulomb.scaled import load, onto_cone, residual as scaled_residual
+from carom.coulomb.admm import alternate
 from carom.coulomb.sweep import solve_local, sweep
 from carom.jit import entry, kernel
 
-_EPS = 1e-9  # weight of the proximal term
-_NEWTON = 30  # iterations a round
-_ROUNDS = 12
+_EPS = 1e-8  # weight of the proximal term
+_NEWTON = 30  # most iterations a try
+_POLISH = 8  # most moves of the proximal centre
+_TURNS = 20  # most starting points
+_EXTRA = 2  # more of them where the tolerance is met, but not to round-off
+_SWEEPS = 25, 200  # at first, at most
+_ALTERNATIONS = 300
 
 
 @entry
@@ -54,43 +59,62 @@ def solve_cones(k, W, c, mu, kind, heading, p, scratch):
 
 @kernel
 def _search(k, mu, kind, heading, work):
-    """Alternate Newton and sweeps until the residual is small; leave the best in work.p."""
+    """Newton from one starting point after the other; the best result is left in work.p."""
     n, p, best = 3 * k, work.p, work.best
-    least, iterations, sweeps = math.inf, 0, 25
-    target = 1e-12 / max_scale(k, work)
-    for turn in range(_ROUNDS):
-        if turn > 0:
+    least, iterations, sweeps, last_turn = math.inf, 0, _SWEEPS[0], _TURNS
+    turn = 0
+    while turn < last_turn:
+        if turn > 0 and turn % 2 == 0:
+            sigma = 0.01 * 10.0 ** ((turn // 2) % 3)
+            alternate(k, mu, kind, heading, sigma, _ALTERNATIONS, work)
+            iterations += _ALTERNATIONS
+        elif turn > 0:
             for i in range(sweeps):
                 sweep(k, mu, kind, heading, i % 2 == 1, work)
-            sweeps = min(2 * sweeps, 200)
             iterations += sweeps
-        for _ in range(3):  # proximal rounds: first about 0, for the least norm
+            sweeps = min(2 * sweeps, _SWEEPS[1])
+        count, r, goal, tolerance = _polished_newton(k, mu, kind, heading, turn == 0, work)
+        iterations += count
+        if r < least:
+            least = r
             for i in range(n):
-                work.centre[i] = p[i] if _ > 0 else 0.0
-            _f, count = newton(k, mu, kind, heading, _EPS, _NEWTON, work)
-            iterations += count
-            onto_cone(k, mu, kind, heading, p)
-            velocity(k, work)
-            r = natural(k, mu, kind, heading, work)
-            better = r < least
-            if better:
-                least = r
-                for i in range(n):
-                    best[i] = p[i]
-            if not better or _f > 1e-8:
-                break
-        if least <= target:
+                best[i] = p[i]
+        if least <= goal:
             break
-        if turn == 0:  # sweeps start from what was given
-            pass
+        turn += 1
+        if least <= 0.9 * tolerance:
+            last_turn = min(last_turn, turn + _EXTRA)
     for i in range(n):
         p[i] = best[i]
     return iterations
 
 
 @kernel
-def max_scale(k, work):
-    most = 0.0
-    for i in range(k):
-        most = max(most, work.scale[i])
-    return most
+def _polished_newton(k, mu, kind, heading, least_norm, work):
+    """Return (iterations, residual, goal, tolerance); work.p is the best of the rounds.
+
+    The proximal term is centred at 0 at first, for the solution of least norm, or at p; then it is moved
+    to the last solution until its bias is gone.
+    """
+    n, p, kept = 3 * k, work.p, work.kept
+    for i in range(n):
+        work.centre[i] = 0.0 if least_norm else p[i]
+    total, m, least = 0, -1, math.inf
+    goal, tolerance = 0.0, 0.0
+    for _ in range(_POLISH):
+        _, count, m = newton(k, mu, kind, heading, _EPS, _NEWTON, m, work)
+        total += count
+        onto_cone(k, mu, kind, heading, p)
+        r, goal, tolerance = scaled_residual(k, mu, kind, heading, work)
+        enough = r <= goal or not r < 0.5 * least
+        if r < least:
+            least = r
+            for i in range(n):
+                kept[i] = p[i]
+        if enough:
+            break
+        for i in range(n):
+            work.centre[i] = p[i]
+    for i in range(n):
+        p[i] = kept[i]
+    return total, least, goal, tolerance
