@@ -10,66 +10,64 @@ from __future__ import annotations
 import math
 
 from carom.coulomb.cone import project
-from carom.coulomb.jacobian import factor_jacobian, solve_step
-from carom.coulomb.scaled import add_columns, velocity
+from carom.coulomb.operators import factor, multiply, solve
 from carom.jit import kernel
 
-_FLOOR = 1e-13  # below this part of |p| + 1 the iteration only polishes, as long as each step halves f
+_FLOOR = 1e-13  # below this part of 1 + |p| the iteration only polishes, while each step halves f
 _SHORTEST = 1e-3  # of the line search
 _CHORD = 0.1  # factors are kept for another step if the last one reduced f by this
 
 
 @kernel
-def newton(k, mu, kind, heading, eps, limit, factored, work):
-    """Iterate from work.p; return (|f|, iterations, rows of the factors at hand).
+def newton(k, mu, kind, heading, eps, limit, rows, work):
+    """Iterate from work.p; return (iterations, rows of the factors at hand, or -1).
 
-    `factored` is what the last call returned if its factors may be tried first, else -1.
+    `rows` is what the last call returned if its factors may be tried first, else -1.
     """
-    n, p = 3 * k, work.p
-    count, m = 0, factored
+    p, count = work.p, 0
     size = _arrive(k, mu, kind, heading, eps, work)
     while count < limit and size > 0.0:
         count += 1
-        chord = m >= 0
+        chord = rows >= 0
         if not chord:
-            m = factor_jacobian(k, mu, kind, heading, eps, work)
-        solve_step(k, mu, kind, heading, m, work)
-        _change(k, eps, work)
-        if chord:
-            t = 1.0
-            trial = mismatch(k, mu, kind, heading, t, work)
-            if not trial < _CHORD * size:
-                m = -1
-                if size < _FLOOR * magnitude(k, work):
-                    break
-                continue
-        else:
-            t, trial = _search(k, mu, kind, heading, size, work)
-            if not trial < size:
+            rows = factor(work, k, mu, kind, heading, eps)
+        solve(work, k, mu, kind, heading, rows)
+        for i in range(3 * k):
+            work.change[i] = eps * work.step[i]
+        multiply(work, k, work.step, work.change)
+        t = 1.0
+        if not chord:
+            t = _search(k, mu, kind, heading, size, work)
+            if t == 0.0:
                 break
-        for i in range(n):
+        elif not _mismatch(k, mu, kind, heading, t, work) < _CHORD * size:
+            rows = -1
+            if size < _FLOOR * _magnitude(k, work):
+                break
+            continue
+        for i in range(3 * k):
             p[i] += t * work.step[i]
         before = size
         size = _arrive(k, mu, kind, heading, eps, work)
-        if size < _FLOOR * magnitude(k, work) and not size < 0.5 * before:
+        if size < _FLOOR * _magnitude(k, work) and not size < 0.5 * before:
             break
         if not size < _CHORD * before:
-            m = -1
-    return size, count, m
+            rows = -1
+    return count, rows
 
 
 @kernel
 def _search(k, mu, kind, heading, size, work):
-    """Return (t, |f|) on the line of the step: the first t = 1, 1/2, ... that reduces f enough, or the best."""
+    """Return the first of t = 1, 1/2, ... that reduces |f| enough, else the best, 0 if none reduces it."""
     t, best_t, best = 1.0, 0.0, size
     while t >= _SHORTEST:
-        trial = mismatch(k, mu, kind, heading, t, work)
+        trial = _mismatch(k, mu, kind, heading, t, work)
         if trial < best:
             best_t, best = t, trial
         if trial < (1.0 - 0.1 * t) * size:
             break
         t *= 0.5
-    return best_t, best
+    return best_t
 
 
 @kernel
@@ -78,11 +76,19 @@ def _arrive(k, mu, kind, heading, eps, work):
     velocity(k, work)
     for i in range(3 * k):
         work.w[i] += eps * (work.p[i] - work.centre[i])
-    return mismatch(k, mu, kind, heading, 0.0, work)
+    return _mismatch(k, mu, kind, heading, 0.0, work)
 
 
 @kernel
-def magnitude(k, work):
+def velocity(k, work):
+    """Write w = W p + c."""
+    for i in range(3 * k):
+        work.w[i] = work.c[i]
+    multiply(work, k, work.p, work.w)
+
+
+@kernel
+def _magnitude(k, work):
     """Return 1 + the greatest scaled impulse: what round-off is relative to."""
     most = 0.0
     for i in range(3 * k):
@@ -91,15 +97,7 @@ def magnitude(k, work):
 
 
 @kernel
-def _change(k, eps, work):
-    """Write (W + eps) step."""
-    for i in range(3 * k):
-        work.change[i] = eps * work.step[i]
-    add_columns(k, work.W, work.step, work.change)
-
-
-@kernel
-def mismatch(k, mu, kind, heading, t, work):
+def _mismatch(k, mu, kind, heading, t, work):
     """Return |f| at p + t step; f itself is written for t = 0."""
     total = 0.0
     p, w, step, change = work.p, work.w, work.step, work.change
