@@ -72,6 +72,7 @@ def _solve_diagonal(A, pivot, x):
             t = x[k]
             x[k] = x[row]
             x[row] = t
+    for k in range(6):
         for i in range(k + 1, 6):
             x[i] -= A[i, k] * x[k]
     for k in range(5, -1, -1):
