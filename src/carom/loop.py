@@ -77,6 +77,8 @@ def run(system, method, controls, held, now, work, cluster, clocks, records, unt
             if action == NOTHING:
                 # a trial step, cut until nothing can lie inside it, or shortened to its first event
                 dt, cuts, found = remaining, 0, False
+                if held.count[0] > 0:
+                    dt = until_stop(held, dt, clock)
                 search.active = 0
                 while True:
                     applied, friction, code = step(method, system, held, now, dt, trial, work)
@@ -140,6 +142,7 @@ def run(system, method, controls, held, now, work, cluster, clocks, records, unt
                 if search.kind != GAP:
                     action = change_mode(system, held, c, search.kind, now, work, clock, records)
             closed = 0
+            clock.at_once += 1 if action != NOTHING else 0
             if action == STRIKE:
                 struck = clock.struck
                 strike(
@@ -152,7 +155,7 @@ def run(system, method, controls, held, now, work, cluster, clocks, records, unt
                 if controls.layer_time == 1 and clock.struck > struck:
                     clock.spent += records.impact[struck].duration  # the position stays
             if action == STRIKE and not (
-                closed > 1 or may_end(system.contacts[c], system, now, horizon, work)
+                closed != 1 or may_end(system.contacts[c], system, now, horizon, work)
             ):
                 continue
             if action != NOTHING and controls.hold == 1:
@@ -222,6 +225,18 @@ def may_end(contact, system, state, horizon, work):
     work.body[contact.body].status = FREE
     _, most = greatest_acceleration(system, contact, state, work)
     return 2.0 * rate < most * (1.0 - contact.restitution) * horizon
+
+
+@inlined
+def until_stop(held, dt, clock):
+    """Return dt, or the time in which slip of one of several held points is going to stop."""
+    first = dt
+    for i in range(held.count[0]):
+        hold = held.points[i]
+        if hold.several == 1 and hold.rest == 0 and hold.mode == SLIP and hold.stop < first:
+            first = hold.stop
+    # not where they follow each other without end, nor where hardly anything of the step is left
+    return first if first > 1e-3 * dt and first < 0.999 * dt and clock.in_step < 20 else dt
 
 
 @kernel

@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from carom.contact.gap import along_normal, gap_and_rate, plane_in_body
+from carom.contact.gap import along_normal, gap_and_rate, plane_in_body, round_off
 from carom.jit import kernel
 from carom.motion.contact_point import place
 
 
 @kernel
-def gather_closed(system, held, group, state, tie, cluster):
-    """List what is closed in `state`, gap within `tie` of the size of the body; return how many, -1 too many.
+def gather_closed(system, controls, held, group, state, cluster):
+    """List what is closed in `state`; return how many points, -1 if they are too many.
 
-    Writes seats and points. Points that are held count as closed.
+    Closed: within the tolerance of ties or of a located gap, or held. Writes seats and points.
     """
     k = 0
     for c in range(system.contacts.shape[0]):
         contact = system.contacts[c]
         if contact.group != group:
             continue
-        near = tie * contact.extent
+        near = max(controls.tie, controls.gap) * contact.extent
+        near = max(near, 4.0 * round_off(contact, state))
         height = along_normal(contact, state[contact.body].x) - contact.offset - contact.radius
         if height - contact.extent > near:
             continue

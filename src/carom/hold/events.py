@@ -47,16 +47,16 @@ def find_held_event(system, held, end, work):
     """Return (event, place in the list, d1, d2) of the first held point whose mode ends; place -1 if none."""
     for i in range(held.count[0]):
         hold = held.points[i]
-        if hold.mode == OPEN or hold.rest == 1 or (hold.several == 1 and hold.locate == 0):
+        if hold.mode == OPEN or hold.rest == 1 or hold.several == 1:
             continue
-        if hold.several == 0 and hold.force[0] < 0.0:
+        if hold.force[0] < 0.0:
             return SEPARATE, i, 0.0, 0.0
         if hold.mode == SLIP:
             d1, d2 = hold.heading[0], hold.heading[1]
             if held_value(system, hold, REVERSE, d1, d2, end, work) < 0.0:
                 return REVERSE, i, d1, d2
         # a cone met to round-off (a body on the verge of slip) is no event
-        elif hold.several == 0 and (
+        elif (
             held_value(system, hold, CONE, 0.0, 0.0, end, work) < -1e-12 * hold.force[0]
         ):
             return CONE, i, 0.0, 0.0

@@ -66,3 +66,12 @@ def solve_forces(k, cluster):
             a += W[i, j] * p[j]
         b[i] = a
     return status
+
+
+@kernel
+def predict_stop(hold, i, cluster):
+    """Note when slip of point i stops, going on as it does: speed over the deceleration along it."""
+    d1, d2 = cluster.heading[i, 0], cluster.heading[i, 1]
+    speed = cluster.u[3 * i + 1] * d1 + cluster.u[3 * i + 2] * d2
+    rate = cluster.old[3 * i + 1] * d1 + cluster.old[3 * i + 2] * d2
+    hold.stop = speed / -rate if cluster.kind[i] == SLIDING and rate < 0.0 else math.inf

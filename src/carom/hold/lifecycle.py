@@ -12,8 +12,6 @@ while those that do not leave are kept.
 
 from __future__ import annotations
 
-import math
-
 from carom.contact.closed import gather_closed
 from carom.contact.gap import slow
 from carom.dispatch import by_address
@@ -21,10 +19,7 @@ from carom.hold.one import hold_one, settle_one
 from carom.hold.roster import regroup
 from carom.hold.several import hold_several
 from carom.jit import kernel, unit
-from carom.motion.acceleration import SLIP, STICK
-from carom.motion.contact_point import contact_velocity, place
-from carom.system.notes import begin_event, end_event
-from carom.system.records import SLIPS, STICKS
+from carom.motion.contact_point import contact_velocity
 
 TOO_MANY_POINTS = 10
 
@@ -38,7 +33,7 @@ def hold_unit(system, controls, held, c, state, horizon, cluster, work, clocks, 
         hold = held.points[i]
         if system.contacts[hold.contact].group == contact.group:
             hold.rest, hold.several = 0, 1  # together with the new one
-    k = gather_closed(system, held, contact.group, state, controls.tie, cluster)
+    k = gather_closed(system, controls, held, contact.group, state, cluster)
     if k < 0:
         hit.code = TOO_MANY_POINTS
     elif k == 1 and cluster.seats[0].held < 0:
@@ -66,18 +61,8 @@ def look_again(system, held, k, state, cluster):
 
 @unit
 def settle_unit(system, controls, held, i, state, work, clocks, records):
-    """Find anew how point i goes on, whose slip has come to a stop or has turned."""
-    hold, clock = held.points[i], clocks[0]
-    if hold.several == 0:
-        settle_one(system, controls, hold, held, state, work, clock, records)
-        return
-    contact, point = system.contacts[hold.contact], work.point[0]
-    place(contact, hold.point, state, point)
-    _, u1, u2 = contact_velocity(point, state)
-    stop = 1e-3 * controls.step * abs(hold.force[0]) * hold.W[1, 1]
-    begin_event(hold.contact, hold.feature, state, clock, records)
-    hold.mode = SLIP if math.sqrt(u1 * u1 + u2 * u2) > stop else STICK
-    end_event(SLIPS if hold.mode == SLIP else STICKS, state, clock, records)
+    """Find anew how point i, the only one of its body, goes on: its slip has come to a stop or has turned."""
+    settle_one(system, controls, held.points[i], held, state, work, clocks[0], records)
 
 
 #: settle(address, system, controls, held, i, state, work, clocks, records)

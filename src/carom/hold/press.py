@@ -20,11 +20,11 @@ import math
 
 from carom.contact.closed import gather_held
 from carom.contact.gap import slow
-from carom.coulomb.layout import CONE, SLIDING
+from carom.coulomb.layout import CONE
 from carom.coulomb.solve import solve_cones
 from carom.dispatch import by_address
 from carom.geometry.rotation import exp, log, multiply, normalize, rotate, rotate_back
-from carom.hold.forces import pose_forces, set_heading, solve_forces
+from carom.hold.forces import pose_forces, predict_stop, set_heading, solve_forces
 from carom.hold.surface import onto_surfaces
 from carom.jit import kernel, unit
 from carom.motion.acceleration import OPEN, SLIP, STICK
@@ -76,6 +76,7 @@ def press_group(system, controls, held, group, start, h, end, cluster, work, clo
     loaded = system.bodies[cluster.member[0]].ballistic == 0
     begin(system, held, k, start, h, end, count, loaded, cluster, work)
     size, before = 3 * k, math.inf
+    cluster.rounds[1] += 1
     for _ in range(ROUNDS):
         for m in range(count):
             halfway(start[cluster.member[m]], end[cluster.member[m]], work.stage[cluster.member[m]])
@@ -94,18 +95,34 @@ def press_group(system, controls, held, group, start, h, end, cluster, work, clo
             k, cluster.W, cluster.c, cluster.mu, cluster.kind, cluster.heading, cluster.p,
             cluster.cone,
         )  # fmt: skip
-        change, largest = 0.0, 0.0
-        for i in range(size):
-            change = max(change, abs(cluster.p[i] - cluster.old[i]))
-            largest = max(largest, abs(cluster.p[i]))
-        if change <= 1e-15 * largest or (change <= 1e-9 * largest and change >= 0.5 * before):
+        change = moved(size, cluster)
+        if change <= 1e-14 or (change <= 1e-7 and change >= 0.3 * before):
             break
         before = change
+        cluster.rounds[0] += 1
+        hist = _ if change > 1e-7 else 60
+        cluster.rounds[2 + hist] += 1
     impose(system, held, k, h, end, count, loaded, cluster, work)
     finish(system, controls, held, k, start, h, end, count, cluster, work)
     if loaded:
         work.result[0].applied += extra_work(system, h, start, end, cluster, work)
     forces_at_end(system, controls, held, k, end, cluster, work)
+
+
+@kernel
+def moved(n, cluster):
+    """Return what the last change of p does to the velocities, relative to what all of p does.
+
+    Forces themselves may go on changing where they are not unique.
+    """
+    change, largest = 0.0, 0.0
+    for i in range(n):
+        s, t = 0.0, 0.0
+        for j in range(n):
+            s += cluster.W[i, j] * (cluster.p[j] - cluster.old[j])
+            t += abs(cluster.W[i, j] * cluster.p[j])
+        change, largest = max(change, abs(s)), max(largest, t)
+    return change / largest if largest > 0.0 else 0.0
 
 
 @kernel
@@ -127,6 +144,7 @@ def begin(system, held, k, start, h, end, count, loaded, cluster, work):
         slips = hold.mode == SLIP and speed > 0.0
         hold.heading[0] = u1 / speed if slips else 0.0
         hold.heading[1] = u2 / speed if slips else 0.0
+        cluster.stopped[i] = 0 if slips and hold.stop > h * (1.0 + 1e-9) else 1
 
 
 @kernel
@@ -204,23 +222,22 @@ def add_difference(system, h, count, cluster, work):
 
 @kernel
 def choose(system, held, k, start, cluster, work):
-    """Choose how each point slips: along the velocity at the middle, or by the cone at the end."""
+    """Choose how each point slips: along the velocity at the middle, or by the cone at the end.
+
+    Where slip stops within the step it is the cone, and remains so in further rounds.
+    """
     for i in range(k):
         hold, contact = held.points[cluster.seats[i].held], system.contacts[cluster.seats[i].contact]
-        cluster.kind[i] = CONE
-        cluster.heading[i, 0], cluster.heading[i, 1] = 0.0, 0.0
-        if hold.mode != SLIP:
-            continue
-        _, m1, m2 = contact_velocity(cluster.points[i], work.stage)
         d1, d2 = hold.heading[0], hold.heading[1]
+        _, m1, m2 = contact_velocity(cluster.points[i], work.stage)
         e1, e2 = cluster.u[3 * i + 1], cluster.u[3 * i + 2]
-        if hold.locate == 0 and e1 * d1 + e2 * d2 <= 0.0:
-            continue  # slip stops within this step, and nobody looks when
-        if m1 * d1 + m2 * d2 > 0.0:
+        if cluster.stopped[i] == 0 and not (m1 * d1 + m2 * d2 > 0.0 and e1 * d1 + e2 * d2 > 0.0):
+            cluster.stopped[i] = 1
+        if cluster.stopped[i] == 0:
             set_heading(cluster, i, m1, m2, 10.0 * slow(contact, start))
-        else:  # on trial beyond the reversal: friction goes on as it was
-            cluster.kind[i] = SLIDING
-            cluster.heading[i, 0], cluster.heading[i, 1] = d1, d2
+        else:
+            cluster.kind[i] = CONE
+            cluster.heading[i, 0], cluster.heading[i, 1] = 0.0, 0.0
 
 
 @kernel
@@ -306,6 +323,7 @@ def forces_at_end(system, controls, held, k, end, cluster, work):
     solve_forces(k, cluster)
     for i in range(k):
         hold = held.points[cluster.seats[i].held]
+        predict_stop(hold, i, cluster)
         for r in range(3):
             hold.force[r] = cluster.p[3 * i + r] if hold.next != OPEN else 0.0
             for j in range(3):

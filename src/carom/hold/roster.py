@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from carom.jit import kernel
 from carom.motion.contact_point import place
 
@@ -13,8 +15,8 @@ def enlist(system, held, seat, mode, state, work):
     held.count[0] = i + 1
     hold, contact = held.points[i], system.contacts[seat.contact]
     hold.contact, hold.feature, hold.body = seat.contact, seat.feature, contact.body
-    hold.mode, hold.next, hold.rest, hold.several, hold.locate = mode, mode, 0, 0, 1
-    hold.settles = 0
+    hold.mode, hold.next, hold.rest, hold.several = mode, mode, 0, 0
+    hold.settles, hold.stop = 0, math.inf
     for k in range(3):
         hold.point[k] = seat.point[k]
         hold.force[k] = 0.0
@@ -51,7 +53,7 @@ def strike_off(held, i):
 def copy(a, b):
     """Copy a held point."""
     b.contact, b.feature, b.body, b.mode = a.contact, a.feature, a.body, a.mode
-    b.next, b.several, b.rest, b.locate = a.next, a.several, a.rest, a.locate
+    b.next, b.several, b.rest, b.stop = a.next, a.several, a.rest, a.stop
     b.settles = a.settles
     for k in range(3):
         b.point[k], b.anchor[k], b.force[k] = a.point[k], a.anchor[k], a.force[k]

@@ -99,7 +99,7 @@ def set_modes(system, held, k, state, cluster, work, clock, records):
         still = 10.0 * slow(contact, state)
         mode = SLIP if math.sqrt(u1 * u1 + u2 * u2) > still and cluster.kind[i] == SLIDING else STICK
         if seat.held >= 0:
-            held.points[seat.held].mode = mode
+            held.points[seat.held].mode, held.points[seat.held].stop = mode, math.inf
             continue
         if not begun:
             begin_event(seat.contact, seat.feature, state, clock, records)

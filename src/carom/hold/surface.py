@@ -22,17 +22,17 @@ DROP = 1e-10  # of a pivot, relative to its row: what is left of a redundant one
 
 @kernel
 def mark_rows(system, held, k, cluster):
-    """Mark in `place` what each point gives: 0 nothing, 1 its gap, 3 its gap and its place; return if any."""
+    """Mark in `rows` what each point gives: 0 nothing, 1 its gap, 3 its gap and its place; return if any."""
     some = False
     for i in range(k):
         hold, p, q = held.points[cluster.seats[i].held], cluster.p, 3 * i
-        cluster.place[i] = 0
+        cluster.rows[i] = 0
         if p[q] > 0.0:
             some = True
             friction = math.sqrt(p[q + 1] * p[q + 1] + p[q + 2] * p[q + 2])
             core = system.contacts[hold.contact].radius == 0.0
             sticks = hold.mode == STICK and friction < (1.0 - 1e-9) * cluster.mu[i] * p[q]
-            cluster.place[i] = 3 if core and sticks else 1
+            cluster.rows[i] = 3 if core and sticks else 1
     return some
 
 
@@ -43,9 +43,9 @@ def onto_surfaces(system, held, k, count, state, cluster, work):
         return
     n, L = 3 * k, cluster.L
     for i in range(n):
-        row = i % 3 < cluster.place[i // 3]
+        row = i % 3 < cluster.rows[i // 3]
         for j in range(n):
-            both = row and j % 3 < cluster.place[j // 3]
+            both = row and j % 3 < cluster.rows[j // 3]
             L[i, j] = cluster.W[i, j] if both else 1.0 if i == j else 0.0
     factor(n, DROP, L)
     x = cluster.u
@@ -54,7 +54,7 @@ def onto_surfaces(system, held, k, count, state, cluster, work):
             break
         substitute(n, L, x)
         for i in range(n):
-            x[i] = -x[i] if i % 3 < cluster.place[i // 3] else 0.0
+            x[i] = -x[i] if i % 3 < cluster.rows[i // 3] else 0.0
         spread_all(system, k, cluster.points, x, count, cluster.member, work.stage, work)
         for m in range(count):
             shift(work.body[cluster.member[m]].motion, state[cluster.member[m]])
@@ -72,11 +72,11 @@ def errors(system, held, k, state, cluster, x):
         place(contact, hold.point, state, point)
         tiny = round_off(contact, state)
         x[3 * i], x[3 * i + 1], x[3 * i + 2] = 0.0, 0.0, 0.0
-        if cluster.place[i] == 0:
+        if cluster.rows[i] == 0:
             continue
         x[3 * i] = point.gap
         small = small and abs(point.gap) <= tiny
-        if cluster.place[i] == 3:
+        if cluster.rows[i] == 3:
             c, a, r = state[hold.body].x, hold.anchor, point.arm_a
             _, t1, t2 = in_axes(
                 point, c[0] + r[0] - a[0], c[1] + r[1] - a[1], c[2] + r[2] - a[2]

@@ -62,7 +62,7 @@ def strike_unit(method, system, controls, held, c, state, cluster, work, clocks,
     hit.code = onto_surface(system, controls, c, state, work)
     if hit.code != 0:
         return
-    k = gather_closed(system, held, contact.group, state, controls.tie, cluster)
+    k = gather_closed(system, controls, held, contact.group, state, cluster)
     if k < 0:
         hit.code = TOO_MANY_POINTS
         return

@@ -109,11 +109,11 @@ HELD = [
     ("settles", "i8"),  # 1 where that step puts the body to rest
     ("several", "i8"),  # 1 where it shares its bodies with other held points
     ("rest", "i8"),  # 1 where the body does not move at all
-    ("locate", "i8"),  # 1 where the end of slip inside a step is looked for
     ("point", "f8", 3),  # point of the core that carries the contact, body axes
     ("anchor", "f8", 3),  # where it is in the world since it sticks
     ("force", "f8", 3),  # of the last solve, contact axes
     ("heading", "f8", 2),  # direction of slip at the start of the step; 0 where it does not slip
+    ("stop", "f8"),  # time in which slip will stop under the last forces, where several are held
     ("W", "f8", (3, 3)),  # effective inverse mass of the last solve
 ]
 

@@ -37,9 +37,11 @@ class Cluster(NamedTuple):
     mu: np.ndarray  # (K,)
     kind: np.ndarray  # (K,) of `carom.coulomb`
     heading: np.ndarray  # (K, 2)
-    place: np.ndarray  # (K,) points that take part
+    rows: np.ndarray  # (K,) rows of each point that the return to the surface uses
+    stopped: np.ndarray  # (K,) 1 where slip has stopped within the step
     member: np.ndarray  # (N,) bodies of the group
     flight: np.recarray  # (N,) STATE at the end of the step without the contacts
+    rounds: np.ndarray  # (2,) rounds of steps, steps
     cone: Any
 
 
@@ -61,8 +63,10 @@ def new_cluster(system: System) -> Cluster:
         mu=np.zeros(k),
         kind=np.zeros(k, dtype=np.int64),
         heading=np.zeros((k, 2)),
-        place=np.zeros(k, dtype=np.int64),
+        rows=np.zeros(k, dtype=np.int64),
+        stopped=np.zeros(k, dtype=np.int64),
         member=np.zeros(n, dtype=np.int64),
         flight=table(STATE, n),
+        rounds=np.zeros(64, dtype=np.int64),
         cone=new_cone_work(k),
     )
