@@ -46,4 +46,3 @@ def alternate(k, mu, kind, heading, sigma, limit, work):
             )  # fmt: skip
             for j in range(a, a + 3):
                 v[j] += sigma * (z[j] - x[j])
-

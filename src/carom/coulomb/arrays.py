@@ -27,7 +27,9 @@ class IslandGraph(NamedTuple):
     start: np.ndarray  # (N + 1,) first pair of each place in that order
     later: np.ndarray  # (pairs,) the body of a pair that is eliminated later
     update: np.ndarray  # (N + 1,) first row of `target` of each place
-    target: np.ndarray  # (updates, 3) pair s, pair t, block from which below[s] right[t] is subtracted
+    target: (
+        np.ndarray
+    )  # (updates, 3) pair s, pair t, block from which below[s] right[t] is subtracted
     place: np.ndarray  # (k, 2, 2) block of each contact for its bodies, -1 for the ground
 
 

@@ -19,13 +19,15 @@ _CHORD = 0.1  # factors are kept for another step if the last one reduced f by t
 
 
 @kernel
-def newton(k, mu, kind, heading, eps, limit, rows, work):
+def newton(k, mu, kind, heading, eps, limit, patient, rows, work):
     """Iterate from work.p; return (iterations, rows of the factors at hand, or -1).
 
-    `rows` is what the last call returned if its factors may be tried first, else -1.
+    A step must reduce |f|; or, if `patient`, the greatest of the last four: the way past a kink. `rows` is
+    what the last call returned if its factors may be tried first, else -1.
     """
     p, count = work.p, 0
     size = _arrive(k, mu, kind, heading, eps, work)
+    before1, before2, before3 = 0.0, 0.0, 0.0
     while count < limit and size > 0.0:
         count += 1
         chord = rows >= 0
@@ -37,7 +39,8 @@ def newton(k, mu, kind, heading, eps, limit, rows, work):
         multiply(work, k, work.step, work.change)
         t = 1.0
         if not chord:
-            t = _search(k, mu, kind, heading, size, work)
+            bound = max(size, before1, before2, before3) if patient else size
+            t = _search(k, mu, kind, heading, bound, work)
             if t == 0.0:
                 break
         elif not _mismatch(k, mu, kind, heading, t, work) < _CHORD * size:
@@ -47,24 +50,24 @@ def newton(k, mu, kind, heading, eps, limit, rows, work):
             continue
         for i in range(3 * k):
             p[i] += t * work.step[i]
-        before = size
+        before1, before2, before3 = size, before1, before2
         size = _arrive(k, mu, kind, heading, eps, work)
-        if size < _FLOOR * _magnitude(k, work) and not size < 0.5 * before:
+        if size < _FLOOR * _magnitude(k, work) and not size < 0.5 * before1:
             break
-        if not size < _CHORD * before:
+        if not size < _CHORD * before1:
             rows = -1
     return count, rows
 
 
 @kernel
-def _search(k, mu, kind, heading, size, work):
-    """Return the first of t = 1, 1/2, ... that reduces |f| enough, else the best, 0 if none reduces it."""
-    t, best_t, best = 1.0, 0.0, size
+def _search(k, mu, kind, heading, bound, work):
+    """Return the first of t = 1, 1/2, ... with |f| well below the bound, else the best, 0 if none is below."""
+    t, best_t, best = 1.0, 0.0, bound
     while t >= _SHORTEST:
         trial = _mismatch(k, mu, kind, heading, t, work)
         if trial < best:
             best_t, best = t, trial
-        if trial < (1.0 - 0.1 * t) * size:
+        if trial < (1.0 - 0.1 * t) * bound:
             break
         t *= 0.5
     return best_t

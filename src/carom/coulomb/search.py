@@ -12,31 +12,25 @@ from carom.coulomb.residual import RELATIVE, ROUND_OFF
 from carom.jit import kernel
 
 _EPS = 1e-8  # weight of the proximal term
-_NEWTON = 30  # most iterations a try
+_NEWTON = 100  # most iterations a try
 _POLISH = 8  # most moves of the proximal centre
 _STARTS = 20  # most starting points
 _EXTRA = 2  # more of them where the tolerance is met, but not to round-off
 _SWEEPS = 25  # at first, twice as many each time, at most
 _MOST_SWEEPS = 200
 _ALTERNATIONS = 300
+_CONTINUE_FROM, _CONTINUE_BY = 0.3, 0.3  # weights of the proximal term in a continuation
 
 
 @kernel
 def search(k, mu, kind, heading, work):
     """Leave in work.p the best that is found from one starting point after the other; return iterations."""
     p, best = work.p, work.best
-    least, iterations, sweeps, last, start = math.inf, 0, _SWEEPS, _STARTS, 0
+    least, iterations, last, start = math.inf, 0, _STARTS, 0
     while start < last:
-        if start > 0 and start % 2 == 0:
-            sigma = 0.01 * 10.0 ** ((start // 2) % 3)
-            alternate(k, mu, kind, heading, sigma, _ALTERNATIONS, work)
-            iterations += _ALTERNATIONS
-        elif start > 0:
-            for i in range(sweeps):
-                sweep(work, k, mu, kind, heading, i % 2 == 1)
-            iterations += sweeps
-            sweeps = min(2 * sweeps, _MOST_SWEEPS)
-        count, r, goal, tolerance = _polished(k, mu, kind, heading, start == 0, work)
+        if start > 0:
+            iterations += _approach(k, mu, kind, heading, start, work)
+        count, r, goal, tolerance = _polished(k, mu, kind, heading, start, work)
         iterations += count
         if r < least:
             least = r
@@ -53,19 +47,41 @@ def search(k, mu, kind, heading, work):
 
 
 @kernel
-def _polished(k, mu, kind, heading, least_norm, work):
+def _approach(k, mu, kind, heading, start, work):
+    """Move work.p to another starting point for Newton; return iterations."""
+    if start % 2 == 1:
+        sweeps = min(_SWEEPS * 2 ** (start // 2), _MOST_SWEEPS)
+        for i in range(sweeps):
+            sweep(work, k, mu, kind, heading, i % 2 == 1)
+        return sweeps
+    sigma = 0.01 * 10.0 ** ((start // 2) % 3)
+    alternate(k, mu, kind, heading, sigma, _ALTERNATIONS, work)
+    total = _ALTERNATIONS
+    if start % 4 == 2:  # a strong proximal term, released step by step
+        eps = _CONTINUE_FROM
+        while eps > 10.0 * _EPS:
+            for i in range(3 * k):
+                work.centre[i] = work.p[i]
+            count, _ = newton(k, mu, kind, heading, eps, _NEWTON, False, -1, work)
+            total += count
+            eps *= _CONTINUE_BY
+    return total
+
+
+@kernel
+def _polished(k, mu, kind, heading, start, work):
     """Newton until the proximal term has no effect; return (iterations, residual, goal, tolerance).
 
-    The term is centred at 0 at first, for the solution of least norm, or at p; then it is moved
-    to the last solution until its bias is gone. work.p is the best of the rounds.
+    The term is centred at 0 in the first start, for the solution of least norm, then at p; and it is moved
+    to each new solution until its bias is gone. work.p is the best of the rounds.
     """
     p, kept = work.p, work.kept
     for i in range(3 * k):
-        work.centre[i] = 0.0 if least_norm else p[i]
+        work.centre[i] = p[i] if start > 0 else 0.0
     total, rows, least = 0, -1, math.inf
     goal, tolerance = 0.0, 0.0
     for _ in range(_POLISH):
-        count, rows = newton(k, mu, kind, heading, _EPS, _NEWTON, rows, work)
+        count, rows = newton(k, mu, kind, heading, _EPS, _NEWTON, start % 2 == 1, rows, work)
         total += count
         for i in range(k):
             n = 3 * i
