@@ -11,6 +11,7 @@ All contacts are treated alike, whatever their order.
 
 from __future__ import annotations
 
+from carom.coulomb import layout as o
 from carom.coulomb.cone import nearest, shift
 from carom.coulomb.newton import velocity
 from carom.coulomb.operators import factor_shifted, solve_shifted
@@ -20,30 +21,30 @@ _RELAXATION = 1.6
 
 
 @kernel
-def alternate(k, mu, kind, heading, sigma, limit, work):
-    """Iterate `limit` times from work.p."""
-    x, z, v = work.rhs, work.p, work.change
+def alternate(work, k, sigma, limit):
+    """Iterate `limit` times from p."""
+    x, z, v, c = work.vector[o.RHS], work.vector[o.P], work.vector[o.CHANGE], work.vector[o.C]
     factor_shifted(work, k, sigma)
-    velocity(k, work)
+    velocity(work, k)
     for i in range(3 * k):
-        v[i] = work.w[i]
+        v[i] = work.vector[o.VELOCITY, i]
     for i in range(k):
-        v[3 * i] += shift(kind[i], mu[i], heading[i, 0], heading[i, 1], v[3 * i + 1], v[3 * i + 2])
+        t = work.contact[i]
+        v[3 * i] += shift(t.kind, t.mu, t.h1, t.h2, v[3 * i + 1], v[3 * i + 2])
     for _ in range(limit):
         for i in range(3 * k):
-            x[i] = v[i] + sigma * z[i] - work.c[i]
+            x[i] = v[i] + sigma * z[i] - c[i]
         for i in range(k):
-            a = 3 * i
-            x[a] -= shift(kind[i], mu[i], heading[i, 0], heading[i, 1], v[a + 1], v[a + 2])
+            t, n = work.contact[i], 3 * i
+            x[n] -= shift(t.kind, t.mu, t.h1, t.h2, v[n + 1], v[n + 2])
         solve_shifted(work, k)
         for i in range(k):
-            a = 3 * i
-            for j in range(a, a + 3):
+            t, n = work.contact[i], 3 * i
+            for j in range(n, n + 3):
                 x[j] = _RELAXATION * x[j] + (1.0 - _RELAXATION) * z[j]
-            z[a], z[a + 1], z[a + 2] = nearest(
-                kind[i], mu[i], heading[i, 0], heading[i, 1],
-                x[a] - v[a] / sigma, x[a + 1] - v[a + 1] / sigma, x[a + 2] - v[a + 2] / sigma,
+            z[n], z[n + 1], z[n + 2] = nearest(
+                t.kind, t.mu, t.h1, t.h2,
+                x[n] - v[n] / sigma, x[n + 1] - v[n + 1] / sigma, x[n + 2] - v[n + 2] / sigma,
             )  # fmt: skip
-            for j in range(a, a + 3):
+            for j in range(n, n + 3):
                 v[j] += sigma * (z[j] - x[j])
-

@@ -10,6 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom.coulomb.layout import CONTACT, VECTORS
+from carom.system.arrays import table
+
 
 class Island(NamedTuple):
     """N bodies and k contacts between them: w = G v, v = c + M^-1 G^T p body by body."""
@@ -23,54 +26,72 @@ class Island(NamedTuple):
 class IslandGraph(NamedTuple):
     """Which blocks there are and in which order bodies are eliminated; made by `graph.island_graph`."""
 
-    order: np.ndarray  # (N,) bodies in the order of elimination
-    start: np.ndarray  # (N + 1,) first pair of each place in that order
+    place: np.recarray  # (N,) PLACE
     later: np.ndarray  # (pairs,) the body of a pair that is eliminated later
-    update: np.ndarray  # (N + 1,) first row of `target` of each place
-    target: np.ndarray  # (updates, 3) pair s, pair t, block from which below[s] right[t] is subtracted
-    place: np.ndarray  # (k, 2, 2) block of each contact for its bodies, -1 for the ground
+    target: (
+        np.ndarray
+    )  # (updates, 3) pair s, pair t, block from which below[s] right[t] is subtracted
+    corner: np.ndarray  # (k, 2, 2) block of each contact for its bodies, -1 for the ground
+
+
+#: a place in the order of elimination
+PLACE = [
+    ("body", "i8"),
+    ("pair", "i8"),  # its pairs: from, to
+    ("pairs_end", "i8"),
+    ("update", "i8"),  # its rows of `target`: from, to
+    ("updates_end", "i8"),
+]
+
+#: a contact and its bodies
+LINK = [
+    ("body", "i8", 2),
+    ("corner", "i8", (2, 2)),
+    ("rows", "f8", (2, 3, 6)),  # scaled G
+    ("response", "f8", (2, 6, 3)),  # M^-1 G^T
+    ("local", "f8", 6),  # upper triangle of the diagonal block of W
+    ("compliance", "f8", (3, 3)),  # inverse of J
+    ("stiffness", "f8", (3, 3)),  # J^-1 D
+]
+
+ISLAND_BODY = [("motion", "f8", 6), ("pivot", "i8", 6)]
 
 
 class IslandWork(NamedTuple):
-    """Work arrays of `carom.coulomb.solve_island.solve_island`, in scaled variables."""
+    """Work arrays of `carom.coulomb.solve_island.solve_island`."""
 
-    c: np.ndarray  # (3k,) vectors as in `carom.coulomb.layout.ConeWork`
-    p: np.ndarray
-    w: np.ndarray
-    f: np.ndarray
-    step: np.ndarray
-    change: np.ndarray
-    rhs: np.ndarray
-    centre: np.ndarray
-    kept: np.ndarray
-    best: np.ndarray
-    scale: np.ndarray  # (k,)
-    graph: IslandGraph
-    body: np.ndarray  # (k, 2)
-    rows: np.ndarray  # (k, 2, 3, 6) scaled G
-    response: np.ndarray  # (k, 2, 6, 3) M^-1 G^T
-    local: np.ndarray  # (k, 6) upper triangle of the diagonal block of W
-    compliance: np.ndarray  # (k, 3, 3) inverse of J = I - D + eps D, or of sigma
-    stiffness: np.ndarray  # (k, 3, 3) J^-1 D
+    address: int  # of the compiled search
+    contact: np.recarray  # (k,) CONTACT
+    link: np.recarray  # (k,) LINK
+    vector: np.ndarray  # (VECTORS, 3k)
+    count: np.ndarray  # (2,) int64
+    body: np.recarray  # (N,) ISLAND_BODY
+    place: np.recarray  # (N,) PLACE
+    later: np.ndarray
+    target: np.ndarray
     block: np.ndarray  # (N + 2 pairs, 6, 6)
-    pivot: np.ndarray  # (N, 6) int64
-    motion: np.ndarray  # (N, 6)
+    sums: np.ndarray  # (2, N, 6) for the residual
 
 
 def new_island_work(graph: IslandGraph, body: np.ndarray) -> IslandWork:
-    """Return work arrays for islands of one graph."""
-    k, bodies, pairs = len(body), len(graph.order), len(graph.later)
-    return IslandWork(
-        *(np.zeros(3 * k) for _ in range(10)),
-        scale=np.ones(k),
-        graph=graph,
-        body=body,
-        rows=np.zeros((k, 2, 3, 6)),
-        response=np.zeros((k, 2, 6, 3)),
-        local=np.zeros((k, 6)),
-        compliance=np.zeros((k, 3, 3)),
-        stiffness=np.zeros((k, 3, 3)),
-        block=np.zeros((bodies + 2 * pairs, 6, 6)),
-        pivot=np.zeros((bodies, 6), dtype=np.int64),
-        motion=np.zeros((bodies, 6)),
+    """Return work arrays for the island of contacts between `body` (k, 2) with that graph."""
+    k, bodies, pairs = len(body), len(graph.place), len(graph.later)
+    link = table(LINK, k)
+    link.body, link.corner = body, graph.corner
+    from carom.coulomb.search import with_address
+
+    return with_address(
+        IslandWork(
+            0,
+            table(CONTACT, k),
+            link,
+            np.zeros((VECTORS, 3 * k)),
+            np.zeros(2, dtype=np.int64),
+            table(ISLAND_BODY, bodies),
+            graph.place,
+            graph.later,
+            graph.target,
+            np.zeros((bodies + 2 * pairs, 6, 6)),
+            np.zeros((2, bodies, 6)),
+        )
     )

@@ -8,36 +8,40 @@ _LEAST = 1e-14  # pivots smaller than this are replaced by it
 
 
 @kernel
-def factor_blocks(graph, block, pivot):
+def factor_blocks(work):
     """Factor in place: right of the diagonal U, below it L with unit diagonal blocks."""
-    bodies, pairs = graph.order.shape[0], graph.later.shape[0]
-    for place in range(bodies):
-        b = graph.order[place]
-        _factor_diagonal(block[b], pivot[b])
-        for s in range(graph.start[place], graph.start[place + 1]):
-            _divide(block[bodies + pairs + s], block[b], pivot[b])
-        for t in range(graph.update[place], graph.update[place + 1]):
+    block, target = work.block, work.target
+    right = work.body.shape[0]
+    below = right + work.later.shape[0]
+    for n in range(work.place.shape[0]):
+        place = work.place[n]
+        diagonal, pivot = block[place.body], work.body[place.body].pivot
+        _factor_diagonal(diagonal, pivot)
+        for s in range(place.pair, place.pairs_end):
+            _divide(block[below + s], diagonal, pivot)
+        for t in range(place.update, place.updates_end):
             _subtract_product(
-                block[graph.target[t, 2]],
-                block[bodies + pairs + graph.target[t, 0]],
-                block[bodies + graph.target[t, 1]],
+                block[target[t, 2]], block[below + target[t, 0]], block[right + target[t, 1]]
             )
 
 
 @kernel
-def substitute_blocks(graph, block, pivot, x):
-    """Solve with the factors: x (N, 6) becomes the solution."""
-    bodies, pairs = graph.order.shape[0], graph.later.shape[0]
-    for place in range(bodies):
-        y = x[graph.order[place]]
-        for s in range(graph.start[place], graph.start[place + 1]):
-            _subtract_image(x[graph.later[s]], block[bodies + pairs + s], y)
-    for place in range(bodies - 1, -1, -1):
-        b = graph.order[place]
-        y = x[b]
-        for s in range(graph.start[place], graph.start[place + 1]):
-            _subtract_image(y, block[bodies + s], x[graph.later[s]])
-        _solve_diagonal(block[b], pivot[b], y)
+def substitute_blocks(work):
+    """Solve with the factors: the motion of the bodies becomes the solution."""
+    block, later = work.block, work.later
+    right = work.body.shape[0]
+    below = right + later.shape[0]
+    for n in range(work.place.shape[0]):
+        place = work.place[n]
+        y = work.body[place.body].motion
+        for s in range(place.pair, place.pairs_end):
+            _subtract_image(work.body[later[s]].motion, block[below + s], y)
+    for n in range(work.place.shape[0] - 1, -1, -1):
+        place = work.place[n]
+        body = work.body[place.body]
+        for s in range(place.pair, place.pairs_end):
+            _subtract_image(body.motion, block[right + s], work.body[later[s]].motion)
+        _solve_diagonal(block[place.body], body.pivot, body.motion)
 
 
 @kernel

@@ -1,4 +1,4 @@
-"""Projections on the set of allowed impulses of a contact, and a slope."""
+"""The allowed impulses of a contact: projections on them. A contact has the fields mu, kind, h1, h2."""
 
 from __future__ import annotations
 
@@ -9,17 +9,18 @@ from carom.jit import kernel
 
 
 @kernel
-def project(kind, mu, h1, h2, x0, x1, x2):
+def project(contact, x0, x1, x2):
     """Return the projection of Alart and Curnier: normal first, then on the disc of radius mu x_n.
 
     A solution is a fixed point p = project(p - rho w), for every rho > 0.
     """
+    kind, mu = contact.kind, contact.mu
     if not x0 > 0.0:
         if kind in (CONE, SLIDING):
             return 0.0, 0.0, 0.0
         return 0.0, x1, x2
     if kind == SLIDING:
-        return x0, -mu * x0 * h1, -mu * x0 * h2
+        return x0, -mu * x0 * contact.h1, -mu * x0 * contact.h2
     if kind == CONE:
         size = math.sqrt(x1 * x1 + x2 * x2)
         if size > mu * x0:
@@ -29,14 +30,15 @@ def project(kind, mu, h1, h2, x0, x1, x2):
 
 
 @kernel
-def slope(kind, mu, h1, h2, x0, x1, x2):
+def slope(contact, x0, x1, x2):
     """Return the derivative of `project`: d00, d10, d11, d12, d20, d21, d22 (the others are zero)."""
+    kind, mu = contact.kind, contact.mu
     if not x0 > 0.0:
         if kind in (CONE, SLIDING):
             return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         return 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0
     if kind == SLIDING:
-        return 1.0, -mu * h1, 0.0, 0.0, -mu * h2, 0.0, 0.0
+        return 1.0, -mu * contact.h1, 0.0, 0.0, -mu * contact.h2, 0.0, 0.0
     if kind == CONE:
         size = math.sqrt(x1 * x1 + x2 * x2)
         if size > mu * x0:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from carom.coulomb import layout as o
 from carom.coulomb.cone import slope
-from carom.coulomb.layout import STICKING
 from carom.coulomb.local import solve_local
 from carom.coulomb.lu import factor, substitute
 from carom.jit import kernel
@@ -25,24 +25,24 @@ def multiply(work, k, x, out):
 @kernel
 def magnitude(work, k):
     """Return the greatest (|W| |p|)_i / s_i."""
-    most = 0.0
+    most, p = 0.0, work.vector[o.P]
     for i in range(3 * k):
         row, total = work.W[i], 0.0
         for j in range(3 * k):
-            total += abs(row[j] * work.p[j])
-        most = max(most, total / work.scale[i // 3])
+            total += abs(row[j] * p[j])
+        most = max(most, total / work.contact[i // 3].scale)
     return most
 
 
 @kernel
-def sweep(work, k, mu, kind, heading, backward):
+def sweep(work, k, backward):
     """Solve each contact in turn, the others held."""
-    p = work.p
+    p, c = work.vector[o.P], work.vector[o.C]
     for place in range(k):
         i = k - 1 - place if backward else place
         n = 3 * i
         r0, r1, r2 = work.W[n], work.W[n + 1], work.W[n + 2]
-        c0, c1, c2 = work.c[n], work.c[n + 1], work.c[n + 2]
+        c0, c1, c2 = c[n], c[n + 1], c[n + 2]
         for j in range(3 * k):
             q = p[j]
             c0 += r0[j] * q
@@ -53,33 +53,29 @@ def sweep(work, k, mu, kind, heading, backward):
         c0 -= w00 * q0 + w01 * q1 + w02 * q2
         c1 -= w01 * q0 + w11 * q1 + w12 * q2
         c2 -= w02 * q0 + w12 * q1 + w22 * q2
-        found, x0, x1, x2 = solve_local(
-            kind[i], mu[i], heading[i, 0], heading[i, 1], w00, w01, w02, w11, w12, w22, c0, c1, c2
-        )
+        found, x0, x1, x2 = solve_local(work.contact[i], w00, w01, w02, w11, w12, w22, c0, c1, c2)
         if found:
             p[n], p[n + 1], p[n + 2] = x0, x1, x2
 
 
 @kernel
-def factor_newton(work, k, mu, kind, heading, eps):
-    """Factor I - D + D (W + eps); return its number of rows.
+def factor_newton(work, k, eps):
+    """Factor I - D + D (W + eps); count its rows.
 
     Where a contact is open D = 0 and the step is -f: those rows are left out.
     """
-    p, w, active, m = work.p, work.w, work.active, 0
+    p, w, active, m = work.vector[o.P], work.vector[o.VELOCITY], work.active, 0
     for i in range(k):
         n = 3 * i
-        if p[n] - w[n] > 0.0 or kind[i] == STICKING:
+        if p[n] - w[n] > 0.0 or work.contact[i].kind == o.STICKING:
             active[m], active[m + 1], active[m + 2] = n, n + 1, n + 2
             m += 3
     e = 1.0 - eps
     for place in range(0, m, 3):
         n = active[place]
-        i = n // 3
         d00, d10, d11, d12, d20, d21, d22 = slope(
-            kind[i], mu[i], heading[i, 0], heading[i, 1],
-            p[n] - w[n], p[n + 1] - w[n + 1], p[n + 2] - w[n + 2],
-        )  # fmt: skip
+            work.contact[n // 3], p[n] - w[n], p[n + 1] - w[n + 1], p[n + 2] - w[n + 2]
+        )
         r0, r1, r2 = work.W[n], work.W[n + 1], work.W[n + 2]
         j0, j1, j2 = work.matrix[place], work.matrix[place + 1], work.matrix[place + 2]
         for q in range(m):
@@ -96,30 +92,29 @@ def factor_newton(work, k, mu, kind, heading, eps):
         j2[place + 1] -= e * d21
         j2[place + 2] += 1.0 - e * d22
     factor(work.matrix, m, work.pivot, _LEAST_PIVOT)
-    return m
+    work.count[o.ROWS] = m
 
 
 @kernel
-def solve_newton(work, k, mu, kind, heading, m):
-    """Write the step for the f at p, w with the factors at hand, of m rows."""
-    p, w, f, step, rhs = work.p, work.w, work.f, work.step, work.rhs
-    moved = False
+def solve_newton(work, k):
+    """Write the step for the f at p, w with the factors at hand."""
+    p, w, f = work.vector[o.P], work.vector[o.VELOCITY], work.vector[o.F]
+    step, rhs = work.vector[o.STEP], work.vector[o.RHS]
+    opening, rows = False, work.count[o.ROWS]
     for j in range(3 * k):
         step[j] = -f[j]
-    for q in range(m):
+    for q in range(rows):
         step[work.active[q]] = 0.0
     for j in range(3 * k):
-        moved = moved or step[j] != 0.0
-    for place in range(0, m, 3):
+        opening = opening or step[j] != 0.0
+    for place in range(0, rows, 3):
         n = work.active[place]
         rhs[place], rhs[place + 1], rhs[place + 2] = -f[n], -f[n + 1], -f[n + 2]
-        if not moved:
+        if not opening:
             continue
-        i = n // 3
         d00, d10, d11, d12, d20, d21, d22 = slope(
-            kind[i], mu[i], heading[i, 0], heading[i, 1],
-            p[n] - w[n], p[n + 1] - w[n + 1], p[n + 2] - w[n + 2],
-        )  # fmt: skip
+            work.contact[n // 3], p[n] - w[n], p[n + 1] - w[n + 1], p[n + 2] - w[n + 2]
+        )
         r0, r1, r2 = work.W[n], work.W[n + 1], work.W[n + 2]
         s0, s1, s2 = 0.0, 0.0, 0.0  # what the opening contacts do
         for j in range(3 * k):
@@ -130,8 +125,8 @@ def solve_newton(work, k, mu, kind, heading, m):
         rhs[place] -= d00 * s0
         rhs[place + 1] -= d10 * s0 + d11 * s1 + d12 * s2
         rhs[place + 2] -= d20 * s0 + d21 * s1 + d22 * s2
-    substitute(work.matrix, m, work.pivot, rhs)
-    for q in range(m):
+    substitute(work.matrix, rows, work.pivot, rhs)
+    for q in range(rows):
         step[work.active[q]] = rhs[q]
 
 
@@ -149,4 +144,4 @@ def factor_shifted(work, k, sigma):
 @kernel
 def solve_shifted(work, k):
     """Rhs becomes (W + sigma)^-1 rhs."""
-    substitute(work.matrix, 3 * k, work.pivot, work.rhs)
+    substitute(work.matrix, 3 * k, work.pivot, work.vector[o.RHS])

@@ -10,7 +10,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from carom.coulomb.arrays import IslandGraph
+from carom.coulomb.arrays import PLACE, IslandGraph
+from carom.system.arrays import table
 
 
 def island_graph(bodies: int, body: np.ndarray) -> IslandGraph:
@@ -24,11 +25,7 @@ def _graph(bodies: int, raw: bytes) -> IslandGraph:
     order, later = _elimination(bodies, body)
     rank = np.empty(bodies, dtype=np.int64)
     rank[order] = np.arange(bodies)
-    start = np.concatenate([[0], np.cumsum([len(later[b]) for b in order])]).astype(np.int64)
-    pair = {}
-    for place, b in enumerate(order):
-        for s, other in enumerate(later[b]):
-            pair[b, other] = int(start[place]) + s
+    pair = {(b, i): n for n, (b, i) in enumerate((b, i) for b in order for i in later[b])}
     pairs = len(pair)
 
     def block(row, column):
@@ -38,25 +35,23 @@ def _graph(bodies: int, raw: bytes) -> IslandGraph:
             return bodies + pair[row, column]
         return bodies + pairs + pair[column, row]
 
-    target, update = [], [0]
-    for b in order:
-        for i in later[b]:
-            for j in later[b]:
-                target.append((pair[b, i], pair[b, j], block(i, j)))
-        update.append(len(target))
-    place = np.full((len(body), 2, 2), -1, dtype=np.int64)
+    place = table(PLACE, bodies)
+    target = []
+    for n, b in enumerate(order):
+        done = int(place.pairs_end[n - 1]) if n else 0
+        place[n] = (b, done, done + len(later[b]), len(target), len(target) + len(later[b]) ** 2)
+        target += [(pair[b, i], pair[b, j], block(i, j)) for i in later[b] for j in later[b]]
+    corner = np.full((len(body), 2, 2), -1, dtype=np.int64)
     for c, ends in enumerate(body.tolist()):
         for i in range(2):
             for j in range(2):
                 if ends[i] >= 0 and ends[j] >= 0:
-                    place[c, i, j] = block(ends[i], ends[j])
+                    corner[c, i, j] = block(ends[i], ends[j])
     return IslandGraph(
-        order=np.array(order, dtype=np.int64),
-        start=start,
-        later=np.array([i for b in order for i in later[b]], dtype=np.int64),
-        update=np.array(update, dtype=np.int64),
-        target=np.array(target, dtype=np.int64).reshape(-1, 3),
         place=place,
+        later=np.array([i for b in order for i in later[b]], dtype=np.int64),
+        target=np.array(target, dtype=np.int64).reshape(-1, 3),
+        corner=corner,
     )
 
 

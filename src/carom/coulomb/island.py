@@ -11,6 +11,7 @@ comes back in the next iteration, which starts from the true residual.
 
 from __future__ import annotations
 
+from carom.coulomb import layout as o
 from carom.coulomb.blocks import factor_blocks, substitute_blocks
 from carom.coulomb.cone import slope
 from carom.coulomb.local import solve_local
@@ -20,7 +21,7 @@ from carom.jit import kernel
 @kernel
 def multiply(work, k, x, out):
     """Add W x to `out`."""
-    _clear(work.motion)
+    _rest(work)
     for i in range(k):
         _push(work, i, x[3 * i], x[3 * i + 1], x[3 * i + 2])
     for i in range(k):
@@ -33,71 +34,68 @@ def multiply(work, k, x, out):
 @kernel
 def magnitude(work, k):
     """Return the greatest (|G| |M^-1 G^T| |p|)_i / s_i, at least (|W| |p|)_i / s_i."""
-    _clear(work.motion)
-    most = 0.0
+    _rest(work)
+    most, p = 0.0, work.vector[o.P]
     for i in range(k):
+        link = work.link[i]
         for side in range(2):
-            b = work.body[i, side]
-            if b >= 0:
-                Y, v = work.response[i, side], work.motion[b]
+            if link.body[side] >= 0:
+                Y, v = link.response[side], work.body[link.body[side]].motion
                 for r in range(6):
-                    v[r] += (
-                        abs(Y[r, 0] * work.p[3 * i]) + abs(Y[r, 1] * work.p[3 * i + 1])
-                        + abs(Y[r, 2] * work.p[3 * i + 2])
-                    )  # fmt: skip
+                    for a in range(3):
+                        v[r] += abs(Y[r, a] * p[3 * i + a])
     for i in range(k):
-        for r in range(3):
+        link = work.link[i]
+        for a in range(3):
             s = 0.0
             for side in range(2):
-                b = work.body[i, side]
-                if b >= 0:
+                if link.body[side] >= 0:
+                    G, v = link.rows[side], work.body[link.body[side]].motion
                     for j in range(6):
-                        s += abs(work.rows[i, side, r, j]) * work.motion[b, j]
-            most = max(most, s / work.scale[i])
+                        s += abs(G[a, j]) * v[j]
+            most = max(most, s / work.contact[i].scale)
     return most
 
 
 @kernel
-def sweep(work, k, mu, kind, heading, backward):
+def sweep(work, k, backward):
     """Solve each contact in turn, the others held."""
-    p = work.p
-    _clear(work.motion)
+    p, c = work.vector[o.P], work.vector[o.C]
+    _rest(work)
     for i in range(k):
         _push(work, i, p[3 * i], p[3 * i + 1], p[3 * i + 2])
     for place in range(k):
         i = k - 1 - place if backward else place
         n = 3 * i
-        W = work.local[i]
+        W = work.link[i].local
         q0, q1, q2 = p[n], p[n + 1], p[n + 2]
         u0, u1, u2 = _pull(work, i)
-        c0 = work.c[n] + u0 - (W[0] * q0 + W[1] * q1 + W[2] * q2)
-        c1 = work.c[n + 1] + u1 - (W[1] * q0 + W[3] * q1 + W[4] * q2)
-        c2 = work.c[n + 2] + u2 - (W[2] * q0 + W[4] * q1 + W[5] * q2)
+        c0 = c[n] + u0 - (W[0] * q0 + W[1] * q1 + W[2] * q2)
+        c1 = c[n + 1] + u1 - (W[1] * q0 + W[3] * q1 + W[4] * q2)
+        c2 = c[n + 2] + u2 - (W[2] * q0 + W[4] * q1 + W[5] * q2)
         found, x0, x1, x2 = solve_local(
-            kind[i], mu[i], heading[i, 0], heading[i, 1],
-            W[0], W[1], W[2], W[3], W[4], W[5], c0, c1, c2,
-        )  # fmt: skip
+            work.contact[i], W[0], W[1], W[2], W[3], W[4], W[5], c0, c1, c2
+        )
         if found:
             p[n], p[n + 1], p[n + 2] = x0, x1, x2
             _push(work, i, x0 - q0, x1 - q1, x2 - q2)
 
 
 @kernel
-def factor_newton(work, k, mu, kind, heading, eps):
-    """Factor for J = I - D + eps D, D the slope of the projection at p, w; return 0."""
-    p, w = work.p, work.w
+def factor_newton(work, k, eps):
+    """Factor for J = I - D + eps D, D the slope of the projection at p, w."""
+    p, w = work.vector[o.P], work.vector[o.VELOCITY]
+    e = 1.0 - eps
     for i in range(k):
-        n = 3 * i
+        contact, n = work.contact[i], 3 * i
         d00, d10, d11, d12, d20, d21, d22 = slope(
-            kind[i], mu[i], heading[i, 0], heading[i, 1],
-            p[n] - w[n], p[n + 1] - w[n + 1], p[n + 2] - w[n + 2],
-        )  # fmt: skip
-        e = 1.0 - eps
+            contact, p[n] - w[n], p[n + 1] - w[n + 1], p[n + 2] - w[n + 2]
+        )
+        # J is lower block-triangular: the normal first.
         j00, j10, j20 = 1.0 - e * d00, -e * d10, -e * d20
         j11, j12, j22 = 1.0 - e * d11, -e * d12, 1.0 - e * d22
-        # J is lower block-triangular: the normal first.
         det = j11 * j22 - j12 * j12
-        C, K = work.compliance[i], work.stiffness[i]
+        C, K = work.link[i].compliance, work.link[i].stiffness
         C[0, 0], C[0, 1], C[0, 2] = 1.0 / j00, 0.0, 0.0
         C[1, 1], C[1, 2], C[2, 1], C[2, 2] = j22 / det, -j12 / det, -j12 / det, j11 / det
         C[1, 0] = -(C[1, 1] * j10 + C[1, 2] * j20) / j00
@@ -107,46 +105,47 @@ def factor_newton(work, k, mu, kind, heading, eps):
             K[r, 1] = C[r, 1] * d11 + C[r, 2] * d21
             K[r, 2] = C[r, 1] * d12 + C[r, 2] * d22
     _assemble(work, k)
-    factor_blocks(work.graph, work.block, work.pivot)
-    return 0
+    factor_blocks(work)
+    work.count[o.ROWS] = 3 * k
 
 
 @kernel
-def solve_newton(work, k, mu, kind, heading, rows):
+def solve_newton(work, k):
     """Write the step for the f at hand."""
+    f, step, rhs = work.vector[o.F], work.vector[o.STEP], work.vector[o.RHS]
     for i in range(3 * k):
-        work.rhs[i] = -work.f[i]
+        rhs[i] = -f[i]
     solve_shifted(work, k)
     for i in range(3 * k):
-        work.step[i] = work.rhs[i]
+        step[i] = rhs[i]
 
 
 @kernel
 def factor_shifted(work, k, sigma):
     """Factor for W + sigma: J = sigma, D = I."""
     for i in range(k):
-        C, K = work.compliance[i], work.stiffness[i]
+        C, K = work.link[i].compliance, work.link[i].stiffness
         for r in range(3):
             for j in range(3):
                 C[r, j] = K[r, j] = 1.0 / sigma if r == j else 0.0
     _assemble(work, k)
-    factor_blocks(work.graph, work.block, work.pivot)
+    factor_blocks(work)
 
 
 @kernel
 def solve_shifted(work, k):
     """Rhs r becomes x of J x + D W x = r."""
-    x = work.rhs
-    _clear(work.motion)
+    x = work.vector[o.RHS]
+    _rest(work)
     for i in range(k):
-        n, C = 3 * i, work.compliance[i]
+        n, C = 3 * i, work.link[i].compliance
         r0, r1, r2 = x[n], x[n + 1], x[n + 2]
         for r in range(3):
             x[n + r] = C[r, 0] * r0 + C[r, 1] * r1 + C[r, 2] * r2
         _push(work, i, x[n], x[n + 1], x[n + 2])
-    substitute_blocks(work.graph, work.block, work.pivot, work.motion)
+    substitute_blocks(work)
     for i in range(k):
-        K = work.stiffness[i]
+        K = work.link[i].stiffness
         u0, u1, u2 = _pull(work, i)
         for r in range(3):
             x[3 * i + r] -= K[r, 0] * u0 + K[r, 1] * u1 + K[r, 2] * u2
@@ -156,47 +155,46 @@ def solve_shifted(work, k):
 def _assemble(work, k):
     """Write the blocks of I + M^-1 G^T K G."""
     for b in range(work.block.shape[0]):
+        one = 1.0 if b < work.body.shape[0] else 0.0
         A = work.block[b]
         for i in range(6):
             for j in range(6):
-                A[i, j] = 0.0
-    for b in range(work.motion.shape[0]):
-        for i in range(6):
-            work.block[b, i, i] = 1.0
+                A[i, j] = one if i == j else 0.0
     for i in range(k):
-        K = work.stiffness[i]
+        link = work.link[i]
+        K = link.stiffness
         if K[0, 0] == 0.0 and K[1, 1] == 0.0 and K[2, 2] == 0.0:
             continue  # open
         for side in range(2):
-            if work.body[i, side] < 0:
+            if link.body[side] < 0:
                 continue
-            G = work.rows[i, side]
+            G = link.rows[side]
             for j in range(6):
                 a = K[0, 0] * G[0, j] + K[0, 1] * G[1, j] + K[0, 2] * G[2, j]
                 b = K[1, 0] * G[0, j] + K[1, 1] * G[1, j] + K[1, 2] * G[2, j]
                 c = K[2, 0] * G[0, j] + K[2, 1] * G[1, j] + K[2, 2] * G[2, j]
                 for other in range(2):
-                    if work.body[i, other] < 0:
+                    if link.body[other] < 0:
                         continue
-                    Y, A = work.response[i, other], work.block[work.graph.place[i, other, side]]
+                    Y, A = link.response[other], work.block[link.corner[other, side]]
                     for r in range(6):
                         A[r, j] += Y[r, 0] * a + Y[r, 1] * b + Y[r, 2] * c
 
 
 @kernel
-def _clear(motion):
-    for b in range(motion.shape[0]):
+def _rest(work):
+    for b in range(work.body.shape[0]):
         for j in range(6):
-            motion[b, j] = 0.0
+            work.body[b].motion[j] = 0.0
 
 
 @kernel
 def _push(work, i, p0, p1, p2):
     """Add the motion that an impulse of contact i causes."""
+    link = work.link[i]
     for side in range(2):
-        b = work.body[i, side]
-        if b >= 0:
-            Y, v = work.response[i, side], work.motion[b]
+        if link.body[side] >= 0:
+            Y, v = link.response[side], work.body[link.body[side]].motion
             for r in range(6):
                 v[r] += Y[r, 0] * p0 + Y[r, 1] * p1 + Y[r, 2] * p2
 
@@ -204,11 +202,11 @@ def _push(work, i, p0, p1, p2):
 @kernel
 def _pull(work, i):
     """Return the velocity of contact i in the motion at hand."""
+    link = work.link[i]
     u0, u1, u2 = 0.0, 0.0, 0.0
     for side in range(2):
-        b = work.body[i, side]
-        if b >= 0:
-            G, v = work.rows[i, side], work.motion[b]
+        if link.body[side] >= 0:
+            G, v = link.rows[side], work.body[link.body[side]].motion
             for j in range(6):
                 u0 += G[0, j] * v[j]
                 u1 += G[1, j] * v[j]

@@ -1,10 +1,12 @@
-"""Codes of the solver of contacts, and its work arrays for a dense inverse mass."""
+"""Codes of the solver of contacts, and its work arrays for an inverse mass stored whole."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
 import numpy as np
+
+from carom.system.arrays import table
 
 # What a contact may do.
 CONE, SLIDING, STICKING = 0, 1, 2
@@ -22,34 +24,62 @@ MESSAGES = {
 }
 
 
-class ConeWork(NamedTuple):
-    """Work arrays of `carom.coulomb.solve.solve_cones` for up to K contacts, in scaled variables."""
+#: a contact
+CONTACT = [
+    ("mu", "f8"),
+    ("kind", "i8"),
+    ("h1", "f8"),  # direction of slip where that is known
+    ("h2", "f8"),
+    ("scale", "f8"),  # impulse / scaled impulse
+]
 
-    c: np.ndarray  # (3K,) velocity without impulses
-    p: np.ndarray  # (3K,) impulses: the iterate
-    w: np.ndarray  # (3K,) W p + c
-    f: np.ndarray  # (3K,) p - projection
-    step: np.ndarray  # (3K,)
-    change: np.ndarray  # (3K,) W step
-    rhs: np.ndarray  # (3K,) of a linear system
-    centre: np.ndarray  # (3K,) of the proximal term
-    kept: np.ndarray  # (3K,) best p of one start
-    best: np.ndarray  # (3K,) best p of all
-    scale: np.ndarray  # (K,) impulse of a contact / scaled impulse
+# Vectors of length 3K, in scaled variables.
+C = 0  # velocity without impulses
+P = 1  # impulses: the iterate
+VELOCITY = 2  # W p + c
+F = 3  # p - projection
+STEP = 4
+CHANGE = 5  # W step
+RHS = 6  # of a linear system
+CENTRE = 7  # of the proximal term
+KEPT = 8  # the best p of one start
+BEST = 9  # the best p of all
+VECTORS = 10
+
+
+# Numbers of a search.
+ITERATIONS = 0
+ROWS = 1  # of the factors at hand, -1 where there are none
+
+
+class ConeWork(NamedTuple):
+    """Work arrays of `carom.coulomb.solve.solve_cones` for up to K contacts."""
+
+    address: int  # of the compiled search
+    contact: np.recarray  # (K,) CONTACT
+    vector: np.ndarray  # (VECTORS, 3K)
+    count: np.ndarray  # (2,) int64
     W: np.ndarray  # (3K, 3K) scaled inverse mass: each diagonal block has trace 3
     matrix: np.ndarray  # (3K, 3K) of a linear system, and its factors
-    pivot: np.ndarray  # (3K,) rows exchanged
-    active: np.ndarray  # (3K,) rows of `matrix`
+    pivot: np.ndarray  # (3K,) int64, rows exchanged
+    active: np.ndarray  # (3K,) int64, rows of `matrix`
 
 
 def new_cone_work(capacity: int) -> ConeWork:
-    """Return work arrays for up to `capacity` contacts."""
-    n = 3 * max(capacity, 1)
-    return ConeWork(
-        *(np.zeros(n) for _ in range(10)),
-        scale=np.ones(n // 3),
-        W=np.zeros((n, n)),
-        matrix=np.zeros((n, n)),
-        pivot=np.zeros(n, dtype=np.int64),
-        active=np.zeros(n, dtype=np.int64),
+    """Return work arrays for up to `capacity` contacts; compiles the search if it is not on disk."""
+    from carom.coulomb.search import with_address
+
+    contacts = max(capacity, 1)
+    n = 3 * contacts
+    return with_address(
+        ConeWork(
+            0,
+            table(CONTACT, contacts),
+            np.zeros((VECTORS, n)),
+            np.zeros(2, dtype=np.int64),
+            np.zeros((n, n)),
+            np.zeros((n, n)),
+            np.zeros(n, dtype=np.int64),
+            np.zeros(n, dtype=np.int64),
+        )
     )

@@ -9,11 +9,13 @@ from carom.jit import kernel
 
 
 @kernel
-def solve_local(kind, mu, h1, h2, w00, w01, w02, w11, w12, w22, c0, c1, c2):
+def solve_local(contact, w00, w01, w02, w11, w12, w22, c0, c1, c2):
     """Return (found, p_n, p_1, p_2) of w = W p + c; W by its upper triangle."""
+    kind, mu = contact.kind, contact.mu
     if kind == CONE:
         return solve_one(w00, w01, w02, w11, w12, w22, c0, c1, c2, mu)
     if kind == SLIDING:
+        h1, h2 = contact.h1, contact.h2
         if c0 >= 0.0:
             return True, 0.0, 0.0, 0.0
         d = w00 - mu * (w01 * h1 + w02 * h2)

@@ -9,98 +9,107 @@ from __future__ import annotations
 
 import math
 
+from carom.coulomb import layout as o
 from carom.coulomb.cone import project
 from carom.coulomb.operators import factor, multiply, solve
 from carom.jit import kernel
 
+_LIMIT = 100
 _FLOOR = 1e-13  # below this part of 1 + |p| the iteration only polishes, while each step halves f
 _SHORTEST = 1e-3  # of the line search
 _CHORD = 0.1  # factors are kept for another step if the last one reduced f by this
 
 
 @kernel
-def newton(k, mu, kind, heading, eps, limit, rows, work):
-    """Iterate from work.p; return (iterations, rows of the factors at hand, or -1).
+def newton(work, k, eps, patient):
+    """Iterate from p; return how often.
 
-    `rows` is what the last call returned if its factors may be tried first, else -1.
+    A step must reduce |f|; or, if `patient`, the greatest of the last four: the way past a kink. Factors at
+    hand (work.count[ROWS] >= 0) are tried first.
     """
-    p, count = work.p, 0
-    size = _arrive(k, mu, kind, heading, eps, work)
-    while count < limit and size > 0.0:
+    p, step, change = work.vector[o.P], work.vector[o.STEP], work.vector[o.CHANGE]
+    count = 0
+    size = _arrive(work, k, eps)
+    before1, before2, before3 = 0.0, 0.0, 0.0
+    while count < _LIMIT and size > 0.0:
         count += 1
-        chord = rows >= 0
+        chord = work.count[o.ROWS] >= 0
         if not chord:
-            rows = factor(work, k, mu, kind, heading, eps)
-        solve(work, k, mu, kind, heading, rows)
+            factor(work, k, eps)
+        solve(work, k)
         for i in range(3 * k):
-            work.change[i] = eps * work.step[i]
-        multiply(work, k, work.step, work.change)
+            change[i] = eps * step[i]
+        multiply(work, k, step, change)
         t = 1.0
         if not chord:
-            t = _search(k, mu, kind, heading, size, work)
+            bound = max(size, before1, before2, before3) if patient else size
+            t = _search(work, k, bound)
             if t == 0.0:
                 break
-        elif not _mismatch(k, mu, kind, heading, t, work) < _CHORD * size:
-            rows = -1
-            if size < _FLOOR * _magnitude(k, work):
+        elif not _mismatch(work, k, t) < _CHORD * size:
+            work.count[o.ROWS] = -1
+            if size < _FLOOR * _magnitude(work, k):
                 break
             continue
         for i in range(3 * k):
-            p[i] += t * work.step[i]
-        before = size
-        size = _arrive(k, mu, kind, heading, eps, work)
-        if size < _FLOOR * _magnitude(k, work) and not size < 0.5 * before:
+            p[i] += t * step[i]
+        before1, before2, before3 = size, before1, before2
+        size = _arrive(work, k, eps)
+        if size < _FLOOR * _magnitude(work, k) and not size < 0.5 * before1:
             break
-        if not size < _CHORD * before:
-            rows = -1
-    return count, rows
+        if not size < _CHORD * before1:
+            work.count[o.ROWS] = -1
+    return count
 
 
 @kernel
-def _search(k, mu, kind, heading, size, work):
-    """Return the first of t = 1, 1/2, ... that reduces |f| enough, else the best, 0 if none reduces it."""
-    t, best_t, best = 1.0, 0.0, size
+def _search(work, k, bound):
+    """Return the first of t = 1, 1/2, ... with |f| well below the bound, else the best, 0 if none is below."""
+    t, best_t, best = 1.0, 0.0, bound
     while t >= _SHORTEST:
-        trial = _mismatch(k, mu, kind, heading, t, work)
+        trial = _mismatch(work, k, t)
         if trial < best:
             best_t, best = t, trial
-        if trial < (1.0 - 0.1 * t) * size:
+        if trial < (1.0 - 0.1 * t) * bound:
             break
         t *= 0.5
     return best_t
 
 
 @kernel
-def _arrive(k, mu, kind, heading, eps, work):
+def _arrive(work, k, eps):
     """Write w and f at p; return |f|."""
-    velocity(k, work)
+    velocity(work, k)
+    p, w, centre = work.vector[o.P], work.vector[o.VELOCITY], work.vector[o.CENTRE]
     for i in range(3 * k):
-        work.w[i] += eps * (work.p[i] - work.centre[i])
-    return _mismatch(k, mu, kind, heading, 0.0, work)
+        w[i] += eps * (p[i] - centre[i])
+    return _mismatch(work, k, 0.0)
 
 
 @kernel
-def velocity(k, work):
+def velocity(work, k):
     """Write w = W p + c."""
+    w, c = work.vector[o.VELOCITY], work.vector[o.C]
     for i in range(3 * k):
-        work.w[i] = work.c[i]
-    multiply(work, k, work.p, work.w)
+        w[i] = c[i]
+    multiply(work, k, work.vector[o.P], w)
 
 
 @kernel
-def _magnitude(k, work):
+def _magnitude(work, k):
     """Return 1 + the greatest scaled impulse: what round-off is relative to."""
-    most = 0.0
+    most, p = 0.0, work.vector[o.P]
     for i in range(3 * k):
-        most = max(most, abs(work.p[i]))
+        most = max(most, abs(p[i]))
     return 1.0 + most
 
 
 @kernel
-def _mismatch(k, mu, kind, heading, t, work):
+def _mismatch(work, k, t):
     """Return |f| at p + t step; f itself is written for t = 0."""
     total = 0.0
-    p, w, step, change = work.p, work.w, work.step, work.change
+    p, w, f = work.vector[o.P], work.vector[o.VELOCITY], work.vector[o.F]
+    step, change = work.vector[o.STEP], work.vector[o.CHANGE]
     for i in range(k):
         a, b, c = 3 * i, 3 * i + 1, 3 * i + 2
         p0, p1, p2 = p[a], p[b], p[c]
@@ -110,9 +119,9 @@ def _mismatch(k, mu, kind, heading, t, work):
             x0 += t * (step[a] - change[a])
             x1 += t * (step[b] - change[b])
             x2 += t * (step[c] - change[c])
-        y0, y1, y2 = project(kind[i], mu[i], heading[i, 0], heading[i, 1], x0, x1, x2)
+        y0, y1, y2 = project(work.contact[i], x0, x1, x2)
         f0, f1, f2 = p0 - y0, p1 - y1, p2 - y2
         total += f0 * f0 + f1 * f1 + f2 * f2
         if t == 0.0:
-            work.f[a], work.f[b], work.f[c] = f0, f1, f2
+            f[a], f[b], f[c] = f0, f1, f2
     return math.sqrt(total)

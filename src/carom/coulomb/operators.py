@@ -17,13 +17,13 @@ multiply = by_method({ConeWork: dense.multiply, IslandWork: island.multiply})
 #: magnitude(work, k): greatest (|W| |p|)_i, in units of velocity (unscaled but for gamma)
 magnitude = by_method({ConeWork: dense.magnitude, IslandWork: island.magnitude})
 
-#: sweep(work, k, mu, kind, heading, backward): each contact in turn solved exactly
+#: sweep(work, k, backward): each contact in turn solved exactly
 sweep = by_method({ConeWork: dense.sweep, IslandWork: island.sweep})
 
-#: factor(work, k, mu, kind, heading, eps): of I - D + D (W + eps) at p, w; D the slope of the projection
+#: factor(work, k, eps): of I - D + D (W + eps) at p, w; D the slope of the projection
 factor = by_method({ConeWork: dense.factor_newton, IslandWork: island.factor_newton})
 
-#: solve(work, k, mu, kind, heading): write the step, with the factors at hand
+#: solve(work, k): write the step, with the factors at hand
 solve = by_method({ConeWork: dense.solve_newton, IslandWork: island.solve_newton})
 
 #: factor_shifted(work, k, sigma): of W + sigma

@@ -104,7 +104,13 @@ def _with(sums, kind, mu, h1, h2, trace, p0, p1, p2, w0, w1, w2, c, size):
     worst, largest, greatest, penetration, violation, complementarity = sums
     rho = 3.0 / trace if trace > 0.0 else 1.0
     y0, y1, y2 = nearest(
-        kind, mu, h1, h2, p0 - rho * (w0 + shift(kind, mu, h1, h2, w1, w2)), p1 - rho * w1, p2 - rho * w2
+        kind,
+        mu,
+        h1,
+        h2,
+        p0 - rho * (w0 + shift(kind, mu, h1, h2, w1, w2)),
+        p1 - rho * w1,
+        p2 - rho * w2,
     )
     d0, d1, d2 = p0 - y0, p1 - y1, p2 - y2
     r = math.sqrt(d0 * d0 + d1 * d1 + d2 * d2) / rho

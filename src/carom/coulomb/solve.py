@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from carom.coulomb import layout as o
 from carom.coulomb.layout import BAD_INPUT, NOT_SOLVED, SOLVED
 from carom.coulomb.local import solve_local
 from carom.coulomb.residual import measure
@@ -24,29 +25,38 @@ def solve_cones(k, W, c, mu, kind, heading, p, scratch):
     """
     if k == 0:
         return SOLVED, 0.0, 0
-    gamma = _load(k, W, c, mu, heading, p, scratch)
+    gamma = _load(scratch, k, W, c, mu, kind, heading, p)
     if not math.isfinite(gamma):
         for i in range(3 * k):
             p[i] = 0.0
         return BAD_INPUT, math.inf, 0
-    iterations = 0
+    iterations, q = 0, scratch.vector[o.P]
     if k == 1:
-        w, b = scratch.W, scratch.c
-        _, scratch.p[0], scratch.p[1], scratch.p[2] = solve_local(
-            kind[0], mu[0], heading[0, 0], heading[0, 1],
-            w[0, 0], w[0, 1], w[0, 2], w[1, 1], w[1, 2], w[2, 2], b[0], b[1], b[2],
-        )  # fmt: skip
+        w, b = scratch.W, scratch.vector[o.C]
+        _, q[0], q[1], q[2] = solve_local(
+            scratch.contact[0],
+            w[0, 0],
+            w[0, 1],
+            w[0, 2],
+            w[1, 1],
+            w[1, 2],
+            w[2, 2],
+            b[0],
+            b[1],
+            b[2],
+        )
     else:
-        iterations = search(k, mu, kind, heading, scratch)
+        search(scratch.address, scratch, k)
+        iterations = scratch.count[o.ITERATIONS]
     for i in range(3 * k):
-        p[i] = gamma * scratch.scale[i // 3] * scratch.p[i]
+        p[i] = gamma * scratch.contact[i // 3].scale * q[i]
     residual, tolerance, _, _, _ = measure(k, W, c, mu, kind, heading, p)
     return SOLVED if residual <= tolerance else NOT_SOLVED, residual, iterations
 
 
 @kernel
-def _load(k, W, c, mu, heading, p, work):
-    """Write W, c and p in scaled variables; return gamma, or NaN if anything is not finite or mu < 0.
+def _load(work, k, W, c, mu, kind, heading, p):
+    """Write the problem in scaled variables; return gamma, or NaN if the input is bad.
 
     p_i = gamma s_i q_i, w_i = gamma v_i / s_i with s_i^2 = 3 / trace W_ii, so that each diagonal block
     has trace 3, and gamma such that the greatest entry of the scaled c is 1. One number for the three
@@ -56,34 +66,41 @@ def _load(k, W, c, mu, heading, p, work):
     for i in range(k):
         n = 3 * i
         trace = W[n, n] + W[n + 1, n + 1] + W[n + 2, n + 2]
-        work.scale[i] = math.sqrt(3.0 / trace) if trace > 0.0 else 1.0
-        total += mu[i] + heading[i, 0] + heading[i, 1]
-        if not mu[i] >= 0.0:
+        if not set_contact(work.contact[i], mu[i], kind[i], heading[i], trace):
             return math.nan
     for i in range(3 * k):
-        s = work.scale[i // 3]
+        s = work.contact[i // 3].scale
         row, out = W[i], work.W[i]
         for j in range(3 * k):
-            out[j] = s * row[j] * work.scale[j // 3]
+            out[j] = s * row[j] * work.contact[j // 3].scale
             total += out[j]
     if not math.isfinite(total):
         return math.nan
-    return scale_vectors(k, c, p, work)
+    return scale_vectors(work, k, c, p)
 
 
 @kernel
-def scale_vectors(k, c, p, work):
+def set_contact(contact, mu, kind, heading, trace):
+    """Write what a contact is and its scale; return whether that is sound."""
+    contact.mu, contact.kind, contact.h1, contact.h2 = mu, kind, heading[0], heading[1]
+    contact.scale = math.sqrt(3.0 / trace) if trace > 0.0 else 1.0
+    return mu >= 0.0 and math.isfinite(mu + heading[0] + heading[1] + trace)
+
+
+@kernel
+def scale_vectors(work, k, c, p):
     """Write c and p in scaled variables; return gamma, or NaN if c is not finite."""
     gamma = 0.0
     for i in range(3 * k):
-        work.c[i] = work.scale[i // 3] * c[i]
-        if not math.isfinite(c[i]):
+        scaled = work.contact[i // 3].scale * c[i]
+        work.vector[o.C, i] = scaled
+        if not math.isfinite(scaled):
             return math.nan
-        gamma = max(gamma, abs(work.c[i]))
+        gamma = max(gamma, abs(scaled))
     if gamma == 0.0:
         gamma = 1.0
     for i in range(3 * k):
-        work.c[i] /= gamma
-        q = p[i] / (work.scale[i // 3] * gamma)
-        work.p[i] = q if math.isfinite(q) else 0.0
+        work.vector[o.C, i] /= gamma
+        q = p[i] / (work.contact[i // 3].scale * gamma)
+        work.vector[o.P, i] = q if math.isfinite(q) else 0.0
     return gamma
