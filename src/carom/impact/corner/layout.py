@@ -1,0 +1,170 @@
+"""Settings, work arrays and results of impacts at a corner."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from carom.coulomb.layout import ConeWork
+from carom.system.arrays import table
+
+SIMULTANEOUS, SEQUENTIAL = 0, 1
+MULTIPLE = {"simultaneous": SIMULTANEOUS, "sequential": SEQUENTIAL}
+
+OK = 0
+BAD_INPUT = 1  #: a number is not finite, or a law or a coefficient is out of its range
+NOT_RESOLVED = 2  #: no method ended with contacts that do not approach
+
+MESSAGES = {
+    BAD_INPUT: "a number is not finite or out of its range",
+    NOT_RESOLVED: "no method ended with contacts that do not approach",
+}
+
+# Bits of `flags`.
+PLASTIC = 1  #: closed by the plastic event: trapped, or e = 0 everywhere
+FELL_BACK = 2  #: the law of Newton or Poisson was not met: the energetic law was used
+CAPPED = 4  #: the law asks for more than e_* = 1 somewhere: not met there, energy cannot grow
+FIXED = 8  #: passed with fixed steps
+EXACT = 16  #: contacts that move alike, resolved exactly as one
+REPELLED = 32  #: the impulse was scaled back by round-off, so that energy does not grow
+
+
+class CornerSettings(NamedTuple):
+    """Numbers that say how an impact at a corner is resolved."""
+
+    multiple: int = SIMULTANEOUS
+    rtol: float = 1e-8  # relative error of velocities
+    exponent: float = 1.0  # p of the normal law
+    adaptive_up_to: int = 4  # contacts (unlike ones); above: fixed steps
+    fixed_steps: int = 40  # a period of the fastest contact, above `adaptive_up_to`
+    max_events: int = 50  # changes of mode, a contact
+    max_steps: int = 2000  # a contact
+    max_rounds: int = 40  # of the outer iteration of Newton's and Poisson's law
+
+
+#: one contact, or a class of contacts that move alike, in scaled variables
+CONTACT = [
+    ("mu", "f8"),
+    ("restitution", "f8"),  # e as given
+    ("e", "f8"),  # energetic coefficient in use
+    ("root", "f8"),  # kappa^(1/p)
+    ("law", "i8"),
+    ("approach", "f8"),  # speed of approach before, 0 where there is none
+    ("members", "i8"),
+    # memory of the normal law
+    ("mode", "i8"),
+    ("d0", "f8"),  # depth at the last opening
+    ("most", "f8"),  # dm
+    ("slope", "f8"),  # N = (slope (d - rest))^p
+    ("rest", "f8"),
+    ("mark", "f8"),  # normal impulse at the last change of mode
+    # friction
+    ("sticks", "i8"),
+    ("grip", "f8"),  # mu times the greatest own inverse mass of W_tt
+    # sums
+    ("loading", "f8"),  # p_c
+    ("unloading", "f8"),  # p_r
+    ("absorbed", "f8"),  # work taken, >= 0
+    ("returned", "f8"),  # work given back
+    ("loss", "f8"),  # by friction
+]
+
+RESULT = [
+    ("energy_change", "f8"),
+    ("plastic_change", "f8"),  # part of it: by the plastic event
+    ("error", "f8"),  # estimated, of the velocities; 0 where not estimated
+    ("steps", "i8"),
+    ("events", "i8"),
+    ("rounds", "i8"),  # of the outer iteration
+    ("classes", "i8"),  # of contacts that move alike
+    ("flags", "i8"),
+]
+
+
+class CornerResult(NamedTuple):
+    """What `resolve_corner` writes, K contacts."""
+
+    impulse: np.ndarray  # (3K,)
+    velocity: np.ndarray  # (3K,) after
+    compression: np.ndarray  # (K,) work of the normal force while loading, <= 0
+    restitution: np.ndarray  # (K,) while unloading, >= 0
+    friction: np.ndarray  # (K,) energy dissipated by friction
+    summary: np.recarray  # (1,) RESULT
+
+
+class CornerWork(NamedTuple):
+    """Scratch of the passage of a group, K contacts: few arrays, as each costs at every call."""
+
+    contact: np.recarray  # (K,) CONTACT
+    saved: np.recarray  # (K,) CONTACT, at the first unloading
+    clock: np.recarray  # (1,) CLOCK
+    index: np.ndarray  # (9, 3K) rows below
+    matrix: np.ndarray  # (9, 3K, 3K) below
+    vector: np.ndarray  # (30, 3K) rows below
+    series: np.ndarray  # (13, ORDERS, 3K) below
+    single: np.ndarray  # result of one contact, as `carom.impact.layout` says
+
+
+class CornerUnits(NamedTuple):
+    """Addresses of what is compiled on its own, since it is called from several places."""
+
+    discs: int
+    step: int
+    layer: int
+    fixed: int
+    plastic: int
+    single: int
+
+
+class CornerScratch(NamedTuple):
+    """Scratch of `resolve_corner` for up to K contacts."""
+
+    work: CornerWork
+    cones: ConeWork
+    units: CornerUnits
+
+
+#: rows of `index`: class of a contact, first member of a class, its size, its group, members of
+#: a group, a stack, contacts of the discs, contacts that stick, pivots
+CLASS, FIRST, SIZE, GROUP, MEMBER, STACK, DISC, STUCK, PIVOT = range(9)
+#: `matrix`: W of all contacts, cleaned; W of the group, scaled; W_tt of the discs; Newton's matrix; what
+#: holds the sticking contacts, and two for it; the inverse Jacobian of the outer iteration; W of one contact
+CLEAN, MASS, DISCS, JACOBIAN, HOLDING, FACTOR, MIDDLE, INVERSE, SINGLE = range(9)
+#: rows of `vector`. Velocities before, impulse, velocity; the same at the end of a step
+U0, P, U, NEW_P, NEW_U, D, NEW_D, SAVED_P, SAVED_D, WHEN, SCRATCH, ERROR, TRY = range(13)
+#: of the discs: given c, friction T, w = A T + c, mismatch, step, trial, radii
+DISC_C, DISC_T, DISC_W, DISC_F, DISC_STEP, DISC_TRY, RADIUS = range(13, 20)
+#: of the series and of stick
+WEIGHT, SCALE, LEFT, STICK_T = range(20, 24)
+#: of the outer iteration: ln e_*, misses, new misses, step, change of misses, a product
+OUT_X, OUT_F, OUT_NEW, OUT_DX, OUT_DF, OUT_H = range(24, 30)
+#: first index of `series`: velocity, impulse, depth, squared slip, 1/slip, N/slip, the same times dt/dtau, N,
+#: friction loss, dtau/dt, dt/dtau; forces and rates at the stages of an implicit step
+S_U, S_P, S_D, S_Q, S_G, S_F, S_FS, S_N, S_LOSS, S_RATE, S_SIGMA, FORCE, STAGE = range(13)
+ORDERS = 26  # room for series
+
+#: where the passage of the layer stands
+CLOCK = [
+    ("step", "f8"),  # next step to try
+    ("saved_step", "f8"),
+    ("saved_idle", "i8"),
+    ("steps", "i8"),
+    ("events", "i8"),
+    ("idle", "i8"),  # changes of mode since time last went on
+    ("branched", "i8"),  # 1 once a state is saved at the first unloading
+    ("stiff", "i8"),  # implicit steps to take before series are tried again
+    ("saved_stiff", "i8"),
+    # what the units answer
+    ("error", "f8"),
+    ("change", "f8"),
+    ("code", "i8"),
+]
+
+
+def new_corner_result(capacity: int) -> CornerResult:
+    """Return arrays for the result of up to `capacity` contacts."""
+    k = max(int(capacity), 1)
+    return CornerResult(
+        np.zeros(3 * k), np.zeros(3 * k), np.zeros(k), np.zeros(k), np.zeros(k), table(RESULT, 1)
+    )

@@ -1,0 +1,17 @@
+"""One contact, exactly: the resolver of `carom.impact.resolve`, compiled on its own."""
+
+from __future__ import annotations
+
+from carom.dispatch import by_address
+from carom.impact.resolve import resolve
+from carom.jit import unit
+
+
+@unit
+def single_unit(clock, W, u, mu, e, law, out):
+    """Resolve one impact into `out`; its code goes to the clock."""
+    clock[0].code = resolve(W, u, mu, e, law, out)
+
+
+#: resolve_single(address, clock, W, u, mu, e, law, out)
+resolve_single = by_address(single_unit)

@@ -1,0 +1,240 @@
+"""An impact at a corner: several contacts closed while one or more of them strike (mathematics page, V)."""
+
+from __future__ import annotations
+
+import math
+
+from carom.impact import laws
+from carom.impact import layout as one
+from carom.impact.corner import alike
+from carom.impact.corner.layout import (
+    BAD_INPUT,
+    CLASS,
+    CLEAN,
+    EXACT,
+    FIRST,
+    GROUP,
+    MASS,
+    MEMBER,
+    NOT_RESOLVED,
+    OK,
+    REPELLED,
+    SEQUENTIAL,
+    SINGLE,
+    SIZE,
+    TRY,
+    U0,
+    P,
+)
+from carom.impact.corner.one import resolve_single
+from carom.impact.corner.passage import pass_group
+from carom.impact.corner.sequential import blow_by_blow
+from carom.jit import entry, kernel
+
+_TOUCHES = 1e-13  # approach below this part of the greatest velocity is none
+
+
+@entry
+def resolve_corner(k, W, u, mu, e, law, kappa, settings, scratch, out):
+    """Resolve an impact of `k` contacts; return OK, BAD_INPUT or NOT_RESOLVED (nothing is written then).
+
+    `W` (3K, 3K) symmetric inverse mass, often singular, and `u` (3K,) velocities before, rows (n, t1, t2) of each
+    contact, approach negative; of contacts that touch or are held u_n = 0. `mu`, `e`, `law` and
+    `kappa` (K,): friction, restitution, its law as in `carom.impact.laws`, stiffness (only ratios matter).
+    `settings`: `CornerSettings`; `scratch` from `new_corner_work`, `out` from `new_corner_result`, for K >= k.
+    """
+    scale = _check(k, W, u, mu, e, kappa)
+    if not scale >= 0.0:
+        return BAD_INPUT
+    result, index, clean = out.summary[0], scratch.work.index, scratch.work.matrix[CLEAN]
+    result.energy_change, result.plastic_change, result.error = 0.0, 0.0, 0.0
+    result.steps, result.events, result.rounds, result.classes, result.flags = 0, 0, 0, 0, 0
+    for i in range(k):
+        out.compression[i], out.restitution[i], out.friction[i] = 0.0, 0.0, 0.0
+    for i in range(3 * k):
+        out.impulse[i] = 0.0
+        out.velocity[i] = u[i]
+    approaches = False
+    for i in range(k):
+        approaches = approaches or u[3 * i] < -_TOUCHES * scale
+    if not approaches:
+        return OK
+    largest = alike.clean(k, W, mu, clean)
+    count = alike.find_classes(k, clean, u, mu, e, law, kappa, largest, scale, index)
+    result.classes = count
+    groups = alike.find_groups(k, count, clean, index)
+    code = OK
+    for g in range(groups):
+        code = max(code, _group(k, g, count, u, mu, e, law, kappa, scale, settings, scratch, out))
+    if code != OK:
+        return code
+    return _finish(k, W, u, scale, out)
+
+
+@kernel
+def _check(k, W, u, mu, e, kappa):
+    """Return the greatest velocity, or NaN where the input is unsound."""
+    total, scale = 0.0, 0.0
+    for a in range(3 * k):
+        row = W[a]
+        scale = max(scale, abs(u[a]))
+        total += u[a]
+        for b in range(3 * k):
+            total += row[b]
+    for i in range(k):
+        total += mu[i] + e[i] + kappa[i]
+        sound = mu[i] >= 0.0 and 0.0 <= e[i] <= 1.0 and kappa[i] > 0.0
+        if not (sound and W[3 * i, 3 * i] >= 0.0):
+            return math.nan
+    return scale if math.isfinite(total) else math.nan
+
+
+@kernel
+def _group(k, g, count, u, mu, e, law, kappa, scale, settings, scratch, out):
+    """Resolve the classes of group `g`; write impulses and works of their contacts."""
+    work = scratch.work
+    index, mass_matrix = work.index, work.matrix[MASS]
+    n, strikes = 0, False
+    for q in range(count):
+        if index[GROUP, q] == g:
+            index[MEMBER, n] = q
+            n += 1
+            strikes = strikes or u[3 * index[FIRST, q]] < -_TOUCHES * scale
+    if not strikes:
+        return OK
+    for a in range(n):
+        p = index[MEMBER, a]
+        for b in range(n):
+            q = index[MEMBER, b]
+            for r in range(3):
+                for s in range(3):
+                    mass_matrix[3 * a + r, 3 * b + s] = alike.class_coupling(
+                        k, work.matrix[CLEAN], index, p, q, r, s
+                    )
+    if n == 1:
+        i = index[FIRST, index[MEMBER, 0]]
+        return _exactly(k, i, u, mu, e, law, work, scratch.units, out)
+    mass, speed, rate = _fill(n, u, mu, e, law, kappa, scale, settings.exponent, work)
+    if not (mass > 0.0 and rate > 0.0):
+        return NOT_RESOLVED
+    summary = out.summary[0]
+    plastic, error = summary.plastic_change, summary.error
+    summary.plastic_change, summary.error = 0.0, 0.0
+    if settings.multiple == SEQUENTIAL:
+        blow_by_blow(n, work, scratch.cones, scratch.units, settings, summary)
+    else:
+        pass_group(n, work, scratch.cones, scratch.units, settings, summary)
+    energy = speed * speed / mass
+    for a in range(n):
+        q = index[MEMBER, a]
+        share = 1.0 / index[SIZE, q]
+        c = work.contact[a]
+        for i in range(k):
+            if index[CLASS, i] == q:
+                for r in range(3):
+                    out.impulse[3 * i + r] = work.vector[P, 3 * a + r] * share * speed / mass
+                out.compression[i] = -c.absorbed * share * energy
+                out.restitution[i] = c.returned * share * energy
+                out.friction[i] = c.loss * share * energy
+    summary.plastic_change = plastic + energy * summary.plastic_change
+    summary.error = max(error, speed * summary.error)
+    return OK
+
+
+@kernel
+def _fill(n, u, mu, e, law, kappa, scale, exponent, work):
+    """Scale the group and fill in its contacts; return the scales of W and u, and a positive rate."""
+    index, W = work.index, work.matrix[MASS]
+    mass, speed, most, stiff = 0.0, 0.0, 0.0, 0.0
+    for a in range(n):
+        i = index[FIRST, index[MEMBER, a]]
+        mass = max(mass, W[3 * a, 3 * a])
+        speed = max(speed, -u[3 * i])
+        for r in range(3 if mu[i] > 0.0 else 1):
+            most = max(most, abs(u[3 * i + r]))
+        stiff = max(stiff, kappa[i] * index[SIZE, index[MEMBER, a]] * W[3 * a, 3 * a])
+    if not (mass > 0.0 and stiff > 0.0):
+        return 0.0, 0.0, 0.0
+    speed = max(speed, 1e-3 * most)
+    for a in range(3 * n):
+        row = W[a]
+        for b in range(3 * n):
+            row[b] /= mass
+    for a in range(n):
+        q = index[MEMBER, a]
+        i = index[FIRST, q]
+        c = work.contact[a]
+        c.mu, c.restitution, c.law, c.members = mu[i], e[i], law[i], index[SIZE, q]
+        c.root = (kappa[i] * index[SIZE, q] * mass / stiff) ** (1.0 / exponent)
+        c.e = e[i]
+        c.grip = mu[i] * (W[3 * a + 1, 3 * a + 1] + W[3 * a + 2, 3 * a + 2])
+        for r in range(3):
+            work.vector[U0, 3 * a + r] = u[3 * i + r] / speed if r == 0 or mu[i] > 0.0 else 0.0
+        u_n = u[3 * i]
+        if abs(u_n) <= _TOUCHES * scale:
+            work.vector[U0, 3 * a] = 0.0
+        c.approach = max(0.0, -work.vector[U0, 3 * a])
+    return mass, speed, stiff
+
+
+@kernel
+def _exactly(k, i, u, mu, e, law, work, units, out):
+    """Resolve a group that is one contact, number `i` and those like it."""
+    index, W, before = work.index, work.matrix[SINGLE], work.vector[TRY]
+    q = index[CLASS, i]
+    for r in range(3):
+        before[r] = u[3 * i + r] if r == 0 or mu[i] > 0.0 else 0.0
+        for s in range(3):
+            W[r, s] = work.matrix[MASS, r, s]
+    single = work.single
+    clock = work.clock
+    resolve_single(units.single, clock, W, before, mu[i], e[i], law[i], single)
+    if clock[0].code != one.OK:
+        resolve_single(units.single, clock, W, before, mu[i], e[i], laws.STRONGE, single)
+    if clock[0].code != one.OK:
+        return NOT_RESOLVED
+    share = 1.0 / index[SIZE, q]
+    for j in range(k):
+        if index[CLASS, j] == q:
+            for r in range(3):
+                out.impulse[3 * j + r] = single[one.IMPULSE + r] * share
+            out.compression[j] = single[one.WORK_C] * share
+            out.restitution[j] = single[one.WORK_R] * share
+            out.friction[j] = single[one.FRICTION_LOSS] * share
+    out.summary[0].flags |= EXACT
+    out.summary[0].steps += int(single[one.STEPS])
+    return OK
+
+
+@kernel
+def _finish(k, W, u, scale, out):
+    """Write u+ = u + W P and the energy; take back what round-off added to it."""
+    n, result = 3 * k, out.summary[0]
+    P_, after = out.impulse, out.velocity
+    capped = (result.flags & EXACT) == 0
+    for turn in range(2):
+        energy, gain = 0.0, 0.0
+        for a in range(n):
+            row, total = W[a], u[a]
+            for b in range(n):
+                total += row[b] * P_[b]
+            after[a] = total
+            energy += 0.5 * P_[a] * (u[a] + total)
+            gain += P_[a] * total
+        result.energy_change = energy
+        if turn == 1 or not capped or not energy > 0.0 or not gain > 2.0 * energy:
+            break
+        for a in range(n):
+            P_[a] *= 1.0 - energy / gain
+        result.flags |= REPELLED
+    work, loss = 0.0, 0.0
+    for i in range(k):
+        work += out.compression[i] + out.restitution[i]
+        loss += out.friction[i]
+    exact = work - result.energy_change
+    for i in range(k):  # the ledger closes: friction has what the normal forces have not
+        if loss > 0.0 and exact > 0.0:
+            out.friction[i] *= exact / loss
+        elif not exact > 0.0:
+            out.friction[i] = 0.0
+    return OK
