@@ -85,6 +85,7 @@ def impact_table(run, rec) -> ImpactTable:
         compression_work=rows.compression_work.copy(),
         restitution_work=rows.restitution_work.copy(),
         friction_loss=rows.friction_loss.copy(),
+        together=rows.together.copy(),
     )
 
 

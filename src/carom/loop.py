@@ -50,6 +50,7 @@ class Controls(NamedTuple):
     max_cuts: int
     strike_at: int  # addresses of units
     hold_at: int
+    corner_at: int
     settle_at: int
     press_at: int
 
@@ -151,6 +152,7 @@ def run(system, method, controls, held, now, work, cluster, clocks, records, unt
                 )  # fmt: skip
                 closed = work.hit[0].closed
                 if work.hit[0].code != 0:
+                    search.pending, search.contact, search.horizon = STRIKE, c, horizon
                     return work.hit[0].code
                 if controls.layer_time == 1 and clock.struck > struck:
                     clock.spent += records.impact[struck].duration  # the position stays

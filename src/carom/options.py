@@ -30,6 +30,13 @@ class Options:
     tie_tolerance : float
         Points of a body whose gaps differ by less than this part of its size strike together, as
         their mean. Default 1e-9.
+    multiple : {"simultaneous", "sequential"}
+        Impacts while several points of the bodies are closed: their boundary layers are passed together
+        (default), or one blow after the other, the fastest first. (Mathematics page, V.)
+    corner_tolerance : float
+        Relative error of the velocities after a simultaneous impact. Default 1e-8.
+    corner_exponent : float
+        p of the normal force kappa d^p in a simultaneous impact: 1 (default), 1.5 is Hertz's.
     hold : bool
         Hold a contact when all its remaining bounces would end within the present step. Default True.
         With False, a bouncing body that comes to rest stops the run with a status.
@@ -66,6 +73,9 @@ class Options:
     add_layer_time: bool = False
     gap_tolerance: float = 1e-15
     tie_tolerance: float = 1e-9
+    multiple: str = "simultaneous"
+    corner_tolerance: float = 1e-8
+    corner_exponent: float = 1.0
     hold: bool = True
     rest_tolerance: float = 1e-9
     constraint_tolerance: float = 1e-8
@@ -91,6 +101,9 @@ class Options:
         check.integer("layer_steps", self.layer_steps, least=1)
         for name in ("max_iterations", "max_impacts_per_step", "max_cuts"):
             check.integer(name, getattr(self, name), least=1)
+        check.choice("multiple", self.multiple, ("simultaneous", "sequential"))
+        check.number("corner_tolerance", self.corner_tolerance, above=0.0, below=1.0)
+        check.number("corner_exponent", self.corner_exponent, least=1.0, most=3.0)
         for name in ("add_layer_time", "hold"):
             if not isinstance(getattr(self, name), bool):
                 raise ValueError(f"{name} must be True or False, got {getattr(self, name)!r}")

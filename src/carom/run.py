@@ -8,7 +8,9 @@ from carom import loop
 from carom.geometry import quaternion
 from carom.hold.lifecycle import hold_unit, settle_unit
 from carom.hold.press import press_unit
+from carom.impact.corner.layout import MULTIPLE, CornerSettings
 from carom.impact.strike import strike_unit
+from carom.impact.strike_several import corner_unit
 from carom.jit import address
 from carom.motion.explicit import constrained_unit, rk4
 from carom.motion.reactions import velocity_rows
@@ -39,6 +41,14 @@ def make_method(name: str, options: Options):
         options.max_iterations,
         *tableau,
     )
+
+
+def corner_settings(options: Options) -> CornerSettings:
+    """Return the settings of impacts of several points."""
+    return CornerSettings(
+        multiple=MULTIPLE[options.multiple], rtol=options.corner_tolerance,
+        exponent=options.corner_exponent,
+    )  # fmt: skip
 
 
 class Run:
@@ -72,6 +82,7 @@ class Run:
             max_cuts=options.max_cuts,
             strike_at=0,
             hold_at=0,
+            corner_at=0,
             settle_at=0,
             press_at=0,
         )
@@ -80,7 +91,7 @@ class Run:
         system = with_address(system, self.now, self.work)
         self.compiled = self.compiled._replace(system=system)
         check_start(scene, self.compiled, self.work, options)
-        self.cluster = new_cluster(system)
+        self.cluster = new_cluster(system, corner_settings(options))
         self.clock = r.new_clock()
         self.records = r.new_records(system, -(-steps // save_every) + 1, 512)
         if scene.contacts:
@@ -114,7 +125,10 @@ class Run:
 
     def find_hold(self) -> None:
         """Compile what a held contact needs: only when the first one is to be held."""
+        from carom.coulomb.search import with_address as with_search
+
         system, held, now = self.compiled.system, self.held, self.now
+        self.cluster = self.cluster._replace(cone=with_search(self.cluster.cone))
         scratch = (self.cluster, self.work, self.clock)
         hold = address(hold_unit, system, self.controls, held, 0, now, 0.0, *scratch, self.records)
         settle = address(
@@ -124,6 +138,14 @@ class Run:
         self.controls = self.controls._replace(
             hold_at=hold or 1, settle_at=settle, press_at=press
         )
+
+    def find_corner(self) -> None:
+        """Compile the impact of several points: only when the first one is to be resolved."""
+        from carom.impact.corner.work import with_units
+
+        self.cluster = self.cluster._replace(corner=with_units(self.cluster.corner))
+        found = address(corner_unit, 1, self.cluster)
+        self.controls = self.controls._replace(corner_at=found or 1)
 
     @property
     def steps_done(self) -> int:
@@ -142,6 +164,8 @@ class Run:
             elif code == r.NEEDS_HOLD:
                 self.find_constrained_step()
                 self.find_hold()
+            elif code == r.NEEDS_CORNER:
+                self.find_corner()
             else:
                 return Status(code)
 

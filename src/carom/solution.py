@@ -173,10 +173,17 @@ class Solution:
         ------
         IndexError
             If there is no impact k.
+        ValueError
+            If impact k is a part of one of several points.
         """
         from carom.impact.history import impact_layer
 
         record = self.impacts[k]
+        if record.together > 1:
+            raise ValueError(
+                f"impact {k} was resolved together with others ({record.together} closed points), and has "
+                "no boundary layer of its own; look at one with impacts.together == 1"
+            )
         contacts = self._run.compiled.system.contacts
         return impact_layer(
             record.inverse_mass, record.relative_velocity_before, record.friction,

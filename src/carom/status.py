@@ -16,8 +16,8 @@ class Status(IntEnum):
     RETURN_MAP_FAILED = 5
     IMPACT_FAILED = 6
     CONSTRAINTS_LOST = 7
-    CORNER = 8
     INTERRUPTED = 9
+    TOO_MANY_POINTS = 10
 
     @property
     def message(self) -> str:
@@ -55,9 +55,8 @@ _MESSAGES = {
         "The bilateral constraints could not be met at the end of a step: the mechanism is in a "
         "position that it cannot leave, or the step is too large. Take a smaller step."
     ),
-    Status.CORNER: (
-        "A body that is held by one contact was struck at another, and the blows pass between them "
-        "without end (a corner of the manifold). This version resolves one contact at a time."
+    Status.TOO_MANY_POINTS: (
+        "More than 64 points of a group of joined bodies are closed at once. Give the shapes fewer vertices."
     ),
     Status.INTERRUPTED: "The run was interrupted; the solution holds what was computed until then.",
 }

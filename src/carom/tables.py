@@ -31,6 +31,7 @@ class ImpactRecord(NamedTuple):
     compression_work: float  #: of the normal force [J]
     restitution_work: float  #: of the normal force [J]
     friction_loss: float  #: [J]
+    together: int  #: points that were resolved together, each with a row of its own; 1 for most
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -54,6 +55,7 @@ class ImpactTable:
     compression_work: np.ndarray
     restitution_work: np.ndarray
     friction_loss: np.ndarray
+    together: np.ndarray
 
     def __len__(self) -> int:
         return len(self.time)

@@ -69,17 +69,20 @@ def new_cone_work(capacity: int) -> ConeWork:
     """Return work arrays for up to `capacity` contacts; compiles the search if it is not on disk."""
     from carom.coulomb.search import with_address
 
+    return with_address(cone_arrays(capacity))
+
+
+def cone_arrays(capacity: int) -> ConeWork:
+    """Return work arrays that do not have the address of the search yet."""
     contacts = max(capacity, 1)
     n = 3 * contacts
-    return with_address(
-        ConeWork(
-            0,
-            table(CONTACT, contacts),
-            np.zeros((VECTORS, n)),
-            np.zeros(2, dtype=np.int64),
-            np.zeros((n, n)),
-            np.zeros((n, n)),
-            np.zeros(n, dtype=np.int64),
-            np.zeros(n, dtype=np.int64),
-        )
+    return ConeWork(
+        0,
+        table(CONTACT, contacts),
+        np.zeros((VECTORS, n)),
+        np.zeros(2, dtype=np.int64),
+        np.zeros((n, n)),
+        np.zeros((n, n)),
+        np.zeros(n, dtype=np.int64),
+        np.zeros(n, dtype=np.int64),
     )

@@ -20,7 +20,7 @@ from carom.motion.forces import potential_energy
 from carom.motion.project import project_velocity
 from carom.motion.three_field import ThreeField
 from carom.system.notes import begin_event, end_event
-from carom.system.records import IMPACT
+from carom.system.records import IMPACT, NEEDS_CORNER
 
 LOCATE, WORK = 0, 2
 RETURN_MAP_FAILED, IMPACT_FAILED, TOO_MANY_POINTS = 5, 6, 10
@@ -74,11 +74,15 @@ def strike_unit(method, system, controls, held, c, state, cluster, work, clocks,
             approach = min(approach, u)
     if approach < 0.0:
         hit.closed = k
+        single = as_one(system, k, state, cluster, work)
+        if not single and controls.corner_at == 0:
+            hit.code = NEEDS_CORNER
+            return
         begin_event(c, cluster.seats[0].feature, state, clock, records)
-        if as_one(system, k, state, cluster, work):
+        if single:
             strike_one(method, system, controls, c, state, work, clock, records)
         else:
-            strike_several(system, controls, k, state, cluster, work, clock, records)
+            strike_several(system, controls, c, k, state, cluster, work, clock, records)
         if hit.code != 0:
             return
         if system.bodies[contact.body].isolated == 0:

@@ -1,46 +1,71 @@
-"""An impact where several points are closed."""
+"""An impact where several points are closed: a corner of the manifold, resolved for all of them together."""
 
 from __future__ import annotations
 
 from carom.contact.gap import slow
-from carom.impact import layout
-from carom.impact.resolve import resolve
-from carom.impact.write import write_impact
-from carom.jit import kernel
-from carom.motion.contact_point import (
-    add_velocity,
-    contact_velocity,
-    copy_point,
-    effective_inverse_mass,
-    spread,
-)
+from carom.dispatch import by_address
+from carom.impact.corner.layout import OK
+from carom.impact.corner.resolve import resolve_corner
+from carom.jit import kernel, unit
+from carom.motion.contact_point import add_velocity, spread
+from carom.motion.several import inverse_masses, velocities
 
 IMPACT_FAILED = 6
 
 
+@unit
+def corner_unit(k, cluster):
+    """Resolve the impact that stands in the cluster; its code goes to the clock of the scratch."""
+    cluster.corner.work.clock[0].code = resolve_corner(
+        k, cluster.W, cluster.u, cluster.mu, cluster.e, cluster.law, cluster.kappa,
+        cluster.settings, cluster.corner, cluster.result,
+    )  # fmt: skip
+
+
+#: at_corner(address, k, cluster)
+at_corner = by_address(corner_unit)
+
+
 @kernel
-def strike_several(system, controls, k, state, cluster, work, clock, records):
-    """Resolve the blows one after the other, the fastest first, until no point approaches."""
-    hit, point = work.hit[0], work.point[0]
-    for _ in range(200):
-        worst, which = 0.0, -1
-        for i in range(k):
-            contact = system.contacts[cluster.seats[i].contact]
-            u = contact_velocity(cluster.points[i], state)[0]
-            if u < worst and u < -slow(contact, state):
-                worst, which = u, i
-        if which < 0 or clock.struck >= records.impact.shape[0] - 1:
-            return
-        c = cluster.seats[which].contact
-        contact = system.contacts[c]
-        copy_point(cluster.points[which], point)
-        effective_inverse_mass(system, point, state, work, hit.W)
-        hit.u[0], hit.u[1], hit.u[2] = contact_velocity(point, state)
-        e, law = contact.restitution, contact.law
-        if resolve(hit.W, hit.u, contact.friction, e, law, hit.out) != layout.OK:
-            hit.code = IMPACT_FAILED
-            return
-        write_impact(contact, c, state, point, hit, clock, records)
-        out, P = hit.out, layout.IMPULSE
-        spread(system, point, state, out[P], out[P + 1], out[P + 2], work)
-        add_velocity(system, point, work, state)
+def strike_several(system, controls, c, k, state, cluster, work, clock, records):
+    """Resolve the impact of all k closed points; add their impulses, write a row for each that has one."""
+    hit, u = work.hit[0], cluster.u
+    inverse_masses(system, k, cluster.points, state, work, cluster.W)
+    velocities(k, cluster.points, state, u)
+    for i in range(k):
+        contact = system.contacts[cluster.seats[i].contact]
+        if abs(u[3 * i]) <= slow(contact, state):
+            u[3 * i] = 0.0  # touching, not striking
+        cluster.mu[i], cluster.e[i] = contact.friction, contact.restitution
+        cluster.law[i], cluster.kappa[i] = contact.law, contact.stiffness
+    at_corner(controls.corner_at, k, cluster)
+    if cluster.corner.work.clock[0].code != OK:
+        hit.code = IMPACT_FAILED
+        return
+    P = cluster.result.impulse
+    for i in range(k):
+        n, t1, t2 = P[3 * i], P[3 * i + 1], P[3 * i + 2]
+        if n != 0.0:
+            write_share(i, k, state, cluster, clock, records)
+            spread(system, cluster.points[i], state, n, t1, t2, work)
+            add_velocity(system, cluster.points[i], work, state)
+
+
+@kernel
+def write_share(i, k, state, cluster, clock, records):
+    """Write the part of point i in an impact of k points."""
+    row, point, result = records.impact[clock.struck], cluster.points[i], cluster.result
+    x, u = state[point.a].x, cluster.u
+    row.time, row.contact, row.together = clock.now, cluster.seats[i].contact, k
+    for r in range(3):
+        row.point[r] = x[r] + point.arm_a[r]
+        row.before[r], row.after[r] = u[3 * i + r], result.velocity[3 * i + r]
+        row.impulse[r] = result.impulse[3 * i + r]
+        for s in range(3):
+            row.W[r, s] = cluster.W[3 * i + r, 3 * i + s]
+    row.compression_work, row.restitution_work = result.compression[i], result.restitution[i]
+    row.friction_loss = result.friction[i]
+    row.energy_change = result.compression[i] + result.restitution[i] - result.friction[i]
+    row.phases, row.duration = 0, 0.0
+    clock.impacts += row.energy_change
+    clock.struck += 1

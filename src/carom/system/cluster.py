@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from carom.coulomb.layout import new_cone_work
+from carom.coulomb.layout import ConeWork, cone_arrays
+from carom.impact.corner.layout import (
+    CornerResult,
+    CornerScratch,
+    CornerSettings,
+    corner_arrays,
+    new_corner_result,
+)
 from carom.system.arrays import POINT, STATE, System, table
 
 #: most points that are solved for together
@@ -35,6 +42,9 @@ class Cluster(NamedTuple):
     old: np.ndarray  # p of the last round
     L: np.ndarray  # (3K, 3K) factor
     mu: np.ndarray  # (K,)
+    e: np.ndarray  # (K,)
+    law: np.ndarray  # (K,)
+    kappa: np.ndarray  # (K,)
     kind: np.ndarray  # (K,) of `carom.coulomb`
     heading: np.ndarray  # (K, 2)
     rows: np.ndarray  # (K,) rows of each point that the return to the surface uses
@@ -42,10 +52,13 @@ class Cluster(NamedTuple):
     member: np.ndarray  # (N,) bodies of the group
     flight: np.recarray  # (N,) STATE at the end of the step without the contacts
     rounds: np.ndarray  # (2,) rounds of steps, steps
-    cone: Any
+    cone: ConeWork
+    corner: CornerScratch
+    settings: CornerSettings
+    result: CornerResult
 
 
-def new_cluster(system: System) -> Cluster:
+def new_cluster(system: System, settings: CornerSettings) -> Cluster:
     """Return the scratch for the largest group of `system`."""
     n, count = system.bodies.size, np.zeros(system.bodies.size + 1, dtype=np.int64)
     np.add.at(count, system.contacts.group, system.contacts.last - system.contacts.first)
@@ -61,6 +74,9 @@ def new_cluster(system: System) -> Cluster:
         old=np.zeros(3 * k),
         L=np.zeros((3 * k, 3 * k)),
         mu=np.zeros(k),
+        e=np.zeros(k),
+        law=np.zeros(k, dtype=np.int64),
+        kappa=np.zeros(k),
         kind=np.zeros(k, dtype=np.int64),
         heading=np.zeros((k, 2)),
         rows=np.zeros(k, dtype=np.int64),
@@ -68,5 +84,8 @@ def new_cluster(system: System) -> Cluster:
         member=np.zeros(n, dtype=np.int64),
         flight=table(STATE, n),
         rounds=np.zeros(64, dtype=np.int64),
-        cone=new_cone_work(k),
+        cone=cone_arrays(k),
+        corner=corner_arrays(k),
+        settings=settings,
+        result=new_corner_result(k),
     )

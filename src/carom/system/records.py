@@ -61,6 +61,7 @@ IMPACTS = [
     ("impulse", "f8", 3),
     ("energy_change", "f8"),
     ("duration", "f8"),
+    ("together", "i8"),  # closed points that were resolved together
     ("compression_work", "f8"),
     ("restitution_work", "f8"),
     ("friction_loss", "f8"),
@@ -81,6 +82,7 @@ SNAPSHOT = [
 
 MARGIN = 260  # rows that one turn of the loop may write
 FULL = 100  # a record is full: the caller makes it longer and goes on
+NEEDS_CORNER = 102  # several points strike: the same
 NEEDS_HOLD = 101  # a contact is to be held: the caller compiles what that needs and goes on
 
 

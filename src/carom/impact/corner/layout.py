@@ -6,7 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom.coulomb.layout import ConeWork
+from carom.coulomb.layout import ConeWork, cone_arrays
+from carom.impact import layout as one
 from carom.system.arrays import table
 
 SIMULTANEOUS, SEQUENTIAL = 0, 1
@@ -168,3 +169,20 @@ def new_corner_result(capacity: int) -> CornerResult:
     return CornerResult(
         np.zeros(3 * k), np.zeros(3 * k), np.zeros(k), np.zeros(k), np.zeros(k), table(RESULT, 1)
     )
+
+
+def corner_arrays(capacity: int) -> CornerScratch:
+    """Return scratch for up to `capacity` contacts that does not have the addresses of its units yet."""
+    k = max(int(capacity), 1)
+    n = 3 * k
+    work = CornerWork(
+        contact=table(CONTACT, k),
+        saved=table(CONTACT, k),
+        clock=table(CLOCK, 1),
+        index=np.zeros((9, n), dtype=np.int64),
+        matrix=np.zeros((9, n, n)),
+        vector=np.zeros((30, n)),
+        series=np.zeros((13, ORDERS, n)),
+        single=np.zeros(one.SIZE),
+    )
+    return CornerScratch(work, cone_arrays(k), CornerUnits(0, 0, 0, 0, 0, 0))
