@@ -61,3 +61,22 @@ def find_held_event(system, held, end, work):
         ):
             return CONE, i, 0.0, 0.0
     return GAP, -1, 0.0, 0.0
+
+
+@inlined
+def turned(system, held, end, work):
+    """Return whether slip of a point has turned by more than 60 degrees within the step.
+
+    Friction turns with it; no method keeps its order over such a step.
+    """
+    for i in range(held.count[0]):
+        hold = held.points[i]
+        if hold.mode == SLIP and hold.rest == 0 and hold.several == 0:
+            d1, d2 = hold.heading[0], hold.heading[1]
+            point = work.point[0]
+            place(system.contacts[hold.contact], hold.point, end, point)
+            _, u1, u2 = contact_velocity(point, end)
+            along, square = u1 * d1 + u2 * d2, u1 * u1 + u2 * u2
+            if along * along < 0.25 * square * (d1 * d1 + d2 * d2):
+                return True
+    return False

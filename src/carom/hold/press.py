@@ -24,7 +24,7 @@ from carom.coulomb.layout import CONE
 from carom.coulomb.solve import solve_cones
 from carom.dispatch import by_address
 from carom.geometry.rotation import exp, log, multiply, normalize, rotate, rotate_back
-from carom.hold.forces import pose_forces, predict_stop, set_heading, solve_forces
+from carom.hold.forces import pose_forces, predict_stop, solve_forces
 from carom.hold.surface import onto_surfaces
 from carom.jit import kernel, unit
 from carom.motion.acceleration import OPEN, SLIP, STICK
@@ -85,12 +85,9 @@ def press_group(system, controls, held, group, start, h, end, cluster, work, clo
             place(system.contacts[seat.contact], seat.point, work.stage, cluster.points[i])
         inverse_masses(system, k, cluster.points, work.stage, work, cluster.W)
         impose(system, held, k, h, end, count, loaded, cluster, work)
-        for i in range(size):
-            w = cluster.u[i]
-            for j in range(size):
-                w -= cluster.W[i, j] * cluster.p[j]
-            cluster.c[i], cluster.old[i] = w, cluster.p[i]
-        choose(system, held, k, start, cluster, work)
+        for m in range(count):
+            mean_velocity(start[cluster.member[m]], end[cluster.member[m]], work.stage[cluster.member[m]])
+        pose(k, start, cluster, work)
         solve_cones(
             k, cluster.W, cluster.c, cluster.mu, cluster.kind, cluster.heading, cluster.p,
             cluster.cone,
@@ -142,8 +139,9 @@ def begin(system, held, k, start, h, end, count, loaded, cluster, work):
         _, u1, u2 = contact_velocity(cluster.points[i], start)
         speed = math.sqrt(u1 * u1 + u2 * u2)
         slips = hold.mode == SLIP and speed > 0.0
-        hold.heading[0] = u1 / speed if slips else 0.0
-        hold.heading[1] = u2 / speed if slips else 0.0
+        cluster.heading[i, 0] = u1 / speed if slips else 0.0
+        cluster.heading[i, 1] = u2 / speed if slips else 0.0
+        cluster.kind[i] = CONE
         cluster.stopped[i] = 0 if slips and hold.stop > h * (1.0 + 1e-9) else 1
 
 
@@ -158,6 +156,13 @@ def halfway(start, end, out):
     Q[0], Q[1], Q[2], Q[3] = normalize(q[0], q[1], q[2], q[3])
     for k in range(3):
         out.x[k] = 0.5 * (start.x[k] + end.x[k])
+    mean_velocity(start, end, out)
+
+
+@kernel
+def mean_velocity(start, end, out):
+    """Write the mean of the velocities of a body."""
+    for k in range(3):
         out.v[k] = 0.5 * (start.v[k] + end.v[k])
         out.w[k] = 0.5 * (start.w[k] + end.w[k])
 
@@ -221,23 +226,29 @@ def add_difference(system, h, count, cluster, work):
 
 
 @kernel
-def choose(system, held, k, start, cluster, work):
-    """Choose how each point slips: along the velocity at the middle, or by the cone at the end.
+def pose(k, start, cluster, work):
+    """Write c of the contact problem: w(p_old) - W p_old, with the slip that rules the friction of each point.
 
-    Where slip stops within the step it is the cone, and remains so in further rounds.
+    Where slip goes on that is twice the velocity at the middle of the step, G_0 (v_0 + v_1), else the one at the
+    end. (Friction along the slip of the last round would not converge at speeds below mu N h W_tt.)
     """
     for i in range(k):
-        hold, contact = held.points[cluster.seats[i].held], system.contacts[cluster.seats[i].contact]
-        d1, d2 = hold.heading[0], hold.heading[1]
-        _, m1, m2 = contact_velocity(cluster.points[i], work.stage)
-        e1, e2 = cluster.u[3 * i + 1], cluster.u[3 * i + 2]
-        if cluster.stopped[i] == 0 and not (m1 * d1 + m2 * d2 > 0.0 and e1 * d1 + e2 * d2 > 0.0):
-            cluster.stopped[i] = 1
+        w, point, q = cluster.u, cluster.points[i], 3 * i
+        c = (w[q], w[q + 1], w[q + 2])
         if cluster.stopped[i] == 0:
-            set_heading(cluster, i, m1, m2, 10.0 * slow(contact, start))
-        else:
-            cluster.kind[i] = CONE
-            cluster.heading[i, 0], cluster.heading[i, 1] = 0.0, 0.0
+            _, m1, m2 = contact_velocity(point, work.stage)
+            d1, d2 = cluster.heading[i, 0], cluster.heading[i, 1]
+            if m1 * d1 + m2 * d2 > 0.0 and w[q + 1] * d1 + w[q + 2] * d2 > 0.0:
+                c = (w[q], 2.0 * m1, 2.0 * m2)
+            else:
+                cluster.stopped[i] = 1
+        for r in range(3):
+            s = c[r]
+            for j in range(3 * k):
+                s -= cluster.W[q + r, j] * cluster.p[j]
+            cluster.c[q + r] = s
+    for i in range(3 * k):
+        cluster.old[i] = cluster.p[i]
 
 
 @kernel

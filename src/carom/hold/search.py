@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from carom.contact.exclude import BELOW, CLEAR, UNSURE, passage
 from carom.contact.gap import lowest, round_off
-from carom.hold.events import GAP, find_held_event, held_value
+from carom.hold.events import GAP, find_held_event, held_value, turned
 from carom.jit import inlined, kernel
 
 
@@ -34,6 +34,8 @@ def examine(system, controls, held, now, dt, work):
     kind, i, d1, d2 = find_held_event(system, held, work.trial, work)
     if i >= 0:
         return BELOW, kind, i, 0.0, d1, d2
+    if dt > 1e-3 * controls.step and turned(system, held, work.trial, work):
+        return UNSURE, GAP, -1, 0.0, 0.0, 0.0
     return CLEAR, GAP, -1, 0.0, 0.0, 0.0
 
 
