@@ -1,4 +1,4 @@
-"""Codes and work arrays of the solver of contacts."""
+"""Codes of the solver of contacts, and its work arrays for an inverse mass stored whole."""
 
 from __future__ import annotations
 
@@ -6,49 +6,80 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom.system.arrays import table
+
 # What a contact may do.
 CONE, SLIDING, STICKING = 0, 1, 2
 
 # How a solve ended.
-SOLVED, NOT_SOLVED, NOT_FINITE = 0, 1, 2
+SOLVED, NOT_SOLVED, BAD_INPUT = 0, 1, 2
 
 MESSAGES = {
     SOLVED: "The contact problem was solved to its tolerance.",
     NOT_SOLVED: (
-        "The contact problem was not solved to its tolerance: the residual tells how far it is off. "
-        "Large friction with redundant contacts may have no solution at all."
+        "The contact problem was not solved to its tolerance; the residual says how far it is off. "
+        "With large friction and redundant contacts it may have no solution."
     ),
-    NOT_FINITE: "The inverse mass, the velocity or the friction is not finite.",
+    BAD_INPUT: "The inverse mass, the velocity or the friction is not finite, or friction is negative.",
 }
 
 
-class ConeWork(NamedTuple):
-    """Work arrays of `carom.coulomb.solve.solve_cones` for up to K contacts, in scaled variables."""
+#: a contact
+CONTACT = [
+    ("mu", "f8"),
+    ("kind", "i8"),
+    ("h1", "f8"),  # direction of slip where that is known
+    ("h2", "f8"),
+    ("scale", "f8"),  # impulse / scaled impulse
+]
 
-    W: np.ndarray  # (3K, 3K) scaled inverse mass, trace 3 in each diagonal block
-    c: np.ndarray  # (3K,)
-    p: np.ndarray  # (3K,) iterate
-    best: np.ndarray  # (3K,) the best iterate so far
-    centre: np.ndarray  # (3K,) of the proximal term
-    w: np.ndarray  # (3K,) W p + c
-    f: np.ndarray  # (3K,) p - projection
-    step: np.ndarray  # (3K,)
-    change: np.ndarray  # (3K,) W step
-    jacobian: np.ndarray  # (3K, 3K)
-    scale: np.ndarray  # (K,) impulse of a contact = scale * scaled impulse
-    active: np.ndarray  # (3K,) rows in the reduced system
-    pivot: np.ndarray  # (3K,)
+# Vectors of length 3K, in scaled variables.
+C = 0  # velocity without impulses
+P = 1  # impulses: the iterate
+VELOCITY = 2  # W p + c
+F = 3  # p - projection
+STEP = 4
+CHANGE = 5  # W step
+RHS = 6  # of a linear system
+CENTRE = 7  # of the proximal term
+KEPT = 8  # the best p of one start
+BEST = 9  # the best p of all
+VECTORS = 10
+
+
+# Numbers of a search.
+ITERATIONS = 0
+ROWS = 1  # of the factors at hand, -1 where there are none
+
+
+class ConeWork(NamedTuple):
+    """Work arrays of `carom.coulomb.solve.solve_cones` for up to K contacts."""
+
+    address: int  # of the compiled search
+    contact: np.recarray  # (K,) CONTACT
+    vector: np.ndarray  # (VECTORS, 3K)
+    count: np.ndarray  # (2,) int64
+    W: np.ndarray  # (3K, 3K) scaled inverse mass: each diagonal block has trace 3
+    matrix: np.ndarray  # (3K, 3K) of a linear system, and its factors
+    pivot: np.ndarray  # (3K,) int64, rows exchanged
+    active: np.ndarray  # (3K,) int64, rows of `matrix`
 
 
 def new_cone_work(capacity: int) -> ConeWork:
-    """Return work arrays for up to `capacity` contacts."""
-    n = 3 * max(capacity, 1)
-    vectors = [np.zeros(n) for _ in range(8)]
-    return ConeWork(
-        np.zeros((n, n)),
-        *vectors,
-        np.zeros((n, n)),
-        np.ones(max(capacity, 1)),
-        np.zeros(n, dtype=np.int64),
-        np.zeros(n, dtype=np.int64),
+    """Return work arrays for up to `capacity` contacts; compiles the search if it is not on disk."""
+    from carom.coulomb.search import with_address
+
+    contacts = max(capacity, 1)
+    n = 3 * contacts
+    return with_address(
+        ConeWork(
+            0,
+            table(CONTACT, contacts),
+            np.zeros((VECTORS, n)),
+            np.zeros(2, dtype=np.int64),
+            np.zeros((n, n)),
+            np.zeros((n, n)),
+            np.zeros(n, dtype=np.int64),
+            np.zeros(n, dtype=np.int64),
+        )
     )

@@ -1,96 +1,106 @@
-"""The contact problem w = W p + c, 0 <= p_n _|_ w_n >= 0 with Coulomb friction, dense (mathematics page, VI.2)."""
+"""The contact problem with W stored whole: `solve_cones`."""
 
 from __future__ import annotations
 
 import math
 
-from carom.coulomb.layout import NOT_FINITE, NOT_SOLVED, SOLVED
-from carom.coulomb.newton import newton
+from carom.coulomb import layout as o
+from carom.coulomb.layout import BAD_INPUT, NOT_SOLVED, SOLVED
+from carom.coulomb.local import solve_local
 from carom.coulomb.residual import measure
-from carom.coulomb.scaled import load, natural, onto_cone, velocity
-from carom.coulomb.sweep import solve_local, sweep
+from carom.coulomb.search import search
 from carom.jit import entry, kernel
-
-_EPS = 1e-9  # weight of the proximal term
-_NEWTON = 30  # iterations a round
-_ROUNDS = 12
 
 
 @entry
 def solve_cones(k, W, c, mu, kind, heading, p, scratch):
-    """Solve for the impulses of `k` contacts; return (status, residual, iterations).
+    """Solve w = W p + c, 0 <= p_n _|_ w_n >= 0 with Coulomb friction; return (status, residual, iterations).
 
-    `W` (3K, 3K) symmetric inverse mass, `c` (3K,) velocity without impulses, rows (n, t1, t2) of each contact,
-    K >= k, only the leading part is used. `mu` (K,), `kind` (K,) int64 and `heading` (K, 2): CONE,
-    Coulomb's cone with the velocity w_t; SLIDING, p_t = -mu p_n heading; STICKING, w_t = 0 whatever the
-    force, also where the normal is open. `p` (3K,) is the warm start and becomes the solution; `scratch` is from
-    `new_cone_work(K)`. Status: SOLVED, or NOT_SOLVED (p is then the best found), or NOT_FINITE (p is 0).
+    Rows (n, t1, t2) of k contacts; arrays for K >= k of them, the leading part is used. `W` (3K, 3K) is
+    symmetric, `c` (3K,) the velocity without impulses, `mu` (K,) the friction, `p` (3K,) the warm start and then
+    the solution, `scratch` from `layout.new_cone_work(K)`. `kind` (K,) int64: CONE, friction against
+    w_t; SLIDING, p_t = -mu p_n heading, `heading` (K, 2); STICKING, w_t = 0 whatever force that takes, even
+    where p_n = 0. Status: SOLVED; NOT_SOLVED, p is the best that was found; BAD_INPUT, p is 0. The
+    residual is that of `residual.measure`.
     """
     if k == 0:
         return SOLVED, 0.0, 0
-    gamma = load(k, W, c, p, scratch)
-    for i in range(k):
-        if not (mu[i] >= 0.0 and math.isfinite(mu[i] + heading[i, 0] + heading[i, 1])):
-            gamma = math.nan
+    gamma = _load(scratch, k, W, c, mu, kind, heading, p)
     if not math.isfinite(gamma):
         for i in range(3 * k):
             p[i] = 0.0
-        return NOT_FINITE, math.inf, 0
-    iterations = 0
+        return BAD_INPUT, math.inf, 0
+    iterations, q = 0, scratch.vector[o.P]
     if k == 1:
-        w, b = scratch.W, scratch.c
-        _, p0, p1, p2 = solve_local(
-            kind[0], mu[0], heading[0, 0], heading[0, 1],
-            w[0, 0], w[0, 1], w[0, 2], w[1, 1], w[1, 2], w[2, 2], b[0], b[1], b[2],
-        )  # fmt: skip
-        scratch.p[0], scratch.p[1], scratch.p[2] = p0, p1, p2
+        w, b = scratch.W, scratch.vector[o.C]
+        _, q[0], q[1], q[2] = solve_local(
+            scratch.contact[0],
+            w[0, 0],
+            w[0, 1],
+            w[0, 2],
+            w[1, 1],
+            w[1, 2],
+            w[2, 2],
+            b[0],
+            b[1],
+            b[2],
+        )
     else:
-        iterations = _search(k, mu, kind, heading, scratch)
+        search(scratch.address, scratch, k)
+        iterations = scratch.count[o.ITERATIONS]
     for i in range(3 * k):
-        p[i] = gamma * scratch.scale[i // 3] * scratch.p[i]
+        p[i] = gamma * scratch.contact[i // 3].scale * q[i]
     residual, tolerance, _, _, _ = measure(k, W, c, mu, kind, heading, p)
     return SOLVED if residual <= tolerance else NOT_SOLVED, residual, iterations
 
 
 @kernel
-def _search(k, mu, kind, heading, work):
-    """Alternate Newton and sweeps until the residual is small; leave the best in work.p."""
-    n, p, best = 3 * k, work.p, work.best
-    least, iterations, sweeps = math.inf, 0, 25
-    target = 1e-12 / max_scale(k, work)
-    for turn in range(_ROUNDS):
-        if turn > 0:
-            for i in range(sweeps):
-                sweep(k, mu, kind, heading, i % 2 == 1, work)
-            sweeps = min(2 * sweeps, 200)
-            iterations += sweeps
-        for _ in range(3):  # proximal rounds: first about 0, for the least norm
-            for i in range(n):
-                work.centre[i] = p[i] if _ > 0 else 0.0
-            _f, count = newton(k, mu, kind, heading, _EPS, _NEWTON, work)
-            iterations += count
-            onto_cone(k, mu, kind, heading, p)
-            velocity(k, work)
-            r = natural(k, mu, kind, heading, work)
-            better = r < least
-            if better:
-                least = r
-                for i in range(n):
-                    best[i] = p[i]
-            if not better or _f > 1e-8:
-                break
-        if least <= target:
-            break
-        if turn == 0:  # sweeps start from what was given
-            pass
-    for i in range(n):
-        p[i] = best[i]
-    return iterations
+def _load(work, k, W, c, mu, kind, heading, p):
+    """Write the problem in scaled variables; return gamma, or NaN if the input is bad.
+
+    p_i = gamma s_i q_i, w_i = gamma v_i / s_i with s_i^2 = 3 / trace W_ii, so that each diagonal block
+    has trace 3, and gamma such that the greatest entry of the scaled c is 1. One number for the three
+    rows of a contact: its cone stays what it is. The solver knows neither units nor ratios of masses.
+    """
+    total = 0.0
+    for i in range(k):
+        n = 3 * i
+        trace = W[n, n] + W[n + 1, n + 1] + W[n + 2, n + 2]
+        if not set_contact(work.contact[i], mu[i], kind[i], heading[i], trace):
+            return math.nan
+    for i in range(3 * k):
+        s = work.contact[i // 3].scale
+        row, out = W[i], work.W[i]
+        for j in range(3 * k):
+            out[j] = s * row[j] * work.contact[j // 3].scale
+            total += out[j]
+    if not math.isfinite(total):
+        return math.nan
+    return scale_vectors(work, k, c, p)
 
 
 @kernel
-def max_scale(k, work):
-    most = 0.0
-    for i in range(k):
-        most = max(most, work.scale[i])
-    return most
+def set_contact(contact, mu, kind, heading, trace):
+    """Write what a contact is and its scale; return whether that is sound."""
+    contact.mu, contact.kind, contact.h1, contact.h2 = mu, kind, heading[0], heading[1]
+    contact.scale = math.sqrt(3.0 / trace) if trace > 0.0 else 1.0
+    return mu >= 0.0 and math.isfinite(mu + heading[0] + heading[1] + trace)
+
+
+@kernel
+def scale_vectors(work, k, c, p):
+    """Write c and p in scaled variables; return gamma, or NaN if c is not finite."""
+    gamma = 0.0
+    for i in range(3 * k):
+        scaled = work.contact[i // 3].scale * c[i]
+        work.vector[o.C, i] = scaled
+        if not math.isfinite(scaled):
+            return math.nan
+        gamma = max(gamma, abs(scaled))
+    if gamma == 0.0:
+        gamma = 1.0
+    for i in range(3 * k):
+        work.vector[o.C, i] /= gamma
+        q = p[i] / (work.contact[i // 3].scale * gamma)
+        work.vector[o.P, i] = q if math.isfinite(q) else 0.0
+    return gamma

@@ -1,0 +1,134 @@
+"""How the solvers go about it: Newton first; where that fails, from other starting points."""
+
+from __future__ import annotations
+
+import math
+
+from carom.coulomb import layout as o
+from carom.coulomb.alternating import alternate
+from carom.coulomb.cone import nearest, project, shift
+from carom.coulomb.newton import newton, velocity
+from carom.coulomb.operators import magnitude, sweep
+from carom.coulomb.residual import RELATIVE, ROUND_OFF
+from carom.dispatch import by_address
+from carom.jit import address, kernel, unit
+
+_EPS = 1e-8  # weight of the proximal term
+_POLISH = 8  # most moves of the proximal centre
+_STARTS = 20  # most starting points
+_EXTRA = 2  # more of them where the tolerance is met, but not to round-off
+_SWEEPS = 25  # at first, twice as many each time, at most
+_MOST_SWEEPS = 200
+_ALTERNATIONS = 300
+_CONTINUE_FROM, _CONTINUE_BY = 0.3, 0.3  # weights of the proximal term in a continuation
+
+
+@unit
+def search_unit(work, k):
+    """Leave in work the best p that is found from one starting point after the other, and the iterations."""
+    p, best = work.vector[o.P], work.vector[o.BEST]
+    least, last = math.inf, _STARTS
+    work.count[o.ITERATIONS] = 0
+    for start in range(_STARTS):
+        if start >= last:
+            break
+        if start > 0:
+            work.count[o.ITERATIONS] += _approach(work, k, start)
+        count, r, goal, tolerance = _polished(work, k, start)
+        work.count[o.ITERATIONS] += count
+        if r < least:
+            least = r
+            for i in range(3 * k):
+                best[i] = p[i]
+        if least <= goal:
+            break
+        if least <= 0.9 * tolerance:
+            last = min(last, start + 1 + _EXTRA)
+    for i in range(3 * k):
+        p[i] = best[i]
+
+
+#: search(address, work, k)
+search = by_address(search_unit)
+
+
+def with_address(work):
+    """Return the work arrays with the address of the search for arrays like these."""
+    return work._replace(address=address(search_unit, work, 1))
+
+
+@kernel
+def _approach(work, k, start):
+    """Move work.p to another starting point for Newton; return iterations."""
+    if start % 2 == 1:
+        sweeps = min(_SWEEPS * 2 ** (start // 2), _MOST_SWEEPS)
+        for i in range(sweeps):
+            sweep(work, k, i % 2 == 1)
+        return sweeps
+    p, centre = work.vector[o.P], work.vector[o.CENTRE]
+    sigma = 0.01 * 10.0 ** ((start // 2) % 3)
+    alternate(work, k, sigma, _ALTERNATIONS)
+    total = _ALTERNATIONS
+    if start % 4 == 2:  # a strong proximal term, released step by step
+        eps = _CONTINUE_FROM
+        while eps > 10.0 * _EPS:
+            for i in range(3 * k):
+                centre[i] = p[i]
+            work.count[o.ROWS] = -1
+            count = newton(work, k, eps, start % 2 == 1)
+            total += count
+            eps *= _CONTINUE_BY
+    return total
+
+
+@kernel
+def _polished(work, k, start):
+    """Newton until the proximal term has no effect; return (iterations, residual, goal, tolerance).
+
+    The term is centred at 0 in the first start, for the solution of least norm, then at p; and it is moved
+    to each new solution until its bias is gone. work.p is the best of the rounds.
+    """
+    p, kept, centre = work.vector[o.P], work.vector[o.KEPT], work.vector[o.CENTRE]
+    for i in range(3 * k):
+        centre[i] = p[i] if start > 0 else 0.0
+    total, least = 0, math.inf
+    work.count[o.ROWS] = -1
+    goal, tolerance = 0.0, 0.0
+    for _ in range(_POLISH):
+        count = newton(work, k, _EPS, start % 2 == 1)
+        total += count
+        for i in range(k):
+            n = 3 * i
+            p[n], p[n + 1], p[n + 2] = project(work.contact[i], p[n], p[n + 1], p[n + 2])
+        r, goal, tolerance = _residual(work, k)
+        enough = r <= goal or not r < 0.5 * least
+        if r < least:
+            least = r
+            for i in range(3 * k):
+                kept[i] = p[i]
+        if enough:
+            break
+        for i in range(3 * k):
+            centre[i] = p[i]
+    for i in range(3 * k):
+        p[i] = kept[i]
+    return total, least, goal, tolerance
+
+
+@kernel
+def _residual(work, k):
+    """Return (residual, goal, tolerance) of p in velocity; the goal is what round-off allows."""
+    velocity(work, k)
+    p, w, c = work.vector[o.P], work.vector[o.VELOCITY], work.vector[o.C]
+    worst, largest = 0.0, 0.0
+    for i in range(k):
+        t, n = work.contact[i], 3 * i
+        x0 = p[n] - w[n] - shift(t.kind, t.mu, t.h1, t.h2, w[n + 1], w[n + 2])
+        y0, y1, y2 = nearest(t.kind, t.mu, t.h1, t.h2, x0, p[n + 1] - w[n + 1], p[n + 2] - w[n + 2])
+        d0, d1, d2 = p[n] - y0, p[n + 1] - y1, p[n + 2] - y2
+        r = math.sqrt(d0 * d0 + d1 * d1 + d2 * d2) / t.scale
+        if not r <= worst and worst == worst:  # NaN enters, and stays
+            worst = r
+        largest = max(largest, max(abs(c[n]), abs(c[n + 1]), abs(c[n + 2])) / t.scale)
+    size = magnitude(work, k)
+    return worst, 1e-14 * largest + 0.08 * ROUND_OFF * size, RELATIVE * largest + ROUND_OFF * size

@@ -1,0 +1,70 @@
+"""The contact problem of a large island, without W: `solve_island`."""
+
+from __future__ import annotations
+
+import math
+
+from carom.coulomb import layout as o
+from carom.coulomb.layout import BAD_INPUT, NOT_SOLVED, SOLVED
+from carom.coulomb.residual import measure_island
+from carom.coulomb.search import search
+from carom.coulomb.solve import scale_vectors, set_contact
+from carom.jit import entry, kernel
+
+
+@entry
+def solve_island(k, island, mu, kind, heading, p, scratch):
+    """Solve the contact problem of an `Island`; return (status, residual, iterations).
+
+    As `carom.coulomb.solve.solve_cones`, with W = G M^-1 G^T given by bodies and rows. `scratch` is from
+    `arrays.new_island_work` for the graph of these contacts.
+    """
+    if k == 0:
+        return SOLVED, 0.0, 0
+    gamma = _load(scratch, k, island, mu, kind, heading, p)
+    if not math.isfinite(gamma):
+        for i in range(3 * k):
+            p[i] = 0.0
+        return BAD_INPUT, math.inf, 0
+    search(scratch.address, scratch, k)
+    for i in range(3 * k):
+        p[i] = gamma * scratch.contact[i // 3].scale * scratch.vector[o.P, i]
+    residual, tolerance, _, _, _ = measure_island(k, island, mu, kind, heading, p, scratch.sums)
+    return SOLVED if residual <= tolerance else NOT_SOLVED, residual, scratch.count[o.ITERATIONS]
+
+
+@kernel
+def _load(work, k, island, mu, kind, heading, p):
+    """Write the problem in the scaled variables of `solve`; return gamma, or NaN if the input is bad."""
+    for i in range(k):
+        contact, link = work.contact[i], work.link[i]
+        local = link.local
+        for r in range(6):
+            local[r] = 0.0
+        for side in range(2):
+            b = link.body[side]
+            if b < 0:
+                continue
+            G, M, Y = island.rows[i, side], island.inverse_mass[b], link.response[side]
+            for r in range(6):
+                for a in range(3):
+                    s = 0.0
+                    for j in range(6):
+                        s += M[r, j] * G[a, j]
+                    Y[r, a] = s
+            at = 0
+            for a in range(3):
+                for d in range(a, 3):
+                    for j in range(6):
+                        local[at] += G[a, j] * Y[j, d]
+                    at += 1
+        if not set_contact(contact, mu[i], kind[i], heading[i], local[0] + local[3] + local[5]):
+            return math.nan
+        for r in range(6):
+            local[r] *= contact.scale * contact.scale
+        for side in range(2):
+            for r in range(6):
+                for a in range(3):
+                    link.rows[side, a, r] = contact.scale * island.rows[i, side, a, r]
+                    link.response[side, r, a] *= contact.scale
+    return scale_vectors(work, k, island.c, p)
