@@ -46,20 +46,21 @@ def first_change(c, i, depth, velocity, degree, end):
 
 @kernel
 def _root(c, i, depth, velocity, degree, a, b, gb):
-    """Illinois' method between a, where the gauge is not positive, and b, where it is."""
-    ga = gauge(c, i, depth, velocity, degree, a)
+    """Return where the gauge passes round-off between a and b: Illinois' method, each third time a bisection."""
+    ga = gauge(c, i, depth, velocity, degree, a) - ROUND_OFF
     if ga >= 0.0:
         return a
+    gb -= ROUND_OFF
     side, width = 0, b - a
-    for _ in range(80):
+    for turn in range(90):
         if b - a <= 1e-15 * width:
             break
         x = (a * gb - b * ga) / (gb - ga)
-        if not a < x < b:
+        if turn % 3 == 2 or not a < x < b:
             x = 0.5 * (a + b)
             if not a < x < b:
                 break
-        g = gauge(c, i, depth, velocity, degree, x)
+        g = gauge(c, i, depth, velocity, degree, x) - ROUND_OFF
         if g > 0.0:
             b, gb = x, g
             if side == 1:
@@ -67,11 +68,11 @@ def _root(c, i, depth, velocity, degree, a, b, gb):
             side = 1
         else:
             a, ga = x, g
-            if g == 0.0:
-                return x
             if side == -1:
                 gb *= 0.5
             side = -1
+        if abs(g) <= 1e-3 * ROUND_OFF:
+            return x
     return b
 
 

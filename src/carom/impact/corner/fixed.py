@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from carom.dispatch import by_address
 from carom.impact.corner import law
-from carom.impact.corner.adaptive import ENDED, TRAPPED, drift
+from carom.impact.corner.adaptive import ENDED, TRAPPED, drift, wedged
 from carom.impact.corner.discs import friction
 from carom.impact.corner.events import ROUND_OFF
 from carom.impact.corner.layout import (
@@ -42,7 +42,7 @@ def traverse_fixed(k, work, units, n, p, max_events, max_steps):
     first_events, first_steps = clock.events, clock.steps
     while True:
         before = clock.events
-        if drift(k, work, p) == 1:
+        if drift(k, work, p) == 1 or wedged(k, work, h, p):
             return ENDED
         if clock.events - first_events > max_events or clock.steps - first_steps > max_steps:
             return TRAPPED

@@ -1,8 +1,8 @@
 """Contacts that stick: the friction that keeps them at rest, linear in all other forces.
 
-W_ZZ T = -a has many solutions where contacts are redundant (four corners of a box: rank 3 of 8); all act alike.
-Taken is the one that loads each contact in the measure of mu N: the least |D^-1 T|, D = diag(mu N), so that
-discs are left only about when no solution fits in them.
+W_ZZ T = -a has many solutions where contacts are redundant (four corners of a box: rank 3 of 8); all
+act alike. Taken is the one that loads each contact in the measure of mu N a moment ahead: the least
+|D^-1 T|, D = diag(mu N), so that discs are left only about when no solution fits in them.
 """
 
 from __future__ import annotations
@@ -25,16 +25,17 @@ from carom.impact.corner.layout import (
     U,
 )
 from carom.impact.corner.motion import set_velocity
-from carom.impact.corner.series import likely_force, stick
+from carom.impact.corner.series import stick
 from carom.jit import kernel
 
 _EMPTY = 1e-11  # pivots below this part of the largest: directions that are redundant
 _SAMPLES = 5
+_MOMENT = 0.3  # units of the time of the fastest contact
 
 
 @kernel
 def gather_stuck(k, work):
-    """List the closed contacts that stick; return how many. Write what holds them to ``work.matrix[HOLDING]``."""
+    """List the closed contacts that stick; return how many. What holds them goes to HOLDING."""
     z = 0
     for i in range(k):
         c = work.contact[i]
@@ -49,25 +50,75 @@ def gather_stuck(k, work):
 
 
 @kernel
+def _bearing(z, work, weight):
+    """Write (mu N)^2 of the sticking contacts, relative to the greatest, at the next opening if that is near."""
+    d, u, slot = work.vector[D], work.vector[U], work.index[STUCK]
+    moment = _MOMENT
+    for a in range(z):
+        i = slot[a]
+        c = work.contact[i]
+        if u[3 * i] > 0.0:
+            moment = min(moment, max(0.0, (d[i] - c.rest) / u[3 * i]))
+    for turn in range(2):
+        most, now = 0.0, 0.0
+        for a in range(z):
+            i = slot[a]
+            c = work.contact[i]
+            force = c.mu * max(0.0, c.slope * (d[i] - c.rest - moment * u[3 * i]))
+            weight[a] = force * force
+            most = max(most, weight[a])
+            now = max(now, c.mu * c.slope * (d[i] - c.rest))
+        if most > 1e-8 * now * now or turn == 1:
+            break
+        moment = 0.0  # all open together
+    for a in range(z):
+        weight[a] = weight[a] / most if most > 0.0 else 1.0
+
+
+@kernel
 def _holding(z, work):
-    """Write D (D W_ZZ D)^+ D, by Cholesky's factors with pivots: B = L L^T, B^+ = L (L^T L)^-2 L^T."""
-    n, slot, vector, W = 2 * z, work.index[STUCK], work.vector, work.matrix[MASS]
+    """Write H = D^2 L (L^T D^2 L)^-1 (L^T L)^-1 L^T, W_ZZ = L L^T by Cholesky with pivots: T = -H a."""
+    n, slot, vector = 2 * z, work.index[STUCK], work.vector
     L, M, hold = work.matrix[FACTOR], work.matrix[MIDDLE], work.matrix[HOLDING]
-    scale, left, column = vector[SCALE], vector[LEFT], vector[STICK_T]
-    most = 0.0
+    weight, row = vector[SCALE], vector[STICK_T]
+    rank = _factor(z, slot, work.matrix[MASS], L, vector[LEFT], row)
+    _bearing(z, work, weight)
+    gram(n, rank, L, weight, M)
+    if not _cholesky(rank, M):  # those that bear do not hold all that can move
+        for a in range(z):
+            weight[a] += 0.01
+        gram(n, rank, L, weight, M)
+        _cholesky(rank, M)
+    for a in range(n):
+        for q in range(rank):
+            row[q] = L[a, q] * weight[a // 2]
+        _solve(rank, M, row)
+        for q in range(rank):
+            hold[a, q] = row[q]
     for a in range(z):
-        c = work.contact[slot[a]]
-        weight = c.mu * likely_force(c, vector[D, slot[a]], vector[U, 3 * slot[a]])
-        scale[a] = max(0.0, weight)
-        most = max(most, scale[a])
-    for a in range(z):
-        scale[a] = max(scale[a] / most, 1e-6) if most > 0.0 else 1.0
-    largest = 0.0
+        weight[a] = 1.0
+    gram(n, rank, L, weight, M)
+    _cholesky(rank, M)
+    for a in range(n):
+        _solve(rank, M, L[a])
+    for a in range(n):
+        for q in range(rank):
+            row[q] = hold[a, q]
+        for b in range(n):
+            s = 0.0
+            for q in range(rank):
+                s += row[q] * L[b, q]
+            hold[a, b] = s
+
+
+@kernel
+def _factor(z, slot, W, L, left, column):
+    """Write L with W_ZZ = L L^T; return its rank."""
+    n, largest, rank = 2 * z, 0.0, 0
     for a in range(n):
         i = 3 * slot[a // 2] + 1 + a % 2
-        left[a] = W[i, i] * scale[a // 2] * scale[a // 2]
+        left[a] = W[i, i]
         largest = max(largest, left[a])
-    rank = 0
     while rank < n:
         top = 0
         for a in range(n):
@@ -77,9 +128,8 @@ def _holding(z, work):
             break
         pivot = math.sqrt(left[top])
         row = W[3 * slot[top // 2] + 1 + top % 2]
-        f = scale[top // 2]
         for a in range(n):
-            s = row[3 * slot[a // 2] + 1 + a % 2] * f * scale[a // 2]
+            s = row[3 * slot[a // 2] + 1 + a % 2]
             for b in range(rank):
                 s -= L[top, b] * L[a, b]
             column[a] = s / pivot
@@ -88,33 +138,38 @@ def _holding(z, work):
             left[a] -= column[a] * column[a]
         left[top] = 0.0
         rank += 1
-    for a in range(rank):
-        for b in range(rank):
+    return rank
+
+
+@kernel
+def gram(n, rank, L, weight, M):
+    """Write M = L^T D^2 L, the lower triangle; `weight` is one number of D^2 for two rows."""
+    for p in range(rank):
+        for q in range(p + 1):
             s = 0.0
-            for c_ in range(n):
-                s += L[c_, a] * L[c_, b]
-            M[a, b] = s
-    _cholesky(rank, M)
-    # rows of L -> rows of L M^-1, M = L^T L; then B^+ = (L M^-1) (L M^-1)^T
-    for a in range(n):
-        _solve(rank, M, L[a])
-    for a in range(n):
-        for b in range(n):
-            s = 0.0
-            for c_ in range(rank):
-                s += L[a, c_] * L[b, c_]
-            hold[a, b] = s * scale[a // 2] * scale[b // 2]
+            for a in range(n):
+                s += L[a, p] * L[a, q] * weight[a // 2]
+            M[p, q] = s
 
 
 @kernel
 def _cholesky(n, M):
-    """Factor M in place, the lower triangle."""
+    """Factor M in place, the lower triangle; return whether it is positive definite."""
+    largest = 0.0
+    for i in range(n):
+        largest = max(largest, M[i, i])
     for i in range(n):
         for j in range(i + 1):
             s = M[i, j]
             for c in range(j):
                 s -= M[i, c] * M[j, c]
-            M[i, j] = math.sqrt(s) if i == j else s / M[j, j]
+            if i == j:
+                if not s > _EMPTY * largest:
+                    return False
+                M[i, i] = math.sqrt(s)
+            else:
+                M[i, j] = s / M[j, j]
+    return True
 
 
 @kernel

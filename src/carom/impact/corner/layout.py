@@ -22,7 +22,7 @@ MESSAGES = {
     NOT_RESOLVED: "no method ended with contacts that do not approach",
 }
 
-# Bits of `flags`.
+# Bits of `marks`.
 PLASTIC = 1  #: closed by the plastic event: trapped, or e = 0 everywhere
 FELL_BACK = 2  #: the law of Newton or Poisson was not met: the energetic law was used
 CAPPED = 4  #: the law asks for more than e_* = 1 somewhere: not met there, energy cannot grow
@@ -79,7 +79,7 @@ RESULT = [
     ("events", "i8"),
     ("rounds", "i8"),  # of the outer iteration
     ("classes", "i8"),  # of contacts that move alike
-    ("flags", "i8"),
+    ("marks", "i8"),
 ]
 
 
@@ -154,6 +154,8 @@ CLOCK = [
     ("events", "i8"),
     ("idle", "i8"),  # changes of mode since time last went on
     ("branched", "i8"),  # 1 once a state is saved at the first unloading
+    ("rest", "i8"),  # steps since all came to rest
+    ("cut", "i8"),  # 1: the last step by series ended where a contact cannot stick with its share
     ("stiff", "i8"),  # implicit steps to take before series are tried again
     ("saved_stiff", "i8"),
     # what the units answer

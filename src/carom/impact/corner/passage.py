@@ -28,7 +28,7 @@ def pass_group(k, work, cones, units, settings, result):
     if all_plastic(k, work):
         end_plastically(units.plastic, k, work, cones, p)
         result.plastic_change += work.clock[0].change
-        result.flags |= PLASTIC
+        result.marks |= PLASTIC
         return
     fixed = 0 if k <= settings.adaptive_up_to else settings.fixed_steps
     ended = _once(k, work, units, settings, fixed, True)
@@ -38,7 +38,7 @@ def pass_group(k, work, cones, units, settings, result):
     if r.any_aims(k, work) and ended == ENDED:
         ended = _meet_laws(k, work, units, settings, fixed, result)
     if fixed > 0:
-        result.flags |= FIXED
+        result.marks |= FIXED
         for i in range(3 * k):
             work.vector[TRY, i] = work.vector[U, i]
         ended = _once(k, work, units, settings, 2 * fixed, True)
@@ -49,7 +49,7 @@ def pass_group(k, work, cones, units, settings, result):
     if ended != ENDED:
         end_plastically(units.plastic, k, work, cones, p)
         result.plastic_change += work.clock[0].change
-        result.flags |= PLASTIC
+        result.marks |= PLASTIC
 
 
 @kernel
@@ -59,7 +59,7 @@ def _once(k, work, units, settings, fixed, anew):
     if anew:
         start(k, work)
     if fixed > 0:
-        most = settings.max_steps * fixed * k
+        most = 20 * fixed * k + 50 * fixed
         pass_fixed(units.fixed, k, work, units, fixed, p, 8 * most_events, most)
         return work.clock[0].code
     if not anew:
@@ -87,9 +87,9 @@ def _meet_laws(k, work, units, settings, fixed, result):
     result.rounds += rounds
     if not worst <= tolerance and ended == ENDED:
         r.energetic(k, work)
-        result.flags |= FELL_BACK
+        result.marks |= FELL_BACK
         anew = fixed > 0 or clock.branched == 0
         return _once(k, work, units, settings, fixed, anew)
     if capped:
-        result.flags |= CAPPED
+        result.marks |= CAPPED
     return ended

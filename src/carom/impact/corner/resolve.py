@@ -48,7 +48,7 @@ def resolve_corner(k, W, u, mu, e, law, kappa, settings, scratch, out):
         return BAD_INPUT
     result, index, clean = out.summary[0], scratch.work.index, scratch.work.matrix[CLEAN]
     result.energy_change, result.plastic_change, result.error = 0.0, 0.0, 0.0
-    result.steps, result.events, result.rounds, result.classes, result.flags = 0, 0, 0, 0, 0
+    result.steps, result.events, result.rounds, result.classes, result.marks = 0, 0, 0, 0, 0
     for i in range(k):
         out.compression[i], out.restitution[i], out.friction[i] = 0.0, 0.0, 0.0
     for i in range(3 * k):
@@ -201,7 +201,7 @@ def _exactly(k, i, u, mu, e, law, work, units, out):
             out.compression[j] = single[one.WORK_C] * share
             out.restitution[j] = single[one.WORK_R] * share
             out.friction[j] = single[one.FRICTION_LOSS] * share
-    out.summary[0].flags |= EXACT
+    out.summary[0].marks |= EXACT
     out.summary[0].steps += int(single[one.STEPS])
     return OK
 
@@ -211,7 +211,7 @@ def _finish(k, W, u, scale, out):
     """Write u+ = u + W P and the energy; take back what round-off added to it."""
     n, result = 3 * k, out.summary[0]
     P_, after = out.impulse, out.velocity
-    capped = (result.flags & EXACT) == 0
+    capped = (result.marks & EXACT) == 0
     for turn in range(2):
         energy, gain = 0.0, 0.0
         for a in range(n):
@@ -226,7 +226,7 @@ def _finish(k, W, u, scale, out):
             break
         for a in range(n):
             P_[a] *= 1.0 - energy / gain
-        result.flags |= REPELLED
+        result.marks |= REPELLED
     work, loss = 0.0, 0.0
     for i in range(k):
         work += out.compression[i] + out.restitution[i]

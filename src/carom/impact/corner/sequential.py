@@ -34,7 +34,7 @@ def blow_by_blow(k, work, cones, units, settings, result):
         set_velocity(k, work)
     end_plastically(units.plastic, k, work, cones, settings.exponent)
     result.plastic_change += work.clock[0].change
-    result.flags |= PLASTIC
+    result.marks |= PLASTIC
 
 
 @kernel

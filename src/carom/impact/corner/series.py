@@ -36,6 +36,7 @@ from carom.impact.corner.motion import add_velocity
 from carom.jit import kernel
 
 _FARTHEST = 4.0  # longest step, in units of the time of the fastest contact
+_FARTHEST_STRETCHED = 40.0
 _NEAR = 0.3  # slip may end within this time: stretch
 
 
@@ -190,7 +191,7 @@ def stick(k, z, work, impulse, velocity):
 
 
 @kernel
-def reach(k, work, degree, tolerance):
+def reach(k, work, degree, stretched, tolerance):
     """Return the step at which the last two terms are within `tolerance`."""
     u, d = work.series[S_U], work.series[S_D]
     last, other = 0.0, 0.0
@@ -204,7 +205,7 @@ def reach(k, work, degree, tolerance):
             f = 1.0 / math.sqrt(min(1.0, r))
             last = max(last, f * abs(u[degree, n + 1]), f * abs(u[degree, n + 2]))
             other = max(other, f * abs(u[degree - 1, n + 1]), f * abs(u[degree - 1, n + 2]))
-    h = _FARTHEST
+    h = _FARTHEST_STRETCHED if stretched else _FARTHEST
     if last > 0.0:
         h = min(h, (tolerance / last) ** (1.0 / degree))
     if other > 0.0:
