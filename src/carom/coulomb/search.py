@@ -29,6 +29,8 @@ def search_unit(work, k):
     p, best = work.vector[o.P], work.vector[o.BEST]
     least, last = math.inf, _STARTS
     work.count[o.ITERATIONS] = 0
+    for i in range(3 * k):
+        best[i] = p[i]
     for start in range(_STARTS):
         if start >= last:
             break
@@ -40,6 +42,9 @@ def search_unit(work, k):
             least = r
             for i in range(3 * k):
                 best[i] = p[i]
+        if not r < math.inf:  # overflow: begin anew
+            for i in range(3 * k):
+                p[i] = 0.0
         if least <= goal:
             break
         if least <= 0.9 * tolerance:
@@ -93,6 +98,8 @@ def _polished(work, k, start):
         centre[i] = p[i] if start > 0 else 0.0
     total, least = 0, math.inf
     work.count[o.ROWS] = -1
+    for i in range(3 * k):
+        kept[i] = p[i]
     goal, tolerance = 0.0, 0.0
     for _ in range(_POLISH):
         count = newton(work, k, _EPS, start % 2 == 1)
