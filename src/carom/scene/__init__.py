@@ -6,7 +6,18 @@ from carom.scene.contacts import Contact
 from carom.scene.forces import AppliedForce
 from carom.scene.joints import Joint
 from carom.scene.scene import Scene
-from carom.scene.shapes import Box, Capsule, Convex, Cylinder, Shape, Sphere
+from carom.scene.shapes import (
+    Box,
+    Capsule,
+    Compound,
+    Convex,
+    Cylinder,
+    Disc,
+    Ellipsoid,
+    Mesh,
+    Shape,
+    Sphere,
+)
 
 __all__ = [
     "GROUND",
@@ -15,11 +26,15 @@ __all__ = [
     "Box",
     "Capsule",
     "Contact",
+    "Compound",
     "Convex",
     "Cylinder",
+    "Disc",
+    "Ellipsoid",
     "Ground",
     "HalfSpace",
     "Joint",
+    "Mesh",
     "Scene",
     "Shape",
     "Sphere",
