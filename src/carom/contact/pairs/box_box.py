@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-from carom.contact.pairs.faces import load_face
 from carom.contact.pairs.features import of_edges
 from carom.contact.pairs.found import put
 from carom.jit import inlined, kernel
@@ -95,18 +94,24 @@ def edge_pair(s, a, b, best, axis, radii, found):
 
 
 @kernel
-def face_axis(s, a, b, hulls, axis):
-    """Write the two faces that look at each other along the axis of a face; return the reference."""
-    R, p = s.R, s.p
+def face_or_edges(s, a, b, found):
+    """Write the separation along the best axis as the first point; return False if it is not the distance.
+
+    Of a face only the normal is written, with the feature 0: its points are those of the overlap.
+    """
+    R, p, radii = s.R, s.p, a.radius + b.radius
+    best, axis = best_axis(s, a, b)
+    if axis >= 6:
+        return edge_pair(s, a, b, best, axis, radii, found)
     if axis < 3:
-        sense = _sense(p[axis])
-        x = sense if axis == 0 else 0.0
-        y = sense if axis == 1 else 0.0
-        z = sense if axis == 2 else 0.0
+        x, y, z = (
+            1.0 if axis == 0 else 0.0,
+            1.0 if axis == 1 else 0.0,
+            1.0 if axis == 2 else 0.0,
+        )
     else:
-        j = axis - 3
-        sense = _sense(p[0] * R[0, j] + p[1] * R[1, j] + p[2] * R[2, j])
-        x, y, z = sense * R[0, j], sense * R[1, j], sense * R[2, j]
-    load_face(s, 1, b, hulls, x, y, z)
-    load_face(s, 0, a, hulls, -x, -y, -z)
-    return 1 if axis < 3 else 0
+        x, y, z = R[0, axis - 3], R[1, axis - 3], R[2, axis - 3]
+    if not x * p[0] + y * p[1] + z * p[2] > 0.0:
+        x, y, z = -x, -y, -z
+    put(found, 0, best - radii, x, y, z, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0)
+    return True

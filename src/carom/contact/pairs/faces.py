@@ -47,7 +47,7 @@ def _set_normal(s, side, x, y, z):
 @kernel
 def _box_face(s, side, half, axis, sense):
     """Write a face of a box; its corners are numbered as in `carom.scene.Box.vertices`."""
-    j, k = (axis + 1) % 3, (axis + 2) % 3
+    j = (axis + 1) % 3
     for n in range(4):  # counter-clockwise about +axis, turned round for -axis
         v = 1.0 if n == 1 or n == 2 else -1.0
         w = 1.0 if n >= 2 else -1.0

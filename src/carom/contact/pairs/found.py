@@ -21,10 +21,10 @@ def put(found, k, gap, nx, ny, nz, ax, ay, az, bx, by, bz, feature):
 @kernel
 def known(found, count, feature):
     """Return True if one of the points has this feature."""
+    there = False
     for k in range(count):
-        if found[k].feature == feature:
-            return True
-    return False
+        there = there or found[k].feature == feature
+    return there
 
 
 @kernel

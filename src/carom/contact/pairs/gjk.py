@@ -13,17 +13,17 @@ from carom.contact.pairs.simplex import move_corner, nearest_point, reduce_simpl
 from carom.contact.pairs.support import propose
 from carom.jit import kernel
 
-ACCURACY = 1e-15  # of the distance, relative to it
+EXACT = 1e-15  # gain of a step, relative to the distance, that is rounding
 INSIDE = 1e-14  # distance relative to the simplex that counts as none
 MOST_STEPS = 100
 
 
 @kernel
-def distance(s, a, b, hulls, x, y, z):
+def distance(s, a, b, hulls, accuracy, x, y, z):
     """Return |v| and v, from B to A, of the cores; 0 where they overlap.
 
-    The search starts in direction (x, y, z), any vector but zero. The simplex and its weights stay in the
-    scratch: they give the two points.
+    The search starts in direction (x, y, z), any vector but zero, and ends where a step gains no more than
+    `accuracy` of the distance. The simplex and its weights stay in the scratch: they give the two points.
     """
     propose(s, a, b, hulls, x, y, z)
     move_corner(s, 4, 0)
@@ -37,7 +37,7 @@ def distance(s, a, b, hulls, x, y, z):
         propose(s, a, b, hulls, vx, vy, vz)
         w = s.w[4]
         gain = v2 - (vx * w[0] + vy * w[1] + vz * w[2])
-        if not gain > ACCURACY * v2:
+        if not gain > accuracy * v2:
             break
         again = False
         for k in range(s.points):
@@ -59,11 +59,10 @@ def distance(s, a, b, hulls, x, y, z):
 
 
 @kernel
-def points_of(s):
-    """Return the two points, of A and of B, that the weights of the simplex give; A without its shift."""
-    ax, ay, az, bx, by, bz = -s.shift[0], -s.shift[1], -s.shift[2], 0.0, 0.0, 0.0
+def point_on_b(s):
+    """Return the point of B that the weights of the simplex give."""
+    x, y, z = 0.0, 0.0, 0.0
     for k in range(s.points):
-        f, p, q = s.weight[k], s.on_a[k], s.on_b[k]
-        ax, ay, az = ax + f * p[0], ay + f * p[1], az + f * p[2]
-        bx, by, bz = bx + f * q[0], by + f * q[1], bz + f * q[2]
-    return ax, ay, az, bx, by, bz
+        f, p = s.weight[k], s.on_b[k]
+        x, y, z = x + f * p[0], y + f * p[1], z + f * p[2]
+    return x, y, z

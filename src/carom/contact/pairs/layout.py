@@ -67,6 +67,8 @@ PAIR_STATE = [
     ("ids", "i8", (5, 2)),  # their vertices
     ("weight", "f8", 4),  # of the corners in the point nearest to the origin
     ("points", "i8"),  # corners in the simplex
+    ("total", "i8"),  # points handed on by `touch_unit`
+    ("start", "f8", (15, 4)),  # directions in which they may part, and their separations
     ("edge", "f8", (2, 3)),  # directions of the edges that are nearest
     ("owner", "i8", 2),  # whose they are, 0 of A, 1 of B
 ]
@@ -85,6 +87,7 @@ class PairWork(NamedTuple):
 
     state: np.recarray  # (1,) PAIR_STATE
     found: np.recarray  # (96,) TOUCH_POINT, in axes of B, points on the cores
+    closest: int  # address of the compiled search that curved cores, hulls and some boxes need
 
 
 def _table(fields: list, *shape: int) -> np.recarray:
@@ -93,7 +96,13 @@ def _table(fields: list, *shape: int) -> np.recarray:
 
 def new_pair_work() -> PairWork:
     """Return the scratch of the kernels of pairs."""
-    return PairWork(_table(PAIR_STATE, 1), _table(TOUCH_POINT, 96))
+    from carom.contact.pairs.convex import closest_unit
+    from carom.jit import address
+
+    state, found, solid = _table(PAIR_STATE, 1), _table(TOUCH_POINT, 96), _table(SOLID, 1)
+    hulls = Hulls(np.zeros((0, 3)), _table(FACE, 0), np.zeros(0, dtype=np.int64))
+    found_at = address(closest_unit, state[0], solid[0], solid[0], hulls, found)
+    return PairWork(state, found, found_at)
 
 
 def new_points(count: int = MOST_POINTS) -> np.recarray:

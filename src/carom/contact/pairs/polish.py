@@ -15,7 +15,9 @@ from carom.contact.pairs.layout import CYLINDER, ELLIPSOID
 from carom.contact.pairs.support import propose, separation
 from carom.jit import kernel
 
-STEPS = 6
+STEPS = 8
+NEAR = 0.99  # cosine within which the method must stay
+ROUNDING = 1e-15  # relative to the smaller solid
 STRAIGHT = 1e-6  # sine below which two edges are one direction
 
 
@@ -95,7 +97,7 @@ def _curvature(s, a, b, nx, ny, nz, ux, uy, uz, vx, vy, vz):
 
 @kernel
 def _step(s, a, b, hulls, edges, nx, ny, nz):
-    """Return the normal after one step of Newton's method."""
+    """Return the normal after one step of Newton's method; zero where it has no peak (sharp corners)."""
     propose(s, a, b, hulls, nx, ny, nz)
     vx, vy, vz = s.w[4, 0], s.w[4, 1], s.w[4, 2]
     d = vx * nx + vy * ny + vz * nz
@@ -105,7 +107,9 @@ def _step(s, a, b, hulls, edges, nx, ny, nz):
             e[1] * nz - e[2] * ny, e[2] * nx - e[0] * nz, e[0] * ny - e[1] * nx
         )
         k = d + _curvature(s, a, b, nx, ny, nz, tx, ty, tz, tx, ty, tz)
-        f = (tx * vx + ty * vy + tz * vz) / k if k > 0.0 else 0.0
+        if not k > 0.0:
+            return 0.0, 0.0, 0.0
+        f = (tx * vx + ty * vy + tz * vz) / k
         return _normalized(nx + f * tx, ny + f * ty, nz + f * tz)
     if abs(nx) < 0.6:
         tx, ty, tz = _normalized(0.0, -nz, ny)
@@ -117,23 +121,34 @@ def _step(s, a, b, hulls, edges, nx, ny, nz):
     k22 = d + _curvature(s, a, b, nx, ny, nz, ux, uy, uz, ux, uy, uz)
     r1, r2 = tx * vx + ty * vy + tz * vz, ux * vx + uy * vy + uz * vz
     determinant = k11 * k22 - k12 * k12
-    if not (determinant > 0.0 and k11 > 0.0):
-        return nx, ny, nz
+    if not (determinant > 1e-12 * k11 * k22 and k11 > 0.0):
+        return 0.0, 0.0, 0.0
     f, g = (k22 * r1 - k12 * r2) / determinant, (k11 * r2 - k12 * r1) / determinant
     return _normalized(nx + f * tx + g * ux, ny + f * ty + g * uy, nz + f * tz + g * uz)
 
 
 @kernel
-def polish(s, a, b, hulls, best, nx, ny, nz):
+def _iterate(s, a, b, hulls, edges, x, y, z):
+    """Return the normal where Newton's method ends; zero where it does not."""
+    for _ in range(STEPS):
+        px, py, pz = x, y, z
+        x, y, z = _step(s, a, b, hulls, edges, x, y, z)
+        # The step before the last leaves the square of this, times lengths over curvatures.
+        if (x - px) ** 2 + (y - py) ** 2 + (z - pz) ** 2 < 1e-18:
+            return x, y, z
+    return 0.0, 0.0, 0.0
+
+
+@kernel
+def polish(s, a, b, hulls, nx, ny, nz):
     """Return the greatest separation near n and its direction, and 1 where the points are polished too.
 
     The two points are then left in row 4 of the simplex.
     """
     edges = _edges(s, a, b)
+    best = separation(s, a, b, hulls, nx, ny, nz)
     if edges < 0:
         return best, nx, ny, nz, 0
-    # The distance so far is that of two points, which is never less than the separation.
-    best = separation(s, a, b, hulls, nx, ny, nz)
     if edges == 2:
         e, g = s.edge[0], s.edge[1]
         x, y, z = _normalized(
@@ -147,17 +162,13 @@ def polish(s, a, b, hulls, best, nx, ny, nz):
         x, y, z = _normalized(nx - along * e[0], ny - along * e[1], nz - along * e[2])
     else:
         x, y, z = nx, ny, nz
+    if edges < 2:
+        x, y, z = _iterate(s, a, b, hulls, edges, x, y, z)
     done = 0
-    for _ in range(STEPS if edges < 2 else 1):
-        if edges < 2:
-            x, y, z = _step(s, a, b, hulls, edges, x, y, z)
+    if x * nx + y * ny + z * nz > NEAR:
         value = separation(s, a, b, hulls, x, y, z)
-        if not value > best:
-            break
-        best, nx, ny, nz, done = value, x, y, z, 1
-    if value >= best - 1e-15 * min(a.extent, b.extent):
-        # A last step that brings rounding only is as good, and more exact in its direction.
-        nx, ny, nz, done = x, y, z, 1
+        if value >= best - ROUNDING * min(a.extent, b.extent):
+            nx, ny, nz, done = x, y, z, 1
     if done == 1:
         best = separation(s, a, b, hulls, nx, ny, nz)
         _points(s, edges, best, nx, ny, nz)

@@ -46,7 +46,7 @@ def point_segment(s, a, b, found):
 
 @kernel
 def segment_segment(s, a, b, found):
-    """Find the nearest points of two capsules, and their axes for the ends of a common line."""
+    """Find the nearest points of two capsules."""
     ux, uy, uz = from_a(s, 0.0, 0.0, 1.0)
     c = s.p
     g, h = a.half[2], b.half[2]

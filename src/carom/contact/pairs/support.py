@@ -39,7 +39,7 @@ def support(solid, hulls, x, y, z):
     if kind == CYLINDER:
         across = math.sqrt(x * x + y * y)
         f = h[0] / across if across > 0.0 else 0.0
-        return f * x, f * y, _end(z, h[2]), 1 if z > 0.0 else 0
+        return f * x, f * y, _end(z, h[2]), 1 if z > 0.0 and h[2] > 0.0 else 0
     if kind == ELLIPSOID:
         u, v, w = h[0] * x, h[1] * y, h[2] * z
         f = math.sqrt(u * u + v * v + w * w)

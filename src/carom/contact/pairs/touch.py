@@ -9,19 +9,23 @@ of points always in it.
 from __future__ import annotations
 
 from carom.contact.pairs.box import point_box, segment_box
-from carom.contact.pairs.box_box import best_axis, edge_pair, face_axis
+from carom.contact.pairs.box_box import face_or_edges
 from carom.contact.pairs.clip import overlap
 from carom.contact.pairs.convex import closest
 from carom.contact.pairs.faces import load_face
+from carom.contact.pairs.features import EDGES
 from carom.contact.pairs.found import hand_on
 from carom.contact.pairs.frame import enter
 from carom.contact.pairs.layout import BOX, POINT, SEGMENT
 from carom.contact.pairs.round import point_point, point_segment, segment_segment
 from carom.contact.pairs.segments import ends_of_line
-from carom.jit import entry, kernel
+from carom.contact.pairs.support import separation
+from carom.dispatch import by_address
+from carom.jit import entry, kernel, unit
 
 ROUNDING = 1e-12  # relative to the smaller solid
-ALIGNED = 0.7  # cosine of normal and face from which on the face can be the reference
+ALIGNED = 0.7  # cosine of normal and face from which on the face can be the reference; it is, if it
+# parts the solids to within the reach
 ON_FACE = 1.0 - 1e-12  # from which on the normal is the face's
 
 
@@ -46,18 +50,26 @@ def touch(a, b, hulls, xa, qa, xb, qb, reach, work, out):
     s, found = work.state[0], work.found
     flip = a.kind > b.kind
     if flip:
-        enter(s, xb, qb, xa, qa)
-        count = _ordered(s, b, a, hulls, reach, found)
-        return hand_on(s, found, count, b.radius, a.radius, True, out)
+        a, b = b, a
+        xa, qa, xb, qb = xb, qb, xa, qa
     enter(s, xa, qa, xb, qb)
-    count = _ordered(s, a, b, hulls, reach, found)
-    return hand_on(s, found, count, a.radius, b.radius, False, out)
+    count = _ordered(s, a, b, hulls, work.closest, reach, found)
+    return hand_on(s, found, count, a.radius, b.radius, flip, out)
+
+
+@unit
+def touch_unit(a, b, hulls, xa, qa, xb, qb, reach, work, out):
+    """As `touch`, compiled once; the number of points goes to ``work.state[0].total``."""
+    work.state[0].total = touch(a, b, hulls, xa, qa, xb, qb, reach, work, out)
+
+
+touch_at = by_address(touch_unit)  # (address, a, b, ..., out)
 
 
 @kernel
-def _ordered(s, a, b, hulls, reach, found):
+def _ordered(s, a, b, hulls, address, reach, found):
     """Find the points of a pair whose first kind is not above its second."""
-    radii = a.radius + b.radius
+    boxes = a.kind == BOX and b.kind == BOX
     if b.kind <= SEGMENT:
         if b.kind == POINT:
             point_point(s, a, b, found)
@@ -65,41 +77,24 @@ def _ordered(s, a, b, hulls, reach, found):
         if a.kind == POINT:
             point_segment(s, a, b, found)
             return 1
-        least = segment_segment(s, a, b, found)
-        return ends_of_line(s, 0, 1, 0, 1, radii, least, least + reach, found, 1)
-    if b.kind == BOX:
-        if a.kind == POINT:
-            point_box(s, a, b, found)
-            return 1
-        if a.kind == SEGMENT:
-            segment_box(s, a, b, found)
-            return _manifold(s, a, b, hulls, reach, found)
-        if a.kind == BOX:
-            return _boxes(s, a, b, hulls, reach, found)
-    closest(s, a, b, hulls, found)
-    return _manifold(s, a, b, hulls, reach, found)
-
-
-@kernel
-def _boxes(s, a, b, hulls, reach, found):
-    """Find the points of two boxes.
-
-    The best of the separating axes is the distance where the features on that axis really face each other;
-    else two vertices, or a vertex and an edge, are nearest.
-    """
-    radii = a.radius + b.radius
-    tolerance = ROUNDING * min(a.extent, b.extent)
-    best, axis = best_axis(s, a, b)
-    if axis < 6:
-        ref = face_axis(s, a, b, hulls, axis)
-        count = overlap(s, ref, radii, best - radii - tolerance, best - radii + reach, found, 0)
-        for k in range(count):
-            if found[k].gap <= best - radii + tolerance:
-                return count
-    elif edge_pair(s, a, b, best, axis, radii, found):
-        return _manifold(s, a, b, hulls, reach, found)
-    closest(s, a, b, hulls, found)
-    return _manifold(s, a, b, hulls, reach, found)
+        segment_segment(s, a, b, found)
+    elif b.kind == BOX and a.kind == POINT:
+        point_box(s, a, b, found)
+        return 1
+    elif b.kind == BOX and a.kind == SEGMENT:
+        segment_box(s, a, b, found)
+    elif not boxes:
+        closest(address, s, a, b, hulls, found)
+    elif not face_or_edges(s, a, b, found):
+        closest(address, s, a, b, hulls, found)
+        boxes = False
+    while True:
+        count = _manifold(s, a, b, hulls, reach, found)
+        if not (boxes and found[0].feature == 0):
+            return count
+        # No points of the two faces are as near as the axis says: vertices or edges beside them are nearest.
+        closest(address, s, a, b, hulls, found)
+        boxes = False
 
 
 @kernel
@@ -127,24 +122,30 @@ def _manifold(s, a, b, hulls, reach, found):
     radii, most, count = a.radius + b.radius, least + reach, 1
     if max(on_a, on_b) > ALIGNED:
         ref = 1 if on_b + 1e-9 >= on_a else 0
-        count = overlap(s, ref, radii, least - tolerance, most, found, count)
+        m, f = s.normal[ref], 2.0 * ref - 1.0
+        apart = separation(s, a, b, hulls, f * m[0], f * m[1], f * m[2])
+        if apart - a.inner - b.inner - radii >= least - reach - tolerance:
+            count = overlap(s, ref, radii, least - tolerance, most, found, count)
     if not max(on_a, on_b) > ON_FACE:
         i, j = _lowest_side(s, 0, nx, ny, nz)
         k, l = _lowest_side(s, 1, -nx, -ny, -nz)
+        before = count
         count = ends_of_line(s, i, j, k, l, radii, least - tolerance, most, found, count)
-    return _without_doubt(found, count, least + tolerance)
+        if found[0].feature >> 60 == EDGES and count == before + 2:
+            return _without_first(found, count, least + tolerance, 2)
+    return _without_first(found, count, least + tolerance, 1) if found[0].feature == 0 else count
 
 
 @kernel
-def _without_doubt(found, count, most):
-    """Drop the nearest pair if it is any pair of two parallel faces and others are as near."""
-    if found[0].feature != 0:
-        return count
+def _without_first(found, count, most, enough):
+    """Drop the nearest pair, any pair of two parallel faces or edges, if `enough` others are as near."""
+    near = 0
     for k in range(1, count):
-        if found[k].gap <= most:
-            _copy(found, count - 1, 0)
-            return count - 1
-    return count
+        near += found[k].gap <= most
+    if near < enough:
+        return count
+    _copy(found, count - 1, 0)
+    return count - 1
 
 
 @kernel
