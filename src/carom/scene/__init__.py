@@ -5,6 +5,7 @@ from carom.scene.bodies import GROUND, Body, Ground, HalfSpace
 from carom.scene.contacts import Contact
 from carom.scene.forces import AppliedForce
 from carom.scene.joints import Joint
+from carom.scene.materials import ContactLaw, Material
 from carom.scene.scene import Scene
 from carom.scene.shapes import (
     Box,
@@ -27,6 +28,7 @@ __all__ = [
     "Capsule",
     "Compound",
     "Contact",
+    "ContactLaw",
     "Convex",
     "Cylinder",
     "Disc",
@@ -34,6 +36,7 @@ __all__ = [
     "Ground",
     "HalfSpace",
     "Joint",
+    "Material",
     "Mesh",
     "Scene",
     "Shape",
