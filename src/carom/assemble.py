@@ -71,7 +71,7 @@ def impact_table(run, rec) -> ImpactTable:
         time=rows.time.copy(),
         contact=c,
         point=rows.point.copy(),
-        normal=contacts.axes[c, 0],
+        normal=rows.normal.copy(),
         relative_velocity_before=rows.before.copy(),
         relative_velocity_after=rows.after.copy(),
         impulse=rows.impulse.copy(),

@@ -9,18 +9,20 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from carom.contact.closed import apart, closed_within
 from carom.contact.exclude import CLEAR, UNSURE, greatest_acceleration
 from carom.contact.gap import gap_and_rate, plane_in_body, slow
+from carom.contact.pair_point import REACH, find_touches, place_any, smaller, touch_rate
+from carom.geometry.rotation import cross
 from carom.hold.events import CONE, GAP, REVERSE, SEPARATE, end_forces
 from carom.hold.lifecycle import hold_contact, settle
 from carom.hold.press import press
-from carom.hold.roster import regroup, set_anchor, strike_off
+from carom.hold.roster import is_held, refresh_pairs, regroup, set_anchor, strike_off
 from carom.hold.search import begin_search, event_value, examine, narrow, propose
 from carom.impact.strike import strike
-from carom.geometry.rotation import cross
 from carom.jit import entry, inlined, kernel
 from carom.motion.acceleration import OPEN, SLIP, STICK
-from carom.motion.contact_point import contact_velocity, place
+from carom.motion.contact_point import contact_velocity
 from carom.motion.explicit import keep
 from carom.motion.step import step
 from carom.system import records as r
@@ -133,7 +135,7 @@ def run(system, method, controls, held, now, work, cluster, clocks, records, unt
                 if dt == remaining:
                     clock.spent = length
                 if held.count[0] > 0:
-                    turn_modes(system, held, now, work, clock, records)
+                    turn_modes(system, controls, held, now, work, clock, records)
                 if not found:
                     continue
                 clock.located += 1
@@ -196,16 +198,19 @@ def look_near(system, controls, held, now, work):
         brink, contact = held.brinks[c], system.contacts[c]
         if brink.near == 0:
             continue
-        tie, still = controls.tie * contact.extent, slow(contact, now)
-        plane = plane_in_body(contact, now)
+        near, still = controls.tie * contact.extent, slow(contact, now)
         action = NOTHING
-        for i in range(contact.first, contact.last):
-            z, rate = gap_and_rate(plane, system.vertices[i])
-            if z <= tie:
-                if rate < -still:
-                    action = STRIKE
-                elif rate <= still and held.carries[i] == 0 and action == NOTHING:
-                    action = HOLD
+        if contact.other >= 0:
+            action = look_at_pair(system, controls, held, contact, c, now, still, work)
+        else:
+            plane = plane_in_body(contact, now)
+            for i in range(contact.first, contact.last):
+                z, rate = gap_and_rate(plane, system.vertices[i])
+                if z <= near:
+                    if rate < -still:
+                        action = STRIKE
+                    elif rate <= still and held.carries[i] == 0 and action == NOTHING:
+                        action = HOLD
         brink.near = 0
         if action == HOLD:
             brink.leaving = 1  # unless it is held now
@@ -214,12 +219,32 @@ def look_near(system, controls, held, now, work):
     return NOTHING, -1
 
 
+@kernel
+def look_at_pair(system, controls, held, contact, c, now, still, work):
+    """Return whether a closed point of two bodies is to be struck or held."""
+    near = closed_within(controls, contact, now)
+    if apart(contact, now, near):
+        return NOTHING
+    action = NOTHING
+    for i in range(find_touches(system, contact, now, REACH * smaller(contact), work)):
+        touch = work.touches[i]
+        if touch.gap <= near:
+            rate = touch_rate(contact, touch, now)
+            if rate < -still:
+                return STRIKE
+            if rate <= still and not is_held(held, c, touch.feature):
+                action = HOLD
+    return action
+
+
 @inlined
 def may_end(contact, system, state, horizon, work):
     """Return whether the bounces of a contact that was just struck, alone, could end within the horizon.
 
     A first look, with a bound of the acceleration where there is one, before the forces are worked out.
     """
+    if contact.other >= 0:
+        return True
     point = work.point[0]
     rate = contact_velocity(point, state)[0]
     if rate <= slow(contact, state) or system.bodies[contact.body].ballistic == 0:
@@ -250,7 +275,7 @@ def change_mode(system, held, i, kind, now, work, clock, records):
     begin_event(hold.contact, hold.feature, now, clock, records)
     if kind == SEPARATE:
         strike_off(held, i)
-        regroup(system, held)
+        regroup(system, held, work)
         end_event(r.OPENS, now, clock, records)
     elif kind == CONE:
         hold.mode = SLIP
@@ -259,7 +284,7 @@ def change_mode(system, held, i, kind, now, work, clock, records):
 
 
 @kernel
-def turn_modes(system, held, now, work, clock, records):
+def turn_modes(system, controls, held, now, work, clock, records):
     """Take over the modes that a step of several held points has ended with."""
     opened = False
     for i in range(held.count[0] - 1, -1, -1):
@@ -268,6 +293,8 @@ def turn_modes(system, held, now, work, clock, records):
             continue
         if hold.settles == 1:
             hold.rest = system.bodies[hold.body].ballistic
+            if hold.other >= 0:
+                hold.rest = min(hold.rest, system.bodies[hold.other].ballistic)
         if hold.next == hold.mode:
             continue
         begin_event(hold.contact, hold.feature, now, clock, records)
@@ -280,8 +307,8 @@ def turn_modes(system, held, now, work, clock, records):
             if hold.mode == STICK:
                 set_anchor(system, hold, now, work)
             end_event(r.STICKS if hold.mode == STICK else r.SLIPS, now, clock, records)
-    if opened:
-        regroup(system, held)
+    if refresh_pairs(system, controls, held, now, work) or opened:
+        regroup(system, held, work)
 
 
 @inlined
@@ -324,19 +351,22 @@ def save_contacts(system, held, now, k, work, records):
         touch.mode = OPEN
         for j in range(3):
             touch.force[j], touch.moment[j] = 0.0, 0.0
+            touch.push[j], touch.other_moment[j] = 0.0, 0.0
     for i in range(held.count[0]):
         hold, point = held.points[i], work.point[0]
         touch, f = records.touch[k, hold.contact], hold.force
-        place(system.contacts[hold.contact], hold.point, now, point)
-        E, arm = point.axes, point.arm_a
+        place_any(system, system.contacts[hold.contact], hold.feature, hold.point, now, point, work)
+        E, arm, other = point.axes, point.arm_a, point.arm_b
         touch.mode = max(touch.mode, hold.mode)
         fx = f[0] * E[0, 0] + f[1] * E[1, 0] + f[2] * E[2, 0]
         fy = f[0] * E[0, 1] + f[1] * E[1, 1] + f[2] * E[2, 1]
         fz = f[0] * E[0, 2] + f[1] * E[1, 2] + f[2] * E[2, 2]
         tx, ty, tz = cross(arm[0], arm[1], arm[2], fx, fy, fz)
-        touch.moment[0] += tx
-        touch.moment[1] += ty
-        touch.moment[2] += tz
+        sx, sy, sz = cross(other[0], other[1], other[2], -fx, -fy, -fz)
+        t, o, p = touch.moment, touch.other_moment, touch.push
+        t[0], t[1], t[2] = t[0] + tx, t[1] + ty, t[2] + tz
+        o[0], o[1], o[2] = o[0] + sx, o[1] + sy, o[2] + sz
+        p[0], p[1], p[2] = p[0] + fx, p[1] + fy, p[2] + fz
         for j in range(3):
             touch.force[j] += f[j]
 

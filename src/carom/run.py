@@ -88,13 +88,17 @@ class Run:
         )
         self.held = r.new_held(system)
         self.work = r.new_work(system, self.method.b.size)
+        if np.any(system.contacts.other >= 0):
+            system = self.find_touches(system)
         system = with_address(system, self.now, self.work)
         self.compiled = self.compiled._replace(system=system)
         check_start(scene, self.compiled, self.work, options)
+        if system.contacts.size:
+            self.work.body.group = system.bodies.component
         self.cluster = new_cluster(system, corner_settings(options))
         self.clock = r.new_clock()
         self.records = r.new_records(system, -(-steps // save_every) + 1, 512)
-        if scene.contacts:
+        if system.contacts.size:
             self.find_strike()
         if not np.all(system.bodies.ballistic):
             self.find_constrained_step()
@@ -105,6 +109,19 @@ class Run:
         loop.save_now(
             self.compiled.system, self.held, self.now, self.clock, self.work, self.records
         )
+
+    def find_touches(self, system):
+        """Compile what finds the points of two bodies; return the system with its address."""
+        from carom.contact.pairs.layout import new_pair_work
+        from carom.contact.pairs.touch import touch_unit
+
+        self.work = self.work._replace(pair=new_pair_work())
+        solid, pose = system.solids[0], self.work.solid_pose
+        found = address(
+            touch_unit, solid, solid, system.hulls, pose[0, :3], pose[0, 3:], pose[0, :3],
+            pose[0, 3:], 0.0, self.work.pair, self.work.touches,
+        )  # fmt: skip
+        return system._replace(touch_at=found)
 
     def find_strike(self) -> None:
         """Compile what a scene with contacts needs, and note where it is."""
@@ -135,9 +152,7 @@ class Run:
             settle_unit, system, self.controls, held, 0, now, self.work, self.clock, self.records
         )
         press = address(press_unit, system, self.controls, held, now, 0.0, now, *scratch)
-        self.controls = self.controls._replace(
-            hold_at=hold or 1, settle_at=settle, press_at=press
-        )
+        self.controls = self.controls._replace(hold_at=hold or 1, settle_at=settle, press_at=press)
 
     def find_corner(self) -> None:
         """Compile the impact of several points: only when the first one is to be resolved."""

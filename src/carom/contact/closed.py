@@ -1,63 +1,161 @@
-"""The closed points of a group of bodies: vertices on the surface, and all that is held."""
+"""The closed points of a group of bodies: vertices on a surface, points of two bodies, all that is held."""
 
 from __future__ import annotations
 
 from carom.contact.gap import along_normal, gap_and_rate, plane_in_body, round_off
+from carom.contact.groups import unite
+from carom.contact.pair_point import (
+    REACH,
+    find_touches,
+    own_point,
+    place_any,
+    smaller,
+    write_touch,
+)
 from carom.jit import kernel
 from carom.motion.contact_point import place
 
 
 @kernel
-def gather_closed(system, controls, held, group, state, cluster):
-    """List what is closed in `state`; return how many points, -1 if they are too many.
+def closed_within(controls, contact, state):
+    """Return the gap up to which a point counts as closed [m]."""
+    near = max(controls.tie, controls.gap) * smaller(contact)
+    near = max(near, 4.0 * round_off(contact, state))
+    return (
+        near if contact.other < 0 else max(near, 4.0 * round_off_of(contact.other, contact, state))
+    )
 
-    Closed: within the tolerance of ties or of a located gap, or held. Writes seats and points.
+
+@kernel
+def round_off_of(b, contact, state):
+    """Return the round-off of a gap between two bodies."""
+    x = state[b].x
+    return 1e-15 * (abs(x[0]) + abs(x[1]) + abs(x[2]) + contact.other_extent)
+
+
+@kernel
+def concerns(contact, group, work):
+    """Return whether a contact touches a body of the group."""
+    if work.body[contact.body].group == group:
+        return True
+    return contact.other >= 0 and work.body[contact.other].group == group
+
+
+@kernel
+def apart(contact, state, near):
+    """Return whether the balls around the two are further apart than `near`."""
+    x = state[contact.body].x
+    if contact.other < 0:
+        return along_normal(contact, x) - contact.offset - contact.radius - contact.extent > near
+    y = state[contact.other].x
+    d = contact.extent + contact.other_extent + near
+    return (x[0] - y[0]) ** 2 + (x[1] - y[1]) ** 2 + (x[2] - y[2]) ** 2 > d * d
+
+
+@kernel
+def gather_closed(system, controls, held, c, state, cluster, work):
+    """List what is closed in `state` with contact c; return how many points, -1 if they are too many.
+
+    Closed: within the tolerance of ties or of a located gap, or held. Writes seats and points. Bodies that
+    closed points link become one group, in which all closed points count.
     """
-    k = 0
-    for c in range(system.contacts.shape[0]):
-        contact = system.contacts[c]
-        if contact.group != group:
-            continue
-        near = max(controls.tie, controls.gap) * contact.extent
-        near = max(near, 4.0 * round_off(contact, state))
-        height = along_normal(contact, state[contact.body].x) - contact.offset - contact.radius
-        if height - contact.extent > near:
-            continue
-        plane = plane_in_body(contact, state)
-        for i in range(contact.first, contact.last):
-            z, _ = gap_and_rate(plane, system.vertices[i])
-            if z <= near or held.carries[i] == 1:
-                if k == cluster.seats.shape[0]:
-                    return -1
-                take_seat(contact, c, i, system.vertices[i], cluster.seats[k])
-                place(contact, cluster.seats[k].point, state, cluster.points[k])
-                k += 1
+    group, k, more = work.body[system.contacts[c].body].group, 0, True
+    if system.contacts[c].other >= 0:
+        unite(work, system.contacts[c].body, system.contacts[c].other)
+    for i in range(system.contacts.shape[0]):
+        held.brinks[i].seen = 0
+    while more:
+        more = False
+        for i in range(system.contacts.shape[0]):
+            contact, brink = system.contacts[i], held.brinks[i]
+            if brink.seen == 1 or not concerns(contact, group, work):
+                continue
+            brink.seen = 1
+            near = closed_within(controls, contact, state)
+            if apart(contact, state, near):
+                continue
+            before = k
+            if contact.other < 0:
+                k = add_vertices(system, held, contact, i, near, state, k, cluster)
+            else:
+                k = add_touches(system, contact, i, near, state, k, cluster, work)
+                if k > before:
+                    unite(work, contact.body, contact.other)
+                    more = True
+            if k < 0:
+                return -1
+    seat_held(held, k, cluster)
+    return k
+
+
+@kernel
+def add_vertices(system, held, contact, c, near, state, k, cluster):
+    """Add the vertices that are closed to a half-space; return the new count, -1 if there is no room."""
+    plane = plane_in_body(contact, state)
+    for i in range(contact.first, contact.last):
+        z, _ = gap_and_rate(plane, system.vertices[i])
+        if z <= near or held.carries[i] == 1:
+            if k == cluster.seats.shape[0]:
+                return -1
+            take_seat(c, i, system.vertices[i], cluster.seats[k])
+            place(contact, cluster.seats[k].point, state, cluster.points[k])
+            k += 1
+    return k
+
+
+@kernel
+def add_touches(system, contact, c, near, state, k, cluster, work):
+    """Add the points of two bodies that are closed; return the new count, -1 if there is no room."""
+    count = find_touches(system, contact, state, REACH * smaller(contact), work)
+    for i in range(count):
+        touch = work.touches[i]
+        if touch.gap <= near:
+            if k == cluster.seats.shape[0]:
+                return -1
+            own_point(contact, touch, state, cluster.seats[k].point)
+            take_seat(c, touch.feature, cluster.seats[k].point, cluster.seats[k])
+            write_touch(contact, touch, state, cluster.points[k])
+            k += 1
+    return k
+
+
+@kernel
+def seat_held(held, k, cluster):
+    """Note the place of each closed point among the held ones."""
     for i in range(held.count[0]):
         hold = held.points[i]
         for j in range(k):
             seat = cluster.seats[j]
             if seat.contact == hold.contact and seat.feature == hold.feature:
                 seat.held = i
-    return k
 
 
 @kernel
-def gather_held(system, held, group, state, cluster):
+def gather_held(system, held, group, state, cluster, work):
     """List the held points of a group; return how many."""
     k = 0
     for i in range(held.count[0]):
         hold = held.points[i]
-        contact = system.contacts[hold.contact]
-        if contact.group == group and k < cluster.seats.shape[0]:
-            take_seat(contact, hold.contact, hold.feature, hold.point, cluster.seats[k])
+        if work.body[hold.body].group == group and k < cluster.seats.shape[0]:
+            take_seat(hold.contact, hold.feature, hold.point, cluster.seats[k])
             cluster.seats[k].held = i
-            place(contact, hold.point, state, cluster.points[k])
             k += 1
+    place_seats(system, k, state, cluster, cluster.points, work)
     return k
 
 
 @kernel
-def take_seat(contact, c, feature, p, seat):
+def place_seats(system, k, state, cluster, points, work):
+    """Write the points of all seats in a state."""
+    for i in range(k):
+        seat = cluster.seats[i]
+        place_any(
+            system, system.contacts[seat.contact], seat.feature, seat.point, state, points[i], work
+        )
+
+
+@kernel
+def take_seat(c, feature, p, seat):
     """Write one closed point."""
     seat.contact, seat.feature, seat.held, seat.stays = c, feature, -1, 0
     for k in range(3):

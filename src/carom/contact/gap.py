@@ -60,11 +60,20 @@ def round_off(contact, state):
 
 
 @kernel
-def slow(contact, state):
-    """Return the speed [m/s] that counts as none: round-off of the speeds of the body."""
-    v, w = state[contact.body].v, state[contact.body].w
+def speed_of(b, extent, state):
+    """Return the greatest speed of a point of a body."""
+    v, w = state[b].v, state[b].w
     s = math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
-    return 1e-13 * (s + contact.extent * math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]))
+    return s + extent * math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
+
+
+@kernel
+def slow(contact, state):
+    """Return the speed [m/s] that counts as none: round-off of the speeds of the body, or of both."""
+    s = speed_of(contact.body, contact.extent, state)
+    if contact.other >= 0:
+        s += speed_of(contact.other, contact.other_extent, state)
+    return 1e-13 * s
 
 
 @kernel

@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 
 from carom.contact.gap import slow
+from carom.contact.pair_point import drift
 from carom.coulomb.layout import CONE, SLIDING
 from carom.coulomb.solve import solve_cones
 from carom.jit import kernel
@@ -25,6 +26,13 @@ def pose_forces(system, controls, held, k, state, cluster, work):
     inverse_masses(system, k, cluster.points, state, work, cluster.W)
     velocities(k, cluster.points, state, cluster.u)
     accelerations(k, cluster.points, state, work.stages[0], cluster.c)
+    for i in range(k):
+        seat = cluster.seats[i]
+        contact = system.contacts[seat.contact]
+        if contact.other >= 0:
+            d = drift(system, contact, seat.feature, seat.point, cluster.points[i], state, work)
+            for r in range(3):
+                cluster.c[3 * i + r] += d[r]
     push = 0.0
     for i in range(3 * k):
         push = max(push, abs(cluster.c[i]))

@@ -29,19 +29,22 @@ def hold_unit(system, controls, held, c, state, horizon, cluster, work, clocks, 
     """Hold what is closed in the group of contact c, does not approach, and shall be held by the rule."""
     contact, clock, hit = system.contacts[c], clocks[0], work.hit[0]
     hit.code = 0
+    k = gather_closed(system, controls, held, c, state, cluster, work)
+    group = work.body[contact.body].group
     for i in range(held.count[0]):
         hold = held.points[i]
-        if system.contacts[hold.contact].group == contact.group:
+        if work.body[hold.body].group == group:
             hold.rest, hold.several = 0, 1  # together with the new one
-    k = gather_closed(system, controls, held, contact.group, state, cluster)
     if k < 0:
         hit.code = TOO_MANY_POINTS
-    elif k == 1 and cluster.seats[0].held < 0:
+    elif k == 1 and cluster.seats[0].held < 0 and contact.other < 0:
         hold_one(system, controls, held, state, horizon, cluster, work, clock, records)
     elif k > 0:
-        hold_several(system, controls, held, k, contact.group, state, horizon, cluster, work, clock, records)
+        hold_several(
+            system, controls, held, k, group, state, horizon, cluster, work, clock, records
+        )
         look_again(system, held, k, state, cluster)
-    regroup(system, held)
+    regroup(system, held, work)
 
 
 #: hold_contact(address, system, controls, held, c, state, horizon, cluster, work, clocks, records)

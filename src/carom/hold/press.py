@@ -18,8 +18,9 @@ from __future__ import annotations
 
 import math
 
-from carom.contact.closed import gather_held
+from carom.contact.closed import gather_held, place_seats
 from carom.contact.gap import slow
+from carom.contact.groups import members
 from carom.coulomb.layout import CONE
 from carom.coulomb.solve import solve_cones
 from carom.dispatch import by_address
@@ -28,11 +29,11 @@ from carom.hold.forces import pose_forces, predict_stop, solve_forces
 from carom.hold.surface import onto_surfaces
 from carom.jit import kernel, unit
 from carom.motion.acceleration import OPEN, SLIP, STICK
-from carom.motion.contact_point import contact_velocity, place
+from carom.motion.contact_point import contact_velocity
 from carom.motion.explicit import keep
 from carom.motion.forces import applied_wrenches
 from carom.motion.project import project_velocity, shift
-from carom.motion.several import inverse_masses, members, spread_all, velocities
+from carom.motion.several import inverse_masses, spread_all, velocities
 
 ROUNDS = 50
 
@@ -47,8 +48,8 @@ def press_unit(system, controls, held, start, h, end, cluster, work, clocks):
     result.applied, result.friction, result.code = 0.0, 0.0, 0
     for i in range(held.count[0]):
         hold = held.points[i]
-        group = system.contacts[hold.contact].group
-        if hold.several == 0 or hold.rest == 1 or seen(system, held, i, group):
+        group = work.body[hold.body].group
+        if hold.several == 0 or hold.rest == 1 or seen(held, i, group, work):
             continue
         press_group(system, controls, held, group, start, h, end, cluster, work, clocks[0])
         if result.code != 0:
@@ -60,10 +61,10 @@ press = by_address(press_unit)
 
 
 @kernel
-def seen(system, held, i, group):
+def seen(held, i, group, work):
     """Return whether an earlier held point is of the same group."""
     for j in range(i):
-        if system.contacts[held.points[j].contact].group == group:
+        if work.body[held.points[j].body].group == group:
             return True
     return False
 
@@ -71,22 +72,24 @@ def seen(system, held, i, group):
 @kernel
 def press_group(system, controls, held, group, start, h, end, cluster, work, clock):
     """Correct the step of one group."""
-    k = gather_held(system, held, group, start, cluster)
-    count = members(system, group, cluster.member)
-    loaded = system.bodies[cluster.member[0]].ballistic == 0
+    k = gather_held(system, held, group, start, cluster, work)
+    count = members(work, group, cluster.member)
+    loaded = False
+    for m in range(count):
+        loaded = loaded or system.bodies[cluster.member[m]].ballistic == 0
     begin(system, held, k, start, h, end, count, loaded, cluster, work)
     size, before = 3 * k, math.inf
     cluster.rounds[1] += 1
     for _ in range(ROUNDS):
         for m in range(count):
             halfway(start[cluster.member[m]], end[cluster.member[m]], work.stage[cluster.member[m]])
-        for i in range(k):
-            seat = cluster.seats[i]
-            place(system.contacts[seat.contact], seat.point, work.stage, cluster.points[i])
+        place_seats(system, k, work.stage, cluster, cluster.points, work)
         inverse_masses(system, k, cluster.points, work.stage, work, cluster.W)
         impose(system, held, k, h, end, count, loaded, cluster, work)
         for m in range(count):
-            mean_velocity(start[cluster.member[m]], end[cluster.member[m]], work.stage[cluster.member[m]])
+            mean_velocity(
+                start[cluster.member[m]], end[cluster.member[m]], work.stage[cluster.member[m]]
+            )
         pose(k, start, cluster, work)
         solve_cones(
             k, cluster.W, cluster.c, cluster.mu, cluster.kind, cluster.heading, cluster.p,
@@ -160,6 +163,15 @@ def halfway(start, end, out):
 
 
 @kernel
+def any_joined(system, count, member):
+    """Return whether a body of the group has a joint."""
+    for m in range(count):
+        if system.bodies[member[m]].isolated == 0:
+            return True
+    return False
+
+
+@kernel
 def mean_velocity(start, end, out):
     """Write the mean of the velocities of a body."""
     for k in range(3):
@@ -185,7 +197,9 @@ def impose(system, held, k, h, end, count, loaded, cluster, work):
         body, motion, push = system.bodies[b], work.body[b].motion, work.body[b].push
         for i in range(3):
             push[i] = body.mass * motion[i]
-        push[3], push[4], push[5] = spin_momentum(body, work.stage[b].Q, motion[3], motion[4], motion[5])
+        push[3], push[4], push[5] = spin_momentum(
+            body, work.stage[b].Q, motion[3], motion[4], motion[5]
+        )
         for i in range(6):
             motion[i] *= 0.5 * h
         keep(flight[b], end[b])
@@ -202,11 +216,9 @@ def impose(system, held, k, h, end, count, loaded, cluster, work):
             v[i] = flight[b].v[i] + push[i] / body.mass
         a = rotate_back(q[0], q[1], q[2], q[3], l[0] + push[3], l[1] + push[4], l[2] + push[5])
         w[0], w[1], w[2] = rotate(q[0], q[1], q[2], q[3], a[0] / J[0], a[1] / J[1], a[2] / J[2])
-    if system.bodies[member[0]].isolated == 0:
+    if system.joints.shape[0] > 0 and any_joined(system, count, member):
         project_velocity(system, end, work)
-    for i in range(k):
-        seat = cluster.seats[i]
-        place(system.contacts[seat.contact], seat.point, end, cluster.ends[i])
+    place_seats(system, k, end, cluster, cluster.ends, work)
     velocities(k, cluster.ends, end, cluster.u)
 
 
@@ -329,7 +341,7 @@ def forces_at_end(system, controls, held, k, end, cluster, work):
         seat = cluster.seats[i]
         hold = held.points[seat.held]
         seat.stays = 1 if hold.next != OPEN else 0
-        place(system.contacts[seat.contact], seat.point, end, cluster.points[i])
+    place_seats(system, k, end, cluster, cluster.points, work)
     pose_forces(system, controls, held, k, end, cluster, work)
     solve_forces(k, cluster)
     for i in range(k):

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 
+from carom.contact.closed import closed_within
+from carom.contact.groups import label_groups
+from carom.contact.pair_point import REACH, find_touches, own_point, place_any, smaller
 from carom.jit import kernel
-from carom.motion.contact_point import place
 
 
 @kernel
@@ -14,7 +16,8 @@ def enlist(system, held, seat, mode, state, work):
     i = held.count[0]
     held.count[0] = i + 1
     hold, contact = held.points[i], system.contacts[seat.contact]
-    hold.contact, hold.feature, hold.body = seat.contact, seat.feature, contact.body
+    hold.contact, hold.feature = seat.contact, seat.feature
+    hold.body, hold.other = contact.body, contact.other
     hold.mode, hold.next, hold.rest, hold.several = mode, mode, 0, 0
     hold.settles, hold.stop = 0, math.inf
     for k in range(3):
@@ -24,7 +27,8 @@ def enlist(system, held, seat, mode, state, work):
             hold.W[k, j] = 0.0
     hold.heading[0], hold.heading[1] = 0.0, 0.0
     set_anchor(system, hold, state, work)
-    held.carries[seat.feature] = 1
+    if contact.other < 0:
+        held.carries[seat.feature] = 1
     held.brinks[seat.contact].leaving = 0
     return i
 
@@ -33,7 +37,7 @@ def enlist(system, held, seat, mode, state, work):
 def set_anchor(system, hold, state, work):
     """Note where a point is now: it stays there while it sticks."""
     point, x = work.point[0], state[hold.body].x
-    place(system.contacts[hold.contact], hold.point, state, point)
+    place_any(system, system.contacts[hold.contact], hold.feature, hold.point, state, point, work)
     for k in range(3):
         hold.anchor[k] = x[k] + point.arm_a[k]
 
@@ -41,7 +45,8 @@ def set_anchor(system, hold, state, work):
 @kernel
 def strike_off(held, i):
     """Take point i off the list, the others keep their order."""
-    held.carries[held.points[i].feature] = 0
+    if held.points[i].other < 0:
+        held.carries[held.points[i].feature] = 0
     held.brinks[held.points[i].contact].leaving = 1
     last = held.count[0] - 1
     for j in range(i, last):
@@ -52,7 +57,7 @@ def strike_off(held, i):
 @kernel
 def copy(a, b):
     """Copy a held point."""
-    b.contact, b.feature, b.body, b.mode = a.contact, a.feature, a.body, a.mode
+    b.contact, b.feature, b.body, b.other, b.mode = a.contact, a.feature, a.body, a.other, a.mode
     b.next, b.several, b.rest, b.stop = a.next, a.several, a.rest, a.stop
     b.settles = a.settles
     for k in range(3):
@@ -63,12 +68,73 @@ def copy(a, b):
 
 
 @kernel
-def regroup(system, held):
-    """Note which held points share their bodies with others."""
+def regroup(system, held, work):
+    """Label the groups that held points make, and note which points share their bodies with others."""
+    label_groups(system, held, work)
     for i in range(held.count[0]):
         hold = held.points[i]
-        group, several = system.contacts[hold.contact].group, 0
+        group, several = work.body[hold.body].group, 1 if hold.other >= 0 else 0
         for j in range(held.count[0]):
-            if j != i and system.contacts[held.points[j].contact].group == group:
+            if j != i and work.body[held.points[j].body].group == group:
                 several = 1
         hold.several = several
+
+
+@kernel
+def is_held(held, c, feature):
+    """Return whether a feature of contact c is held."""
+    for i in range(held.count[0]):
+        if held.points[i].contact == c and held.points[i].feature == feature:
+            return True
+    return False
+
+
+@kernel
+def refresh_pairs(system, controls, held, state, work):
+    """Let points of two bodies whose features are no more give way to those that took their place.
+
+    As faces slide on each other the corners of their overlap change; the set stays that of the closed
+    points. Returns whether anything changed.
+    """
+    changed, i = False, 0
+    while i < held.count[0]:
+        hold = held.points[i]
+        if hold.other < 0 or hold.rest == 1:
+            i += 1
+            continue
+        c, contact = hold.contact, system.contacts[hold.contact]
+        count = find_touches(system, contact, state, REACH * smaller(contact), work)
+        there = False
+        for t in range(count):
+            there = there or work.touches[t].feature == hold.feature
+        if there:
+            i += 1
+            continue
+        mode = hold.mode
+        strike_off(held, i)
+        held.brinks[c].leaving = 0
+        changed = True
+        near = closed_within(controls, contact, state)
+        for t in range(count):
+            touch = work.touches[t]
+            free = held.count[0] < held.points.shape[0]
+            if touch.gap <= near and free and not is_held(held, c, touch.feature):
+                enlist_touch(contact, c, touch, mode, state, held)
+    return changed
+
+
+@kernel
+def enlist_touch(contact, c, touch, mode, state, held):
+    """Add a point of two bodies to the list, without an event."""
+    hold = held.points[held.count[0]]
+    held.count[0] += 1
+    hold.contact, hold.feature = c, touch.feature
+    hold.body, hold.other = contact.body, contact.other
+    hold.mode, hold.next, hold.rest, hold.several = mode, mode, 0, 1
+    hold.settles, hold.stop = 0, math.inf
+    own_point(contact, touch, state, hold.point)
+    for k in range(3):
+        hold.force[k] = 0.0
+        for j in range(3):
+            hold.W[k, j] = 0.0
+    hold.heading[0], hold.heading[1] = 0.0, 0.0

@@ -7,8 +7,11 @@ an event is as exact as the method.
 
 from __future__ import annotations
 
+from carom.contact.closed import round_off_of
 from carom.contact.exclude import BELOW, CLEAR, UNSURE, passage
+from carom.contact.exclude_pair import lowest_pair, passage_pair
 from carom.contact.gap import lowest, round_off
+from carom.contact.pair_point import smaller
 from carom.hold.events import GAP, find_held_event, held_value, turned
 from carom.jit import inlined, kernel
 
@@ -20,9 +23,14 @@ def examine(system, controls, held, now, dt, work):
     for c in range(held.brinks.shape[0]):
         contact = system.contacts[c]
         leaving = held.brinks[c].leaving
-        verdict, first = passage(
-            system, contact, held, leaving, now, work.trial, dt, work, controls.gap
-        )
+        if contact.other < 0:
+            verdict, first = passage(
+                system, contact, held, leaving, now, work.trial, dt, work, controls.gap
+            )
+        else:
+            verdict, first = passage_pair(
+                system, contact, c, held, leaving, now, work.trial, dt, work, controls.gap
+            )
         if verdict == UNSURE:
             return UNSURE, GAP, c, 0.0, 0.0, 0.0
         if verdict == BELOW and found == CLEAR:
@@ -44,8 +52,11 @@ def event_value(system, controls, held, search, state, work):
     """Return the event function and, for a gap, its rate; forces of held contacts are those of `state`."""
     if search.kind == GAP:
         contact = system.contacts[search.contact]
-        search.tolerance = max(controls.gap * contact.extent, round_off(contact, state))
-        return lowest(contact, system.vertices, state)
+        search.tolerance = max(controls.gap * smaller(contact), round_off(contact, state))
+        if contact.other < 0:
+            return lowest(contact, system.vertices, state)
+        search.tolerance = max(search.tolerance, round_off_of(contact.other, contact, state))
+        return lowest_pair(system, contact, search.contact, held, state, work)
     hold = held.points[search.contact]
     return held_value(system, hold, search.kind, search.d1, search.d2, state, work), 0.0
 

@@ -38,7 +38,7 @@ def hold_several(system, controls, held, k, group, state, horizon, cluster, work
     if stay:
         drop_bounces(system, k, state, cluster, work, clock)
         set_modes(system, held, k, state, cluster, work, clock, records)
-    strike_off_open(system, held, k, group, state, cluster, clock, records)
+    strike_off_open(system, held, k, group, state, cluster, work, clock, records)
 
 
 @kernel
@@ -97,7 +97,9 @@ def set_modes(system, held, k, state, cluster, work, clock, records):
         _, u1, u2 = contact_velocity(cluster.points[i], state)
         # as `pose_forces` has found with the velocities before
         still = 10.0 * slow(contact, state)
-        mode = SLIP if math.sqrt(u1 * u1 + u2 * u2) > still and cluster.kind[i] == SLIDING else STICK
+        mode = (
+            SLIP if math.sqrt(u1 * u1 + u2 * u2) > still and cluster.kind[i] == SLIDING else STICK
+        )
         if seat.held >= 0:
             held.points[seat.held].mode, held.points[seat.held].stop = mode, math.inf
             continue
@@ -110,11 +112,11 @@ def set_modes(system, held, k, state, cluster, work, clock, records):
 
 
 @kernel
-def strike_off_open(system, held, k, group, state, cluster, clock, records):
+def strike_off_open(system, held, k, group, state, cluster, work, clock, records):
     """Strike off the held points of the group that do not stay."""
     for j in range(held.count[0] - 1, -1, -1):
         hold = held.points[j]
-        if system.contacts[hold.contact].group != group:
+        if work.body[hold.body].group != group:
             continue
         for i in range(k):
             seat = cluster.seats[i]

@@ -10,10 +10,12 @@ from __future__ import annotations
 
 import math
 
+from carom.contact.closed import round_off_of
 from carom.contact.gap import round_off
+from carom.contact.pair_point import place_any
 from carom.jit import kernel
 from carom.motion.acceleration import STICK
-from carom.motion.contact_point import in_axes, place
+from carom.motion.contact_point import in_axes
 from carom.motion.project import project_position, shift
 from carom.motion.several import factor, spread_all, substitute
 
@@ -30,7 +32,8 @@ def mark_rows(system, held, k, cluster):
         if p[q] > 0.0:
             some = True
             friction = math.sqrt(p[q + 1] * p[q + 1] + p[q + 2] * p[q + 2])
-            core = system.contacts[hold.contact].radius == 0.0
+            contact = system.contacts[hold.contact]
+            core = contact.radius == 0.0 and contact.other < 0
             sticks = hold.mode == STICK and friction < (1.0 - 1e-9) * cluster.mu[i] * p[q]
             cluster.rows[i] = 3 if core and sticks else 1
     return some
@@ -50,7 +53,7 @@ def onto_surfaces(system, held, k, count, state, cluster, work):
     factor(n, DROP, L)
     x = cluster.u
     for _ in range(10):
-        if errors(system, held, k, state, cluster, x):
+        if errors(system, held, k, state, cluster, x, work):
             break
         substitute(n, L, x)
         for i in range(n):
@@ -58,19 +61,21 @@ def onto_surfaces(system, held, k, count, state, cluster, work):
         spread_all(system, k, cluster.points, x, count, cluster.member, work.stage, work)
         for m in range(count):
             shift(work.body[cluster.member[m]].motion, state[cluster.member[m]])
-        if system.joints.shape[0] > 0 and system.bodies[cluster.member[0]].isolated == 0:
+        if system.joints.shape[0] > 0:
             project_position(system, state, work, 1e-14)
 
 
 @kernel
-def errors(system, held, k, state, cluster, x):
+def errors(system, held, k, state, cluster, x, work):
     """Write the errors of all rows (0 where there is none); return whether all are round-off."""
     small = True
     for i in range(k):
         hold, point = held.points[cluster.seats[i].held], cluster.ends[i]
         contact = system.contacts[hold.contact]
-        place(contact, hold.point, state, point)
+        place_any(system, contact, hold.feature, hold.point, state, point, work)
         tiny = round_off(contact, state)
+        if contact.other >= 0:
+            tiny = 4.0 * max(tiny, round_off_of(contact.other, contact, state))
         x[3 * i], x[3 * i + 1], x[3 * i + 2] = 0.0, 0.0, 0.0
         if cluster.rows[i] == 0:
             continue
@@ -78,9 +83,7 @@ def errors(system, held, k, state, cluster, x):
         small = small and abs(point.gap) <= tiny
         if cluster.rows[i] == 3:
             c, a, r = state[hold.body].x, hold.anchor, point.arm_a
-            _, t1, t2 = in_axes(
-                point, c[0] + r[0] - a[0], c[1] + r[1] - a[1], c[2] + r[2] - a[2]
-            )
+            _, t1, t2 = in_axes(point, c[0] + r[0] - a[0], c[1] + r[1] - a[1], c[2] + r[2] - a[2])
             x[3 * i + 1], x[3 * i + 2] = t1, t2
             small = small and max(abs(t1), abs(t2)) <= tiny
     return small

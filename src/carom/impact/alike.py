@@ -15,6 +15,7 @@ from carom.jit import kernel
 from carom.motion.contact_point import (
     contact_motion,
     contact_velocity,
+    copy_point,
     effective_inverse_mass,
     place,
     spread,
@@ -29,6 +30,13 @@ def as_one(system, k, state, cluster, work):
     hit, point, seats = work.hit[0], work.point[0], cluster.seats
     c = seats[0].contact
     contact, core = system.contacts[c], hit.point
+    if contact.other >= 0:
+        if k > 1:
+            return False
+        copy_point(cluster.points[0], point)
+        effective_inverse_mass(system, point, state, work, hit.W)
+        hit.u[0], hit.u[1], hit.u[2] = contact_velocity(point, state)
+        return True
     for r in range(3):
         core[r] = 0.0
         for i in range(k):

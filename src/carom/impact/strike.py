@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from carom.contact.closed import gather_closed
+from carom.contact.closed import concerns, gather_closed
 from carom.contact.gap import round_off, slow, strike_point
+from carom.contact.groups import label_groups
 from carom.contact.return_map import return_map
 from carom.contact.work_mode import restore_work
 from carom.dispatch import by_address, by_method
 from carom.impact import layout
+from carom.impact.alike import as_one
 from carom.impact.layer import traverse
 from carom.impact.resolve import resolve
-from carom.jit import kernel, unit
-from carom.impact.alike import as_one
 from carom.impact.strike_several import strike_several
 from carom.impact.write import write_impact
+from carom.jit import kernel, unit
 from carom.motion.contact_point import add_velocity, contact_velocity, spread
 from carom.motion.explicit import Explicit
 from carom.motion.forces import potential_energy
@@ -34,6 +35,8 @@ def onto_surface(system, controls, c, state, work):
     velocity block is solved again with the position now fixed.
     """
     contact, point = system.contacts[c], work.hit[0].point
+    if contact.other >= 0:
+        return 0  # found within the tolerance of a located gap
     tie = controls.tie * contact.extent
     tolerance = max(controls.gap * contact.extent, round_off(contact, state))
     rho, _ = strike_point(contact, system.vertices, state, tie, point)
@@ -62,7 +65,7 @@ def strike_unit(method, system, controls, held, c, state, cluster, work, clocks,
     hit.code = onto_surface(system, controls, c, state, work)
     if hit.code != 0:
         return
-    k = gather_closed(system, controls, held, contact.group, state, cluster)
+    k = gather_closed(system, controls, held, c, state, cluster, work)
     if k < 0:
         hit.code = TOO_MANY_POINTS
         return
@@ -85,12 +88,13 @@ def strike_unit(method, system, controls, held, c, state, cluster, work, clocks,
             strike_several(system, controls, c, k, state, cluster, work, clock, records)
         if hit.code != 0:
             return
-        if system.bodies[contact.body].isolated == 0:
+        if system.joints.shape[0] > 0:
             project_velocity(system, state, work)
         end_event(IMPACT, state, clock, records)
         for i in range(held.brinks.shape[0]):
-            if system.contacts[i].group == contact.group:
+            if concerns(system.contacts[i], work.body[contact.body].group, work):
                 held.brinks[i].near = 1
+        label_groups(system, held, work)
     if controls.location != LOCATE:  # others may be inside as well
         for i in range(held.brinks.shape[0]):
             held.brinks[i].near = 1

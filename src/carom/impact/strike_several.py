@@ -58,7 +58,7 @@ def write_share(i, k, state, cluster, clock, records):
     x, u = state[point.a].x, cluster.u
     row.time, row.contact, row.together = clock.now, cluster.seats[i].contact, k
     for r in range(3):
-        row.point[r] = x[r] + point.arm_a[r]
+        row.point[r], row.normal[r] = x[r] + point.arm_a[r], point.axes[0, r]
         row.before[r], row.after[r] = u[3 * i + r], result.velocity[3 * i + r]
         row.impulse[r] = result.impulse[3 * i + r]
         for s in range(3):

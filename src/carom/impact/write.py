@@ -16,7 +16,7 @@ def write_impact(contact, c, state, point, hit, clock, records):
     row.time = clock.now
     row.contact, row.together = c, 1
     for i in range(3):
-        row.point[i] = x[i] + point.arm_a[i]
+        row.point[i], row.normal[i] = x[i] + point.arm_a[i], point.axes[0, i]
         row.before[i] = hit.u[i]
         row.after[i] = out[layout.VELOCITY + i]
         row.impulse[i] = out[layout.IMPULSE + i]

@@ -79,8 +79,12 @@ def contact_motion(point, work):
 def contact_acceleration(point, state, stage):
     """Return du/dt in contact axes: a + alpha x r + w x (w x core) (a ball around the core does not turn).
 
-    For a half-space: the normal stays.
+    That is of a half-space, whose normal stays; of two bodies G times the accelerations alone.
     """
+    if point.b >= 0:
+        ax, ay, az = motion_there(stage[point.a].rate, point.arm_a)
+        bx, by, bz = motion_there(stage[point.b].rate, point.arm_b)
+        return in_axes(point, ax - bx, ay - by, az - bz)
     w, c = state[point.a].w, point.core
     cx, cy, cz = cross(w[0], w[1], w[2], c[0], c[1], c[2])
     cx, cy, cz = cross(w[0], w[1], w[2], cx, cy, cz)

@@ -124,9 +124,10 @@ def mark_held(system, held, work):
         work.body[b].status = FREE
     for i in range(held.count[0]):
         hold = held.points[i]
-        work.body[hold.body].status = (
-            RESTS if hold.rest == 1 else SEVERAL if hold.several == 1 else ONE
-        )
+        status = RESTS if hold.rest == 1 else SEVERAL if hold.several == 1 else ONE
+        work.body[hold.body].status = status
+        if hold.other >= 0:
+            work.body[hold.other].status = status
 
 
 @kernel

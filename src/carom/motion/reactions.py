@@ -59,11 +59,16 @@ share = by_solver({FreeSolver: keep_shares, TreeSolver: keep_shares, LoopSolver:
 
 @kernel
 def add_touch(contact, touch, work):
-    """Add what a contact does to its body: force (contact axes) and moment about the centre (world)."""
-    f, E, wrench = touch.force, contact.axes, work.body[contact.body].wrench
+    """Add what a contact does to its bodies: force and moment about their centres, world axes."""
+    wrench = work.body[contact.body].wrench
     for k in range(3):
-        wrench[k] += f[0] * E[0, k] + f[1] * E[1, k] + f[2] * E[2, k]
+        wrench[k] += touch.push[k]
         wrench[3 + k] += touch.moment[k]
+    if contact.other >= 0:
+        wrench = work.body[contact.other].wrench
+        for k in range(3):
+            wrench[k] -= touch.push[k]
+            wrench[3 + k] += touch.other_moment[k]
 
 
 @entry

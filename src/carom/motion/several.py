@@ -5,8 +5,6 @@ from __future__ import annotations
 from carom.jit import kernel
 from carom.motion.contact_point import (
     add_impulse,
-    alone,
-    clear_wrench,
     clear_wrenches,
     contact_acceleration,
     contact_motion,
@@ -14,21 +12,6 @@ from carom.motion.contact_point import (
     spread,
 )
 from carom.motion.solve import free_body, solve
-
-
-@kernel
-def members(system, group, member):
-    """List the bodies of a group: one that is alone, or all that are joined; return how many."""
-    n = system.bodies.shape[0]
-    if group < n:
-        member[0] = group
-        return 1
-    count = 0
-    for b in range(n):
-        if system.bodies[b].isolated == 0:
-            member[count] = b
-            count += 1
-    return count
 
 
 @kernel
@@ -78,12 +61,10 @@ def inverse_masses(system, k, points, state, work, W):
 @kernel
 def spread_all(system, k, points, p, count, member, state, work):
     """Write motion = P G^T p of the bodies of a group, for impulses of all k points at once."""
-    joined = not alone(system, points[0])
-    if joined:
-        clear_wrenches(work)
-    else:
-        for m in range(count):
-            clear_wrench(work.body[member[m]])
+    joined = False
+    for m in range(count):
+        joined = joined or system.bodies[member[m]].isolated == 0
+    clear_wrenches(work)
     for i in range(k):
         add_impulse(points[i], p[3 * i], p[3 * i + 1], p[3 * i + 2], work)
     if joined:

@@ -3,38 +3,36 @@
 from __future__ import annotations
 
 from carom.scene.bodies import Body
-from carom.scene.contacts import Contact
-from carom.scene.materials import ContactLaw
+from carom.scene.pieces import VERTEX_KINDS
 
 
 def check_supported(scene) -> None:
     """Refuse contacts that the motion does not handle yet."""
-    if scene.contact_default is not None and len(scene.bodies) > 1:
-        raise ValueError(
-            "simulate cannot let all pairs touch yet, got set_contact_default with "
-            f"{len(scene.bodies)} bodies; add the contacts with half-spaces by add_contact"
-        )
     for contact in scene.contacts:
-        _check_contact(contact)
+        _check_law(f"contact {contact.name!r}", contact)
+        if isinstance(contact.other, Body):
+            _check_pieces(contact.body)
+            _check_pieces(contact.other)
+        else:
+            _ = contact.body.shape.vertices  # refused by a shape that is no hull of vertices
+    if scene.contact_default is not None:
+        _check_law("set_contact_default", scene.contact_default)
+        for body in scene.bodies:
+            if body.shape is not None:
+                _check_pieces(body)
 
 
-def _check_contact(contact: Contact) -> None:
-    if isinstance(contact.other, Body):
+def _check_pieces(body: Body) -> None:
+    """Refuse shapes that cannot touch other bodies yet."""
+    pieces = body.shape.pieces
+    if len(pieces) != 1 or pieces[0].kind not in VERTEX_KINDS:
         raise ValueError(
-            f"contact {contact.name!r}: simulate cannot let two bodies touch yet, got {contact!r}; "
-            "so far bodies touch half-spaces"
+            f"body {body.name!r}: simulate cannot let {body.shape!r} touch another body yet; so far Sphere, "
+            "Capsule, Box and Convex can, rounded or not"
         )
-    assert contact.body.shape is not None
-    _ = contact.body.shape.vertices  # refused by a shape that is no hull of vertices
-    plain = ContactLaw()
-    odd = [
-        n
-        for n in ("rolling_friction", "pivoting_friction")
-        if getattr(contact, n) != getattr(plain, n)
-    ]
-    if contact.friction_held != contact.friction:
-        odd.append("friction_held")
+
+
+def _check_law(what: str, law) -> None:
+    odd = [n for n in ("rolling_friction", "pivoting_friction") if getattr(law, n) != 0.0]
     if odd:
-        raise ValueError(
-            f"contact {contact.name!r}: simulate does not use {', '.join(odd)} yet, got {contact!r}"
-        )
+        raise ValueError(f"{what}: simulate does not use {', '.join(odd)} yet, got {law!r}")

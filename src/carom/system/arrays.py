@@ -14,6 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom.contact.pairs.layout import Hulls, PairWork
+
 #: kinds of joints in kernels
 SPHERICAL, REVOLUTE, FIXED, PRISMATIC, DISTANCE, KNIFE_EDGE = range(6)
 #: numbers of constraint rows, by kind
@@ -29,6 +31,7 @@ BODY = [
     ("isotropic", "i8"),  # 1 where the three moments are equal
     ("isolated", "i8"),  # 1 where no joint acts
     ("ballistic", "i8"),  # 1 where no joint and no force but gravity acts
+    ("component", "i8"),  # its own number, or N for all that have joints
 ]
 
 JOINT = [
@@ -56,21 +59,26 @@ SPRING = [
 #: a constant force and torque (world axes) on a point of a body
 LOAD = [("body", "i8"), ("anchor", "f8", 3), ("force", "f8", 3), ("torque", "f8", 3)]
 
-#: hull of vertices, swollen by a radius, against a half-space
+#: hull of vertices, swollen by a radius, against a half-space; or two solids of two bodies
 CONTACT = [
     ("body", "i8"),
-    ("group", "i8"),  # bodies that an impulse on it may move: its own number, or N for all joined ones
-    ("first", "i8"),  # range of its vertices
+    ("other", "i8"),  # -1 for a half-space
+    ("first", "i8"),  # range of the vertices of the body
     ("last", "i8"),
+    ("other_first", "i8"),  # of the other body
+    ("other_last", "i8"),
+    ("solid", "i8"),  # of two bodies: the two solids
+    ("other_solid", "i8"),
     ("law", "i8"),  # 0 newton, 1 poisson, 2 stronge
-    ("axes", "f8", (3, 3)),  # rows n, t1, t2
+    ("axes", "f8", (3, 3)),  # of a half-space: rows n, t1, t2
     ("offset", "f8"),  # n . point of the plane
-    ("radius", "f8"),
+    ("radius", "f8"),  # of both, where they are two bodies
     ("friction", "f8"),
     ("friction_held", "f8"),
     ("restitution", "f8"),
     ("stiffness", "f8"),  # of its boundary layer, relative to the others
     ("extent", "f8"),  # largest distance of the shape from the mass centre
+    ("other_extent", "f8"),
     ("width", "f8"),  # b of the boundary layer
     ("penetration", "f8"),  # delta
 ]
@@ -95,6 +103,7 @@ ROW = [
 
 #: a contact between looks
 BRINK = [
+    ("seen", "i8"),  # while a group is gathered
     ("near", "i8"),  # 1 where something happened at the last event: look before stepping
     ("leaving", "i8"),  # 1 where the body lifts off without speed: it may touch at the start
 ]
@@ -104,6 +113,7 @@ HELD = [
     ("contact", "i8"),
     ("feature", "i8"),  # what touches, the same as long as it does: number of the vertex
     ("body", "i8"),  # of the contact
+    ("other", "i8"),
     ("mode", "i8"),  # 0 open, 1 slipping, 2 sticking
     ("next", "i8"),  # mode after the step on trial
     ("settles", "i8"),  # 1 where that step puts the body to rest
@@ -133,6 +143,7 @@ BODY_WORK = [
     ("motion", "f8", 6),  # what a solve gives: linear, angular
     ("bound", "f8", 3),  # greatest linear, angular acceleration and spin of the last step
     ("inverse", "f8", 6),  # inverse inertia, world axes
+    ("group", "i8"),  # bodies with the same number move each other: joined, or held to each other
     ("status", "i8"),  # FREE, ONE, RESTS or SEVERAL held points
     ("push", "f8", 6),  # change of momentum (linear, angular about the centre) in a step
     ("spin", "f8", 3),  # angular velocity for which the invariants of free flight below hold
@@ -178,7 +189,14 @@ SEARCH = [
 FREE, ONE, RESTS, SEVERAL = range(4)
 
 #: an impact in the making
-HIT = [("W", "f8", (3, 3)), ("u", "f8", 3), ("point", "f8", 3), ("out", "f8", 32), ("closed", "i8"), ("code", "i8")]
+HIT = [
+    ("W", "f8", (3, 3)),
+    ("u", "f8", 3),
+    ("point", "f8", 3),
+    ("out", "f8", 32),
+    ("closed", "i8"),
+    ("code", "i8"),
+]
 
 
 def table(fields: list, *shape: int) -> np.recarray:
@@ -225,6 +243,9 @@ class System(NamedTuple):
     loads: np.recarray  # LOAD
     contacts: np.recarray  # (C,) CONTACT
     vertices: np.ndarray  # (V, 3) of all contacts, body axes
+    solids: np.recarray  # SOLID of `carom.contact.pairs`, of bodies that may touch each other
+    hulls: Hulls
+    touch_at: int  # address of what finds the points of two solids
     solver: FreeSolver | TreeSolver | LoopSolver
 
 
@@ -247,6 +268,10 @@ class Work(NamedTuple):
     trial: np.recarray  # (N,) STATE
     middle: np.recarray  # (N,) STATE
     point: np.recarray  # (1,) POINT, the one that strikes, or is looked at
+    pair: PairWork
+    touches: np.recarray  # (8,) TOUCH_POINT of the last pair
+    solid_pose: np.ndarray  # (2, 7) of its solids
+    solid_rate: np.ndarray  # (2, 3) velocities at its point, before and after
     hit: np.recarray  # (1,) HIT
     result: np.recarray  # (1,) RESULT
     search: np.recarray  # (1,) SEARCH

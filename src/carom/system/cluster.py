@@ -60,9 +60,10 @@ class Cluster(NamedTuple):
 
 def new_cluster(system: System, settings: CornerSettings) -> Cluster:
     """Return the scratch for the largest group of `system`."""
-    n, count = system.bodies.size, np.zeros(system.bodies.size + 1, dtype=np.int64)
-    np.add.at(count, system.contacts.group, system.contacts.last - system.contacts.first)
-    k = max(1, min(MOST, int(count.max())))
+    n, contacts = system.bodies.size, system.contacts
+    count = np.zeros(n + 1, dtype=np.int64)
+    np.add.at(count, system.bodies.component[contacts.body], contacts.last - contacts.first)
+    k = MOST if np.any(contacts.other >= 0) else max(1, min(MOST, int(count.max())))
     return Cluster(
         seats=table(SEAT, k),
         points=table(POINT, k),

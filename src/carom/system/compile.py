@@ -8,12 +8,13 @@ import numpy as np
 
 from carom.geometry import quaternion
 from carom.options import Options
-from carom.scene.contacts import IMPACT_LAWS
 from carom.scene.forces import Spring, Torque
 from carom.scene.joints import Distance, Fixed, KnifeEdge, Prismatic, Revolute, Spherical
 from carom.scene.scene import Scene
 from carom.system import arrays, graph, solvers
-from carom.system.arrays import BODY, CONTACT, JOINT, LOAD, SPRING, STATE, System, table
+from carom.system.arrays import BODY, JOINT, LOAD, SPRING, STATE, System, table
+from carom.system.contacts import compile_contacts
+from carom.system.frames import triad
 
 KIND = {
     Spherical: arrays.SPHERICAL,
@@ -41,9 +42,11 @@ def compile_scene(scene: Scene, options: Options, loops: bool = False) -> Compil
     joints, flipped, solver = _joints(scene, frames, options, loops)
     springs, loads = _springs(scene, frames), _loads(scene, frames)
     bodies = _bodies(scene, moments, joints, springs, loads)
-    contacts, vertices = _contacts(scene, to_principal, bodies, options)
+    contacts, vertices, solids, hulls = compile_contacts(scene, to_principal, options)
     gravity = np.array(scene.gravity)
-    system = System(bodies, gravity, joints, springs, loads, contacts, vertices, solver)
+    system = System(
+        bodies, gravity, joints, springs, loads, contacts, vertices, solids, hulls, 0, solver
+    )
     return Compiled(system, start, to_principal, flipped)
 
 
@@ -94,14 +97,6 @@ class _Frames:
         if body.index < 0:
             return np.array(world, dtype=float)
         return quaternion.rotate_back(self.start.Q[body.index], world.T).T
-
-
-def triad(axis: np.ndarray) -> np.ndarray:
-    """Return a right-handed frame whose first column is the unit vector `axis`."""
-    across = np.eye(3)[np.argmin(np.abs(axis))]
-    second = across - (across @ axis) * axis
-    second /= np.linalg.norm(second)
-    return np.stack([axis, second, np.cross(axis, second)], axis=1)
 
 
 def _anchors(joint):
@@ -197,30 +192,5 @@ def _bodies(scene, moments, joints, springs, loads):
     bodies.inertia, bodies.extent = moments, size
     bodies.isotropic = np.ptp(moments, axis=1) == 0.0
     bodies.isolated, bodies.ballistic = isolated, ballistic
+    bodies.component = np.where(isolated == 1, np.arange(len(bodies)), len(bodies))
     return bodies
-
-
-def contact_axes(normal: np.ndarray) -> np.ndarray:
-    """Return rows n, t1, t2: t1 the world axis least along n (x first), made tangent; t2 = n x t1."""
-    return np.ascontiguousarray(triad(normal).T)
-
-
-def _contacts(scene, to_principal, bodies, options):
-    contacts, vertices = table(CONTACT, len(scene.contacts)), [np.zeros((0, 3))]
-    count = 0
-    for k, c in enumerate(scene.contacts):
-        shape, plane = c.body.shape, c.half_space
-        points = quaternion.rotate_back(to_principal[c.body.index], shape.vertices)
-        vertices.append(points)
-        row = contacts[k]
-        row.body, row.first, row.last = c.body.index, count, count + len(points)
-        count += len(points)
-        contacts.axes[k] = contact_axes(plane.normal)
-        row.offset, row.radius, row.extent = plane.point @ plane.normal, shape.radius, shape.size
-        row.group = c.body.index if bodies.isolated[c.body.index] else len(bodies)
-        row.friction = row.friction_held = c.friction
-        row.restitution, row.stiffness = c.restitution, 1.0
-        row.law = IMPACT_LAWS.index(c.impact_law)
-        row.width = 1e-5 * shape.size if options.layer_width is None else options.layer_width
-        row.penetration = options.penetration
-    return contacts, np.concatenate(vertices)

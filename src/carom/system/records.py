@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom.contact.pairs.layout import new_points, pair_arrays
 from carom.system.arrays import (
     BODY_WORK,
     BRINK,
@@ -49,12 +50,19 @@ CLOCK = [
 
 SERIES = [("t", "f8"), *LEDGER]
 #: a contact: the sum over its held points, moment about the mass centre of the body (world axes)
-TOUCH = [("mode", "i8"), ("force", "f8", 3), ("moment", "f8", 3)]
+TOUCH = [
+    ("mode", "i8"),
+    ("force", "f8", 3),  # contact axes
+    ("push", "f8", 3),  # the same in world axes
+    ("moment", "f8", 3),
+    ("other_moment", "f8", 3),  # about the mass centre of the other body
+]
 
 IMPACTS = [
     ("time", "f8"),
     ("contact", "i8"),
     ("point", "f8", 3),
+    ("normal", "f8", 3),
     ("W", "f8", (3, 3)),
     ("before", "f8", 3),
     ("after", "f8", 3),
@@ -105,7 +113,7 @@ def new_clock() -> np.recarray:
 def new_held(system: System) -> Held:
     """Return what is held at the start: nothing, and all contacts are to be looked at first."""
     held = Held(
-        points=table(HELD, len(system.vertices)),
+        points=table(HELD, len(system.vertices) + 24 * len(system.bodies)),
         brinks=table(BRINK, system.contacts.size),
         carries=np.zeros(len(system.vertices), dtype=np.int64),
         count=np.zeros(1, dtype=np.int64),
@@ -125,6 +133,10 @@ def new_work(system: System, stages: int) -> Work:
         trial=table(STATE, n),
         middle=table(STATE, n),
         point=table(POINT, 1),
+        pair=pair_arrays(),
+        touches=new_points(),
+        solid_pose=np.zeros((2, 7)),
+        solid_rate=np.zeros((2, 3)),
         hit=table(HIT, 1),
         result=table(RESULT, 1),
         search=table(SEARCH, 1),

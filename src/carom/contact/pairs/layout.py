@@ -94,12 +94,18 @@ def _table(fields: list, *shape: int) -> np.recarray:
     return np.zeros(shape, dtype=np.dtype(fields, align=True)).view(np.recarray)
 
 
+def pair_arrays() -> PairWork:
+    """Return the scratch of the kernels of pairs, without the address of the search."""
+    return PairWork(_table(PAIR_STATE, 1), _table(TOUCH_POINT, 96), 0)
+
+
 def new_pair_work() -> PairWork:
-    """Return the scratch of the kernels of pairs."""
+    """Return the scratch of the kernels of pairs; compiles the search if it is not on disk."""
     from carom.contact.pairs.convex import closest_unit
     from carom.jit import address
 
-    state, found, solid = _table(PAIR_STATE, 1), _table(TOUCH_POINT, 96), _table(SOLID, 1)
+    state, found, _ = pair_arrays()
+    solid = _table(SOLID, 1)
     hulls = Hulls(np.zeros((0, 3)), _table(FACE, 0), np.zeros(0, dtype=np.int64))
     found_at = address(closest_unit, state[0], solid[0], solid[0], hulls, found)
     return PairWork(state, found, found_at)

@@ -1,0 +1,155 @@
+"""Can two bodies have touched between two states? The plane that parts them at either end decides.
+
+Along a fixed normal n the gap of any two core points is z(t) >= z0 + z0' t - a t^2/2, a the bound of their
+relative acceleration; the bodies are apart as long as all pairs of vertices are. With n of the nearest points at
+the start, and the same backwards from the end, the path is clear if the two times together reach the step.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom.contact.closed import round_off_of
+from carom.contact.exclude import BELOW, CLEAR, UNSURE, reach
+from carom.contact.gap import round_off
+from carom.contact.pair_point import REACH, find_touches, smaller, touch_rate
+from carom.geometry.rotation import cross, rotate_back
+from carom.jit import kernel
+from carom.system.arrays import FREE, RESTS
+
+
+@kernel
+def spin_bound(body, extent, w, memory):
+    """Return a bound of the acceleration of a point of a body relative to its centre."""
+    if memory.status == RESTS:
+        return 0.0
+    if body.ballistic == 1 and memory.status == FREE:
+        J = body.inertia
+        spin2 = w[0] * w[0] + w[1] * w[1] + w[2] * w[2]
+        if body.isotropic == 1:
+            return spin2 * extent
+        low, high = min(J[0], min(J[1], J[2])), max(J[0], max(J[1], J[2]))
+        return spin2 * high / low * extent * (1.0 + (high - low) / low)
+    return 2.0 * extent * (memory.bound[1] + memory.bound[2] * memory.bound[2])
+
+
+@kernel
+def relative_bound(system, contact, state, work):
+    """Return bounds of the relative acceleration of the two centres, and of any two points."""
+    a, b, g = contact.body, contact.other, system.gravity
+    free_a = system.bodies[a].ballistic == 1 and work.body[a].status == FREE
+    free_b = system.bodies[b].ballistic == 1 and work.body[b].status == FREE
+    fall = math.sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2])
+    centres = 0.0
+    if not (free_a and free_b):  # two in free flight fall alike
+        for body, free in ((a, free_a), (b, free_b)):
+            if work.body[body].status != RESTS:
+                centres += fall if free else 2.0 * work.body[body].bound[0]
+    spin = spin_bound(system.bodies[a], contact.extent, state[a].w, work.body[a])
+    spin += spin_bound(system.bodies[b], contact.other_extent, state[b].w, work.body[b])
+    return centres, centres + spin
+
+
+@kernel
+def balls_clear(contact, start, end, h, centres):
+    """Return whether the balls around both keep apart."""
+    a, b = contact.body, contact.other
+    time = 0.0
+    for side in range(2):
+        state, sign = (start, 1.0) if side == 0 else (end, -1.0)
+        d, rate = 0.0, 0.0
+        for k in range(3):
+            s = state[a].x[k] - state[b].x[k]
+            d += s * s
+            rate += s * (state[a].v[k] - state[b].v[k])
+        d = math.sqrt(d)
+        gap = d - contact.extent - contact.other_extent
+        if not gap > 0.0:
+            return False
+        time += reach(gap, sign * rate / d, centres)
+    return time >= h
+
+
+@kernel
+def seen_along(n, b, state, p):
+    """Return height along n, and its rate, of the point p (body axes) of body b."""
+    q, w, x, v = state[b].Q, state[b].w, state[b].x, state[b].v
+    nx, ny, nz = rotate_back(q[0], q[1], q[2], q[3], n[0], n[1], n[2])
+    wx, wy, wz = rotate_back(q[0], q[1], q[2], q[3], w[0], w[1], w[2])
+    cx, cy, cz = cross(nx, ny, nz, wx, wy, wz)
+    z = n[0] * x[0] + n[1] * x[1] + n[2] * x[2] + nx * p[0] + ny * p[1] + nz * p[2]
+    rate = n[0] * v[0] + n[1] * v[1] + n[2] * v[2] + cx * p[0] + cy * p[1] + cz * p[2]
+    return z, rate
+
+
+@kernel
+def time_apart(system, contact, n, sign, state, a):
+    """Return how long all pairs of vertices stay apart along n; backwards in time for sign -1."""
+    least = math.inf
+    for i in range(contact.first, contact.last):
+        z, rate = seen_along(n, contact.body, state, system.vertices[i])
+        for j in range(contact.other_first, contact.other_last):
+            y, other = seen_along(n, contact.other, state, system.vertices[j])
+            least = min(least, reach(z - y - contact.radius, sign * (rate - other), a))
+    return least
+
+
+@kernel
+def lowest_open(contact, c, count, held, state, work):
+    """Return the least gap of the points in work.touches that are not held, and its rate."""
+    least, rate = math.inf, 0.0
+    for i in range(count):
+        touch = work.touches[i]
+        open_ = True
+        for j in range(held.count[0]):
+            hold = held.points[j]
+            open_ = open_ and not (hold.contact == c and hold.feature == touch.feature)
+        if open_ and touch.gap < least:
+            least, rate = touch.gap, touch_rate(contact, touch, state)
+    return least, rate
+
+
+@kernel
+def lowest_pair(system, contact, c, held, state, work):
+    """Return the gap of two bodies, of points that are not held, and its rate."""
+    count = find_touches(system, contact, state, REACH * smaller(contact), work)
+    return lowest_open(contact, c, count, held, state, work)
+
+
+@kernel
+def passage_pair(system, contact, c, held, leaving, start, end, h, work, tolerance):
+    """Return CLEAR, BELOW (they overlap at the end) or UNSURE, and a time before any contact."""
+    a, b = contact.body, contact.other
+    if work.body[a].status == RESTS and work.body[b].status == RESTS:
+        return CLEAR, h
+    centres, most = relative_bound(system, contact, start, work)
+    if balls_clear(contact, start, end, h, centres):
+        return CLEAR, h
+    touching = False
+    for j in range(held.count[0]):
+        touching = touching or held.points[j].contact == c
+    tiny = max(tolerance * smaller(contact), round_off(contact, end))
+    tiny = 4.0 * max(tiny, round_off_of(b, contact, end))
+    count = find_touches(system, contact, end, REACH * smaller(contact), work)
+    least, _ = lowest_open(contact, c, count, held, end, work)
+    nearest = work.touches[0]
+    for i in range(1, count):
+        if work.touches[i].gap < nearest.gap:
+            nearest = work.touches[i]
+    if not least >= -(tiny if not touching else 1e-9 * smaller(contact)):
+        return BELOW, 0.0
+    if touching:
+        return CLEAR, h
+    last = time_apart(system, contact, nearest.normal, -1.0, end, most)
+    if last >= h:
+        return CLEAR, h
+    count = find_touches(system, contact, start, 0.0, work)
+    nearest = work.touches[0]
+    for i in range(1, count):
+        if work.touches[i].gap < nearest.gap:
+            nearest = work.touches[i]
+    first = time_apart(system, contact, nearest.normal, 1.0, start, most)
+    sag = 0.125 * most * h * h
+    if first + last < h * (1.0 - 1e-12) and sag > tiny and leaving == 0:
+        return UNSURE, first
+    return CLEAR, first

@@ -1,0 +1,180 @@
+"""The points of contact of two bodies, as the rest of the library sees them: arms, axes, gap, rates."""
+
+from __future__ import annotations
+
+import math
+
+from carom.contact.pairs.touch import touch_at
+from carom.geometry.rotation import exp, multiply, normalize, rotate, rotate_back
+from carom.jit import kernel
+from carom.motion.contact_point import place
+from carom.motion.forces import point_velocity
+
+REACH = 1e-3  # of the smaller body: points that are looked for beyond the nearest
+
+
+@kernel
+def pose_solid(solid, body, pose):
+    """Write the world pose (x, Q) of a solid of a body."""
+    q, x, p, s = body.Q, body.x, solid.x, solid.Q
+    r = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
+    t = multiply(q[0], q[1], q[2], q[3], s[0], s[1], s[2], s[3])
+    for k in range(3):
+        pose[k] = x[k] + r[k]
+    pose[3], pose[4], pose[5], pose[6] = t
+
+
+@kernel
+def find_touches(system, contact, state, reach, work):
+    """Write the points of two bodies into work.touches; return how many."""
+    a, b, pose = system.solids[contact.solid], system.solids[contact.other_solid], work.solid_pose
+    pose_solid(a, state[contact.body], pose[0])
+    pose_solid(b, state[contact.other], pose[1])
+    touch_at(
+        system.touch_at, a, b, system.hulls, pose[0, :3], pose[0, 3:], pose[1, :3], pose[1, 3:],
+        reach, work.pair, work.touches,
+    )  # fmt: skip
+    return work.pair.state[0].total
+
+
+@kernel
+def smaller(contact):
+    """Return the size of the smaller of two bodies, or that of the one."""
+    if contact.other < 0:
+        return contact.extent
+    return min(contact.extent, contact.other_extent)
+
+
+@kernel
+def tangents(n0, n1, n2, axes):
+    """Write rows n, t1, t2: t1 the world axis least along n (x first), made tangent; t2 = n x t1."""
+    a, b, c = abs(n0), abs(n1), abs(n2)
+    e0 = 1.0 if a <= b and a <= c else 0.0
+    e1 = 1.0 if e0 == 0.0 and b <= c else 0.0
+    e2 = 1.0 - e0 - e1
+    d = e0 * n0 + e1 * n1 + e2 * n2
+    t0, t1, t2 = e0 - d * n0, e1 - d * n1, e2 - d * n2
+    s = 1.0 / math.sqrt(t0 * t0 + t1 * t1 + t2 * t2)
+    t0, t1, t2 = s * t0, s * t1, s * t2
+    axes[0, 0], axes[0, 1], axes[0, 2] = n0, n1, n2
+    axes[1, 0], axes[1, 1], axes[1, 2] = t0, t1, t2
+    axes[2, 0] = n1 * t2 - n2 * t1
+    axes[2, 1] = n2 * t0 - n0 * t2
+    axes[2, 2] = n0 * t1 - n1 * t0
+
+
+@kernel
+def write_touch(contact, touch, state, point):
+    """Write a point of two bodies as a point of contact."""
+    n = touch.normal
+    point.a, point.b, point.gap = contact.body, contact.other, touch.gap
+    for k in range(3):
+        point.arm_a[k] = touch.on_a[k] - state[contact.body].x[k]
+        point.core[k] = point.arm_a[k]
+        point.arm_b[k] = touch.on_b[k] - state[contact.other].x[k]
+    tangents(n[0], n[1], n[2], point.axes)
+
+
+@kernel
+def own_point(contact, touch, state, p):
+    """Write where a point of two bodies is on the first, in its axes."""
+    q, x, s = state[contact.body].Q, state[contact.body].x, touch.on_a
+    r = rotate_back(q[0], q[1], q[2], q[3], s[0] - x[0], s[1] - x[1], s[2] - x[2])
+    p[0], p[1], p[2] = r
+
+
+@kernel
+def which_touch(contact, count, feature, p, state, work):
+    """Return the point that has the feature; where it is no more, the one nearest to the core point p."""
+    q, x = state[contact.body].Q, state[contact.body].x
+    r = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
+    best, chosen = math.inf, 0
+    for i in range(count):
+        touch = work.touches[i]
+        if touch.feature == feature:
+            return i
+        d = 0.0
+        for k in range(3):
+            d += (touch.on_a[k] - x[k] - r[k]) ** 2
+        if d < best:
+            best, chosen = d, i
+    return chosen
+
+
+@kernel
+def place_pair(system, contact, feature, p, state, point, work):
+    """Write the point of two bodies that has the feature, or took its place."""
+    count = find_touches(system, contact, state, REACH * smaller(contact), work)
+    i = which_touch(contact, count, feature, p, state, work)
+    write_touch(contact, work.touches[i], state, point)
+
+
+@kernel
+def touch_rate(contact, touch, state):
+    """Return the rate of the gap at a point of two bodies."""
+    n, xa, xb = touch.normal, state[contact.body].x, state[contact.other].x
+    p, q = touch.on_a, touch.on_b
+    ax, ay, az = point_velocity(state, contact.body, p[0] - xa[0], p[1] - xa[1], p[2] - xa[2])
+    bx, by, bz = point_velocity(state, contact.other, q[0] - xb[0], q[1] - xb[1], q[2] - xb[2])
+    return n[0] * (ax - bx) + n[1] * (ay - by) + n[2] * (az - bz)
+
+
+@kernel
+def advance(start, t, end):
+    """Move the pose of a body along its velocity for a time t."""
+    Q, w = start.Q, start.w
+    for k in range(3):
+        end.x[k] = start.x[k] + t * start.v[k]
+        end.v[k], end.w[k] = start.v[k], w[k]
+    r = exp(t * w[0], t * w[1], t * w[2])
+    q = multiply(r[0], r[1], r[2], r[3], Q[0], Q[1], Q[2], Q[3])
+    end.Q[0], end.Q[1], end.Q[2], end.Q[3] = normalize(q[0], q[1], q[2], q[3])
+
+
+@kernel
+def drift(system, contact, feature, p, point, state, work):
+    """Return (d/dt G) v, contact axes: how the velocity at the point changes as the bodies go on unchanged.
+
+    Central difference over a way of 1e-5 of the smaller body: normals and points turn and roll with the
+    shapes, whatever they are.
+    """
+    a, b = contact.body, contact.other
+    speed = 0.0
+    for body in (a, b):
+        v, w = state[body].v, state[body].w
+        spin = math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
+        extent = contact.extent if body == a else contact.other_extent
+        speed = max(speed, math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + extent * spin)
+    if not speed > 0.0:
+        return 0.0, 0.0, 0.0
+    t = 1e-5 * smaller(contact) / speed
+    E, moved, other = point.axes, work.middle, work.solid_rate
+    for side in range(2):
+        s = t if side == 1 else -t
+        advance(state[a], s, moved[a])
+        advance(state[b], s, moved[b])
+        count = find_touches(system, contact, moved, REACH * smaller(contact), work)
+        touch = work.touches[which_touch(contact, count, feature, p, moved, work)]
+        xa, xb, P, R = moved[a].x, moved[b].x, touch.on_a, touch.on_b
+        ux, uy, uz = point_velocity(moved, a, P[0] - xa[0], P[1] - xa[1], P[2] - xa[2])
+        vx, vy, vz = point_velocity(moved, b, R[0] - xb[0], R[1] - xb[1], R[2] - xb[2])
+        ux, uy, uz = ux - vx, uy - vy, uz - vz
+        n = touch.normal
+        other[side, 0] = n[0] * ux + n[1] * uy + n[2] * uz
+        other[side, 1] = E[1, 0] * ux + E[1, 1] * uy + E[1, 2] * uz
+        other[side, 2] = E[2, 0] * ux + E[2, 1] * uy + E[2, 2] * uz
+    f = 0.5 / t
+    return (
+        f * (other[1, 0] - other[0, 0]),
+        f * (other[1, 1] - other[0, 1]),
+        f * (other[1, 2] - other[0, 2]),
+    )
+
+
+@kernel
+def place_any(system, contact, feature, p, state, point, work):
+    """Write the point that touches with a feature: a core point p, or a point of two bodies."""
+    if contact.other < 0:
+        place(contact, p, state, point)
+    else:
+        place_pair(system, contact, feature, p, state, point, work)
