@@ -5,8 +5,20 @@ from carom.scene.bodies import GROUND, Body, Ground, HalfSpace
 from carom.scene.contacts import Contact
 from carom.scene.forces import AppliedForce
 from carom.scene.joints import Joint
+from carom.scene.materials import ContactLaw, Material
 from carom.scene.scene import Scene
-from carom.scene.shapes import Box, Capsule, Convex, Cylinder, Shape, Sphere
+from carom.scene.shapes import (
+    Box,
+    Capsule,
+    Compound,
+    Convex,
+    Cylinder,
+    Disc,
+    Ellipsoid,
+    Mesh,
+    Shape,
+    Sphere,
+)
 
 __all__ = [
     "GROUND",
@@ -14,12 +26,18 @@ __all__ = [
     "Body",
     "Box",
     "Capsule",
+    "Compound",
     "Contact",
+    "ContactLaw",
     "Convex",
     "Cylinder",
+    "Disc",
+    "Ellipsoid",
     "Ground",
     "HalfSpace",
     "Joint",
+    "Material",
+    "Mesh",
     "Scene",
     "Shape",
     "Sphere",

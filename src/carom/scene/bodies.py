@@ -9,6 +9,7 @@ import numpy as np
 
 from carom import check
 from carom.scene.inertia import inertia_matrix
+from carom.scene.materials import Material
 from carom.scene.shapes import SHAPES, Shape
 from carom.scene.values import keep, point
 
@@ -22,7 +23,7 @@ class Body:
     index : int
         Place in `Scene.bodies`.
     name : str
-    shape : Sphere, Box, Capsule, Cylinder, Convex or None
+    shape : Sphere, Box, Capsule, Cylinder, Disc, Ellipsoid, Convex, Mesh, Compound or None
     mass : float
         [kg]
     inertia : (3, 3)
@@ -33,6 +34,8 @@ class Body:
         Unit quaternion (w, x, y, z), body to world.
     velocity, angular_velocity : (3,)
         In world axes [m/s], [rad/s].
+    material : Material or None
+        Of its surface.
     """
 
     index: int
@@ -44,6 +47,7 @@ class Body:
     orientation: np.ndarray
     velocity: np.ndarray
     angular_velocity: np.ndarray
+    material: Material | None = None
 
     def __repr__(self) -> str:
         return f"Body({self.name!r}, {self.shape!r}, mass={self.mass:g})"
@@ -62,12 +66,15 @@ class HalfSpace:
         Any point of the plane [m].
     normal : (3,)
         Unit vector from the matter into free space.
+    material : Material or None
+        Of its surface.
     """
 
     index: int
     name: str
     point: np.ndarray
     normal: np.ndarray
+    material: Material | None = None
 
     def __repr__(self) -> str:
         return f"HalfSpace({self.name!r}, point={self.point}, normal={self.normal})"
@@ -94,7 +101,17 @@ GROUND = Ground()
 
 
 def make_body(
-    index, name, shape, mass, density, inertia, position, orientation, velocity, angular_velocity
+    index,
+    name,
+    shape,
+    mass,
+    density,
+    inertia,
+    position,
+    orientation,
+    velocity,
+    angular_velocity,
+    material=None,
 ) -> Body:
     """Return a checked `Body`; the arguments are those of `Scene.add_body`."""
     if shape is not None:
@@ -114,16 +131,24 @@ def make_body(
         orientation=check.unit_quaternion("orientation", orientation),
         velocity=point("velocity", velocity),
         angular_velocity=point("angular_velocity", angular_velocity),
+        material=_material(material),
     )
     keep(body, **vars(body))
     return body
 
 
-def make_half_space(index, name, on_plane, normal) -> HalfSpace:
+def make_half_space(index, name, on_plane, normal, material=None) -> HalfSpace:
     """Return a checked `HalfSpace`; the arguments are those of `Scene.add_half_space`."""
-    plane = HalfSpace(index, name, point("point", on_plane), check.unit_vector("normal", normal))
+    place = point("point", on_plane), check.unit_vector("normal", normal)
+    plane = HalfSpace(index, name, *place, _material(material))
     keep(plane, **vars(plane))
     return plane
+
+
+def _material(material) -> Material | None:
+    if material is not None:
+        check.instance("material", material, (Material,))
+    return material
 
 
 def _mass(shape: Shape | None, mass, density) -> float:
@@ -136,4 +161,6 @@ def _mass(shape: Shape | None, mass, density) -> float:
     density = check.number("density", density, above=0, unit="kg/m^3")
     if shape is None:
         raise ValueError(f"density needs a shape, got density={density!r} without one; give mass")
+    if not shape.volume > 0.0:
+        raise ValueError(f"density needs a shape with a volume, got {shape!r}; give mass")
     return density * shape.volume

@@ -1,22 +1,23 @@
-"""A body that may strike a half-space, and the gap between the two."""
+"""A body that may touch a half-space or another body, and the gap between the two at the start."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from carom import check
 from carom.geometry import quaternion
 from carom.scene.bodies import Body, HalfSpace
+from carom.scene.materials import IMPACT_LAWS, ContactLaw
 
-IMPACT_LAWS = ("newton", "poisson", "stronge")
-TOUCH = 1e-12  # relative to the lengths at hand: rounding of a body placed on the plane
+__all__ = ["IMPACT_LAWS", "Contact", "check_gap", "check_overlap", "initial_gap", "make_contact"]
+
+TOUCH = 1e-12  # relative to the lengths at hand: rounding of a body placed on another
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class Contact:
-    """A body and a half-space that may touch. Made by `Scene.add_contact`.
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Contact(ContactLaw):
+    """A pair that may touch. Made by `Scene.add_contact`; it has the attributes of its `ContactLaw` too.
 
     Attributes
     ----------
@@ -24,64 +25,84 @@ class Contact:
         Place in `Scene.contacts`.
     name : str
     body : Body
-    half_space : HalfSpace
-    restitution : float
-        e, 0 to 1.
-    friction : float
-        mu, at least 0.
-    impact_law : {"newton", "poisson", "stronge"}
+    other : HalfSpace or Body
+        What the body may touch. The normal of the contact points from it to `body`.
     """
 
     index: int
     name: str
     body: Body
-    half_space: HalfSpace
-    restitution: float
-    friction: float
-    impact_law: str
+    other: HalfSpace | Body
+
+    @property
+    def half_space(self) -> HalfSpace | None:
+        """The half-space, or None where the other is a body."""
+        return self.other if isinstance(self.other, HalfSpace) else None
 
     def __repr__(self) -> str:
-        return (
-            f"Contact({self.name!r}, restitution={self.restitution:g}, "
-            f"friction={self.friction:g}, impact_law={self.impact_law!r})"
+        plain = ContactLaw(friction_held=self.friction)
+        law = {name: getattr(self, name) for name in asdict(plain)}
+        shown = {"restitution": "", "friction": "", "impact_law": ""}
+        values = ", ".join(
+            f"{name}={value!r}" if isinstance(value, str) else f"{name}={value:g}"
+            for name, value in law.items()
+            if name in shown or value != getattr(plain, name)
         )
+        return f"Contact({self.name!r}, {values})"
 
 
-def make_contact(index, name, body, half_space, restitution, friction, impact_law) -> Contact:
-    """Return a checked `Contact`; the arguments are those of `Scene.add_contact`."""
-    contact = Contact(
-        index=index,
-        name=name,
-        body=body,
-        half_space=half_space,
-        restitution=check.number("restitution", restitution, least=0, most=1),
-        friction=check.number("friction", friction, least=0),
-        impact_law=check.choice("impact_law", impact_law, IMPACT_LAWS),
-    )
-    if body.shape is None:
-        raise ValueError(f"body must have a shape to touch with, got {body!r}")
+def make_contact(
+    index: int, name: str, body: Body, other: HalfSpace | Body, law: ContactLaw
+) -> Contact:
+    """Return a checked `Contact` with the values of `law`."""
+    for part in (body, other):
+        if isinstance(part, Body):
+            if part.shape is None:
+                raise ValueError(f"body must have a shape to touch with, got {part!r}")
+            _ = part.shape.pieces  # refused by a shape that has nothing to touch with
+    contact = Contact(index=index, name=name, body=body, other=other, **asdict(law))
     check_gap(contact)
     return contact
 
 
 def initial_gap(contact: Contact) -> float:
-    """Return the distance [m] of the body from the half-space at the start; inside is negative."""
-    body, plane = contact.body, contact.half_space
-    assert body.shape is not None
-    offsets = quaternion.rotate(body.orientation, body.shape.vertices)
-    lowest = float(np.min(offsets @ plane.normal))
-    return lowest + float((body.position - plane.point) @ plane.normal) - body.shape.radius
+    """Return the distance [m] of the two at the start; negative inside."""
+    return _gap(contact.body, contact.other)[0]
 
 
 def check_gap(contact: Contact) -> None:
-    """Refuse a contact whose body starts inside the half-space by more than rounding."""
-    body, plane = contact.body, contact.half_space
+    """Refuse a contact whose two start inside each other by more than rounding."""
+    check_overlap(f"contact {contact.name!r}", contact.body, contact.other)
+
+
+def check_overlap(what: str, body: Body, other: HalfSpace | Body) -> None:
+    """Refuse two that start inside each other by more than rounding; `what` names the pair."""
     assert body.shape is not None
-    gap = initial_gap(contact)
-    length = body.shape.size + float(np.linalg.norm(body.position - plane.point))
+    gap, normal = _gap(body, other)
+    if isinstance(other, HalfSpace):
+        length = body.shape.size + float(np.linalg.norm(body.position - other.point))
+    else:
+        assert other.shape is not None
+        places = np.linalg.norm(body.position) + np.linalg.norm(other.position)
+        length = body.shape.size + other.shape.size + float(places)
     if not gap >= -TOUCH * length:
         raise ValueError(
-            f"contact {contact.name!r}: position {body.position} puts {body.name!r} "
-            f"{-gap:.6g} m deep into {plane.name!r}, allowed is a gap of at least 0; move the body "
-            f"by at least that along the normal {plane.normal}"
+            f"{what}: position {body.position} puts {body.name!r} "
+            f"{-gap:.6g} m deep into {other.name!r}, allowed is a gap of at least 0; move the body "
+            f"by at least that along the normal {normal}"
         )
+
+
+def _gap(body: Body, other: HalfSpace | Body) -> tuple[float, np.ndarray]:
+    """Return the gap [m], negative inside, and the normal (3,) from the other to the body."""
+    assert body.shape is not None
+    if isinstance(other, HalfSpace):
+        down = quaternion.rotate_back(body.orientation, -other.normal)
+        depth = float(body.shape.support(down) @ down)
+        return float((body.position - other.point) @ other.normal) - depth, other.normal
+    from carom.contact.pairs.api import nearest_points  # compiled code, only where bodies meet
+
+    assert other.shape is not None
+    here, there = (body.position, body.orientation), (other.position, other.orientation)
+    point = nearest_points(body.shape, here, other.shape, there)
+    return point.gap, point.normal

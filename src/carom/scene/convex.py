@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from carom import check
+from carom.scene.moments import about_centroid, of_swollen
+from carom.scene.pieces import Piece, Touching
 from carom.scene.values import keep
 
 FLAT = 1e-10  # thickness relative to the largest extent below which points count as coplanar
+SAME_FACE = 1e-8  # sine of the angle between triangles that are one face: rounding, not shape
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
-class Convex:
-    """The solid convex hull of points.
+class Convex(Touching):
+    """The solid convex hull of points, swollen by a ball if a radius is given.
 
     The shape is moved so that its centroid becomes the origin of the body: the `position` of a body
     is its mass centre. A point given here as ``p`` is at ``p - centroid`` in body axes.
@@ -26,53 +28,80 @@ class Convex:
     points : (n, 3)
         At least four points that are not in one plane [m], in any order; the ones inside the hull
         are dropped.
+    radius
+        Of the ball [m], at least 0 (default: a hull with sharp edges). The solid reaches so far beyond
+        the points on all sides.
 
     Attributes
     ----------
     points : (m, 3)
         The vertices of the hull, as they were given [m].
     centroid : (3,)
-        Of the solid hull, in the axes in which the points were given [m].
+        Of the solid, in the axes in which the points were given [m].
     vertices : (m, 3)
         ``points - centroid``: in body axes [m].
+    faces : tuple of (normal, ring)
+        Outward unit normals (3,) and the numbers of their vertices, counter-clockwise from outside.
+    radius
+        [m].
     volume
         [m^3].
     size
-        Largest distance of a vertex from the centroid [m].
+        Largest distance of a point of the solid from the centroid [m].
 
     Raises
     ------
     ValueError
-        If there are fewer than four points, or all lie in one plane.
+        If there are fewer than four points, all lie in one plane, or the radius is negative.
     """
 
     points: np.ndarray
+    radius: float
     centroid: np.ndarray
-    vertices: np.ndarray
+    faces: tuple
     volume: float
     size: float
-    _spread: np.ndarray  # integral of x x^T over the hull, by volume [m^2]
-    radius: ClassVar[float] = 0.0
+    _vertices: np.ndarray
+    _spread: np.ndarray  # integral of x x^T over the solid, by volume [m^2]
 
-    def __init__(self, points: ArrayLike):
+    def __init__(self, points: ArrayLike, radius: float = 0.0):
         given = check.finite_array("points", points, (None, 3), unit="m")
-        corners, triangles = _hull(given)
-        volume, centroid, second = _moments(corners, triangles)
+        radius = check.number("radius", radius, least=0, unit="m")
+        corners, simplices = hull_of(given)
+
+        def integrals(origin):
+            return of_swollen(corners - origin, simplices, radius)
+
+        volume, centroid, second = about_centroid(integrals, corners)
         vertices = corners - centroid
-        size = float(np.max(np.linalg.norm(vertices, axis=1)))
-        keep(self, points=corners, centroid=centroid, vertices=vertices, volume=volume, size=size)
-        keep(self, _spread=0.5 * (second + second.T) / volume)
+        size = float(np.max(np.linalg.norm(vertices, axis=1))) + radius
+        keep(self, points=corners, radius=radius, centroid=centroid, _vertices=vertices)
+        keep(self, volume=volume, size=size, _spread=second / volume)
+        keep(self, faces=_faces(vertices, simplices))
 
     def __repr__(self) -> str:
-        return f"Convex(<{len(self.points)} vertices>)"
+        radius = f", radius={self.radius!r}" if self.radius else ""
+        return f"Convex(<{len(self.points)} vertices>{radius})"
+
+    @property
+    def vertices(self) -> np.ndarray:
+        """The points in body axes (m,3) [m]."""
+        return self._vertices
+
+    @property
+    def pieces(self) -> tuple[Piece, ...]:
+        """A hull, swollen."""
+        half = np.max(np.abs(self.vertices), axis=0)
+        touching = {"vertices": self.vertices, "faces": self.faces}
+        return (Piece("hull", half, self.radius, extent=self.size, **touching),)
 
     def inertia(self, mass: float) -> np.ndarray:
         """Return the inertia (3,3) [kg m^2] about the centroid, for a `mass` [kg]."""
         return mass * (np.trace(self._spread) * np.eye(3) - self._spread)
 
 
-def _hull(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the vertices (m,3) of the hull and its triangles (k,3,3), oriented outwards."""
+def hull_of(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the vertices (m,3) of the hull and its outward triangles (k,3), as numbers of vertices."""
     if len(points) < 4:
         raise ValueError(f"points must be at least 4 to enclose a volume, got {len(points)}")
     middle = points.mean(axis=0)
@@ -85,31 +114,37 @@ def _hull(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     from scipy.spatial import ConvexHull
 
     hull = ConvexHull((points - middle) / extents[0])
-    triangles = points[hull.simplices]
+    number = np.full(len(points), -1)
+    number[hull.vertices] = np.arange(len(hull.vertices))
+    simplices = hull.simplices.copy()
+    triangles = points[simplices]
     normals = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     inward = np.sum(normals * hull.equations[:, :3], axis=1) < 0
-    triangles[inward] = triangles[inward][:, ::-1]
-    return points[hull.vertices], triangles
+    simplices[inward] = simplices[inward][:, ::-1]
+    return points[hull.vertices], number[simplices]
 
 
-def _moments(corners: np.ndarray, triangles: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
-    """Return volume, centroid (3,), and integral of x x^T (3,3) about it, of the solid."""
-    apex = corners.mean(axis=0)
-    volume, first, second = _tetrahedra(triangles - apex)
-    centroid = apex + first / volume
-    # Once more about the centroid: no cancellation of a parallel-axis term.
-    volume, _, second = _tetrahedra(triangles - centroid)
-    return volume, centroid, second
-
-
-def _tetrahedra(triangles: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
-    """Return the integrals of 1, x, x x^T over the tetrahedra between 0 and `triangles`.
-
-    For one of volume V with corners 0, a, b, c and sum s = a + b + c: V, V s / 4 and
-    V (a a^T + b b^T + c c^T + s s^T) / 20.
-    """
-    volumes = np.linalg.det(triangles) / 6
-    sums = triangles.sum(axis=1)
-    four = np.concatenate([triangles, sums[:, None]], axis=1)
-    second = np.einsum("t,tki,tkj->ij", volumes, four, four) / 20
-    return float(volumes.sum()), volumes @ sums / 4, second
+def _faces(vertices: np.ndarray, simplices: np.ndarray) -> tuple:
+    """Return the faces: triangles that share an edge and a plane are one, its corners in a ring."""
+    triangles = vertices[simplices]
+    cross = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
+    double = np.linalg.norm(cross, axis=1)
+    owner = {(t[k], t[(k + 1) % 3]): f for f, t in enumerate(simplices) for k in range(3)}
+    group = np.arange(len(simplices))
+    for (i, j), f in owner.items():
+        g = owner[j, i]
+        sine = np.linalg.norm(np.cross(cross[f], cross[g]))
+        if i < j and not sine > SAME_FACE * double[f] * double[g] and cross[f] @ cross[g] >= 0.0:
+            group[group == group[g]] = group[f]
+    faces = []
+    for number in np.unique(group):
+        chosen = group == number
+        normal = cross[chosen].sum(axis=0)
+        normal /= np.linalg.norm(normal)
+        corners = np.unique(simplices[chosen])
+        offsets = vertices[corners] - vertices[corners].mean(axis=0)
+        across = offsets[0] - (offsets[0] @ normal) * normal
+        angle = np.arctan2(offsets @ np.cross(normal, across), offsets @ across)
+        normal.setflags(write=False)
+        faces.append((normal, tuple(int(i) for i in corners[np.argsort(angle)])))
+    return tuple(faces)

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
 from carom import check
+from carom.scene.pieces import Piece, Touching
 from carom.scene.values import keep
 
 
 @dataclass(frozen=True)
-class Capsule:
+class Capsule(Touching):
     """A solid cylinder along body z with half balls as its ends.
 
     Parameters
@@ -41,9 +43,10 @@ class Capsule:
         return 0.5 * self.length + self.radius
 
     @property
-    def vertices(self) -> np.ndarray:
-        """The two ends of the straight part (2,3) [m]."""
-        return np.array([[0, 0, -0.5], [0, 0, 0.5]]) * self.length
+    def pieces(self) -> tuple[Piece, ...]:
+        """A segment, swollen."""
+        half = np.array([0.0, 0.0, 0.5 * self.length])
+        return (Piece("segment", half, self.radius, extent=self.size),)
 
     def inertia(self, mass: float) -> np.ndarray:
         """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
@@ -56,7 +59,7 @@ class Capsule:
 
 
 @dataclass(frozen=True)
-class Cylinder:
+class Cylinder(Touching):
     """A solid cylinder of `radius` and `length` [m], each above 0, along body z."""
 
     radius: float
@@ -77,15 +80,53 @@ class Cylinder:
         return math.hypot(self.radius, 0.5 * self.length)
 
     @property
-    def vertices(self) -> np.ndarray:
-        """Refused: a cylinder is not the hull of a few points swollen by a ball."""
-        raise ValueError(
-            f"{self!r} cannot touch yet: so far Sphere, Box, Capsule and Convex can; "
-            "use one of these (a Capsule, or a Convex of points on both rims)"
-        )
+    def pieces(self) -> tuple[Piece, ...]:
+        """A cylinder with sharp rims."""
+        half = np.array([self.radius, self.radius, 0.5 * self.length])
+        return (Piece("cylinder", half, extent=self.size),)
 
     def inertia(self, mass: float) -> np.ndarray:
         """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
         r, l = self.radius, self.length
         across = l**2 / 12 + r**2 / 4
         return mass * np.diag([across, across, r**2 / 2])
+
+
+@dataclass(frozen=True)
+class Disc(Touching):
+    """A flat disc, or a ring, without thickness, about body z: a coin, a hoop.
+
+    It touches as a full disc, with its rim: nothing passes through the hole of a ring.
+
+    Parameters
+    ----------
+    radius
+        Outer radius [m], above 0.
+    inner_radius
+        Of the hole [m], from 0 (default: a full disc) to `radius` (a hoop). Only the inertia depends on it:
+        m (R^2 + r^2) / 2 about z, half of that about x and y.
+    """
+
+    radius: float
+    inner_radius: float = 0.0
+    volume: ClassVar[float] = 0.0  # [m^3]
+
+    def __post_init__(self):
+        keep(self, radius=check.number("radius", self.radius, above=0, unit="m"))
+        inner = check.number("inner_radius", self.inner_radius, least=0, most=self.radius, unit="m")
+        keep(self, inner_radius=inner)
+
+    @property
+    def size(self) -> float:
+        """Largest distance of a point of the shape from its mass centre [m]."""
+        return self.radius
+
+    @property
+    def pieces(self) -> tuple[Piece, ...]:
+        """A cylinder of length 0."""
+        return (Piece("cylinder", np.array([self.radius, self.radius, 0.0]), extent=self.size),)
+
+    def inertia(self, mass: float) -> np.ndarray:
+        """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
+        across = mass * (self.radius**2 + self.inner_radius**2) / 4
+        return np.diag([across, across, 2 * across])

@@ -6,15 +6,19 @@ from numpy.typing import ArrayLike
 
 from carom import check
 from carom.scene.bodies import GROUND, Body, Ground, HalfSpace, make_body, make_half_space
-from carom.scene.contacts import Contact, check_gap, make_contact
+from carom.scene.contacts import check_gap
 from carom.scene.forces import FORCES, AppliedForce, ForceDefinition, make_force
 from carom.scene.joints import JOINTS, Joint, JointDefinition, make_joint
+from carom.scene.limits import check_supported
+from carom.scene.materials import Material
+from carom.scene.pairs import Pairs
 from carom.scene.registry import Registry
 from carom.scene.shapes import Shape
 from carom.scene.summary import counts, summary
+from carom.scene.touching import TouchingPairs
 
 
-class Scene:
+class Scene(TouchingPairs):
     """Bodies, half-spaces, contacts, joints and forces, as they stand at the start.
 
     The ``add_*`` methods check what they are given at once and return a frozen handle. Names are
@@ -39,10 +43,15 @@ class Scene:
         self._gravity = check.finite_array("gravity", gravity, (3,), unit="m/s^2")
         self._gravity.setflags(write=False)
         self._parts = Registry()
-        self._pairs: set[tuple[Body, HalfSpace]] = set()
+        self._pairs = Pairs()
 
     def add_half_space(
-        self, point: ArrayLike, normal: ArrayLike, *, name: str | None = None
+        self,
+        point: ArrayLike,
+        normal: ArrayLike,
+        *,
+        material: Material | None = None,
+        name: str | None = None,
     ) -> HalfSpace:
         """Add a fixed half-space that bodies may strike.
 
@@ -52,11 +61,13 @@ class Scene:
             Any point of its plane [m].
         normal : (3,)
             From the half-space into free space; made a unit vector.
+        material
+            Of its surface, see `set_contact_default`.
         name
             Default ``"half_space1"``, ``"half_space2"``, ...
         """
         index, name = self._parts.new(HalfSpace, name, "half_space")
-        return self._parts.add(make_half_space(index, name, point, normal))
+        return self._parts.add(make_half_space(index, name, point, normal, material))
 
     def add_body(
         self,
@@ -69,6 +80,7 @@ class Scene:
         orientation: ArrayLike = (1.0, 0.0, 0.0, 0.0),
         velocity: ArrayLike = (0.0, 0.0, 0.0),
         angular_velocity: ArrayLike = (0.0, 0.0, 0.0),
+        material: Material | None = None,
         name: str | None = None,
     ) -> Body:
         """Add a rigid body.
@@ -76,8 +88,8 @@ class Scene:
         Parameters
         ----------
         shape
-            `Sphere`, `Box`, `Capsule`, `Cylinder` or `Convex`; may be left out where nothing
-            touches the body.
+            `Sphere`, `Box`, `Capsule`, `Cylinder`, `Disc`, `Ellipsoid`, `Convex`, `Mesh` or
+            `Compound`; may be left out where nothing touches the body.
         mass, density
             Exactly one of the two: [kg], or [kg/m^3] of the shape; above 0.
         inertia : (3,) or (3, 3)
@@ -91,6 +103,8 @@ class Scene:
             Of the mass centre, in world axes [m/s].
         angular_velocity : (3,)
             In world axes [rad/s].
+        material
+            Of its surface, see `set_contact_default`.
         name
             Default ``"body1"``, ``"body2"``, ...
 
@@ -101,49 +115,8 @@ class Scene:
         """
         index, name = self._parts.new(Body, name, "body")
         motion = (position, orientation, velocity, angular_velocity)
-        body = make_body(index, name, shape, mass, density, inertia, *motion)
+        body = make_body(index, name, shape, mass, density, inertia, *motion, material)
         return self._parts.add(body)
-
-    def add_contact(
-        self,
-        body: Body,
-        half_space: HalfSpace,
-        *,
-        restitution: float = 0.5,
-        friction: float = 0.0,
-        impact_law: str = "newton",
-        name: str | None = None,
-    ) -> Contact:
-        """Let a body and a half-space touch.
-
-        Parameters
-        ----------
-        body
-            With a shape other than `Cylinder`, and not inside the half-space.
-        half_space
-            What it may strike.
-        restitution
-            e, from 0 (plastic) to 1 (elastic). Default 0.5.
-        friction
-            Coulomb's mu, at least 0. Default 0.
-        impact_law : {"newton", "poisson", "stronge"}
-            What e compares: speeds, impulses or works. Default ``"newton"``.
-        name
-            Default: the names of both, such as ``"die-ground"``.
-        """
-        self._parts.member("body", body, (Body,))
-        self._parts.member("half_space", half_space, (HalfSpace,))
-        if (body, half_space) in self._pairs:
-            raise ValueError(
-                f"body {body.name!r} and half_space {half_space.name!r} must be given once, "
-                "got a second contact of the two"
-            )
-        name = f"{body.name}-{half_space.name}" if name is None else name
-        index, name = self._parts.new(Contact, name, "contact")
-        law = (restitution, friction, impact_law)
-        contact = self._parts.add(make_contact(index, name, body, half_space, *law))
-        self._pairs.add((body, half_space))
-        return contact
 
     def add_joint(
         self,
@@ -169,6 +142,7 @@ class Scene:
         check.instance("definition", definition, JOINTS)
         self._parts.pair(parent, child)
         index, name = self._parts.new(Joint, name, "joint")
+        self._pairs.join(parent, child)
         return self._parts.add(make_joint(index, name, definition, parent, child))
 
     def add_force(
@@ -218,11 +192,6 @@ class Scene:
         return self._parts.parts(HalfSpace)
 
     @property
-    def contacts(self) -> tuple[Contact, ...]:
-        """The contacts, in the order added."""
-        return self._parts.parts(Contact)
-
-    @property
     def joints(self) -> tuple[Joint, ...]:
         """The joints, in the order added."""
         return self._parts.parts(Joint)
@@ -237,17 +206,19 @@ class Scene:
         return self._parts[name]
 
     def validate(self) -> None:
-        """Refuse a scene that cannot start: no bodies, or one inside what it touches.
+        """Refuse a scene that cannot start: no bodies, or one inside another or a half-space.
 
         Raises
         ------
         ValueError
-            Naming the contact, how deep the body is, and what to do.
+            Naming the pair, how deep one is in the other, and what to do.
         """
         if not self.bodies:
             raise ValueError("scene must have at least one body, got none; add it with add_body")
         for contact in self.contacts:
             check_gap(contact)
+        self._pairs.check_all(self.bodies, self.half_spaces)
+        check_supported(self)
 
     def __repr__(self) -> str:
         return f"<Scene: {counts(self)}>"

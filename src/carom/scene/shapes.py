@@ -1,26 +1,27 @@
-"""Shapes: volume, inertia, size, and the form in which they touch.
+"""Shapes: volume, inertia, size, and the pieces with which they touch.
 
-A shape lies in body axes with its mass centre at the origin. The ones that can touch are the convex
-hull of a few `vertices`, swollen by a ball of `radius`: so their gap to a half-space is the lowest
-vertex less the radius.
+A shape lies in body axes with its mass centre at the origin. It touches with its `pieces`: convex cores
+(a point, a segment, a box, a hull of vertices, a cylinder, an ellipsoid), each swollen by a ball.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
 from carom import check
+from carom.scene.compound import Compound
 from carom.scene.convex import Convex
-from carom.scene.revolved import Capsule, Cylinder
+from carom.scene.mesh import Mesh
+from carom.scene.pieces import Piece, Touching
+from carom.scene.revolved import Capsule, Cylinder, Disc
 from carom.scene.values import keep
 
 
 @dataclass(frozen=True)
-class Sphere:
+class Sphere(Touching):
     """A solid ball of `radius` [m], above 0."""
 
     radius: float
@@ -39,9 +40,9 @@ class Sphere:
         return self.radius
 
     @property
-    def vertices(self) -> np.ndarray:
-        """The centre alone (1,3) [m]."""
-        return np.zeros((1, 3))
+    def pieces(self) -> tuple[Piece, ...]:
+        """A point, swollen."""
+        return (Piece("point", radius=self.radius, extent=self.size),)
 
     def inertia(self, mass: float) -> np.ndarray:
         """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
@@ -49,39 +50,121 @@ class Sphere:
 
 
 @dataclass(frozen=True)
-class Box:
-    """A solid box with full edge lengths `lx`, `ly`, `lz` [m], each above 0."""
+class Box(Touching):
+    """A solid box, its edges and corners rounded if a radius is given.
+
+    Parameters
+    ----------
+    lx, ly, lz
+        Full outer edge lengths [m], each above 0.
+    radius
+        Of the rounding [m], from 0 (default, sharp) to half the least edge: the solid is a box smaller by
+        `radius` on all sides, swollen by a ball. Volume and inertia are those of the rounded solid.
+    """
 
     lx: float
     ly: float
     lz: float
-    radius: ClassVar[float] = 0.0
+    radius: float = 0.0
 
     def __post_init__(self):
         edges = {"lx": self.lx, "ly": self.ly, "lz": self.lz}
         keep(self, **{k: check.number(k, edge, above=0, unit="m") for k, edge in edges.items()})
+        least = min(self.lx, self.ly, self.lz)
+        keep(self, radius=check.number("radius", self.radius, least=0, most=least / 2, unit="m"))
+
+    def __repr__(self) -> str:
+        radius = f", radius={self.radius!r}" if self.radius else ""
+        return f"Box(lx={self.lx!r}, ly={self.ly!r}, lz={self.lz!r}{radius})"
+
+    @property
+    def half(self) -> np.ndarray:
+        """Half edges (3,) of the core, the box inside the rounding [m]."""
+        return 0.5 * np.array([self.lx, self.ly, self.lz]) - self.radius
 
     @property
     def volume(self) -> float:
         """Volume [m^3]."""
-        return self.lx * self.ly * self.lz
+        if not self.radius:
+            return self.lx * self.ly * self.lz
+        return _rounded_box(self.half, self.radius)[0]
 
     @property
     def size(self) -> float:
         """Largest distance of a point of the shape from its mass centre [m]."""
-        return 0.5 * math.hypot(self.lx, self.ly, self.lz)
+        return math.hypot(*self.half) + self.radius
 
     @property
-    def vertices(self) -> np.ndarray:
-        """The eight corners (8,3) [m]."""
-        signs = np.array([(i, j, k) for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)])
-        return 0.5 * signs * np.array([self.lx, self.ly, self.lz])
+    def pieces(self) -> tuple[Piece, ...]:
+        """A box, swollen; a point if it is all rounding."""
+        half = self.half
+        kind = "box" if np.any(half > 0) else "point"
+        return (Piece(kind, half, self.radius, extent=self.size),)
 
     def inertia(self, mass: float) -> np.ndarray:
         """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
-        x, y, z = self.lx**2, self.ly**2, self.lz**2
-        return np.diag([y + z, x + z, x + y]) * (mass / 12)
+        if not self.radius:
+            x, y, z = self.lx**2 / 12, self.ly**2 / 12, self.lz**2 / 12
+        else:
+            half, axes = self.half, (0, 1, 2)
+            volume = self.volume
+            x, y, z = (_rounded_box(np.roll(half, -i), self.radius)[1] / volume for i in axes)
+        return np.diag([y + z, x + z, x + y]) * mass
 
 
-Shape = Sphere | Box | Capsule | Cylinder | Convex
-SHAPES = (Sphere, Box, Capsule, Cylinder, Convex)
+@dataclass(frozen=True)
+class Ellipsoid(Touching):
+    """A solid ellipsoid with semi-axes `a`, `b`, `c` [m] along body x, y, z, each above 0."""
+
+    a: float
+    b: float
+    c: float
+
+    def __post_init__(self):
+        axes = {"a": self.a, "b": self.b, "c": self.c}
+        keep(self, **{k: check.number(k, axis, above=0, unit="m") for k, axis in axes.items()})
+
+    @property
+    def volume(self) -> float:
+        """Volume [m^3]."""
+        return 4 / 3 * math.pi * self.a * self.b * self.c
+
+    @property
+    def size(self) -> float:
+        """Largest distance of a point of the shape from its mass centre [m]."""
+        return max(self.a, self.b, self.c)
+
+    @property
+    def pieces(self) -> tuple[Piece, ...]:
+        """An ellipsoid; `inner` is its least radius of curvature, min^2 / max of the semi-axes."""
+        axes = (self.a, self.b, self.c)
+        inner = min(axes) ** 2 / max(axes)
+        return (Piece("ellipsoid", np.array(axes), inner=inner, extent=self.size),)
+
+    def inertia(self, mass: float) -> np.ndarray:
+        """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
+        x, y, z = self.a**2, self.b**2, self.c**2
+        return np.diag([y + z, x + z, x + y]) * (mass / 5)
+
+
+def _rounded_box(half: np.ndarray, r: float) -> tuple[float, float]:
+    """Return volume, and integral of x^2 over it, of a box of half edges a, b, c swollen by a ball.
+
+    The parts: core, six slabs on its faces, twelve quarters of cylinders on its edges, eight octants
+    of a ball on its corners.
+    """
+    a, b, c = half
+    pi = math.pi
+    volume = 8 * a * b * c + 8 * r * (a * b + b * c + c * a)
+    volume += 2 * pi * r**2 * (a + b + c) + 4 / 3 * pi * r**3
+    core = 8 * a * b * c * a**2 / 3
+    slabs = 8 * b * c * ((a + r) ** 3 - a**3) / 3 + 8 * r * a * (b + c) * a**2 / 3
+    along = 2 * pi * r**2 * a**3 / 3
+    # Across, over quarters of discs: the integral of (a + x)^2, four of them.
+    across = 2 * (b + c) * (pi * r**2 * a**2 + 8 * a * r**3 / 3 + pi * r**4 / 4)
+    corners = 4 / 3 * pi * r**3 * a**2 + pi * a * r**4 + 4 / 15 * pi * r**5
+    return volume, core + slabs + along + across + corners
+
+
+Shape = Sphere | Box | Capsule | Cylinder | Disc | Ellipsoid | Convex | Mesh | Compound
+SHAPES = (Sphere, Box, Capsule, Cylinder, Disc, Ellipsoid, Convex, Mesh, Compound)

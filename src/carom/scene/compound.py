@@ -1,0 +1,126 @@
+"""One rigid shape of several convex parts."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from carom import check
+from carom.geometry import quaternion
+from carom.scene.pieces import IDENTITY, Piece, Touching
+from carom.scene.values import keep, point
+
+
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class Compound(Touching):
+    """Shapes fixed to each other, as one rigid body: a dumbbell, a table, a cup.
+
+    The shape is moved so that its mass centre becomes the origin of the body. A point given here as ``p``
+    is at ``p - centroid`` in body axes.
+
+    Parameters
+    ----------
+    parts : sequence of (shape, position) or (shape, position, orientation)
+        `position` (3,) of the mass centre of the part [m]; `orientation` (4,), unit quaternion
+        (w, x, y, z), part to compound, default none. Parts may overlap; the common volume counts in
+        each of them.
+    masses : sequence of float, optional
+        What the parts weigh in proportion to each other, each at least 0. Default: their volumes (one
+        density for all).
+
+    Attributes
+    ----------
+    parts : tuple of (shape, position, orientation)
+        As given.
+    centroid : (3,)
+        The mass centre, in the axes in which the parts were given [m].
+    volume
+        Sum of the volumes of the parts [m^3].
+    size
+        Bound of the distance of a point of the shape from its mass centre [m]: the greatest over the
+        parts of the distance of their mass centre and their own size.
+    """
+
+    parts: tuple
+    centroid: np.ndarray
+    volume: float
+    size: float
+    _pieces: tuple[Piece, ...]
+    _spread: np.ndarray  # inertia by mass [m^2]
+
+    def __init__(self, parts: Sequence, masses: ArrayLike | None = None):
+        placed = tuple(_part(k, part) for k, part in enumerate(_sequence(parts)))
+        shapes = [shape for shape, _, _ in placed]
+        volumes = np.array([shape.volume for shape in shapes])
+        weights = _weights(shapes, volumes, masses)
+        positions = np.array([position for _, position, _ in placed])
+        centroid = weights @ positions
+        arms = positions - centroid
+        spread = np.zeros((3, 3))
+        for weight, arm, (shape, _, turn) in zip(weights, arms, placed):
+            axes = quaternion.matrix(turn)
+            spread += axes @ shape.inertia(weight) @ axes.T
+            spread += weight * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+        size = max(float(np.linalg.norm(a)) + s.size for a, s in zip(arms, shapes))
+        pieces = [p.placed(a, q) for a, (s, _, q) in zip(arms, placed) for p in s.pieces]
+        keep(self, parts=placed, centroid=centroid, volume=float(volumes.sum()), size=size)
+        keep(self, _pieces=tuple(pieces), _spread=0.5 * (spread + spread.T))
+
+    def __repr__(self) -> str:
+        return f"Compound(<{', '.join(type(shape).__name__ for shape, _, _ in self.parts)}>)"
+
+    @property
+    def pieces(self) -> tuple[Piece, ...]:
+        """The pieces of all parts."""
+        return self._pieces
+
+    @property
+    def radius(self) -> float:
+        """Radius of the ball by which all parts are swollen, where it is one [m]."""
+        return self.pieces[0].radius
+
+    def inertia(self, mass: float) -> np.ndarray:
+        """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
+        return mass * self._spread
+
+
+def _sequence(parts) -> Sequence:
+    if not isinstance(parts, Sequence) or isinstance(parts, str) or len(parts) == 0:
+        raise ValueError(
+            f"parts must be a sequence of at least one (shape, position, orientation), got {parts!r}"
+        )
+    return parts
+
+
+def _part(number: int, part) -> tuple:
+    """Return a checked (shape, position, orientation)."""
+    name = f"parts[{number}]"
+    if not isinstance(part, Sequence) or len(part) not in (2, 3):
+        raise ValueError(
+            f"{name} must be (shape, position) or (shape, position, orientation), got {part!r}"
+        )
+    shape, position, *turn = part
+    check.instance(f"{name}[0]", shape, (Touching,), "; a shape is needed")
+    position = point(f"{name}[1]", position)
+    orientation = check.unit_quaternion(f"{name}[2]", turn[0] if turn else IDENTITY)
+    for array in (position, orientation):
+        array.setflags(write=False)
+    return shape, position, orientation
+
+
+def _weights(shapes, volumes, masses) -> np.ndarray:
+    """Return the part of each in the whole mass."""
+    if masses is None:
+        if not np.all(volumes > 0.0):
+            flat = shapes[int(np.argmin(volumes))]
+            raise ValueError(
+                f"masses must be given where a part has no volume, got None and {flat!r}"
+            )
+        return volumes / volumes.sum()
+    weights = check.finite_array("masses", masses, (len(shapes),))
+    if not (np.all(weights >= 0.0) and weights.sum() > 0.0):
+        raise ValueError(f"masses must be at least 0 and not all 0, got {masses!r}")
+    return weights / weights.sum()

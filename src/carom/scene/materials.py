@@ -1,0 +1,163 @@
+"""Laws of contact, materials, and how two materials make the law of a pair.
+
+Restitution and friction belong to a pair of surfaces, not to one: they are measured pair by pair, and no
+rule that makes them from two numbers is right. So a rule has to be chosen by name; two equal materials
+need none. In use elsewhere: average, min, max and product (PhysX, Unity, Unreal), product (Bullet), max
+(MuJoCo), geometric mean for friction with max for restitution (Box2D).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields
+
+from carom import check
+from carom.scene.values import keep
+
+IMPACT_LAWS = ("newton", "poisson", "stronge")
+RULES: dict[str, Callable[[float, float], float]] = {
+    "average": lambda a, b: 0.5 * (a + b),
+    "min": min,
+    "max": max,
+    "product": lambda a, b: a * b,
+    "geometric": lambda a, b: math.sqrt(a) * math.sqrt(b),
+}
+COMBINED = ("restitution", "friction", "friction_held", "rolling_friction", "pivoting_friction")
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactLaw:
+    """How a pair touches.
+
+    Attributes
+    ----------
+    restitution : float
+        e, 0 to 1. Default 0.5.
+    friction : float
+        Coulomb's mu in impacts, at least 0. Default 0.
+    friction_held : float
+        mu of contact that stays, at least 0. Default: `friction`.
+    impact_law : {"newton", "poisson", "stronge"}
+        What e compares: speeds, impulses or works.
+    stiffness : float
+        Of the boundary layer of the contact in proportion to others that strike at the same time,
+        above 0. Default 1.
+    rolling_friction, pivoting_friction : float
+        Greatest moment against rolling, and about the normal, of contact that stays, divided by the normal
+        force [m], at least 0. Default 0.
+    """
+
+    restitution: float = 0.5
+    friction: float = 0.0
+    friction_held: float | None = None
+    impact_law: str = "newton"
+    stiffness: float = 1.0
+    rolling_friction: float = 0.0
+    pivoting_friction: float = 0.0
+
+    def __post_init__(self):
+        check_surface(self)
+        if self.friction_held is None:
+            keep(self, friction_held=self.friction)
+        check.choice("impact_law", self.impact_law, IMPACT_LAWS)
+
+
+@dataclass(frozen=True)
+class Material:
+    """What a surface gives to the contacts of a body or half-space; see `Scene.set_contact_default`.
+
+    Parameters
+    ----------
+    restitution, friction
+        As of `Scene.add_contact`: e from 0 to 1, mu at least 0.
+    friction_held
+        mu of contact that stays, at least 0. Default: `friction`.
+    stiffness
+        Above 0, default 1. Two in series: ``2 / (1 / s1 + 1 / s2)``.
+    rolling_friction, pivoting_friction
+        [m], at least 0, default 0.
+    """
+
+    restitution: float
+    friction: float
+    friction_held: float | None = None
+    stiffness: float = 1.0
+    rolling_friction: float = 0.0
+    pivoting_friction: float = 0.0
+
+    def __post_init__(self):
+        check_surface(self)
+
+
+def check_surface(record) -> None:
+    """Check the numbers that a law and a material share, and keep them as floats."""
+    keep(record, restitution=check.number("restitution", record.restitution, least=0, most=1))
+    for name in ("friction", "rolling_friction", "pivoting_friction"):
+        keep(record, **{name: check.number(name, getattr(record, name), least=0)})
+    if record.friction_held is not None:
+        keep(record, friction_held=check.number("friction_held", record.friction_held, least=0))
+    keep(record, stiffness=check.number("stiffness", record.stiffness, above=0))
+
+
+Rule = str | Mapping[str, str] | None
+
+
+def checked_rule(combine) -> dict[str, str]:
+    """Return the rule of each property that has one, from ``combine``: a name, names by property, or None."""
+    if combine is None:
+        return {}
+    if isinstance(combine, str):
+        return dict.fromkeys(COMBINED, check.choice("combine", combine, RULES))
+    if not isinstance(combine, Mapping):
+        raise ValueError(
+            f"combine must be one of {', '.join(map(repr, sorted(RULES)))} or a dict of these by property, "
+            f"got {combine!r}"
+        )
+    return {
+        check.choice("a key of combine", key, COMBINED): check.choice(
+            f"combine[{key!r}]", rule, RULES
+        )
+        for key, rule in combine.items()
+    }
+
+
+def law_of(first, second, given: Mapping, default: ContactLaw | None, rules: Mapping) -> ContactLaw:
+    """Return the law of a pair of a body and another body or a half-space.
+
+    What is `given` for the pair counts before the materials of the two, and these before the default.
+    """
+    given = {name: value for name, value in given.items() if value is not None}
+    if "friction" in given:
+        given.setdefault("friction_held", given["friction"])
+    base = {f.name: getattr(default or ContactLaw(), f.name) for f in fields(ContactLaw)}
+    one, two = first.material, second.material
+    if one is not None and two is not None:
+        base["stiffness"] = 2.0 / (1.0 / one.stiffness + 1.0 / two.stiffness)
+        for name in COMBINED:
+            if name not in given:
+                base[name] = _combined(name, first, second, rules)
+    elif (one is not None or two is not None) and not {"restitution", "friction"} <= set(given):
+        has, lacks = (first, second) if one is not None else (second, first)
+        raise ValueError(
+            f"material must be given for both of a pair or none: {has.name!r} has {has.material!r}, "
+            f"{lacks.name!r} has none; give it one, or restitution and friction of this pair to add_contact"
+        )
+    return ContactLaw(**{**base, **given})
+
+
+def _combined(name: str, first, second, rules: Mapping) -> float:
+    values = []
+    for material in (first.material, second.material):
+        value = getattr(material, name)
+        values.append(material.friction if value is None else value)
+    if name in rules:
+        return RULES[rules[name]](*values)
+    if values[0] == values[1]:
+        return values[0]
+    raise ValueError(
+        f"combine must say how two materials make one {name}: {first.name!r} has {values[0]:g}, "
+        f"{second.name!r} has {values[1]:g}; choose a rule, "
+        f'set_contact_default(combine="average") or {", ".join(r for r in RULES if r != "average")}, '
+        f"or give {name} of this pair to add_contact"
+    )

@@ -1,0 +1,202 @@
+"""A solid bounded by triangles."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from carom import check
+from carom.scene.convex import Convex, hull_of
+from carom.scene.moments import about_centroid, of_triangles
+from carom.scene.pieces import Piece, Touching
+from carom.scene.values import keep
+
+THIN = 1e-12  # height of a triangle relative to the size of the mesh below which it is degenerate
+BULGE = 1e-9  # height of a vertex above a face, relative to the size, that is rounding
+
+
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class Mesh(Touching):
+    """A solid bounded by a closed surface of triangles.
+
+    Volume, mass centre and inertia are exact. It touches as convex parts: itself, where it is convex, else
+    those given. The shape is moved so that its centroid becomes the origin of the body, as `Convex`.
+
+    Parameters
+    ----------
+    vertices : (n, 3)
+        [m].
+    faces : (k, 3)
+        Triangles, as numbers of vertices from 0 on, counter-clockwise from outside.
+    parts : sequence of (m, 3), "coacd" or None
+        For a surface that is not convex: the corners of each of its convex parts, in the same axes as
+        `vertices`. With ``"coacd"`` the optional package of that name finds parts that cover the
+        solid approximately. Default None: a convex mesh needs none, any other cannot touch.
+
+    Attributes
+    ----------
+    points : (n, 3)
+        The vertices as given [m].
+    faces : (k, 3)
+    centroid : (3,)
+        Of the solid, in the axes in which the vertices were given [m].
+    volume
+        [m^3].
+    size
+        Largest distance of a vertex, or a corner of a part, from the centroid [m].
+    convex : bool
+
+    Raises
+    ------
+    ValueError
+        If the surface is not closed, not oriented outwards throughout, has degenerate triangles, or
+        the parts are no solids.
+    ImportError
+        For ``parts="coacd"`` without that package.
+    """
+
+    points: np.ndarray
+    faces: np.ndarray
+    centroid: np.ndarray
+    volume: float
+    size: float
+    convex: bool
+    _pieces: tuple[Piece, ...]
+    _spread: np.ndarray
+    radius = 0.0
+
+    def __init__(self, vertices: ArrayLike, faces: ArrayLike, parts: Sequence | str | None = None):
+        points = check.finite_array("vertices", vertices, (None, 3), unit="m")
+        triangles = _checked_faces(faces, points)
+
+        def integrals(origin):
+            return of_triangles((points - origin)[triangles])
+
+        used = points[np.unique(triangles)]
+        if not integrals(used.mean(axis=0))[0] > 0.0:
+            raise ValueError(
+                "faces must be counter-clockwise seen from outside, got a closed surface that is "
+                "oriented inwards; reverse them: faces[:, ::-1]"
+            )
+        volume, centroid, second = about_centroid(integrals, used)
+        convex = _is_convex(points, triangles)
+        pieces = _pieces(points, triangles, centroid, convex, parts)
+        far = [used - centroid, *(piece.vertices + piece.position for piece in pieces)]
+        size = float(np.max(np.linalg.norm(np.concatenate(far), axis=1)))
+        keep(self, points=points, faces=triangles, centroid=centroid, volume=volume, size=size)
+        keep(self, convex=convex, _pieces=pieces, _spread=second / volume)
+
+    def __repr__(self) -> str:
+        return f"Mesh(<{len(self.points)} vertices, {len(self.faces)} faces>)"
+
+    @property
+    def pieces(self) -> tuple[Piece, ...]:
+        """Hulls: of the mesh itself or of its parts."""
+        if not self._pieces:
+            raise ValueError(
+                f"{self!r} is not convex and has no parts to touch with; give them: Mesh(vertices, faces, "
+                'parts=[corners of each convex part]), or parts="coacd" with that package installed'
+            )
+        return self._pieces
+
+    def inertia(self, mass: float) -> np.ndarray:
+        """Return the inertia (3,3) [kg m^2] about the centroid, for a `mass` [kg]."""
+        return mass * (np.trace(self._spread) * np.eye(3) - self._spread)
+
+
+def _checked_faces(faces, points: np.ndarray) -> np.ndarray:
+    """Return the triangles (k,3) of a closed, oriented surface without degenerate ones."""
+    given = np.asarray(faces)
+    if given.ndim != 2 or given.shape[1] != 3 or not np.issubdtype(given.dtype, np.integer):
+        raise ValueError(f"faces must be whole numbers of shape (k, 3), got {faces!r}")
+    triangles = given.astype(np.int64)
+    if len(triangles) < 4:
+        raise ValueError(f"faces must be at least 4 to enclose a volume, got {len(triangles)}")
+    low, high = triangles.min(), triangles.max()
+    if low < 0 or high >= len(points):
+        bad = low if low < 0 else high
+        raise ValueError(
+            f"faces must be numbers of vertices from 0 to {len(points) - 1}, got {bad}"
+        )
+    corners = points[triangles]
+    sides = corners - np.roll(corners, 1, axis=1)
+    longest = np.max(np.linalg.norm(sides, axis=2), axis=1)
+    areas = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+    thin = ~(areas > THIN * np.ptp(points, axis=0).max() * longest)
+    if np.any(thin):
+        k = int(np.argmax(thin))
+        raise ValueError(
+            f"faces must not be degenerate, got face {k} {triangles[k].tolist()} whose corners lie on one "
+            f"line ({int(thin.sum())} such faces); leave them out"
+        )
+    _check_closed(triangles)
+    return triangles
+
+
+def _check_closed(triangles: np.ndarray) -> None:
+    """Refuse a surface in which an edge is not passed once in each sense."""
+    edges = Counter((int(t[k]), int(t[(k + 1) % 3])) for t in triangles for k in range(3))
+    twice = [edge for edge, count in edges.items() if count > 1]
+    if twice:
+        raise ValueError(
+            "faces must be oriented alike, each edge passed once in each sense, got edge "
+            f"{twice[0]} passed twice in one sense ({len(twice)} such edges)"
+        )
+    open_edges = [(i, j) for i, j in edges if (j, i) not in edges]
+    if open_edges:
+        raise ValueError(
+            f"faces must form a closed surface, got edge {open_edges[0]} with a face on one side only "
+            f"({len(open_edges)} such edges); fill the holes, and merge vertices that have one place"
+        )
+
+
+def _is_convex(points, triangles) -> bool:
+    """Return True if no vertex lies above the plane of a face, by more than rounding."""
+    used = points[np.unique(triangles)]
+    size = np.ptp(used, axis=0).max()
+    for a, b, c in points[triangles]:
+        normal = np.cross(b - a, c - a)
+        normal /= np.linalg.norm(normal)
+        if np.max((used - a) @ normal) > BULGE * size:
+            return False
+    return True
+
+
+def _pieces(points, triangles, centroid, convex, parts) -> tuple[Piece, ...]:
+    """Return the convex pieces in body axes; none where they are needed and not given."""
+    if parts is None:
+        corners = [hull_of(points[np.unique(triangles)])[0]] if convex else []
+    elif isinstance(parts, str):
+        check.choice("parts", parts, ("coacd",))
+        corners = _decomposed(points, triangles)
+    else:
+        corners = list(parts)
+        if not corners:
+            raise ValueError("parts must be at least one set of corners (m, 3), got none")
+    pieces = []
+    for k, part in enumerate(corners):
+        try:
+            hull = Convex(part)
+        except ValueError as error:
+            raise ValueError(f"parts[{k}]: {error}") from None
+        pieces += [
+            piece.placed(hull.centroid - centroid, np.array([1.0, 0, 0, 0]))
+            for piece in hull.pieces
+        ]
+    return tuple(pieces)
+
+
+def _decomposed(points, triangles) -> list:
+    """Return the corners of approximate convex parts by CoACD (Wei et al., SIGGRAPH 2022)."""
+    try:
+        import coacd  # pyright: ignore[reportMissingImports]
+    except ImportError:
+        raise ImportError(
+            'parts="coacd" needs the package coacd: pip install "carom[shapes]"'
+        ) from None
+    coacd.set_log_level("error")
+    return [vertices for vertices, _ in coacd.run_coacd(coacd.Mesh(points, triangles), seed=0)]

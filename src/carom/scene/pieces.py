@@ -1,0 +1,120 @@
+"""What a shape touches with: convex pieces, each a core swollen by a ball, placed in body axes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from carom import check
+from carom.geometry import quaternion
+from carom.scene.values import keep
+
+IDENTITY = (1.0, 0.0, 0.0, 0.0)
+VERTEX_KINDS = ("point", "segment", "box", "hull")
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """A convex core swollen by a ball.
+
+    Attributes
+    ----------
+    kind : {"point", "segment", "box", "hull", "cylinder", "ellipsoid"}
+        Of the core. Segments and cylinders lie along z of the piece.
+    half : (3,)
+        Half sizes of the core along its axes [m].
+    radius : float
+        Of the ball [m].
+    inner : float
+        An ellipsoid is also a smaller convex core swollen by this much [m].
+    extent : float
+        Largest distance of a point of the piece from its own origin [m].
+    vertices : (n, 3)
+        Of a hull, in axes of the piece [m].
+    faces : tuple of (normal, ring)
+        Of a hull: outward unit normal and the numbers of its vertices, counter-clockwise from outside.
+    position, orientation : (3,), (4,)
+        Of the piece in the axes of the body.
+    """
+
+    kind: str
+    half: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    radius: float = 0.0
+    inner: float = 0.0
+    extent: float = 0.0
+    vertices: np.ndarray = field(default_factory=lambda: np.zeros((0, 3)))
+    faces: tuple = ()
+    position: np.ndarray = field(default_factory=lambda: np.zeros(3))
+    orientation: np.ndarray = field(default_factory=lambda: np.array(IDENTITY))
+
+    def __post_init__(self):
+        keep(self, half=np.array(self.half, dtype=float))
+
+    @property
+    def corners(self) -> np.ndarray | None:
+        """The vertices of the core (n,3) in body axes; None for a smooth core."""
+        if self.kind not in VERTEX_KINDS:
+            return None
+        if self.kind == "hull":
+            local = self.vertices
+        elif self.kind == "segment":
+            local = self.half * np.array([[0, 0, -1], [0, 0, 1]])
+        else:
+            signs = np.array([(i, j, k) for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)])
+            local = self.half * signs if self.kind == "box" else np.zeros((1, 3))
+        return self.position + quaternion.rotate(self.orientation, local)
+
+    def support(self, direction: np.ndarray) -> np.ndarray:
+        """Return the point (3,) farthest along a unit `direction`, both in body axes."""
+        d = quaternion.rotate_back(self.orientation, direction)
+        if self.kind == "hull":
+            core = self.vertices[np.argmax(self.vertices @ d)]
+        elif self.kind == "ellipsoid":
+            core = self.half**2 * d / np.linalg.norm(self.half * d)
+        elif self.kind == "cylinder":
+            across = np.hypot(d[0], d[1])
+            rim = self.half[0] / across if across > 0 else 0.0
+            core = np.array([rim * d[0], rim * d[1], np.copysign(self.half[2], d[2])])
+        else:
+            core = np.copysign(self.half, d)
+        core = core + self.radius * d
+        return self.position + quaternion.rotate(self.orientation, core)
+
+    def placed(self, position: np.ndarray, orientation: np.ndarray) -> Piece:
+        """Return the piece of a part that has this place in a body."""
+        return Piece(
+            **{
+                **vars(self),
+                "position": position + quaternion.rotate(orientation, self.position),
+                "orientation": quaternion.multiply(orientation, self.orientation),
+            }
+        )
+
+
+class Touching:
+    """What all shapes have in common: pieces to touch with, and what follows from them."""
+
+    @property
+    def pieces(self) -> tuple[Piece, ...]:
+        """The convex pieces of the shape."""
+        raise NotImplementedError
+
+    def support(self, direction: ArrayLike) -> np.ndarray:
+        """Return the point (3,) of the shape [m] farthest along `direction` (3,), in body axes."""
+        d = check.unit_vector("direction", direction)
+        points = np.array([piece.support(d) for piece in self.pieces])
+        return points[np.argmax(points @ d)]
+
+    @property
+    def vertices(self) -> np.ndarray:
+        """The vertices (n,3) [m] of a shape that is a hull of them, swollen by a ball of `radius`."""
+        pieces = self.pieces
+        corners = [piece.corners for piece in pieces]
+        if any(c is None for c in corners) or len({piece.radius for piece in pieces}) > 1:
+            raise ValueError(
+                f"{self!r} is not the hull of a few vertices swollen by one ball, as Sphere, Box, "
+                "Capsule and Convex are"
+            )
+        return np.concatenate([c for c in corners if c is not None])
