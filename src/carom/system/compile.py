@@ -218,8 +218,8 @@ def _contacts(scene, to_principal, bodies, options):
         contacts.axes[k] = contact_axes(plane.normal)
         row.offset, row.radius, row.extent = plane.point @ plane.normal, shape.radius, shape.size
         row.group = c.body.index if bodies.isolated[c.body.index] else len(bodies)
-        row.friction = row.friction_held = c.friction
-        row.restitution, row.stiffness = c.restitution, 1.0
+        row.friction, row.friction_held = c.friction, c.friction_held
+        row.restitution, row.stiffness = c.restitution, c.stiffness
         row.law = IMPACT_LAWS.index(c.impact_law)
         row.width = 1e-5 * shape.size if options.layer_width is None else options.layer_width
         row.penetration = options.penetration
