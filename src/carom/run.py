@@ -135,9 +135,7 @@ class Run:
             settle_unit, system, self.controls, held, 0, now, self.work, self.clock, self.records
         )
         press = address(press_unit, system, self.controls, held, now, 0.0, now, *scratch)
-        self.controls = self.controls._replace(
-            hold_at=hold or 1, settle_at=settle, press_at=press
-        )
+        self.controls = self.controls._replace(hold_at=hold or 1, settle_at=settle, press_at=press)
 
     def find_corner(self) -> None:
         """Compile the impact of several points: only when the first one is to be resolved."""

@@ -56,9 +56,7 @@ def find_held_event(system, held, end, work):
             if held_value(system, hold, REVERSE, d1, d2, end, work) < 0.0:
                 return REVERSE, i, d1, d2
         # a cone met to round-off (a body on the verge of slip) is no event
-        elif (
-            held_value(system, hold, CONE, 0.0, 0.0, end, work) < -1e-12 * hold.force[0]
-        ):
+        elif held_value(system, hold, CONE, 0.0, 0.0, end, work) < -1e-12 * hold.force[0]:
             return CONE, i, 0.0, 0.0
     return GAP, -1, 0.0, 0.0
 

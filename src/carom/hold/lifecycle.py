@@ -39,7 +39,9 @@ def hold_unit(system, controls, held, c, state, horizon, cluster, work, clocks, 
     elif k == 1 and cluster.seats[0].held < 0:
         hold_one(system, controls, held, state, horizon, cluster, work, clock, records)
     elif k > 0:
-        hold_several(system, controls, held, k, contact.group, state, horizon, cluster, work, clock, records)
+        hold_several(
+            system, controls, held, k, contact.group, state, horizon, cluster, work, clock, records
+        )
         look_again(system, held, k, state, cluster)
     regroup(system, held)
 

@@ -86,7 +86,9 @@ def press_group(system, controls, held, group, start, h, end, cluster, work, clo
         inverse_masses(system, k, cluster.points, work.stage, work, cluster.W)
         impose(system, held, k, h, end, count, loaded, cluster, work)
         for m in range(count):
-            mean_velocity(start[cluster.member[m]], end[cluster.member[m]], work.stage[cluster.member[m]])
+            mean_velocity(
+                start[cluster.member[m]], end[cluster.member[m]], work.stage[cluster.member[m]]
+            )
         pose(k, start, cluster, work)
         solve_cones(
             k, cluster.W, cluster.c, cluster.mu, cluster.kind, cluster.heading, cluster.p,
@@ -185,7 +187,9 @@ def impose(system, held, k, h, end, count, loaded, cluster, work):
         body, motion, push = system.bodies[b], work.body[b].motion, work.body[b].push
         for i in range(3):
             push[i] = body.mass * motion[i]
-        push[3], push[4], push[5] = spin_momentum(body, work.stage[b].Q, motion[3], motion[4], motion[5])
+        push[3], push[4], push[5] = spin_momentum(
+            body, work.stage[b].Q, motion[3], motion[4], motion[5]
+        )
         for i in range(6):
             motion[i] *= 0.5 * h
         keep(flight[b], end[b])

@@ -97,7 +97,9 @@ def set_modes(system, held, k, state, cluster, work, clock, records):
         _, u1, u2 = contact_velocity(cluster.points[i], state)
         # as `pose_forces` has found with the velocities before
         still = 10.0 * slow(contact, state)
-        mode = SLIP if math.sqrt(u1 * u1 + u2 * u2) > still and cluster.kind[i] == SLIDING else STICK
+        mode = (
+            SLIP if math.sqrt(u1 * u1 + u2 * u2) > still and cluster.kind[i] == SLIDING else STICK
+        )
         if seat.held >= 0:
             held.points[seat.held].mode, held.points[seat.held].stop = mode, math.inf
             continue

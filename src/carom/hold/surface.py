@@ -78,9 +78,7 @@ def errors(system, held, k, state, cluster, x):
         small = small and abs(point.gap) <= tiny
         if cluster.rows[i] == 3:
             c, a, r = state[hold.body].x, hold.anchor, point.arm_a
-            _, t1, t2 = in_axes(
-                point, c[0] + r[0] - a[0], c[1] + r[1] - a[1], c[2] + r[2] - a[2]
-            )
+            _, t1, t2 = in_axes(point, c[0] + r[0] - a[0], c[1] + r[1] - a[1], c[2] + r[2] - a[2])
             x[3 * i + 1], x[3 * i + 2] = t1, t2
             small = small and max(abs(t1), abs(t2)) <= tiny
     return small

@@ -59,7 +59,10 @@ LOAD = [("body", "i8"), ("anchor", "f8", 3), ("force", "f8", 3), ("torque", "f8"
 #: hull of vertices, swollen by a radius, against a half-space
 CONTACT = [
     ("body", "i8"),
-    ("group", "i8"),  # bodies that an impulse on it may move: its own number, or N for all joined ones
+    (
+        "group",
+        "i8",
+    ),  # bodies that an impulse on it may move: its own number, or N for all joined ones
     ("first", "i8"),  # range of its vertices
     ("last", "i8"),
     ("law", "i8"),  # 0 newton, 1 poisson, 2 stronge
@@ -178,7 +181,14 @@ SEARCH = [
 FREE, ONE, RESTS, SEVERAL = range(4)
 
 #: an impact in the making
-HIT = [("W", "f8", (3, 3)), ("u", "f8", 3), ("point", "f8", 3), ("out", "f8", 32), ("closed", "i8"), ("code", "i8")]
+HIT = [
+    ("W", "f8", (3, 3)),
+    ("u", "f8", 3),
+    ("point", "f8", 3),
+    ("out", "f8", 32),
+    ("closed", "i8"),
+    ("code", "i8"),
+]
 
 
 def table(fields: list, *shape: int) -> np.recarray:
