@@ -173,8 +173,8 @@ def test_simulate_says_what_it_does_not_do_yet():
     scene = Scene()
     ground = scene.add_half_space((0, 0, 0), (0, 0, 1))
     ball = scene.add_body(Sphere(1), mass=1, position=(0, 0, 3))
-    scene.add_contact(ball, ground, friction=0.2, friction_held=0.3)
-    with pytest.raises(ValueError, match="simulate does not use friction_held yet"):
+    scene.add_contact(ball, ground, friction=0.2, rolling_friction=0.001)
+    with pytest.raises(ValueError, match="simulate does not use rolling_friction yet"):
         carom.simulate(scene, 1.0, step=0.1)
 
 
