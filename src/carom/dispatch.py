@@ -11,6 +11,7 @@ from typing import Any
 from numba.core import types
 from numba.extending import intrinsic, overload
 
+from carom.contact.pairs.layout import NoHulls
 from carom.jit import OPTIONS
 from carom.system.arrays import FreeSolver, LoopSolver, TreeSolver
 
@@ -81,6 +82,20 @@ def only_with_joints(function: Callable, without: Callable) -> Callable:
     So that a scene of free bodies does not wait for the compiler to go through its joints.
     """
     return by_solver({FreeSolver: without, TreeSolver: function, LoopSolver: function})
+
+
+def only_with_pairs(function: Callable, without: Callable) -> Callable:
+    """Return `function` for systems in which bodies may touch each other, and `without` for others."""
+
+    def choose(system, *arguments):
+        return (without if type(system.hulls) is NoHulls else function)(system, *arguments)
+
+    def chosen(system, *arguments):
+        hulls = system.types[system.fields.index("hulls")]
+        implementation = without if hulls.instance_class is NoHulls else function
+        return lambda system, *arguments: implementation(system, *arguments)
+
+    return _overloaded(choose, chosen)
 
 
 def _overloaded(choose: Callable, chosen: Callable) -> Callable:

@@ -13,6 +13,7 @@ from carom.contact.closed import apart, closed_within
 from carom.contact.exclude import CLEAR, UNSURE, greatest_acceleration
 from carom.contact.gap import gap_and_rate, plane_in_body, slow
 from carom.contact.pair_point import REACH, find_touches, place_any, smaller, touch_rate
+from carom.dispatch import only_with_pairs
 from carom.geometry.rotation import cross
 from carom.hold.events import CONE, GAP, REVERSE, SEPARATE, end_forces
 from carom.hold.lifecycle import hold_contact, settle
@@ -191,6 +192,33 @@ def run(system, method, controls, held, now, work, cluster, clocks, records, unt
     return 0
 
 
+@kernel
+def _look_at_pair(system, controls, held, contact, c, now, still, work):
+    """Return whether a closed point of two bodies is to be struck or held."""
+    near = closed_within(controls, contact, now)
+    if apart(contact, now, near):
+        return NOTHING
+    action = NOTHING
+    for i in range(find_touches(system, contact, now, REACH * smaller(contact), work)):
+        touch = work.touches[i]
+        if touch.gap <= near:
+            rate = touch_rate(contact, touch, now)
+            if rate < -still:
+                return STRIKE
+            if rate <= still and not is_held(held, c, touch.feature):
+                action = HOLD
+    return action
+
+
+@kernel
+def _look_at_none(system, controls, held, contact, c, now, still, work):
+    """No two bodies touch."""
+    return NOTHING
+
+
+look_at_pair = only_with_pairs(_look_at_pair, _look_at_none)
+
+
 @inlined
 def look_near(system, controls, held, now, work):
     """Find a closed point that is not held, at the start or after an event: strike or hold it."""
@@ -217,24 +245,6 @@ def look_near(system, controls, held, now, work):
         if action != NOTHING:
             return action, c
     return NOTHING, -1
-
-
-@kernel
-def look_at_pair(system, controls, held, contact, c, now, still, work):
-    """Return whether a closed point of two bodies is to be struck or held."""
-    near = closed_within(controls, contact, now)
-    if apart(contact, now, near):
-        return NOTHING
-    action = NOTHING
-    for i in range(find_touches(system, contact, now, REACH * smaller(contact), work)):
-        touch = work.touches[i]
-        if touch.gap <= near:
-            rate = touch_rate(contact, touch, now)
-            if rate < -still:
-                return STRIKE
-            if rate <= still and not is_held(held, c, touch.feature):
-                action = HOLD
-    return action
 
 
 @inlined

@@ -12,6 +12,7 @@ from carom.contact.pair_point import (
     smaller,
     write_touch,
 )
+from carom.dispatch import only_with_pairs
 from carom.jit import kernel
 from carom.motion.contact_point import place
 
@@ -104,7 +105,7 @@ def add_vertices(system, held, contact, c, near, state, k, cluster):
 
 
 @kernel
-def add_touches(system, contact, c, near, state, k, cluster, work):
+def _add_touches(system, contact, c, near, state, k, cluster, work):
     """Add the points of two bodies that are closed; return the new count, -1 if there is no room."""
     count = find_touches(system, contact, state, REACH * smaller(contact), work)
     for i in range(count):
@@ -117,6 +118,15 @@ def add_touches(system, contact, c, near, state, k, cluster, work):
             write_touch(contact, touch, state, cluster.points[k])
             k += 1
     return k
+
+
+@kernel
+def _add_none(system, contact, c, near, state, k, cluster, work):
+    """No two bodies touch."""
+    return k
+
+
+add_touches = only_with_pairs(_add_touches, _add_none)
 
 
 @kernel

@@ -1,8 +1,8 @@
 """Can two bodies have touched between two states? The plane that parts them at either end decides.
 
 Along a fixed normal n the gap of any two core points is z(t) >= z0 + z0' t - a t^2/2, a the bound of their
-relative acceleration; the bodies are apart as long as all pairs of vertices are. With n of the nearest points at
-the start, and the same backwards from the end, the path is clear if the two times together reach the step.
+relative acceleration; the bodies are apart as long as all pairs of vertices are. With n of the nearest points
+at the start, and the same backwards from the end, the path is clear if the two times together reach the step.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from carom.contact.closed import round_off_of
 from carom.contact.exclude import BELOW, CLEAR, UNSURE, reach
 from carom.contact.gap import round_off
 from carom.contact.pair_point import REACH, find_touches, smaller, touch_rate
+from carom.dispatch import only_with_pairs
 from carom.geometry.rotation import cross, rotate_back
 from carom.jit import kernel
 from carom.system.arrays import FREE, RESTS
@@ -110,14 +111,14 @@ def lowest_open(contact, c, count, held, state, work):
 
 
 @kernel
-def lowest_pair(system, contact, c, held, state, work):
+def _lowest_pair(system, contact, c, held, state, work):
     """Return the gap of two bodies, of points that are not held, and its rate."""
     count = find_touches(system, contact, state, REACH * smaller(contact), work)
     return lowest_open(contact, c, count, held, state, work)
 
 
 @kernel
-def passage_pair(system, contact, c, held, leaving, start, end, h, work, tolerance):
+def _passage_pair(system, contact, c, held, leaving, start, end, h, work, tolerance):
     """Return CLEAR, BELOW (they overlap at the end) or UNSURE, and a time before any contact."""
     a, b = contact.body, contact.other
     if work.body[a].status == RESTS and work.body[b].status == RESTS:
@@ -153,3 +154,19 @@ def passage_pair(system, contact, c, held, leaving, start, end, h, work, toleran
     if first + last < h * (1.0 - 1e-12) and sag > tiny and leaving == 0:
         return UNSURE, first
     return CLEAR, first
+
+
+@kernel
+def _no_gap(system, contact, c, held, state, work):
+    """No two bodies touch."""
+    return 0.0, 0.0
+
+
+@kernel
+def _no_passage(system, contact, c, held, leaving, start, end, h, work, tolerance):
+    """No two bodies touch."""
+    return CLEAR, h
+
+
+lowest_pair = only_with_pairs(_lowest_pair, _no_gap)
+passage_pair = only_with_pairs(_passage_pair, _no_passage)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from carom.contact.pairs.touch import touch_at
+from carom.dispatch import only_with_pairs
 from carom.geometry.rotation import exp, multiply, normalize, rotate, rotate_back
 from carom.jit import kernel
 from carom.motion.contact_point import place
@@ -102,7 +103,7 @@ def which_touch(contact, count, feature, p, state, work):
 
 
 @kernel
-def place_pair(system, contact, feature, p, state, point, work):
+def _place_pair(system, contact, feature, p, state, point, work):
     """Write the point of two bodies that has the feature, or took its place."""
     count = find_touches(system, contact, state, REACH * smaller(contact), work)
     i = which_touch(contact, count, feature, p, state, work)
@@ -132,7 +133,7 @@ def advance(start, t, end):
 
 
 @kernel
-def drift(system, contact, feature, p, point, state, work):
+def _drift(system, contact, feature, p, point, state, work):
     """Return (d/dt G) v, contact axes: how the velocity at the point changes as the bodies go on unchanged.
 
     Central difference over a way of 1e-5 of the smaller body: normals and points turn and roll with the
@@ -169,6 +170,21 @@ def drift(system, contact, feature, p, point, state, work):
         f * (other[1, 1] - other[0, 1]),
         f * (other[1, 2] - other[0, 2]),
     )
+
+
+@kernel
+def _no_pair(system, contact, feature, p, state, point, work):
+    """No two bodies touch."""
+
+
+@kernel
+def _no_drift(system, contact, feature, p, point, state, work):
+    """No two bodies touch."""
+    return 0.0, 0.0, 0.0
+
+
+place_pair = only_with_pairs(_place_pair, _no_pair)
+drift = only_with_pairs(_drift, _no_drift)
 
 
 @kernel

@@ -241,8 +241,8 @@ def add_difference(system, h, count, cluster, work):
 def pose(k, start, cluster, work):
     """Write c of the contact problem: w(p_old) - W p_old, with the slip that rules the friction of each point.
 
-    Where slip goes on that is twice the velocity at the middle of the step, G_0 (v_0 + v_1), else the one at the
-    end. (Friction along the slip of the last round would not converge at speeds below mu N h W_tt.)
+    Where slip goes on that is twice the velocity at the middle of the step, G_0 (v_0 + v_1), else the one at
+    the end. (Friction along the slip of the last round would not converge at speeds below mu N h W_tt.)
     """
     for i in range(k):
         w, point, q = cluster.u, cluster.points[i], 3 * i

@@ -7,6 +7,7 @@ import math
 from carom.contact.closed import closed_within
 from carom.contact.groups import label_groups
 from carom.contact.pair_point import REACH, find_touches, own_point, place_any, smaller
+from carom.dispatch import only_with_pairs
 from carom.jit import kernel
 
 
@@ -90,7 +91,7 @@ def is_held(held, c, feature):
 
 
 @kernel
-def refresh_pairs(system, controls, held, state, work):
+def _refresh_pairs(system, controls, held, state, work):
     """Let points of two bodies whose features are no more give way to those that took their place.
 
     As faces slide on each other the corners of their overlap change; the set stays that of the closed
@@ -138,3 +139,12 @@ def enlist_touch(contact, c, touch, mode, state, held):
         for j in range(3):
             hold.W[k, j] = 0.0
     hold.heading[0], hold.heading[1] = 0.0, 0.0
+
+
+@kernel
+def _refresh_none(system, controls, held, state, work):
+    """No two bodies touch."""
+    return False
+
+
+refresh_pairs = only_with_pairs(_refresh_pairs, _refresh_none)

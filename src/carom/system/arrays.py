@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom.contact.pairs.layout import Hulls, PairWork
+from carom.contact.pairs.layout import Hulls, NoHulls, PairWork
 
 #: kinds of joints in kernels
 SPHERICAL, REVOLUTE, FIXED, PRISMATIC, DISTANCE, KNIFE_EDGE = range(6)
@@ -244,7 +244,7 @@ class System(NamedTuple):
     contacts: np.recarray  # (C,) CONTACT
     vertices: np.ndarray  # (V, 3) of all contacts, body axes
     solids: np.recarray  # SOLID of `carom.contact.pairs`, of bodies that may touch each other
-    hulls: Hulls
+    hulls: Hulls | NoHulls
     touch_at: int  # address of what finds the points of two solids
     solver: FreeSolver | TreeSolver | LoopSolver
 

@@ -7,7 +7,7 @@ from itertools import combinations
 
 import numpy as np
 
-from carom.contact.pairs.layout import solid_table
+from carom.contact.pairs.layout import NoHulls, solid_table
 from carom.geometry import quaternion
 from carom.options import Options
 from carom.scene.bodies import HalfSpace
@@ -40,7 +40,7 @@ def compile_contacts(scene: Scene, to_principal, options: Options):
     rows, vertices = table(CONTACT, len(contacts)), _Vertices(to_principal)
     meet = any(not isinstance(c.other, HalfSpace) for c in contacts)
     shaped = [b for b in scene.bodies if b.shape is not None] if meet else []
-    solids, hulls = solid_table([b.shape for b in shaped], [to_principal[b.index] for b in shaped])
+    solids, tables = solid_table([b.shape for b in shaped], [to_principal[b.index] for b in shaped])
     number = {b: k for k, b in enumerate(shaped)}
     for row, c in zip(rows, contacts):
         row.body, row.other = c.body.index, -1
@@ -60,7 +60,7 @@ def compile_contacts(scene: Scene, to_principal, options: Options):
         row.law = IMPACT_LAWS.index(c.impact_law)
         row.width = 1e-5 * row.extent if options.layer_width is None else options.layer_width
         row.penetration = options.penetration
-    return rows, vertices.all(), solids, hulls
+    return rows, vertices.all(), solids, tables if meet else NoHulls(0)
 
 
 class _Vertices:

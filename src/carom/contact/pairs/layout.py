@@ -82,6 +82,12 @@ class Hulls(NamedTuple):
     corners: np.ndarray  # (K,) vertices of the faces, counted from the first of the hull
 
 
+class NoHulls(NamedTuple):
+    """Stands for the hulls where no two bodies may touch: kernels of pairs are not compiled then."""
+
+    count: int
+
+
 class PairWork(NamedTuple):
     """Scratch of one pair at a time."""
 

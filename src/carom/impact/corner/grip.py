@@ -84,23 +84,23 @@ def _holding(z, work):
     rank = _factor(z, slot, work.matrix[MASS], L, vector[LEFT], row)
     _bearing(z, work, weight)
     gram(n, rank, L, weight, M)
-    if not _cholesky(rank, M):  # those that bear do not hold all that can move
+    if not cholesky(rank, M):  # those that bear do not hold all that can move
         for a in range(z):
             weight[a] += 0.01
         gram(n, rank, L, weight, M)
-        _cholesky(rank, M)
+        cholesky(rank, M)
     for a in range(n):
         for q in range(rank):
             row[q] = L[a, q] * weight[a // 2]
-        _solve(rank, M, row)
+        solve_cholesky(rank, M, row)
         for q in range(rank):
             hold[a, q] = row[q]
     for a in range(z):
         weight[a] = 1.0
     gram(n, rank, L, weight, M)
-    _cholesky(rank, M)
+    cholesky(rank, M)
     for a in range(n):
-        _solve(rank, M, L[a])
+        solve_cholesky(rank, M, L[a])
     for a in range(n):
         for q in range(rank):
             row[q] = hold[a, q]
@@ -153,7 +153,7 @@ def gram(n, rank, L, weight, M):
 
 
 @kernel
-def _cholesky(n, M):
+def cholesky(n, M):
     """Factor M in place, the lower triangle; return whether it is positive definite."""
     largest = 0.0
     for i in range(n):
@@ -173,7 +173,7 @@ def _cholesky(n, M):
 
 
 @kernel
-def _solve(n, M, x):
+def solve_cholesky(n, M, x):
     """Solve with the factors, in place."""
     for i in range(n):
         s = x[i]

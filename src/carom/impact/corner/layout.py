@@ -24,7 +24,7 @@ MESSAGES = {
 
 # Bits of `marks`.
 PLASTIC = 1  #: closed by the plastic event: trapped, or e = 0 everywhere
-FELL_BACK = 2  #: the law of Newton or Poisson was not met: the energetic law was used
+MISSED = 2  #: the law of Newton or Poisson was not met: the nearest was taken, or the energetic law
 CAPPED = 4  #: the law asks for more than e_* = 1 somewhere: not met there, energy cannot grow
 FIXED = 8  #: passed with fixed steps
 EXACT = 16  #: contacts that move alike, resolved exactly as one
@@ -74,6 +74,7 @@ CONTACT = [
 RESULT = [
     ("energy_change", "f8"),
     ("plastic_change", "f8"),  # part of it: by the plastic event
+    ("miss", "f8"),  # greatest ln(target/reached) of Newton's and Poisson's law where not met
     ("error", "f8"),  # estimated, of the velocities; 0 where not estimated
     ("steps", "i8"),
     ("events", "i8"),
@@ -102,7 +103,7 @@ class CornerWork(NamedTuple):
     clock: np.recarray  # (1,) CLOCK
     index: np.ndarray  # (9, 3K) rows below
     matrix: np.ndarray  # (9, 3K, 3K) below
-    vector: np.ndarray  # (30, 3K) rows below
+    vector: np.ndarray  # (32, 3K) rows below
     series: np.ndarray  # (13, ORDERS, 3K) below
     single: np.ndarray  # result of one contact, as `carom.impact.layout` says
 
@@ -138,8 +139,8 @@ U0, P, U, NEW_P, NEW_U, D, NEW_D, SAVED_P, SAVED_D, WHEN, SCRATCH, ERROR, TRY = 
 DISC_C, DISC_T, DISC_W, DISC_F, DISC_STEP, DISC_TRY, RADIUS = range(13, 20)
 #: of the series and of stick
 WEIGHT, SCALE, LEFT, STICK_T = range(20, 24)
-#: of the outer iteration: ln e_*, misses, new misses, step, change of misses, a product
-OUT_X, OUT_F, OUT_NEW, OUT_DX, OUT_DF, OUT_H = range(24, 30)
+#: of the outer iteration: ln e_*, misses, new misses, step, change of misses, a product, best e_*, its misses
+OUT_X, OUT_F, OUT_NEW, OUT_DX, OUT_DF, OUT_H, OUT_BEST, OUT_BEST_F = range(24, 32)
 #: first index of `series`: velocity, impulse, depth, squared slip, 1/slip, N/slip, the same times dt/dtau, N,
 #: friction loss, dtau/dt, dt/dtau; forces and rates at the stages of an implicit step
 S_U, S_P, S_D, S_Q, S_G, S_F, S_FS, S_N, S_LOSS, S_RATE, S_SIGMA, FORCE, STAGE = range(13)
@@ -183,7 +184,7 @@ def corner_arrays(capacity: int) -> CornerScratch:
         clock=table(CLOCK, 1),
         index=np.zeros((9, n), dtype=np.int64),
         matrix=np.zeros((9, n, n)),
-        vector=np.zeros((30, n)),
+        vector=np.zeros((32, n)),
         series=np.zeros((13, ORDERS, n)),
         single=np.zeros(one.SIZE),
     )

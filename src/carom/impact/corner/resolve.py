@@ -47,7 +47,8 @@ def resolve_corner(k, W, u, mu, e, law, kappa, settings, scratch, out):
     if not scale >= 0.0:
         return BAD_INPUT
     result, index, clean = out.summary[0], scratch.work.index, scratch.work.matrix[CLEAN]
-    result.energy_change, result.plastic_change, result.error = 0.0, 0.0, 0.0
+    result.energy_change, result.plastic_change = 0.0, 0.0
+    result.error, result.miss = 0.0, 0.0
     result.steps, result.events, result.rounds, result.classes, result.marks = 0, 0, 0, 0, 0
     for i in range(k):
         out.compression[i], out.restitution[i], out.friction[i] = 0.0, 0.0, 0.0

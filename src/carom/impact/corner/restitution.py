@@ -14,6 +14,8 @@ from carom.impact import laws
 from carom.impact.corner.law import E_MIN
 from carom.impact.corner.layout import (
     INVERSE,
+    OUT_BEST,
+    OUT_BEST_F,
     OUT_DF,
     OUT_DX,
     OUT_F,
@@ -70,10 +72,10 @@ def misses(k, work, out):
         miss = _FARTHEST
         if reached > target * math.exp(-_FARTHEST):
             miss = max(-_FARTHEST, math.log(target / reached))
-        if c.e >= 1.0 and miss > 0.0:
+        if c.e >= 1.0 - 1e-12 and miss > 0.0:
             capped = True
             miss = 0.0
-        elif c.e <= E_MIN and miss < 0.0:
+        elif c.e <= E_MIN * (1.0 + 1e-12) and miss < 0.0:
             miss = 0.0
         out[i] = miss
         worst = max(worst, abs(miss))
@@ -81,12 +83,29 @@ def misses(k, work, out):
 
 
 @kernel
-def begin(k, work):
-    """Set the inverse Jacobian of the iteration to -1: the plain fixed point."""
+def begin(k, work, gain):
+    """Begin at the e_* in use, with the inverse Jacobian -gain: the plain fixed point, damped."""
     for i in range(k):
         work.vector[OUT_X, i] = math.log(work.contact[i].e)
         for j in range(k):
-            work.matrix[INVERSE, i, j] = -1.0 if i == j else 0.0
+            work.matrix[INVERSE, i, j] = -gain if i == j else 0.0
+
+
+@kernel
+def keep_best(k, work):
+    """Remember the e_* in use and their misses as the best so far."""
+    for i in range(k):
+        work.vector[OUT_BEST, i] = work.vector[OUT_X, i]
+        work.vector[OUT_BEST_F, i] = work.vector[OUT_F, i]
+
+
+@kernel
+def back_to_best(k, work):
+    """Take the best e_* so far."""
+    for i in range(k):
+        work.vector[OUT_X, i] = work.vector[OUT_BEST, i]
+        work.contact[i].e = math.exp(work.vector[OUT_BEST, i])
+        work.vector[OUT_F, i] = work.vector[OUT_BEST_F, i]
 
 
 @kernel
@@ -97,7 +116,7 @@ def improve(k, work):
         step = 0.0
         for j in range(k):
             step -= H[i, j] * o[OUT_F, j]
-        if not aims(work.contact[i]):
+        if o[OUT_F, i] == 0.0:  # met, capped, or without an aim
             step = 0.0
         step = min(_FARTHEST, max(-_FARTHEST, step))
         x = min(0.0, max(math.log(E_MIN), o[OUT_X, i] + step))
