@@ -22,7 +22,7 @@ _CHORD = 0.1  # factors are kept for another step if the last one reduced f by t
 
 @kernel
 def newton(work, k, eps, patient):
-    """Iterate from p; return how often.
+    """Iterate from p; return how often, and |f|.
 
     A step must reduce |f|; or, if `patient`, the greatest of the last four: the way past a kink. Factors at
     hand (work.count[ROWS] >= 0) are tried first.
@@ -59,7 +59,7 @@ def newton(work, k, eps, patient):
             break
         if not size < _CHORD * before1:
             work.count[o.ROWS] = -1
-    return count
+    return count, size
 
 
 @kernel

@@ -15,12 +15,13 @@ from carom.jit import address, kernel, unit
 
 _EPS = 1e-8  # weight of the proximal term
 _POLISH = 8  # most moves of the proximal centre
-_STARTS = 20  # most starting points
+_STARTS = 19  # most starting points
 _EXTRA = 2  # more of them where the tolerance is met, but not to round-off
 _SWEEPS = 25  # at first, twice as many each time, at most
 _MOST_SWEEPS = 200
 _ALTERNATIONS = 300
-_CONTINUE_FROM, _CONTINUE_BY = 0.3, 0.3  # weights of the proximal term in a continuation
+_RELEASE_FROM, _RELEASE_BY = 0.1, 0.3  # weights of the proximal term in a release
+_RELEASES = 60
 
 
 @unit
@@ -65,24 +66,46 @@ def with_address(work):
 @kernel
 def _approach(work, k, start):
     """Move work.p to another starting point for Newton; return iterations."""
-    if start % 2 == 1:
-        sweeps = min(_SWEEPS * 2 ** (start // 2), _MOST_SWEEPS)
+    again = (start - 1) // 3
+    if start % 3 == 1:
+        sweeps = min(_SWEEPS * 2**again, _MOST_SWEEPS)
         for i in range(sweeps):
             sweep(work, k, i % 2 == 1)
         return sweeps
-    p, centre = work.vector[o.P], work.vector[o.CENTRE]
-    sigma = 0.01 * 10.0 ** ((start // 2) % 3)
-    alternate(work, k, sigma, _ALTERNATIONS)
-    total = _ALTERNATIONS
-    if start % 4 == 2:  # a strong proximal term, released step by step
-        eps = _CONTINUE_FROM
-        while eps > 10.0 * _EPS:
+    if start % 3 == 2:
+        p = work.vector[o.P]
+        if again == 0:
             for i in range(3 * k):
-                centre[i] = p[i]
-            work.count[o.ROWS] = -1
-            count = newton(work, k, eps, start % 2 == 1)
-            total += count
-            eps *= _CONTINUE_BY
+                p[i] = 0.0
+        sigma = 0.01 * 10.0 ** ((again + 1) % 3)
+        alternate(work, k, sigma, _ALTERNATIONS)
+        return _ALTERNATIONS
+    return _release(work, k)
+
+
+@kernel
+def _release(work, k):
+    """Newton with a strong proximal term, which is weakened while that succeeds; return iterations."""
+    p, kept, centre = work.vector[o.P], work.vector[o.KEPT], work.vector[o.CENTRE]
+    for i in range(3 * k):
+        kept[i] = p[i]
+    eps, total = _RELEASE_FROM, 0
+    for _ in range(_RELEASES):
+        for i in range(3 * k):
+            centre[i] = p[i] = kept[i]
+        work.count[o.ROWS] = -1
+        count, size = newton(work, k, eps, True)
+        total += count
+        if size < 1e-8:
+            for i in range(3 * k):
+                kept[i] = p[i]
+            eps *= _RELEASE_BY
+        else:
+            eps /= _RELEASE_BY
+        if not 10.0 * _EPS < eps < 10.0 * _RELEASE_FROM:
+            break
+    for i in range(3 * k):
+        p[i] = kept[i]
     return total
 
 
@@ -102,7 +125,7 @@ def _polished(work, k, start):
         kept[i] = p[i]
     goal, tolerance = 0.0, 0.0
     for _ in range(_POLISH):
-        count = newton(work, k, _EPS, start % 2 == 1)
+        count, _ = newton(work, k, _EPS, start % 3 == 1)
         total += count
         for i in range(k):
             n = 3 * i
