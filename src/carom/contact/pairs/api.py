@@ -67,7 +67,7 @@ def _touches(shape_a, pose_a, shape_b, pose_b, reach):
     from carom.contact.pairs.layout import new_points, solid_table
     from carom.contact.pairs.touch import touch
 
-    poses = [_pose(name, pose) for name, pose in (("pose_a", pose_a), ("pose_b", pose_b))]
+    poses = [pair_pose(name, pose) for name, pose in (("pose_a", pose_a), ("pose_b", pose_b))]
     solids, hulls = solid_table([shape_a, shape_b])
     out = new_points()
     for a in solids[solids.body == 0]:
@@ -85,7 +85,8 @@ def _work():
     return new_pair_work()
 
 
-def _pose(name: str, pose: tuple[ArrayLike, ArrayLike]) -> tuple[np.ndarray, np.ndarray]:
+def pair_pose(name: str, pose: tuple[ArrayLike, ArrayLike]) -> tuple[np.ndarray, np.ndarray]:
+    """Return a checked pose."""
     x, q = pose
     return check.finite_array(f"{name}[0]", x, (3,)), check.unit_quaternion(f"{name}[1]", q)
 

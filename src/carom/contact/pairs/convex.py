@@ -23,8 +23,10 @@ from carom.jit import kernel, unit
 
 CLEAR = 1e-3  # distance of the cores, relative to the smaller, that gives a direction to round-off
 DIRECTED = 1e-9  # relative to the smaller, from which on the distance has a direction at all
-CLIMBS = 4  # starts from which the way out of an overlap is sought
+CLIMBS = 8  # starts from which the way out of an overlap is sought
 ELSEWHERE = 0.95  # cosine below which a start is another one
+NEARER = 30.0  # clearance relative to the depth
+LEAST = 1e-3  # relative to the usual clearance: below, the direction would be no better
 ROUNDS = 30
 ROUGH = 1e-6  # accuracy of the search that Newton's method ends, for curved cores
 FACE = 1e-12  # relative to the size: by so much a face's normal may be worse and is taken
@@ -156,23 +158,36 @@ def _way_out(s, a, b, hulls, accuracy, clear):
 
 @kernel
 def _climb(s, a, b, hulls, accuracy, nx, ny, nz, clear):
-    """Return the greatest separation near a direction, and its direction; the simplex is that of the end."""
+    """Return the greatest separation near a direction, and its direction; the simplex is that of the end.
+
+    A step turns the normal by about the depth over the clearance; where the depth is small the clearance
+    is too for a while.
+    """
     s.shift[0], s.shift[1], s.shift[2] = 0.0, 0.0, 0.0
     best = separation(s, a, b, hulls, nx, ny, nz)
-    for _ in range(ROUNDS):
-        move = clear - best
-        s.shift[0], s.shift[1], s.shift[2] = move * nx, move * ny, move * nz
-        d, x, y, z = distance(s, a, b, hulls, accuracy, nx, ny, nz)
-        if not d > 0.0:
-            break
-        x, y, z = x / d, y / d, z / d
-        value = separation(s, a, b, hulls, x, y, z) - move * (nx * x + ny * y + nz * z)
-        if not value > best:
-            break
-        last, best = best, value
-        nx, ny, nz = x, y, z
-        if not best - last > 10.0 * accuracy * clear:
-            break
+    for phase in range(3):
+        gap = clear
+        if phase == 1:
+            gap = -NEARER * best
+            if not LEAST * clear < gap < clear:
+                continue
+        if phase == 2 and not LEAST * clear < -NEARER * best < clear:
+            continue
+        for _ in range(ROUNDS):
+            move = gap - best
+            s.shift[0], s.shift[1], s.shift[2] = move * nx, move * ny, move * nz
+            d, x, y, z = distance(s, a, b, hulls, accuracy, nx, ny, nz)
+            if not d > 0.0:
+                break
+            x, y, z = x / d, y / d, z / d
+            # The row of proposals holds points of A as moved.
+            value = separation(s, a, b, hulls, x, y, z) - move * (nx * x + ny * y + nz * z)
+            if not value > best:
+                break
+            last, best = best, value
+            nx, ny, nz = x, y, z
+            if not best - last > 10.0 * accuracy * clear:
+                break
     return best, nx, ny, nz
 
 
