@@ -59,7 +59,7 @@ class Controls(NamedTuple):
 
 
 @entry
-def run(system, method, controls, held, now, work, cluster, clocks, records, until):
+def run(system, method, controls, held, now, work, cluster, corner, clocks, records, until):
     """Go on from `now` to step number `until`. Returns 0, `records.FULL`, or the number of a `Status`."""
     clock, search, trial = clocks[0], work.search[0], work.trial
     while clock.step < until:
@@ -150,8 +150,8 @@ def run(system, method, controls, held, now, work, cluster, clocks, records, unt
             if action == STRIKE:
                 struck = clock.struck
                 strike(
-                    controls.strike_at, method, system, controls, held, c, now, cluster, work,
-                    clocks, records,
+                    controls.strike_at, method, system, controls, held, c, now, cluster, corner,
+                    work, clocks, records,
                 )  # fmt: skip
                 closed = work.hit[0].closed
                 if work.hit[0].code != 0:

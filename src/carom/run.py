@@ -12,6 +12,7 @@ from carom.impact.corner.layout import MULTIPLE, CornerSettings
 from carom.impact.strike import strike_unit
 from carom.impact.strike_several import corner_unit
 from carom.jit import address
+from carom.motion.acceleration import acceleration_unit
 from carom.motion.explicit import constrained_unit, rk4
 from carom.motion.reactions import velocity_rows
 from carom.motion.solve import with_address
@@ -21,7 +22,7 @@ from carom.scene.scene import Scene
 from carom.solution import Solution
 from carom.status import Status
 from carom.system import records as r
-from carom.system.cluster import new_cluster
+from carom.system.cluster import new_cluster, new_corner
 from carom.system.compile import compile_scene
 
 LOCATIONS = {"locate": loop.LOCATE, "project": loop.PROJECT, "work": loop.WORK}
@@ -95,7 +96,8 @@ class Run:
         check_start(scene, self.compiled, self.work, options)
         if system.contacts.size:
             self.work.body.group = system.bodies.component
-        self.cluster = new_cluster(system, corner_settings(options))
+        self.cluster = new_cluster(system)
+        self.corner = new_corner(system, corner_settings(options))
         self.clock = r.new_clock()
         self.records = r.new_records(system, -(-steps // save_every) + 1, 512)
         if system.contacts.size:
@@ -127,13 +129,17 @@ class Run:
         """Compile what a scene with contacts needs, and note where it is."""
         found = address(
             strike_unit, self.method, self.compiled.system, self.controls, self.held, 0, self.now,
-            self.cluster, self.work, self.clock, self.records,
+            self.cluster, self.corner, self.work, self.clock, self.records,
         )  # fmt: skip
         self.controls = self.controls._replace(strike_at=found)
 
     def find_constrained_step(self) -> None:
         """Compile the step of bodies that are joined, loaded or held."""
-        tableau = (self.method.A, self.method.b)
+        system, tableau = self.compiled.system, (self.method.A, self.method.b)
+        found = address(
+            acceleration_unit, system, self.now, self.held, self.work, self.work.stages[0]
+        )
+        self.compiled = self.compiled._replace(system=system._replace(acceleration_at=found))
         found = address(
             constrained_unit, *tableau, self.compiled.system, self.held, self.now, 0.0, self.now,
             self.work,
@@ -158,8 +164,9 @@ class Run:
         """Compile the impact of several points: only when the first one is to be resolved."""
         from carom.impact.corner.work import with_units
 
-        self.cluster = self.cluster._replace(corner=with_units(self.cluster.corner))
-        found = address(corner_unit, 1, self.cluster)
+        self.corner = self.corner._replace(scratch=with_units(self.corner.scratch))
+        W, u, mu = self.cluster.m[0], self.cluster.v[0], self.cluster.mu
+        found = address(corner_unit, 1, W, u, mu, self.corner)
         self.controls = self.controls._replace(corner_at=found or 1)
 
     @property
@@ -172,7 +179,7 @@ class Run:
         while True:
             code = loop.run(
                 self.compiled.system, self.method, self.controls, self.held, self.now, self.work,
-                self.cluster, self.clock, self.records, until,
+                self.cluster, self.corner, self.clock, self.records, until,
             )  # fmt: skip
             if code == r.FULL:
                 self.records = r.longer(self.records)

@@ -99,7 +99,7 @@ def add_vertices(system, held, contact, c, near, state, k, cluster):
             if k == cluster.seats.shape[0]:
                 return -1
             take_seat(c, i, system.vertices[i], cluster.seats[k])
-            place(contact, cluster.seats[k].point, state, cluster.points[k])
+            place(contact, cluster.seats[k].point, state, cluster.points[0][k])
             k += 1
     return k
 
@@ -115,7 +115,7 @@ def _add_touches(system, contact, c, near, state, k, cluster, work):
                 return -1
             own_point(contact, touch, state, cluster.seats[k].point)
             take_seat(c, touch.feature, cluster.seats[k].point, cluster.seats[k])
-            write_touch(contact, touch, state, cluster.points[k])
+            write_touch(contact, touch, state, cluster.points[0][k])
             k += 1
     return k
 
@@ -150,7 +150,7 @@ def gather_held(system, held, group, state, cluster, work):
             take_seat(hold.contact, hold.feature, hold.point, cluster.seats[k])
             cluster.seats[k].held = i
             k += 1
-    place_seats(system, k, state, cluster, cluster.points, work)
+    place_seats(system, k, state, cluster, cluster.points[0], work)
     return k
 
 

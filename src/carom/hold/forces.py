@@ -17,30 +17,31 @@ from carom.coulomb.solve import solve_cones
 from carom.jit import kernel
 from carom.motion.acceleration import acceleration
 from carom.motion.several import accelerations, inverse_masses, velocities
+from carom.system.cluster import OLD, C, P, U
 
 
 @kernel
 def pose_forces(system, controls, held, k, state, cluster, work):
     """Write W, u, and c = du/dt without contact forces, of the k points of the cluster, and how each slips."""
     acceleration(system, state, held, work, work.stages[0])
-    inverse_masses(system, k, cluster.points, state, work, cluster.W)
-    velocities(k, cluster.points, state, cluster.u)
-    accelerations(k, cluster.points, state, work.stages[0], cluster.c)
+    inverse_masses(system, k, cluster.points[0], state, work, cluster.m[0])
+    velocities(k, cluster.points[0], state, cluster.v[U])
+    accelerations(k, cluster.points[0], state, work.stages[0], cluster.v[C])
     for i in range(k):
         seat = cluster.seats[i]
         contact = system.contacts[seat.contact]
         if contact.other >= 0:
-            d = drift(system, contact, seat.feature, seat.point, cluster.points[i], state, work)
+            d = drift(system, contact, seat.feature, seat.point, cluster.points[0][i], state, work)
             for r in range(3):
-                cluster.c[3 * i + r] += d[r]
+                cluster.v[C][3 * i + r] += d[r]
     push = 0.0
     for i in range(3 * k):
-        push = max(push, abs(cluster.c[i]))
+        push = max(push, abs(cluster.v[C][i]))
     for i in range(k):
         contact = system.contacts[cluster.seats[i].contact]
         cluster.mu[i] = contact.friction_held
         still = max(10.0 * slow(contact, state), controls.rest * push * controls.step)
-        set_heading(cluster, i, cluster.u[3 * i + 1], cluster.u[3 * i + 2], still)
+        set_heading(cluster, i, cluster.v[U][3 * i + 1], cluster.v[U][3 * i + 2], still)
 
 
 @kernel
@@ -58,18 +59,18 @@ def set_heading(cluster, i, u1, u2, still):
 @kernel
 def solve_forces(k, cluster):
     """Write the forces of the points that stay into p, and the accelerations of all k into `old`."""
-    W, M, b, p = cluster.W, cluster.L, cluster.old, cluster.p
+    W, M, b, p = cluster.m[0], cluster.m[1], cluster.v[OLD], cluster.v[P]
     n = 3 * k
     for i in range(n):
         stays = cluster.seats[i // 3].stays == 1
         for j in range(n):
             both = stays and cluster.seats[j // 3].stays == 1
             M[i, j] = W[i, j] if both else 1.0 if i == j else 0.0
-        b[i] = cluster.c[i] if stays else 1.0 if i % 3 == 0 else 0.0
+        b[i] = cluster.v[C][i] if stays else 1.0 if i % 3 == 0 else 0.0
         p[i] = 0.0
     status, _, _ = solve_cones(k, M, b, cluster.mu, cluster.kind, cluster.heading, p, cluster.cone)
     for i in range(n):
-        a = cluster.c[i]
+        a = cluster.v[C][i]
         for j in range(n):
             a += W[i, j] * p[j]
         b[i] = a
@@ -80,6 +81,6 @@ def solve_forces(k, cluster):
 def predict_stop(hold, i, cluster):
     """Note when slip of point i stops, going on as it does: speed over the deceleration along it."""
     d1, d2 = cluster.heading[i, 0], cluster.heading[i, 1]
-    speed = cluster.u[3 * i + 1] * d1 + cluster.u[3 * i + 2] * d2
-    rate = cluster.old[3 * i + 1] * d1 + cluster.old[3 * i + 2] * d2
+    speed = cluster.v[U][3 * i + 1] * d1 + cluster.v[U][3 * i + 2] * d2
+    rate = cluster.v[OLD][3 * i + 1] * d1 + cluster.v[OLD][3 * i + 2] * d2
     hold.stop = speed / -rate if cluster.kind[i] == SLIDING and rate < 0.0 else math.inf

@@ -57,7 +57,7 @@ def look_again(system, held, k, state, cluster):
     for i in range(k):
         seat = cluster.seats[i]
         contact = system.contacts[seat.contact]
-        if contact_velocity(cluster.points[i], state)[0] < -slow(contact, state):
+        if contact_velocity(cluster.points[0][i], state)[0] < -slow(contact, state):
             if seat.stays == 0:
                 held.brinks[seat.contact].near = 1
 

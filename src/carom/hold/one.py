@@ -24,7 +24,7 @@ from carom.system.records import HOLD, SLIPS, STICKS
 @kernel
 def hold_one(system, controls, held, state, horizon, cluster, work, clock, records):
     """Hold the one closed point, in seat 0, if it does not approach and the rule says so."""
-    seat, point = cluster.seats[0], cluster.points[0]
+    seat, point = cluster.seats[0], cluster.points[0][0]
     contact = system.contacts[seat.contact]
     u, still = contact_velocity(point, state), slow(contact, state)
     acceleration(system, state, held, work, work.stages[0])

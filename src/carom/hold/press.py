@@ -34,6 +34,7 @@ from carom.motion.explicit import keep
 from carom.motion.forces import applied_wrenches
 from carom.motion.project import project_velocity, shift
 from carom.motion.several import inverse_masses, spread_all, velocities
+from carom.system.cluster import OLD, C, P, U
 
 ROUNDS = 50
 
@@ -79,12 +80,12 @@ def press_group(system, controls, held, group, start, h, end, cluster, work, clo
         loaded = loaded or system.bodies[cluster.member[m]].ballistic == 0
     begin(system, held, k, start, h, end, count, loaded, cluster, work)
     size, before = 3 * k, math.inf
-    cluster.rounds[1] += 1
+    clock.pressed += 1
     for _ in range(ROUNDS):
         for m in range(count):
             halfway(start[cluster.member[m]], end[cluster.member[m]], work.stage[cluster.member[m]])
-        place_seats(system, k, work.stage, cluster, cluster.points, work)
-        inverse_masses(system, k, cluster.points, work.stage, work, cluster.W)
+        place_seats(system, k, work.stage, cluster, cluster.points[0], work)
+        inverse_masses(system, k, cluster.points[0], work.stage, work, cluster.m[0])
         impose(system, held, k, h, end, count, loaded, cluster, work)
         for m in range(count):
             mean_velocity(
@@ -92,16 +93,14 @@ def press_group(system, controls, held, group, start, h, end, cluster, work, clo
             )
         pose(k, start, cluster, work)
         solve_cones(
-            k, cluster.W, cluster.c, cluster.mu, cluster.kind, cluster.heading, cluster.p,
+            k, cluster.m[0], cluster.v[C], cluster.mu, cluster.kind, cluster.heading, cluster.v[P],
             cluster.cone,
         )  # fmt: skip
         change = moved(size, cluster)
         if change <= 1e-14 or (change <= 1e-7 and change >= 0.3 * before):
             break
         before = change
-        cluster.rounds[0] += 1
-        hist = _ if change > 1e-7 else 60
-        cluster.rounds[2 + hist] += 1
+        clock.rounds += 1
     impose(system, held, k, h, end, count, loaded, cluster, work)
     finish(system, controls, held, k, start, h, end, count, cluster, work)
     if loaded:
@@ -119,8 +118,8 @@ def moved(n, cluster):
     for i in range(n):
         s, t = 0.0, 0.0
         for j in range(n):
-            s += cluster.W[i, j] * (cluster.p[j] - cluster.old[j])
-            t += abs(cluster.W[i, j] * cluster.p[j])
+            s += cluster.m[0][i, j] * (cluster.v[P][j] - cluster.v[OLD][j])
+            t += abs(cluster.m[0][i, j] * cluster.v[P][j])
         change, largest = max(change, abs(s)), max(largest, t)
     return change / largest if largest > 0.0 else 0.0
 
@@ -138,14 +137,14 @@ def begin(system, held, k, start, h, end, count, loaded, cluster, work):
         hold = held.points[cluster.seats[i].held]
         cluster.mu[i] = system.contacts[hold.contact].friction_held
         for r in range(3):
-            cluster.p[3 * i + r] = h * hold.force[r]
-        _, u1, u2 = contact_velocity(cluster.points[i], start)
+            cluster.v[P][3 * i + r] = h * hold.force[r]
+        _, u1, u2 = contact_velocity(cluster.points[0][i], start)
         speed = math.sqrt(u1 * u1 + u2 * u2)
         slips = hold.mode == SLIP and speed > 0.0
         cluster.heading[i, 0] = u1 / speed if slips else 0.0
         cluster.heading[i, 1] = u2 / speed if slips else 0.0
         cluster.kind[i] = CONE
-        cluster.stopped[i] = 0 if slips and hold.stop > h * (1.0 + 1e-9) else 1
+        cluster.seats[i].stopped = 0 if slips and hold.stop > h * (1.0 + 1e-9) else 1
 
 
 @kernel
@@ -191,7 +190,7 @@ def spin_momentum(body, q, w0, w1, w2):
 def impose(system, held, k, h, end, count, loaded, cluster, work):
     """Put `end` where the impulses p of the middle rows bring it; write u = G_1 v_1."""
     member, flight = cluster.member, cluster.flight
-    spread_all(system, k, cluster.points, cluster.p, count, member, work.stage, work)
+    spread_all(system, k, cluster.points[0], cluster.v[P], count, member, work.stage, work)
     for m in range(count):
         b = member[m]
         body, motion, push = system.bodies[b], work.body[b].motion, work.body[b].push
@@ -218,8 +217,8 @@ def impose(system, held, k, h, end, count, loaded, cluster, work):
         w[0], w[1], w[2] = rotate(q[0], q[1], q[2], q[3], a[0] / J[0], a[1] / J[1], a[2] / J[2])
     if system.joints.shape[0] > 0 and any_joined(system, count, member):
         project_velocity(system, end, work)
-    place_seats(system, k, end, cluster, cluster.ends, work)
-    velocities(k, cluster.ends, end, cluster.u)
+    place_seats(system, k, end, cluster, cluster.points[1], work)
+    velocities(k, cluster.points[1], end, cluster.v[U])
 
 
 @kernel
@@ -245,22 +244,22 @@ def pose(k, start, cluster, work):
     the end. (Friction along the slip of the last round would not converge at speeds below mu N h W_tt.)
     """
     for i in range(k):
-        w, point, q = cluster.u, cluster.points[i], 3 * i
+        w, point, q = cluster.v[U], cluster.points[0][i], 3 * i
         c = (w[q], w[q + 1], w[q + 2])
-        if cluster.stopped[i] == 0:
+        if cluster.seats[i].stopped == 0:
             _, m1, m2 = contact_velocity(point, work.stage)
             d1, d2 = cluster.heading[i, 0], cluster.heading[i, 1]
             if m1 * d1 + m2 * d2 > 0.0 and w[q + 1] * d1 + w[q + 2] * d2 > 0.0:
                 c = (w[q], 2.0 * m1, 2.0 * m2)
             else:
-                cluster.stopped[i] = 1
+                cluster.seats[i].stopped = 1
         for r in range(3):
             s = c[r]
             for j in range(3 * k):
-                s -= cluster.W[q + r, j] * cluster.p[j]
-            cluster.c[q + r] = s
+                s -= cluster.m[0][q + r, j] * cluster.v[P][j]
+            cluster.v[C][q + r] = s
     for i in range(3 * k):
-        cluster.old[i] = cluster.p[i]
+        cluster.v[OLD][i] = cluster.v[P][i]
 
 
 @kernel
@@ -274,11 +273,11 @@ def finish(system, controls, held, k, start, h, end, count, cluster, work):
     at_rest = settle(system, controls.rest * gained, start, end, count, cluster)
     stop = controls.rest * gained * controls.step / h
     for i in range(k):
-        hold, p, u = held.points[cluster.seats[i].held], cluster.p, cluster.u
+        hold, p, u = held.points[cluster.seats[i].held], cluster.v[P], cluster.v[U]
         contact = system.contacts[hold.contact]
         s1, s2 = u[3 * i + 1], u[3 * i + 2]
-        _, m1, m2 = contact_velocity(cluster.points[i], start)
-        _, e1, e2 = contact_velocity(cluster.points[i], end)
+        _, m1, m2 = contact_velocity(cluster.points[0][i], start)
+        _, e1, e2 = contact_velocity(cluster.points[0][i], end)
         friction += 0.5 * (p[3 * i + 1] * (m1 + e1) + p[3 * i + 2] * (m2 + e2))
         still = max(stop, 10.0 * max(slow(contact, start), slow(contact, end)))
         if p[3 * i] <= 0.0 and u[3 * i] > 0.0:
@@ -341,13 +340,13 @@ def forces_at_end(system, controls, held, k, end, cluster, work):
         seat = cluster.seats[i]
         hold = held.points[seat.held]
         seat.stays = 1 if hold.next != OPEN else 0
-    place_seats(system, k, end, cluster, cluster.points, work)
+    place_seats(system, k, end, cluster, cluster.points[0], work)
     pose_forces(system, controls, held, k, end, cluster, work)
     solve_forces(k, cluster)
     for i in range(k):
         hold = held.points[cluster.seats[i].held]
         predict_stop(hold, i, cluster)
         for r in range(3):
-            hold.force[r] = cluster.p[3 * i + r] if hold.next != OPEN else 0.0
+            hold.force[r] = cluster.v[P][3 * i + r] if hold.next != OPEN else 0.0
             for j in range(3):
-                hold.W[r, j] = cluster.W[3 * i + r, 3 * i + j]
+                hold.W[r, j] = cluster.m[0][3 * i + r, 3 * i + j]

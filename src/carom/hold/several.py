@@ -13,6 +13,7 @@ from carom.jit import kernel
 from carom.motion.acceleration import SLIP, STICK
 from carom.motion.contact_point import add_velocity, contact_velocity, spread
 from carom.motion.several import factor, substitute
+from carom.system.cluster import OLD, C, U
 from carom.system.notes import begin_event, end_event
 from carom.system.records import HOLD, OPENS
 
@@ -30,7 +31,7 @@ def hold_several(system, controls, held, k, group, state, horizon, cluster, work
         stay = stay or seat.stays == 1
         if new < 0 and seat.stays == 1 and seat.held < 0:
             new = i
-        if seat.stays == 0 and cluster.u[3 * i] <= slow(system.contacts[seat.contact], state):
+        if seat.stays == 0 and cluster.v[U][3 * i] <= slow(system.contacts[seat.contact], state):
             held.brinks[seat.contact].leaving = 1  # lifts off without speed
     if new >= 0:
         seat = cluster.seats[new]
@@ -49,15 +50,15 @@ def judge(system, k, state, horizon, cluster):
     acceleration that these leave them.
     """
     for i in range(k):
-        contact, u = system.contacts[cluster.seats[i].contact], cluster.u[3 * i]
+        contact, u = system.contacts[cluster.seats[i].contact], cluster.v[U][3 * i]
         cluster.seats[i].stays = 1 if abs(u) <= slow(contact, state) else 0
     solve_forces(k, cluster)
     push = 0.0
     for i in range(3 * k):
-        push = max(push, abs(cluster.c[i]))
+        push = max(push, abs(cluster.v[C][i]))
     for i in range(k):
-        contact, u = system.contacts[cluster.seats[i].contact], cluster.u[3 * i]
-        a = cluster.old[3 * i]
+        contact, u = system.contacts[cluster.seats[i].contact], cluster.v[U][3 * i]
+        a = cluster.v[OLD][3 * i]
         if cluster.seats[i].stays == 1:
             cluster.seats[i].stays = 1 if a <= 1e-10 * push else 0
         else:
@@ -68,21 +69,21 @@ def judge(system, k, state, horizon, cluster):
 @kernel
 def drop_bounces(system, k, state, cluster, work, clock):
     """Take out the normal velocities of the points that stay, in the kinetic metric."""
-    n, L, x = k, cluster.L, cluster.old
+    n, L, x = k, cluster.m[1], cluster.v[OLD]
     for i in range(n):
         stays = cluster.seats[i].stays == 1
-        x[i] = -cluster.u[3 * i] if stays else 0.0
+        x[i] = -cluster.v[U][3 * i] if stays else 0.0
         for j in range(n):
             both = stays and cluster.seats[j].stays == 1
-            L[i, j] = cluster.W[3 * i, 3 * j] if both else 1.0 if i == j else 0.0
+            L[i, j] = cluster.m[0][3 * i, 3 * j] if both else 1.0 if i == j else 0.0
     factor(n, DROP, L)
     substitute(n, L, x)
     for i in range(n):
         if cluster.seats[i].stays == 1 and x[i] != 0.0:
-            spread(system, cluster.points[i], state, x[i], 0.0, 0.0, work)
-            add_velocity(system, cluster.points[i], work, state)
+            spread(system, cluster.points[0][i], state, x[i], 0.0, 0.0, work)
+            add_velocity(system, cluster.points[0][i], work, state)
             # work of the impulses: half of them times the velocities before; after they are none
-            clock.bounces += 0.5 * x[i] * cluster.u[3 * i]
+            clock.bounces += 0.5 * x[i] * cluster.v[U][3 * i]
 
 
 @kernel
@@ -94,7 +95,7 @@ def set_modes(system, held, k, state, cluster, work, clock, records):
         if seat.stays == 0:
             continue
         contact = system.contacts[seat.contact]
-        _, u1, u2 = contact_velocity(cluster.points[i], state)
+        _, u1, u2 = contact_velocity(cluster.points[0][i], state)
         # as `pose_forces` has found with the velocities before
         still = 10.0 * slow(contact, state)
         mode = (

@@ -18,6 +18,7 @@ from carom.motion.acceleration import STICK
 from carom.motion.contact_point import in_axes
 from carom.motion.project import project_position, shift
 from carom.motion.several import factor, spread_all, substitute
+from carom.system.cluster import P, U
 
 DROP = 1e-10  # of a pivot, relative to its row: what is left of a redundant one is round-off
 
@@ -27,15 +28,15 @@ def mark_rows(system, held, k, cluster):
     """Mark in `rows` what each point gives: 0 nothing, 1 its gap, 3 its gap and its place; return if any."""
     some = False
     for i in range(k):
-        hold, p, q = held.points[cluster.seats[i].held], cluster.p, 3 * i
-        cluster.rows[i] = 0
+        hold, p, q = held.points[cluster.seats[i].held], cluster.v[P], 3 * i
+        cluster.seats[i].rows = 0
         if p[q] > 0.0:
             some = True
             friction = math.sqrt(p[q + 1] * p[q + 1] + p[q + 2] * p[q + 2])
             contact = system.contacts[hold.contact]
             core = contact.radius == 0.0 and contact.other < 0
             sticks = hold.mode == STICK and friction < (1.0 - 1e-9) * cluster.mu[i] * p[q]
-            cluster.rows[i] = 3 if core and sticks else 1
+            cluster.seats[i].rows = 3 if core and sticks else 1
     return some
 
 
@@ -44,21 +45,21 @@ def onto_surfaces(system, held, k, count, state, cluster, work):
     """Bring the bodies of the group back to the points that press."""
     if not mark_rows(system, held, k, cluster):
         return
-    n, L = 3 * k, cluster.L
+    n, L = 3 * k, cluster.m[1]
     for i in range(n):
-        row = i % 3 < cluster.rows[i // 3]
+        row = i % 3 < cluster.seats[i // 3].rows
         for j in range(n):
-            both = row and j % 3 < cluster.rows[j // 3]
-            L[i, j] = cluster.W[i, j] if both else 1.0 if i == j else 0.0
+            both = row and j % 3 < cluster.seats[j // 3].rows
+            L[i, j] = cluster.m[0][i, j] if both else 1.0 if i == j else 0.0
     factor(n, DROP, L)
-    x = cluster.u
+    x = cluster.v[U]
     for _ in range(10):
         if errors(system, held, k, state, cluster, x, work):
             break
         substitute(n, L, x)
         for i in range(n):
-            x[i] = -x[i] if i % 3 < cluster.rows[i // 3] else 0.0
-        spread_all(system, k, cluster.points, x, count, cluster.member, work.stage, work)
+            x[i] = -x[i] if i % 3 < cluster.seats[i // 3].rows else 0.0
+        spread_all(system, k, cluster.points[0], x, count, cluster.member, work.stage, work)
         for m in range(count):
             shift(work.body[cluster.member[m]].motion, state[cluster.member[m]])
         if system.joints.shape[0] > 0:
@@ -70,18 +71,18 @@ def errors(system, held, k, state, cluster, x, work):
     """Write the errors of all rows (0 where there is none); return whether all are round-off."""
     small = True
     for i in range(k):
-        hold, point = held.points[cluster.seats[i].held], cluster.ends[i]
+        hold, point = held.points[cluster.seats[i].held], cluster.points[1][i]
         contact = system.contacts[hold.contact]
         place_any(system, contact, hold.feature, hold.point, state, point, work)
         tiny = round_off(contact, state)
         if contact.other >= 0:
             tiny = 4.0 * max(tiny, round_off_of(contact.other, contact, state))
         x[3 * i], x[3 * i + 1], x[3 * i + 2] = 0.0, 0.0, 0.0
-        if cluster.rows[i] == 0:
+        if cluster.seats[i].rows == 0:
             continue
         x[3 * i] = point.gap
         small = small and abs(point.gap) <= tiny
-        if cluster.rows[i] == 3:
+        if cluster.seats[i].rows == 3:
             c, a, r = state[hold.body].x, hold.anchor, point.arm_a
             _, t1, t2 = in_axes(point, c[0] + r[0] - a[0], c[1] + r[1] - a[1], c[2] + r[2] - a[2])
             x[3 * i + 1], x[3 * i + 2] = t1, t2

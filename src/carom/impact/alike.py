@@ -33,7 +33,7 @@ def as_one(system, k, state, cluster, work):
     if contact.other >= 0:
         if k > 1:
             return False
-        copy_point(cluster.points[0], point)
+        copy_point(cluster.points[0][0], point)
         effective_inverse_mass(system, point, state, work, hit.W)
         hit.u[0], hit.u[1], hit.u[2] = contact_velocity(point, state)
         return True
@@ -51,7 +51,7 @@ def as_one(system, k, state, cluster, work):
         return True
     still = 10.0 * slow(contact, state)
     for i in range(k):
-        u = contact_velocity(cluster.points[i], state)
+        u = contact_velocity(cluster.points[0][i], state)
         for r in range(3):
             if not abs(u[r] - hit.u[r]) <= still:
                 return False
@@ -83,7 +83,7 @@ def answers_alike(system, k, ln, l1, l2, tiny, state, cluster, work):
     spread(system, point, state, ln, l1, l2, work)
     mean = contact_motion(point, work)
     for i in range(k):
-        u = contact_motion(cluster.points[i], work)
+        u = contact_motion(cluster.points[0][i], work)
         for r in range(3):
             if not abs(u[r] - mean[r]) <= tiny:
                 return False

@@ -54,7 +54,7 @@ def onto_surface(system, controls, c, state, work):
 
 
 @unit
-def strike_unit(method, system, controls, held, c, state, cluster, work, clocks, records):
+def strike_unit(method, system, controls, held, c, state, cluster, corner, work, clocks, records):
     """Resolve the impact of contact c, together with all that is closed in its group.
 
     0 or the number of a `Status` goes to work.hit, and how many points were closed, if one was struck.
@@ -72,7 +72,7 @@ def strike_unit(method, system, controls, held, c, state, cluster, work, clocks,
     approach = 0.0
     for i in range(k):
         seat = cluster.seats[i]
-        u = contact_velocity(cluster.points[i], state)[0]
+        u = contact_velocity(cluster.points[0][i], state)[0]
         if u < -slow(system.contacts[seat.contact], state):
             approach = min(approach, u)
     if approach < 0.0:
@@ -85,7 +85,7 @@ def strike_unit(method, system, controls, held, c, state, cluster, work, clocks,
         if single:
             strike_one(method, system, controls, c, state, work, clock, records)
         else:
-            strike_several(system, controls, c, k, state, cluster, work, clock, records)
+            strike_several(system, controls, c, k, state, cluster, corner, work, clock, records)
         if hit.code != 0:
             return
         if system.joints.shape[0] > 0:
@@ -100,7 +100,7 @@ def strike_unit(method, system, controls, held, c, state, cluster, work, clocks,
             held.brinks[i].near = 1
 
 
-#: strike(address, method, system, controls, held, c, state, cluster, work, clocks, records)
+#: strike(address, method, system, controls, held, c, state, cluster, corner, work, clocks, records)
 strike = by_address(strike_unit)
 
 

@@ -9,60 +9,61 @@ from carom.impact.corner.resolve import resolve_corner
 from carom.jit import kernel, unit
 from carom.motion.contact_point import add_velocity, spread
 from carom.motion.several import inverse_masses, velocities
+from carom.system.cluster import U
 
 IMPACT_FAILED = 6
 
 
 @unit
-def corner_unit(k, cluster):
-    """Resolve the impact that stands in the cluster; its code goes to the clock of the scratch."""
-    cluster.corner.work.clock[0].code = resolve_corner(
-        k, cluster.W, cluster.u, cluster.mu, cluster.e, cluster.law, cluster.kappa,
-        cluster.settings, cluster.corner, cluster.result,
+def corner_unit(k, W, u, mu, corner):
+    """Resolve the impact of k points; its code goes to the clock of the scratch."""
+    corner.scratch.work.clock[0].code = resolve_corner(
+        k, W, u, mu, corner.e, corner.law, corner.kappa, corner.settings, corner.scratch,
+        corner.result,
     )  # fmt: skip
 
 
-#: at_corner(address, k, cluster)
+#: at_corner(address, k, W, u, mu, corner)
 at_corner = by_address(corner_unit)
 
 
 @kernel
-def strike_several(system, controls, c, k, state, cluster, work, clock, records):
+def strike_several(system, controls, c, k, state, cluster, corner, work, clock, records):
     """Resolve the impact of all k closed points; add their impulses, write a row for each that has one."""
-    hit, u = work.hit[0], cluster.u
-    inverse_masses(system, k, cluster.points, state, work, cluster.W)
-    velocities(k, cluster.points, state, u)
+    hit, u = work.hit[0], cluster.v[U]
+    inverse_masses(system, k, cluster.points[0], state, work, cluster.m[0])
+    velocities(k, cluster.points[0], state, u)
     for i in range(k):
         contact = system.contacts[cluster.seats[i].contact]
         if abs(u[3 * i]) <= slow(contact, state):
             u[3 * i] = 0.0  # touching, not striking
-        cluster.mu[i], cluster.e[i] = contact.friction, contact.restitution
-        cluster.law[i], cluster.kappa[i] = contact.law, contact.stiffness
-    at_corner(controls.corner_at, k, cluster)
-    if cluster.corner.work.clock[0].code != OK:
+        cluster.mu[i], corner.e[i] = contact.friction, contact.restitution
+        corner.law[i], corner.kappa[i] = contact.law, contact.stiffness
+    at_corner(controls.corner_at, k, cluster.m[0], u, cluster.mu, corner)
+    if corner.scratch.work.clock[0].code != OK:
         hit.code = IMPACT_FAILED
         return
-    P = cluster.result.impulse
+    P = corner.result.impulse
     for i in range(k):
         n, t1, t2 = P[3 * i], P[3 * i + 1], P[3 * i + 2]
         if n != 0.0:
-            write_share(i, k, state, cluster, clock, records)
-            spread(system, cluster.points[i], state, n, t1, t2, work)
-            add_velocity(system, cluster.points[i], work, state)
+            write_share(i, k, state, cluster, corner, clock, records)
+            spread(system, cluster.points[0][i], state, n, t1, t2, work)
+            add_velocity(system, cluster.points[0][i], work, state)
 
 
 @kernel
-def write_share(i, k, state, cluster, clock, records):
+def write_share(i, k, state, cluster, corner, clock, records):
     """Write the part of point i in an impact of k points."""
-    row, point, result = records.impact[clock.struck], cluster.points[i], cluster.result
-    x, u = state[point.a].x, cluster.u
+    row, point, result = records.impact[clock.struck], cluster.points[0][i], corner.result
+    x, u = state[point.a].x, cluster.v[U]
     row.time, row.contact, row.together = clock.now, cluster.seats[i].contact, k
     for r in range(3):
         row.point[r], row.normal[r] = x[r] + point.arm_a[r], point.axes[0, r]
         row.before[r], row.after[r] = u[3 * i + r], result.velocity[3 * i + r]
         row.impulse[r] = result.impulse[3 * i + r]
         for s in range(3):
-            row.W[r, s] = cluster.W[3 * i + r, 3 * i + s]
+            row.W[r, s] = cluster.m[0][3 * i + r, 3 * i + s]
     row.compression_work, row.restitution_work = result.compression[i], result.restitution[i]
     row.friction_loss = result.friction[i]
     row.energy_change = result.compression[i] + result.restitution[i] - result.friction[i]

@@ -10,8 +10,8 @@ from __future__ import annotations
 import math
 
 from carom.contact.gap import slow
-from carom.dispatch import only_with_joints
-from carom.jit import kernel
+from carom.dispatch import by_address, only_with_joints
+from carom.jit import inlined, kernel, unit
 from carom.motion.contact_point import (
     alone,
     contact_acceleration,
@@ -43,9 +43,9 @@ def _no_joints(system, state, work):
 bias_joints = only_with_joints(_bias_joints, _no_joints)
 
 
-@kernel
-def acceleration(system, state, held, work, stage):
-    """Write the accelerations into `rate` of `stage`; return the powers of loads and of friction."""
+@unit
+def acceleration_unit(system, state, held, work, stage):
+    """Write the accelerations into `rate` of `stage`, the powers of loads and of friction to work.result."""
     applied = applied_wrenches(system, state, True, work)
     bias_joints(system, state, work)
     solve(system, state, True, work)
@@ -64,7 +64,17 @@ def acceleration(system, state, held, work, stage):
             if hold.mode == SLIP:
                 _, u1, u2 = contact_velocity(point, state)
                 friction += hold.force[1] * u1 + hold.force[2] * u2
-    return applied, friction
+    work.result[0].power, work.result[0].drag = applied, friction
+
+
+_acceleration_at = by_address(acceleration_unit)
+
+
+@inlined
+def acceleration(system, state, held, work, stage):
+    """Write the accelerations into `rate` of `stage`; return the powers of loads and of friction."""
+    _acceleration_at(system.acceleration_at, system, state, held, work, stage)
+    return work.result[0].power, work.result[0].drag
 
 
 @kernel

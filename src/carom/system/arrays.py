@@ -162,7 +162,13 @@ JOINT_WORK = [
 STAGE = [("speed", "f8", 6), ("rate", "f8", 6), ("attitude", "f8", 4)]
 
 #: what a step of joined, loaded or held bodies gives back
-RESULT = [("applied", "f8"), ("friction", "f8"), ("code", "i8")]
+RESULT = [
+    ("applied", "f8"),
+    ("friction", "f8"),
+    ("code", "i8"),
+    ("power", "f8"),  # of loads, and of friction, with the last accelerations
+    ("drag", "f8"),
+]
 
 #: search for an event inside a step
 SEARCH = [
@@ -246,6 +252,7 @@ class System(NamedTuple):
     solids: np.recarray  # SOLID of `carom.contact.pairs`, of bodies that may touch each other
     hulls: Hulls | NoHulls
     touch_at: int  # address of what finds the points of two solids
+    acceleration_at: int  # of what works out all accelerations, 0 while nobody asks
     solver: FreeSolver | TreeSolver | LoopSolver
 
 

@@ -26,67 +26,81 @@ SEAT = [
     ("held", "i8"),  # place among the held points, -1 where it is open
     ("stays", "i8"),  # 1 where it is to be held
     ("point", "f8", 3),  # of the core, body axes
+    ("rows", "i8"),  # that the return to the surface uses
+    ("stopped", "i8"),  # 1 where slip has stopped within the step
 ]
+
+#: rows of `v`: velocities; velocities or accelerations without the unknown impulses; impulses or forces; and
+#: those of the last round
+U, C, P, OLD = range(4)
 
 
 class Cluster(NamedTuple):
-    """K points at most, of N bodies. Vectors (3K,) and matrices (3K, 3K) have rows n, t1, t2 a point."""
+    """K points at most, of N bodies; few arrays, as each costs at every call.
+
+    Vectors (3K,) and matrices (3K, 3K) have rows n, t1, t2 a point.
+    """
 
     seats: np.recarray  # (K,) SEAT
-    points: np.recarray  # (K,) POINT in the state at hand, or in the middle of a step
-    ends: np.recarray  # (K,) POINT at the end of a step
-    W: np.ndarray
-    c: np.ndarray  # velocities, or accelerations, without the unknown impulses
-    u: np.ndarray
-    p: np.ndarray  # impulses, or forces
-    old: np.ndarray  # p of the last round
-    L: np.ndarray  # (3K, 3K) factor
+    points: (
+        np.recarray
+    )  # (2, K) POINT: in the state at hand, or in the middle of a step; at its end
+    v: np.ndarray  # (4, 3K) vectors
+    m: np.ndarray  # (2, 3K, 3K) inverse mass W, and a factor
     mu: np.ndarray  # (K,)
+    kind: np.ndarray  # (K,) of `carom.coulomb`
+    heading: np.ndarray  # (K, 2)
+    member: np.ndarray  # (N,) bodies of the group
+    flight: np.recarray  # (N,) STATE at the end of the step without the contacts
+    cone: ConeWork
+
+
+class Corner(NamedTuple):
+    """What the impact of several points needs beyond that, and its result."""
+
+    scratch: CornerScratch
+    settings: CornerSettings
+    result: CornerResult
     e: np.ndarray  # (K,)
     law: np.ndarray  # (K,)
     kappa: np.ndarray  # (K,)
-    kind: np.ndarray  # (K,) of `carom.coulomb`
-    heading: np.ndarray  # (K, 2)
-    rows: np.ndarray  # (K,) rows of each point that the return to the surface uses
-    stopped: np.ndarray  # (K,) 1 where slip has stopped within the step
-    member: np.ndarray  # (N,) bodies of the group
-    flight: np.recarray  # (N,) STATE at the end of the step without the contacts
-    rounds: np.ndarray  # (2,) rounds of steps, steps
-    cone: ConeWork
-    corner: CornerScratch
-    settings: CornerSettings
-    result: CornerResult
 
 
-def new_cluster(system: System, settings: CornerSettings) -> Cluster:
-    """Return the scratch for the largest group of `system`."""
-    n, contacts = system.bodies.size, system.contacts
-    count = np.zeros(n + 1, dtype=np.int64)
+def capacity(system: System) -> int:
+    """Return the greatest number of points that may be closed in one group."""
+    contacts = system.contacts
+    if np.any(contacts.other >= 0):
+        return MOST
+    count = np.zeros(system.bodies.size + 1, dtype=np.int64)
     np.add.at(count, system.bodies.component[contacts.body], contacts.last - contacts.first)
-    k = MOST if np.any(contacts.other >= 0) else max(1, min(MOST, int(count.max())))
+    return max(1, min(MOST, int(count.max())))
+
+
+def new_cluster(system: System) -> Cluster:
+    """Return the scratch for the largest group of `system`."""
+    n, k = system.bodies.size, capacity(system)
     return Cluster(
         seats=table(SEAT, k),
-        points=table(POINT, k),
-        ends=table(POINT, k),
-        W=np.zeros((3 * k, 3 * k)),
-        c=np.zeros(3 * k),
-        u=np.zeros(3 * k),
-        p=np.zeros(3 * k),
-        old=np.zeros(3 * k),
-        L=np.zeros((3 * k, 3 * k)),
+        points=table(POINT, 2, k),
+        v=np.zeros((4, 3 * k)),
+        m=np.zeros((2, 3 * k, 3 * k)),
         mu=np.zeros(k),
+        kind=np.zeros(k, dtype=np.int64),
+        heading=np.zeros((k, 2)),
+        member=np.zeros(n, dtype=np.int64),
+        flight=table(STATE, n),
+        cone=cone_arrays(k),
+    )
+
+
+def new_corner(system: System, settings: CornerSettings) -> Corner:
+    """Return the scratch of impacts for the largest group of `system`."""
+    k = capacity(system)
+    return Corner(
+        scratch=corner_arrays(k),
+        settings=settings,
+        result=new_corner_result(k),
         e=np.zeros(k),
         law=np.zeros(k, dtype=np.int64),
         kappa=np.zeros(k),
-        kind=np.zeros(k, dtype=np.int64),
-        heading=np.zeros((k, 2)),
-        rows=np.zeros(k, dtype=np.int64),
-        stopped=np.zeros(k, dtype=np.int64),
-        member=np.zeros(n, dtype=np.int64),
-        flight=table(STATE, n),
-        rounds=np.zeros(64, dtype=np.int64),
-        cone=cone_arrays(k),
-        corner=corner_arrays(k),
-        settings=settings,
-        result=new_corner_result(k),
     )

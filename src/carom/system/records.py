@@ -46,6 +46,8 @@ CLOCK = [
     ("trials", "i8"),
     ("located", "i8"),
     ("holds", "i8"),
+    ("pressed", "i8"),  # steps of groups held at several points, on trial too
+    ("rounds", "i8"),  # of their iteration
 ]
 
 SERIES = [("t", "f8"), *LEDGER]

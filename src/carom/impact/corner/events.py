@@ -46,7 +46,7 @@ def first_change(c, i, depth, velocity, degree, end):
 
 @kernel
 def _root(c, i, depth, velocity, degree, a, b, gb):
-    """Return where the gauge passes round-off between a and b: Illinois' method, each third time a bisection."""
+    """Return where the gauge passes round-off between a and b: Illinois, each third time a bisection."""
     ga = gauge(c, i, depth, velocity, degree, a) - ROUND_OFF
     if ga >= 0.0:
         return a
