@@ -56,9 +56,11 @@ class ConeWork(NamedTuple):
     """Work arrays of `carom.coulomb.solve.solve_cones` for up to K contacts."""
 
     address: int  # of the compiled search
+    newton: int  # of what it calls
     contact: np.recarray  # (K,) CONTACT
     vector: np.ndarray  # (VECTORS, 3K)
     count: np.ndarray  # (2,) int64
+    mismatch: np.ndarray  # (1,) what Newton reached
     W: np.ndarray  # (3K, 3K) scaled inverse mass: each diagonal block has trace 3
     matrix: np.ndarray  # (3K, 3K) of a linear system, and its factors
     pivot: np.ndarray  # (3K,) int64, rows exchanged
@@ -74,9 +76,11 @@ def new_cone_work(capacity: int) -> ConeWork:
     return with_address(
         ConeWork(
             0,
+            0,
             table(CONTACT, contacts),
             np.zeros((VECTORS, n)),
             np.zeros(2, dtype=np.int64),
+            np.zeros(1),
             np.zeros((n, n)),
             np.zeros((n, n)),
             np.zeros(n, dtype=np.int64),
