@@ -44,7 +44,8 @@ RHS = 6  # of a linear system
 CENTRE = 7  # of the proximal term
 KEPT = 8  # the best p of one start
 BEST = 9  # the best p of all
-VECTORS = 10
+GIVEN = 10  # p at the start
+VECTORS = 11
 
 
 # Numbers of a search.
