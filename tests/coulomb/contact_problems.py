@@ -96,6 +96,38 @@ def wall(columns, rows, slope=0.0, L=0.2, H=0.1):
     return island(contacts, np.ones(len(at)), [inertia] * len(at), gravity(len(at), slope))
 
 
+def pile(layers, radius=0.05):
+    """A tetrahedron of equal spheres on the ground, each on three, that also touch in their layer."""
+    steps = [
+        (x, y, z) for z in range(layers) for x in range(layers - z) for y in range(layers - z - x)
+    ]
+    basis = 2 * radius * np.array(
+        [[1, 0, 0], [1 / 2, np.sqrt(3) / 2, 0], [1 / 2, np.sqrt(3) / 6, np.sqrt(2 / 3)]]
+    )  # fmt: skip
+    at = np.array(steps) @ basis
+    body, rows = [], []
+    for a, centre in enumerate(at):
+        for b in range(-1, a):
+            n = np.array([0.0, 0.0, 1.0]) if b < 0 else centre - at[b]
+            if (centre[2] if b < 0 else np.linalg.norm(n) - 2 * radius) > 1e-9:
+                continue
+            n /= np.linalg.norm(n)
+            t = np.cross(n, np.eye(3)[np.argmin(np.abs(n))])
+            t /= np.linalg.norm(t)
+            axes = np.array([n, t, np.cross(n, t)])
+            own = axes @ np.hstack([np.eye(3), -hat(-radius * n)])
+            other = -axes @ np.hstack([np.eye(3), -hat(radius * n)])
+            body.append((a, b))
+            rows.append([own, np.zeros((3, 6)) if b < 0 else other])
+    free, inverse = gravity(len(at)), np.diag([1.0] * 3 + [2.5 / radius**2] * 3)
+    c = [
+        sum(row @ free[b] for row, b in zip(pair, ends) if b >= 0) for pair, ends in zip(rows, body)
+    ]
+    return Island(
+        np.array(body), np.array(rows), np.tile(inverse, (len(at), 1, 1)), np.concatenate(c)
+    )
+
+
 def dense(isle):
     """Return W and c of an island."""
     k, bodies = len(isle.body), len(isle.inverse_mass)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from contact_problems import STEP, G, dense, solve, solve_sparse, stack, wall
+from contact_problems import STEP, G, dense, pile, solve, solve_sparse, stack, wall
 
 from carom.coulomb.graph import island_graph
 from carom.coulomb.layout import NOT_SOLVED, SOLVED
@@ -60,6 +60,22 @@ def test_wall(slope):
     if slope == 0.0:
         lowest = isle.body[:, 1] < 0
         assert p[::3][lowest].sum() == pytest.approx(len(isle.inverse_mass) * G * STEP, rel=1e-10)
+
+
+@pytest.mark.parametrize("mu", [0.1, 0.3, 0.6])
+def test_pile_of_spheres(mu):
+    # 56 spheres, 231 contacts that hold or roll on one another; it spreads, so that its mass centre falls
+    isle = pile(6)
+    assert len(isle.body) == 231
+    status, residual, _, p = solve_sparse(isle, mu)
+    assert status == SOLVED
+    assert residual <= 1e-12 * G * STEP
+    carried = p[::3][isle.body[:, 1] < 0].sum()
+    assert 0.5 * 56 * G * STEP < carried < 0.999 * 56 * G * STEP
+    W, c = dense(isle)
+    w = W @ p + c
+    assert w[::3].min() >= -1e-12 * G * STEP
+    assert p @ (w + c) < 0.0  # energy falls
 
 
 def random_island(seed):
