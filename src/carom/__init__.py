@@ -31,7 +31,7 @@ from carom.solution import Solution
 from carom.status import SimulationError, Status
 
 if TYPE_CHECKING:
-    from carom import baselines
+    from carom import baselines, identify
     from carom.coulomb import ContactSolution, solve_contacts
     from carom.impact import Impact, LayerHistory, impact_layer, resolve_impact
 
@@ -59,6 +59,7 @@ __all__ = [
     "Status",
     "baselines",
     "forces",
+    "identify",
     "impact_layer",
     "joints",
     "resolve_impact",
@@ -79,6 +80,6 @@ _LAZY = {
 def __getattr__(name: str):
     if name in _LAZY:
         return getattr(importlib.import_module(_LAZY[name]), name)
-    if name in ("baselines", "geometry"):
+    if name in ("baselines", "geometry", "identify"):
         return importlib.import_module(f"carom.{name}")
     raise AttributeError(f"module 'carom' has no attribute {name!r}")
