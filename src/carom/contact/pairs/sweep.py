@@ -26,7 +26,7 @@ class SweepWork(NamedTuple):
     first: np.ndarray  # (cells + 1,) where the balls of a cell begin in `ball`
     ball: np.ndarray  # (n,) balls, cell by cell
     place: np.ndarray  # (n, 5) level, -1 left out; three whole coordinates; hashed cell
-    used: np.ndarray  # (LEVELS + 1,) balls on each level
+    used: np.ndarray  # (LEVELS + 2,) balls on each level; then the comparisons made in all
 
 
 def new_sweep_work(count: int) -> SweepWork:
@@ -34,7 +34,7 @@ def new_sweep_work(count: int) -> SweepWork:
     cells = 1
     while cells < 2 * count:
         cells *= 2
-    sizes = ((cells + 1,), (count,), (count, 5), (LEVELS + 1,))
+    sizes = ((cells + 1,), (count,), (count, 5), (LEVELS + 2,))
     return SweepWork(*(np.zeros(size, dtype=np.int64) for size in sizes))
 
 
@@ -66,7 +66,7 @@ def sweep(centres, radii, pairs, work):
     widest = widest if widest > 0.0 else 1.0
     for c in range(len(work.first)):
         work.first[c] = 0
-    for e in range(LEVELS + 1):
+    for e in range(LEVELS + 2):
         work.used[e] = 0
     total = 0
     for i in range(n):
@@ -139,6 +139,7 @@ def _around(i, e, width, total, mask, centres, radii, pairs, count, work):
         c = _hash(e, x, y, z, mask)
         begin = work.first[c + 1]
         end = work.first[c + 2] if c < mask else total
+        work.used[LEVELS + 1] += end - begin
         for at in range(begin, end):
             j = work.ball[at]
             if same and k == 13 and j <= i:
