@@ -18,6 +18,7 @@ from carom.jit import entry, kernel
 
 LEVELS = 40  # sizes down to 2^-40 of the largest ball; smaller ones share the last level
 MOST = 2**62  # a coordinate in cells is kept within this
+LOW = 2**28 - 1  # bits of it that are hashed
 
 
 class SweepWork(NamedTuple):
@@ -124,6 +125,7 @@ def _cell(x, width):
 @kernel
 def _hash(e, x, y, z, mask):
     """Return the cell of a place in the grid: products with large primes (Teschner et al., VMV 2003)."""
+    x, y, z = x & LOW, y & LOW, z & LOW  # so that no product overflows
     return ((x * 73856093) ^ (y * 19349663) ^ (z * 83492791) ^ (e * 2654435761)) & mask
 
 
