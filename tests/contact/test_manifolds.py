@@ -1,14 +1,16 @@
 """The points that carry a contact: faces, edges, lines; which they are and that they keep their names."""
 
 import math
+from itertools import product
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from carom.contact.pairs.api import contact_points, nearest_points
 from carom.geometry import quaternion
-from carom.scene import Box, Capsule, Convex, Cylinder, Sphere
+from carom.scene import Box, Capsule, Compound, Convex, Cylinder, Sphere
 from contact.pair_cases import ORIGIN, Pose, support, touching, unit
 
 REACH = 1e-4
@@ -119,6 +121,26 @@ def test_cylinder_stands_on_its_rim_and_lies_on_two_points():
     np.testing.assert_allclose(radii, 0.1, atol=1e-15)
     lying = on(SLAB, can, 0.15, turned(0, math.pi / 2, 0))
     assert plan(lying.points) == [(-0.15, 0.0), (0.15, 0.0)]
+
+
+def test_table_stands_on_its_legs():
+    # Four legs of square section, turned as a whole: sixteen corners, four for each leg.
+    legs = [(Box(0.1, 0.1, 0.5), (x, y, 0.25)) for x in (-0.4, 0.4) for y in (-0.4, 0.4)]
+    table = Compound([*legs, (Box(1, 1, 0.1), (0, 0, 0.55))])
+    q = turned(0, 0, 0.3)
+    pose = np.array([0.1, 0.2, 0.05 + table.centroid[2]]), q
+    points = contact_points(table, pose, SLAB, ORIGIN, REACH)
+    near = points[points.gap < REACH]
+    assert len(near) == 16
+    np.testing.assert_allclose(near.on_b[:, 2], 0.05, atol=1e-15)
+    feet = quaternion.rotate_back(q, near.on_a - pose[0])
+    expected = {
+        (i * 0.4 + 0.05 * k, j * 0.4 + 0.05 * l) for i, j, k, l in product((-1, 1), repeat=4)
+    }
+    assert {(round(x, 12), round(y, 12)) for x, y, _ in feet} == {
+        (round(x, 12), round(y, 12)) for x, y in expected
+    }
+    assert nearest_points(table, pose, SLAB, ORIGIN).gap == pytest.approx(0, abs=1e-15)
 
 
 def test_sphere_has_one_point():

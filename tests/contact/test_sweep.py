@@ -1,7 +1,5 @@
 """Broad phase against a k-d tree and against all pairs."""
 
-import time
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -76,10 +74,10 @@ def test_counts_what_has_no_room():
     assert len(pairs) == 7
 
 
-@pytest.mark.parametrize("ratio", [1.0, 300.0])
-def test_cost_is_near_linear(ratio):
-    # Packed at one density, sizes up to `ratio`; 8 times the balls cost less than 4 times as much each.
-    times = []
+@pytest.mark.parametrize("ratio", [1.0, 30.0, 1000.0])
+def test_cost_is_linear(ratio):
+    # Packed at one density, sizes up to `ratio`: 8 times the balls take as many comparisons each.
+    costs = []
     for count in (2000, 16000):
         rng = np.random.default_rng(2)
         radii = 0.5 / ratio ** rng.random(count)
@@ -87,10 +85,6 @@ def test_cost_is_near_linear(ratio):
         centres = rng.uniform(0, side, (count, 3))
         pairs, work = np.zeros((60 * count, 2), dtype=np.int64), new_sweep_work(count)
         sweep(centres, radii, pairs, work)
-        runs = []
-        for _ in range(7):
-            start = time.perf_counter()
-            sweep(centres, radii, pairs, work)
-            runs.append(time.perf_counter() - start)
-        times.append(min(runs) / count)
-    assert times[1] < 4 * times[0]
+        costs.append(work.used[-1] / count)
+    assert costs[1] < 1.4 * costs[0]  # fewer of the smaller heap lie inside it
+    assert costs[1] < 150

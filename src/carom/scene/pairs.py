@@ -97,11 +97,11 @@ def _near(bodies) -> np.ndarray:
     """Return the pairs (m,2) of bodies whose bounding balls overlap."""
     if len(bodies) < 2:
         return np.zeros((0, 2), dtype=np.int64)
-    from scipy.spatial import cKDTree
+    from scipy.spatial import KDTree
 
     centres = np.array([body.position for body in bodies])
     sizes = np.array([body.shape.size for body in bodies])
-    tree, found = cKDTree(centres), []
+    tree, found = KDTree(centres), []
     for i, (centre, size) in enumerate(zip(centres, sizes)):
         for j in tree.query_ball_point(centre, size + sizes.max()):
             if j > i and np.linalg.norm(centres[j] - centre) <= size + sizes[j]:

@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom import check
-from carom.geometry import quaternion
 
 
 @dataclass(frozen=True)
@@ -44,10 +43,10 @@ def nearest_points(shape_a, pose_a, shape_b, pose_b) -> PairPoint:
     """
     best = None
     for points in _touches(shape_a, pose_a, shape_b, pose_b, 0.0):
-        k = int(np.argmin(points.gap))
-        if best is None or points.gap[k] < best.gap:
+        k = int(np.argmin(points["gap"]))
+        if best is None or points["gap"][k] < best.gap:
             best = PairPoint(
-                float(points.gap[k]), *(points[f][k].copy() for f in ("normal", "on_a", "on_b"))
+                float(points["gap"][k]), *(points[f][k].copy() for f in ("normal", "on_a", "on_b"))
             )
     assert best is not None
     return best
@@ -64,34 +63,36 @@ def contact_points(shape_a, pose_a, shape_b, pose_b, reach: float) -> np.recarra
 
 def _touches(shape_a, pose_a, shape_b, pose_b, reach):
     """Yield the points of each pair of pieces."""
-    from carom.contact.pairs.layout import new_points, solid_table
+    from carom.contact.pairs.frame import place
     from carom.contact.pairs.touch import touch
 
     poses = [pair_pose(name, pose) for name, pose in (("pose_a", pose_a), ("pose_b", pose_b))]
-    solids, hulls = solid_table([shape_a, shape_b])
-    out = new_points()
+    solids, hulls = _solids(shape_a, shape_b)
+    work, out = _scratch()
+    (xa, qa), (xb, qb) = [(np.zeros(3), np.zeros(4)) for _ in range(2)]
     for a in solids[solids.body == 0]:
+        place(a, *poses[0], xa, qa)
         for b in solids[solids.body == 1]:
-            count = touch(
-                a, b, hulls, *_placed(a, poses[0]), *_placed(b, poses[1]), reach, _work(), out
-            )
+            place(b, *poses[1], xb, qb)
+            count = touch(a, b, hulls, xa, qa, xb, qb, reach, work, out)
             yield out[:count].copy()
 
 
-@lru_cache(maxsize=1)
-def _work():
-    from carom.contact.pairs.layout import new_pair_work
+@lru_cache(maxsize=256)
+def _solids(shape_a, shape_b):
+    from carom.contact.pairs.layout import solid_table
 
-    return new_pair_work()
+    return solid_table([shape_a, shape_b])
+
+
+@lru_cache(maxsize=1)
+def _scratch():
+    from carom.contact.pairs.layout import new_pair_work, new_points
+
+    return new_pair_work(), new_points()
 
 
 def pair_pose(name: str, pose: tuple[ArrayLike, ArrayLike]) -> tuple[np.ndarray, np.ndarray]:
     """Return a checked pose."""
     x, q = pose
     return check.finite_array(f"{name}[0]", x, (3,)), check.unit_quaternion(f"{name}[1]", q)
-
-
-def _placed(solid, pose) -> tuple[np.ndarray, np.ndarray]:
-    """Return the world pose of a solid that has its place in a body of this pose."""
-    x, q = pose
-    return x + quaternion.rotate(q, solid.x), quaternion.multiply(q, solid.Q)

@@ -23,7 +23,10 @@ from carom.jit import kernel, unit
 
 CLEAR = 1e-3  # distance of the cores, relative to the smaller, that gives a direction to round-off
 DIRECTED = 1e-9  # relative to the smaller, from which on the distance has a direction at all
-CLIMBS = 8  # starts from which the way out of an overlap is sought
+CLIMBS = (
+    9  # starts from which the way out of an overlap is sought; all sharp hulls tried need no more
+)
+CLIMBS_CURVED = 3  # each takes longer there
 ELSEWHERE = 0.95  # cosine below which a start is another one
 NEARER = 30.0  # clearance relative to the depth
 LEAST = 1e-3  # relative to the usual clearance: below, the direction would be no better
@@ -139,7 +142,8 @@ def _way_out(s, a, b, hulls, accuracy, clear):
             start[k, 0], start[k, 1], start[k, 2] = x / size, y / size, z / size
             start[k, 3] = separation(s, a, b, hulls, x / size, y / size, z / size)
     best, nx, ny, nz = -math.inf, 0.0, 0.0, 1.0
-    for _ in range(CLIMBS + 1):
+    curved = a.kind >= CYLINDER or b.kind >= CYLINDER
+    for _ in range(CLIMBS_CURVED if curved else CLIMBS):
         chosen = 0
         for k in range(1, 15):
             if start[k, 3] > start[chosen, 3]:

@@ -6,8 +6,8 @@ world's origin is as exact as one near it.
 
 from __future__ import annotations
 
-from carom.geometry.rotation import matrix
-from carom.jit import inlined, kernel
+from carom.geometry.rotation import matrix, multiply, rotate
+from carom.jit import entry, inlined, kernel
 
 
 @kernel
@@ -23,6 +23,17 @@ def enter(s, xa, qa, xb, qb):
         s.origin[i], s.shift[i] = xb[i], 0.0
         for j in range(3):
             s.R[i, j] = u * a[j] + v * a[3 + j] + w * a[6 + j]
+
+
+@entry
+def place(solid, x, q, out_x, out_q):
+    """Write the world pose of a solid that has its place in a body with the pose x, q."""
+    p, o = solid.x, solid.Q
+    u, v, w = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
+    out_x[0], out_x[1], out_x[2] = x[0] + u, x[1] + v, x[2] + w
+    out_q[0], out_q[1], out_q[2], out_q[3] = multiply(
+        q[0], q[1], q[2], q[3], o[0], o[1], o[2], o[3]
+    )
 
 
 @inlined

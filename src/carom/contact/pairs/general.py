@@ -32,8 +32,9 @@ def distance(shape_a, pose_a, shape_b, pose_b) -> PairPoint:
     -----
     Against `nearest_points`, whose gaps apart are certified to 1e-14 m by duality (sizes 0.2 to 0.9 m, 60
     random poses a pair, coal 3.0.3 with tolerance 1e-12): the gaps agree to 1e-15 m for spheres, capsules,
-    boxes and hulls, also of hulls up to 10 mm inside (900 poses). Where cylinders or ellipsoids take part coal's gaps are off by up to 5e-7 m and its normals by up
-    to 2e-5; 1 mm inside it sometimes fails there (gaps of 1.5 m or 1e308). It takes 5 to 9 microseconds in C++.
+    boxes and hulls, also of hulls up to 10 mm inside (900 poses). Where cylinders or ellipsoids take part
+    coal's gaps are off by up to 5e-7 m and its normals by up to 2e-5; 1 mm inside it sometimes fails there
+    (gaps of 1.5 m or 1e308). It takes 5 to 9 microseconds in C++, the kernels 0.1 to 6 near contact.
     So the compiled loop keeps to its own kernels.
     """
     coal = _coal()

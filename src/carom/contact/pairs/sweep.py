@@ -18,6 +18,7 @@ from carom.jit import entry, kernel
 
 LEVELS = 40  # sizes down to 2^-40 of the largest ball; smaller ones share the last level
 MOST = 2**62  # a coordinate in cells is kept within this
+LOW = 2**28 - 1  # bits of it that are hashed
 
 
 class SweepWork(NamedTuple):
@@ -26,7 +27,7 @@ class SweepWork(NamedTuple):
     first: np.ndarray  # (cells + 1,) where the balls of a cell begin in `ball`
     ball: np.ndarray  # (n,) balls, cell by cell
     place: np.ndarray  # (n, 5) level, -1 left out; three whole coordinates; hashed cell
-    used: np.ndarray  # (LEVELS + 1,) balls on each level
+    used: np.ndarray  # (LEVELS + 2,) balls on each level; then the comparisons made in all
 
 
 def new_sweep_work(count: int) -> SweepWork:
@@ -34,7 +35,7 @@ def new_sweep_work(count: int) -> SweepWork:
     cells = 1
     while cells < 2 * count:
         cells *= 2
-    sizes = ((cells + 1,), (count,), (count, 5), (LEVELS + 1,))
+    sizes = ((cells + 1,), (count,), (count, 5), (LEVELS + 2,))
     return SweepWork(*(np.zeros(size, dtype=np.int64) for size in sizes))
 
 
@@ -66,7 +67,7 @@ def sweep(centres, radii, pairs, work):
     widest = widest if widest > 0.0 else 1.0
     for c in range(len(work.first)):
         work.first[c] = 0
-    for e in range(LEVELS + 1):
+    for e in range(LEVELS + 2):
         work.used[e] = 0
     total = 0
     for i in range(n):
@@ -124,6 +125,7 @@ def _cell(x, width):
 @kernel
 def _hash(e, x, y, z, mask):
     """Return the cell of a place in the grid: products with large primes (Teschner et al., VMV 2003)."""
+    x, y, z = x & LOW, y & LOW, z & LOW  # so that no product overflows
     return ((x * 73856093) ^ (y * 19349663) ^ (z * 83492791) ^ (e * 2654435761)) & mask
 
 
@@ -139,6 +141,7 @@ def _around(i, e, width, total, mask, centres, radii, pairs, count, work):
         c = _hash(e, x, y, z, mask)
         begin = work.first[c + 1]
         end = work.first[c + 2] if c < mask else total
+        work.used[LEVELS + 1] += end - begin
         for at in range(begin, end):
             j = work.ball[at]
             if same and k == 13 and j <= i:
