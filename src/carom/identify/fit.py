@@ -1,0 +1,135 @@
+"""Parameters of a scene from recorded motion."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from carom import check
+from carom.identify.evaluate import Evaluator
+from carom.identify.parameters import Space
+from carom.identify.recording import Recording
+from carom.identify.result import Identification
+from carom.identify.search import search
+from carom.identify.uncertainty import bootstrap
+from carom.options import Options
+from carom.scene.scene import Scene
+
+METHODS = ("Nelder-Mead", "Powell", "COBYQA", "L-BFGS-B")
+
+
+def identify(
+    scene: Scene | Callable[[dict, Recording], Scene],
+    recordings: Sequence[Recording],
+    parameters: Mapping,
+    objective: Callable,
+    *,
+    method: str = "Nelder-Mead",
+    restarts: int = 2,
+    tolerance: float = 1e-3,
+    max_evaluations: int = 400,
+    resamples: int = 200,
+    seed: int = 0,
+    step: float | None = None,
+    options: Options | None = None,
+    threads: int | None = None,
+    progress: Callable[[int, dict, float], None] | None = None,
+) -> Identification:
+    """Fit parameters of a scene to recorded motion.
+
+    Each recording is simulated from its own start, and compared over its whole length; what is
+    minimised is the mean of the objective over the recordings.
+
+    Parameters
+    ----------
+    scene : Scene or callable
+        A scene whose first N bodies are the recorded ones, of which `varied` makes copies with the start
+        of each recording; or a function of (parameters, recording) that returns a scene.
+    recordings : sequence of Recording
+    parameters : dict
+        A `Parameter`, or (start, step), by name. For a `Scene`: ``restitution``, ``friction``,
+        ``friction_held``, ``inertia_factor`` and ``corner_radius`` of `varied`; for a function, its own.
+    objective : callable
+        From (`RollOut`, `Recording`) to a number, such as ``mean_error(length, angle)`` or
+        ``squared_error(length, angle)``.
+    method : {"Nelder-Mead", "Powell", "COBYQA", "L-BFGS-B"}
+        Of `scipy.optimize.minimize`. Default ``"Nelder-Mead"``: for motion with many impacts, whose
+        objective is rough. ``"L-BFGS-B"`` takes differences, and needs a smooth one.
+    restarts : int
+        How often at most the search starts anew from its best point. Default 2; it ends before that if
+        a restart gains less than `tolerance`.
+    tolerance : float
+        The search ends when parameters change by less than this part of their steps, and
+        the objective by less than this part of its first value. Default 1e-3.
+    max_evaluations : int
+        Most evaluations in the search, each a simulation of all recordings. Default 400.
+    resamples : int
+        Sets of recordings drawn anew for the uncertainty, 0 for none. Default 200. They cost a design of
+        2 p^2 + 1 evaluations, at most five times.
+    seed : int
+        Of the drawing. Default 0.
+    step, options, threads
+        As of `roll_outs`.
+    progress : callable, optional
+        Called after each evaluation with (number, parameters, objective).
+
+    Returns
+    -------
+    Identification
+
+    Raises
+    ------
+    TypeError, ValueError
+        For an argument that is not as above, parameters with which no scene can be made, or an objective
+        that is no finite number.
+    """
+    if not isinstance(scene, Scene) and not callable(scene):
+        raise TypeError(
+            f"scene must be a carom.Scene or a function that makes one, got {type(scene).__name__}"
+        )
+    recordings = _recordings(recordings)
+    if not callable(objective):
+        raise TypeError(f"objective must be a function, got {type(objective).__name__}")
+    check.choice("method", method, METHODS)
+    check.integer("restarts", restarts, least=0)
+    tolerance = check.number("tolerance", tolerance, above=0.0, below=1.0)
+    check.integer("max_evaluations", max_evaluations, least=1)
+    check.integer("resamples", resamples, least=0)
+    check.integer("seed", seed, least=0)
+    if step is not None:
+        step = check.number("step", step, above=0.0, unit="s")
+    if threads is not None:
+        check.integer("threads", threads, least=1)
+    space = Space(parameters, known=isinstance(scene, Scene))
+    settings = {"step": step, "options": options, "threads": threads}
+    evaluate = Evaluator(scene, recordings, space, objective, progress, **settings)
+    converged, message = search(evaluate, method, restarts, tolerance, max_evaluations)
+    uncertainty = None
+    if resamples > 0:
+        uncertainty = bootstrap(evaluate, resamples, seed)
+        evaluate.number(uncertainty.centre)
+    best = evaluate.best
+    return Identification(
+        parameters=space.named(evaluate.points[best]),
+        objective=evaluate.mean(best),
+        objective_at_start=evaluate.mean(0),
+        objectives=evaluate.values[best],
+        runs=evaluate.runs(evaluate.points[best]),
+        recordings=recordings,
+        points=np.array(evaluate.points),
+        values=np.array(evaluate.values),
+        failed=np.array(evaluate.failed),
+        converged=converged,
+        message=message,
+        uncertainty=uncertainty,
+    )
+
+
+def _recordings(recordings) -> list[Recording]:
+    found = list(recordings)
+    if not found:
+        raise ValueError("recordings must be at least one Recording, got none")
+    for k, recording in enumerate(found):
+        check.instance(f"recordings[{k}]", recording, (Recording,))
+    return found
