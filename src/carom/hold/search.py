@@ -55,7 +55,7 @@ def event_value(system, controls, held, search, state, work):
         search.tolerance = max(controls.gap * smaller(contact), round_off(contact, state))
         if contact.other < 0:
             return lowest(contact, system.vertices, state)
-        search.tolerance = max(search.tolerance, round_off_of(contact.other, contact, state))
+        search.tolerance = 4.0 * max(search.tolerance, round_off_of(contact.other, contact, state))
         return lowest_pair(system, contact, search.contact, held, state, work)
     hold = held.points[search.contact]
     return held_value(system, hold, search.kind, search.d1, search.d2, state, work), 0.0
