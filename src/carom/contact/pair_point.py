@@ -12,6 +12,7 @@ from carom.motion.contact_point import place
 from carom.motion.forces import point_velocity
 
 REACH = 1e-3  # of the smaller body: points that are looked for beyond the nearest
+HELD_REACH = 0.2  # the same for points that are held, which stay so while a step is found in rounds
 
 
 @kernel
@@ -48,11 +49,11 @@ def smaller(contact):
 
 @kernel
 def tangents(n0, n1, n2, axes):
-    """Write rows n, t1, t2: t1 the world axis least along n (x first), made tangent; t2 = n x t1."""
-    a, b, c = abs(n0), abs(n1), abs(n2)
-    e0 = 1.0 if a <= b and a <= c else 0.0
-    e1 = 1.0 if e0 == 0.0 and b <= c else 0.0
-    e2 = 1.0 - e0 - e1
+    """Write rows n, t1, t2: t1 world x made tangent, or y where n is near x; t2 = n x t1.
+
+    Not the axis least along n: between two that are equal, round-off would choose anew in each round.
+    """
+    e0, e1, e2 = (1.0, 0.0, 0.0) if abs(n0) < 0.8 else (0.0, 1.0, 0.0)
     d = e0 * n0 + e1 * n1 + e2 * n2
     t0, t1, t2 = e0 - d * n0, e1 - d * n1, e2 - d * n2
     s = 1.0 / math.sqrt(t0 * t0 + t1 * t1 + t2 * t2)
@@ -105,7 +106,7 @@ def which_touch(contact, count, feature, p, state, work):
 @kernel
 def _place_pair(system, contact, feature, p, state, point, work):
     """Write the point of two bodies that has the feature, or took its place."""
-    count = find_touches(system, contact, state, REACH * smaller(contact), work)
+    count = find_touches(system, contact, state, HELD_REACH * smaller(contact), work)
     i = which_touch(contact, count, feature, p, state, work)
     write_touch(contact, work.touches[i], state, point)
 
@@ -154,7 +155,7 @@ def _drift(system, contact, feature, p, point, state, work):
         s = t if side == 1 else -t
         advance(state[a], s, moved[a])
         advance(state[b], s, moved[b])
-        count = find_touches(system, contact, moved, REACH * smaller(contact), work)
+        count = find_touches(system, contact, moved, HELD_REACH * smaller(contact), work)
         touch = work.touches[which_touch(contact, count, feature, p, moved, work)]
         xa, xb, P, R = moved[a].x, moved[b].x, touch.on_a, touch.on_b
         ux, uy, uz = point_velocity(moved, a, P[0] - xa[0], P[1] - xa[1], P[2] - xa[2])
