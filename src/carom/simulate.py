@@ -8,6 +8,7 @@ import numpy as np
 
 from carom import check
 from carom.options import Options
+from carom.scene.limits import check_location
 from carom.scene.scene import Scene
 from carom.solution import Solution
 from carom.status import SimulationError, Status
@@ -90,6 +91,7 @@ def simulate(
             f"step must be above duration / 1e12 = {duration / 1e12:g} s, got {step!r}"
         )
     scene.validate()
+    check_location(scene, impact_location)
 
     from carom.run import Run
 

@@ -22,8 +22,20 @@ def check_supported(scene) -> None:
                 _check_pieces(body)
 
 
+def check_location(scene, impact_location: str) -> None:
+    """Refuse contacts between bodies where impacts are not located."""
+    default = scene.contact_default is not None and len(scene.bodies) > 1
+    if impact_location != "locate" and (
+        default or any(isinstance(c.other, Body) for c in scene.contacts)
+    ):
+        raise ValueError(
+            f'impact_location must be "locate" where bodies may touch each other, got {impact_location!r}'
+        )
+
+
 def _check_pieces(body: Body) -> None:
     """Refuse shapes that cannot touch other bodies yet."""
+    assert body.shape is not None
     pieces = body.shape.pieces
     if len(pieces) != 1 or pieces[0].kind not in VERTEX_KINDS:
         raise ValueError(

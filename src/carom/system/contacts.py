@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from itertools import combinations
+from itertools import chain, combinations
 
 import numpy as np
 
 from carom.contact.pairs.layout import NoHulls, solid_table
 from carom.geometry import quaternion
 from carom.options import Options
-from carom.scene.bodies import HalfSpace
+from carom.scene.bodies import Body, HalfSpace
 from carom.scene.contacts import IMPACT_LAWS, Contact
 from carom.scene.scene import Scene
 from carom.system.arrays import CONTACT, table
@@ -22,9 +22,8 @@ def all_contacts(scene: Scene) -> list[Contact]:
     contacts = list(scene.contacts)
     if scene.contact_default is None:
         return contacts
-    pairs = [(b, h) for b in scene.bodies for h in scene.half_spaces]
-    pairs += combinations(scene.bodies, 2)
-    for body, other in pairs:
+    planes = ((b, h) for b in scene.bodies for h in scene.half_spaces)
+    for body, other in chain(planes, combinations(scene.bodies, 2)):
         law = scene.contact_law(body, other)
         if law is not None:
             name = f"{body.name}-{other.name}"
@@ -45,7 +44,7 @@ def compile_contacts(scene: Scene, to_principal, options: Options):
     for row, c in zip(rows, contacts):
         row.body, row.other = c.body.index, -1
         row.first, row.last = vertices.range_of(c.body)
-        row.extent, row.radius = c.body.shape.size, c.body.shape.radius
+        row.extent, row.radius = _size(c.body)
         if isinstance(c.other, HalfSpace):
             row.axes[:] = contact_axes(c.other.normal)
             row.offset = c.other.point @ c.other.normal
@@ -53,14 +52,20 @@ def compile_contacts(scene: Scene, to_principal, options: Options):
             row.other = c.other.index
             row.other_first, row.other_last = vertices.range_of(c.other)
             row.solid, row.other_solid = number[c.body], number[c.other]
-            row.other_extent = c.other.shape.size
-            row.radius += c.other.shape.radius
+            row.other_extent, radius = _size(c.other)
+            row.radius += radius
         row.friction, row.friction_held = c.friction, c.friction_held
         row.restitution, row.stiffness = c.restitution, c.stiffness
         row.law = IMPACT_LAWS.index(c.impact_law)
         row.width = 1e-5 * row.extent if options.layer_width is None else options.layer_width
         row.penetration = options.penetration
     return rows, vertices.all(), solids, tables if meet else NoHulls(0)
+
+
+def _size(body: Body) -> tuple[float, float]:
+    """Return the size of a body, and the radius of the ball that swells it."""
+    assert body.shape is not None
+    return body.shape.size, body.shape.pieces[0].radius
 
 
 class _Vertices:
@@ -70,6 +75,7 @@ class _Vertices:
         self.to_principal, self.parts, self.count = to_principal, [np.zeros((0, 3))], 0
 
     def range_of(self, body) -> tuple[int, int]:
+        assert body.shape is not None
         points = quaternion.rotate_back(self.to_principal[body.index], body.shape.vertices)
         self.parts.append(points)
         first, self.count = self.count, self.count + len(points)

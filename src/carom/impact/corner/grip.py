@@ -51,7 +51,7 @@ def gather_stuck(k, work):
 
 @kernel
 def _bearing(z, work, weight):
-    """Write (mu N)^2 of the sticking contacts, relative to the greatest, at the next opening if that is near."""
+    """Write (mu N)^2 of the sticking contacts, relative to the greatest, at the next opening if near."""
     d, u, slot = work.vector[D], work.vector[U], work.index[STUCK]
     moment = _MOMENT
     for a in range(z):

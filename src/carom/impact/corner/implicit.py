@@ -69,8 +69,8 @@ DEFECT = WEIGHTS - np.array([
 def step_unit(k, m, work, units, h, p, tolerance):
     """Step from (d, P, u) by `h` to the new state; the error goes to the clock.
 
-    Forces of this instant are in ``work.series[FORCE, 0]``; `m` discs are gathered. `tolerance` is for the velocity
-    of friction. At the end ``work.series[FORCE, 5]`` holds the forces of the new instant.
+    Forces of this instant are in ``work.series[FORCE, 0]``; `m` discs are gathered. `tolerance` is for the
+    velocity of friction. At the end ``work.series[FORCE, 5]`` holds the forces of the new instant.
     """
     n = 3 * k
     force, rate, W = work.series[FORCE], work.series[STAGE], work.matrix[MASS]

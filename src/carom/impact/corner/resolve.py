@@ -38,8 +38,8 @@ _TOUCHES = 1e-13  # approach below this part of the greatest velocity is none
 def resolve_corner(k, W, u, mu, e, law, kappa, settings, scratch, out):
     """Resolve an impact of `k` contacts; return OK, BAD_INPUT or NOT_RESOLVED (nothing is written then).
 
-    `W` (3K, 3K) symmetric inverse mass, often singular, and `u` (3K,) velocities before, rows (n, t1, t2) of each
-    contact, approach negative; of contacts that touch or are held u_n = 0. `mu`, `e`, `law` and
+    `W` (3K, 3K) symmetric inverse mass, often singular, and `u` (3K,) velocities before, rows (n, t1, t2) of
+    each contact, approach negative; of contacts that touch or are held u_n = 0. `mu`, `e`, `law` and
     `kappa` (K,): friction, restitution, its law as in `carom.impact.laws`, stiffness (only ratios matter).
     `settings`: `CornerSettings`; `scratch` from `new_corner_work`, `out` from `new_corner_result`, for K >= k.
     """

@@ -1,8 +1,8 @@
 """Newton's and Poisson's law for several contacts: an outer iteration on the whole event (V.4).
 
 Each law enters through an energetic coefficient e_* of each contact, with which Newton's target
-u_n+ = e v0, or Poisson's p_r = e p_c, is met. Logarithms x = ln e_* are iterated by Broyden's method, which begins
-as the fixed point e_* <- e_* target/reached. e_* <= 1 always: each contact gives back at most what it
+u_n+ = e v0, or Poisson's p_r = e p_c, is met. Logarithms x = ln e_* are iterated by Broyden's method, which
+begins as the fixed point e_* <- e_* target/reached. e_* <= 1 always: each contact gives back at most what it
 took, so that energy cannot grow for any law; where that is not enough the target is not met.
 """
 
