@@ -34,7 +34,7 @@ def new_corner_work(capacity: int) -> CornerScratch:
         clock=table(CLOCK, 1),
         index=np.zeros((9, n), dtype=np.int64),
         matrix=np.zeros((9, n, n)),
-        vector=np.zeros((32, n)),
+        vector=np.zeros((33, n)),
         series=np.zeros((13, ORDERS, n)),
         single=np.zeros(one.SIZE),
     )
