@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from carom import baselines, identify
     from carom.coulomb import ContactSolution, solve_contacts
     from carom.impact import Impact, LayerHistory, impact_layer, resolve_impact
+    from carom.impact.corner.api import CornerImpact, resolve_impacts
 
 __version__ = "0.1.0"
 
@@ -44,6 +45,7 @@ __all__ = [
     "Compound",
     "ContactSolution",
     "Convex",
+    "CornerImpact",
     "Cylinder",
     "Disc",
     "Ellipsoid",
@@ -63,16 +65,19 @@ __all__ = [
     "impact_layer",
     "joints",
     "resolve_impact",
+    "resolve_impacts",
     "simulate",
     "solve_contacts",
 ]
 
 _LAZY = {
     "ContactSolution": "carom.coulomb",
+    "CornerImpact": "carom.impact.corner.api",
     "Impact": "carom.impact",
     "LayerHistory": "carom.impact",
     "impact_layer": "carom.impact",
     "resolve_impact": "carom.impact",
+    "resolve_impacts": "carom.impact.corner.api",
     "solve_contacts": "carom.coulomb",
 }
 

@@ -160,7 +160,7 @@ def test_all_pairs_with_materials_that_no_rule_combines():
 
 def test_simulate_says_what_it_does_not_do_yet():
     scene, _ = stacked(Cylinder(1, 1), Sphere(1), 3)
-    with pytest.raises(ValueError, match="cannot let Cylinder.* touch another body yet"):
+    with pytest.raises(ValueError, match=r"cannot let Cylinder.* touch another body yet"):
         carom.simulate(scene, 1.0, step=0.1)
     scene, _ = stacked(Sphere(1), Sphere(1), 3)
     with pytest.raises(ValueError, match='impact_location must be "locate"'):

@@ -69,8 +69,8 @@ class Levels(NamedTuple):
 def read(path: str | Path | None = None) -> list[tuple[int, np.ndarray]]:
     """Return number and states (n, 13) of each toss: x, q, v (world), w (body axes).
 
-    The file of the package has whole multiples of 1e-6 m and 1e-6, as second differences, and velocities at first
-    samples only.
+    The file of the package has whole multiples of 1e-6 m and 1e-6, as second differences, and velocities at
+    first samples only.
     """
     path = files("carom.paper") / "data" / "cube_tosses_even.npz" if path is None else Path(path)
     with path.open("rb") as file, np.load(file) as data:

@@ -10,13 +10,12 @@ from carom.impact.corner.by_series import series_step
 from carom.impact.corner.by_stages import stages_step
 from carom.impact.corner.layout import SAVED_D, SAVED_P, WHEN, D, P, U
 from carom.impact.corner.motion import gather_discs, set_velocity
-from carom.impact.corner.series import slips
 from carom.jit import kernel, unit
 
 ENDED, TRAPPED = 0, 1
 
-APART = 1e-12  # velocities of approach below this part of the scale are none
-WEDGED = 1e-9  # greatest velocity of a group that rests wedged
+APART = 1e-12  # velocities of approach below this part of the scale, or 1e-4 rtol, are none
+WEDGED = 1e-11  # greatest velocity of a group that rests wedged
 _LASTING = 0.01
 _FIRST_STEP = 0.05
 _STIFF_STEPS = 4  # steps by stages before series are tried again
@@ -28,7 +27,7 @@ def start(k, work):
     clock = work.clock[0]
     clock.step = _FIRST_STEP
     clock.steps, clock.events, clock.idle, clock.branched, clock.stiff = 0, 0, 0, 0, 0
-    clock.rest, clock.cut = 0, 0
+    clock.rest, clock.cut, clock.stretched = 0, 0, 0
     for i in range(3 * k):
         work.vector[P, i] = 0.0
     for i in range(k):
@@ -62,7 +61,7 @@ def resume(k, work):
     """Go back to the first unloading, with the coefficients e that the contacts have now."""
     clock = work.clock[0]
     clock.step, clock.idle, clock.stiff = clock.saved_step, clock.saved_idle, clock.saved_stiff
-    clock.rest, clock.cut = 0, 0
+    clock.rest, clock.cut, clock.stretched = 0, 0, 0
     for i in range(3 * k):
         work.vector[P, i] = work.vector[SAVED_P, i]
     for i in range(k):
@@ -73,26 +72,26 @@ def resume(k, work):
 
 
 @kernel
-def drift(k, work, p):
+def drift(k, work, apart, p):
     """Return 1 if all is over. Where no force acts, go on with constant velocities to the next closure."""
     u, d = work.vector[U], work.vector[D]
     for i in range(k):
         c = work.contact[i]
         forced = law.force(c, d[i], p) > events.ROUND_OFF
-        if c.mode != law.OPEN and (forced or u[3 * i] < -APART):
+        if c.mode != law.OPEN and (forced or u[3 * i] < -apart):
             return 0
     time = math.inf
     for i in range(k):
         c = work.contact[i]
         if c.mode != law.OPEN:
             law.release(c, d[i], work.vector[P, 3 * i], p)
-        if u[3 * i] < -APART:
+        if u[3 * i] < -apart:
             time = min(time, max(0.0, c.d0 - d[i]) / -u[3 * i])
     if not time < math.inf:
         return 1
     for i in range(k):
         c = work.contact[i]
-        near = u[3 * i] < -APART and max(0.0, c.d0 - d[i]) / -u[3 * i] <= time + events.TOGETHER
+        near = u[3 * i] < -apart and max(0.0, c.d0 - d[i]) / -u[3 * i] <= time + events.TOGETHER
         d[i] -= u[3 * i] * time
         if near:
             d[i] = c.d0
@@ -113,10 +112,7 @@ def wedged(k, work, h, p):
         if not abs(u[i]) <= WEDGED:
             clock.rest = 0
             return False
-    for i in range(k):
-        if slips(work.contact[i]):  # comes to rest: in stretched time
-            return False
-    clock.rest += 1 if h >= _LASTING else 0
+    clock.rest += 1 if h >= _LASTING and clock.stretched == 0 else 0
     if clock.rest < 2:
         return False
     for i in range(k):  # what is stored is lost
@@ -130,9 +126,10 @@ def traverse(k, work, units, rtol, p, max_events, max_steps):
     clock = work.clock[0]
     when = work.vector[WHEN]
     set_velocity(k, work)
+    apart = max(APART, 1e-4 * rtol)
     first_events, first_steps, h = clock.events, clock.steps, 0.0
     while True:
-        if drift(k, work, p) == 1 or wedged(k, work, h, p):
+        if drift(k, work, apart, p) == 1 or wedged(k, work, h, p):
             return ENDED
         if (
             clock.events - first_events > max_events
@@ -145,6 +142,7 @@ def traverse(k, work, units, rtol, p, max_events, max_steps):
             h, changes = series_step(k, work, rtol)
         if h < 0.0:
             m = gather_discs(k, work)
+            clock.stretched = 0
             h, changes = stages_step(k, m, work, units, rtol, p)
             clock.stiff = clock.stiff - 1 if clock.stiff > 0 else _STIFF_STEPS - 1
         if changes:

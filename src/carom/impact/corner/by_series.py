@@ -37,6 +37,7 @@ def series_step(k, work, rtol):
     degree = taylor.degree_for(rtol)
     stretched = taylor.stretch_weights(k, work)
     taylor.expand(k, z, work, degree, stretched)
+    clock.stretched = 1 if stretched else 0
     clock.steps += 1
     if stretched and _stiff(k, work):
         return -1.0, False
@@ -55,6 +56,11 @@ def series_step(k, work, rtol):
             set_velocity(k, work)
             return slip, False
     clock.cut = 0
+    turn = taylor.first_turn(k, work, degree, min(first, h))
+    if turn < min(first, h):
+        taylor.move(k, work, degree, turn)
+        set_velocity(k, work)
+        return turn, False
     changes = first <= h
     h = min(h, first)
     taylor.move(k, work, degree, h)

@@ -30,11 +30,10 @@ _AT_CHANGE = 0.02  # part of the tolerance where a contact begins or ceases to s
 def stages_step(k, m, work, units, rtol, p):
     """One implicit step, cut at the first change of mode; return its length and whether one changes."""
     clock, when, tolerance = work.clock[0], work.vector[WHEN], 1e-3 * rtol
-    h = clock.step
+    h, slow = clock.step, max(AT_REST, 0.01 * rtol)
     force = work.series[FORCE]
     normal_forces(k, work, work.vector[D], p, force[0])
-    friction_now(k, m, work, units, 1e-7 * h, force[0])
-    slow = max(AT_REST, 0.01 * rtol)
+    friction_now(k, m, work, units, 1e-7 * h, slow, tolerance / h, force[0])
     while True:
         implicit_step(units.step, k, m, work, units, h, p, tolerance)
         clock.steps += 1

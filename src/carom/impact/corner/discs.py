@@ -26,7 +26,7 @@ from carom.jit import kernel, unit
 _EMPTY = 1e-13  # of the trace of a block: directions in which nothing moves
 _PROXIMAL = 1e-10  # regularises the Newton matrix where A is singular
 _NEWTON = 12
-_SWEEPS = 400
+_SWEEPS = 100
 
 
 @kernel
@@ -162,12 +162,13 @@ def solve_discs(m, A, J, vector, index, tolerance):
     error = mismatch(m, A, radius, t, w, f)
     count = 0
     while error > tolerance and count < _SWEEPS:
-        for _ in range(2 if count < 40 else 20):
-            sweep(m, A, radius, t, w)
-            count += 1
-        error = mismatch(m, A, radius, t, w, f)
-        if error <= tolerance or m == 1:
-            break
+        if count > 0 or m == 1:
+            for _ in range(1 if m == 1 else 2 if count < 40 else 20):
+                sweep(m, A, radius, t, w)
+                count += 1
+            error = mismatch(m, A, radius, t, w, f)
+            if error <= tolerance or m == 1:
+                break
         for _ in range(_NEWTON):
             _newton_step(m, A, J, pivot, radius, t, w, f, step)
             count += 1
@@ -188,9 +189,9 @@ def solve_discs(m, A, J, vector, index, tolerance):
                 t[i] = trial[i]
             error = new
             if error <= tolerance:
-                break
-        if error > tolerance:
-            velocity(m, A, c, t, w)
+                return error, count
+        velocity(m, A, c, t, w)
+        mismatch(m, A, radius, t, w, f)
     velocity(m, A, c, t, w)
     error = mismatch(m, A, radius, t, w, f)
     return error, count

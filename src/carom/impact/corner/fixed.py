@@ -28,6 +28,7 @@ from carom.impact.corner.motion import add_velocity, gather_discs, normal_forces
 from carom.jit import kernel, unit
 
 _TOLERANCE = 1e-10  # of velocities, in friction
+_APART = 1e-10  # velocities of approach below this are none
 
 
 @kernel
@@ -42,7 +43,7 @@ def traverse_fixed(k, work, units, n, p, max_events, max_steps):
     first_events, first_steps = clock.events, clock.steps
     while True:
         before = clock.events
-        if drift(k, work, p) == 1 or wedged(k, work, h, p):
+        if drift(k, work, _APART, p) == 1 or wedged(k, work, h, p):
             return ENDED
         if clock.events - first_events > max_events or clock.steps - first_steps > max_steps:
             return TRAPPED

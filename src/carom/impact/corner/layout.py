@@ -37,9 +37,9 @@ class CornerSettings(NamedTuple):
     multiple: int = SIMULTANEOUS
     rtol: float = 1e-8  # relative error of velocities
     exponent: float = 1.0  # p of the normal law
-    adaptive_up_to: int = 4  # contacts (unlike ones); above: fixed steps
+    adaptive_up_to: int = 24  # contacts (unlike ones); above: fixed steps
     fixed_steps: int = 40  # a period of the fastest contact, above `adaptive_up_to`
-    max_events: int = 50  # changes of mode, a contact
+    max_events: int = 200  # changes of mode, a contact
     max_steps: int = 2000  # a contact
     max_rounds: int = 40  # of the outer iteration of Newton's and Poisson's law
 
@@ -103,7 +103,7 @@ class CornerWork(NamedTuple):
     clock: np.recarray  # (1,) CLOCK
     index: np.ndarray  # (9, 3K) rows below
     matrix: np.ndarray  # (9, 3K, 3K) below
-    vector: np.ndarray  # (32, 3K) rows below
+    vector: np.ndarray  # (33, 3K) rows below
     series: np.ndarray  # (13, ORDERS, 3K) below
     single: np.ndarray  # result of one contact, as `carom.impact.layout` says
 
@@ -137,6 +137,8 @@ CLEAN, MASS, DISCS, JACOBIAN, HOLDING, FACTOR, MIDDLE, INVERSE, SINGLE = range(9
 U0, P, U, NEW_P, NEW_U, D, NEW_D, SAVED_P, SAVED_D, WHEN, SCRATCH, ERROR, TRY = range(13)
 #: of the discs: given c, friction T, w = A T + c, mismatch, step, trial, radii
 DISC_C, DISC_T, DISC_W, DISC_F, DISC_STEP, DISC_TRY, RADIUS = range(13, 20)
+#: velocities of contacts that jam, with a seed
+SEEDED = 32
 #: of the series and of stick
 WEIGHT, SCALE, LEFT, STICK_T = range(20, 24)
 #: of the outer iteration: ln e_*, misses, new misses, step, change of misses, a product, best e_*, its misses
@@ -156,6 +158,7 @@ CLOCK = [
     ("idle", "i8"),  # changes of mode since time last went on
     ("branched", "i8"),  # 1 once a state is saved at the first unloading
     ("rest", "i8"),  # steps since all came to rest
+    ("stretched", "i8"),  # 1: the last step is measured in stretched time
     ("cut", "i8"),  # 1: the last step by series ended where a contact cannot stick with its share
     ("stiff", "i8"),  # implicit steps to take before series are tried again
     ("saved_stiff", "i8"),
@@ -184,7 +187,7 @@ def corner_arrays(capacity: int) -> CornerScratch:
         clock=table(CLOCK, 1),
         index=np.zeros((9, n), dtype=np.int64),
         matrix=np.zeros((9, n, n)),
-        vector=np.zeros((32, n)),
+        vector=np.zeros((33, n)),
         series=np.zeros((13, ORDERS, n)),
         single=np.zeros(one.SIZE),
     )

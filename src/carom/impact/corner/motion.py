@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from carom.impact.corner.discs import friction
 from carom.impact.corner.law import OPEN, force
 from carom.impact.corner.layout import (
@@ -68,11 +70,12 @@ def normal_forces(k, work, d, p, out):
 
 
 @kernel
-def friction_now(k, m, work, units, horizon, out):
+def friction_now(k, m, work, units, horizon, slow, tolerance, out):
     """Add the friction of this instant to the normal forces `out`; `m` discs are gathered.
 
-    Of a contact that slips T = -mu N u_t/|u_t|; of those at rest the solution of V.3. Both are the friction
-    for the velocity a time `horizon` ahead, in the limit of none.
+    Of a contact that slips T = -mu N u_t/|u_t|; of those at rest, slower than `slow`, the solution of V.3:
+    both are the friction for the velocity a time `horizon` ahead, in the limit of none. `tolerance` is for
+    accelerations.
     """
     if m == 0:
         return
@@ -81,23 +84,21 @@ def friction_now(k, m, work, units, horizon, out):
     for i in range(3 * k):
         a[i] = 0.0
     add_velocity(3 * k, work.matrix[MASS], out, a)
-    largest = 0.0
+    largest, most = 0.0, 0.0
     for s in range(m):
         i = slot[s]
         contact = work.contact[i]
         radius[s] = contact.mu * out[3 * i]
-        f = 0.0 if contact.sticks == 1 else 1.0 / horizon
+        x, y = u[3 * i + 1], u[3 * i + 2]
+        rests = contact.sticks == 1 or not math.sqrt(x * x + y * y) > slow
+        f = 0.0 if rests else 1.0 / horizon
         for r in range(2):
             c[2 * s + r] = a[3 * i + 1 + r] + f * u[3 * i + 1 + r]
             largest = max(largest, abs(a[3 * i + 1 + r]))
+            most = max(most, abs(c[2 * s + r]))
+    tolerance += 1e-13 * (1.0 + largest) + 1e-14 * most
     friction(
-        units.discs,
-        m,
-        work.matrix[DISCS],
-        work.matrix[JACOBIAN],
-        vector,
-        work.index,
-        1e-12 * (1.0 + largest),
+        units.discs, m, work.matrix[DISCS], work.matrix[JACOBIAN], vector, work.index, tolerance
     )
     for s in range(m):
         n = 3 * slot[s]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-from carom.impact import laws
 from carom.impact import layout as one
 from carom.impact.corner import alike
 from carom.impact.corner.layout import (
@@ -31,6 +30,7 @@ from carom.impact.corner.passage import pass_group
 from carom.impact.corner.sequential import blow_by_blow
 from carom.jit import entry, kernel
 
+_NOTHING = 1e-15  # impulses below this part of the greatest are none
 _TOUCHES = 1e-13  # approach below this part of the greatest velocity is none
 
 
@@ -114,7 +114,8 @@ def _group(k, g, count, u, mu, e, law, kappa, scale, settings, scratch, out):
                     )
     if n == 1:
         i = index[FIRST, index[MEMBER, 0]]
-        return _exactly(k, i, u, mu, e, law, work, scratch.units, out)
+        if _exactly(k, i, u, mu, e, law, work, scratch.units, out) == OK:
+            return OK
     mass, speed, rate = _fill(n, u, mu, e, law, kappa, scale, settings.exponent, work)
     if not (mass > 0.0 and rate > 0.0):
         return NOT_RESOLVED
@@ -134,9 +135,9 @@ def _group(k, g, count, u, mu, e, law, kappa, scale, settings, scratch, out):
             if index[CLASS, i] == q:
                 for r in range(3):
                     out.impulse[3 * i + r] = work.vector[P, 3 * a + r] * share * speed / mass
-                out.compression[i] = -c.absorbed * share * energy
-                out.restitution[i] = c.returned * share * energy
-                out.friction[i] = c.loss * share * energy
+                out.compression[i] = -max(0.0, c.absorbed) * share * energy
+                out.restitution[i] = max(0.0, c.returned) * share * energy
+                out.friction[i] = max(0.0, c.loss) * share * energy
     summary.plastic_change = plastic + energy * summary.plastic_change
     summary.error = max(error, speed * summary.error)
     return OK
@@ -180,7 +181,7 @@ def _fill(n, u, mu, e, law, kappa, scale, exponent, work):
 
 @kernel
 def _exactly(k, i, u, mu, e, law, work, units, out):
-    """Resolve a group that is one contact, number `i` and those like it."""
+    """Resolve a group that is one contact, number `i` and those like it; NOT_RESOLVED if it wedges."""
     index, W, before = work.index, work.matrix[SINGLE], work.vector[TRY]
     q = index[CLASS, i]
     for r in range(3):
@@ -190,8 +191,6 @@ def _exactly(k, i, u, mu, e, law, work, units, out):
     single = work.single
     clock = work.clock
     resolve_single(units.single, clock, W, before, mu[i], e[i], law[i], single)
-    if clock[0].code != one.OK:
-        resolve_single(units.single, clock, W, before, mu[i], e[i], laws.STRONGE, single)
     if clock[0].code != one.OK:
         return NOT_RESOLVED
     share = 1.0 / index[SIZE, q]
@@ -212,6 +211,12 @@ def _finish(k, W, u, scale, out):
     """Write u+ = u + W P and the energy; take back what round-off added to it."""
     n, result = 3 * k, out.summary[0]
     P_, after = out.impulse, out.velocity
+    most = 0.0
+    for i in range(k):
+        most = max(most, P_[3 * i])
+    for i in range(k):
+        if not P_[3 * i] > _NOTHING * most:
+            P_[3 * i], P_[3 * i + 1], P_[3 * i + 2] = 0.0, 0.0, 0.0
     capped = (result.marks & EXACT) == 0
     for turn in range(2):
         energy, gain = 0.0, 0.0

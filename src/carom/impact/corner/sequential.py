@@ -47,7 +47,9 @@ def _blow(i, work, units):
             W[r, s] = work.matrix[MASS, 3 * i + r, 3 * i + s]
     clock = work.clock
     resolve_single(units.single, clock, W, u, c.mu, c.restitution, c.law, single)
-    if clock[0].code == one.OK and single[one.ENERGY_CHANGE] > 0.0:  # not more than it took
+    if (
+        clock[0].code == one.OK and single[one.WORK_R] > -single[one.WORK_C]
+    ):  # not more than it took
         resolve_single(units.single, clock, W, u, c.mu, 1.0, laws.STRONGE, single)
     if clock[0].code != one.OK:
         return False

@@ -37,6 +37,7 @@ from carom.jit import kernel
 
 _FARTHEST = 4.0  # longest step, in units of the time of the fastest contact
 _FARTHEST_STRETCHED = 40.0
+_SAMPLES = 4
 _NEAR = 0.3  # slip may end within this time: stretch
 
 
@@ -232,3 +233,44 @@ def move(k, work, degree, x):
             for j in range(degree - 1, -1, -1):
                 s = s * x + work.series[S_LOSS, j, i]
             c.loss += s
+
+
+@kernel
+def first_turn(k, work, degree, end):
+    """Return the first x in [0, end] where slip has turned by a right angle, or 2 end.
+
+    Slip along a line passes through u_t = 0 without any sign of it in the series, which then go on with
+    friction of the wrong sign.
+    """
+    u, first = work.series[S_U], 2.0 * end
+    for i in range(k):
+        if not slips(work.contact[i]):
+            continue
+        a, low = 3 * i + 1, 0.0
+        x0, y0 = u[0, a], u[0, a + 1]
+        for s in range(_SAMPLES):
+            high = end * ((s + 1) / _SAMPLES)
+            if _along(u, a, degree, x0, y0, high) <= 0.0:
+                for _ in range(60):
+                    x = 0.5 * (low + high)
+                    if _along(u, a, degree, x0, y0, x) > 0.0:
+                        low = x
+                    else:
+                        high = x
+                    if high - low <= 1e-15 * end:
+                        break
+                first = min(first, high)
+                end = min(end, high)
+                break
+            low = high
+    return first
+
+
+@kernel
+def _along(u, a, degree, x0, y0, x):
+    """Return the slip at `x` along (x0, y0)."""
+    p, q = u[degree, a], u[degree, a + 1]
+    for j in range(degree - 1, -1, -1):
+        p = p * x + u[j, a]
+        q = q * x + u[j, a + 1]
+    return p * x0 + q * y0

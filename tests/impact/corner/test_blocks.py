@@ -1,0 +1,93 @@
+"""Rocking blocks (Housner), and the rod that jams (Painleve): closed forms (W7, W8)."""
+
+import numpy as np
+import pytest
+
+from carom.impact.api import resolve_impact
+from carom.impact.corner.api import resolve_impacts
+from carom.impact.corner.layout import CornerSettings, new_corner_result
+from carom.impact.corner.painleve import impact_without_collision
+from carom.impact.corner.work import new_corner_work
+
+
+def rock(b, h, e, mu):
+    """Block of half sizes b, h turning about its right corner comes down on the left one; w+/w-.
+
+    Planar: corners at (+-b, -h) from the centre, 1 kg; the right corner touches, w- = 1 about y.
+    """
+    inertia = (b * b + h * h) / 3
+    G = np.zeros((6, 3))  # (vx, vz, w)
+    for i, x in enumerate((-b, b)):
+        # u = v + w y x r with r = (x, -h): u_z = v_z - w x, u_x = v_x - w h
+        G[3 * i] = [0, 1, -x]
+        G[3 * i + 1] = [1, 0, -h]
+    w = -1.0  # the left corner comes down
+    v = np.array([h * w, b * w, w])
+    u = (G @ v).reshape(2, 3)
+    u[1, 0] = 0.0
+    assert abs(u[1, 1]) < 1e-15
+    assert u[0, 0] < 0
+    inverse = np.diag([1, 1, 1 / inertia])
+    impact = resolve_impacts(G @ inverse @ G.T, u, mu, e, "stronge", rtol=1e-11)
+    after = v + inverse @ G.T @ impact.impulse.ravel()
+    return after[2] / w, impact
+
+
+@pytest.mark.parametrize("e", [0, 0.01, 0.1, 0.5])
+@pytest.mark.parametrize(("b", "h"), [(0.05, 0.1), (0.1, 0.1)])
+def test_housner_with_restitution(b, h, e):
+    # No slip: the impulse acts at the corner that strikes. Moment about it: w+/w- = 1 - (1 + e) 1.5 sin^2 a,
+    # tan a = b/h (e = 0: Housner 1963): .7, .697, .67, .55 and .25, ..., -.125 for the square.
+    ratio, impact = rock(b, h, e, 2.0)
+    sin2 = b * b / (b * b + h * h)
+    assert ratio == pytest.approx(1 - (1 + e) * 1.5 * sin2, abs=1e-9)
+    np.testing.assert_allclose(impact.impulse[1], 0, atol=1e-9)
+
+
+def test_square_that_slips():
+    # mu = .5, e = 0: p_t = mu p_n at the corner that strikes, 1/7 of w is left.
+    ratio, _ = rock(0.1, 0.1, 0.0, 0.5)
+    assert ratio == pytest.approx(1 / 7, abs=1e-10)
+
+
+ROD = np.array([[1.75, 1.299038105677, 0], [1.299038105677, 3.25, 0], [0, 0, 0]])
+SLIPS = np.array([0.0, 1.0, 0.0])
+
+
+def jam(e, law, mu=1.6):
+    settings, scratch, out = CornerSettings(), new_corner_work(1), new_corner_result(1)
+    one = np.ones(1)
+    result = impact_without_collision(
+        1, ROD, SLIPS, mu * one, e * one, np.array([law]), one, settings, scratch, out
+    )
+    return result, out
+
+
+def test_painleve_rod():
+    # Rod of 60 degrees, mu = 1.6 above mu_P = 1.347: k = 1.75 - 1.6 * 1.299 = -.328 < 0. Slip stops at p =
+    # .256, compression ends at p_c = .32476. The seed of 1e-7 shows.
+    result, out = jam(0.0, 2)
+    assert result == (0, 1)
+    np.testing.assert_allclose(out.velocity, 0, atol=3e-7)
+    np.testing.assert_allclose(out.impulse, (0.3247595264, -0.4375, 0), rtol=0, atol=3e-7)
+    result, out = jam(0.5, 2)
+    np.testing.assert_allclose(out.velocity, (0.0917266009, 0, 0), rtol=0, atol=3e-7)
+    np.testing.assert_allclose(out.impulse, (0.3992873896, -0.4672890884, 0), rtol=0, atol=3e-7)
+    assert out.summary[0]["energy_change"] < 0
+
+
+def test_no_jam_below_the_critical_friction():
+    result, out = jam(0.5, 2, mu=1.3)
+    assert result == (0, 0)
+    np.testing.assert_array_equal(out.impulse, 0)
+    np.testing.assert_array_equal(out.velocity, SLIPS)
+
+
+def test_painleve_by_the_layer():
+    # The same through the layer: two contacts at one point. A jam needs no care, normal compliance resolves it.
+    u = np.array([-1e-7, 1.0, 0.0])
+    exact = resolve_impact(ROD, u, 1.6, 0.5, "stronge")
+    both = resolve_impacts(
+        np.tile(ROD, (2, 2)), [u, u], 1.6, 0.5, "stronge", stiffness=(1, 3), rtol=1e-10
+    )
+    np.testing.assert_allclose(both.velocity_after[0], exact.velocity_after, rtol=0, atol=1e-8)
