@@ -82,7 +82,7 @@ def run(system, method, controls, held, now, work, cluster, corner, clocks, reco
                 # a trial step, cut until nothing can lie inside it, or shortened to its first event
                 dt, cuts, found = remaining, 0, False
                 if held.count[0] > 0:
-                    dt = until_stop(held, dt, clock)
+                    dt = until_stop(controls, held, dt, clock)
                 search.active = 0
                 while True:
                     applied, friction, code = step(method, system, held, now, dt, trial, work)
@@ -265,15 +265,16 @@ def may_end(contact, system, state, horizon, work):
 
 
 @inlined
-def until_stop(held, dt, clock):
+def until_stop(controls, held, dt, clock):
     """Return dt, or the time in which slip of one of several held points is going to stop."""
     first = dt
     for i in range(held.count[0]):
         hold = held.points[i]
         if hold.several == 1 and hold.rest == 0 and hold.mode == SLIP and hold.stop < first:
             first = hold.stop
-    # not where they follow each other without end, nor where hardly anything of the step is left
-    return first if first > 1e-3 * dt and first < 0.999 * dt and clock.in_step < 20 else dt
+    # not where they follow each other without end, nor for round-off of the step
+    inside = first > controls.rest * dt and first < (1.0 - 1e-12) * dt
+    return first if inside and clock.in_step < 20 else dt
 
 
 @kernel

@@ -84,3 +84,13 @@ def predict_stop(hold, i, cluster):
     speed = cluster.v[U][3 * i + 1] * d1 + cluster.v[U][3 * i + 2] * d2
     rate = cluster.v[OLD][3 * i + 1] * d1 + cluster.v[OLD][3 * i + 2] * d2
     hold.stop = speed / -rate if cluster.kind[i] == SLIDING and rate < 0.0 else math.inf
+
+
+@kernel
+def take_forces(hold, i, cluster):
+    """Put the force of point i into the list, its W, and when its slip stops."""
+    predict_stop(hold, i, cluster)
+    for r in range(3):
+        hold.force[r] = cluster.v[P][3 * i + r]
+        for j in range(3):
+            hold.W[r, j] = cluster.m[0][3 * i + r, 3 * i + j]

@@ -25,7 +25,7 @@ from carom.coulomb.layout import CONE
 from carom.coulomb.solve import solve_cones
 from carom.dispatch import by_address
 from carom.geometry.rotation import exp, log, multiply, normalize, rotate, rotate_back
-from carom.hold.forces import pose_forces, predict_stop, solve_forces
+from carom.hold.forces import pose_forces, solve_forces, take_forces
 from carom.hold.surface import onto_surfaces
 from carom.jit import kernel, unit
 from carom.motion.acceleration import OPEN, SLIP, STICK
@@ -344,9 +344,4 @@ def forces_at_end(system, controls, held, k, end, cluster, work):
     pose_forces(system, controls, held, k, end, cluster, work)
     solve_forces(k, cluster)
     for i in range(k):
-        hold = held.points[cluster.seats[i].held]
-        predict_stop(hold, i, cluster)
-        for r in range(3):
-            hold.force[r] = cluster.v[P][3 * i + r] if hold.next != OPEN else 0.0
-            for j in range(3):
-                hold.W[r, j] = cluster.m[0][3 * i + r, 3 * i + j]
+        take_forces(held.points[cluster.seats[i].held], i, cluster)

@@ -6,7 +6,7 @@ import math
 
 from carom.contact.gap import slow
 from carom.coulomb.layout import SLIDING
-from carom.hold.forces import pose_forces, solve_forces
+from carom.hold.forces import pose_forces, solve_forces, take_forces
 from carom.hold.one import bounces_end
 from carom.hold.roster import enlist, strike_off
 from carom.jit import kernel
@@ -39,6 +39,7 @@ def hold_several(system, controls, held, k, group, state, horizon, cluster, work
     if stay:
         drop_bounces(system, k, state, cluster, work, clock)
         set_modes(system, held, k, state, cluster, work, clock, records)
+        first_forces(system, controls, held, k, state, cluster, work)
     strike_off_open(system, held, k, group, state, cluster, work, clock, records)
 
 
@@ -102,14 +103,27 @@ def set_modes(system, held, k, state, cluster, work, clock, records):
             SLIP if math.sqrt(u1 * u1 + u2 * u2) > still and cluster.kind[i] == SLIDING else STICK
         )
         if seat.held >= 0:
-            held.points[seat.held].mode, held.points[seat.held].stop = mode, math.inf
+            held.points[seat.held].mode = mode
             continue
         if not begun:
             begin_event(seat.contact, seat.feature, state, clock, records)
         begun = False
-        enlist(system, held, seat, mode, state, work)
+        seat.held = enlist(system, held, seat, mode, state, work)
         clock.holds += 1
         end_event(HOLD, state, clock, records)
+
+
+@kernel
+def first_forces(system, controls, held, k, state, cluster, work):
+    """Put the forces of the points that stay into the list, and the times at which their slip stops."""
+    for i in range(k):
+        if cluster.seats[i].stays == 1:
+            held.points[cluster.seats[i].held].several = 1
+    pose_forces(system, controls, held, k, state, cluster, work)
+    solve_forces(k, cluster)
+    for i in range(k):
+        if cluster.seats[i].stays == 1:
+            take_forces(held.points[cluster.seats[i].held], i, cluster)
 
 
 @kernel

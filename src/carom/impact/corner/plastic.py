@@ -72,6 +72,9 @@ def _once(k, work, cones, turn):
             c.absorbed -= part_n
         else:
             c.returned += part_n
+        loss = impulse[a + 1] * (before[a + 1] + u[a + 1])
+        loss += impulse[a + 2] * (before[a + 2] + u[a + 2])
+        c.loss += max(0.0, -0.5 * loss)
     return change
 
 

@@ -233,14 +233,27 @@ def _finish(k, W, u, scale, out):
         for a in range(n):
             P_[a] *= 1.0 - energy / gain
         result.marks |= REPELLED
-    work, loss = 0.0, 0.0
+    close_ledger(k, out)
+    return OK
+
+
+@kernel
+def close_ledger(k, out):
+    """Make the works of all contacts add up to the change of energy.
+
+    Friction has what the normal forces have not; where that is nothing (a plastic event has no path, and
+    tangential impulses may add to the energy there), the work of compression takes it.
+    """
+    loaded, work, loss = 0.0, 0.0, 0.0
     for i in range(k):
+        loaded += out.compression[i]
         work += out.compression[i] + out.restitution[i]
         loss += out.friction[i]
-    exact = work - result.energy_change
-    for i in range(k):  # the ledger closes: friction has what the normal forces have not
+    exact = work - out.summary[0].energy_change
+    for i in range(k):
         if loss > 0.0 and exact > 0.0:
             out.friction[i] *= exact / loss
         elif not exact > 0.0:
             out.friction[i] = 0.0
-    return OK
+            if loaded < 0.0:
+                out.compression[i] *= 1.0 - exact / loaded
