@@ -74,22 +74,18 @@ def test_motion_that_diverges():
     "attitude", [turn((0, 1, 0), 0.6), turn((1, 2, 0.5), 0.7)], ids=["edge", "vertex"]
 )
 def test_a_box_that_needs_several_points(attitude):
-    # One point of contact is held at a time. A box that falls on an edge or a vertex and then on
-    # others needs more: the run stops and says so, and keeps what came before.
+    # A box that falls on an edge or a vertex, then on others, comes to rest on a face.
     box = {
         "shape": carom.Box(0.1, 0.1, 0.1), "mass": 1, "position": (0, 0, 0.2),
         "orientation": attitude,
     }  # fmt: skip
     scene = on_plane(box, contact={"restitution": 0.2, "friction": 0.5})
-    a = carom.simulate(scene, 5.0, step=1e-3, throw=False)
-    assert a.status in (Status.CORNER, Status.TOO_MANY_IMPACTS)
+    a = carom.simulate(scene, 5.0, step=1e-3)
     assert len(a.impacts) > 3
-    assert 0.1 < a.t[-1] < 5.0
-    assert np.all(np.isfinite(a.position))
+    assert np.all(a.velocity[-1] == 0.0)
+    assert np.all(a.position[-1] == a.position[-1000])
+    assert a.position[-1, 0, 2] == pytest.approx(0.05, abs=1e-12)
     assert np.max(a.ledger.residual) < 1e-6 * a.total_energy[0]
-    with pytest.raises(SimulationError) as error:
-        carom.simulate(scene, 5.0, step=1e-3)
-    assert len(error.value.solution.impacts) == len(a.impacts)
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -99,12 +95,12 @@ def test_every_thrown_die_ends(seed):
     q = rng.normal(size=4)
     scene = die(rng.normal(size=3) * 20, 0.2, law="stronge", orientation=q / np.linalg.norm(q))
     a = carom.simulate(scene, 1.0, step=1e-3, throw=False)
-    assert a.status in (Status.SUCCESS, Status.CORNER, Status.TOO_MANY_IMPACTS)
+    assert a.success
     assert np.all(np.isfinite(a.position))
     assert np.min(a.position[:, 0, 2]) > 0.01 * (1 - 1e-6)
     assert np.all(np.diff(a.ledger.impacts) <= 1e-15)
-    # held motion is of order 4 in the step; events are exact
-    assert np.max(np.abs(a.ledger.residual)) < 1e-7 * a.total_energy[0]
+    # held motion is of order 2 in the step; events are exact
+    assert np.max(np.abs(a.ledger.residual)) < 1e-6 * a.total_energy[0]
     assert np.all(np.diff(a.t) > 0)
 
 

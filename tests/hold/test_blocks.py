@@ -1,0 +1,94 @@
+"""A block on its four corners: on an incline, sliding to a stop, pivoting about an edge."""
+
+import numpy as np
+import pytest
+
+import carom
+
+G = 9.81
+ANGLE = np.arctan(0.5)
+
+
+def incline(angle, mu, duration, step, speed=0.0):
+    """A block on a plane that falls towards +x; return the run and the direction down the plane."""
+    scene = carom.Scene(gravity=(0, 0, -G))
+    plane = scene.add_half_space((0, 0, 0), (np.sin(angle), 0, np.cos(angle)))
+    down = np.array([np.cos(angle), 0, -np.sin(angle)])
+    block = scene.add_body(
+        carom.Box(0.2, 0.1, 0.06), mass=1.3, position=0.03 * plane.normal,
+        orientation=(np.cos(angle / 2), 0, np.sin(angle / 2), 0), velocity=speed * down,
+    )  # fmt: skip
+    scene.add_contact(block, plane, restitution=0.5, friction=mu)
+    return carom.simulate(scene, duration, step=step), down
+
+
+@pytest.mark.parametrize("mu", [0.5001, 2.0])
+def test_sticks_exactly(mu):
+    # mu > tan(angle): nothing moves, bitwise, for 100 s.
+    s, _ = incline(ANGLE, mu, 100.0, 0.1)
+    assert np.all(s.velocity == 0.0)
+    assert np.all(s.position == s.position[0])
+    assert s.contact_force[-1, 0, 0] == pytest.approx(1.3 * G * np.cos(ANGLE), rel=1e-12)
+
+
+@pytest.mark.parametrize("mu", [0.0, 0.2, 0.4999])
+def test_slides(mu):
+    # v' = g (sin - mu cos), all constant: exact for any step.
+    s, down = incline(ANGLE, mu, 2.0, 0.01)
+    rate = G * (np.sin(ANGLE) - mu * np.cos(ANGLE))
+    np.testing.assert_allclose(s.velocity[-1, 0], 2.0 * rate * down, rtol=0, atol=1e-12)
+    way = (s.position[-1, 0] - s.position[0, 0]) @ down
+    assert way == pytest.approx(2.0 * rate, abs=1e-12)
+    assert np.max(np.abs(s.angular_velocity)) < 1e-12
+
+
+@pytest.mark.parametrize("step", [0.1, 0.01, 1e-3])
+def test_stops(step):
+    # After v0^2/(2 mu g) at t = v0/(mu g), and stays.
+    s, _ = incline(0.0, 0.3, 1.0, step, speed=1.0)
+    assert s.position[-1, 0, 0] == pytest.approx(1 / (0.6 * G), abs=1e-12)
+    assert s.events.time[s.events.kind == "sticks"] == pytest.approx(4 * [1 / (0.3 * G)], abs=1e-12)
+    assert np.all(s.velocity[-1] == 0.0)
+    assert s.ledger.friction[-1] == pytest.approx(-0.5 * 1.3, rel=1e-12)
+
+
+def test_thrown_up_an_incline_it_stops_and_stays():
+    # v0^2/(2 g (sin + mu cos)) up; tan(angle) < mu holds it there.
+    s, down = incline(0.3, 0.5, 1.0, 0.01, speed=-2.0)
+    way = 4 / (2 * G * (np.sin(0.3) + 0.5 * np.cos(0.3)))
+    assert (s.position[-1, 0] - s.position[0, 0]) @ down == pytest.approx(-way, abs=1e-12)
+    assert np.all(s.velocity[-1] == 0.0)
+
+
+def pivot(step):
+    """A body like a block of half sizes .05, .1 that stands on one lower edge only, .3 rad before upright."""
+    b, h, t = 0.05, 0.1, 0.3
+    corners = [(b, y, -h) for y in (-0.05, 0.05)] + [(-b, y, h) for y in (-0.05, 0.05)]
+    corners += [(0.02 * h, 0, 0.02 * b), (-0.02 * h, 0, -0.02 * b)]
+    scene = carom.Scene(gravity=(0, 0, -G))
+    ground = scene.add_half_space((0, 0, 0), (0, 0, 1))
+    R = np.array([[np.cos(t), 0, np.sin(t)], [0, 1, 0], [-np.sin(t), 0, np.cos(t)]])
+    body = scene.add_body(
+        carom.Convex(corners), mass=1.0, inertia=np.diag([0.05, 0.05, 0.02]) / 12,
+        position=-R @ (b, 0, -h), orientation=(np.cos(t / 2), 0, np.sin(t / 2), 0),
+    )  # fmt: skip
+    scene.add_contact(body, ground, restitution=0.0, friction=50.0)
+    return carom.simulate(scene, 0.25, step=step)
+
+
+def test_pivots_about_an_edge_at_order_2():
+    # theta'' = -m g l sin(theta - alpha)/J_edge, from rest: at .25 s theta = .16203883, w = 4.81399394.
+    errors = []
+    for step in (0.01, 0.005, 0.0025):
+        s = pivot(step)
+        q = s.orientation[-1, 0]
+        assert np.all(s.contact_mode[1:] == 2)
+        errors.append(
+            (
+                abs(abs(2 * np.arctan2(q[2], q[0])) - 0.16203883),
+                abs(abs(s.angular_velocity[-1, 0, 1]) - 4.81399394),
+            )
+        )
+    rates = np.log2(np.array(errors[:-1]) / errors[1:])
+    np.testing.assert_allclose(rates, 2.0, rtol=0, atol=0.05)
+    assert errors[-1][0] < 4e-5
