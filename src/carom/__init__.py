@@ -27,6 +27,7 @@ from carom.status import SimulationError, Status
 
 if TYPE_CHECKING:
     from carom import baselines
+    from carom.coulomb import ContactSolution, solve_contacts
     from carom.impact import Impact, LayerHistory, impact_layer, resolve_impact
 
 __version__ = "0.1.0"
@@ -35,6 +36,7 @@ __all__ = [
     "GROUND",
     "Box",
     "Capsule",
+    "ContactSolution",
     "Convex",
     "Cylinder",
     "Impact",
@@ -51,13 +53,16 @@ __all__ = [
     "joints",
     "resolve_impact",
     "simulate",
+    "solve_contacts",
 ]
 
 _LAZY = {
+    "ContactSolution": "carom.coulomb",
     "Impact": "carom.impact",
     "LayerHistory": "carom.impact",
     "impact_layer": "carom.impact",
     "resolve_impact": "carom.impact",
+    "solve_contacts": "carom.coulomb",
 }
 
 

@@ -38,6 +38,9 @@ def run(given) -> int:
     )
     carom.resolve_impact([[1, 0, 0], [0, 3.5, 0], [0, 0, 3.5]], (-1, 0.5, 0.1), 0.3, 0.5)
     print(f"{'impact':17} {time.perf_counter() - start:7.2f} s")
+    start = time.perf_counter()
+    carom.solve_contacts([[1, 0, 0], [0, 3.5, 0], [0, 0, 3.5]], (-1, 0.5, 0.1), 0.3)
+    print(f"{'many contacts':17} {time.perf_counter() - start:7.2f} s")
     return 0
 
 

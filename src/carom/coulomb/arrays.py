@@ -61,10 +61,12 @@ class IslandWork(NamedTuple):
     """Work arrays of `carom.coulomb.solve_island.solve_island`."""
 
     address: int  # of the compiled search
+    newton: int  # of what it calls
     contact: np.recarray  # (k,) CONTACT
     link: np.recarray  # (k,) LINK
     vector: np.ndarray  # (VECTORS, 3k)
     count: np.ndarray  # (2,) int64
+    mismatch: np.ndarray  # (1,) what Newton reached
     body: np.recarray  # (N,) ISLAND_BODY
     place: np.recarray  # (N,) PLACE
     later: np.ndarray
@@ -83,10 +85,12 @@ def new_island_work(graph: IslandGraph, body: np.ndarray) -> IslandWork:
     return with_address(
         IslandWork(
             0,
+            0,
             table(CONTACT, k),
             link,
             np.zeros((VECTORS, 3 * k)),
             np.zeros(2, dtype=np.int64),
+            np.zeros(1),
             table(ISLAND_BODY, bodies),
             graph.place,
             graph.later,

@@ -44,7 +44,8 @@ RHS = 6  # of a linear system
 CENTRE = 7  # of the proximal term
 KEPT = 8  # the best p of one start
 BEST = 9  # the best p of all
-VECTORS = 10
+GIVEN = 10  # p at the start
+VECTORS = 11
 
 
 # Numbers of a search.
@@ -56,9 +57,11 @@ class ConeWork(NamedTuple):
     """Work arrays of `carom.coulomb.solve.solve_cones` for up to K contacts."""
 
     address: int  # of the compiled search
+    newton: int  # of what it calls
     contact: np.recarray  # (K,) CONTACT
     vector: np.ndarray  # (VECTORS, 3K)
     count: np.ndarray  # (2,) int64
+    mismatch: np.ndarray  # (1,) what Newton reached
     W: np.ndarray  # (3K, 3K) scaled inverse mass: each diagonal block has trace 3
     matrix: np.ndarray  # (3K, 3K) of a linear system, and its factors
     pivot: np.ndarray  # (3K,) int64, rows exchanged
@@ -74,9 +77,11 @@ def new_cone_work(capacity: int) -> ConeWork:
     return with_address(
         ConeWork(
             0,
+            0,
             table(CONTACT, contacts),
             np.zeros((VECTORS, n)),
             np.zeros(2, dtype=np.int64),
+            np.zeros(1),
             np.zeros((n, n)),
             np.zeros((n, n)),
             np.zeros(n, dtype=np.int64),

@@ -12,7 +12,8 @@ import math
 from carom.coulomb import layout as o
 from carom.coulomb.cone import project
 from carom.coulomb.operators import factor, multiply, solve
-from carom.jit import kernel
+from carom.dispatch import by_address
+from carom.jit import kernel, unit
 
 _LIMIT = 100
 _FLOOR = 1e-13  # below this part of 1 + |p| the iteration only polishes, while each step halves f
@@ -20,9 +21,9 @@ _SHORTEST = 1e-3  # of the line search
 _CHORD = 0.1  # factors are kept for another step if the last one reduced f by this
 
 
-@kernel
-def newton(work, k, eps, patient):
-    """Iterate from p; return how often.
+@unit
+def newton_unit(work, k, eps, patient):
+    """Iterate from p; leave in work how often (added to `ITERATIONS`), and |f|.
 
     A step must reduce |f|; or, if `patient`, the greatest of the last four: the way past a kink. Factors at
     hand (work.count[ROWS] >= 0) are tried first.
@@ -59,7 +60,12 @@ def newton(work, k, eps, patient):
             break
         if not size < _CHORD * before1:
             work.count[o.ROWS] = -1
-    return count
+    work.count[o.ITERATIONS] += count
+    work.mismatch[0] = size
+
+
+#: newton(address, work, k, eps, patient)
+newton = by_address(newton_unit)
 
 
 @kernel

@@ -82,6 +82,9 @@ def _tangential(d1, d2, b1, b2, g1, g2, cn, wnn, mu):
         alpha = -denominator / (m * cn)
         return True, -b1 / alpha, -b2 / alpha
     k1, k2 = m * g1 * b1, m * g2 * b2
+    if d2 == 0.0 and b2 == 0.0:  # planar: D_2 cancels, and h is linear
+        alpha = (abs(b1) - k1) / (-m * cn) - d1
+        return alpha > 0.0, -b1 / (d1 + alpha), 0.0
     alpha = 0.0
     for _ in range(100):
         e1, e2 = d1 + alpha, d2 + alpha

@@ -7,7 +7,7 @@ import math
 from carom.coulomb import layout as o
 from carom.coulomb.alternating import alternate
 from carom.coulomb.cone import nearest, project, shift
-from carom.coulomb.newton import newton, velocity
+from carom.coulomb.newton import newton, newton_unit, velocity
 from carom.coulomb.operators import magnitude, sweep
 from carom.coulomb.residual import RELATIVE, ROUND_OFF
 from carom.dispatch import by_address
@@ -20,26 +20,41 @@ _EXTRA = 2  # more of them where the tolerance is met, but not to round-off
 _SWEEPS = 25  # at first, twice as many each time, at most
 _MOST_SWEEPS = 200
 _ALTERNATIONS = 300
-_CONTINUE_FROM, _CONTINUE_BY = 0.3, 0.3  # weights of the proximal term in a continuation
+_RELEASE_FROM, _RELEASE_BY = 0.1, 0.3  # weights of the proximal term in a release
+_RELEASES = 60
 
 
 @unit
 def search_unit(work, k):
-    """Leave in work the best p that is found from one starting point after the other, and the iterations."""
-    p, best = work.vector[o.P], work.vector[o.BEST]
-    least, last = math.inf, _STARTS
+    """Leave in work the best p that is found from one starting point after the other, and the iterations.
+
+    Start 0: what was given, to the solution of least norm. Start 1: what was given, if anything was, to a
+    solution that is near. Then in turn: after sweeps, after alternating directions, after a release.
+    """
+    p, best, given = work.vector[o.P], work.vector[o.BEST], work.vector[o.GIVEN]
+    least, last, cold = math.inf, _STARTS, True
     work.count[o.ITERATIONS] = 0
+    for i in range(3 * k):
+        best[i] = given[i] = p[i]
+        cold = cold and p[i] == 0.0
     for start in range(_STARTS):
         if start >= last:
             break
-        if start > 0:
-            work.count[o.ITERATIONS] += _approach(work, k, start)
-        count, r, goal, tolerance = _polished(work, k, start)
-        work.count[o.ITERATIONS] += count
+        if start == 1:
+            if cold:
+                continue
+            for i in range(3 * k):
+                p[i] = given[i]
+        elif start > 1:
+            _approach(work, k, (start - 2) % 3, (start - 2) // 3)
+        r, goal, tolerance = _polished(work, k, start == 0, start % 3 == 2)
         if r < least:
             least = r
             for i in range(3 * k):
                 best[i] = p[i]
+        if not r < math.inf:  # overflow: begin anew
+            for i in range(3 * k):
+                p[i] = 0.0
         if least <= goal:
             break
         if least <= 0.9 * tolerance:
@@ -53,50 +68,72 @@ search = by_address(search_unit)
 
 
 def with_address(work):
-    """Return the work arrays with the address of the search for arrays like these."""
+    """Return the work arrays with the addresses of what is compiled for arrays like these."""
+    work = work._replace(newton=address(newton_unit, work, 1, 1.0, True))
     return work._replace(address=address(search_unit, work, 1))
 
 
 @kernel
-def _approach(work, k, start):
-    """Move work.p to another starting point for Newton; return iterations."""
-    if start % 2 == 1:
-        sweeps = min(_SWEEPS * 2 ** (start // 2), _MOST_SWEEPS)
+def _approach(work, k, way, again):
+    """Move p to another starting point for Newton; `again`: how often this way was gone before."""
+    if way == 0:
+        sweeps = min(_SWEEPS * 2**again, _MOST_SWEEPS)
         for i in range(sweeps):
             sweep(work, k, i % 2 == 1)
-        return sweeps
-    p, centre = work.vector[o.P], work.vector[o.CENTRE]
-    sigma = 0.01 * 10.0 ** ((start // 2) % 3)
-    alternate(work, k, sigma, _ALTERNATIONS)
-    total = _ALTERNATIONS
-    if start % 4 == 2:  # a strong proximal term, released step by step
-        eps = _CONTINUE_FROM
-        while eps > 10.0 * _EPS:
+        work.count[o.ITERATIONS] += sweeps
+    elif way == 1:
+        p = work.vector[o.P]
+        if again == 0:
             for i in range(3 * k):
-                centre[i] = p[i]
-            work.count[o.ROWS] = -1
-            count = newton(work, k, eps, start % 2 == 1)
-            total += count
-            eps *= _CONTINUE_BY
-    return total
+                p[i] = 0.0
+        sigma = 0.01 * 10.0 ** ((again + 1) % 3)
+        alternate(work, k, sigma, _ALTERNATIONS)
+        work.count[o.ITERATIONS] += _ALTERNATIONS
+    else:
+        _release(work, k)
 
 
 @kernel
-def _polished(work, k, start):
-    """Newton until the proximal term has no effect; return (iterations, residual, goal, tolerance).
+def _release(work, k):
+    """Newton with a strong proximal term, which is weakened while that succeeds."""
+    p, kept, centre = work.vector[o.P], work.vector[o.KEPT], work.vector[o.CENTRE]
+    for i in range(3 * k):
+        kept[i] = p[i]
+    eps = _RELEASE_FROM
+    for _ in range(_RELEASES):
+        for i in range(3 * k):
+            centre[i] = p[i] = kept[i]
+        work.count[o.ROWS] = -1
+        newton(work.newton, work, k, eps, True)
+        if work.mismatch[0] < 1e-8:
+            for i in range(3 * k):
+                kept[i] = p[i]
+            eps *= _RELEASE_BY
+        else:
+            eps /= _RELEASE_BY
+        if not 10.0 * _EPS < eps < 10.0 * _RELEASE_FROM:
+            break
+    for i in range(3 * k):
+        p[i] = kept[i]
 
-    The term is centred at 0 in the first start, for the solution of least norm, then at p; and it is moved
-    to each new solution until its bias is gone. work.p is the best of the rounds.
+
+@kernel
+def _polished(work, k, least_norm, patient):
+    """Newton until the proximal term has no effect; return (residual, goal, tolerance).
+
+    The term is centred at 0, for the solution of least norm, or at p; then it is moved to each new solution
+    until its bias is gone. p is the best of the rounds.
     """
     p, kept, centre = work.vector[o.P], work.vector[o.KEPT], work.vector[o.CENTRE]
     for i in range(3 * k):
-        centre[i] = p[i] if start > 0 else 0.0
-    total, least = 0, math.inf
+        centre[i] = 0.0 if least_norm else p[i]
+    least = math.inf
     work.count[o.ROWS] = -1
+    for i in range(3 * k):
+        kept[i] = p[i]
     goal, tolerance = 0.0, 0.0
     for _ in range(_POLISH):
-        count = newton(work, k, _EPS, start % 2 == 1)
-        total += count
+        newton(work.newton, work, k, _EPS, patient)
         for i in range(k):
             n = 3 * i
             p[n], p[n + 1], p[n + 2] = project(work.contact[i], p[n], p[n + 1], p[n + 2])
@@ -112,7 +149,7 @@ def _polished(work, k, start):
             centre[i] = p[i]
     for i in range(3 * k):
         p[i] = kept[i]
-    return total, least, goal, tolerance
+    return least, goal, tolerance
 
 
 @kernel
