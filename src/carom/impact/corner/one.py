@@ -7,7 +7,7 @@ from carom.impact import layout as o
 from carom.impact.resolve import resolve
 from carom.jit import unit
 
-_WEDGED = 1e6  # u_n of the normal impulse alone, over the velocities before: beyond, W is singular in stick
+_WEDGED = 1e3  # u_n of the normal impulse alone, over the velocities before: beyond, W is singular in stick
 
 
 @unit
