@@ -35,10 +35,9 @@ class Parameter:
     def __post_init__(self):
         if np.isnan(self.lower) or np.isnan(self.upper) or not self.lower < self.upper:
             raise ValueError(f"lower must be below upper, got {self.lower!r} and {self.upper!r}")
-        inside = {"least": self.lower, "most": self.upper}
         keep(
             self,
-            start=check.number("start", self.start, **inside),
+            start=check.number("start", self.start, least=self.lower, most=self.upper),
             step=check.number("step", self.step, above=0.0, most=self.upper - self.lower),
         )
 

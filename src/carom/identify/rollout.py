@@ -51,10 +51,10 @@ def roll_out(
     since = recording.t - recording.t[0]
     n, length = since.size, float(since[-1])
     sampling = length / (n - 1)
-    step = 0.25 * sampling if step is None else step
+    longest = 0.25 * sampling if step is None else step
     uniform = np.max(np.abs(since - sampling * np.arange(n))) <= UNIFORM * sampling
-    parts = int(np.ceil(sampling / step * (1.0 - 1e-9))) if uniform else 1
-    step = sampling / parts if uniform else step
+    parts = int(np.ceil(sampling / longest * (1.0 - 1e-9))) if uniform else 1
+    step = sampling / parts if uniform else longest
     solution = simulate(
         scene, length, step=step, save_every=parts, options=options, throw=False
     )  # fmt: skip

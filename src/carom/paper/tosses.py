@@ -72,8 +72,9 @@ def read(path: str | Path | None = None) -> list[tuple[int, np.ndarray]]:
     The file of the package has whole multiples of 1e-6 m and 1e-6, as second differences, and velocities at
     first samples only.
     """
-    path = files("carom.paper") / "data" / "cube_tosses_even.npz" if path is None else Path(path)
-    with path.open("rb") as file, np.load(file) as data:
+    own = files("carom.paper") / "data" / "cube_tosses_even.npz"
+    source = own if path is None else Path(path)
+    with source.open("rb") as file, np.load(file) as data:
         numbers, ends = data["toss_id"].tolist(), data["offsets"]
         if "states" in data:
             states = data["states"]
@@ -117,7 +118,8 @@ def levels(runs, tosses) -> Levels:
     """Return the errors of simulated motion."""
     errors = np.array([trajectory_error(*pair, EDGE) for pair in zip(runs, tosses)])
     ends = [[face_up(of.orientation[-1, 0]) for of in some] for some in (runs, tosses)]
-    return Levels(100 * errors[:, 0], np.degrees(errors[:, 1]), np.not_equal(*ends))
+    other = np.not_equal(ends[0], ends[1])
+    return Levels(100 * errors[:, 0], np.degrees(errors[:, 1]), other)
 
 
 def simulate(start: str, tosses: list[Recording], parameters: dict, step: float = STEP, **settings):
