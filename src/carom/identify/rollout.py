@@ -54,9 +54,9 @@ def roll_out(
     longest = 0.25 * sampling if step is None else step
     uniform = np.max(np.abs(since - sampling * np.arange(n))) <= UNIFORM * sampling
     parts = int(np.ceil(sampling / longest * (1.0 - 1e-9))) if uniform else 1
-    step = sampling / parts if uniform else longest
+    used = sampling / parts if uniform else longest
     solution = simulate(
-        scene, length, step=step, save_every=parts, options=options, throw=False
+        scene, length, step=used, save_every=parts, options=options, throw=False
     )  # fmt: skip
     count = recording.position.shape[1]
     if uniform and solution.success:
