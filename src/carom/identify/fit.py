@@ -66,7 +66,7 @@ def identify(
         Most evaluations in the search, each a simulation of all recordings. Default 400.
     resamples : int
         Sets of recordings drawn anew for the uncertainty, 0 for none. Default 200. They cost a design of
-        2 p^2 + 1 evaluations, at most five times.
+        2 p^2 + 1 evaluations, at most six times.
     seed : int
         Of the drawing. Default 0.
     step, options, threads
