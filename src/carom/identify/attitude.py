@@ -9,6 +9,7 @@ import numpy as np
 from carom.geometry import quaternion
 
 ITERATIONS = 50
+DIFFERENCE = 1e-5  # [rad], for slopes
 
 
 class Turn(NamedTuple):
@@ -29,21 +30,22 @@ def fit_attitude(t, q, inertia=None) -> Turn:
     q = quaternion.multiply(q, to_principal)
     # unknowns: a turn of R0 about the world axes, and the turn w t[-1] over the whole flight
     R0, turn = q[0], _first_guess(t, q) * t[-1]
-    unit = np.eye(6) * 1e-5
+    changes = np.concatenate([np.zeros((1, 6)), DIFFERENCE * np.eye(6), -DIFFERENCE * np.eye(6)])
 
-    def residual(change):
-        start = quaternion.multiply(quaternion.exp(change[:3]), R0)
-        model = spin(t, start, (turn + change[3:]) / t[-1])
-        return quaternion.log(quaternion.multiply(q, quaternion.conjugate(model)))
+    def residuals():
+        """Residuals (13, 3 n): as it stands, and with each unknown a little larger and smaller."""
+        starts = quaternion.multiply(quaternion.exp(changes[:, :3]), R0)
+        model = spin(t, starts, (turn + changes[:, 3:]) / t[-1])
+        off = quaternion.log(quaternion.multiply(q, quaternion.conjugate(model)))
+        return off.reshape(13, -1)
 
-    here, before = residual(np.zeros(6)), np.inf
+    before = np.inf
     for _ in range(ITERATIONS):
-        columns = [(residual(u) - residual(-u)).ravel() / 2e-5 for u in unit]
-        slope = np.stack(columns, axis=1)
-        change = np.linalg.lstsq(slope, -here.ravel(), rcond=None)[0]
+        here = residuals()
+        slope = (here[1:7] - here[7:]).T / (2.0 * DIFFERENCE)
+        change = np.linalg.lstsq(slope, -here[0], rcond=None)[0]
         R0 = quaternion.normalize(quaternion.multiply(quaternion.exp(change[:3]), R0))
-        turn = turn + change[3:]
-        here, length = residual(np.zeros(6)), float(np.max(np.abs(change)))
+        turn, length = turn + change[3:], float(np.max(np.abs(change)))
         # at round-off it no longer shrinks; the slopes are good to 1e-10
         if length < 1e-12 or (length < 1e-7 and length > 0.5 * before):
             break
@@ -53,6 +55,7 @@ def fit_attitude(t, q, inertia=None) -> Turn:
             f"orientation is not that of a free body: the fit of the attitude did not converge in {ITERATIONS} "
             f"iterations, the last one turned it by {length:.3g} rad; give samples of free flight only"
         )
+    here = residuals()[0].reshape(-1, 3)
     noise = float(np.sqrt(np.sum(here**2) / (here.size - 6)))
     spread = np.sqrt(np.diag(np.linalg.inv(slope.T @ slope)))
     error = noise * spread / np.repeat((1.0, t[-1]), 3)
@@ -60,9 +63,9 @@ def fit_attitude(t, q, inertia=None) -> Turn:
     return Turn(orientation, turn / t[-1], error, here, noise)
 
 
-def constant_spin(t, start, w) -> np.ndarray:
-    """Return attitudes exp(w t) R0 (n, 4)."""
-    return quaternion.multiply(quaternion.exp(np.outer(t, w)), start)
+def constant_spin(t, starts, w) -> np.ndarray:
+    """Return attitudes exp(w t) R0 (m, n, 4) of starts (m, 4) and angular velocities (m, 3)."""
+    return quaternion.multiply(quaternion.exp(w[:, None] * t[:, None]), starts[:, None])
 
 
 def _first_guess(t, q) -> np.ndarray:
@@ -94,15 +97,16 @@ def _torque_free(moments):
     from scipy.integrate import solve_ivp
 
     def rate(_, y):
-        q, W = y[:4], y[4:]
-        turned = 0.5 * quaternion.multiply(q, np.concatenate([[0.0], W]))
-        return np.concatenate([turned, np.cross(moments * W, W) / moments])
+        q, W = np.split(y.reshape(-1, 7), [4], axis=1)
+        turned = 0.5 * quaternion.multiply(q, np.insert(W, 0, 0.0, axis=1))
+        return np.hstack([turned, np.cross(moments * W, W) / moments]).ravel()
 
-    def spin(t, start, w):
-        first = np.concatenate([start, quaternion.rotate_back(start, w)])
+    def spin(t, starts, w):
+        first = np.hstack([starts, quaternion.rotate_back(starts, w)])
         found = solve_ivp(
-            rate, (0.0, t[-1]), first, method="DOP853", t_eval=t, rtol=1e-12, atol=1e-13
+            rate, (0.0, t[-1]), first.ravel(), method="DOP853", t_eval=t, rtol=1e-12, atol=1e-13
         )
-        return quaternion.normalize(found.y[:4].T)
+        states = found.y.T.reshape(t.size, -1, 7)
+        return quaternion.normalize(np.swapaxes(states[..., :4], 0, 1))
 
     return spin

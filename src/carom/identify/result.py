@@ -69,6 +69,17 @@ class Identification:
         return dict(zip(self.parameters, np.std(self.uncertainty.samples, axis=0).tolist()))
 
     @property
+    def smooth(self) -> dict[str, float]:
+        """Minimum of the quadratic surface through evaluations around the best, NaN without resampling.
+
+        Where the objective is rough the best evaluated point is lucky in part; what lies between this and
+        `parameters` is that.
+        """
+        if self.uncertainty is None:
+            return dict.fromkeys(self.parameters, float("nan"))
+        return dict(zip(self.parameters, self.uncertainty.centre.tolist()))
+
+    @property
     def interval(self) -> dict[str, tuple[float, float]]:
         """Where 95 % of each parameter lie over recordings drawn anew."""
         if self.uncertainty is None:
@@ -91,7 +102,8 @@ class Identification:
         for name, value in self.parameters.items():
             low, high = self.interval[name]
             lines.append(
-                f"{name:16} {value:.6g} +- {self.error[name]:.2g}, 95 % in [{low:.6g}, {high:.6g}]"
+                f"{name:16} {value:.6g} +- {self.error[name]:.2g}, smoothed {self.smooth[name]:.6g}, "
+                f"95 % in [{low:.6g}, {high:.6g}]"
             )
         stopped = [run.message for run in self.runs if run.message]
         if stopped:

@@ -14,7 +14,7 @@ class BudgetSpent(Exception):
 def search(
     evaluate: Evaluator, method: str, restarts: int, tolerance: float, most: int
 ) -> tuple[bool, str]:
-    """Search from the start of the parameters; return whether it ended by itself, and a sentence.
+    """Search from the best evaluation so far, or the start; return whether it ended by itself, and how.
 
     Unknowns are parameters less their start, over their steps. A restart begins with a fresh simplex of
     half the size around the best point so far, the other way round: a simplex may have become flat without
@@ -32,7 +32,8 @@ def search(
         return evaluate(space.start + space.step * z)
 
     try:
-        best = evaluate(space.start)
+        evaluate(space.start)
+        best = evaluate.mean(evaluate.best)
         for k in range(restarts + 1):
             z = (evaluate.points[evaluate.best] - space.start) / space.step
             options: dict = {}

@@ -8,7 +8,7 @@ import numpy as np
 
 from carom.identify.evaluate import Evaluator
 
-ROUNDS = 5
+ROUNDS = 6
 ROUGH = 1e-9  # relative to the largest curvature: below it a surface has no minimum of its own
 
 
@@ -18,9 +18,7 @@ class Uncertainty(NamedTuple):
     centre: np.ndarray  # (p,) minimum of the surface of all recordings
     samples: np.ndarray  # (B, p) minima of the resampled surfaces
     reach: np.ndarray  # (p,) half width of the region that the surface is fitted to
-    at_edge: (
-        np.ndarray
-    )  # (p,) share of the samples at the edge of that region: their spread is larger
+    at_edge: np.ndarray  # (p,) share of samples at the edge of the region: the spread is larger
 
 
 def bootstrap(evaluate: Evaluator, resamples: int, seed: int) -> Uncertainty:
@@ -43,13 +41,11 @@ def bootstrap(evaluate: Evaluator, resamples: int, seed: int) -> Uncertainty:
         at_edge = np.mean(np.abs(samples) >= 1.0 - 1e-9, axis=0)
         spread = np.std(samples, axis=0)
         result = Uncertainty(centre + reach * middle, centre + reach * samples, reach, at_edge)
-        wide = (at_edge > 0.05) & (reach < 2.0 * space.step)
-        narrow = spread < 0.1
+        wide, narrow = at_edge > 0.05, spread < 0.1
         if not np.any(wide | narrow):
             break
-        reach = np.where(
-            wide, 2.0 * reach, np.where(narrow, np.maximum(3 * spread, 0.1) * reach, reach)
-        )
+        smaller = np.where(narrow, np.maximum(3.0 * spread, 0.1), 1.0)
+        reach = reach * np.where(wide, 3.0, smaller)
         best = np.where(wide, result.centre, best)
     return result
 

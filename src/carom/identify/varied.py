@@ -7,7 +7,7 @@ from dataclasses import asdict, replace
 import numpy as np
 
 from carom import check
-from carom.identify.recording import State
+from carom.identify.recording import State, checked_state
 from carom.scene.materials import ContactLaw
 from carom.scene.scene import Scene
 from carom.scene.shapes import Box
@@ -65,10 +65,8 @@ def varied(
             "start cannot replace the state of a scene with joints or forces, whose places are those of the "
             f"start, got {scene!r}; give a function that makes the scene instead"
         )
-    if start is not None and len(start.position) != len(scene.bodies):
-        raise ValueError(
-            f"start must be of all {len(scene.bodies)} bodies of the scene, got {len(start.position)}"
-        )
+    if start is not None:
+        start = checked_state(start, len(scene.bodies))
     factor = check.number("inertia_factor", inertia_factor, above=0.0)
     copy = Scene(gravity=scene.gravity)
     parts: dict = {}

@@ -41,14 +41,17 @@ from carom.identify import (
 DT = 1.0 / 148.0  # [s]
 EDGE, MASS, INERTIA = 0.1048, 0.37, 8.1e-4  # [m], [kg], [kg m^2]
 CLEARANCE = 0.003  # [m]
-STEP = DT / 4.0
+STEP = DT / 4.0  # for levels; a search takes DT, which moves the means by 0.03 % and 0.02 deg
 SHORT = 0.0512 / 0.0524  # recorded over true lengths
 GRAVITY = {"A": 9.81, "B": 9.614}
 HALF = {"A": 0.0524, "B": 0.0512}  # half edge of the model [m]
 LENGTH, ANGLE = 0.135 * EDGE, np.radians(16.5)  # errors of the best published simulator
 
 #: parameters by start and number of fitted ones; 0: drop test and tilt test of those who made the data
-CHOSEN: dict[tuple[str, int], dict[str, float]] = {}
+CHOSEN: dict[tuple[str, int], dict[str, float]] = {
+    ("A", 0): {"restitution": 0.125, "friction": 0.18},
+    ("B", 0): {"restitution": 0.125, "friction": 0.18},
+}
 
 
 class Levels(NamedTuple):
@@ -69,8 +72,8 @@ class Levels(NamedTuple):
 def read(path: str | Path | None = None) -> list[tuple[int, np.ndarray]]:
     """Return number and states (n, 13) of each toss: x, q, v (world), w (body axes).
 
-    The file of the package has whole multiples of 1e-6 m and 1e-6, as second differences, and velocities at
-    first samples only.
+    The file of the package has whole multiples of 1e-6 m and 1e-6, as second differences, and velocities
+    at first samples only.
     """
     own = files("carom.paper") / "data" / "cube_tosses_even.npz"
     source = own if path is None else Path(path)
@@ -118,8 +121,7 @@ def levels(runs, tosses) -> Levels:
     """Return the errors of simulated motion."""
     errors = np.array([trajectory_error(*pair, EDGE) for pair in zip(runs, tosses)])
     ends = [[face_up(of.orientation[-1, 0]) for of in some] for some in (runs, tosses)]
-    other = np.not_equal(ends[0], ends[1])
-    return Levels(100 * errors[:, 0], np.degrees(errors[:, 1]), other)
+    return Levels(100 * errors[:, 0], np.degrees(errors[:, 1]), np.not_equal(*ends))
 
 
 def simulate(start: str, tosses: list[Recording], parameters: dict, step: float = STEP, **settings):
@@ -132,6 +134,48 @@ def simulate(start: str, tosses: list[Recording], parameters: dict, step: float 
     return roll_outs(make, tosses, step=step, **settings)
 
 
+def rest(start: str, tosses: list[Recording], parameters: dict, longer: float = 1.0) -> str:
+    """Simulate some time longer than recorded; say how many cubes rest flat on a face then.
+
+    A rest is velocities of exactly 0; flat is a face turned from the table by less than 1e-9 rad, with
+    the centre half an edge above it to 1e-9 m.
+    """
+    half = HALF[start]
+    more = int(np.ceil(longer / DT))
+    extended = []
+    for toss in tosses:
+        n = toss.t.size + more
+        hold = [
+            np.concatenate([a, np.repeat(a[-1:], more, axis=0)])
+            for a in (toss.position, toss.orientation)
+        ]
+        extended.append(Recording(DT * np.arange(n), *hold, toss.start, toss.name))
+    still, flat, late = 0, 0, []
+    for toss, run in zip(tosses, simulate(start, extended, parameters)):
+        up = quaternion.rotate_back(run.orientation[-1, 0], [0.0, 0.0, 1.0])
+        tilt = np.sqrt(np.sum(np.sort(np.abs(up))[:2] ** 2))
+        still += run.speed == 0.0
+        flat += tilt < 1e-9 and abs(run.position[-1, 0, 2] - half) < 1e-9
+        moves = np.any(np.diff(run.position[:, 0], axis=0) != 0.0, axis=1)
+        late.append((np.flatnonzero(moves)[-1] + 1 - (toss.t.size - 1)) * DT)
+    return (
+        f"{still} of {len(tosses)} at rest, {flat} flat on a face, the last one {max(late):.3f} s after "
+        "its recording ends"
+    )
+
+
+def perturbed(tosses: list[Recording], size: float = 1e-6, seed: int = 0) -> list[Recording]:
+    """Return the tosses with starts moved by normal noise of `size` [m], [rad], [m/s], [rad/s]."""
+    random, found = np.random.default_rng(seed), []
+    for toss in tosses:
+        x, q, v, w = toss.start
+        turn = quaternion.exp(size * random.normal(size=x.shape))
+        x, v, w = (a + size * random.normal(size=a.shape) for a in (x, v, w))
+        start = State(x, quaternion.multiply(turn, q), v, w)
+        found.append(Recording(toss.t, toss.position, toss.orientation, start, toss.name))
+    return found
+
+
 def fit(start: str, count: int, tosses: list[Recording], **settings) -> Identification:
     """Fit 2 parameters (e, mu) or 5 (and mu of held contacts, inertia, radius of the corners) to tosses."""
     begin: dict = {"restitution": (0.2, 0.1), "friction": (0.18, 0.015)}
@@ -140,4 +184,4 @@ def fit(start: str, count: int, tosses: list[Recording], **settings) -> Identifi
         begin["inertia_factor"] = (1.1, 0.15)
         begin["corner_radius"] = (0.0025, 0.0025)
     objective = mean_error(LENGTH, ANGLE)
-    return identify(template(start), tosses, begin, objective, step=STEP, **settings)
+    return identify(template(start), tosses, begin, objective, **{"step": DT, **settings})
