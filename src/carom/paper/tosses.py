@@ -121,7 +121,8 @@ def levels(runs, tosses) -> Levels:
     """Return the errors of simulated motion."""
     errors = np.array([trajectory_error(*pair, EDGE) for pair in zip(runs, tosses)])
     ends = [[face_up(of.orientation[-1, 0]) for of in some] for some in (runs, tosses)]
-    return Levels(100 * errors[:, 0], np.degrees(errors[:, 1]), np.not_equal(*ends))
+    other = np.not_equal(ends[0], ends[1])
+    return Levels(100 * errors[:, 0], np.degrees(errors[:, 1]), other)
 
 
 def simulate(start: str, tosses: list[Recording], parameters: dict, step: float = STEP, **settings):
@@ -145,11 +146,11 @@ def rest(start: str, tosses: list[Recording], parameters: dict, longer: float = 
     extended = []
     for toss in tosses:
         n = toss.t.size + more
-        hold = [
+        x, q = (
             np.concatenate([a, np.repeat(a[-1:], more, axis=0)])
             for a in (toss.position, toss.orientation)
-        ]
-        extended.append(Recording(DT * np.arange(n), *hold, toss.start, toss.name))
+        )
+        extended.append(Recording(DT * np.arange(n), x, q, toss.start, toss.name))
     still, flat, late = 0, 0, []
     for toss, run in zip(tosses, simulate(start, extended, parameters)):
         up = quaternion.rotate_back(run.orientation[-1, 0], [0.0, 0.0, 1.0])
@@ -168,6 +169,7 @@ def perturbed(tosses: list[Recording], size: float = 1e-6, seed: int = 0) -> lis
     """Return the tosses with starts moved by normal noise of `size` [m], [rad], [m/s], [rad/s]."""
     random, found = np.random.default_rng(seed), []
     for toss in tosses:
+        assert toss.start is not None
         x, q, v, w = toss.start
         turn = quaternion.exp(size * random.normal(size=x.shape))
         x, v, w = (a + size * random.normal(size=a.shape) for a in (x, v, w))
