@@ -38,7 +38,8 @@ def draw(recording, run, half: float) -> Any:
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(style.PAGE, 5.0), layout="constrained")
-    above, below = np.ravel(figure.subfigures(2, 1, height_ratios=[1.3, 1.0]))
+    parts: Any = figure.subfigures(2, 1, height_ratios=[1.3, 1.0])
+    above, below = parts
     strip = above.subplots(2, POSES, gridspec_kw={"wspace": 0.03, "hspace": 0.03})
     camera = _camera(recording.position[:, 0])
     t = recording.t - recording.t[0]
