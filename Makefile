@@ -18,7 +18,7 @@ test: $(VENV)/installed-test ## all checks: style, types, tests, a part of them 
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/basedpyright
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n auto
 	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -m plain
 
 lint: $(VENV)/installed-test
