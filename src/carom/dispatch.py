@@ -26,7 +26,7 @@ def by_method(table: Mapping[type, Callable]) -> Callable:
         implementation = table[method.instance_class]
         return lambda method, *arguments: implementation(method, *arguments)
 
-    return _overloaded(choose, chosen)
+    return _overloaded(choose, chosen, *table.values())
 
 
 def by_solver(table: Mapping[type, Callable]) -> Callable:
@@ -40,7 +40,7 @@ def by_solver(table: Mapping[type, Callable]) -> Callable:
         implementation = table[solver.instance_class]
         return lambda system, *arguments: implementation(system, *arguments)
 
-    return _overloaded(choose, chosen)
+    return _overloaded(choose, chosen, *table.values())
 
 
 def by_address(function: Callable) -> Callable:
@@ -95,10 +95,12 @@ def only_with_pairs(function: Callable, without: Callable) -> Callable:
         implementation = without if hulls.instance_class is NoHulls else function
         return lambda system, *arguments: implementation(system, *arguments)
 
-    return _overloaded(choose, chosen)
+    return _overloaded(choose, chosen, function, without)
 
 
-def _overloaded(choose: Callable, chosen: Callable) -> Callable:
+def _overloaded(choose: Any, chosen: Callable, *parts: Callable) -> Callable:
+    """Let compiled code call what `chosen` returns; `parts` are what that may be."""
     options: Any = OPTIONS
     overload(choose, **options)(chosen)
+    choose.parts = parts
     return choose

@@ -1,69 +1,57 @@
-"""The two decorators for compiled code: `kernel`, and `entry` where Python calls it.
+"""The decorators for compiled code: `kernel`, `unit`, and `entry` where Python calls it.
 
 Kernels are plain functions on scalars and arrays. They call only other kernels, and also run
 uncompiled (``NUMBA_DISABLE_JIT=1``). They are compiled without Numba's memory manager: a kernel that
 would allocate does not compile, and no array is counted when it is passed on (which cost 8 microseconds a
-step).
-
-Numba caches compiled code beside the source, but it looks only at the file of the function that is
-called: a change in a *callee* in another file would go unseen. Here the cache is stamped with a
-hash of every source file of the package, so any change of carom, or an upgrade, recompiles.
+step). Kernels are parts of what calls them (`carom.parts`); units and entries are compiled as a whole, and
+kept on disk until something in them changes (`carom.stamp`).
 """
 
 from __future__ import annotations
 
 import contextlib
-import hashlib
-from functools import cache
-from pathlib import Path
+from functools import cached_property
 from typing import Any
 
 import numba
 import numpy as np
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 
+from carom.parts import PartCompiler
+from carom.stamp import stamp
+
 _RULES: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
 _INSIDE: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 _OUTSIDE: dict[str, Any] = {"no_cfunc_wrapper": True}
+_PART: dict[str, Any] = {**_RULES, **_INSIDE, "pipeline_class": PartCompiler}
 
 #: for `numba.extending.overload`, whose functions are compiled by these rules
-OPTIONS: dict[str, Any] = {"jit_options": {**_RULES, **_INSIDE, "forceinline": True}}
-
-
-_WITHOUT_KERNELS = ("paper", "cli", "identify")  # folders that no compiled function calls
-
-
-@cache
-def _package_stamp() -> str:
-    """Hash of all sources of the package that can be part of a compiled function."""
-    digest = hashlib.sha256()
-    root = Path(__file__).parent
-    for path in sorted(root.rglob("*.py")):
-        if path.relative_to(root).parts[0] in _WITHOUT_KERNELS:
-            continue
-        digest.update(path.relative_to(root).as_posix().encode())
-        digest.update(path.read_bytes())
-    return digest.hexdigest()
+OPTIONS: dict[str, Any] = {"jit_options": {**_PART, "forceinline": True}}
 
 
 class _StampedCache(FunctionCache):
-    """A function cache that is valid for one state of the whole package, not of one file."""
+    """A function cache that is valid for one state of a function and of all that is linked into it."""
 
     def __init__(self, py_func):
         super().__init__(py_func)
-        self._cache_file = IndexDataCacheFile(
+        self._kept = py_func
+        del self._cache_file  # made when it is first asked for: what is called may be defined later
+
+    @cached_property
+    def _cache_file(self):
+        return IndexDataCacheFile(
             cache_path=self._cache_path,
             filename_base=self._impl.filename_base,
-            source_stamp=_package_stamp(),
+            source_stamp=stamp(self._kept),
         )
 
 
 def kernel(function):
-    """Compile `function` for calls from other kernels only.
+    """Compile `function` for calls from other kernels only, as a part of them.
 
     Division follows IEEE (``error_model="numpy"``), no fast-math: results are the same on every run.
     """
-    return numba.njit(**_RULES, **_INSIDE)(function)
+    return numba.njit(**_PART)(function)
 
 
 def inlined(function):
@@ -71,7 +59,7 @@ def inlined(function):
 
     A call that hands on a system costs more than a free step (some 150 values go on the stack).
     """
-    return numba.njit(**_RULES, **_INSIDE, forceinline=True)(function)
+    return numba.njit(**_PART, forceinline=True)(function)
 
 
 def unit(function):

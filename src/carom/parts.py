@@ -1,0 +1,72 @@
+"""Compile a kernel as a part of its callers: lowered once, linked in, and optimised only with the whole.
+
+Numba optimises each function together with all that it calls and turns it into machine code, though a kernel is
+never called on its own: what lies ten calls deep is gone through ten times. Here a kernel ends as
+LLVM code that its callers link in; only what is called from Python or through its address is optimised,
+once, with everything in it. (Measured on a die thrown to rest: docs/development/decisions.md.)
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from numba import _dynfunc  # pyright: ignore[reportAttributeAccessIssue]
+from numba.core import compiler, typed_passes
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler_machinery import register_pass
+
+
+class Part(JITCodeLibrary):
+    """Code that is only linked into other code."""
+
+    def _optimize_final_module(self):
+        pass  # its callers are
+
+    def _finalize_final_module(self):
+        self._finalize_dynamic_globals()
+        self._verify_declare_only_symbols()
+        self._finalized = True
+
+    def get_pointer_to_function(self, name):
+        """Return that there is no machine code."""
+        return 0
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class PartLowering(typed_passes.NativeLowering):
+    """Lower a kernel into a `Part`, which is not compiled further."""
+
+    _name = "part_lowering"
+
+    def run_pass(self, state):
+        """Write the code of the kernel, and let it be known to its callers."""
+        context, flags = state.targetctx, state.flags
+        state.library = Part(context.codegen(), state.func_id.func_qualname)
+        kept, flags.no_compile = flags.no_compile, True
+        try:
+            super().run_pass(state)
+        finally:
+            flags.no_compile = kept
+        made: Any = state["cr"]
+        function = made.fndesc
+        # what callers know it by; it has no machine code and cannot be called
+        entry = _dynfunc.make_function(
+            function.lookup_module(), function.qualname, "", 0, made.env, (state.library,)
+        )
+        context.insert_user_function(entry, function, [state.library])
+        state.reload_init.extend(state.library._reload_init)
+        state["cr"] = made._replace(cfunc=entry)
+        return True
+
+
+class PartCompiler(compiler.CompilerBase):
+    """Numba's own pipeline, with another end."""
+
+    def define_pipelines(self):
+        """Return the passes."""
+        manager = compiler.DefaultPassBuilder.define_nopython_pipeline(self.state)
+        manager.passes[:] = [
+            (PartLowering if step is typed_passes.NativeLowering else step, what)
+            for step, what in manager.passes
+        ]
+        return [manager]

@@ -1,0 +1,63 @@
+"""The stamp of cached code changes with all that is linked into it, and with nothing else."""
+
+import types
+
+import pytest
+
+from carom import dispatch
+from carom.stamp import stamp
+
+LEAF = """
+def leaf(x):
+    {doc}
+    return {factor} * x + SHIFT
+
+def caller(x):
+    return leaf(x) + module.deep(x) + chosen(x)
+"""
+
+
+def made(factor="2.0", shift=1.0, doc="''", deep="x", option="x + 1.0", unit="x"):
+    """Return a function that calls another, one of a module, and one chosen by a type."""
+    module = types.ModuleType("carom.made")
+    exec(f"def deep(x):\n    return {deep}", vars(module))
+    space = {"SHIFT": shift, "module": module, "__name__": "made"}
+    exec(LEAF.format(factor=factor, doc=doc), space)
+    space["leaf"].__module__ = "made"
+    exec(f"def option(x):\n    return {option}\ndef reached(x):\n    return {unit}", space)
+    space["chosen"] = types.SimpleNamespace(parts=(space["option"],))
+    space["by_address"] = types.SimpleNamespace(parts=())
+    for name in ("leaf", "deep"):
+        where = vars(module) if name == "deep" else space
+        where[name] = types.SimpleNamespace(py_func=where[name])
+    return space["caller"]
+
+
+def test_same_code_same_stamp():
+    assert stamp(made()) == stamp(made()) == stamp(made(doc="'Other words.'"))
+
+
+@pytest.mark.parametrize(
+    "change",
+    [{"factor": "3.0"}, {"shift": 2.0}, {"deep": "x * x"}, {"option": "x - 1.0"}],
+    ids=["callee", "constant", "module", "choice"],
+)
+def test_change_of_a_part_changes_the_stamp(change):
+    assert stamp(made(**change)) != stamp(made())
+
+
+def test_what_is_reached_through_an_address_is_left_out():
+    assert stamp(made(unit="2.0 * x")) == stamp(made())
+    assert dispatch.by_address(made()).parts == ()
+
+
+def test_the_whole_loop_is_reached():
+    """A unit and what it calls, over several files."""
+    from carom import stamp as module
+    from carom.hold.press import press_unit
+
+    if not hasattr(press_unit, "py_func"):
+        pytest.skip("not compiled: there is no cache")
+    names = list(module._reached(press_unit.py_func, set()))
+    for name in ("hold.press.impose", "motion.several.spread_all", "coulomb.solve.solve_cones"):
+        assert f"carom.{name}" in names
