@@ -35,7 +35,7 @@ def hold_several(system, controls, held, k, group, state, horizon, cluster, work
             held.brinks[seat.contact].leaving = 1  # lifts off without speed
     if new >= 0:
         seat = cluster.seats[new]
-        begin_event(seat.contact, seat.feature, state, clock, records)
+        begin_event(system, seat.contact, seat.feature, state, clock, records)
     if stay:
         drop_bounces(system, k, state, cluster, work, clock)
         set_modes(system, held, k, state, cluster, work, clock, records)
@@ -106,11 +106,11 @@ def set_modes(system, held, k, state, cluster, work, clock, records):
             held.points[seat.held].mode = mode
             continue
         if not begun:
-            begin_event(seat.contact, seat.feature, state, clock, records)
+            begin_event(system, seat.contact, seat.feature, state, clock, records)
         begun = False
         seat.held = enlist(system, held, seat, mode, state, work)
         clock.holds += 1
-        end_event(HOLD, state, clock, records)
+        end_event(system, HOLD, state, clock, records)
 
 
 @kernel
@@ -136,7 +136,7 @@ def strike_off_open(system, held, k, group, state, cluster, work, clock, records
         for i in range(k):
             seat = cluster.seats[i]
             if seat.contact == hold.contact and seat.feature == hold.feature and seat.stays == 0:
-                begin_event(seat.contact, seat.feature, state, clock, records)
+                begin_event(system, seat.contact, seat.feature, state, clock, records)
                 strike_off(held, j)
-                end_event(OPENS, state, clock, records)
+                end_event(system, OPENS, state, clock, records)
                 break

@@ -81,7 +81,7 @@ def strike_unit(method, system, controls, held, c, state, cluster, corner, work,
         if not single and controls.corner_at == 0:
             hit.code = NEEDS_CORNER
             return
-        begin_event(c, cluster.seats[0].feature, state, clock, records)
+        begin_event(system, c, cluster.seats[0].feature, state, clock, records)
         if single:
             strike_one(method, system, controls, c, state, work, clock, records)
         else:
@@ -90,7 +90,7 @@ def strike_unit(method, system, controls, held, c, state, cluster, corner, work,
             return
         if system.joints.shape[0] > 0:
             project_velocity(system, state, work)
-        end_event(IMPACT, state, clock, records)
+        end_event(system, IMPACT, state, clock, records)
         for i in range(held.brinks.shape[0]):
             if concerns(system.contacts[i], work.body[contact.body].group, work):
                 held.brinks[i].near = 1

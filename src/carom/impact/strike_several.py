@@ -47,17 +47,18 @@ def strike_several(system, controls, c, k, state, cluster, corner, work, clock, 
     for i in range(k):
         n, t1, t2 = P[3 * i], P[3 * i + 1], P[3 * i + 2]
         if n != 0.0:
-            write_share(i, k, state, cluster, corner, clock, records)
+            write_share(system, i, k, state, cluster, corner, clock, records)
             spread(system, cluster.points[0][i], state, n, t1, t2, work)
             add_velocity(system, cluster.points[0][i], work, state)
 
 
 @kernel
-def write_share(i, k, state, cluster, corner, clock, records):
+def write_share(system, i, k, state, cluster, corner, clock, records):
     """Write the part of point i in an impact of k points."""
     row, point, result = records.impact[clock.struck], cluster.points[0][i], corner.result
     x, u = state[point.a].x, cluster.v[U]
-    row.time, row.contact, row.together = clock.now, cluster.seats[i].contact, k
+    row.time, row.together = clock.now, k
+    row.contact = system.contacts[cluster.seats[i].contact].number
     for r in range(3):
         row.point[r], row.normal[r] = x[r] + point.arm_a[r], point.axes[0, r]
         row.before[r], row.after[r] = u[3 * i + r], result.velocity[3 * i + r]

@@ -14,7 +14,7 @@ def write_impact(contact, c, state, point, hit, clock, records):
     """Write what the boundary layer was given and what it gave."""
     row, x, out = records.impact[clock.struck], state[point.a].x, hit.out
     row.time = clock.now
-    row.contact, row.together = c, 1
+    row.contact, row.together = contact.number, 1
     for i in range(3):
         row.point[i], row.normal[i] = x[i] + point.arm_a[i], point.axes[0, i]
         row.before[i] = hit.u[i]

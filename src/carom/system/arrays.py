@@ -32,6 +32,8 @@ BODY = [
     ("isolated", "i8"),  # 1 where no joint acts
     ("ballistic", "i8"),  # 1 where no joint and no force but gravity acts
     ("component", "i8"),  # its own number, or N for all that have joints
+    ("number", "i8"),  # among all bodies of the scene
+    ("ball", "f8"),  # radius of the ball around its centre that holds its shapes
 ]
 
 JOINT = [
@@ -61,6 +63,7 @@ LOAD = [("body", "i8"), ("anchor", "f8", 3), ("force", "f8", 3), ("torque", "f8"
 
 #: hull of vertices, swollen by a radius, against a half-space; or two solids of two bodies
 CONTACT = [
+    ("number", "i8"),  # among all contacts of the scene
     ("body", "i8"),
     ("other", "i8"),  # -1 for a half-space
     ("first", "i8"),  # range of the vertices of the body
@@ -106,6 +109,7 @@ BRINK = [
     ("seen", "i8"),  # while a group is gathered
     ("near", "i8"),  # 1 where something happened at the last event: look before stepping
     ("leaving", "i8"),  # 1 where the body lifts off without speed: it may touch at the start
+    ("step", "i8"),  # the last in which the two were near each other, plus 1
 ]
 
 #: a point that is held, over time (see `carom.hold`)
@@ -149,6 +153,8 @@ BODY_WORK = [
     ("spin", "f8", 3),  # angular velocity for which the invariants of free flight below hold
     ("momentum", "f8", 3),  # spatial angular momentum
     ("energy", "f8"),  # twice the energy of rotation
+    ("home", "f8", 3),  # centre at the start of the step
+    ("room", "f8"),  # how far from it the centre may go in this step
 ]
 
 JOINT_WORK = [

@@ -42,7 +42,7 @@ def compile_contacts(scene: Scene, to_principal, options: Options):
     solids, tables = solid_table([b.shape for b in shaped], [to_principal[b.index] for b in shaped])
     number = {b: k for k, b in enumerate(shaped)}
     for row, c in zip(rows, contacts):
-        row.body, row.other = c.body.index, -1
+        row.number, row.body, row.other = c.index, c.body.index, -1
         row.first, row.last = vertices.range_of(c.body)
         row.extent, row.radius = _size(c.body)
         if isinstance(c.other, HalfSpace):
