@@ -54,6 +54,9 @@ def run(
 def _start_all(islands, system, held, now, length, clocks, work):
     """Begin a step of all bodies together."""
     clocks[0].first_touch = 0
+    if clocks[0].spent == 0.0:
+        for c in range(held.brinks.shape[0]):
+            held.brinks[c].blows = 0
     return True
 
 
@@ -133,7 +136,8 @@ def _island_lost(islands, code, held, clocks):
     if r.FULL <= code < r.STRAYED:
         return False  # the caller sees to it, and comes back
     parts.forget_step(held, clocks, islands)
-    islands.plan[0].widen *= 2.0
+    if code == r.STRAYED:
+        islands.plan[0].widen *= 2.0
     return code == r.STRAYED
 
 

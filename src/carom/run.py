@@ -11,7 +11,7 @@ from carom.hold.press import press_unit
 from carom.impact.corner.layout import MULTIPLE, CornerSettings
 from carom.impact.strike import strike_unit
 from carom.impact.strike_several import corner_unit
-from carom.islands.layout import NoIslands, new_islands, roomier
+from carom.islands.layout import Islands, NoIslands, new_islands, roomier
 from carom.jit import address
 from carom.motion.acceleration import acceleration_unit
 from carom.motion.explicit import constrained_unit, rk4
@@ -192,6 +192,7 @@ class Run:
             elif code == r.NEEDS_CORNER:
                 self.find_corner()
             elif code == r.NEEDS_ROOM:
+                assert isinstance(self.islands, Islands)
                 self.islands = roomier(self.islands)
             else:
                 return Status(code)

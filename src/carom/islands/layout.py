@@ -28,7 +28,7 @@ PLAN = [
 MEMBER = [
     ("parent", "i8"),  # of the union-find; roots are the lowest of their set
     ("awake", "i8"),  # of a root: 1 if a body of the set moves
-    ("size", "i8"),  # of a root: bodies in the set
+    ("bodies", "i8"),  # of a root: how many are in the set
     ("speed", "f8"),  # of a root: greatest of the set
     ("island", "i8"),  # of a root: number of the island, -1 for none
     ("kind", "i8"),

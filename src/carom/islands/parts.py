@@ -35,6 +35,7 @@ def begin_step(system, held, now, length, clocks, work, islands):
         if contact.other >= 0:
             contact.other = local(islands, contact.other)
         islands.brinks[slot] = held.brinks[c]
+        brink.blows = 0
         if brink.step != clocks[0].step:  # nothing was near it in the step before
             brink.leaving = 0
     plan.kept = 0

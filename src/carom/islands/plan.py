@@ -36,7 +36,7 @@ def join(member, a, b):
         return False
     a, b = min(a, b), max(a, b)
     member[b].parent = a
-    member[a].size += member[b].size
+    member[a].bodies += member[b].bodies
     member[a].awake = max(member[a].awake, member[b].awake)
     member[a].speed = max(member[a].speed, member[b].speed)
     return True
@@ -49,7 +49,7 @@ def seek(system, held, now, length, work, islands):
     fall = math.sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2])
     for b in range(system.bodies.shape[0]):
         v, w, memory, m = now[b].v, now[b].w, work.body[b], member[b]
-        m.parent, m.size, m.awake = b, 1, 0 if memory.status == RESTS else 1
+        m.parent, m.bodies, m.awake = b, 1, 0 if memory.status == RESTS else 1
         spin = math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
         m.speed = math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + spin * system.bodies[b].ball
         memory.room = m.awake * plan.widen * (m.speed + fall * length) * length
@@ -62,7 +62,7 @@ def seek(system, held, now, length, work, islands):
     for turn in range(20):
         for b in range(system.bodies.shape[0]):
             r, memory, ball = member[root(member, b)], work.body[b], system.bodies[b].ball
-            if r.awake == 1 and (r.size > 1 and turn > 0):
+            if turn > 0 and r.awake == 1 and r.bodies > 1:
                 room = 2.0 * plan.widen * (r.speed + fall * length) * length
                 memory.room = max(memory.room, room)
             islands.radius[b] = (1.0 + SLACK) * ball + memory.room if ball > 0.0 else -1.0
@@ -119,7 +119,7 @@ def number(system, held, now, work, islands):
         member[b].kind = ASLEEP
         if member[root(member, b)].awake == 1:
             member[b].kind = MEETS
-            if member[root(member, b)].size == 1 and work.body[b].status == FREE:
+            if member[root(member, b)].bodies == 1 and work.body[b].status == FREE:
                 member[b].kind = FLIES
                 for q in range(islands.plane_first[b], islands.plane_first[b + 1]):
                     if near_plane(system, islands.plane[q], now, work):

@@ -109,6 +109,7 @@ BRINK = [
     ("seen", "i8"),  # while a group is gathered
     ("near", "i8"),  # 1 where something happened at the last event: look before stepping
     ("leaving", "i8"),  # 1 where the body lifts off without speed: it may touch at the start
+    ("blows", "i8"),  # impacts in this step
     ("step", "i8"),  # the last in which the two were near each other, plus 1
 ]
 
@@ -206,6 +207,7 @@ HIT = [
     ("u", "f8", 3),
     ("point", "f8", 3),
     ("out", "f8", 32),
+    ("restitution", "f8"),
     ("closed", "i8"),
     ("code", "i8"),
 ]
