@@ -48,23 +48,28 @@ def judge(system, k, state, horizon, cluster):
     """Mark the points that stay.
 
     First those that do not leave, as far as they press; then those whose bounces end within `horizon` under the
-    acceleration that these leave them.
+    acceleration that these leave them; then those for which that is so under the new ones, and so on: what lies
+    on a body that falls comes to rest only with it.
     """
     for i in range(k):
         contact, u = system.contacts[cluster.seats[i].contact], cluster.v[U][3 * i]
         cluster.seats[i].stays = 1 if abs(u) <= slow(contact, state) else 0
-    solve_forces(k, cluster)
     push = 0.0
     for i in range(3 * k):
         push = max(push, abs(cluster.v[C][i]))
-    for i in range(k):
-        contact, u = system.contacts[cluster.seats[i].contact], cluster.v[U][3 * i]
-        a = cluster.v[OLD][3 * i]
-        if cluster.seats[i].stays == 1:
-            cluster.seats[i].stays = 1 if a <= 1e-10 * push else 0
-        else:
-            ends = bounces_end(contact, u, -a, slow(contact, state), horizon)
-            cluster.seats[i].stays = 1 if ends else 0
+    for turn in range(k + 1):
+        solve_forces(k, cluster)
+        more = False
+        for i in range(k):
+            contact, u = system.contacts[cluster.seats[i].contact], cluster.v[U][3 * i]
+            a = cluster.v[OLD][3 * i]
+            if cluster.seats[i].stays == 0:
+                if bounces_end(contact, u, -a, slow(contact, state), horizon):
+                    cluster.seats[i].stays, more = 1, True
+            elif turn == 0 and not a <= 1e-10 * push:
+                cluster.seats[i].stays = 0
+        if not more:
+            break
 
 
 @kernel
