@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 
 from carom.contact.closed import round_off_of
-from carom.contact.exclude import BELOW, CLEAR, UNSURE, reach
+from carom.contact.exclude import BELOW, CLEAR, UNSURE, cubic_clears, reach
 from carom.contact.gap import round_off
 from carom.contact.pair_point import REACH, find_touches, smaller, touch_rate
 from carom.dispatch import only_with_pairs
@@ -132,7 +132,7 @@ def _passage_pair(system, contact, c, held, leaving, start, end, h, work, tolera
     tiny = max(tolerance * smaller(contact), round_off(contact, end))
     tiny = 4.0 * max(tiny, round_off_of(b, contact, end))
     count = find_touches(system, contact, end, REACH * smaller(contact), work)
-    least, _ = lowest_open(contact, c, count, held, end, work)
+    least, rate = lowest_open(contact, c, count, held, end, work)
     nearest = work.touches[0]
     for i in range(1, count):
         if work.touches[i].gap < nearest.gap:
@@ -141,7 +141,7 @@ def _passage_pair(system, contact, c, held, leaving, start, end, h, work, tolera
         return BELOW, 0.0
     if touching:
         return CLEAR, h
-    last = time_apart(system, contact, nearest.normal, -1.0, end, most)
+    last, feature = time_apart(system, contact, nearest.normal, -1.0, end, most), nearest.feature
     if last >= h:
         return CLEAR, h
     count = find_touches(system, contact, start, 0.0, work)
@@ -151,6 +151,11 @@ def _passage_pair(system, contact, c, held, leaving, start, end, h, work, tolera
             nearest = work.touches[i]
     first = time_apart(system, contact, nearest.normal, 1.0, start, most)
     sag = 0.125 * most * h * h
+    flies = work.body[a].status == FREE and work.body[b].status == FREE
+    rate0 = touch_rate(contact, nearest, start)
+    alike = feature == nearest.feature  # the same points are nearest at both ends
+    if alike and not flies and cubic_clears(nearest.gap, rate0, least, rate, h, tiny):
+        return CLEAR, first
     if first + last < h * (1.0 - 1e-12) and sag > tiny and leaving == 0:
         return UNSURE, first
     return CLEAR, first
