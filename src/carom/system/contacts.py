@@ -54,6 +54,7 @@ def compile_contacts(scene: Scene, to_principal, options: Options):
             row.solid, row.other_solid = number[c.body], number[c.other]
             row.other_extent, radius = _size(c.other)
             row.radius += radius
+        row.still = 1e-14 * np.sqrt(np.linalg.norm(scene.gravity) * row.extent)
         row.friction, row.friction_held = c.friction, c.friction_held
         row.restitution, row.stiffness = c.restitution, c.stiffness
         row.law = IMPACT_LAWS.index(c.impact_law)
