@@ -30,9 +30,10 @@ class Options:
     tie_tolerance : float
         Points of a body whose gaps differ by less than this part of its size strike together, as
         their mean. Default 1e-9.
-    multiple : {"simultaneous", "sequential"}
+    multiple : {"simultaneous", "sequential", "newton"}
         Impacts while several points of the bodies are closed: their boundary layers are passed together
-        (default), or one blow after the other, the fastest first. (Mathematics page, V.)
+        (default), or one blow after the other, the fastest first, or all by Newton's law in one contact
+        problem (Moreau 1988), which is the quickest and meant for heaps. (Mathematics page, V.)
     corner_tolerance : float
         Relative error of the velocities after a simultaneous impact. Default 1e-8.
     corner_exponent : float
@@ -101,7 +102,7 @@ class Options:
         check.integer("layer_steps", self.layer_steps, least=1)
         for name in ("max_iterations", "max_impacts_per_step", "max_cuts"):
             check.integer(name, getattr(self, name), least=1)
-        check.choice("multiple", self.multiple, ("simultaneous", "sequential"))
+        check.choice("multiple", self.multiple, ("simultaneous", "sequential", "newton"))
         check.number("corner_tolerance", self.corner_tolerance, above=0.0, below=1.0)
         check.number("corner_exponent", self.corner_exponent, least=1.0, most=3.0)
         for name in ("add_layer_time", "hold"):

@@ -84,9 +84,11 @@ def resolve_impacts(
     law : {"newton", "poisson", "stronge"} or a sequence of k of them
         What e compares: normal velocities of each contact that strikes (default), impulses, or works of
         the normal force. For more than one contact no law gives back more energy than it took.
-    multiple : {"simultaneous", "sequential"}
+    multiple : {"simultaneous", "sequential", "newton"}
         All contacts together through their boundary layers (default), or blow by blow, each time the contact
         that approaches fastest: quick, exact for a row of balls with e = 1, but else dependent on the order.
+        "newton": one contact problem for all, Newton's law at each (Moreau 1988), or e = 0 where that would
+        raise the energy: quickest, for heaps; `law` and `stiffness` play no part.
     stiffness : array_like, shape (k,), optional
         Stiffness kappa of the contacts; with ``exponent=1`` only ratios matter. Default: all equal.
     exponent : float

@@ -10,8 +10,8 @@ from carom.coulomb.layout import ConeWork, cone_arrays
 from carom.impact import layout as one
 from carom.system.arrays import table
 
-SIMULTANEOUS, SEQUENTIAL = 0, 1
-MULTIPLE = {"simultaneous": SIMULTANEOUS, "sequential": SEQUENTIAL}
+SIMULTANEOUS, SEQUENTIAL, BY_NEWTON = 0, 1, 2
+MULTIPLE = {"simultaneous": SIMULTANEOUS, "sequential": SEQUENTIAL, "newton": BY_NEWTON}
 
 OK = 0
 BAD_INPUT = 1  #: a number is not finite, or a law or a coefficient is out of its range

@@ -9,6 +9,7 @@ from carom.impact.corner import alike
 from carom.impact.corner.at_once import all_at_once, unsound
 from carom.impact.corner.layout import (
     AT_ONCE,
+    BY_NEWTON,
     BAD_INPUT,
     CLASS,
     CLEAN,
@@ -78,8 +79,8 @@ def resolve_corner(k, W, u, mu, e, law, kappa, settings, scratch, out):
         count = alike.find_classes(k, clean, u, friction, e, law, kappa, largest, scale, index)
     result.classes = count
     groups = alike.find_groups(k, count, clean, index)
-    code = OK
-    for g in range(groups):
+    code = NOT_RESOLVED if settings.multiple == BY_NEWTON else OK
+    for g in range(groups if code == OK else 0):
         one_code = _group(k, g, count, u, friction, e, law, kappa, scale, settings, scratch, out)
         code = max(code, one_code)
     if code == OK:
