@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from carom.contact.closed import round_off_of
+from carom.contact.closed import place_seats, round_off_of
 from carom.contact.gap import round_off
 from carom.contact.pair_point import place_any
 from carom.jit import kernel
@@ -25,11 +25,17 @@ DROP = 1e-10  # of a pivot, relative to its row: what is left of a redundant one
 
 @kernel
 def mark_rows(system, held, k, cluster):
-    """Mark in `rows` what each point gives: 0 nothing, 1 its gap, 3 its gap and its place; return if any."""
+    """Mark in `rows` what each point gives: 0 nothing, 1 its gap, 3 its gap and its place; return if any.
+
+    A point that does not press gives its gap where that is negative.
+    """
     some = False
     for i in range(k):
         hold, p, q = held.points[cluster.seats[i].held], cluster.v[P], 3 * i
         cluster.seats[i].rows = 0
+        if cluster.points[1][i].gap < -1e-12 * system.contacts[hold.contact].extent:
+            some = True
+            cluster.seats[i].rows = 1
         if p[q] > 0.0:
             some = True
             friction = math.sqrt(p[q + 1] * p[q + 1] + p[q + 2] * p[q + 2])
@@ -43,6 +49,7 @@ def mark_rows(system, held, k, cluster):
 @kernel
 def onto_surfaces(system, held, k, count, state, cluster, work):
     """Bring the bodies of the group back to the points that press."""
+    place_seats(system, k, state, cluster, cluster.points[1], work)
     if not mark_rows(system, held, k, cluster):
         return
     n, L = 3 * k, cluster.m[1]
