@@ -18,6 +18,8 @@ from carom.geometry.rotation import cross, rotate_back
 from carom.jit import kernel
 from carom.system.arrays import FREE, RESTS
 
+MISSED = 1e-9  # of the smaller body: where no more than this can be missed, the cubic decides in free flight too
+
 
 @kernel
 def spin_bound(body, extent, w, memory):
@@ -35,6 +37,13 @@ def spin_bound(body, extent, w, memory):
 
 
 @kernel
+def core_extent(solid):
+    """Return how far core points may be from the mass centre: the ball that swells them does not turn."""
+    x = solid.x
+    return math.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]) + solid.extent - solid.radius
+
+
+@kernel
 def relative_bound(system, contact, state, work):
     """Return bounds of the relative acceleration of the two centres, and of any two points."""
     a, b, g = contact.body, contact.other, system.gravity
@@ -46,8 +55,12 @@ def relative_bound(system, contact, state, work):
         for body, free in ((a, free_a), (b, free_b)):
             if work.body[body].status != RESTS:
                 centres += fall if free else 2.0 * work.body[body].bound[0]
-    spin = spin_bound(system.bodies[a], contact.extent, state[a].w, work.body[a])
-    spin += spin_bound(system.bodies[b], contact.other_extent, state[b].w, work.body[b])
+    r, s = (
+        core_extent(system.solids[contact.solid]),
+        core_extent(system.solids[contact.other_solid]),
+    )
+    spin = spin_bound(system.bodies[a], r, state[a].w, work.body[a])
+    spin += spin_bound(system.bodies[b], s, state[b].w, work.body[b])
     return centres, centres + spin
 
 
@@ -154,7 +167,8 @@ def _passage_pair(system, contact, c, held, leaving, start, end, h, work, tolera
     flies = work.body[a].status == FREE and work.body[b].status == FREE
     rate0 = touch_rate(contact, nearest, start)
     alike = feature == nearest.feature  # the same points are nearest at both ends
-    if alike and not flies and cubic_clears(nearest.gap, rate0, least, rate, h, tiny):
+    smooth = not flies or sag <= MISSED * smaller(contact)
+    if alike and smooth and cubic_clears(nearest.gap, rate0, least, rate, h, tiny):
         return CLEAR, first
     if first + last < h * (1.0 - 1e-12) and sag > tiny and leaving == 0:
         return UNSURE, first
