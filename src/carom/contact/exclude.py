@@ -20,12 +20,15 @@ from carom.jit import inlined
 from carom.system.arrays import FREE, RESTS
 
 CLEAR, BELOW, UNSURE = range(3)
+MISSED = (
+    1e-9  # of the body: where no more than this can be missed, the cubic decides in free flight too
+)
 
 
 @inlined
 def greatest_acceleration(system, contact, state, work):
     """Return bounds of the normal acceleration of the mass centre and of any point of the body."""
-    body, r = system.bodies[contact.body], contact.extent
+    body, r = system.bodies[contact.body], contact.core
     status, bound = work.body[contact.body].status, work.body[contact.body].bound
     if body.ballistic == 1 and status == FREE:
         w, J = state[contact.body].w, body.inertia
@@ -84,6 +87,7 @@ def passage(system, contact, held, leaving, start, end, h, work, tolerance):
     verdict, first, flies = CLEAR, h, work.body[contact.body].status == FREE
     tiny = max(tolerance * contact.extent, round_off(contact, end))
     sag = 0.125 * a * h * h  # a path keeps this near its chord
+    smooth = not flies or sag <= MISSED * contact.extent
     before, after = plane_in_body(contact, start), plane_in_body(contact, end)
     for i in range(contact.first, contact.last):
         z0, rate0 = gap_and_rate(before, system.vertices[i])
@@ -101,7 +105,7 @@ def passage(system, contact, held, leaving, start, end, h, work, tolerance):
             and t0 + reach(z1, -rate1, a) < h * (1.0 - 1e-12)
             and sag > tiny  # what could be missed is more than the tolerance
             and leaving == 0
-            and (flies or not cubic_clears(z0, rate0, z1, rate1, h, tiny))
+            and not (smooth and cubic_clears(z0, rate0, z1, rate1, h, tiny))
         ):
             verdict = UNSURE
     return verdict, first

@@ -10,15 +10,13 @@ from __future__ import annotations
 import math
 
 from carom.contact.closed import round_off_of
-from carom.contact.exclude import BELOW, CLEAR, UNSURE, cubic_clears, reach
+from carom.contact.exclude import BELOW, CLEAR, MISSED, UNSURE, cubic_clears, reach
 from carom.contact.gap import round_off
 from carom.contact.pair_point import REACH, find_touches, smaller, touch_rate
 from carom.dispatch import only_with_pairs
 from carom.geometry.rotation import cross, rotate_back
 from carom.jit import kernel
 from carom.system.arrays import FREE, RESTS
-
-MISSED = 1e-9  # of the smaller body: where no more than this can be missed, the cubic decides in free flight too
 
 
 @kernel

@@ -82,6 +82,7 @@ CONTACT = [
     ("stiffness", "f8"),  # of its boundary layer, relative to the others
     ("extent", "f8"),  # largest distance of the shape from the mass centre
     ("other_extent", "f8"),
+    ("core", "f8"),  # largest distance of a core point, without the ball that swells it
     ("still", "f8"),  # speed that is round-off of what gravity gives over the body's size
     ("width", "f8"),  # b of the boundary layer
     ("penetration", "f8"),  # delta

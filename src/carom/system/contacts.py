@@ -45,6 +45,7 @@ def compile_contacts(scene: Scene, to_principal, options: Options):
         row.number, row.body, row.other = c.index, c.body.index, -1
         row.first, row.last = vertices.range_of(c.body)
         row.extent, row.radius = _size(c.body)
+        row.core = np.max(np.linalg.norm(c.body.shape.vertices, axis=1))
         if isinstance(c.other, HalfSpace):
             row.axes[:] = contact_axes(c.other.normal)
             row.offset = c.other.point @ c.other.normal

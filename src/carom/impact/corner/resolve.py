@@ -9,8 +9,8 @@ from carom.impact.corner import alike
 from carom.impact.corner.at_once import all_at_once, unsound
 from carom.impact.corner.layout import (
     AT_ONCE,
-    BY_NEWTON,
     BAD_INPUT,
+    BY_NEWTON,
     CLASS,
     CLEAN,
     EXACT,
