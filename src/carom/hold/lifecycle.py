@@ -53,7 +53,9 @@ hold_contact = by_address(hold_unit)
 
 @kernel
 def look_again(system, held, k, state, cluster):
-    """Have contacts with a closed point that still approaches looked at."""
+    """Have contacts with a closed point that still approaches looked at; the others were judged just now."""
+    for i in range(k):
+        held.brinks[cluster.seats[i].contact].near = 0
     for i in range(k):
         seat = cluster.seats[i]
         contact = system.contacts[seat.contact]
