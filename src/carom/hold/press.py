@@ -280,7 +280,7 @@ def finish(system, controls, held, k, start, h, end, count, cluster, work):
         _, e1, e2 = contact_velocity(cluster.points[0][i], end)
         friction += 0.5 * (p[3 * i + 1] * (m1 + e1) + p[3 * i + 2] * (m2 + e2))
         still = max(stop, 10.0 * max(slow(contact, start), slow(contact, end)))
-        if p[3 * i] <= 0.0 and u[3 * i] > 0.0:
+        if p[3 * i] <= 0.0 and u[3 * i] > slow(contact, end):
             hold.next = OPEN
         else:
             hold.next = SLIP if math.sqrt(s1 * s1 + s2 * s2) > still else STICK
