@@ -99,7 +99,9 @@ def passage(system, contact, held, leaving, start, end, h, work, tolerance):
         t0 = reach(z0, rate0, a)
         first = min(first, t0)
         if not (z1 >= -tiny):
-            verdict = BELOW
+            # a body that is pushed about by others may touch, and sink in by no more than can be missed
+            if flies or z0 > tiny or not z1 >= -MISSED * contact.extent:
+                verdict = BELOW
         elif (
             verdict == CLEAR
             and t0 + reach(z1, -rate1, a) < h * (1.0 - 1e-12)
