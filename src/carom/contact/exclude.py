@@ -99,8 +99,9 @@ def passage(system, contact, held, leaving, start, end, h, work, tolerance):
         t0 = reach(z0, rate0, a)
         first = min(first, t0)
         if not (z1 >= -tiny):
-            # a body that is pushed about by others may touch, and sink in by no more than can be missed
-            if flies or z0 > tiny or not z1 >= -MISSED * contact.extent:
+            # what touches may be on its way out, or be pushed about by others by no more than can be missed
+            pushed = not flies and z1 >= -MISSED * contact.extent
+            if not (z0 <= tiny and (pushed or (z0 < -tiny and z1 >= z0))):
                 verdict = BELOW
         elif (
             verdict == CLEAR

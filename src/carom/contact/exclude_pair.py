@@ -149,11 +149,14 @@ def _passage_pair(system, contact, c, held, leaving, start, end, h, work, tolera
         if work.touches[i].gap < nearest.gap:
             nearest = work.touches[i]
     if not least >= -(tiny if not touching else MISSED * smaller(contact)):
-        flies = work.body[a].status == FREE and work.body[b].status == FREE
-        if flies or not least >= -MISSED * smaller(contact):
-            return BELOW, 0.0
         before, _ = _lowest_pair(system, contact, c, held, start, work)
-        return (CLEAR, h) if before <= tiny else (BELOW, 0.0)  # pushed while they touch
+        if before <= tiny:  # they touch already: on their way apart, or pushed about by others
+            flies = work.body[a].status == FREE and work.body[b].status == FREE
+            if (before < -tiny and least >= before) or (
+                not flies and least >= -MISSED * smaller(contact)
+            ):
+                return CLEAR, h
+        return BELOW, 0.0
     if touching:
         return CLEAR, h
     last, feature = time_apart(system, contact, nearest.normal, -1.0, end, most), nearest.feature
