@@ -15,11 +15,11 @@ from carom.contact.gap import gap_and_rate, plane_in_body, slow
 from carom.contact.pair_point import REACH, find_touches, place_any, smaller, touch_rate
 from carom.dispatch import only_with_pairs
 from carom.geometry.rotation import cross
-from carom.hold.events import CONE, GAP, REVERSE, SEPARATE, end_forces
+from carom.hold.events import CONE, GAP, REVERSE, SEPARATE, end_forces, slides_on
 from carom.hold.lifecycle import hold_contact, settle
 from carom.hold.press import press
 from carom.hold.roster import is_held, refresh_pairs, regroup, set_anchor, strike_off
-from carom.hold.search import begin_search, event_value, examine, narrow, propose
+from carom.hold.search import AGAIN, begin_search, event_value, examine, narrow, propose
 from carom.impact.strike import strike
 from carom.jit import entry, inlined, kernel
 from carom.motion.acceleration import OPEN, SLIP, STICK
@@ -114,6 +114,9 @@ def run(system, method, controls, held, now, work, cluster, corner, clocks, reco
                     if verdict == CLEAR or (own and verdict != UNSURE):
                         found = search.active == 1
                         break
+                    if verdict == AGAIN:
+                        search.active = 0
+                        continue
                     if verdict == UNSURE:
                         if search.active == 1 and dt <= 1e-9 * horizon:
                             found = True
@@ -297,7 +300,7 @@ def change_mode(system, held, i, kind, now, work, clock, records):
 @kernel
 def turn_modes(system, controls, held, now, work, clock, records):
     """Take over the modes that a step of several held points has ended with."""
-    opened = False
+    changed = False
     for i in range(held.count[0] - 1, -1, -1):
         hold = held.points[i]
         if hold.several == 0 or hold.rest == 1:
@@ -307,18 +310,19 @@ def turn_modes(system, controls, held, now, work, clock, records):
             if hold.other >= 0:
                 hold.rest = min(hold.rest, system.bodies[hold.other].ballistic)
         if hold.next == hold.mode:
+            changed = changed or slides_on(system, hold, now, controls.step, work)
             continue
+        changed = True
         begin_event(hold.contact, hold.feature, now, clock, records)
         if hold.next == OPEN:
             strike_off(held, i)
-            opened = True
             end_event(r.OPENS, now, clock, records)
         else:
             hold.mode = hold.next
             if hold.mode == STICK:
                 set_anchor(system, hold, now, work)
             end_event(r.STICKS if hold.mode == STICK else r.SLIPS, now, clock, records)
-    if refresh_pairs(system, controls, held, now, work) or opened:
+    if refresh_pairs(system, controls, held, now, work) or changed:
         regroup(system, held, work)
 
 

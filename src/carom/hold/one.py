@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from carom.contact.gap import slow
+from carom.hold.events import braked
 from carom.hold.roster import enlist
 from carom.jit import kernel
 from carom.motion.acceleration import SLIP, STICK, acceleration
@@ -44,8 +45,7 @@ def hold_one(system, controls, held, state, horizon, cluster, work, clock, recor
 def settle_one(system, controls, hold, held, state, work, clock, records):
     """Find anew how a point goes on, whose slip has stopped or turned."""
     contact = system.contacts[hold.contact]
-    # slip below what friction does in a thousandth of a step has stopped
-    stop = 1e-3 * controls.step * abs(hold.force[0]) * hold.W[1, 1]
+    stop = braked(contact, hold, 1e-3 * controls.step)  # in a thousandth of a step
     hold.heading[0], hold.heading[1] = 0.0, 0.0
     acceleration(system, state, held, work, work.stages[0])
     begin_event(hold.contact, hold.feature, state, clock, records)

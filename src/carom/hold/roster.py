@@ -65,7 +65,7 @@ def copy(a, b):
         b.point[k], b.anchor[k], b.force[k] = a.point[k], a.anchor[k], a.force[k]
         for j in range(3):
             b.W[k, j] = a.W[k, j]
-    b.heading[0], b.heading[1] = a.heading[0], a.heading[1]
+    b.heading[0], b.heading[1], b.speed = a.heading[0], a.heading[1], a.speed
 
 
 @kernel

@@ -15,6 +15,8 @@ from carom.contact.pair_point import smaller
 from carom.hold.events import GAP, find_held_event, held_value, turned
 from carom.jit import inlined, kernel
 
+AGAIN = 3  # verdict of a step: the same once more, by the implicit method
+
 
 @inlined
 def examine(system, controls, held, now, dt, work):
@@ -42,7 +44,10 @@ def examine(system, controls, held, now, dt, work):
     kind, i, d1, d2 = find_held_event(system, held, work.trial, work)
     if i >= 0:
         return BELOW, kind, i, 0.0, d1, d2
-    if dt > 1e-3 * controls.step and turned(system, held, work.trial, work):
+    far = turned(system, held, work.trial, dt, work)
+    if far == 2:
+        return AGAIN, GAP, -1, 0.0, 0.0, 0.0
+    if far == 1 and dt > 1e-3 * controls.step:
         return UNSURE, GAP, -1, 0.0, 0.0, 0.0
     return CLEAR, GAP, -1, 0.0, 0.0, 0.0
 

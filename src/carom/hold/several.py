@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 
 from carom.contact.gap import slow
-from carom.coulomb.layout import SLIDING
+from carom.contact.groups import members
+from carom.coulomb.layout import CONE, SLIDING
 from carom.hold.forces import pose_forces, solve_forces, take_forces
 from carom.hold.one import bounces_end
 from carom.hold.roster import enlist, strike_off
@@ -37,7 +38,7 @@ def hold_several(system, controls, held, k, group, state, horizon, cluster, work
         seat = cluster.seats[new]
         begin_event(seat.contact, seat.feature, state, clock, records)
     if stay:
-        drop_bounces(system, k, state, cluster, work, clock)
+        drop_bounces(system, controls, k, group, state, cluster, work, clock)
         set_modes(system, held, k, state, cluster, work, clock, records)
         first_forces(system, controls, held, k, state, cluster, work)
     strike_off_open(system, held, k, group, state, cluster, work, clock, records)
@@ -68,23 +69,55 @@ def judge(system, k, state, horizon, cluster):
 
 
 @kernel
-def drop_bounces(system, k, state, cluster, work, clock):
-    """Take out the normal velocities of the points that stay, in the kinetic metric."""
-    n, L, x = k, cluster.m[1], cluster.v[OLD]
+def stops(cluster, i):
+    """Return whether row i is one that drops out: the normal of a point that stays, its slip if it has none."""
+    return cluster.seats[i // 3].stays == 1 and (i % 3 == 0 or cluster.kind[i // 3] == CONE)
+
+
+@kernel
+def speed_of(system, state, count, member):
+    """Return the greatest speed of the bodies, that of their turning at their size."""
+    speed = 0.0
+    for m in range(count):
+        b = member[m]
+        for r in range(3):
+            turning = system.bodies[b].extent * abs(state[b].w[r])
+            speed = max(speed, max(abs(state[b].v[r]), turning))
+    return speed
+
+
+@kernel
+def drop_bounces(system, controls, k, group, state, cluster, work, clock):
+    """Take out the normal velocities of the points that stay, in the kinetic metric.
+
+    A point without slip keeps none: else it would stick with the slip that this gives it. Where that
+    leaves nothing but round-off it leaves nothing.
+    """
+    count = members(work, group, cluster.member)
+    still = 1e-12 * speed_of(system, state, count, cluster.member)
+    for i in range(3 * k):
+        still = max(still, controls.rest * controls.step * abs(cluster.v[C][i]))
+    n, L, x = 3 * k, cluster.m[1], cluster.v[OLD]
     for i in range(n):
-        stays = cluster.seats[i].stays == 1
-        x[i] = -cluster.v[U][3 * i] if stays else 0.0
+        x[i] = -cluster.v[U][i] if stops(cluster, i) else 0.0
         for j in range(n):
-            both = stays and cluster.seats[j].stays == 1
-            L[i, j] = cluster.m[0][3 * i, 3 * j] if both else 1.0 if i == j else 0.0
+            both = stops(cluster, i) and stops(cluster, j)
+            L[i, j] = cluster.m[0][i, j] if both else 1.0 if i == j else 0.0
     factor(n, DROP, L)
     substitute(n, L, x)
-    for i in range(n):
-        if cluster.seats[i].stays == 1 and x[i] != 0.0:
-            spread(system, cluster.points[0][i], state, x[i], 0.0, 0.0, work)
+    for i in range(k):
+        n, t1, t2 = x[3 * i], x[3 * i + 1], x[3 * i + 2]
+        if n != 0.0 or t1 != 0.0 or t2 != 0.0:
+            spread(system, cluster.points[0][i], state, n, t1, t2, work)
             add_velocity(system, cluster.points[0][i], work, state)
             # work of the impulses: half of them times the velocities before; after they are none
-            clock.bounces += 0.5 * x[i] * cluster.v[U][3 * i]
+            u = cluster.v[U]
+            clock.bounces += 0.5 * (n * u[3 * i] + t1 * u[3 * i + 1] + t2 * u[3 * i + 2])
+    if speed_of(system, state, count, cluster.member) <= still:
+        for m in range(count):
+            b = cluster.member[m]
+            for r in range(3):
+                state[b].v[r], state[b].w[r] = 0.0, 0.0
 
 
 @kernel

@@ -122,7 +122,8 @@ HELD = [
     ("point", "f8", 3),  # point of the core that carries the contact, body axes
     ("anchor", "f8", 3),  # where it is in the world since it sticks
     ("force", "f8", 3),  # of the last solve, contact axes
-    ("heading", "f8", 2),  # direction of slip at the start of the step; 0 where it does not slip
+    ("heading", "f8", 2),  # direction of slip at the start of the step, or in which it starts
+    ("speed", "f8"),  # of slip at the start of the step
     ("stop", "f8"),  # time in which slip will stop under the last forces, where several are held
     ("W", "f8", (3, 3)),  # effective inverse mass of the last solve
 ]
