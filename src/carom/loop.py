@@ -15,7 +15,8 @@ from carom.contact.gap import gap_and_rate, plane_in_body, slow
 from carom.contact.pair_point import REACH, find_touches, place_any, smaller, touch_rate
 from carom.dispatch import only_with_pairs
 from carom.geometry.rotation import cross
-from carom.hold.events import CONE, GAP, REVERSE, SEPARATE, end_forces, slides_on
+from carom.hold.events import CONE, GAP, JAM, REVERSE, SEPARATE, end_forces, held_value, slides_on
+from carom.hold.jam import note_jam, presses
 from carom.hold.lifecycle import hold_contact, settle
 from carom.hold.press import press
 from carom.hold.roster import is_held, refresh_pairs, regroup, set_anchor, strike_off
@@ -243,6 +244,8 @@ def look_near(system, controls, held, now, work):
                     elif rate <= still and held.carries[i] == 0 and action == NOTHING:
                         action = HOLD
         brink.near = 0
+        if brink.jams == 1:
+            brink.jams, action = 0, STRIKE
         if action == HOLD:
             brink.leaving = 1  # unless it is held now
         if action != NOTHING:
@@ -286,6 +289,11 @@ def change_mode(system, held, i, kind, now, work, clock, records):
     if kind == REVERSE:
         return SETTLE
     hold = held.points[i]
+    if kind == JAM:
+        if presses(hold, held_value(system, hold, JAM, 0.0, 0.0, now, work)):
+            note_jam(held, hold)
+            return NOTHING
+        kind = SEPARATE
     begin_event(hold.contact, hold.feature, now, clock, records)
     if kind == SEPARATE:
         strike_off(held, i)
@@ -309,6 +317,8 @@ def turn_modes(system, controls, held, now, work, clock, records):
             hold.rest = system.bodies[hold.body].ballistic
             if hold.other >= 0:
                 hold.rest = min(hold.rest, system.bodies[hold.other].ballistic)
+        if hold.jams == 1:
+            note_jam(held, hold)
         if hold.next == hold.mode:
             changed = changed or slides_on(system, hold, now, controls.step, work)
             continue

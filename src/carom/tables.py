@@ -83,7 +83,7 @@ class EventTable(NamedTuple):
     """Events of contacts in the order of time."""
 
     time: np.ndarray  #: (E,) [s]
-    kind: np.ndarray  #: (E,) "impact", "held", "slips", "sticks" or "opens"
+    kind: np.ndarray  #: (E,) "impact", "held", "slips", "sticks", "opens" or "jams"
     contact: np.ndarray  #: (E,) index of the contact
 
 

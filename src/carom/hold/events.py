@@ -5,17 +5,19 @@ Each event is a function that is positive before and negative after, evaluated a
     SEPARATE   N                    the normal force
     CONE       mu N - |T|           while sticking
     REVERSE    u_t . d              while slipping; d is the direction of slip at the start of the step
+    JAM        k                    while slipping (`carom.hold.jam`)
 """
 
 from __future__ import annotations
 
 import math
 
+from carom.hold.jam import yields
 from carom.jit import inlined, kernel
 from carom.motion.acceleration import OPEN, SLIP, acceleration
 from carom.motion.contact_point import contact_velocity, place
 
-GAP, SEPARATE, CONE, REVERSE = range(4)
+GAP, SEPARATE, CONE, REVERSE, JAM = range(5)
 
 
 @kernel
@@ -29,6 +31,8 @@ def held_value(system, hold, kind, d1, d2, state, work):
     point = work.point[0]
     place(contact, hold.point, state, point)
     _, u1, u2 = contact_velocity(point, state)
+    if kind == JAM:
+        return yields(hold.W, contact.friction_held, u1, u2)
     return u1 * d1 + u2 * d2
 
 
@@ -49,7 +53,10 @@ def find_held_event(system, held, end, work):
         hold = held.points[i]
         if hold.mode == OPEN or hold.rest == 1 or hold.several == 1:
             continue
-        if hold.force[0] < 0.0:
+        jams = hold.mode == SLIP and held_value(system, hold, JAM, 0.0, 0.0, end, work) <= 0.0
+        if jams and not reverses(system, hold, end, work):
+            return JAM, i, 0.0, 0.0
+        if hold.force[0] < 0.0 and not jams:
             return SEPARATE, i, 0.0, 0.0
         if hold.mode == SLIP:
             d1, d2 = hold.heading[0], hold.heading[1]

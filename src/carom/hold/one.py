@@ -6,6 +6,7 @@ import math
 
 from carom.contact.gap import slow
 from carom.hold.events import braked
+from carom.hold.jam import note_jam, presses, yields
 from carom.hold.roster import enlist
 from carom.jit import kernel
 from carom.motion.acceleration import SLIP, STICK, acceleration
@@ -102,6 +103,11 @@ def find_mode(system, contact, hold, held, state, work):
     ):
         hold.mode = SLIP
         acceleration(system, state, held, work, work.stages[0])
+    if hold.mode == SLIP:
+        _, u1, u2 = contact_velocity(work.point[0], state)
+        k = yields(hold.W, contact.friction_held, u1, u2)
+        if k <= 0.0 and presses(hold, k):
+            note_jam(held, hold)
     body = system.bodies[contact.body]
     if hold.mode == STICK and body.isolated == 1:
         rate = work.stages[0, contact.body].rate

@@ -26,6 +26,7 @@ from carom.coulomb.solve import solve_cones
 from carom.dispatch import by_address
 from carom.geometry.rotation import exp, log, multiply, normalize, rotate, rotate_back
 from carom.hold.forces import pose_forces, solve_forces, take_forces
+from carom.hold.jam import jams_among
 from carom.hold.surface import onto_surfaces
 from carom.jit import kernel, unit
 from carom.motion.acceleration import OPEN, SLIP, STICK
@@ -342,6 +343,8 @@ def forces_at_end(system, controls, held, k, end, cluster, work):
         seat.stays = 1 if hold.next != OPEN else 0
     place_seats(system, k, end, cluster, cluster.points[0], work)
     pose_forces(system, controls, held, k, end, cluster, work)
-    solve_forces(k, cluster)
+    status = solve_forces(k, cluster)
     for i in range(k):
-        take_forces(held.points[cluster.seats[i].held], i, cluster)
+        hold = held.points[cluster.seats[i].held]
+        take_forces(hold, i, cluster)
+        hold.jams = jams_among(hold, i, status, cluster)

@@ -20,6 +20,7 @@ def enlist(system, held, seat, mode, state, work):
     hold.contact, hold.feature = seat.contact, seat.feature
     hold.body, hold.other = contact.body, contact.other
     hold.mode, hold.next, hold.rest, hold.several = mode, mode, 0, 0
+    hold.jams = 0
     hold.settles, hold.stop = 0, math.inf
     for k in range(3):
         hold.point[k] = seat.point[k]
@@ -60,7 +61,7 @@ def copy(a, b):
     """Copy a held point."""
     b.contact, b.feature, b.body, b.other, b.mode = a.contact, a.feature, a.body, a.other, a.mode
     b.next, b.several, b.rest, b.stop = a.next, a.several, a.rest, a.stop
-    b.settles = a.settles
+    b.settles, b.jams = a.settles, a.jams
     for k in range(3):
         b.point[k], b.anchor[k], b.force[k] = a.point[k], a.anchor[k], a.force[k]
         for j in range(3):
@@ -132,6 +133,7 @@ def enlist_touch(contact, c, touch, mode, state, held):
     hold.contact, hold.feature = c, touch.feature
     hold.body, hold.other = contact.body, contact.other
     hold.mode, hold.next, hold.rest, hold.several = mode, mode, 0, 1
+    hold.jams = 0
     hold.settles, hold.stop = 0, math.inf
     own_point(contact, touch, state, hold.point)
     for k in range(3):

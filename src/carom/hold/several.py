@@ -8,6 +8,7 @@ from carom.contact.gap import slow
 from carom.contact.groups import members
 from carom.coulomb.layout import CONE, SLIDING
 from carom.hold.forces import pose_forces, solve_forces, take_forces
+from carom.hold.jam import jams_among, note_jam
 from carom.hold.one import bounces_end
 from carom.hold.roster import enlist, strike_off
 from carom.jit import kernel
@@ -153,10 +154,13 @@ def first_forces(system, controls, held, k, state, cluster, work):
         if cluster.seats[i].stays == 1:
             held.points[cluster.seats[i].held].several = 1
     pose_forces(system, controls, held, k, state, cluster, work)
-    solve_forces(k, cluster)
+    status = solve_forces(k, cluster)
     for i in range(k):
         if cluster.seats[i].stays == 1:
-            take_forces(held.points[cluster.seats[i].held], i, cluster)
+            hold = held.points[cluster.seats[i].held]
+            take_forces(hold, i, cluster)
+            if jams_among(hold, i, status, cluster) == 1:
+                note_jam(held, hold)
 
 
 @kernel

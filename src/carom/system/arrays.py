@@ -105,6 +105,7 @@ ROW = [
 BRINK = [
     ("seen", "i8"),  # while a group is gathered
     ("near", "i8"),  # 1 where something happened at the last event: look before stepping
+    ("jams", "i8"),  # 1 where a held point of it jams: an impact without collision is due
     ("leaving", "i8"),  # 1 where the body lifts off without speed: it may touch at the start
 ]
 
@@ -119,6 +120,7 @@ HELD = [
     ("settles", "i8"),  # 1 where that step puts the body to rest
     ("several", "i8"),  # 1 where it shares its bodies with other held points
     ("rest", "i8"),  # 1 where the body does not move at all
+    ("jams", "i8"),  # 1 where it slips and no finite force keeps it closed
     ("point", "f8", 3),  # point of the core that carries the contact, body axes
     ("anchor", "f8", 3),  # where it is in the world since it sticks
     ("force", "f8", 3),  # of the last solve, contact axes
@@ -199,6 +201,7 @@ FREE, ONE, RESTS, SEVERAL = range(4)
 HIT = [
     ("W", "f8", (3, 3)),
     ("u", "f8", 3),
+    ("friction", "f8"),
     ("point", "f8", 3),
     ("out", "f8", 32),
     ("closed", "i8"),

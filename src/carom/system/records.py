@@ -25,8 +25,8 @@ from carom.system.arrays import (
 )
 
 #: kinds of events, by code
-EVENTS = ("impact", "held", "slips", "sticks", "opens")
-IMPACT, HOLD, SLIPS, STICKS, OPENS = range(5)
+EVENTS = ("impact", "held", "slips", "sticks", "opens", "jams")
+IMPACT, HOLD, SLIPS, STICKS, OPENS, JAMS = range(6)
 
 #: energy, summed since the start
 LEDGER = [("loads", "f8"), ("impacts", "f8"), ("friction", "f8"), ("bounces", "f8")]
