@@ -276,8 +276,9 @@ def until_stop(controls, held, dt, clock):
     first = dt
     for i in range(held.count[0]):
         hold = held.points[i]
-        if hold.several == 1 and hold.rest == 0 and hold.mode == SLIP and hold.stop < first:
-            first = hold.stop
+        if hold.several == 1 and hold.rest == 0:
+            first = min(first, hold.stop if hold.mode == SLIP else first)
+            first = min(first, min(hold.turn_stop[0], hold.turn_stop[1]))
     # not where they follow each other without end, nor for round-off of the step
     inside = first > controls.rest * dt and first < (1.0 - 1e-12) * dt
     return first if inside and clock.in_step < 20 else dt
@@ -388,6 +389,11 @@ def save_contacts(system, held, now, k, work, records):
         fz = f[0] * E[0, 2] + f[1] * E[1, 2] + f[2] * E[2, 2]
         tx, ty, tz = cross(arm[0], arm[1], arm[2], fx, fy, fz)
         sx, sy, sz = cross(other[0], other[1], other[2], -fx, -fy, -fz)
+        m = hold.torque
+        mx = m[0] * E[0, 0] + m[1] * E[1, 0] + m[2] * E[2, 0]
+        my = m[0] * E[0, 1] + m[1] * E[1, 1] + m[2] * E[2, 1]
+        mz = m[0] * E[0, 2] + m[1] * E[1, 2] + m[2] * E[2, 2]
+        tx, ty, tz, sx, sy, sz = tx + mx, ty + my, tz + mz, sx - mx, sy - my, sz - mz
         t, o, p = touch.moment, touch.other_moment, touch.push
         t[0], t[1], t[2] = t[0] + tx, t[1] + ty, t[2] + tz
         o[0], o[1], o[2] = o[0] + sx, o[1] + sy, o[2] + sz

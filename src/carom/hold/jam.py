@@ -41,7 +41,9 @@ def note_jam(held, hold):
 @kernel
 def jams_among(hold, i, status, cluster):
     """Return whether point i of several jams: it slips, k <= 0, and there are no forces for all of them."""
-    if status == SOLVED or cluster.kind[i] != SLIDING or cluster.seats[i].stays == 0:
+    if status == SOLVED or cluster.kind[i] != SLIDING or cluster.seats[i].turns > 0:
+        return 0
+    if cluster.seats[i].stays == 0:
         return 0
     q, W = 3 * i, cluster.m[0]
     along = W[q, q + 1] * cluster.heading[i, 0] + W[q, q + 2] * cluster.heading[i, 1]

@@ -28,6 +28,7 @@ from carom.geometry.rotation import exp, log, multiply, normalize, rotate, rotat
 from carom.hold.forces import pose_forces, solve_forces, take_forces
 from carom.hold.jam import jams_among
 from carom.hold.surface import onto_surfaces
+from carom.hold.turning import bound_turning, first_torque
 from carom.jit import kernel, unit
 from carom.motion.acceleration import OPEN, SLIP, STICK
 from carom.motion.contact_point import contact_velocity
@@ -79,7 +80,7 @@ def press_group(system, controls, held, group, start, h, end, cluster, work, clo
     loaded = False
     for m in range(count):
         loaded = loaded or system.bodies[cluster.member[m]].ballistic == 0
-    begin(system, held, k, start, h, end, count, loaded, cluster, work)
+    begin(system, controls, held, k, start, h, end, count, loaded, cluster, work)
     size, before = 3 * k, math.inf
     clock.pressed += 1
     for _ in range(ROUNDS):
@@ -93,6 +94,7 @@ def press_group(system, controls, held, group, start, h, end, cluster, work, clo
                 start[cluster.member[m]], end[cluster.member[m]], work.stage[cluster.member[m]]
             )
         pose(k, start, cluster, work)
+        bound_turning(system, k, cluster)
         solve_cones(
             k, cluster.m[0], cluster.v[C], cluster.mu, cluster.kind, cluster.heading, cluster.v[P],
             cluster.cone,
@@ -126,7 +128,7 @@ def moved(n, cluster):
 
 
 @kernel
-def begin(system, held, k, start, h, end, count, loaded, cluster, work):
+def begin(system, controls, held, k, start, h, end, count, loaded, cluster, work):
     """Note the step without contacts, the directions of slip, and the last forces as a first guess."""
     for m in range(count):
         keep(end[cluster.member[m]], cluster.flight[cluster.member[m]])
@@ -134,18 +136,36 @@ def begin(system, held, k, start, h, end, count, loaded, cluster, work):
         for b in range(start.shape[0]):
             halfway(start[b], end[b], work.stage[b])
             halfway(start[b], end[b], work.middle[b])
+    still = controls.rest * gained(start, count, cluster) * controls.step / h
     for i in range(k):
-        hold = held.points[cluster.seats[i].held]
-        cluster.mu[i] = system.contacts[hold.contact].friction_held
-        for r in range(3):
-            cluster.v[P][3 * i + r] = h * hold.force[r]
+        seat = cluster.seats[i]
+        hold = held.points[seat.held]
         _, u1, u2 = contact_velocity(cluster.points[0][i], start)
         speed = math.sqrt(u1 * u1 + u2 * u2)
-        slips = hold.mode == SLIP and speed > 0.0
+        if seat.turns == 0:
+            cluster.mu[i] = system.contacts[hold.contact].friction_held
+            for r in range(3):
+                cluster.v[P][3 * i + r] = h * hold.force[r]
+            slips, stop = hold.mode == SLIP and speed > 0.0, hold.stop
+        else:
+            cluster.mu[i] = 1.0
+            first_torque(system, hold, i, h, cluster)
+            slips, stop = speed > still, hold.turn_stop[seat.turns - 1]
         cluster.heading[i, 0] = u1 / speed if slips else 0.0
         cluster.heading[i, 1] = u2 / speed if slips else 0.0
         cluster.kind[i] = CONE
-        cluster.seats[i].stopped = 0 if slips and hold.stop > h * (1.0 + 1e-9) else 1
+        seat.stopped = 0 if slips and stop > h * (1.0 + 1e-9) else 1
+
+
+@kernel
+def gained(start, count, cluster):
+    """Return the greatest speed that the bodies gain without the contacts."""
+    most = 0.0
+    for m in range(count):
+        b = cluster.member[m]
+        for r in range(3):
+            most = max(most, abs(cluster.flight[b].v[r] - start[b].v[r]))
+    return most
 
 
 @kernel
@@ -266,13 +286,9 @@ def pose(k, start, cluster, work):
 @kernel
 def finish(system, controls, held, k, start, h, end, count, cluster, work):
     """Put the bodies to rest if nothing is left to move them; note modes, friction's work, bounds."""
-    gained, friction = 0.0, 0.0
-    for m in range(count):
-        b = cluster.member[m]
-        for r in range(3):
-            gained = max(gained, abs(cluster.flight[b].v[r] - start[b].v[r]))
-    at_rest = settle(system, controls.rest * gained, start, end, count, cluster)
-    stop = controls.rest * gained * controls.step / h
+    tolerance, friction = controls.rest * gained(start, count, cluster), 0.0
+    at_rest = settle(system, tolerance, start, end, count, cluster)
+    stop = tolerance * controls.step / h
     for i in range(k):
         hold, p, u = held.points[cluster.seats[i].held], cluster.v[P], cluster.v[U]
         contact = system.contacts[hold.contact]
@@ -280,6 +296,8 @@ def finish(system, controls, held, k, start, h, end, count, cluster, work):
         _, m1, m2 = contact_velocity(cluster.points[0][i], start)
         _, e1, e2 = contact_velocity(cluster.points[0][i], end)
         friction += 0.5 * (p[3 * i + 1] * (m1 + e1) + p[3 * i + 2] * (m2 + e2))
+        if cluster.seats[i].turns > 0:
+            continue
         still = max(stop, 10.0 * max(slow(contact, start), slow(contact, end)))
         if p[3 * i] <= 0.0 and u[3 * i] > 0.0:
             hold.next = OPEN
@@ -343,8 +361,9 @@ def forces_at_end(system, controls, held, k, end, cluster, work):
         seat.stays = 1 if hold.next != OPEN else 0
     place_seats(system, k, end, cluster, cluster.points[0], work)
     pose_forces(system, controls, held, k, end, cluster, work)
-    status = solve_forces(k, cluster)
+    status = solve_forces(system, k, cluster)
     for i in range(k):
         hold = held.points[cluster.seats[i].held]
         take_forces(hold, i, cluster)
-        hold.jams = jams_among(hold, i, status, cluster)
+        if cluster.seats[i].turns == 0:
+            hold.jams = jams_among(hold, i, status, cluster)

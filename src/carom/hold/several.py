@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from carom.contact.closed import gather_held
 from carom.contact.gap import slow
 from carom.contact.groups import members
 from carom.coulomb.layout import CONE, SLIDING
@@ -41,8 +42,10 @@ def hold_several(system, controls, held, k, group, state, horizon, cluster, work
     if stay:
         drop_bounces(system, controls, k, group, state, cluster, work, clock)
         set_modes(system, held, k, state, cluster, work, clock, records)
-        first_forces(system, controls, held, k, state, cluster, work)
     strike_off_open(system, held, k, group, state, cluster, work, clock, records)
+    look_again(system, held, k, state, cluster)
+    if stay:
+        first_forces(system, controls, held, group, state, cluster, work)
 
 
 @kernel
@@ -55,7 +58,7 @@ def judge(system, k, state, horizon, cluster):
     for i in range(k):
         contact, u = system.contacts[cluster.seats[i].contact], cluster.v[U][3 * i]
         cluster.seats[i].stays = 1 if abs(u) <= slow(contact, state) else 0
-    solve_forces(k, cluster)
+    solve_forces(system, k, cluster)
     push = 0.0
     for i in range(3 * k):
         push = max(push, abs(cluster.v[C][i]))
@@ -148,19 +151,30 @@ def set_modes(system, held, k, state, cluster, work, clock, records):
 
 
 @kernel
-def first_forces(system, controls, held, k, state, cluster, work):
-    """Put the forces of the points that stay into the list, and the times at which their slip stops."""
+def first_forces(system, controls, held, group, state, cluster, work):
+    """Put the forces of all held points of the group into the list, and the times at which their slip stops."""
+    k = gather_held(system, held, group, state, cluster, work)
     for i in range(k):
-        if cluster.seats[i].stays == 1:
-            held.points[cluster.seats[i].held].several = 1
+        held.points[cluster.seats[i].held].several = 1
+        cluster.seats[i].stays = 1
     pose_forces(system, controls, held, k, state, cluster, work)
-    status = solve_forces(k, cluster)
+    status = solve_forces(system, k, cluster)
     for i in range(k):
-        if cluster.seats[i].stays == 1:
-            hold = held.points[cluster.seats[i].held]
-            take_forces(hold, i, cluster)
-            if jams_among(hold, i, status, cluster) == 1:
-                note_jam(held, hold)
+        hold = held.points[cluster.seats[i].held]
+        take_forces(hold, i, cluster)
+        if jams_among(hold, i, status, cluster) == 1:
+            note_jam(held, hold)
+
+
+@kernel
+def look_again(system, held, k, state, cluster):
+    """Have contacts with a closed point that still approaches looked at."""
+    for i in range(k):
+        seat = cluster.seats[i]
+        contact = system.contacts[seat.contact]
+        if contact_velocity(cluster.points[0][i], state)[0] < -slow(contact, state):
+            if seat.stays == 0:
+                held.brinks[seat.contact].near = 1
 
 
 @kernel

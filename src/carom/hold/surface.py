@@ -30,7 +30,7 @@ def mark_rows(system, held, k, cluster):
     for i in range(k):
         hold, p, q = held.points[cluster.seats[i].held], cluster.v[P], 3 * i
         cluster.seats[i].rows = 0
-        if p[q] > 0.0:
+        if p[q] > 0.0 and cluster.seats[i].turns == 0:
             some = True
             friction = math.sqrt(p[q + 1] * p[q + 1] + p[q + 2] * p[q + 2])
             contact = system.contacts[hold.contact]
@@ -73,13 +73,13 @@ def errors(system, held, k, state, cluster, x, work):
     for i in range(k):
         hold, point = held.points[cluster.seats[i].held], cluster.points[1][i]
         contact = system.contacts[hold.contact]
+        x[3 * i], x[3 * i + 1], x[3 * i + 2] = 0.0, 0.0, 0.0
+        if cluster.seats[i].rows == 0:
+            continue
         place_any(system, contact, hold.feature, hold.point, state, point, work)
         tiny = round_off(contact, state)
         if contact.other >= 0:
             tiny = 4.0 * max(tiny, round_off_of(contact.other, contact, state))
-        x[3 * i], x[3 * i + 1], x[3 * i + 2] = 0.0, 0.0, 0.0
-        if cluster.seats[i].rows == 0:
-            continue
         x[3 * i] = point.gap
         small = small and abs(point.gap) <= tiny
         if cluster.seats[i].rows == 3:

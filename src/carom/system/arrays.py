@@ -75,6 +75,7 @@ CONTACT = [
     ("radius", "f8"),  # of both, where they are two bodies
     ("friction", "f8"),
     ("friction_held", "f8"),
+    ("turning", "f8", 2),  # rolling and pivoting friction [m]
     ("restitution", "f8"),
     ("stiffness", "f8"),  # of its boundary layer, relative to the others
     ("extent", "f8"),  # largest distance of the shape from the mass centre
@@ -127,6 +128,8 @@ HELD = [
     ("heading", "f8", 2),  # direction of slip at the start of the step, or in which it starts
     ("speed", "f8"),  # of slip at the start of the step
     ("stop", "f8"),  # time in which slip will stop under the last forces, where several are held
+    ("turn_stop", "f8", 2),  # the same of rolling and of pivoting
+    ("torque", "f8", 3),  # of rolling and pivoting friction, contact axes
     ("W", "f8", (3, 3)),  # effective inverse mass of the last solve
 ]
 
@@ -139,6 +142,8 @@ POINT = [
     ("core", "f8", 3),  # from the mass centre of a: the part of the arm that turns with it
     ("axes", "f8", (3, 3)),  # rows n, t1, t2
     ("gap", "f8"),
+    ("turns", "i8"),  # 0; or its rows are of relative rotation: 1 rolling (t1, t2), 2 pivoting (t1)
+    ("length", "f8"),  # that makes a speed of an angular velocity
 ]
 
 BODY_WORK = [

@@ -55,6 +55,7 @@ def compile_contacts(scene: Scene, to_principal, options: Options):
             row.other_extent, radius = _size(c.other)
             row.radius += radius
         row.friction, row.friction_held = c.friction, c.friction_held
+        row.turning[:] = c.rolling_friction, c.pivoting_friction
         row.restitution, row.stiffness = c.restitution, c.stiffness
         row.law = IMPACT_LAWS.index(c.impact_law)
         row.width = 1e-5 * row.extent if options.layer_width is None else options.layer_width
