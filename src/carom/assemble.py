@@ -33,6 +33,7 @@ def assemble(run, status: Status) -> dict:
         ),
         "contact_mode": rec.touch.mode.copy(),
         "contact_force": rec.touch.force.copy(),
+        "held_residual": rec.series.residual.copy(),
         "ledger": ledger,
         "status": status,
         "stats": {

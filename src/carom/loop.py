@@ -15,7 +15,17 @@ from carom.contact.gap import gap_and_rate, plane_in_body, slow
 from carom.contact.pair_point import REACH, find_touches, place_any, smaller, touch_rate
 from carom.dispatch import only_with_pairs
 from carom.geometry.rotation import cross
-from carom.hold.events import CONE, GAP, JAM, REVERSE, SEPARATE, end_forces, held_value, slides_on
+from carom.hold.events import (
+    CONE,
+    GAP,
+    JAM,
+    REVERSE,
+    SEPARATE,
+    end_forces,
+    held_value,
+    residual,
+    slides_on,
+)
 from carom.hold.jam import note_jam, presses
 from carom.hold.lifecycle import hold_contact, settle
 from carom.hold.press import press
@@ -308,8 +318,11 @@ def change_mode(system, held, i, kind, now, work, clock, records):
 
 @kernel
 def turn_modes(system, controls, held, now, work, clock, records):
-    """Take over the modes that a step of several held points has ended with."""
+    """Take over the modes that a step of several held points has ended with, and the residual of the step."""
     changed = False
+    clock.residual = max(
+        clock.residual, max(residual(system, held, now, work), work.result[0].residual)
+    )
     for i in range(held.count[0] - 1, -1, -1):
         hold = held.points[i]
         if hold.several == 0 or hold.rest == 1:
@@ -362,6 +375,7 @@ def save(system, held, now, clock, work, records):
     row.t = clock.now
     row.loads, row.impacts = clock.loads, clock.impacts
     row.friction, row.bounces = clock.friction, clock.bounces
+    row.residual, clock.residual = clock.residual, 0.0
     for b in range(now.shape[0]):
         keep(now[b], records.state[k, b])
     if held.count[0] > 0:

@@ -42,6 +42,12 @@ class Solution:
         0 open, 1 slipping, 2 sticking (or rolling, or at rest).
     contact_force : (T, C, 3)
         Force of held contacts in contact axes (normal, tangent 1, tangent 2) [N].
+    held_residual : (T,)
+        How far velocities and impulses of held contacts are from their law [m/s]: the greatest of all steps
+        since the saved time before. Worked out from the velocities of the bodies and the impulses that were
+        applied, whoever found them: ``|p - P_K(p - rho (w + mu |w_t| n))| / rho`` of each point, with P_K
+        the projection on the friction cone and rho its mass; of a point held alone, the velocity that
+        it must not have. 0 where nothing is held.
     ledger : Ledger
         Where the energy went.
     status : Status
@@ -61,6 +67,7 @@ class Solution:
     events: EventTable
     contact_mode: np.ndarray
     contact_force: np.ndarray
+    held_residual: np.ndarray
     ledger: Ledger
     status: Status
     stats: dict[str, int]

@@ -14,7 +14,7 @@ import math
 
 from carom.hold.jam import yields
 from carom.jit import inlined, kernel
-from carom.motion.acceleration import OPEN, SLIP, acceleration
+from carom.motion.acceleration import OPEN, SLIP, STICK, acceleration
 from carom.motion.contact_point import contact_velocity, place
 
 GAP, SEPARATE, CONE, REVERSE, JAM = range(5)
@@ -119,3 +119,17 @@ def slides_on(system, hold, now, h, work):
     place(contact, hold.point, now, point)
     _, u1, u2 = contact_velocity(point, now)
     return 100.0 * braked(contact, hold, h) ** 2 < u1 * u1 + u2 * u2
+
+
+@kernel
+def residual(system, held, state, work):
+    """Return the greatest velocity that a point held alone must not have: normal, and all where it sticks."""
+    worst, point = 0.0, work.point[0]
+    for i in range(held.count[0]):
+        hold = held.points[i]
+        if hold.several == 0 and hold.rest == 0:
+            place(system.contacts[hold.contact], hold.point, state, point)
+            u0, u1, u2 = contact_velocity(point, state)
+            slip = math.sqrt(u1 * u1 + u2 * u2) if hold.mode == STICK else 0.0
+            worst = max(worst, max(abs(u0), slip))
+    return worst

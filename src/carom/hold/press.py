@@ -21,7 +21,8 @@ import math
 from carom.contact.closed import gather_held, place_seats
 from carom.contact.gap import slow
 from carom.contact.groups import members
-from carom.coulomb.layout import CONE
+from carom.coulomb.layout import CONE, NEAR
+from carom.coulomb.residual import measure
 from carom.coulomb.solve import solve_cones
 from carom.dispatch import by_address
 from carom.geometry.rotation import exp, log, multiply, normalize, rotate, rotate_back
@@ -48,7 +49,7 @@ def press_unit(system, controls, held, start, h, end, cluster, work, clocks):
     Forces at the end go to the held points; work of friction, of loads and a status to `work.result`.
     """
     result = work.result[0]
-    result.applied, result.friction, result.code = 0.0, 0.0, 0
+    result.applied, result.friction, result.code, result.residual = 0.0, 0.0, 0, 0.0
     for i in range(held.count[0]):
         hold = held.points[i]
         group = work.body[hold.body].group
@@ -83,7 +84,9 @@ def press_group(system, controls, held, group, start, h, end, cluster, work, clo
     begin(system, controls, held, k, start, h, end, count, loaded, cluster, work)
     size, before = 3 * k, math.inf
     clock.pressed += 1
-    for _ in range(ROUNDS):
+    for turn in range(ROUNDS):
+        # where impulses are not unique: those of least norm, then those near them
+        cluster.cone.count[NEAR] = min(turn, 1)
         for m in range(count):
             halfway(start[cluster.member[m]], end[cluster.member[m]], work.stage[cluster.member[m]])
         place_seats(system, k, work.stage, cluster, cluster.points[0], work)
@@ -104,11 +107,31 @@ def press_group(system, controls, held, group, start, h, end, cluster, work, clo
             break
         before = change
         clock.rounds += 1
+    cluster.cone.count[NEAR] = 0
     impose(system, held, k, h, end, count, loaded, cluster, work)
+    check(system, k, start, end, count, cluster, work)
     finish(system, controls, held, k, start, h, end, count, cluster, work)
     if loaded:
         work.result[0].applied += extra_work(system, h, start, end, cluster, work)
     forces_at_end(system, controls, held, k, end, cluster, work)
+
+
+@kernel
+def check(system, k, start, end, count, cluster, work):
+    """Measure how well impulses and velocities fit each other, whoever found them.
+
+    The velocities are those of the bodies: w(p) = W p + c with the c of one more round.
+    """
+    for m in range(count):
+        b = cluster.member[m]
+        mean_velocity(start[b], end[b], work.stage[b])
+    pose(k, start, cluster, work)
+    bound_turning(system, k, cluster)
+    found = measure(
+        k, cluster.m[0], cluster.v[C], cluster.mu, cluster.kind, cluster.heading, cluster.v[P]
+    )
+    if not found[0] <= work.result[0].residual:
+        work.result[0].residual = found[0]
 
 
 @kernel

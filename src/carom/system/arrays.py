@@ -176,6 +176,7 @@ RESULT = [
     ("code", "i8"),
     ("power", "f8"),  # of loads, and of friction, with the last accelerations
     ("drag", "f8"),
+    ("residual", "f8"),  # greatest of the groups held at several points
 ]
 
 #: search for an event inside a step

@@ -48,9 +48,10 @@ CLOCK = [
     ("holds", "i8"),
     ("pressed", "i8"),  # steps of groups held at several points, on trial too
     ("rounds", "i8"),  # of their iteration
+    ("residual", "f8"),  # greatest of held contacts since the last saved row
 ]
 
-SERIES = [("t", "f8"), *LEDGER]
+SERIES = [("t", "f8"), *LEDGER, ("residual", "f8")]
 #: a contact: the sum over its held points, moment about the mass centre of the body (world axes)
 TOUCH = [
     ("mode", "i8"),
