@@ -28,6 +28,7 @@ from carom.hold.events import (
 )
 from carom.hold.jam import note_jam, presses
 from carom.hold.lifecycle import hold_contact, settle
+from carom.hold.margins import meet_due, note_due
 from carom.hold.press import press
 from carom.hold.roster import is_held, refresh_pairs, regroup, set_anchor, strike_off
 from carom.hold.search import AGAIN, begin_search, event_value, examine, narrow, propose
@@ -94,7 +95,7 @@ def run(system, method, controls, held, now, work, cluster, corner, clocks, reco
                 dt, cuts, found = remaining, 0, False
                 if held.count[0] > 0:
                     dt = until_stop(controls, held, dt, clock)
-                search.active = 0
+                search.active, search.eager = 0, 1 if clock.in_step < 20 else 0
                 while True:
                     applied, friction, code = step(method, system, held, now, dt, trial, work)
                     clock.trials += 1
@@ -140,6 +141,8 @@ def run(system, method, controls, held, now, work, cluster, corner, clocks, reco
                         dt *= 0.5
                         continue
                     begin_search(search, kind, other, low, dt, d1, d2)
+                    if kind != GAP:
+                        note_due(held, search, work)
                     if kind == GAP and controls.location != LOCATE:
                         found = True
                         break
@@ -149,6 +152,7 @@ def run(system, method, controls, held, now, work, cluster, corner, clocks, reco
                 accept(now, trial, dt, applied, friction, begin, clock)
                 if dt == remaining:
                     clock.spent = length
+                met = found and search.kind != GAP and meet_due(held, search)
                 if held.count[0] > 0:
                     turn_modes(system, controls, held, now, work, clock, records)
                 if not found:
@@ -156,8 +160,8 @@ def run(system, method, controls, held, now, work, cluster, corner, clocks, reco
                 clock.located += 1
                 c = search.contact
                 horizon = horizon if controls.location != LOCATE else max(horizon - dt, 0.0)
-                action = STRIKE
-                if search.kind != GAP:
+                action = NOTHING if met else STRIKE
+                if search.kind != GAP and not met:
                     action = change_mode(system, held, c, search.kind, now, work, clock, records)
             closed = 0
             clock.at_once += 1 if action != NOTHING else 0

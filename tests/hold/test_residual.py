@@ -21,7 +21,7 @@ def boxes(count, *, spin=0.0, step=2e-3):
     return carom.simulate(scene, 0.2, step=step)
 
 
-@pytest.mark.parametrize(("count", "spin"), [(1, 0.0), (1, 4.0), (2, 1.0), (3, 0.0)])
+@pytest.mark.parametrize(("count", "spin"), [(1, 0.0), (1, 4.0), (2, 0.0), (3, 0.0)])
 def test_residual_is_round_off(count, spin):
     # of the speeds at hand, .3 m/s and more, in every step; and it is measured: round-off is not nothing
     s = boxes(count, spin=spin)

@@ -4,6 +4,7 @@ Each event is a function that is positive before and negative after, evaluated a
 
     SEPARATE   N                    the normal force
     CONE       mu N - |T|           while sticking
+               (of one of several points: `carom.hold.margins`)
     REVERSE    u_t . d              while slipping; d is the direction of slip at the start of the step
     JAM        k                    while slipping (`carom.hold.jam`)
 """
@@ -24,6 +25,8 @@ GAP, SEPARATE, CONE, REVERSE, JAM = range(5)
 def held_value(system, hold, kind, d1, d2, state, work):
     """Return the event function `kind`; the force of the contact must be that of `state`."""
     f, contact = hold.force, system.contacts[hold.contact]
+    if hold.several == 1 and kind != JAM:
+        return hold.lift if kind == SEPARATE else hold.grip
     if kind == SEPARATE:
         return f[0]
     if kind == CONE:
@@ -51,7 +54,13 @@ def find_held_event(system, held, end, work):
     """Return (event, place in the list, d1, d2) of the first held point whose mode ends; place -1 if none."""
     for i in range(held.count[0]):
         hold = held.points[i]
-        if hold.mode == OPEN or hold.rest == 1 or hold.several == 1:
+        if hold.mode == OPEN or hold.rest == 1:
+            continue
+        if hold.several == 1:
+            if work.search[0].eager == 1 and hold.lift < 0.0:
+                return SEPARATE, i, 0.0, 0.0
+            if work.search[0].eager == 1 and hold.grip < 0.0:
+                return CONE, i, 0.0, 0.0
             continue
         jams = hold.mode == SLIP and held_value(system, hold, JAM, 0.0, 0.0, end, work) <= 0.0
         if jams and not reverses(system, hold, end, work):

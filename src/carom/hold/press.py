@@ -28,6 +28,7 @@ from carom.dispatch import by_address
 from carom.geometry.rotation import exp, log, multiply, normalize, rotate, rotate_back
 from carom.hold.forces import pose_forces, solve_forces, take_forces
 from carom.hold.jam import jams_among
+from carom.hold.margins import greatest_push, set_margins
 from carom.hold.surface import onto_surfaces
 from carom.hold.turning import bound_turning, first_torque
 from carom.jit import kernel, unit
@@ -311,7 +312,7 @@ def finish(system, controls, held, k, start, h, end, count, cluster, work):
     """Put the bodies to rest if nothing is left to move them; note modes, friction's work, bounds."""
     tolerance, friction = controls.rest * gained(start, count, cluster), 0.0
     at_rest = settle(system, tolerance, start, end, count, cluster)
-    stop = tolerance * controls.step / h
+    stop, away = tolerance * controls.step / h, 1e-6 * gained(start, count, cluster)
     for i in range(k):
         hold, p, u = held.points[cluster.seats[i].held], cluster.v[P], cluster.v[U]
         contact = system.contacts[hold.contact]
@@ -322,7 +323,7 @@ def finish(system, controls, held, k, start, h, end, count, cluster, work):
         if cluster.seats[i].turns > 0:
             continue
         still = max(stop, 10.0 * max(slow(contact, start), slow(contact, end)))
-        if p[3 * i] <= 0.0 and u[3 * i] > 0.0:
+        if p[3 * i] <= 0.0 and u[3 * i] > max(still, away):
             hold.next = OPEN
         else:
             hold.next = SLIP if math.sqrt(s1 * s1 + s2 * s2) > still else STICK
@@ -385,8 +386,10 @@ def forces_at_end(system, controls, held, k, end, cluster, work):
     place_seats(system, k, end, cluster, cluster.points[0], work)
     pose_forces(system, controls, held, k, end, cluster, work)
     status = solve_forces(system, k, cluster)
+    push = greatest_push(k, cluster)
     for i in range(k):
         hold = held.points[cluster.seats[i].held]
         take_forces(hold, i, cluster)
         if cluster.seats[i].turns == 0:
+            set_margins(hold, i, push, cluster)
             hold.jams = jams_among(hold, i, status, cluster)

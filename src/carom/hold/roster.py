@@ -20,7 +20,7 @@ def enlist(system, held, seat, mode, state, work):
     hold.contact, hold.feature = seat.contact, seat.feature
     hold.body, hold.other = contact.body, contact.other
     hold.mode, hold.next, hold.rest, hold.several = mode, mode, 0, 0
-    hold.jams = 0
+    hold.jams, hold.due, hold.lift, hold.grip = 0, 0, 1.0, 1.0
     hold.settles, hold.stop = 0, math.inf
     hold.turn_stop[0], hold.turn_stop[1] = math.inf, math.inf
     for k in range(3):
@@ -62,7 +62,7 @@ def copy(a, b):
     """Copy a held point."""
     b.contact, b.feature, b.body, b.other, b.mode = a.contact, a.feature, a.body, a.other, a.mode
     b.next, b.several, b.rest, b.stop = a.next, a.several, a.rest, a.stop
-    b.settles, b.jams = a.settles, a.jams
+    b.settles, b.jams, b.due, b.lift, b.grip = a.settles, a.jams, a.due, a.lift, a.grip
     for k in range(3):
         b.point[k], b.anchor[k], b.force[k] = a.point[k], a.anchor[k], a.force[k]
         for j in range(3):
@@ -143,7 +143,7 @@ def enlist_touch(contact, c, touch, mode, state, held):
     hold.contact, hold.feature = c, touch.feature
     hold.body, hold.other = contact.body, contact.other
     hold.mode, hold.next, hold.rest, hold.several = mode, mode, 0, 1
-    hold.jams = 0
+    hold.jams, hold.due, hold.lift, hold.grip = 0, 0, 1.0, 1.0
     hold.settles, hold.stop = 0, math.inf
     hold.turn_stop[0], hold.turn_stop[1] = math.inf, math.inf
     own_point(contact, touch, state, hold.point)

@@ -128,6 +128,9 @@ HELD = [
     ("heading", "f8", 2),  # direction of slip at the start of the step, or in which it starts
     ("speed", "f8"),  # of slip at the start of the step
     ("stop", "f8"),  # time in which slip will stop under the last forces, where several are held
+    ("lift", "f8"),  # of one of several: how far from opening at the end of a step, below 0: open
+    ("grip", "f8"),  # the same of slip
+    ("due", "i8"),  # 1 where the event that is looked for may be its own too
     ("turn_stop", "f8", 2),  # the same of rolling and of pivoting
     ("torque", "f8", 3),  # of rolling and pivoting friction, contact axes
     ("W", "f8", (3, 3)),  # effective inverse mass of the last solve
@@ -196,6 +199,7 @@ SEARCH = [
     ("d2", "f8"),
     ("width", "f8"),
     ("tolerance", "f8"),
+    ("eager", "i8"),  # 0 where events of several points are left to the end of the step
     ("pending", "i8"),  # an action that waits for its unit to be compiled
     ("horizon", "f8"),
 ]
