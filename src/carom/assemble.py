@@ -8,7 +8,7 @@ from carom.geometry import quaternion
 from carom.ledger import Ledger
 from carom.status import Status
 from carom.system import records as r
-from carom.tables import LAWS, EventTable, ImpactTable
+from carom.tables import LAWS, EventTable, ImpactTable, contact_table
 
 
 def assemble(run, status: Status) -> dict:
@@ -30,6 +30,10 @@ def assemble(run, status: Status) -> dict:
         "impacts": impact_table(run, rec),
         "events": EventTable(
             rec.event.time.copy(), np.array(r.EVENTS)[rec.event.kind], rec.event.contact.copy(),
+        ),
+        "contacts": contact_table(
+            rec.event, r.EVENTS, first_vertices(run.compiled.system.contacts),
+            float(rec.series.t[-1]),
         ),
         "contact_mode": rec.touch.mode.copy(),
         "contact_force": rec.touch.force.copy(),
@@ -63,6 +67,11 @@ def energies(system, state) -> tuple[np.ndarray, np.ndarray]:
         stretch = np.linalg.norm(ends[1] - ends[0], axis=-1) - s.rest_length
         potential += 0.5 * s.stiffness * stretch**2
     return kinetic, potential
+
+
+def first_vertices(contacts) -> np.ndarray:
+    """Return the first vertex of each contact with a half-space, 0 for two bodies."""
+    return np.where(contacts.other < 0, contacts.first, 0)
 
 
 def impact_table(run, rec) -> ImpactTable:

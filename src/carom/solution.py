@@ -11,7 +11,7 @@ import numpy as np
 from carom.geometry import quaternion, spline
 from carom.ledger import Ledger
 from carom.status import Status
-from carom.tables import EventTable, ImpactTable
+from carom.tables import ContactTable, EventTable, ImpactTable
 
 if TYPE_CHECKING:
     from carom.run import Run
@@ -38,6 +38,8 @@ class Solution:
         One record for each impact.
     events : EventTable
         Impacts and changes of held contacts, in their order.
+    contacts : ContactTable
+        Intervals of contact that stays: which point, from when to when, slipping or sticking.
     contact_mode : (T, C)
         0 open, 1 slipping, 2 sticking (or rolling, or at rest).
     contact_force : (T, C, 3)
@@ -65,6 +67,7 @@ class Solution:
     potential_energy: np.ndarray
     impacts: ImpactTable
     events: EventTable
+    contacts: ContactTable
     contact_mode: np.ndarray
     contact_force: np.ndarray
     held_residual: np.ndarray

@@ -39,6 +39,7 @@ def hold_one(system, controls, held, state, horizon, cluster, work, clock, recor
     begin_hold(system, contact, hold, state, 0.0, work, clock)
     find_mode(system, contact, hold, held, state, work)
     clock.holds += 1
+    records.event[clock.event].mode = hold.mode
     end_event(HOLD, state, clock, records)
 
 

@@ -18,7 +18,7 @@ from carom.motion.contact_point import add_velocity, contact_velocity, spread
 from carom.motion.several import factor, substitute
 from carom.system.cluster import OLD, C, U
 from carom.system.notes import begin_event, end_event
-from carom.system.records import HOLD, OPENS
+from carom.system.records import HOLD, OPENS, SLIPS, STICKS
 
 DROP = 1e-10  # of a pivot, relative to its row
 
@@ -125,29 +125,40 @@ def drop_bounces(system, controls, k, group, state, cluster, work, clock):
 
 
 @kernel
+def mode_of(system, i, state, cluster):
+    """Return whether point i slips or sticks, now that its bounces are out."""
+    _, u1, u2 = contact_velocity(cluster.points[0][i], state)
+    # as `pose_forces` has found with the velocities before
+    still = 10.0 * slow(system.contacts[cluster.seats[i].contact], state)
+    slips = math.sqrt(u1 * u1 + u2 * u2) > still and cluster.kind[i] == SLIDING
+    return SLIP if slips else STICK
+
+
+@kernel
 def set_modes(system, held, k, state, cluster, work, clock, records):
-    """Take the new points in, slipping or sticking, with an event each; the first is begun already."""
-    begun = True
+    """Take the new points in, with an event each, the first is begun already; note what others do now."""
+    begun, before = True, held.count[0]
     for i in range(k):
         seat = cluster.seats[i]
-        if seat.stays == 0:
-            continue
-        contact = system.contacts[seat.contact]
-        _, u1, u2 = contact_velocity(cluster.points[0][i], state)
-        # as `pose_forces` has found with the velocities before
-        still = 10.0 * slow(contact, state)
-        mode = (
-            SLIP if math.sqrt(u1 * u1 + u2 * u2) > still and cluster.kind[i] == SLIDING else STICK
-        )
-        if seat.held >= 0:
-            held.points[seat.held].mode = mode
+        if seat.stays == 0 or seat.held >= 0:
             continue
         if not begun:
             begin_event(seat.contact, seat.feature, state, clock, records)
         begun = False
+        mode = mode_of(system, i, state, cluster)
         seat.held = enlist(system, held, seat, mode, state, work)
         clock.holds += 1
+        records.event[clock.event].mode = mode
         end_event(HOLD, state, clock, records)
+    for i in range(k):
+        seat = cluster.seats[i]
+        if seat.stays == 0 or seat.held >= before:
+            continue
+        hold, mode = held.points[seat.held], mode_of(system, i, state, cluster)
+        if hold.mode != mode:
+            hold.mode = mode
+            begin_event(seat.contact, seat.feature, state, clock, records)
+            end_event(SLIPS if mode == SLIP else STICKS, state, clock, records)
 
 
 @kernel

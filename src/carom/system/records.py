@@ -79,7 +79,14 @@ IMPACTS = [
     ("phases", "i8"),
 ]
 
-EVENT = [("time", "f8"), ("kind", "i8"), ("contact", "i8"), ("feature", "i8"), ("saved", "i8")]
+EVENT = [
+    ("time", "f8"),
+    ("kind", "i8"),
+    ("contact", "i8"),
+    ("feature", "i8"),
+    ("saved", "i8"),
+    ("mode", "i8"),  # of a point that is held from now on
+]
 
 #: a body at an event, velocities before and after
 SNAPSHOT = [
