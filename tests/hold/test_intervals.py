@@ -26,15 +26,14 @@ def test_a_box_slides_to_a_stop_and_another_is_in_flight():
     scene = carom.Scene(gravity=(0, 0, -G))
     ground = scene.add_half_space((0, 0, 0), (0, 0, 1))
     high = scene.add_body(carom.Sphere(0.1), mass=1, position=(3, 0, 9))
-    box = scene.add_body(
-        carom.Box(0.2, 0.1, 0.06), mass=1, position=(0, 0, 0.03), velocity=(1, 0, 0)
-    )
+    shape = carom.Box(0.2, 0.1, 0.06)
+    box = scene.add_body(shape, mass=1, position=(0, 0, 0.03), velocity=(1, 0, 0))
     scene.add_contact(high, ground)
     scene.add_contact(box, ground, friction=0.3)
     c = carom.simulate(scene, 0.5, step=0.01).contacts
     assert list(c.contact) == 8 * [1]
     assert sorted(c.feature[:4]) == sorted(c.feature[4:])
-    low = box.shape.vertices[c.feature]
+    low = shape.vertices[c.feature]
     np.testing.assert_array_equal(low[:, 2], -0.03)
     assert list(c.mode) == 4 * ["slipping"] + 4 * ["sticking"]
     np.testing.assert_allclose(c.end[:4], 1 / (0.3 * G), rtol=0, atol=1e-12)

@@ -19,20 +19,18 @@ from __future__ import annotations
 import math
 
 from carom.contact.closed import gather_held, place_seats
-from carom.contact.gap import slow
 from carom.contact.groups import members
 from carom.coulomb.layout import CONE, NEAR
 from carom.coulomb.residual import measure
 from carom.coulomb.solve import solve_cones
 from carom.dispatch import by_address
-from carom.geometry.rotation import exp, log, multiply, normalize, rotate, rotate_back
-from carom.hold.forces import pose_forces, solve_forces, take_forces
-from carom.hold.jam import jams_among
-from carom.hold.margins import greatest_push, set_margins
+from carom.geometry.rotation import rotate, rotate_back
+from carom.hold.finish import finish, forces_at_end, gained
+from carom.hold.middle import halfway, mean_velocity, spin_momentum
 from carom.hold.surface import onto_surfaces
 from carom.hold.turning import bound_turning, first_torque
 from carom.jit import kernel, unit
-from carom.motion.acceleration import OPEN, SLIP, STICK
+from carom.motion.acceleration import SLIP
 from carom.motion.contact_point import contact_velocity
 from carom.motion.explicit import keep
 from carom.motion.forces import applied_wrenches
@@ -182,53 +180,12 @@ def begin(system, controls, held, k, start, h, end, count, loaded, cluster, work
 
 
 @kernel
-def gained(start, count, cluster):
-    """Return the greatest speed that the bodies gain without the contacts."""
-    most = 0.0
-    for m in range(count):
-        b = cluster.member[m]
-        for r in range(3):
-            most = max(most, abs(cluster.flight[b].v[r] - start[b].v[r]))
-    return most
-
-
-@kernel
-def halfway(start, end, out):
-    """Write the state of a body half-way: mean position and velocities, half the turn."""
-    p, q, Q = start.Q, end.Q, out.Q
-    t = multiply(q[0], q[1], q[2], q[3], p[0], -p[1], -p[2], -p[3])
-    a = log(t[0], t[1], t[2], t[3])
-    r = exp(0.5 * a[0], 0.5 * a[1], 0.5 * a[2])
-    q = multiply(r[0], r[1], r[2], r[3], p[0], p[1], p[2], p[3])
-    Q[0], Q[1], Q[2], Q[3] = normalize(q[0], q[1], q[2], q[3])
-    for k in range(3):
-        out.x[k] = 0.5 * (start.x[k] + end.x[k])
-    mean_velocity(start, end, out)
-
-
-@kernel
 def any_joined(system, count, member):
     """Return whether a body of the group has a joint."""
     for m in range(count):
         if system.bodies[member[m]].isolated == 0:
             return True
     return False
-
-
-@kernel
-def mean_velocity(start, end, out):
-    """Write the mean of the velocities of a body."""
-    for k in range(3):
-        out.v[k] = 0.5 * (start.v[k] + end.v[k])
-        out.w[k] = 0.5 * (start.w[k] + end.w[k])
-
-
-@kernel
-def spin_momentum(body, q, w0, w1, w2):
-    """Return the angular momentum J w about the centre, world axes."""
-    J = body.inertia
-    a = rotate_back(q[0], q[1], q[2], q[3], w0, w1, w2)
-    return rotate(q[0], q[1], q[2], q[3], J[0] * a[0], J[1] * a[1], J[2] * a[2])
 
 
 @kernel
@@ -308,88 +265,9 @@ def pose(k, start, cluster, work):
 
 
 @kernel
-def finish(system, controls, held, k, start, h, end, count, cluster, work):
-    """Put the bodies to rest if nothing is left to move them; note modes, friction's work, bounds."""
-    tolerance, friction = controls.rest * gained(start, count, cluster), 0.0
-    at_rest = settle(system, tolerance, start, end, count, cluster)
-    stop, away = tolerance * controls.step / h, 1e-6 * gained(start, count, cluster)
-    for i in range(k):
-        hold, p, u = held.points[cluster.seats[i].held], cluster.v[P], cluster.v[U]
-        contact = system.contacts[hold.contact]
-        s1, s2 = u[3 * i + 1], u[3 * i + 2]
-        _, m1, m2 = contact_velocity(cluster.points[0][i], start)
-        _, e1, e2 = contact_velocity(cluster.points[0][i], end)
-        friction += 0.5 * (p[3 * i + 1] * (m1 + e1) + p[3 * i + 2] * (m2 + e2))
-        if cluster.seats[i].turns > 0:
-            continue
-        still = max(stop, 10.0 * max(slow(contact, start), slow(contact, end)))
-        if p[3 * i] <= 0.0 and u[3 * i] > max(still, away):
-            hold.next = OPEN
-        else:
-            hold.next = SLIP if math.sqrt(s1 * s1 + s2 * s2) > still else STICK
-        if at_rest:
-            hold.next = STICK
-        hold.settles = 1 if at_rest else 0
-    work.result[0].friction += friction
-    for m in range(count):
-        b = cluster.member[m]
-        linear, angular, spin = 0.0, 0.0, 0.0
-        for r in range(3):
-            linear += (end[b].v[r] - start[b].v[r]) ** 2
-            angular += (end[b].w[r] - start[b].w[r]) ** 2
-            spin += max(end[b].w[r] ** 2, start[b].w[r] ** 2)
-        bound = work.body[b].bound
-        bound[0], bound[1] = 2.0 * math.sqrt(linear) / h, 2.0 * math.sqrt(angular) / h
-        bound[2] = math.sqrt(spin)
-
-
-@kernel
-def settle(system, tolerance, start, end, count, cluster):
-    """Stop the bodies, exactly, if all their speed at the end is below the tolerance.
-
-    If they had none at the start they have not moved either. Returns whether so.
-    """
-    speed, before = 0.0, 0.0
-    for m in range(count):
-        b = cluster.member[m]
-        size = system.bodies[b].extent
-        for r in range(3):
-            speed = max(speed, max(abs(end[b].v[r]), size * abs(end[b].w[r])))
-            before = max(before, max(abs(start[b].v[r]), abs(start[b].w[r])))
-    if not speed <= tolerance:
-        return False
-    for m in range(count):
-        b = cluster.member[m]
-        if before == 0.0:
-            keep(start[b], end[b])
-        for r in range(3):
-            end[b].v[r], end[b].w[r] = 0.0, 0.0
-    return before == 0.0
-
-
-@kernel
 def extra_work(system, h, start, end, cluster, work):
     """Return the work of loads on the path that was taken, less that on the one without contacts."""
     for b in range(start.shape[0]):
         halfway(start[b], end[b], work.stage[b])
     taken = applied_wrenches(system, work.stage, False, work)
     return h * (taken - applied_wrenches(system, work.middle, False, work))
-
-
-@kernel
-def forces_at_end(system, controls, held, k, end, cluster, work):
-    """Put the forces in the state at the end into the list of held points."""
-    for i in range(k):
-        seat = cluster.seats[i]
-        hold = held.points[seat.held]
-        seat.stays = 1 if hold.next != OPEN else 0
-    place_seats(system, k, end, cluster, cluster.points[0], work)
-    pose_forces(system, controls, held, k, end, cluster, work)
-    status = solve_forces(system, k, cluster)
-    push = greatest_push(k, cluster)
-    for i in range(k):
-        hold = held.points[cluster.seats[i].held]
-        take_forces(hold, i, cluster)
-        if cluster.seats[i].turns == 0:
-            set_margins(hold, i, push, cluster)
-            hold.jams = jams_among(hold, i, status, cluster)
