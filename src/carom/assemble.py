@@ -10,7 +10,7 @@ from carom.geometry import quaternion
 from carom.ledger import Ledger
 from carom.status import Status
 from carom.system import records as r
-from carom.tables import LAWS, EventTable, ImpactTable
+from carom.tables import LAWS, EventTable, ImpactTable, contact_table
 
 
 def assemble(run, status: Status) -> dict:
@@ -36,6 +36,10 @@ def assemble(run, status: Status) -> dict:
         "events": EventTable(
             event.time.copy(), np.array(r.EVENTS)[event.kind], event.contact.copy(),
         ),
+        "contacts": contact_table(
+            event, r.EVENTS, first_vertices(run.compiled.system.contacts), float(rec.series.t[-1]),
+        ),
+        "held_residual": rec.series.residual.copy(),
         "ledger": ledger,
         "status": status,
         "stats": {
@@ -66,6 +70,12 @@ def energies(system, state) -> tuple[np.ndarray, np.ndarray]:
         stretch = np.linalg.norm(ends[1] - ends[0], axis=-1) - s.rest_length
         potential += 0.5 * s.stiffness * stretch**2
     return kinetic, potential
+
+
+def first_vertices(contacts) -> np.ndarray:
+    """Return the first vertex of each contact of the scene with a half-space, 0 for two bodies."""
+    _, row = np.unique(contacts.number, return_index=True)
+    return np.where(contacts.other < 0, contacts.first, 0)[row]
 
 
 def impact_table(run, rec) -> ImpactTable:

@@ -14,11 +14,23 @@ from carom.contact.exclude import CLEAR, UNSURE, greatest_acceleration
 from carom.contact.gap import gap_and_rate, plane_in_body, slow
 from carom.contact.pair_point import REACH, find_touches, smaller, touch_rate
 from carom.dispatch import only_with_pairs
-from carom.hold.events import CONE, GAP, REVERSE, SEPARATE, end_forces
+from carom.hold.events import (
+    CONE,
+    GAP,
+    JAM,
+    REVERSE,
+    SEPARATE,
+    end_forces,
+    held_value,
+    residual,
+    slides_on,
+)
+from carom.hold.jam import note_jam, presses
 from carom.hold.lifecycle import hold_contact, settle
+from carom.hold.margins import meet_due, note_due
 from carom.hold.press import press
 from carom.hold.roster import is_held, refresh_pairs, regroup, set_anchor, strike_off
-from carom.hold.search import begin_search, event_value, examine, narrow, propose
+from carom.hold.search import AGAIN, begin_search, event_value, examine, narrow, propose
 from carom.impact.strike import strike
 from carom.jit import inlined, kernel
 from carom.motion.acceleration import OPEN, SLIP, STICK
@@ -82,7 +94,7 @@ def advance(
             dt, cuts, found = remaining, 0, False
             if held.count[0] > 0:
                 dt = until_stop(controls, held, dt, clock)
-            search.active = 0
+            search.active, search.eager = 0, 1 if clock.in_step < 20 else 0
             while True:
                 applied, friction, code = step(method, system, held, now, dt, trial, work)
                 clock.trials += 1
@@ -111,6 +123,9 @@ def advance(
                 if verdict == CLEAR or (own and verdict != UNSURE):
                     found = search.active == 1
                     break
+                if verdict == AGAIN:
+                    search.active = 0
+                    continue
                 if verdict == UNSURE:
                     if search.active == 1 and dt <= 1e-9 * horizon:
                         found = True
@@ -123,6 +138,8 @@ def advance(
                     dt *= 0.5
                     continue
                 begin_search(search, kind, other, low, dt, d1, d2)
+                if kind != GAP:
+                    note_due(held, search, work)
                 if kind == GAP and controls.location != LOCATE:
                     found = True
                     break
@@ -134,6 +151,7 @@ def advance(
                 return r.STRAYED
             if dt == remaining:
                 clock.spent = length
+            met = found and search.kind != GAP and meet_due(held, search)
             if held.count[0] > 0:
                 turn_modes(system, controls, held, now, work, clock, records)
             if not found:
@@ -141,8 +159,8 @@ def advance(
             clock.located += 1
             c = search.contact
             horizon = horizon if controls.location != LOCATE else max(horizon - dt, 0.0)
-            action = STRIKE
-            if search.kind != GAP:
+            action = NOTHING if met else STRIKE
+            if search.kind != GAP and not met:
                 action = change_mode(system, held, c, search.kind, now, work, clock, records)
         closed = 0
         clock.at_once += 1 if action != NOTHING else 0
@@ -252,6 +270,8 @@ def look_near(system, controls, held, now, work):
                     elif rate <= still and held.carries[i] == 0 and action == NOTHING:
                         action = HOLD
         brink.near = 0
+        if brink.jams == 1:
+            brink.jams, action = 0, STRIKE
         if action == HOLD:
             brink.leaving = 1  # unless it is held now
         if action != NOTHING:
@@ -282,8 +302,9 @@ def until_stop(controls, held, dt, clock):
     first = dt
     for i in range(held.count[0]):
         hold = held.points[i]
-        if hold.several == 1 and hold.rest == 0 and hold.mode == SLIP and hold.stop < first:
-            first = hold.stop
+        if hold.several == 1 and hold.rest == 0:
+            first = min(first, hold.stop if hold.mode == SLIP else first)
+            first = min(first, min(hold.turn_stop[0], hold.turn_stop[1]))
     # not where they follow each other without end, nor for round-off of the step
     inside = first > controls.rest * dt and first < (1.0 - 1e-12) * dt
     return first if inside and clock.in_step < 20 else dt
@@ -295,6 +316,11 @@ def change_mode(system, held, i, kind, now, work, clock, records):
     if kind == REVERSE:
         return SETTLE
     hold = held.points[i]
+    if kind == JAM:
+        if presses(hold, held_value(system, hold, JAM, 0.0, 0.0, now, work)):
+            note_jam(held, hold)
+            return NOTHING
+        kind = SEPARATE
     begin_event(system, hold.contact, hold.feature, now, clock, records)
     if kind == SEPARATE:
         strike_off(held, i)
@@ -308,8 +334,11 @@ def change_mode(system, held, i, kind, now, work, clock, records):
 
 @kernel
 def turn_modes(system, controls, held, now, work, clock, records):
-    """Take over the modes that a step of several held points has ended with."""
-    opened = False
+    """Take over the modes that a step of several held points has ended with, and the residual of the step."""
+    changed = False
+    clock.residual = max(
+        clock.residual, max(residual(system, held, now, work), work.result[0].residual)
+    )
     for i in range(held.count[0] - 1, -1, -1):
         hold = held.points[i]
         if hold.several == 0 or hold.rest == 1:
@@ -318,19 +347,22 @@ def turn_modes(system, controls, held, now, work, clock, records):
             hold.rest = system.bodies[hold.body].ballistic
             if hold.other >= 0:
                 hold.rest = min(hold.rest, system.bodies[hold.other].ballistic)
+        if hold.jams == 1:
+            note_jam(held, hold)
         if hold.next == hold.mode:
+            changed = changed or slides_on(system, hold, now, controls.step, work)
             continue
+        changed = True
         begin_event(system, hold.contact, hold.feature, now, clock, records)
         if hold.next == OPEN:
             strike_off(held, i)
-            opened = True
             end_event(system, r.OPENS, now, clock, records)
         else:
             hold.mode = hold.next
             if hold.mode == STICK:
                 set_anchor(system, hold, now, work)
             end_event(system, r.STICKS if hold.mode == STICK else r.SLIPS, now, clock, records)
-    if refresh_pairs(system, controls, held, now, work) or opened:
+    if refresh_pairs(system, controls, held, now, work) or changed:
         regroup(system, held, work)
 
 

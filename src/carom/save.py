@@ -35,6 +35,7 @@ def save(system, held, now, clock, work, records):
     row.t = clock.now
     row.loads, row.impacts = clock.loads, clock.impacts
     row.friction, row.bounces = clock.friction, clock.bounces
+    row.residual, clock.residual = clock.residual, 0.0
     for b in range(now.shape[0]):
         keep(now[b], records.state[k, b])
     if held.count[0] > 0:
@@ -57,9 +58,15 @@ def save_contacts(system, held, now, k, clock, work, records):
         fx = f[0] * E[0, 0] + f[1] * E[1, 0] + f[2] * E[2, 0]
         fy = f[0] * E[0, 1] + f[1] * E[1, 1] + f[2] * E[2, 1]
         fz = f[0] * E[0, 2] + f[1] * E[1, 2] + f[2] * E[2, 2]
+        tx, ty, tz = cross(arm[0], arm[1], arm[2], fx, fy, fz)
+        sx, sy, sz = cross(other[0], other[1], other[2], -fx, -fy, -fz)
+        m = hold.torque
+        mx = m[0] * E[0, 0] + m[1] * E[1, 0] + m[2] * E[2, 0]
+        my = m[0] * E[0, 1] + m[1] * E[1, 1] + m[2] * E[2, 1]
+        mz = m[0] * E[0, 2] + m[1] * E[1, 2] + m[2] * E[2, 2]
         t, o, p = touch.moment, touch.other_moment, touch.push
-        t[0], t[1], t[2] = cross(arm[0], arm[1], arm[2], fx, fy, fz)
-        o[0], o[1], o[2] = cross(other[0], other[1], other[2], -fx, -fy, -fz)
+        t[0], t[1], t[2] = tx + mx, ty + my, tz + mz
+        o[0], o[1], o[2] = sx - mx, sy - my, sz - mz
         p[0], p[1], p[2] = fx, fy, fz
         for j in range(3):
             touch.force[j] = f[j]

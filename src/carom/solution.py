@@ -11,7 +11,7 @@ import numpy as np
 from carom.geometry import quaternion, spline
 from carom.ledger import Ledger
 from carom.status import Status
-from carom.tables import EventTable, ImpactTable
+from carom.tables import ContactTable, EventTable, ImpactTable
 
 if TYPE_CHECKING:
     from carom.run import Run
@@ -38,6 +38,14 @@ class Solution:
         One record for each impact.
     events : EventTable
         Impacts and changes of held contacts, in their order.
+    contacts : ContactTable
+        Intervals of contact that stays: which point, from when to when, slipping or sticking.
+    held_residual : (T,)
+        How far velocities and impulses of held contacts are from their law [m/s]: the greatest of all steps
+        since the saved time before. Worked out from the velocities of the bodies and the impulses that were
+        applied, whoever found them: ``|p - P_K(p - rho (w + mu |w_t| n))| / rho`` of each point, with P_K
+        the projection on the friction cone and rho its mass; of a point held alone, the velocity that
+        it must not have. 0 where nothing is held.
     ledger : Ledger
         Where the energy went.
     status : Status
@@ -55,6 +63,8 @@ class Solution:
     potential_energy: np.ndarray
     impacts: ImpactTable
     events: EventTable
+    contacts: ContactTable
+    held_residual: np.ndarray
     ledger: Ledger
     status: Status
     stats: dict[str, int]

@@ -83,8 +83,61 @@ class EventTable(NamedTuple):
     """Events of contacts in the order of time."""
 
     time: np.ndarray  #: (E,) [s]
-    kind: np.ndarray  #: (E,) "impact", "held", "slips", "sticks" or "opens"
+    kind: np.ndarray  #: (E,) "impact", "held", "slips", "sticks", "opens" or "jams"
     contact: np.ndarray  #: (E,) index of the contact
+
+
+class ContactTable(NamedTuple):
+    """Intervals of contact that stays: each as long as a point keeps slipping, or keeps sticking.
+
+    In the order of their starts. Where faces of two bodies slide on each other the corners of their overlap
+    change; a new corner goes on with the interval of the one whose place it took.
+    """
+
+    contact: np.ndarray  #: (M,) index of the contact
+    feature: np.ndarray  #: (M,) what touches: of a half-space the number of the vertex in the shape
+    start: np.ndarray  #: (M,) [s]
+    end: np.ndarray  #: (M,) [s]; where it lasted to the end of the run, that
+    mode: np.ndarray  #: (M,) "slipping" or "sticking" (or rolling, or at rest)
+
+
+def contact_table(event, kinds, first, end: float) -> ContactTable:
+    """Return the intervals that events make.
+
+    Parameters
+    ----------
+    event : records of the run, (E,)
+    kinds : their names, by code
+    first : (C,) first vertex of each contact with a half-space, 0 for two bodies
+    end : time of the last state
+    """
+    rows, at = [], {}  # rows: contact, feature, start, end, mode; at: the row that a point is in
+    for e in event:
+        key, kind = (int(e.contact), int(e.feature)), kinds[e.kind]
+        if kind not in ("held", "slips", "sticks", "opens"):
+            continue
+        if kind != "held" and key not in at:  # took the place of another
+            others = [other for other in at if other[0] == key[0]]
+            if not others:
+                continue
+            at[key] = at.pop(others[0])
+        mode = {"slips": 1, "sticks": 2, "opens": 0}.get(kind, int(e.mode))
+        if key in at:
+            if rows[at[key]][4] == mode:
+                continue  # slip that has turned
+            rows[at.pop(key)][3] = float(e.time)
+        if mode > 0:
+            at[key] = len(rows)
+            rows.append([*key, float(e.time), end, mode])
+    columns = list(zip(*rows)) if rows else [[]] * 5
+    contact = np.array(columns[0], dtype=np.int64)
+    return ContactTable(
+        contact,
+        np.array(columns[1], dtype=np.int64) - first[contact],
+        np.array(columns[2], dtype=float),
+        np.array(columns[3], dtype=float),
+        np.array(["open", "slipping", "sticking"])[np.array(columns[4], dtype=np.int64)],
+    )
 
 
 def _plain(value):

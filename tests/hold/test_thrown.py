@@ -32,7 +32,8 @@ def check(s, shape):
     assert np.sum(np.abs(heights[-1]) < 1e-12) >= 3
     start = s.total_energy[0]
     assert np.all(s.impacts.energy_change <= 1e-15 * start)
-    assert np.max(np.abs(s.ledger.residual)) < 1e-5 * start
+    # pivoting on an edge is of order 2; none of 2100 dice was above this
+    assert np.max(np.abs(s.ledger.residual)) < 1e-6 * start
 
 
 @pytest.mark.parametrize("law", ["newton", "poisson", "stronge"])
@@ -59,6 +60,15 @@ def test_the_papers_die(law):
 def test_other_shapes(shape):
     for q in np.random.default_rng(4).normal(size=(5, 4)):
         check(throw(shape, q), shape)
+
+
+@pytest.mark.parametrize("mu", [0.05, 0.5, 1.0, 2.0])
+def test_any_friction(mu):
+    # A vertex that slips and turns about near zero slip is no step for an explicit method: it gained up
+    # to 4e-4 of the energy at mu = .5 (seed 221), and an edge that rocks on its two ends 2e-4 at mu = 1 (267).
+    shape, seeds = carom.Box(0.02, 0.02, 0.02), (221, 126, 5, 232, 267, 107)
+    for q in (np.random.default_rng(seed).normal(size=4) for seed in seeds):
+        check(throw(shape, q, mu=mu, duration=2.5), shape)
 
 
 def test_by_the_papers_method():

@@ -171,12 +171,6 @@ def test_simulate_says_what_it_does_not_do_yet():
         scene.add_contact(scene.add_body(shape, mass=1, position=(0, 0, 3)), ground)
         with pytest.raises(ValueError, match="is not the hull of a few vertices"):
             carom.simulate(scene, 1.0, step=0.1)
-    scene = Scene()
-    ground = scene.add_half_space((0, 0, 0), (0, 0, 1))
-    ball = scene.add_body(Sphere(1), mass=1, position=(0, 0, 3))
-    scene.add_contact(ball, ground, friction=0.2, rolling_friction=0.001)
-    with pytest.raises(ValueError, match="simulate does not use rolling_friction yet"):
-        carom.simulate(scene, 1.0, step=0.1)
 
 
 def test_joint_to_the_ground_is_no_pair_of_bodies():

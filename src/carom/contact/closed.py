@@ -100,6 +100,7 @@ def add_vertices(system, held, contact, c, near, state, k, cluster):
                 return -1
             take_seat(c, i, system.vertices[i], cluster.seats[k])
             place(contact, cluster.seats[k].point, state, cluster.points[0][k])
+            cluster.points[0][k].turns = 0
             k += 1
     return k
 
@@ -116,6 +117,7 @@ def _add_touches(system, contact, c, near, state, k, cluster, work):
             own_point(contact, touch, state, cluster.seats[k].point)
             take_seat(c, touch.feature, cluster.seats[k].point, cluster.seats[k])
             write_touch(contact, touch, state, cluster.points[0][k])
+            cluster.points[0][k].turns = 0
             k += 1
     return k
 
@@ -142,7 +144,7 @@ def seat_held(held, k, cluster):
 
 @kernel
 def gather_held(system, held, group, state, cluster, work):
-    """List the held points of a group; return how many."""
+    """List the held points of a group, then their rolling and pivoting; return how many."""
     k = 0
     for i in range(held.count[0]):
         hold = held.points[i]
@@ -150,6 +152,15 @@ def gather_held(system, held, group, state, cluster, work):
             take_seat(hold.contact, hold.feature, hold.point, cluster.seats[k])
             cluster.seats[k].held = i
             k += 1
+    for i in range(k):
+        seat = cluster.seats[i]
+        turning = system.contacts[seat.contact].turning
+        for turns in range(1, 3):
+            if turning[turns - 1] > 0.0 and k < cluster.seats.shape[0]:
+                take_seat(seat.contact, seat.feature, seat.point, cluster.seats[k])
+                cluster.seats[k].held, cluster.seats[k].parent = seat.held, i
+                cluster.seats[k].turns = turns
+                k += 1
     place_seats(system, k, state, cluster, cluster.points[0], work)
     return k
 
@@ -162,11 +173,13 @@ def place_seats(system, k, state, cluster, points, work):
         place_any(
             system, system.contacts[seat.contact], seat.feature, seat.point, state, points[i], work
         )
+        points[i].turns, points[i].length = seat.turns, smaller(system.contacts[seat.contact])
 
 
 @kernel
 def take_seat(c, feature, p, seat):
     """Write one closed point."""
     seat.contact, seat.feature, seat.held, seat.stays = c, feature, -1, 0
+    seat.turns = 0
     for k in range(3):
         seat.point[k] = p[k]

@@ -28,8 +28,9 @@ _RELEASES = 60
 def search_unit(work, k):
     """Leave in work the best p that is found from one starting point after the other, and the iterations.
 
-    Start 0: what was given, to the solution of least norm. Start 1: what was given, if anything was, to a
-    solution that is near. Then in turn: after sweeps, after alternating directions, after a release.
+    Start 0: what was given, to the solution of least norm (unless one that is near is wanted). Start 1: what
+    was given, if anything was, to a solution that is near. Then in turn: after sweeps, after alternating
+    directions, after a release.
     """
     p, best, given = work.vector[o.P], work.vector[o.BEST], work.vector[o.GIVEN]
     least, last, cold = math.inf, _STARTS, True
@@ -47,7 +48,9 @@ def search_unit(work, k):
                 p[i] = given[i]
         elif start > 1:
             _approach(work, k, (start - 2) % 3, (start - 2) // 3)
-        r, goal, tolerance = _polished(work, k, start == 0, start % 3 == 2)
+        r, goal, tolerance = _polished(
+            work, k, start == 0 and work.count[o.NEAR] == 0, start % 3 == 2
+        )
         if r < least:
             least = r
             for i in range(3 * k):

@@ -4,24 +4,29 @@ Each event is a function that is positive before and negative after, evaluated a
 
     SEPARATE   N                    the normal force
     CONE       mu N - |T|           while sticking
+               (of one of several points: `carom.hold.margins`)
     REVERSE    u_t . d              while slipping; d is the direction of slip at the start of the step
+    JAM        k                    while slipping (`carom.hold.jam`)
 """
 
 from __future__ import annotations
 
 import math
 
+from carom.hold.jam import yields
 from carom.jit import inlined, kernel
-from carom.motion.acceleration import OPEN, SLIP, acceleration
+from carom.motion.acceleration import OPEN, SLIP, STICK, acceleration
 from carom.motion.contact_point import contact_velocity, place
 
-GAP, SEPARATE, CONE, REVERSE = range(4)
+GAP, SEPARATE, CONE, REVERSE, JAM = range(5)
 
 
 @kernel
 def held_value(system, hold, kind, d1, d2, state, work):
     """Return the event function `kind`; the force of the contact must be that of `state`."""
     f, contact = hold.force, system.contacts[hold.contact]
+    if hold.several == 1 and kind != JAM:
+        return hold.lift if kind == SEPARATE else hold.grip
     if kind == SEPARATE:
         return f[0]
     if kind == CONE:
@@ -29,6 +34,8 @@ def held_value(system, hold, kind, d1, d2, state, work):
     point = work.point[0]
     place(contact, hold.point, state, point)
     _, u1, u2 = contact_velocity(point, state)
+    if kind == JAM:
+        return yields(hold.W, contact.friction_held, u1, u2)
     return u1 * d1 + u2 * d2
 
 
@@ -47,13 +54,22 @@ def find_held_event(system, held, end, work):
     """Return (event, place in the list, d1, d2) of the first held point whose mode ends; place -1 if none."""
     for i in range(held.count[0]):
         hold = held.points[i]
-        if hold.mode == OPEN or hold.rest == 1 or hold.several == 1:
+        if hold.mode == OPEN or hold.rest == 1:
             continue
-        if hold.force[0] < 0.0:
+        if hold.several == 1:
+            if work.search[0].eager == 1 and hold.lift < 0.0:
+                return SEPARATE, i, 0.0, 0.0
+            if work.search[0].eager == 1 and hold.grip < 0.0:
+                return CONE, i, 0.0, 0.0
+            continue
+        jams = hold.mode == SLIP and held_value(system, hold, JAM, 0.0, 0.0, end, work) <= 0.0
+        if jams and not reverses(system, hold, end, work):
+            return JAM, i, 0.0, 0.0
+        if hold.force[0] < 0.0 and not jams:
             return SEPARATE, i, 0.0, 0.0
         if hold.mode == SLIP:
             d1, d2 = hold.heading[0], hold.heading[1]
-            if held_value(system, hold, REVERSE, d1, d2, end, work) < 0.0:
+            if reverses(system, hold, end, work):
                 return REVERSE, i, d1, d2
         # a cone met to round-off (a body on the verge of slip) is no event
         elif held_value(system, hold, CONE, 0.0, 0.0, end, work) < -1e-12 * hold.force[0]:
@@ -62,19 +78,67 @@ def find_held_event(system, held, end, work):
 
 
 @inlined
-def turned(system, held, end, work):
-    """Return whether slip of a point has turned by more than 60 degrees within the step.
+def reverses(system, hold, end, work):
+    """Return whether slip has come to a stop and turned about: not if it has turned off to a side."""
+    point = work.point[0]
+    place(system.contacts[hold.contact], hold.point, end, point)
+    _, u1, u2 = contact_velocity(point, end)
+    d1, d2 = hold.heading[0], hold.heading[1]
+    across = abs(u1 * d2 - u2 * d1)
+    return hold.speed > 0.0 and u1 * d1 + u2 * d2 < 0.0 and across <= 0.1 * hold.speed
 
-    Friction turns with it; no method keeps its order over such a step.
+
+@inlined
+def turned(system, held, end, h, work):
+    """Look for slip that has turned within the step h: 0 none, 1 the step is too long, 2 not by this method.
+
+    Too long: by more than 60 degrees. Where friction can turn it over within the step, mu N h W_tt > |u_t|, an
+    explicit step is of no use: its stages swing about a slip that does not end, and that gives energy. Such
+    a point is handed to the implicit step, as one of several (`carom.hold.press`).
     """
+    found = 0
     for i in range(held.count[0]):
         hold = held.points[i]
         if hold.mode == SLIP and hold.rest == 0 and hold.several == 0:
             d1, d2 = hold.heading[0], hold.heading[1]
-            point = work.point[0]
-            place(system.contacts[hold.contact], hold.point, end, point)
+            point, contact = work.point[0], system.contacts[hold.contact]
+            place(contact, hold.point, end, point)
             _, u1, u2 = contact_velocity(point, end)
-            along, square = u1 * d1 + u2 * d2, u1 * u1 + u2 * u2
-            if along * along < 0.25 * square * (d1 * d1 + d2 * d2):
-                return True
-    return False
+            along, across, square = u1 * d1 + u2 * d2, u1 * d2 - u2 * d1, u1 * u1 + u2 * u2
+            if across * across > 1e-12 * square and braked(contact, hold, h) ** 2 > square:
+                hold.several, hold.stop = 1, math.inf
+                found = 2
+            elif along < 0.5 * math.sqrt(square * (d1 * d1 + d2 * d2)):
+                found = max(found, 1)
+    return found
+
+
+@inlined
+def braked(contact, hold, h):
+    """Return the slip that friction can take away in the time h."""
+    return h * contact.friction_held * abs(hold.force[0]) * (hold.W[1, 1] + hold.W[2, 2])
+
+
+@inlined
+def slides_on(system, hold, now, h, work):
+    """Return whether a point slides too fast for friction to turn it within a step."""
+    if hold.mode != SLIP or hold.other >= 0:
+        return False
+    contact, point = system.contacts[hold.contact], work.point[0]
+    place(contact, hold.point, now, point)
+    _, u1, u2 = contact_velocity(point, now)
+    return 100.0 * braked(contact, hold, h) ** 2 < u1 * u1 + u2 * u2
+
+
+@kernel
+def residual(system, held, state, work):
+    """Return the greatest velocity that a point held alone must not have: normal, and all where it sticks."""
+    worst, point = 0.0, work.point[0]
+    for i in range(held.count[0]):
+        hold = held.points[i]
+        if hold.several == 0 and hold.rest == 0:
+            place(system.contacts[hold.contact], hold.point, state, point)
+            u0, u1, u2 = contact_velocity(point, state)
+            slip = math.sqrt(u1 * u1 + u2 * u2) if hold.mode == STICK else 0.0
+            worst = max(worst, max(abs(u0), slip))
+    return worst

@@ -14,6 +14,7 @@ from carom.contact.gap import slow
 from carom.contact.pair_point import drift
 from carom.coulomb.layout import CONE, SLIDING
 from carom.coulomb.solve import solve_cones
+from carom.hold.turning import bound_turning, take_torque
 from carom.jit import kernel
 from carom.motion.acceleration import acceleration
 from carom.motion.several import accelerations, inverse_masses, velocities
@@ -30,7 +31,7 @@ def pose_forces(system, controls, held, k, state, cluster, work):
     for i in range(k):
         seat = cluster.seats[i]
         contact = system.contacts[seat.contact]
-        if contact.other >= 0:
+        if contact.other >= 0 and seat.turns == 0:
             d = drift(system, contact, seat.feature, seat.point, cluster.points[0][i], state, work)
             for r in range(3):
                 cluster.v[C][3 * i + r] += d[r]
@@ -39,7 +40,7 @@ def pose_forces(system, controls, held, k, state, cluster, work):
         push = max(push, abs(cluster.v[C][i]))
     for i in range(k):
         contact = system.contacts[cluster.seats[i].contact]
-        cluster.mu[i] = contact.friction_held
+        cluster.mu[i] = contact.friction_held if cluster.seats[i].turns == 0 else 1.0
         still = max(10.0 * slow(contact, state), controls.rest * push * controls.step)
         set_heading(cluster, i, cluster.v[U][3 * i + 1], cluster.v[U][3 * i + 2], still)
 
@@ -57,8 +58,24 @@ def set_heading(cluster, i, u1, u2, still):
 
 
 @kernel
-def solve_forces(k, cluster):
+def solve_forces(system, k, cluster):
     """Write the forces of the points that stay into p, and the accelerations of all k into `old`."""
+    turning = False
+    for i in range(k):
+        turning = turning or cluster.seats[i].turns > 0
+    for i in range(3 * k):
+        cluster.v[P][i] = 0.0
+    status = solve_once(k, cluster)
+    for _ in range(50 if turning else 0):
+        if not bound_turning(system, k, cluster) > 1e-14:
+            break
+        status = solve_once(k, cluster)
+    return status
+
+
+@kernel
+def solve_once(k, cluster):
+    """Write forces and accelerations, for bounds of torques that are known."""
     W, M, b, p = cluster.m[0], cluster.m[1], cluster.v[OLD], cluster.v[P]
     n = 3 * k
     for i in range(n):
@@ -67,7 +84,6 @@ def solve_forces(k, cluster):
             both = stays and cluster.seats[j // 3].stays == 1
             M[i, j] = W[i, j] if both else 1.0 if i == j else 0.0
         b[i] = cluster.v[C][i] if stays else 1.0 if i % 3 == 0 else 0.0
-        p[i] = 0.0
     status, _, _ = solve_cones(k, M, b, cluster.mu, cluster.kind, cluster.heading, p, cluster.cone)
     for i in range(n):
         a = cluster.v[C][i]
@@ -78,18 +94,23 @@ def solve_forces(k, cluster):
 
 
 @kernel
-def predict_stop(hold, i, cluster):
-    """Note when slip of point i stops, going on as it does: speed over the deceleration along it."""
+def time_to_stop(i, cluster):
+    """Return when slip of point i stops, going on as it does: speed over the deceleration along it."""
     d1, d2 = cluster.heading[i, 0], cluster.heading[i, 1]
     speed = cluster.v[U][3 * i + 1] * d1 + cluster.v[U][3 * i + 2] * d2
     rate = cluster.v[OLD][3 * i + 1] * d1 + cluster.v[OLD][3 * i + 2] * d2
-    hold.stop = speed / -rate if cluster.kind[i] == SLIDING and rate < 0.0 else math.inf
+    return speed / -rate if cluster.kind[i] == SLIDING and rate < 0.0 else math.inf
 
 
 @kernel
 def take_forces(hold, i, cluster):
-    """Put the force of point i into the list, its W, and when its slip stops."""
-    predict_stop(hold, i, cluster)
+    """Put the force of point i into the list, its W, and when its slip stops; or its torque."""
+    turns = cluster.seats[i].turns
+    if turns > 0:
+        hold.turn_stop[turns - 1] = time_to_stop(i, cluster)
+        take_torque(hold, i, cluster)
+        return
+    hold.stop = time_to_stop(i, cluster)
     for r in range(3):
         hold.force[r] = cluster.v[P][3 * i + r]
         for j in range(3):

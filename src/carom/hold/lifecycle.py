@@ -13,13 +13,11 @@ while those that do not leave are kept.
 from __future__ import annotations
 
 from carom.contact.closed import gather_closed
-from carom.contact.gap import slow
 from carom.dispatch import by_address
 from carom.hold.one import hold_one, settle_one
-from carom.hold.roster import regroup
+from carom.hold.roster import regroup, together
 from carom.hold.several import hold_several
-from carom.jit import kernel, unit
-from carom.motion.contact_point import contact_velocity
+from carom.jit import unit
 
 TOO_MANY_POINTS = 10
 
@@ -37,31 +35,17 @@ def hold_unit(system, controls, held, c, state, horizon, cluster, work, clocks, 
             hold.rest, hold.several = 0, 1  # together with the new one
     if k < 0:
         hit.code = TOO_MANY_POINTS
-    elif k == 1 and cluster.seats[0].held < 0 and contact.other < 0:
+    elif k == 1 and cluster.seats[0].held < 0 and not together(contact):
         hold_one(system, controls, held, state, horizon, cluster, work, clock, records)
     elif k > 0:
         hold_several(
             system, controls, held, k, group, state, horizon, cluster, work, clock, records
         )
-        look_again(system, held, k, state, cluster)
     regroup(system, held, work)
 
 
 #: hold_contact(address, system, controls, held, c, state, horizon, cluster, work, clocks, records)
 hold_contact = by_address(hold_unit)
-
-
-@kernel
-def look_again(system, held, k, state, cluster):
-    """Have contacts with a closed point that still approaches looked at; the others were judged just now."""
-    for i in range(k):
-        held.brinks[cluster.seats[i].contact].near = 0
-    for i in range(k):
-        seat = cluster.seats[i]
-        contact = system.contacts[seat.contact]
-        if contact_velocity(cluster.points[0][i], state)[0] < -slow(contact, state):
-            if seat.stays == 0:
-                held.brinks[seat.contact].near = 1
 
 
 @unit

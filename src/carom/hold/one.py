@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 
 from carom.contact.gap import slow
+from carom.hold.events import braked
+from carom.hold.jam import note_jam, presses, yields
 from carom.hold.roster import enlist
 from carom.jit import kernel
 from carom.motion.acceleration import SLIP, STICK, acceleration
@@ -37,6 +39,7 @@ def hold_one(system, controls, held, state, horizon, cluster, work, clock, recor
     begin_hold(system, contact, hold, state, 0.0, work, clock)
     find_mode(system, contact, hold, held, state, work)
     clock.holds += 1
+    records.event[clock.event].mode = hold.mode
     end_event(system, HOLD, state, clock, records)
 
 
@@ -44,8 +47,7 @@ def hold_one(system, controls, held, state, horizon, cluster, work, clock, recor
 def settle_one(system, controls, hold, held, state, work, clock, records):
     """Find anew how a point goes on, whose slip has stopped or turned."""
     contact = system.contacts[hold.contact]
-    # slip below what friction does in a thousandth of a step has stopped
-    stop = 1e-3 * controls.step * abs(hold.force[0]) * hold.W[1, 1]
+    stop = braked(contact, hold, 1e-3 * controls.step)  # in a thousandth of a step
     hold.heading[0], hold.heading[1] = 0.0, 0.0
     acceleration(system, state, held, work, work.stages[0])
     begin_event(system, hold.contact, hold.feature, state, clock, records)
@@ -102,6 +104,11 @@ def find_mode(system, contact, hold, held, state, work):
     ):
         hold.mode = SLIP
         acceleration(system, state, held, work, work.stages[0])
+    if hold.mode == SLIP:
+        _, u1, u2 = contact_velocity(work.point[0], state)
+        k = yields(hold.W, contact.friction_held, u1, u2)
+        if k <= 0.0 and presses(hold, k):
+            note_jam(held, hold)
     body = system.bodies[contact.body]
     if hold.mode == STICK and body.isolated == 1:
         rate = work.stages[0, contact.body].rate

@@ -19,16 +19,18 @@ from __future__ import annotations
 import math
 
 from carom.contact.closed import gather_held, place_seats
-from carom.contact.gap import slow
 from carom.contact.groups import members
-from carom.coulomb.layout import CONE
+from carom.coulomb.layout import CONE, NEAR
+from carom.coulomb.residual import measure
 from carom.coulomb.solve import solve_cones
 from carom.dispatch import by_address
-from carom.geometry.rotation import exp, log, multiply, normalize, rotate, rotate_back
-from carom.hold.forces import pose_forces, solve_forces, take_forces
+from carom.geometry.rotation import rotate, rotate_back
+from carom.hold.finish import finish, forces_at_end, gained
+from carom.hold.middle import halfway, mean_velocity, spin_momentum
 from carom.hold.surface import onto_surfaces
+from carom.hold.turning import bound_turning, first_torque
 from carom.jit import kernel, unit
-from carom.motion.acceleration import OPEN, SLIP, STICK
+from carom.motion.acceleration import SLIP
 from carom.motion.contact_point import contact_velocity
 from carom.motion.explicit import keep
 from carom.motion.forces import applied_wrenches
@@ -46,7 +48,7 @@ def press_unit(system, controls, held, start, h, end, cluster, work, clocks):
     Forces at the end go to the held points; work of friction, of loads and a status to `work.result`.
     """
     result = work.result[0]
-    result.applied, result.friction, result.code = 0.0, 0.0, 0
+    result.applied, result.friction, result.code, result.residual = 0.0, 0.0, 0, 0.0
     for i in range(held.count[0]):
         hold = held.points[i]
         group = work.body[hold.body].group
@@ -78,10 +80,12 @@ def press_group(system, controls, held, group, start, h, end, cluster, work, clo
     loaded = False
     for m in range(count):
         loaded = loaded or system.bodies[cluster.member[m]].ballistic == 0
-    begin(system, held, k, start, h, end, count, loaded, cluster, work)
+    begin(system, controls, held, k, start, h, end, count, loaded, cluster, work)
     size, before = 3 * k, math.inf
     clock.pressed += 1
-    for _ in range(ROUNDS):
+    for turn in range(ROUNDS):
+        # where impulses are not unique: those of least norm, then those near them
+        cluster.cone.count[NEAR] = min(turn, 1)
         for m in range(count):
             halfway(start[cluster.member[m]], end[cluster.member[m]], work.stage[cluster.member[m]])
         place_seats(system, k, work.stage, cluster, cluster.points[0], work)
@@ -92,6 +96,7 @@ def press_group(system, controls, held, group, start, h, end, cluster, work, clo
                 start[cluster.member[m]], end[cluster.member[m]], work.stage[cluster.member[m]]
             )
         pose(k, start, cluster, work)
+        bound_turning(system, k, cluster)
         solve_cones(
             k, cluster.m[0], cluster.v[C], cluster.mu, cluster.kind, cluster.heading, cluster.v[P],
             cluster.cone,
@@ -101,11 +106,31 @@ def press_group(system, controls, held, group, start, h, end, cluster, work, clo
             break
         before = change
         clock.rounds += 1
+    cluster.cone.count[NEAR] = 0
     impose(system, held, k, h, end, count, loaded, cluster, work)
+    check(system, k, start, end, count, cluster, work)
     finish(system, controls, held, k, start, h, end, count, cluster, work)
     if loaded:
         work.result[0].applied += extra_work(system, h, start, end, cluster, work)
     forces_at_end(system, controls, held, k, end, cluster, work)
+
+
+@kernel
+def check(system, k, start, end, count, cluster, work):
+    """Measure how well impulses and velocities fit each other, whoever found them.
+
+    The velocities are those of the bodies: w(p) = W p + c with the c of one more round.
+    """
+    for m in range(count):
+        b = cluster.member[m]
+        mean_velocity(start[b], end[b], work.stage[b])
+    pose(k, start, cluster, work)
+    bound_turning(system, k, cluster)
+    found = measure(
+        k, cluster.m[0], cluster.v[C], cluster.mu, cluster.kind, cluster.heading, cluster.v[P]
+    )
+    if not found[0] <= work.result[0].residual:
+        work.result[0].residual = found[0]
 
 
 @kernel
@@ -125,7 +150,7 @@ def moved(n, cluster):
 
 
 @kernel
-def begin(system, held, k, start, h, end, count, loaded, cluster, work):
+def begin(system, controls, held, k, start, h, end, count, loaded, cluster, work):
     """Note the step without contacts, the directions of slip, and the last forces as a first guess."""
     for m in range(count):
         keep(end[cluster.member[m]], cluster.flight[cluster.member[m]])
@@ -133,32 +158,25 @@ def begin(system, held, k, start, h, end, count, loaded, cluster, work):
         for b in range(start.shape[0]):
             halfway(start[b], end[b], work.stage[b])
             halfway(start[b], end[b], work.middle[b])
+    still = controls.rest * gained(start, count, cluster) * controls.step / h
     for i in range(k):
-        hold = held.points[cluster.seats[i].held]
-        cluster.mu[i] = system.contacts[hold.contact].friction_held
-        for r in range(3):
-            cluster.v[P][3 * i + r] = h * hold.force[r]
+        seat = cluster.seats[i]
+        hold = held.points[seat.held]
         _, u1, u2 = contact_velocity(cluster.points[0][i], start)
         speed = math.sqrt(u1 * u1 + u2 * u2)
-        slips = hold.mode == SLIP and speed > 0.0
+        if seat.turns == 0:
+            cluster.mu[i] = system.contacts[hold.contact].friction_held
+            for r in range(3):
+                cluster.v[P][3 * i + r] = h * hold.force[r]
+            slips, stop = hold.mode == SLIP and speed > 0.0, hold.stop
+        else:
+            cluster.mu[i] = 1.0
+            first_torque(system, hold, i, h, cluster)
+            slips, stop = speed > still, hold.turn_stop[seat.turns - 1]
         cluster.heading[i, 0] = u1 / speed if slips else 0.0
         cluster.heading[i, 1] = u2 / speed if slips else 0.0
         cluster.kind[i] = CONE
-        cluster.seats[i].stopped = 0 if slips and hold.stop > h * (1.0 + 1e-9) else 1
-
-
-@kernel
-def halfway(start, end, out):
-    """Write the state of a body half-way: mean position and velocities, half the turn."""
-    p, q, Q = start.Q, end.Q, out.Q
-    t = multiply(q[0], q[1], q[2], q[3], p[0], -p[1], -p[2], -p[3])
-    a = log(t[0], t[1], t[2], t[3])
-    r = exp(0.5 * a[0], 0.5 * a[1], 0.5 * a[2])
-    q = multiply(r[0], r[1], r[2], r[3], p[0], p[1], p[2], p[3])
-    Q[0], Q[1], Q[2], Q[3] = normalize(q[0], q[1], q[2], q[3])
-    for k in range(3):
-        out.x[k] = 0.5 * (start.x[k] + end.x[k])
-    mean_velocity(start, end, out)
+        seat.stopped = 0 if slips and stop > h * (1.0 + 1e-9) else 1
 
 
 @kernel
@@ -168,22 +186,6 @@ def any_joined(system, count, member):
         if system.bodies[member[m]].isolated == 0:
             return True
     return False
-
-
-@kernel
-def mean_velocity(start, end, out):
-    """Write the mean of the velocities of a body."""
-    for k in range(3):
-        out.v[k] = 0.5 * (start.v[k] + end.v[k])
-        out.w[k] = 0.5 * (start.w[k] + end.w[k])
-
-
-@kernel
-def spin_momentum(body, q, w0, w1, w2):
-    """Return the angular momentum J w about the centre, world axes."""
-    J = body.inertia
-    a = rotate_back(q[0], q[1], q[2], q[3], w0, w1, w2)
-    return rotate(q[0], q[1], q[2], q[3], J[0] * a[0], J[1] * a[1], J[2] * a[2])
 
 
 @kernel
@@ -263,85 +265,9 @@ def pose(k, start, cluster, work):
 
 
 @kernel
-def finish(system, controls, held, k, start, h, end, count, cluster, work):
-    """Put the bodies to rest if nothing is left to move them; note modes, friction's work, bounds."""
-    gained, friction = 0.0, 0.0
-    for m in range(count):
-        b = cluster.member[m]
-        for r in range(3):
-            gained = max(gained, abs(cluster.flight[b].v[r] - start[b].v[r]))
-    at_rest = settle(system, controls.rest * gained, start, end, count, cluster)
-    stop = controls.rest * gained * controls.step / h
-    for i in range(k):
-        hold, p, u = held.points[cluster.seats[i].held], cluster.v[P], cluster.v[U]
-        contact = system.contacts[hold.contact]
-        s1, s2 = u[3 * i + 1], u[3 * i + 2]
-        _, m1, m2 = contact_velocity(cluster.points[0][i], start)
-        _, e1, e2 = contact_velocity(cluster.points[0][i], end)
-        friction += 0.5 * (p[3 * i + 1] * (m1 + e1) + p[3 * i + 2] * (m2 + e2))
-        still = max(stop, 10.0 * max(slow(contact, start), slow(contact, end)))
-        if p[3 * i] <= 0.0 and u[3 * i] > slow(contact, end):
-            hold.next = OPEN
-        else:
-            hold.next = SLIP if math.sqrt(s1 * s1 + s2 * s2) > still else STICK
-        if at_rest:
-            hold.next = STICK
-        hold.settles = 1 if at_rest else 0
-    work.result[0].friction += friction
-    for m in range(count):
-        b = cluster.member[m]
-        linear, angular, spin = 0.0, 0.0, 0.0
-        for r in range(3):
-            linear += (end[b].v[r] - start[b].v[r]) ** 2
-            angular += (end[b].w[r] - start[b].w[r]) ** 2
-            spin += max(end[b].w[r] ** 2, start[b].w[r] ** 2)
-        bound = work.body[b].bound
-        bound[0], bound[1] = 2.0 * math.sqrt(linear) / h, 2.0 * math.sqrt(angular) / h
-        bound[2] = math.sqrt(spin)
-
-
-@kernel
-def settle(system, tolerance, start, end, count, cluster):
-    """Stop the bodies, exactly, if all their speed at the end is below the tolerance.
-
-    If they had none at the start they have not moved either. Returns whether so.
-    """
-    speed, before = 0.0, 0.0
-    for m in range(count):
-        b = cluster.member[m]
-        size = system.bodies[b].extent
-        for r in range(3):
-            speed = max(speed, max(abs(end[b].v[r]), size * abs(end[b].w[r])))
-            before = max(before, max(abs(start[b].v[r]), abs(start[b].w[r])))
-    if not speed <= tolerance:
-        return False
-    for m in range(count):
-        b = cluster.member[m]
-        if before == 0.0:
-            keep(start[b], end[b])
-        for r in range(3):
-            end[b].v[r], end[b].w[r] = 0.0, 0.0
-    return before == 0.0
-
-
-@kernel
 def extra_work(system, h, start, end, cluster, work):
     """Return the work of loads on the path that was taken, less that on the one without contacts."""
     for b in range(start.shape[0]):
         halfway(start[b], end[b], work.stage[b])
     taken = applied_wrenches(system, work.stage, False, work)
     return h * (taken - applied_wrenches(system, work.middle, False, work))
-
-
-@kernel
-def forces_at_end(system, controls, held, k, end, cluster, work):
-    """Put the forces in the state at the end into the list of held points."""
-    for i in range(k):
-        seat = cluster.seats[i]
-        hold = held.points[seat.held]
-        seat.stays = 1 if hold.next != OPEN else 0
-    place_seats(system, k, end, cluster, cluster.points[0], work)
-    pose_forces(system, controls, held, k, end, cluster, work)
-    solve_forces(k, cluster)
-    for i in range(k):
-        take_forces(held.points[cluster.seats[i].held], i, cluster)

@@ -20,10 +20,12 @@ def enlist(system, held, seat, mode, state, work):
     hold.contact, hold.feature = seat.contact, seat.feature
     hold.body, hold.other = contact.body, contact.other
     hold.mode, hold.next, hold.rest, hold.several = mode, mode, 0, 0
+    hold.jams, hold.due, hold.lift, hold.grip = 0, 0, 1.0, 1.0
     hold.settles, hold.stop = 0, math.inf
+    hold.turn_stop[0], hold.turn_stop[1] = math.inf, math.inf
     for k in range(3):
         hold.point[k] = seat.point[k]
-        hold.force[k] = 0.0
+        hold.force[k], hold.torque[k] = 0.0, 0.0
         for j in range(3):
             hold.W[k, j] = 0.0
     hold.heading[0], hold.heading[1] = 0.0, 0.0
@@ -60,12 +62,20 @@ def copy(a, b):
     """Copy a held point."""
     b.contact, b.feature, b.body, b.other, b.mode = a.contact, a.feature, a.body, a.other, a.mode
     b.next, b.several, b.rest, b.stop = a.next, a.several, a.rest, a.stop
-    b.settles = a.settles
+    b.settles, b.jams, b.due, b.lift, b.grip = a.settles, a.jams, a.due, a.lift, a.grip
     for k in range(3):
         b.point[k], b.anchor[k], b.force[k] = a.point[k], a.anchor[k], a.force[k]
         for j in range(3):
             b.W[k, j] = a.W[k, j]
-    b.heading[0], b.heading[1] = a.heading[0], a.heading[1]
+        b.torque[k] = a.torque[k]
+    b.turn_stop[0], b.turn_stop[1] = a.turn_stop[0], a.turn_stop[1]
+    b.heading[0], b.heading[1], b.speed = a.heading[0], a.heading[1], a.speed
+
+
+@kernel
+def together(contact):
+    """Return whether a point of a contact is always stepped as one of several."""
+    return contact.other >= 0 or contact.turning[0] > 0.0 or contact.turning[1] > 0.0
 
 
 @kernel
@@ -74,7 +84,8 @@ def regroup(system, held, work):
     label_groups(system, held, work)
     for i in range(held.count[0]):
         hold = held.points[i]
-        group, several = work.body[hold.body].group, 1 if hold.other >= 0 else 0
+        group = work.body[hold.body].group
+        several = 1 if together(system.contacts[hold.contact]) else 0
         for j in range(held.count[0]):
             if j != i and work.body[held.points[j].body].group == group:
                 several = 1
@@ -132,10 +143,12 @@ def enlist_touch(contact, c, touch, mode, state, held):
     hold.contact, hold.feature = c, touch.feature
     hold.body, hold.other = contact.body, contact.other
     hold.mode, hold.next, hold.rest, hold.several = mode, mode, 0, 1
+    hold.jams, hold.due, hold.lift, hold.grip = 0, 0, 1.0, 1.0
     hold.settles, hold.stop = 0, math.inf
+    hold.turn_stop[0], hold.turn_stop[1] = math.inf, math.inf
     own_point(contact, touch, state, hold.point)
     for k in range(3):
-        hold.force[k] = 0.0
+        hold.force[k], hold.torque[k] = 0.0, 0.0
         for j in range(3):
             hold.W[k, j] = 0.0
     hold.heading[0], hold.heading[1] = 0.0, 0.0

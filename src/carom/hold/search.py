@@ -13,7 +13,10 @@ from carom.contact.exclude_pair import lowest_pair, passage_pair
 from carom.contact.gap import lowest, round_off
 from carom.contact.pair_point import smaller
 from carom.hold.events import GAP, find_held_event, held_value, turned
+from carom.hold.margins import LEAST, NEAR
 from carom.jit import inlined, kernel
+
+AGAIN = 3  # verdict of a step: the same once more, by the implicit method
 
 
 @inlined
@@ -42,7 +45,10 @@ def examine(system, controls, held, now, dt, work):
     kind, i, d1, d2 = find_held_event(system, held, work.trial, work)
     if i >= 0:
         return BELOW, kind, i, 0.0, d1, d2
-    if dt > 1e-3 * controls.step and turned(system, held, work.trial, work):
+    far = turned(system, held, work.trial, dt, work)
+    if far == 2:
+        return AGAIN, GAP, -1, 0.0, 0.0, 0.0
+    if far == 1 and dt > 1e-3 * controls.step:
         return UNSURE, GAP, -1, 0.0, 0.0, 0.0
     return CLEAR, GAP, -1, 0.0, 0.0, 0.0
 
@@ -58,6 +64,8 @@ def event_value(system, controls, held, search, state, work):
         search.tolerance = 4.0 * max(search.tolerance, round_off_of(contact.other, contact, state))
         return lowest_pair(system, contact, search.contact, held, state, work)
     hold = held.points[search.contact]
+    if hold.several == 1:
+        search.tolerance = NEAR
     return held_value(system, hold, search.kind, search.d1, search.d2, state, work), 0.0
 
 
@@ -76,7 +84,7 @@ def narrow(search, t, f, rate):
     search.t, search.f, search.rate = t, f, rate
     if search.f_low < 0.0:  # the first value; nothing is known at the low end but the sign
         search.f_low = abs(f)
-        if search.kind != GAP:
+        if search.tolerance < 0.0:
             search.tolerance = 1e-13 * abs(f)
     if abs(f) <= search.tolerance or search.high - search.low <= 1e-15 * search.width:
         return 1
@@ -102,6 +110,8 @@ def propose(search):
         t = search.t - search.f / search.rate
     else:
         low, high = search.low, search.high
+        if search.tolerance == NEAR and search.f_low <= LEAST:  # nothing is known but the sign
+            return 0.5 * (low + high)
         t = (low * search.f_high - high * search.f_low) / (search.f_high - search.f_low)
     if not (search.low < t < search.high):
         t = 0.5 * (search.low + search.high)

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 
+from carom.contact.closed import gather_held
 from carom.contact.gap import slow
-from carom.coulomb.layout import SLIDING
+from carom.contact.groups import members
+from carom.coulomb.layout import CONE, SLIDING
 from carom.hold.forces import pose_forces, solve_forces, take_forces
+from carom.hold.jam import jams_among, note_jam
 from carom.hold.one import bounces_end
 from carom.hold.roster import enlist, strike_off
 from carom.jit import kernel
@@ -15,7 +18,7 @@ from carom.motion.contact_point import add_velocity, contact_velocity, spread
 from carom.motion.several import factor, substitute
 from carom.system.cluster import OLD, C, U
 from carom.system.notes import begin_event, end_event
-from carom.system.records import HOLD, OPENS
+from carom.system.records import HOLD, OPENS, SLIPS, STICKS
 
 DROP = 1e-10  # of a pivot, relative to its row
 
@@ -37,10 +40,12 @@ def hold_several(system, controls, held, k, group, state, horizon, cluster, work
         seat = cluster.seats[new]
         begin_event(system, seat.contact, seat.feature, state, clock, records)
     if stay:
-        drop_bounces(system, k, state, cluster, work, clock)
+        drop_bounces(system, controls, k, group, state, cluster, work, clock)
         set_modes(system, held, k, state, cluster, work, clock, records)
-        first_forces(system, controls, held, k, state, cluster, work)
     strike_off_open(system, held, k, group, state, cluster, work, clock, records)
+    look_again(system, held, k, state, cluster)
+    if stay:
+        first_forces(system, controls, held, group, state, cluster, work)
 
 
 @kernel
@@ -58,7 +63,7 @@ def judge(system, k, state, horizon, cluster):
     for i in range(3 * k):
         push = max(push, abs(cluster.v[C][i]))
     for turn in range(k + 1):
-        solve_forces(k, cluster)
+        solve_forces(system, k, cluster)
         more = False
         for i in range(k):
             contact, u = system.contacts[cluster.seats[i].contact], cluster.v[U][3 * i]
@@ -73,62 +78,121 @@ def judge(system, k, state, horizon, cluster):
 
 
 @kernel
-def drop_bounces(system, k, state, cluster, work, clock):
-    """Take out the normal velocities of the points that stay, in the kinetic metric."""
-    n, L, x = k, cluster.m[1], cluster.v[OLD]
+def stops(cluster, i):
+    """Return whether row i is one that drops out: the normal of a point that stays, its slip if it has none."""
+    return cluster.seats[i // 3].stays == 1 and (i % 3 == 0 or cluster.kind[i // 3] == CONE)
+
+
+@kernel
+def speed_of(system, state, count, member):
+    """Return the greatest speed of the bodies, that of their turning at their size."""
+    speed = 0.0
+    for m in range(count):
+        b = member[m]
+        for r in range(3):
+            turning = system.bodies[b].extent * abs(state[b].w[r])
+            speed = max(speed, max(abs(state[b].v[r]), turning))
+    return speed
+
+
+@kernel
+def drop_bounces(system, controls, k, group, state, cluster, work, clock):
+    """Take out the normal velocities of the points that stay, in the kinetic metric.
+
+    A point without slip keeps none: else it would stick with the slip that this gives it. Where that
+    leaves nothing but round-off it leaves nothing.
+    """
+    count = members(work, group, cluster.member)
+    still = 1e-12 * speed_of(system, state, count, cluster.member)
+    for i in range(3 * k):
+        still = max(still, controls.rest * controls.step * abs(cluster.v[C][i]))
+    n, L, x = 3 * k, cluster.m[1], cluster.v[OLD]
     for i in range(n):
-        stays = cluster.seats[i].stays == 1
-        x[i] = -cluster.v[U][3 * i] if stays else 0.0
+        x[i] = -cluster.v[U][i] if stops(cluster, i) else 0.0
         for j in range(n):
-            both = stays and cluster.seats[j].stays == 1
-            L[i, j] = cluster.m[0][3 * i, 3 * j] if both else 1.0 if i == j else 0.0
+            both = stops(cluster, i) and stops(cluster, j)
+            L[i, j] = cluster.m[0][i, j] if both else 1.0 if i == j else 0.0
     factor(n, DROP, L)
     substitute(n, L, x)
-    for i in range(n):
-        if cluster.seats[i].stays == 1 and x[i] != 0.0:
-            spread(system, cluster.points[0][i], state, x[i], 0.0, 0.0, work)
+    for i in range(k):
+        n, t1, t2 = x[3 * i], x[3 * i + 1], x[3 * i + 2]
+        if n != 0.0 or t1 != 0.0 or t2 != 0.0:
+            spread(system, cluster.points[0][i], state, n, t1, t2, work)
             add_velocity(system, cluster.points[0][i], work, state)
             # work of the impulses: half of them times the velocities before; after they are none
-            clock.bounces += 0.5 * x[i] * cluster.v[U][3 * i]
+            u = cluster.v[U]
+            clock.bounces += 0.5 * (n * u[3 * i] + t1 * u[3 * i + 1] + t2 * u[3 * i + 2])
+    if speed_of(system, state, count, cluster.member) <= still:
+        for m in range(count):
+            b = cluster.member[m]
+            for r in range(3):
+                state[b].v[r], state[b].w[r] = 0.0, 0.0
+
+
+@kernel
+def mode_of(system, i, state, cluster):
+    """Return whether point i slips or sticks, now that its bounces are out."""
+    _, u1, u2 = contact_velocity(cluster.points[0][i], state)
+    # as `pose_forces` has found with the velocities before
+    still = 10.0 * slow(system.contacts[cluster.seats[i].contact], state)
+    slips = math.sqrt(u1 * u1 + u2 * u2) > still and cluster.kind[i] == SLIDING
+    return SLIP if slips else STICK
 
 
 @kernel
 def set_modes(system, held, k, state, cluster, work, clock, records):
-    """Take the new points in, slipping or sticking, with an event each; the first is begun already."""
-    begun = True
+    """Take the new points in, with an event each, the first is begun already; note what others do now."""
+    begun, before = True, held.count[0]
     for i in range(k):
         seat = cluster.seats[i]
-        if seat.stays == 0:
-            continue
-        contact = system.contacts[seat.contact]
-        _, u1, u2 = contact_velocity(cluster.points[0][i], state)
-        # as `pose_forces` has found with the velocities before
-        still = 10.0 * slow(contact, state)
-        mode = (
-            SLIP if math.sqrt(u1 * u1 + u2 * u2) > still and cluster.kind[i] == SLIDING else STICK
-        )
-        if seat.held >= 0:
-            held.points[seat.held].mode = mode
+        if seat.stays == 0 or seat.held >= 0:
             continue
         if not begun:
             begin_event(system, seat.contact, seat.feature, state, clock, records)
         begun = False
+        mode = mode_of(system, i, state, cluster)
         seat.held = enlist(system, held, seat, mode, state, work)
         clock.holds += 1
+        records.event[clock.event].mode = mode
         end_event(system, HOLD, state, clock, records)
+    for i in range(k):
+        seat = cluster.seats[i]
+        if seat.stays == 0 or seat.held >= before:
+            continue
+        hold, mode = held.points[seat.held], mode_of(system, i, state, cluster)
+        if hold.mode != mode:
+            hold.mode = mode
+            begin_event(system, seat.contact, seat.feature, state, clock, records)
+            end_event(system, SLIPS if mode == SLIP else STICKS, state, clock, records)
 
 
 @kernel
-def first_forces(system, controls, held, k, state, cluster, work):
-    """Put the forces of the points that stay into the list, and the times at which their slip stops."""
+def first_forces(system, controls, held, group, state, cluster, work):
+    """Put the forces of all held points of the group into the list, and the times at which their slip stops."""
+    k = gather_held(system, held, group, state, cluster, work)
     for i in range(k):
-        if cluster.seats[i].stays == 1:
-            held.points[cluster.seats[i].held].several = 1
+        held.points[cluster.seats[i].held].several = 1
+        cluster.seats[i].stays = 1
     pose_forces(system, controls, held, k, state, cluster, work)
-    solve_forces(k, cluster)
+    status = solve_forces(system, k, cluster)
     for i in range(k):
-        if cluster.seats[i].stays == 1:
-            take_forces(held.points[cluster.seats[i].held], i, cluster)
+        hold = held.points[cluster.seats[i].held]
+        take_forces(hold, i, cluster)
+        if jams_among(hold, i, status, cluster) == 1:
+            note_jam(held, hold)
+
+
+@kernel
+def look_again(system, held, k, state, cluster):
+    """Have contacts with a closed point that still approaches looked at; the others were judged just now."""
+    for i in range(k):
+        held.brinks[cluster.seats[i].contact].near = 0
+    for i in range(k):
+        seat = cluster.seats[i]
+        contact = system.contacts[seat.contact]
+        if contact_velocity(cluster.points[0][i], state)[0] < -slow(contact, state):
+            if seat.stays == 0:
+                held.brinks[seat.contact].near = 1
 
 
 @kernel

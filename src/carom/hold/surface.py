@@ -33,6 +33,8 @@ def mark_rows(system, held, k, cluster):
     for i in range(k):
         hold, p, q = held.points[cluster.seats[i].held], cluster.v[P], 3 * i
         cluster.seats[i].rows = 0
+        if cluster.seats[i].turns == 1:
+            continue
         if cluster.points[1][i].gap < -1e-12 * system.contacts[hold.contact].extent:
             some = True
             cluster.seats[i].rows = 1
@@ -80,13 +82,13 @@ def errors(system, held, k, state, cluster, x, work):
     for i in range(k):
         hold, point = held.points[cluster.seats[i].held], cluster.points[1][i]
         contact = system.contacts[hold.contact]
+        x[3 * i], x[3 * i + 1], x[3 * i + 2] = 0.0, 0.0, 0.0
+        if cluster.seats[i].rows == 0:
+            continue
         place_any(system, contact, hold.feature, hold.point, state, point, work)
         tiny = round_off(contact, state)
         if contact.other >= 0:
             tiny = 4.0 * max(tiny, round_off_of(contact.other, contact, state))
-        x[3 * i], x[3 * i + 1], x[3 * i + 2] = 0.0, 0.0, 0.0
-        if cluster.seats[i].rows == 0:
-            continue
         x[3 * i] = point.gap
         small = small and abs(point.gap) <= tiny
         if cluster.seats[i].rows == 3:

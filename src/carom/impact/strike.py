@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from carom.contact.closed import concerns, gather_closed
 from carom.contact.gap import round_off, slow, strike_point
 from carom.contact.groups import label_groups
@@ -22,10 +24,11 @@ from carom.motion.forces import potential_energy
 from carom.motion.project import project_velocity
 from carom.motion.three_field import ThreeField
 from carom.system.notes import begin_event, end_event
-from carom.system.records import IMPACT, NEEDS_CORNER
+from carom.system.records import IMPACT, JAMS, NEEDS_CORNER
 
 LOCATE, WORK = 0, 2
 RETURN_MAP_FAILED, IMPACT_FAILED, TOO_MANY_POINTS = 5, 6, 10
+SEED = 1e-10  # approach given to a point that jams, as a part of its slip; the result does not depend on it
 
 
 @kernel
@@ -70,20 +73,25 @@ def strike_unit(method, system, controls, held, c, state, cluster, corner, work,
     if k < 0:
         hit.code = TOO_MANY_POINTS
         return
-    approach = 0.0
+    approach, jams = 0.0, False
     for i in range(k):
         seat = cluster.seats[i]
+        jams = jams or (seat.held >= 0 and held.points[seat.held].jams == 1)
         u = contact_velocity(cluster.points[0][i], state)[0]
         if u < -slow(system.contacts[seat.contact], state):
             approach = min(approach, u)
-    if approach < 0.0:
-        hit.closed = k
+    if approach < 0.0 or jams:
+        hit.closed = max(k, 2) if jams else k  # a point that is held is always judged anew
         single = as_one(system, k, state, cluster, work)
         if not single and controls.corner_at == 0:
             hit.code = NEEDS_CORNER
             return
         begin_event(system, c, cluster.seats[0].feature, state, clock, records)
         if single:
+            hit.friction = contact.friction
+            if approach == 0.0:
+                hit.friction = contact.friction_held
+                hit.u[0] = -SEED * math.sqrt(hit.u[1] ** 2 + hit.u[2] ** 2)
             strike_one(method, system, controls, held, c, state, work, clock, records)
         else:
             strike_several(
@@ -93,7 +101,8 @@ def strike_unit(method, system, controls, held, c, state, cluster, corner, work,
             return
         if system.joints.shape[0] > 0:
             project_velocity(system, state, work)
-        end_event(system, IMPACT, state, clock, records)
+        end_event(system, JAMS if jams else IMPACT, state, clock, records)
+        forget_jams(held, k, cluster)
         for i in range(held.brinks.shape[0]):
             if concerns(system.contacts[i], work.body[contact.body].group, work):
                 held.brinks[i].near = 1
@@ -105,6 +114,14 @@ def strike_unit(method, system, controls, held, c, state, cluster, corner, work,
 
 #: strike(address, method, system, controls, held, c, state, cluster, corner, work, clocks, records)
 strike = by_address(strike_unit)
+
+
+@kernel
+def forget_jams(held, k, cluster):
+    """Note that what jammed has been resolved."""
+    for i in range(k):
+        if cluster.seats[i].held >= 0:
+            held.points[cluster.seats[i].held].jams = 0
 
 
 @kernel
@@ -125,14 +142,14 @@ def strike_one(method, system, controls, held, c, state, work, clock, records):
 @kernel
 def by_impulse(method, controls, contact, hit, history):
     """Solve the impact to round-off."""
-    return resolve(hit.W, hit.u, contact.friction, hit.restitution, contact.law, hit.out)
+    return resolve(hit.W, hit.u, hit.friction, hit.restitution, contact.law, hit.out)
 
 
 @kernel
 def by_layer(method, controls, contact, hit, history):
     """Pass the boundary layer by cubic splines, as the paper does."""
     return traverse(
-        hit.W, hit.u, contact.friction, hit.restitution, contact.law, contact.width,
+        hit.W, hit.u, hit.friction, hit.restitution, contact.law, contact.width,
         contact.penetration, controls.layer_steps, history, hit.out,
     )  # fmt: skip
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from carom.contact.gap import slow
 from carom.dispatch import by_address
 from carom.impact.collapse import what_is_left
@@ -13,6 +15,7 @@ from carom.motion.several import inverse_masses, velocities
 from carom.system.cluster import U
 
 IMPACT_FAILED = 6
+SEED = 1e-7  # of the slip
 
 
 @unit
@@ -30,7 +33,10 @@ at_corner = by_address(corner_unit)
 
 @kernel
 def strike_several(system, controls, held, c, k, state, cluster, corner, work, clock, records):
-    """Resolve the impact of all k closed points; add their impulses, write a row for each that has one."""
+    """Resolve the impact of all k closed points; add their impulses, write a row for each that has one.
+
+    A point that jams begins with a little approach (mathematics page, VI.6).
+    """
     hit, u = work.hit[0], cluster.v[U]
     inverse_masses(system, k, cluster.points[0], state, work, cluster.m[0])
     velocities(k, cluster.points[0], state, u)
@@ -38,8 +44,11 @@ def strike_several(system, controls, held, c, k, state, cluster, corner, work, c
         contact = system.contacts[cluster.seats[i].contact]
         if abs(u[3 * i]) <= slow(contact, state):
             u[3 * i] = 0.0  # touching, not striking
-        brink = held.brinks[cluster.seats[i].contact]
+        j, brink = cluster.seats[i].held, held.brinks[cluster.seats[i].contact]
         cluster.mu[i], corner.e[i] = contact.friction, what_is_left(contact, brink)
+        if j >= 0 and held.points[j].jams == 1:
+            u[3 * i] -= SEED * math.sqrt(u[3 * i + 1] ** 2 + u[3 * i + 2] ** 2)
+            cluster.mu[i] = contact.friction_held
         corner.law[i], corner.kappa[i] = contact.law, contact.stiffness
     count_blows(held, k, cluster)
     at_corner(controls.corner_at, k, cluster.m[0], u, cluster.mu, corner)

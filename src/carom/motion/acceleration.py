@@ -79,18 +79,18 @@ def acceleration(system, state, held, work, stage):
 
 @kernel
 def aim(system, held, state, work):
-    """Note the directions of slip at the start of a step."""
+    """Note directions and speeds of slip at the start of a step."""
     for i in range(held.count[0]):
         hold = held.points[i]
         heading = hold.heading
-        heading[0], heading[1] = 0.0, 0.0
+        heading[0], heading[1], hold.speed = 0.0, 0.0, 0.0
         if hold.mode == SLIP:
             contact, point = system.contacts[hold.contact], work.point[0]
             place(contact, hold.point, state, point)
             u1, u2 = slip_direction(contact, hold, point, state)
             speed = math.sqrt(u1 * u1 + u2 * u2)
             if speed > 0.0:
-                heading[0], heading[1] = u1 / speed, u2 / speed
+                heading[0], heading[1], hold.speed = u1 / speed, u2 / speed, speed
 
 
 @kernel
@@ -119,6 +119,10 @@ def press_one(system, contact, hold, point, state, work, stage):
     else:
         u1, u2 = slip_direction(contact, hold, point, state)
         n, t1, t2 = slip_force(W, an, a1, a2, u1, u2, contact.friction_held)
+        if hold.speed == 0.0 and hold.heading[0] == 0.0 and hold.heading[1] == 0.0:
+            size = math.sqrt(t1 * t1 + t2 * t2)
+            if size > 0.0:  # where slip starts
+                hold.heading[0], hold.heading[1] = -t1 / size, -t2 / size
     f[0], f[1], f[2] = n, t1, t2
     spread(system, point, state, n, t1, t2, work)
     if alone(system, point):

@@ -50,8 +50,22 @@ def in_axes(point, x, y, z):
 
 
 @kernel
+def turning_rows(point, x, y, z):
+    """Return the rows of a point of rolling or pivoting: relative angular velocity times a length."""
+    n, t1, t2 = in_axes(point, x, y, z)
+    if point.turns == 1:
+        return 0.0, point.length * t1, point.length * t2
+    return 0.0, point.length * n, 0.0
+
+
+@kernel
 def contact_velocity(point, state):
     """Return u = G v, in contact axes."""
+    if point.turns > 0:
+        w, z = state[point.a].w, (0.0, 0.0, 0.0)
+        if point.b >= 0:
+            z = (state[point.b].w[0], state[point.b].w[1], state[point.b].w[2])
+        return turning_rows(point, w[0] - z[0], w[1] - z[1], w[2] - z[2])
     r, s = point.arm_a, point.arm_b
     ux, uy, uz = point_velocity(state, point.a, r[0], r[1], r[2])
     vx, vy, vz = point_velocity(state, point.b, s[0], s[1], s[2])
@@ -68,6 +82,12 @@ def motion_there(motion, r):
 @kernel
 def contact_motion(point, work):
     """Return G of the motions that the last solve wrote, in contact axes."""
+    if point.turns > 0:
+        m, z = work.body[point.a].motion, (0.0, 0.0, 0.0)
+        if point.b >= 0:
+            o = work.body[point.b].motion
+            z = (o[3], o[4], o[5])
+        return turning_rows(point, m[3] - z[0], m[4] - z[1], m[5] - z[2])
     ux, uy, uz = motion_there(work.body[point.a].motion, point.arm_a)
     if point.b >= 0:
         vx, vy, vz = motion_there(work.body[point.b].motion, point.arm_b)
@@ -81,6 +101,12 @@ def contact_acceleration(point, state, stage):
 
     That is of a half-space, whose normal stays; of two bodies G times the accelerations alone.
     """
+    if point.turns > 0:
+        m, z = stage[point.a].rate, (0.0, 0.0, 0.0)
+        if point.b >= 0:
+            o = stage[point.b].rate
+            z = (o[3], o[4], o[5])
+        return turning_rows(point, m[3] - z[0], m[4] - z[1], m[5] - z[2])
     if point.b >= 0:
         ax, ay, az = motion_there(stage[point.a].rate, point.arm_a)
         bx, by, bz = motion_there(stage[point.b].rate, point.arm_b)
@@ -120,6 +146,15 @@ def spread(system, point, state, ln, l1, l2, work):
 def add_impulse(point, ln, l1, l2, work):
     """Add G^T (ln, l1, l2) to the wrenches."""
     E, r, s = point.axes, point.arm_a, point.arm_b
+    if point.turns > 0:
+        i, j = (1, 2) if point.turns == 1 else (0, 2)
+        f1, f2 = point.length * l1, point.length * l2 if point.turns == 1 else 0.0
+        for k in range(3):
+            torque = f1 * E[i, k] + f2 * E[j, k]
+            work.body[point.a].wrench[3 + k] += torque
+            if point.b >= 0:
+                work.body[point.b].wrench[3 + k] -= torque
+        return
     fx = E[0, 0] * ln + E[1, 0] * l1 + E[2, 0] * l2
     fy = E[0, 1] * ln + E[1, 1] * l1 + E[2, 1] * l2
     fz = E[0, 2] * ln + E[1, 2] * l1 + E[2, 2] * l2

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from carom.coulomb.one import solve_one
 from carom.jit import kernel
 
 
@@ -29,28 +30,15 @@ def stick_force(W, an, a1, a2):
 def slip_force(W, an, a1, a2, u1, u2, mu):
     """Return lam = N (1, -mu e) with the normal row at rest; e along the slip, or where slip will start.
 
-    N = -a_n / (W_nn - mu W_nt.e). At u_t = 0 the direction is that of the slip acceleration itself,
-    e = (a_t + N (W_tn - mu W_tt e))/|..|, the fixed point from the stick force.
+    N = -a_n / (W_nn - mu W_nt.e). At u_t = 0 it is the force of the contact problem w = W f + a: slip starts
+    along its acceleration, in the direction e with a_t + N (W_tn - mu W_tt e) = g e, g > 0.
     """
     speed = math.sqrt(u1 * u1 + u2 * u2)
     if speed > 0.0:
         e1, e2 = u1 / speed, u2 / speed
         n = -an / (W[0, 0] - mu * (W[0, 1] * e1 + W[0, 2] * e2))
         return n, -mu * n * e1, -mu * n * e2
-    n, t1, t2 = stick_force(W, an, a1, a2)
-    size = math.sqrt(t1 * t1 + t2 * t2)
-    if size <= mu * n or size == 0.0:
-        return n, t1, t2
-    e1, e2 = -t1 / size, -t2 / size
-    for _ in range(100):
-        n = -an / (W[0, 0] - mu * (W[0, 1] * e1 + W[0, 2] * e2))
-        d1 = a1 + n * (W[1, 0] - mu * (W[1, 1] * e1 + W[1, 2] * e2))
-        d2 = a2 + n * (W[2, 0] - mu * (W[2, 1] * e1 + W[2, 2] * e2))
-        size = math.sqrt(d1 * d1 + d2 * d2)
-        if size == 0.0:
-            break
-        change = abs(d1 / size - e1) + abs(d2 / size - e2)
-        e1, e2 = d1 / size, d2 / size
-        if change < 1e-14:
-            break
-    return n, -mu * n * e1, -mu * n * e2
+    if not an < 0.0:
+        return -an / W[0, 0], 0.0, 0.0
+    _, n, t1, t2 = solve_one(W[0, 0], W[0, 1], W[0, 2], W[1, 1], W[1, 2], W[2, 2], an, a1, a2, mu)
+    return n, t1, t2

@@ -9,14 +9,12 @@ from carom.scene.pieces import VERTEX_KINDS
 def check_supported(scene) -> None:
     """Refuse contacts that the motion does not handle yet."""
     for contact in scene.contacts:
-        _check_law(f"contact {contact.name!r}", contact)
         if isinstance(contact.other, Body):
             _check_pieces(contact.body)
             _check_pieces(contact.other)
         else:
             _ = contact.body.shape.vertices  # refused by a shape that is no hull of vertices
     if scene.contact_default is not None:
-        _check_law("set_contact_default", scene.contact_default)
         for body in scene.bodies:
             if body.shape is not None:
                 _check_pieces(body)
@@ -42,9 +40,3 @@ def _check_pieces(body: Body) -> None:
             f"body {body.name!r}: simulate cannot let {body.shape!r} touch another body yet; so far Sphere, "
             "Capsule, Box and Convex can, rounded or not"
         )
-
-
-def _check_law(what: str, law) -> None:
-    odd = [n for n in ("rolling_friction", "pivoting_friction") if getattr(law, n) != 0.0]
-    if odd:
-        raise ValueError(f"{what}: simulate does not use {', '.join(odd)} yet, got {law!r}")

@@ -45,7 +45,7 @@ class ContactLaw:
         above 0. Default 1.
     rolling_friction, pivoting_friction : float
         Greatest moment against rolling, and about the normal, of contact that stays, divided by the normal
-        force [m], at least 0. Default 0.
+        force [m], at least 0. Default 0. Impacts know neither.
     """
 
     restitution: float = 0.5

@@ -53,7 +53,8 @@ class TouchingPairs:
             0. Default 1.
         rolling_friction, pivoting_friction
             Greatest moment against rolling, and about the normal, of contact that stays, divided by the
-            normal force [m]. Default 0.
+            normal force [m]. Default 0. They act against relative rotation until that stops; each point of
+            a face by its own force. Impacts know neither.
         name
             Default: the names of both, such as ``"die-ground"``.
 

@@ -78,6 +78,7 @@ CONTACT = [
     ("radius", "f8"),  # of both, where they are two bodies
     ("friction", "f8"),
     ("friction_held", "f8"),
+    ("turning", "f8", 2),  # rolling and pivoting friction [m]
     ("restitution", "f8"),
     ("stiffness", "f8"),  # of its boundary layer, relative to the others
     ("extent", "f8"),  # largest distance of the shape from the mass centre
@@ -110,6 +111,7 @@ ROW = [
 BRINK = [
     ("seen", "i8"),  # while a group is gathered
     ("near", "i8"),  # 1 where something happened at the last event: look before stepping
+    ("jams", "i8"),  # 1 where a held point of it jams: an impact without collision is due
     ("leaving", "i8"),  # 1 where the body lifts off without speed: it may touch at the start
     ("blows", "i8"),  # impacts in this step
     ("step", "i8"),  # the last in which the two were near each other, plus 1
@@ -126,11 +128,18 @@ HELD = [
     ("settles", "i8"),  # 1 where that step puts the body to rest
     ("several", "i8"),  # 1 where it shares its bodies with other held points
     ("rest", "i8"),  # 1 where the body does not move at all
+    ("jams", "i8"),  # 1 where it slips and no finite force keeps it closed
     ("point", "f8", 3),  # point of the core that carries the contact, body axes
     ("anchor", "f8", 3),  # where it is in the world since it sticks
     ("force", "f8", 3),  # of the last solve, contact axes
-    ("heading", "f8", 2),  # direction of slip at the start of the step; 0 where it does not slip
+    ("heading", "f8", 2),  # direction of slip at the start of the step, or in which it starts
+    ("speed", "f8"),  # of slip at the start of the step
     ("stop", "f8"),  # time in which slip will stop under the last forces, where several are held
+    ("lift", "f8"),  # of one of several: how far from opening at the end of a step, below 0: open
+    ("grip", "f8"),  # the same of slip
+    ("due", "i8"),  # 1 where the event that is looked for may be its own too
+    ("turn_stop", "f8", 2),  # the same of rolling and of pivoting
+    ("torque", "f8", 3),  # of rolling and pivoting friction, contact axes
     ("W", "f8", (3, 3)),  # effective inverse mass of the last solve
 ]
 
@@ -143,6 +152,8 @@ POINT = [
     ("core", "f8", 3),  # from the mass centre of a: the part of the arm that turns with it
     ("axes", "f8", (3, 3)),  # rows n, t1, t2
     ("gap", "f8"),
+    ("turns", "i8"),  # 0; or its rows are of relative rotation: 1 rolling (t1, t2), 2 pivoting (t1)
+    ("length", "f8"),  # that makes a speed of an angular velocity
 ]
 
 BODY_WORK = [
@@ -177,6 +188,7 @@ RESULT = [
     ("code", "i8"),
     ("power", "f8"),  # of loads, and of friction, with the last accelerations
     ("drag", "f8"),
+    ("residual", "f8"),  # greatest of the groups held at several points
 ]
 
 #: search for an event inside a step
@@ -196,6 +208,7 @@ SEARCH = [
     ("d2", "f8"),
     ("width", "f8"),
     ("tolerance", "f8"),
+    ("eager", "i8"),  # 0 where events of several points are left to the end of the step
     ("pending", "i8"),  # an action that waits for its unit to be compiled
     ("horizon", "f8"),
 ]
@@ -207,6 +220,7 @@ FREE, ONE, RESTS, SEVERAL = range(4)
 HIT = [
     ("W", "f8", (3, 3)),
     ("u", "f8", 3),
+    ("friction", "f8"),
     ("point", "f8", 3),
     ("out", "f8", 32),
     ("restitution", "f8"),

@@ -29,6 +29,8 @@ SEAT = [
     ("point", "f8", 3),  # of the core, body axes
     ("rows", "i8"),  # that the return to the surface uses
     ("stopped", "i8"),  # 1 where slip has stopped within the step
+    ("turns", "i8"),  # of its POINT
+    ("parent", "i8"),  # of rolling and pivoting: the seat whose normal force bounds the torque
 ]
 
 #: rows of `v`: velocities; velocities or accelerations without the unknown impulses; impulses or forces; and
@@ -74,7 +76,10 @@ def capacity(system: System) -> int:
         points = np.where(contacts.other >= 0, MOST_POINTS, contacts.last - contacts.first)
         return max(1, min(MOST, int(points.sum())))
     count = np.zeros(system.bodies.size + 1, dtype=np.int64)
-    np.add.at(count, system.bodies.component[contacts.body], contacts.last - contacts.first)
+    rows = 1 + np.sum(contacts.turning > 0.0, axis=1)
+    np.add.at(
+        count, system.bodies.component[contacts.body], rows * (contacts.last - contacts.first)
+    )
     return max(1, min(MOST, int(count.max())))
 
 

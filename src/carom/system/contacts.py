@@ -57,6 +57,7 @@ def compile_contacts(scene: Scene, to_principal, options: Options):
             row.radius += radius
         row.still = 1e-14 * np.sqrt(np.linalg.norm(scene.gravity) * row.extent)
         row.friction, row.friction_held = c.friction, c.friction_held
+        row.turning[:] = c.rolling_friction, c.pivoting_friction
         row.restitution, row.stiffness = c.restitution, c.stiffness
         row.law = IMPACT_LAWS.index(c.impact_law)
         row.width = 1e-5 * row.extent if options.layer_width is None else options.layer_width

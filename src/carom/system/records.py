@@ -25,8 +25,8 @@ from carom.system.arrays import (
 )
 
 #: kinds of events, by code
-EVENTS = ("impact", "held", "slips", "sticks", "opens")
-IMPACT, HOLD, SLIPS, STICKS, OPENS = range(5)
+EVENTS = ("impact", "held", "slips", "sticks", "opens", "jams")
+IMPACT, HOLD, SLIPS, STICKS, OPENS, JAMS = range(6)
 
 #: energy, summed since the start
 LEDGER = [("loads", "f8"), ("impacts", "f8"), ("friction", "f8"), ("bounces", "f8")]
@@ -52,9 +52,10 @@ CLOCK = [
     ("holds", "i8"),
     ("pressed", "i8"),  # steps of groups held at several points, on trial too
     ("rounds", "i8"),  # of their iteration
+    ("residual", "f8"),  # greatest of held contacts since the last saved row
 ]
 
-SERIES = [("t", "f8"), *LEDGER]
+SERIES = [("t", "f8"), *LEDGER, ("residual", "f8")]
 #: a held point at a saved time; moments about the mass centres (world axes)
 TOUCH = [
     ("saved", "i8"),
@@ -94,6 +95,7 @@ EVENT = [
     ("feature", "i8"),
     ("saved", "i8"),  # rows that were saved before
     ("first", "i8"),  # its snapshots, up to that of the next event
+    ("mode", "i8"),  # of a point that is held from now on
 ]
 
 #: a body at an event that concerns it, velocities before and after

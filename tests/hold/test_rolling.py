@@ -1,0 +1,114 @@
+"""Rolling and pivoting friction of a ball: closed forms of deceleration, stop and rest."""
+
+import numpy as np
+import pytest
+
+import carom
+
+G, R = 9.81, 0.1
+
+
+def ball(rolling, pivoting, *, mu=0.5, angle=0.0, duration=1.0, step=0.01, **motion):
+    """A ball of radius .1 and 2 kg on a plane that falls towards +x."""
+    normal = np.array([np.sin(angle), 0, np.cos(angle)])
+    scene = carom.Scene(gravity=(0, 0, -G))
+    ground = scene.add_half_space((0, 0, 0), normal)
+    body = scene.add_body(carom.Sphere(R), mass=2.0, position=R * normal, **motion)
+    scene.add_contact(
+        body, ground, restitution=0.5, friction=mu, rolling_friction=rolling,
+        pivoting_friction=pivoting,
+    )  # fmt: skip
+    return carom.simulate(scene, duration, step=step)
+
+
+@pytest.mark.parametrize("step", [0.1, 0.01, 1e-3])
+def test_rolls_to_a_stop(step):
+    # J w' = r T - d N, m v' = -T, v = r w: v' = -d g / (7/5 r). Stops after v0^2/(2 a), for good.
+    d, v0 = 0.002, 0.2
+    a = d * G / (1.4 * R)
+    s = ball(d, 0.0, velocity=(v0, 0, 0), angular_velocity=(0, v0 / R, 0), duration=2.0, step=step)
+    v = np.maximum(v0 - a * s.t, 0.0)
+    np.testing.assert_allclose(s.velocity[:, 0, 0], v, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(s.angular_velocity[:, 0, 1], v / R, rtol=0, atol=1e-13)
+    way = np.where(v > 0, v0 * s.t - 0.5 * a * s.t**2, v0**2 / (2 * a))
+    np.testing.assert_allclose(s.position[:, 0, 0], way, rtol=0, atol=1e-14)
+    late = s.t > v0 / a + step
+    assert np.all(s.velocity[late] == 0.0)
+    assert np.all(s.angular_velocity[late] == 0.0)
+    assert np.all(s.position[late] == s.position[-1])
+    # friction takes all of it, 7/10 m v0^2
+    assert s.ledger.friction[-1] == pytest.approx(-0.7 * 2 * v0**2, rel=1e-12)
+
+
+@pytest.mark.parametrize("step", [0.1, 0.01])
+def test_spins_to_a_stop(step):
+    # 2/5 m r^2 w' = -d m g, on the spot.
+    d, w0 = 0.002, 5.0
+    a = 2.5 * d * G / R**2
+    s = ball(0.0, d, angular_velocity=(0, 0, w0), duration=1.5, step=step)
+    np.testing.assert_allclose(
+        s.angular_velocity[:, 0, 2], np.maximum(w0 - a * s.t, 0.0), rtol=0, atol=1e-13
+    )
+    np.testing.assert_allclose(s.position[:, 0], [(0, 0, R)] * len(s.t), rtol=0, atol=1e-15)
+    assert np.all(s.angular_velocity[s.t > w0 / a + step] == 0.0)
+
+
+def test_slides_rolls_and_spins():
+    # It slides with v' = -mu g and r w' = 5/2 (mu - d/r) g until v = r w, then rolls as above. Meanwhile its
+    # spin about the normal falls at its own rate.
+    mu, d, v0, w0 = 0.5, 0.002, 1.0, 3.0
+    s = ball(d, d, mu=mu, velocity=(v0, 0, 0), angular_velocity=(0, 0, w0), duration=8.0)
+    t1 = v0 / (mu * G + 2.5 * (mu - d / R) * G)
+    assert s.events.time[s.events.kind == "sticks"] == pytest.approx([t1], abs=1e-13)
+    v1, a = v0 - mu * G * t1, d * G / (1.4 * R)
+    way = v0 * t1 - 0.5 * mu * G * t1**2 + v1**2 / (2 * a)
+    np.testing.assert_allclose(s.position[-1, 0], (way, 0, R), rtol=0, atol=1e-12)
+    spin = np.maximum(w0 - 2.5 * d * G / R**2 * s.t, 0.0)
+    np.testing.assert_allclose(s.angular_velocity[:, 0, 2], spin, rtol=0, atol=1e-12)
+    assert np.all(s.angular_velocity[-1] == 0.0)
+    np.testing.assert_allclose(s.ledger.residual, 0, rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize("part", [0.5, 0.999, 1.001, 2.0])
+def test_ball_on_an_incline(part):
+    # It stays where d > r tan(angle), bitwise; else v' = 5/7 g (sin - d/r cos).
+    angle = 0.1
+    d = part * R * np.tan(angle)
+    s = ball(d, 0.0, angle=angle)
+    if part > 1:
+        assert np.all(s.position == s.position[0])
+        assert np.all(s.velocity == 0.0)
+    else:
+        v = 5 / 7 * G * (np.sin(angle) - d / R * np.cos(angle)) * s.t
+        np.testing.assert_allclose(np.linalg.norm(s.velocity[:, 0], axis=1), v, rtol=0, atol=1e-13)
+
+
+def test_rolls_in_a_curve_of_its_spin():
+    # Pivoting friction does not turn the way, rolling friction acts along it: both straight on.
+    s = ball(0.001, 0.003, velocity=(0.3, 0.4, 0), angular_velocity=(-4, 3, -20), duration=1.0)
+    np.testing.assert_allclose(s.position[:, 0, 1], 4 / 3 * s.position[:, 0, 0], rtol=0, atol=1e-13)
+    speed = 0.5 - 0.001 * G / (1.4 * R) * s.t
+    np.testing.assert_allclose(np.linalg.norm(s.velocity[:, 0], axis=1), speed, rtol=0, atol=1e-13)
+
+
+@pytest.mark.parametrize("step", [0.02, 0.004])
+def test_a_ball_that_spins_on_a_box(step):
+    # The box lies on ice: pivoting friction takes both to one spin, J1 w0/(J1 + J2), at the rate
+    # d m g (1/J1 + 1/J2); the moment of momentum about the normal stays.
+    d, w0, m = 0.01, 20.0, 2.0
+    J1, J2 = 0.4 * m * R**2, 1.0 * (0.4**2 + 0.4**2) / 12
+    scene = carom.Scene(gravity=(0, 0, -G))
+    ice = scene.add_half_space((0, 0, 0), (0, 0, 1))
+    box = scene.add_body(carom.Box(0.4, 0.4, 0.2), mass=1.0, position=(0, 0, 0.1))
+    top = scene.add_body(
+        carom.Sphere(R), mass=m, position=(0, 0, 0.2 + R), angular_velocity=(0, 0, w0)
+    )
+    scene.add_contact(box, ice, restitution=0.0, friction=0.0)
+    scene.add_contact(top, box, restitution=0.0, friction=0.5, pivoting_friction=d)
+    s = carom.simulate(scene, 0.8, step=step)
+    relative = s.angular_velocity[:, 1, 2] - s.angular_velocity[:, 0, 2]
+    rate = d * m * G * (1 / J1 + 1 / J2)
+    np.testing.assert_allclose(relative, np.maximum(w0 - rate * s.t, 0), rtol=0, atol=1e-9)
+    momentum = J1 * s.angular_velocity[:, 1, 2] + J2 * s.angular_velocity[:, 0, 2]
+    np.testing.assert_allclose(momentum, J1 * w0, rtol=1e-12)
+    assert s.t[-1] > w0 / rate
