@@ -17,6 +17,7 @@ def assemble(run, status: Status) -> dict:
 
     rec = r.trimmed(run.records, run.clock)
     state, clock = rec.state, run.clock[0]
+    number = run.compiled.system.contacts.scene
     kinetic, potential = energies(run.compiled.system, state)
     ledger = Ledger(kinetic, potential, *(rec.series[name].copy() for name, _ in r.LEDGER))
     return {
@@ -29,7 +30,7 @@ def assemble(run, status: Status) -> dict:
         "potential_energy": potential,
         "impacts": impact_table(run, rec),
         "events": EventTable(
-            rec.event.time.copy(), np.array(r.EVENTS)[rec.event.kind], rec.event.contact.copy(),
+            rec.event.time.copy(), np.array(r.EVENTS)[rec.event.kind], number[rec.event.contact],
         ),
         "contact_mode": rec.touch.mode.copy(),
         "contact_force": rec.touch.force.copy(),
@@ -70,7 +71,7 @@ def impact_table(run, rec) -> ImpactTable:
     c = rows.contact.copy()
     return ImpactTable(
         time=rows.time.copy(),
-        contact=c,
+        contact=contacts.scene[c],
         point=rows.point.copy(),
         normal=rows.normal.copy(),
         relative_velocity_before=rows.before.copy(),

@@ -205,14 +205,14 @@ def _look_at_pair(system, controls, held, contact, c, now, still, work):
             rate = touch_rate(contact, touch, now)
             if rate < -still:
                 return STRIKE
-            if rate <= still and not is_held(held, c, touch.feature):
+            if rate <= still and not is_held(system, held, c, touch, now):
                 action = HOLD
     return action
 
 
 @kernel
 def _look_at_none(system, controls, held, contact, c, now, still, work):
-    """No two bodies touch."""
+    """No kernels of pairs are needed."""
     return NOTHING
 
 
@@ -228,7 +228,7 @@ def look_near(system, controls, held, now, work):
             continue
         near, still = controls.tie * contact.extent, slow(contact, now)
         action = NOTHING
-        if contact.other >= 0:
+        if contact.touches == 1:
             action = look_at_pair(system, controls, held, contact, c, now, still, work)
         else:
             plane = plane_in_body(contact, now)
@@ -253,7 +253,7 @@ def may_end(contact, system, state, horizon, work):
 
     A first look, with a bound of the acceleration where there is one, before the forces are worked out.
     """
-    if contact.other >= 0:
+    if contact.touches == 1:
         return True
     point = work.point[0]
     rate = contact_velocity(point, state)[0]
@@ -365,8 +365,9 @@ def save_contacts(system, held, now, k, work, records):
             touch.push[j], touch.other_moment[j] = 0.0, 0.0
     for i in range(held.count[0]):
         hold, point = held.points[i], work.point[0]
-        touch, f = records.touch[k, hold.contact], hold.force
-        place_any(system, system.contacts[hold.contact], hold.feature, hold.point, now, point, work)
+        contact, f = system.contacts[hold.contact], hold.force
+        touch = records.touch[k, contact.scene]
+        place_any(system, contact, hold.feature, hold.point, now, point, work)
         E, arm, other = point.axes, point.arm_a, point.arm_b
         touch.mode = max(touch.mode, hold.mode)
         fx = f[0] * E[0, 0] + f[1] * E[1, 0] + f[2] * E[2, 0]

@@ -1,4 +1,4 @@
-"""The closed points of a group of bodies: vertices on a surface, points of two bodies, all that is held."""
+"""The closed points of a group of bodies: vertices on a surface, points of two solids, all that is held."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from carom.contact.pair_point import (
     find_touches,
     own_point,
     place_any,
+    same_side,
     smaller,
     write_touch,
 )
@@ -21,17 +22,17 @@ from carom.motion.contact_point import place
 def closed_within(controls, contact, state):
     """Return the gap up to which a point counts as closed [m]."""
     near = max(controls.tie, controls.gap) * smaller(contact)
-    near = max(near, 4.0 * round_off(contact, state))
-    return (
-        near if contact.other < 0 else max(near, 4.0 * round_off_of(contact.other, contact, state))
-    )
+    return max(near, 4.0 * round_off_of_both(contact, state))
 
 
 @kernel
-def round_off_of(b, contact, state):
-    """Return the round-off of a gap between two bodies."""
-    x = state[b].x
-    return 1e-15 * (abs(x[0]) + abs(x[1]) + abs(x[2]) + contact.other_extent)
+def round_off_of_both(contact, state):
+    """Return the round-off of a gap, of the coordinates of both bodies."""
+    tiny = round_off(contact, state)
+    if contact.other < 0:
+        return tiny
+    x = state[contact.other].x
+    return max(tiny, 1e-15 * (abs(x[0]) + abs(x[1]) + abs(x[2]) + contact.other_extent))
 
 
 @kernel
@@ -76,16 +77,16 @@ def gather_closed(system, controls, held, c, state, cluster, work):
             if apart(contact, state, near):
                 continue
             before = k
-            if contact.other < 0:
+            if contact.touches == 0:
                 k = add_vertices(system, held, contact, i, near, state, k, cluster)
             else:
                 k = add_touches(system, contact, i, near, state, k, cluster, work)
-                if k > before:
+                if k > before and contact.other >= 0:
                     unite(work, contact.body, contact.other)
                     more = True
             if k < 0:
                 return -1
-    seat_held(held, k, cluster)
+    seat_held(system, held, k, state, cluster, work)
     return k
 
 
@@ -106,7 +107,7 @@ def add_vertices(system, held, contact, c, near, state, k, cluster):
 
 @kernel
 def _add_touches(system, contact, c, near, state, k, cluster, work):
-    """Add the points of two bodies that are closed; return the new count, -1 if there is no room."""
+    """Add the points of two solids that are closed; return the new count, -1 if there is no room."""
     count = find_touches(system, contact, state, REACH * smaller(contact), work)
     for i in range(count):
         touch = work.touches[i]
@@ -122,7 +123,7 @@ def _add_touches(system, contact, c, near, state, k, cluster, work):
 
 @kernel
 def _add_none(system, contact, c, near, state, k, cluster, work):
-    """No two bodies touch."""
+    """No kernels of pairs are needed."""
     return k
 
 
@@ -130,14 +131,31 @@ add_touches = only_with_pairs(_add_touches, _add_none)
 
 
 @kernel
-def seat_held(held, k, cluster):
+def _seat_stays(system, hold, point, state, work):
+    """Return whether a closed point with the feature of a held one is the same point."""
+    contact, r = system.contacts[hold.contact], point.arm_a
+    return same_side(system, contact, point.axes[0], r[0], r[1], r[2], hold.point, state)
+
+
+@kernel
+def _stays(system, hold, point, state, work):
+    """No kernels of pairs are needed."""
+    return True
+
+
+seat_stays = only_with_pairs(_seat_stays, _stays)
+
+
+@kernel
+def seat_held(system, held, k, state, cluster, work):
     """Note the place of each closed point among the held ones."""
     for i in range(held.count[0]):
         hold = held.points[i]
         for j in range(k):
             seat = cluster.seats[j]
             if seat.contact == hold.contact and seat.feature == hold.feature:
-                seat.held = i
+                if hold.touches == 0 or seat_stays(system, hold, cluster.points[0][j], state, work):
+                    seat.held = i
 
 
 @kernel

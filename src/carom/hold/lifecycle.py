@@ -37,7 +37,7 @@ def hold_unit(system, controls, held, c, state, horizon, cluster, work, clocks, 
             hold.rest, hold.several = 0, 1  # together with the new one
     if k < 0:
         hit.code = TOO_MANY_POINTS
-    elif k == 1 and cluster.seats[0].held < 0 and contact.other < 0:
+    elif k == 1 and cluster.seats[0].held < 0 and contact.touches == 0:
         hold_one(system, controls, held, state, horizon, cluster, work, clock, records)
     elif k > 0:
         hold_several(

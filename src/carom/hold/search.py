@@ -7,7 +7,7 @@ an event is as exact as the method.
 
 from __future__ import annotations
 
-from carom.contact.closed import round_off_of
+from carom.contact.closed import round_off_of_both
 from carom.contact.exclude import BELOW, CLEAR, UNSURE, passage
 from carom.contact.exclude_pair import lowest_pair, passage_pair
 from carom.contact.gap import lowest, round_off
@@ -23,7 +23,7 @@ def examine(system, controls, held, now, dt, work):
     for c in range(held.brinks.shape[0]):
         contact = system.contacts[c]
         leaving = held.brinks[c].leaving
-        if contact.other < 0:
+        if contact.touches == 0:
             verdict, first = passage(
                 system, contact, held, leaving, now, work.trial, dt, work, controls.gap
             )
@@ -53,9 +53,9 @@ def event_value(system, controls, held, search, state, work):
     if search.kind == GAP:
         contact = system.contacts[search.contact]
         search.tolerance = max(controls.gap * smaller(contact), round_off(contact, state))
-        if contact.other < 0:
+        if contact.touches == 0:
             return lowest(contact, system.vertices, state)
-        search.tolerance = 4.0 * max(search.tolerance, round_off_of(contact.other, contact, state))
+        search.tolerance = 4.0 * max(search.tolerance, round_off_of_both(contact, state))
         return lowest_pair(system, contact, search.contact, held, state, work)
     hold = held.points[search.contact]
     return held_value(system, hold, search.kind, search.d1, search.d2, state, work), 0.0

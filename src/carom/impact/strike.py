@@ -35,7 +35,7 @@ def onto_surface(system, controls, c, state, work):
     velocity block is solved again with the position now fixed.
     """
     contact, point = system.contacts[c], work.hit[0].point
-    if contact.other >= 0:
+    if contact.touches == 1:
         return 0  # found within the tolerance of a located gap
     tie = controls.tie * contact.extent
     tolerance = max(controls.gap * contact.extent, round_off(contact, state))

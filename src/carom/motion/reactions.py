@@ -77,9 +77,12 @@ def reactions(system, augment, states, touch, work, out):
     for k in range(states.shape[0]):
         state = states[k]
         applied_wrenches(system, state, True, work)
-        for c in range(touch.shape[1]):
-            if touch[k, c].mode != 0:
-                add_touch(system.contacts[c], touch[k, c], work)
+        for r in range(system.contacts.shape[0]):
+            contact = system.contacts[r]
+            c = contact.scene
+            first = r == 0 or system.contacts[r - 1].scene != c  # of the rows of one contact
+            if first and touch[k, c].mode != 0:
+                add_touch(contact, touch[k, c], work)
         for j in range(system.joints.shape[0]):
             acceleration_bias(system.joints[j], state, work.joint[j].bias)
         solve(system, state, True, work)

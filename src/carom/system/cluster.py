@@ -69,7 +69,7 @@ class Corner(NamedTuple):
 def capacity(system: System) -> int:
     """Return the greatest number of points that may be closed in one group."""
     contacts = system.contacts
-    if np.any(contacts.other >= 0):
+    if np.any(contacts.touches == 1):
         return MOST
     count = np.zeros(system.bodies.size + 1, dtype=np.int64)
     np.add.at(count, system.bodies.component[contacts.body], contacts.last - contacts.first)

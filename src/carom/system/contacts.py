@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from itertools import chain, combinations
+from itertools import chain, combinations, product
 
 import numpy as np
 
@@ -34,38 +34,68 @@ def all_contacts(scene: Scene) -> list[Contact]:
 
 
 def compile_contacts(scene: Scene, to_principal, options: Options):
-    """Return contacts, vertices, and the solids and hulls of bodies that may touch each other."""
-    contacts = all_contacts(scene)
-    rows, vertices = table(CONTACT, len(contacts)), _Vertices(to_principal)
-    meet = any(not isinstance(c.other, HalfSpace) for c in contacts)
-    shaped = [b for b in scene.bodies if b.shape is not None] if meet else []
+    """Return contacts, vertices, and the solids and hulls of bodies whose points the kernels of pairs find.
+
+    A contact of the scene has a row for each pair of pieces; against a half-space one for all vertices that
+    are swollen alike, and one for each curved piece.
+    """
+    pairs = [(k, c, *sides) for k, c in enumerate(all_contacts(scene)) for sides in _rows(c)]
+    rows, vertices = table(CONTACT, len(pairs)), _Vertices(to_principal)
+    shaped = _shaped(pairs)
     solids, tables = solid_table([b.shape for b in shaped], [to_principal[b.index] for b in shaped])
-    number = {b: k for k, b in enumerate(shaped)}
-    for row, c in zip(rows, contacts):
-        row.body, row.other = c.body.index, -1
-        row.first, row.last = vertices.range_of(c.body)
-        row.extent, row.radius = _size(c.body)
+    number = {b: int(np.searchsorted(solids.body, k)) for k, b in enumerate(shaped)}
+    for row, (k, c, mine, others) in zip(rows, pairs):
+        row.scene, row.body, row.other = k, c.body.index, -1
+        row.touches, row.part = _touches(c, mine), len(c.body.shape.pieces) > 1
+        row.extent, row.radius = c.body.shape.size, c.body.shape.pieces[mine[0]].radius
+        row.first, row.last = vertices.range_of(c.body, mine)
+        row.solid = number.get(c.body, 0) + mine[0]
         if isinstance(c.other, HalfSpace):
             row.axes[:] = contact_axes(c.other.normal)
             row.offset = c.other.point @ c.other.normal
         else:
             row.other = c.other.index
-            row.other_first, row.other_last = vertices.range_of(c.other)
-            row.solid, row.other_solid = number[c.body], number[c.other]
-            row.other_extent, radius = _size(c.other)
-            row.radius += radius
+            row.other_first, row.other_last = vertices.range_of(c.other, others)
+            row.other_solid = number[c.other] + others[0]
+            row.other_extent = c.other.shape.size
+            row.radius += c.other.shape.pieces[others[0]].radius
+            row.part = max(row.part, len(c.other.shape.pieces) > 1)
         row.friction, row.friction_held = c.friction, c.friction_held
         row.restitution, row.stiffness = c.restitution, c.stiffness
         row.law = IMPACT_LAWS.index(c.impact_law)
         row.width = 1e-5 * row.extent if options.layer_width is None else options.layer_width
         row.penetration = options.penetration
-    return rows, vertices.all(), solids, tables if meet else NoHulls(0)
+    return rows, vertices.all(), solids, tables if shaped else NoHulls(0)
 
 
-def _size(body: Body) -> tuple[float, float]:
-    """Return the size of a body, and the radius of the ball that swells it."""
-    assert body.shape is not None
-    return body.shape.size, body.shape.pieces[0].radius
+def _rows(contact: Contact) -> list[tuple[list[int], list[int]]]:
+    """Return the numbers of the pieces of the body, and of the other, that each row of a contact is of."""
+    assert contact.body.shape is not None
+    pieces = contact.body.shape.pieces
+    if not isinstance(contact.other, HalfSpace):
+        assert contact.other.shape is not None
+        others = range(len(contact.other.shape.pieces))
+        return [([a], [b]) for a, b in product(range(len(pieces)), others)]
+    alike: dict[float, list[int]] = {}
+    for k, piece in enumerate(pieces):
+        if piece.corners is not None:
+            alike.setdefault(piece.radius, []).append(k)
+    curved = [[k] for k, piece in enumerate(pieces) if piece.corners is None]
+    return [(mine, []) for mine in [*alike.values(), *curved]]
+
+
+def _touches(contact: Contact, mine: list[int]) -> bool:
+    """Return whether the kernels of pairs find the points of a row."""
+    assert contact.body.shape is not None
+    between = not isinstance(contact.other, HalfSpace)
+    return between or contact.body.shape.pieces[mine[0]].corners is None
+
+
+def _shaped(pairs) -> list[Body]:
+    """Return the bodies that need solids, each once."""
+    found = [c.body for _, c, mine, _ in pairs if _touches(c, mine)]
+    found += [c.other for _, c, _, others in pairs if len(others) > 0]
+    return list(dict.fromkeys(found))
 
 
 class _Vertices:
@@ -74,10 +104,14 @@ class _Vertices:
     def __init__(self, to_principal):
         self.to_principal, self.parts, self.count = to_principal, [np.zeros((0, 3))], 0
 
-    def range_of(self, body) -> tuple[int, int]:
-        assert body.shape is not None
-        points = quaternion.rotate_back(self.to_principal[body.index], body.shape.vertices)
-        self.parts.append(points)
+    def range_of(self, body, numbers) -> tuple[int, int]:
+        """Add the vertices of some pieces, each place once; an empty range for a curved one."""
+        corners = [body.shape.pieces[k].corners for k in numbers]
+        points = np.concatenate([np.zeros((0, 3)) if c is None else c for c in corners])
+        if len(numbers) > 1:
+            places = np.round(points / (1e-12 * body.shape.size))
+            points = points[np.sort(np.unique(places, axis=0, return_index=True)[1])]
+        self.parts.append(quaternion.rotate_back(self.to_principal[body.index], points))
         first, self.count = self.count, self.count + len(points)
         return first, self.count
 

@@ -101,7 +101,7 @@ class Records(NamedTuple):
 
     series: np.recarray  # (T,) SERIES
     state: np.recarray  # (T, N) STATE
-    touch: np.recarray  # (T, C) TOUCH
+    touch: np.recarray  # (T, C) TOUCH, C contacts of the scene
     impact: np.recarray  # (K,) IMPACTS
     event: np.recarray  # (E,) EVENT
     snapshot: np.recarray  # (E, N) SNAPSHOT
@@ -114,8 +114,10 @@ def new_clock() -> np.recarray:
 
 def new_held(system: System) -> Held:
     """Return what is held at the start: nothing, and all contacts are to be looked at first."""
+    contacts = system.contacts
+    grounded = int(np.sum((contacts.touches == 1) & (contacts.other < 0)))
     held = Held(
-        points=table(HELD, len(system.vertices) + 24 * len(system.bodies)),
+        points=table(HELD, len(system.vertices) + 24 * len(system.bodies) + 8 * grounded),
         brinks=table(BRINK, system.contacts.size),
         carries=np.zeros(len(system.vertices), dtype=np.int64),
         count=np.zeros(1, dtype=np.int64),
@@ -148,7 +150,7 @@ def new_work(system: System, stages: int) -> Work:
 
 def new_records(system: System, saves: int, events: int) -> Records:
     """Return empty records for `saves` saved steps and `events` impacts and events."""
-    n, c = system.bodies.size, system.contacts.size
+    n, c = system.bodies.size, int(system.contacts.scene.max(initial=-1)) + 1
     return Records(
         series=table(SERIES, saves),
         state=table(STATE, saves, n),
