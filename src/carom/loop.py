@@ -388,9 +388,10 @@ def accept(now, end, tau, applied, friction, begin, clock):
     """Make `end` the present state, a time tau later."""
     for b in range(now.shape[0]):
         keep(end[b], now[b])
+    before = clock.now
     clock.spent += tau
     clock.now = begin + clock.spent
     clock.loads += applied
     clock.friction += friction
-    if tau > 0.0:
+    if clock.now > before:
         clock.at_once = 0

@@ -156,6 +156,21 @@ def lowest_open(system, contact, c, count, held, state, work):
 
 
 @kernel
+def changed_sides(system, contact, c, count, held, state, work):
+    """Return whether a held point of a rim has gone far round it: it wobbles, or has passed through flat."""
+    for j in range(held.count[0]):
+        hold = held.points[j]
+        if hold.contact == c:
+            for i in range(count):
+                touch = work.touches[i]
+                if touch.feature == hold.feature and not same_point(
+                    system, contact, touch, hold.feature, hold.point, state
+                ):
+                    return True
+    return False
+
+
+@kernel
 def _lowest_pair(system, contact, c, held, state, work):
     """Return the gap of two solids, of points that are not held, and its rate."""
     count = find_touches(system, contact, state, REACH * smaller(contact), work)
@@ -182,7 +197,7 @@ def far_apart(system, contact, start, end, h, work):
 
 
 @kernel
-def _passage_pair(system, contact, c, held, leaving, start, end, h, work, tolerance):
+def _passage_pair(system, contact, c, held, leaving, start, end, h, work, tolerance, shortest):
     """Return CLEAR, BELOW (they overlap at the end) or UNSURE, and a time before any contact."""
     most = far_apart(system, contact, start, end, h, work)
     if most < 0.0:
@@ -197,6 +212,8 @@ def _passage_pair(system, contact, c, held, leaving, start, end, h, work, tolera
     for i in range(1, count):
         if work.touches[i].gap < nearest.gap:
             nearest = work.touches[i]
+    if touching and h > shortest and changed_sides(system, contact, c, count, held, end, work):
+        return UNSURE, 0.0
     if not least >= -(tiny if not touching else 1e-9 * smaller(contact)):
         return BELOW, 0.0
     if touching:
@@ -223,7 +240,7 @@ def _no_gap(system, contact, c, held, state, work):
 
 
 @kernel
-def _no_passage(system, contact, c, held, leaving, start, end, h, work, tolerance):
+def _no_passage(system, contact, c, held, leaving, start, end, h, work, tolerance, shortest):
     """No kernels of pairs are needed."""
     return CLEAR, h
 

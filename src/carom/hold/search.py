@@ -15,6 +15,9 @@ from carom.contact.pair_point import smaller
 from carom.hold.events import GAP, find_held_event, held_value, turned
 from carom.jit import inlined, kernel
 
+#: part of the step down to which it is cut where a rim changes sides
+SHORTEST = 1e-3
+
 
 @inlined
 def examine(system, controls, held, now, dt, work):
@@ -29,8 +32,9 @@ def examine(system, controls, held, now, dt, work):
             )
         else:
             verdict, first = passage_pair(
-                system, contact, c, held, leaving, now, work.trial, dt, work, controls.gap
-            )
+                system, contact, c, held, leaving, now, work.trial, dt, work, controls.gap,
+                SHORTEST * controls.step,
+            )  # fmt: skip
         if verdict == UNSURE:
             return UNSURE, GAP, c, 0.0, 0.0, 0.0
         if verdict == BELOW and found == CLEAR:
