@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from carom.contact.closed import apart, closed_within
 from carom.contact.exclude import CLEAR, UNSURE, greatest_acceleration
+from carom.contact.exclude_pair import FLAT_RIM
 from carom.contact.gap import gap_and_rate, plane_in_body, slow
 from carom.contact.pair_point import REACH, find_touches, place_any, smaller, touch_rate
 from carom.dispatch import only_with_pairs
@@ -110,6 +111,9 @@ def run(system, method, controls, held, now, work, cluster, corner, clocks, reco
                     verdict, kind, other, low, d1, d2 = examine(
                         system, controls, held, now, dt, work
                     )
+                    if verdict == FLAT_RIM:  # its points strike together where they are
+                        search.pending, search.contact, search.horizon = STRIKE, other, remaining
+                        break
                     own = search.active == 1 and kind == search.kind and other == search.contact
                     if verdict == CLEAR or (own and verdict != UNSURE):
                         found = search.active == 1
@@ -132,6 +136,8 @@ def run(system, method, controls, held, now, work, cluster, corner, clocks, reco
                     f, rate = event_value(system, controls, held, search, trial, work)
                     narrow(search, dt, f, rate)
                     dt = propose(search)
+                if search.pending != NOTHING:
+                    continue
                 accept(now, trial, dt, applied, friction, begin, clock)
                 if dt == remaining:
                     clock.spent = length

@@ -9,13 +9,16 @@ from carom.contact.pair_point import (
     find_touches,
     own_point,
     place_any,
-    same_side,
     smaller,
     write_touch,
 )
+from carom.contact.rim import OTHER_SIDE, closed_rim, way_round
 from carom.dispatch import only_with_pairs
 from carom.jit import kernel
 from carom.motion.contact_point import place
+
+#: part of the step in which a rim that turns flat is flat, as far as the step can tell
+RIM_TIME = 1.0 / 64.0
 
 
 @kernel
@@ -55,11 +58,12 @@ def apart(contact, state, near):
 
 
 @kernel
-def gather_closed(system, controls, held, c, state, cluster, work):
+def gather_closed(system, controls, held, c, state, cluster, work, strikes):
     """List what is closed in `state` with contact c; return how many points, -1 if they are too many.
 
-    Closed: within the tolerance of ties or of a located gap, or held. Writes seats and points. Bodies that
-    closed points link become one group, in which all closed points count.
+    Closed: within the tolerance of ties or of a located gap, or held; where it `strikes`, a rim that is as good
+    as flat, too. Writes seats and points. Bodies that closed points link become one group, in which all
+    closed points count.
     """
     group, k, more = work.body[system.contacts[c].body].group, 0, True
     if system.contacts[c].other >= 0:
@@ -80,7 +84,9 @@ def gather_closed(system, controls, held, c, state, cluster, work):
             if contact.touches == 0:
                 k = add_vertices(system, held, contact, i, near, state, k, cluster)
             else:
-                k = add_touches(system, contact, i, near, state, k, cluster, work)
+                k = add_touches(
+                    system, controls, contact, i, near, state, k, cluster, work, strikes
+                )
                 if k > before and contact.other >= 0:
                     unite(work, contact.body, contact.other)
                     more = True
@@ -106,9 +112,12 @@ def add_vertices(system, held, contact, c, near, state, k, cluster):
 
 
 @kernel
-def _add_touches(system, contact, c, near, state, k, cluster, work):
+def _add_touches(system, controls, contact, c, near, state, k, cluster, work, strikes):
     """Add the points of two solids that are closed; return the new count, -1 if there is no room."""
     count = find_touches(system, contact, state, REACH * smaller(contact), work)
+    if strikes:
+        n, time = work.touches[0].normal, RIM_TIME * controls.step
+        near = max(near, closed_rim(system, contact, n, state, time))
     for i in range(count):
         touch = work.touches[i]
         if touch.gap <= near:
@@ -122,7 +131,7 @@ def _add_touches(system, contact, c, near, state, k, cluster, work):
 
 
 @kernel
-def _add_none(system, contact, c, near, state, k, cluster, work):
+def _add_none(system, controls, contact, c, near, state, k, cluster, work, strikes):
     """No kernels of pairs are needed."""
     return k
 
@@ -133,8 +142,9 @@ add_touches = only_with_pairs(_add_touches, _add_none)
 @kernel
 def _seat_stays(system, hold, point, state, work):
     """Return whether a closed point with the feature of a held one is the same point."""
-    contact, r = system.contacts[hold.contact], point.arm_a
-    return same_side(system, contact, point.axes[0], r[0], r[1], r[2], hold.point, state)
+    contact, r, n = system.contacts[hold.contact], point.arm_a, point.axes[0]
+    way = way_round(system, contact, n, r[0], r[1], r[2], hold.point, state)
+    return way < OTHER_SIDE
 
 
 @kernel

@@ -19,13 +19,17 @@ from carom.contact.exclude import (
     greatest_acceleration,
     reach,
 )
-from carom.contact.pair_point import REACH, find_touches, same_point, smaller, touch_rate
+from carom.contact.gap import slow
+from carom.contact.pair_point import REACH, find_touches, smaller, touch_rate
 from carom.contact.parting import time_parted
+from carom.contact.rim import OTHER_SIDE, SMOOTH, closed_rim, longest_way, same_point
 from carom.dispatch import only_with_pairs
 from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.jit import kernel
 from carom.motion.forces import point_velocity
 from carom.system.arrays import FREE, RESTS
+
+FLAT_RIM = 3  # after CLEAR, BELOW, UNSURE: a rim that was held on one side goes through flat
 
 
 @kernel
@@ -156,17 +160,14 @@ def lowest_open(system, contact, c, count, held, state, work):
 
 
 @kernel
-def changed_sides(system, contact, c, count, held, state, work):
-    """Return whether a held point of a rim has gone far round it: it wobbles, or has passed through flat."""
-    for j in range(held.count[0]):
-        hold = held.points[j]
-        if hold.contact == c:
-            for i in range(count):
-                touch = work.touches[i]
-                if touch.feature == hold.feature and not same_point(
-                    system, contact, touch, hold.feature, hold.point, state
-                ):
-                    return True
+def flat_rim_strikes(system, contact, state, time, work):
+    """Return whether a point of a rim that is as good as flat approaches the other body."""
+    count = find_touches(system, contact, state, REACH * smaller(contact), work)
+    near = closed_rim(system, contact, work.touches[0].normal, state, time)
+    for i in range(count):
+        touch = work.touches[i]
+        if touch.gap <= near and touch_rate(contact, touch, state) < -slow(contact, state):
+            return True
     return False
 
 
@@ -197,8 +198,11 @@ def far_apart(system, contact, start, end, h, work):
 
 
 @kernel
-def _passage_pair(system, contact, c, held, leaving, start, end, h, work, tolerance, shortest):
-    """Return CLEAR, BELOW (they overlap at the end) or UNSURE, and a time before any contact."""
+def _passage_pair(system, contact, c, held, leaving, start, end, h, work, tolerance, longest):
+    """Return CLEAR, BELOW (they overlap at the end), UNSURE or FLAT_RIM, and a time before any contact.
+
+    Of a rim that wobbles only steps up to `longest` may follow its lowest point far round.
+    """
     most = far_apart(system, contact, start, end, h, work)
     if most < 0.0:
         return CLEAR, h
@@ -212,8 +216,16 @@ def _passage_pair(system, contact, c, held, leaving, start, end, h, work, tolera
     for i in range(1, count):
         if work.touches[i].gap < nearest.gap:
             nearest = work.touches[i]
-    if touching and h > shortest and changed_sides(system, contact, c, count, held, end, work):
-        return UNSURE, 0.0
+    if touching:
+        way = longest_way(system, contact, c, count, held, end, work)
+        if way > SMOOTH and h > longest:
+            return UNSURE, 0.0
+        if way > OTHER_SIDE:
+            if flat_rim_strikes(system, contact, start, longest, work):
+                return FLAT_RIM, 0.0
+            if h > 0.1 * longest:
+                return UNSURE, 0.0
+            find_touches(system, contact, end, REACH * smaller(contact), work)
     if not least >= -(tiny if not touching else 1e-9 * smaller(contact)):
         return BELOW, 0.0
     if touching:
@@ -240,7 +252,7 @@ def _no_gap(system, contact, c, held, state, work):
 
 
 @kernel
-def _no_passage(system, contact, c, held, leaving, start, end, h, work, tolerance, shortest):
+def _no_passage(system, contact, c, held, leaving, start, end, h, work, tolerance, longest):
     """No kernels of pairs are needed."""
     return CLEAR, h
 

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import math
 
-from carom.contact.pairs.layout import CYLINDER
 from carom.contact.pairs.plane import touch_plane_at
 from carom.contact.pairs.touch import touch_at
+from carom.contact.rim import same_point
 from carom.dispatch import only_with_pairs
 from carom.geometry.rotation import exp, multiply, normalize, rotate, rotate_back
 from carom.jit import kernel
@@ -18,7 +18,6 @@ from carom.motion.forces import point_velocity
 
 REACH = 1e-3  # of the smaller body: points that are looked for beyond the nearest
 HELD_REACH = 0.2  # the same for points that are held, which stay so while a step is found in rounds
-FLAT = 0.2  # sine of the tilt of a rim below which its lowest point may change sides
 
 
 @kernel
@@ -104,56 +103,6 @@ def own_point(contact, touch, state, p):
     q, x, s = state[contact.body].Q, state[contact.body].x, touch.on_a
     r = rotate_back(q[0], q[1], q[2], q[3], s[0] - x[0], s[1] - x[1], s[2] - x[2])
     p[0], p[1], p[2] = r
-
-
-@kernel
-def along_axis(solid, body, n):
-    """Return the component of a unit world vector along z of a solid."""
-    q, s = body.Q, solid.Q
-    a = rotate_back(q[0], q[1], q[2], q[3], n[0], n[1], n[2])
-    return rotate_back(s[0], s[1], s[2], s[3], a[0], a[1], a[2])[2]
-
-
-@kernel
-def flat_rim(system, contact, n, state):
-    """Return the radius of a rim that is nearly flat on what it touches with the normal n; 0 if none is."""
-    solid = system.solids[contact.solid]
-    if solid.kind == CYLINDER:
-        c = along_axis(solid, state[contact.body], n)
-        if 1.0 - c * c < FLAT * FLAT:
-            return solid.half[0]
-    if contact.other >= 0:
-        solid = system.solids[contact.other_solid]
-        if solid.kind == CYLINDER:
-            c = along_axis(solid, state[contact.other], n)
-            if 1.0 - c * c < FLAT * FLAT:
-                return solid.half[0]
-    return 0.0
-
-
-@kernel
-def same_side(system, contact, n, arm0, arm1, arm2, p, state):
-    """Return whether a point at an arm (world) can be the one that was at p (body axes) before.
-
-    The lowest point of a rim changes sides as the rim passes through flat on the other body: the new one has
-    the same feature, and is another point.
-    """
-    radius = flat_rim(system, contact, n, state)
-    if radius == 0.0:
-        return True
-    q = state[contact.body].Q
-    r = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
-    d = (arm0 - r[0]) ** 2 + (arm1 - r[1]) ** 2 + (arm2 - r[2]) ** 2
-    return d < 1.5 * radius * radius
-
-
-@kernel
-def same_point(system, contact, touch, feature, p, state):
-    """Return whether a point that was found is the one with the feature that was at p (body axes)."""
-    x, s = state[contact.body].x, touch.on_a
-    return touch.feature == feature and same_side(
-        system, contact, touch.normal, s[0] - x[0], s[1] - x[1], s[2] - x[2], p, state
-    )
 
 
 @kernel

@@ -12,10 +12,10 @@ from carom.contact.pair_point import (
     find_touches,
     own_point,
     place_any,
-    same_point,
     smaller,
     touch_rate,
 )
+from carom.contact.rim import same_point
 from carom.dispatch import only_with_pairs
 from carom.jit import kernel
 

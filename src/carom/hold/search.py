@@ -7,16 +7,13 @@ an event is as exact as the method.
 
 from __future__ import annotations
 
-from carom.contact.closed import round_off_of_both
+from carom.contact.closed import RIM_TIME, round_off_of_both
 from carom.contact.exclude import BELOW, CLEAR, UNSURE, passage
-from carom.contact.exclude_pair import lowest_pair, passage_pair
+from carom.contact.exclude_pair import FLAT_RIM, lowest_pair, passage_pair
 from carom.contact.gap import lowest, round_off
 from carom.contact.pair_point import smaller
 from carom.hold.events import GAP, find_held_event, held_value, turned
 from carom.jit import inlined, kernel
-
-#: part of the step down to which it is cut where a rim changes sides
-SHORTEST = 1e-3
 
 
 @inlined
@@ -33,10 +30,10 @@ def examine(system, controls, held, now, dt, work):
         else:
             verdict, first = passage_pair(
                 system, contact, c, held, leaving, now, work.trial, dt, work, controls.gap,
-                SHORTEST * controls.step,
+                RIM_TIME * controls.step,
             )  # fmt: skip
-        if verdict == UNSURE:
-            return UNSURE, GAP, c, 0.0, 0.0, 0.0
+        if verdict in (UNSURE, FLAT_RIM):
+            return verdict, GAP, c, 0.0, 0.0, 0.0
         if verdict == BELOW and found == CLEAR:
             found, which, low = BELOW, c, 0.5 * first
         elif verdict == CLEAR and leaving == 1 and first > 0.0:

@@ -65,7 +65,7 @@ def strike_unit(method, system, controls, held, c, state, cluster, corner, work,
     hit.code = onto_surface(system, controls, c, state, work)
     if hit.code != 0:
         return
-    k = gather_closed(system, controls, held, c, state, cluster, work)
+    k = gather_closed(system, controls, held, c, state, cluster, work, True)
     if k < 0:
         hit.code = TOO_MANY_POINTS
         return
