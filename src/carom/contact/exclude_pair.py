@@ -220,10 +220,10 @@ def _passage_pair(system, contact, c, held, leaving, start, end, h, work, tolera
         way = longest_way(system, contact, c, count, held, end, work)
         if way > SMOOTH and h > longest:
             return UNSURE, 0.0
-        if way > OTHER_SIDE:
+        if way > SMOOTH:
             if flat_rim_strikes(system, contact, start, longest, work):
                 return FLAT_RIM, 0.0
-            if h > 0.1 * longest:
+            if way > OTHER_SIDE and h > 0.1 * longest:
                 return UNSURE, 0.0
             find_touches(system, contact, end, REACH * smaller(contact), work)
     if not least >= -(tiny if not touching else 1e-9 * smaller(contact)):
