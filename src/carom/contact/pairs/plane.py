@@ -44,8 +44,8 @@ def touch_plane(a, hulls, x, q, normal, offset, reach, work, out):
 
     Arguments as of `plane_gap` and `touch.touch`. Vertices keep their numbers as features. A rim has up to
     four points: its lowest, which rolls (left out when the rim is flat on the plane), and points
-    fixed in the body at quarters of a turn. (With eighths an impact flat on the ground takes fifty times longer:
-    the more rows depend on each other, the more often they open and close.)
+    fixed in the body at quarters of a turn. (With eighths an impact flat on the ground takes fifty times
+    longer: the more rows depend on each other, the more often they open and close.)
     """
     found = work.found
     nx, ny, nz = normal[0], normal[1], normal[2]
