@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from carom.geometry import quaternion
@@ -17,7 +19,9 @@ def assemble(run, status: Status) -> dict:
 
     rec = r.trimmed(run.records, run.clock)
     state, clock = rec.state, run.clock[0]
-    number = run.compiled.system.contacts.scene
+    # of a step, one island after the other
+    event = rec.event[np.argsort(rec.event.time, kind="stable")]
+    rec = rec._replace(impact=rec.impact[np.argsort(rec.impact.time, kind="stable")])
     kinetic, potential = energies(run.compiled.system, state)
     ledger = Ledger(kinetic, potential, *(rec.series[name].copy() for name, _ in r.LEDGER))
     return {
@@ -30,10 +34,8 @@ def assemble(run, status: Status) -> dict:
         "potential_energy": potential,
         "impacts": impact_table(run, rec),
         "events": EventTable(
-            rec.event.time.copy(), np.array(r.EVENTS)[rec.event.kind], number[rec.event.contact],
+            event.time.copy(), np.array(r.EVENTS)[event.kind], event.contact.copy(),
         ),
-        "contact_mode": rec.touch.mode.copy(),
-        "contact_force": rec.touch.force.copy(),
         "ledger": ledger,
         "status": status,
         "stats": {
@@ -44,6 +46,7 @@ def assemble(run, status: Status) -> dict:
         "scene": run.scene,
         "settings": dict(run.settings),
         "_run": run,
+        "_touch": rec.touch,
     }  # fmt: skip
 
 
@@ -68,10 +71,11 @@ def energies(system, state) -> tuple[np.ndarray, np.ndarray]:
 def impact_table(run, rec) -> ImpactTable:
     """Return the impacts with all that the scene knows of their contacts."""
     rows, contacts = rec.impact, run.compiled.system.contacts
-    c = rows.contact.copy()
+    number, first = np.unique(contacts.number, return_index=True)
+    c = first[np.searchsorted(number, rows.contact)]
     return ImpactTable(
         time=rows.time.copy(),
-        contact=contacts.scene[c],
+        contact=rows.contact.copy(),
         point=rows.point.copy(),
         normal=rows.normal.copy(),
         relative_velocity_before=rows.before.copy(),
@@ -91,19 +95,47 @@ def impact_table(run, rec) -> ImpactTable:
     )
 
 
-def nodes(run):
-    """Return times (M,), poses (M, N, 7), velocities before and after (M, N, 6) of saved steps and events."""
+class Nodes(NamedTuple):
+    """What one body's motion is interpolated between: saved steps, and events that concern it."""
+
+    time: np.ndarray  # (M,)
+    pose: np.ndarray  # (M, 7)
+    before: np.ndarray  # (M, 6) velocities
+    after: np.ndarray  # (M, 6)
+
+
+def nodes(run) -> list[Nodes]:
+    """Return the nodes of each body, in the order of time."""
     rec = r.trimmed(run.records, run.clock)
-    state, event = rec.state, rec.snapshot
-    time = np.concatenate([rec.series.t, rec.event.time])
-    pose = np.concatenate([np.dstack([state.x, state.Q]), np.dstack([event.x, event.Q])])
-    speed = np.dstack([state.v, state.w])
-    before = np.concatenate([speed, np.dstack([event.v0, event.w0])])
-    after = np.concatenate([speed, np.dstack([event.v1, event.w1])])
+    state, shot = rec.state, rec.snapshot
+    events = rec.event[shot.event]
     # an event stands after the saved rows that were written before it
-    place = np.concatenate([np.arange(1.0, len(state) + 1), rec.event.saved + 0.5])
-    order = np.argsort(place, kind="stable")
-    return time[order], pose[order], before[order], after[order]
+    place = np.arange(1.0, len(state) + 1)
+    by_body = np.argsort(shot.body, kind="stable")
+    ends = np.searchsorted(shot.body[by_body], np.arange(state.shape[1] + 1))
+    out = []
+    for b in range(state.shape[1]):
+        own = by_body[ends[b] : ends[b + 1]]
+        here, event = state[:, b], shot[own]
+        order = np.argsort(np.concatenate([place, events.saved[own] + 0.5]), kind="stable")
+        speed = np.hstack([here.v, here.w])
+        columns = (
+            (rec.series.t, events.time[own]),
+            (np.hstack([here.x, here.Q]), np.hstack([event.x, event.Q])),
+            (speed, np.hstack([event.v0, event.w0])),
+            (speed, np.hstack([event.v1, event.w1])),
+        )
+        out.append(Nodes(*(np.concatenate(pair)[order] for pair in columns)))
+    return out
+
+
+def contact_sums(touch: np.recarray, saved: int, contacts: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return modes (T, C) and forces (T, C, 3) of contacts: the largest, and the sum, of their held points."""
+    mode = np.zeros((saved, contacts), dtype=np.int64)
+    force = np.zeros((saved, contacts, 3))
+    np.maximum.at(mode, (touch.saved, touch.contact), touch.mode)
+    np.add.at(force, (touch.saved, touch.contact), touch.force)
+    return mode, force
 
 
 def joint_reactions(solution) -> np.ndarray:

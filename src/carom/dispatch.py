@@ -17,7 +17,10 @@ from carom.system.arrays import FreeSolver, LoopSolver, TreeSolver
 
 
 def by_method(table: Mapping[type, Callable]) -> Callable:
-    """Return a function whose first argument is a method; `table` has an implementation for each class."""
+    """Return a function whose first argument is a method, or another record of one of several classes.
+
+    `table` has an implementation for each class.
+    """
 
     def choose(method, *arguments):
         return table[type(method)](method, *arguments)

@@ -1,7 +1,7 @@
-"""The loop of a run, compiled as a whole: free steps, events, impacts, held contacts, records.
+"""One step of an island: free motion, events, impacts, held contacts, up to the end of the step.
 
-Written so that each large part (step, strike, hold) is called from one place: what Numba compiles it
-compiles again into each of its callers.
+Each large part (step, strike, hold) is called from one place: what is linked in is compiled once for each
+call.
 """
 
 from __future__ import annotations
@@ -13,20 +13,20 @@ from carom.contact.closed import apart, closed_within
 from carom.contact.exclude import CLEAR, UNSURE, greatest_acceleration
 from carom.contact.exclude_pair import FLAT_RIM
 from carom.contact.gap import gap_and_rate, plane_in_body, slow
-from carom.contact.pair_point import REACH, find_touches, place_any, smaller, touch_rate
+from carom.contact.pair_point import REACH, find_touches, smaller, touch_rate
 from carom.dispatch import only_with_pairs
-from carom.geometry.rotation import cross
 from carom.hold.events import CONE, GAP, REVERSE, SEPARATE, end_forces
 from carom.hold.lifecycle import hold_contact, settle
 from carom.hold.press import press
 from carom.hold.roster import is_held, refresh_pairs, regroup, set_anchor, strike_off
 from carom.hold.search import begin_search, event_value, examine, narrow, propose
 from carom.impact.strike import strike
-from carom.jit import entry, inlined, kernel
+from carom.jit import inlined, kernel
 from carom.motion.acceleration import OPEN, SLIP, STICK
 from carom.motion.contact_point import contact_velocity
 from carom.motion.explicit import keep
 from carom.motion.step import step
+from carom.save import save_contacts
 from carom.system import records as r
 from carom.system.arrays import FREE
 from carom.system.notes import begin_event, end_event
@@ -59,143 +59,155 @@ class Controls(NamedTuple):
     press_at: int
 
 
-@entry
-def run(system, method, controls, held, now, work, cluster, corner, clocks, records, until):
-    """Go on from `now` to step number `until`. Returns 0, `records.FULL`, or the number of a `Status`."""
+@inlined
+def advance(
+    system, method, controls, held, now, begin, length, cluster, corner, work, clocks, records
+):
+    """Move the bodies of an island to the end of the step. Returns 0, or what `run` is to return."""
     clock, search, trial = clocks[0], work.search[0], work.trial
-    while clock.step < until:
-        begin = clock.step * controls.step
-        length = min(controls.step, controls.duration - begin)
-        while clock.spent < length:
-            if max(clock.event, clock.struck) >= records.event.shape[0] - r.MARGIN:
-                return r.FULL
-            if clock.in_step > controls.max_impacts or clock.at_once > 1000:
-                return TOO_MANY
-            remaining = length - clock.spent
-            horizon = remaining if controls.location == LOCATE else controls.step
-            action, c = search.pending, search.contact
-            if action != NOTHING:  # what was put off until its unit was compiled
-                horizon = search.horizon
-                search.pending = NOTHING
-            else:
-                action, c = look_near(system, controls, held, now, work)
-            if action == NOTHING:
-                # a trial step, cut until nothing can lie inside it, or shortened to its first event
-                dt, cuts, found = remaining, 0, False
+    while clock.spent < length:
+        if full(system, held, clock, records):
+            return r.FULL
+        if clock.in_step > controls.max_impacts or clock.at_once > 1000:
+            return TOO_MANY
+        remaining = length - clock.spent
+        horizon = remaining if controls.location == LOCATE else controls.step
+        action, c = search.pending, search.contact
+        if action != NOTHING:  # what was put off until its unit was compiled
+            horizon = search.horizon
+            search.pending = NOTHING
+        else:
+            action, c = look_near(system, controls, held, now, work)
+        if action == NOTHING:
+            # a trial step, cut until nothing can lie inside it, or shortened to its first event
+            dt, cuts, found = remaining, 0, False
+            if held.count[0] > 0:
+                dt = until_stop(controls, held, dt, clock)
+            search.active = 0
+            while True:
+                applied, friction, code = step(method, system, held, now, dt, trial, work)
+                clock.trials += 1
+                if code != 0:
+                    return code
                 if held.count[0] > 0:
-                    dt = until_stop(controls, held, dt, clock)
-                search.active = 0
-                while True:
-                    applied, friction, code = step(method, system, held, now, dt, trial, work)
-                    clock.trials += 1
-                    if code != 0:
-                        return code
-                    if held.count[0] > 0:
-                        end_forces(system, held, trial, work)
-                        press(
-                            controls.press_at, system, controls, held, now, dt, trial, cluster,
-                            work, clocks,
-                        )  # fmt: skip
-                        if work.result[0].code != 0:
-                            return work.result[0].code
-                        applied += work.result[0].applied
-                        friction += work.result[0].friction
-                    if search.active == 1:
-                        f, rate = event_value(system, controls, held, search, trial, work)
-                        state = narrow(search, dt, f, rate)
-                        if state < 0:
-                            return NOT_FINITE
-                        if state == 0:
-                            dt = propose(search)
-                            continue
-                    verdict, kind, other, low, d1, d2 = examine(
-                        system, controls, held, now, dt, work
-                    )
-                    if verdict == FLAT_RIM:  # its points strike together where they are
-                        search.pending, search.contact, search.horizon = STRIKE, other, remaining
-                        break
-                    own = search.active == 1 and kind == search.kind and other == search.contact
-                    if verdict == CLEAR or (own and verdict != UNSURE):
-                        found = search.active == 1
-                        break
-                    if verdict == UNSURE:
-                        if search.active == 1 and dt <= 1e-9 * horizon:
-                            found = True
-                            break
-                        cuts += 1
-                        clock.cuts += 1
-                        if cuts > controls.max_cuts:
-                            return STEP_CUT
-                        search.active = 0
-                        dt *= 0.5
+                    end_forces(system, held, trial, work)
+                    press(
+                        controls.press_at, system, controls, held, now, dt, trial, cluster,
+                        work, clocks,
+                    )  # fmt: skip
+                    if work.result[0].code != 0:
+                        return work.result[0].code
+                    applied += work.result[0].applied
+                    friction += work.result[0].friction
+                if search.active == 1:
+                    f, rate = event_value(system, controls, held, search, trial, work)
+                    state = narrow(search, dt, f, rate)
+                    if state < 0:
+                        return NOT_FINITE
+                    if state == 0:
+                        dt = propose(search)
                         continue
-                    begin_search(search, kind, other, low, dt, d1, d2)
-                    if kind == GAP and controls.location != LOCATE:
+                verdict, kind, other, low, d1, d2 = examine(system, controls, held, now, dt, work)
+                if verdict == FLAT_RIM:  # its points strike together where they are
+                    search.pending, search.contact, search.horizon = STRIKE, other, remaining
+                    break
+                own = search.active == 1 and kind == search.kind and other == search.contact
+                if verdict == CLEAR or (own and verdict != UNSURE):
+                    found = search.active == 1
+                    break
+                if verdict == UNSURE:
+                    if search.active == 1 and dt <= 1e-9 * horizon:
                         found = True
                         break
-                    f, rate = event_value(system, controls, held, search, trial, work)
-                    narrow(search, dt, f, rate)
-                    dt = propose(search)
-                if search.pending != NOTHING:
+                    cuts += 1
+                    clock.cuts += 1
+                    if cuts > controls.max_cuts:
+                        return STEP_CUT
+                    search.active = 0
+                    dt *= 0.5
                     continue
-                accept(now, trial, dt, applied, friction, begin, clock)
-                if dt == remaining:
-                    clock.spent = length
-                if held.count[0] > 0:
-                    turn_modes(system, controls, held, now, work, clock, records)
-                if not found:
-                    continue
-                clock.located += 1
-                c = search.contact
-                horizon = horizon if controls.location != LOCATE else max(horizon - dt, 0.0)
-                action = STRIKE
-                if search.kind != GAP:
-                    action = change_mode(system, held, c, search.kind, now, work, clock, records)
-            closed = 0
-            clock.at_once += 1 if action != NOTHING else 0
-            if action == STRIKE:
-                struck = clock.struck
-                strike(
-                    controls.strike_at, method, system, controls, held, c, now, cluster, corner,
-                    work, clocks, records,
-                )  # fmt: skip
-                closed = work.hit[0].closed
-                if work.hit[0].code != 0:
-                    search.pending, search.contact, search.horizon = STRIKE, c, horizon
-                    return work.hit[0].code
-                if controls.layer_time == 1 and clock.struck > struck:
-                    clock.spent += records.impact[struck].duration  # the position stays
-            if action == STRIKE and not (
-                closed != 1 or may_end(system.contacts[c], system, now, horizon, work)
-            ):
+                begin_search(search, kind, other, low, dt, d1, d2)
+                if kind == GAP and controls.location != LOCATE:
+                    found = True
+                    break
+                f, rate = event_value(system, controls, held, search, trial, work)
+                narrow(search, dt, f, rate)
+                dt = propose(search)
+            if search.pending != NOTHING:
                 continue
-            if action != NOTHING and controls.hold == 1:
-                if controls.hold_at == 0:
-                    search.pending, search.contact = max(action, HOLD), c
-                    search.horizon = horizon
-                    return r.NEEDS_HOLD
-                if action == SETTLE:
-                    settle(
-                        controls.settle_at, system, controls, held, c, now, work, clocks, records
-                    )
-                else:
-                    hold_contact(
-                        controls.hold_at, system, controls, held, c, now, horizon, cluster, work,
-                        clocks, records,
-                    )  # fmt: skip
-                    if work.hit[0].code != 0:
-                        return work.hit[0].code
-                if clock.now == 0.0:  # touching from the start: the first row says so
-                    save_contacts(system, held, now, 0, work, records)
-        clock.spent = 0.0
-        clock.step += 1
-        clock.in_step = 0
-        clock.now = begin + length
-        if not finite(now):
-            return NOT_FINITE
-        if clock.step % controls.save_every == 0 or clock.step == controls.last:
-            save(system, held, now, clock, work, records)
+            accept(now, trial, dt, applied, friction, begin, clock)
+            if strayed(now, work):
+                return r.STRAYED
+            if dt == remaining:
+                clock.spent = length
+            if held.count[0] > 0:
+                turn_modes(system, controls, held, now, work, clock, records)
+            if not found:
+                continue
+            clock.located += 1
+            c = search.contact
+            horizon = horizon if controls.location != LOCATE else max(horizon - dt, 0.0)
+            action = STRIKE
+            if search.kind != GAP:
+                action = change_mode(system, held, c, search.kind, now, work, clock, records)
+        closed = 0
+        clock.at_once += 1 if action != NOTHING else 0
+        if action == STRIKE:
+            struck = clock.struck
+            strike(
+                controls.strike_at, method, system, controls, held, c, now, cluster, corner,
+                work, clocks, records,
+            )  # fmt: skip
+            closed = work.hit[0].closed
+            if work.hit[0].code != 0:
+                search.pending, search.contact, search.horizon = STRIKE, c, horizon
+                return work.hit[0].code
+            if controls.layer_time == 1 and clock.struck > struck:
+                clock.spent += records.impact[struck].duration  # the position stays
+        if action == STRIKE and not (
+            closed != 1 or may_end(system.contacts[c], system, now, horizon, work)
+        ):
+            continue
+        if action != NOTHING and controls.hold == 1:
+            if controls.hold_at == 0:
+                search.pending, search.contact = max(action, HOLD), c
+                search.horizon = horizon
+                return r.NEEDS_HOLD
+            if action == SETTLE:
+                settle(controls.settle_at, system, controls, held, c, now, work, clocks, records)
+            else:
+                hold_contact(
+                    controls.hold_at, system, controls, held, c, now, horizon, cluster, work,
+                    clocks, records,
+                )  # fmt: skip
+                if work.hit[0].code != 0:
+                    return work.hit[0].code
+            if clock.now == 0.0:  # touching from the start: the first row says so
+                clock.touched = clock.first_touch
+                save_contacts(system, held, now, 0, clock, work, records)
     return 0
+
+
+@inlined
+def full(system, held, clock, records):
+    """Return whether the records have no room for one turn of the loop."""
+    rows = r.MARGIN + held.count[0]
+    last = max(clock.event + 1, clock.struck) + rows
+    if last > records.event.shape[0] or clock.touched + rows > records.touch.shape[0]:
+        return True
+    return clock.snapped + 2 * (system.bodies.shape[0] + rows) > records.snapshot.shape[0]
+
+
+@inlined
+def strayed(now, work):
+    """Return whether a body has left the ball that was given to it for this step."""
+    for b in range(now.shape[0]):
+        memory, d = work.body[b], 0.0
+        for k in range(3):
+            d += (now[b].x[k] - memory.home[k]) ** 2
+        if not d <= memory.room * memory.room:
+            return math.isfinite(memory.room)
+    return False
 
 
 @kernel
@@ -289,14 +301,14 @@ def change_mode(system, held, i, kind, now, work, clock, records):
     if kind == REVERSE:
         return SETTLE
     hold = held.points[i]
-    begin_event(hold.contact, hold.feature, now, clock, records)
+    begin_event(system, hold.contact, hold.feature, now, clock, records)
     if kind == SEPARATE:
         strike_off(held, i)
         regroup(system, held, work)
-        end_event(r.OPENS, now, clock, records)
+        end_event(system, r.OPENS, now, clock, records)
     elif kind == CONE:
         hold.mode = SLIP
-        end_event(r.SLIPS, now, clock, records)
+        end_event(system, r.SLIPS, now, clock, records)
     return NOTHING
 
 
@@ -314,79 +326,18 @@ def turn_modes(system, controls, held, now, work, clock, records):
                 hold.rest = min(hold.rest, system.bodies[hold.other].ballistic)
         if hold.next == hold.mode:
             continue
-        begin_event(hold.contact, hold.feature, now, clock, records)
+        begin_event(system, hold.contact, hold.feature, now, clock, records)
         if hold.next == OPEN:
             strike_off(held, i)
             opened = True
-            end_event(r.OPENS, now, clock, records)
+            end_event(system, r.OPENS, now, clock, records)
         else:
             hold.mode = hold.next
             if hold.mode == STICK:
                 set_anchor(system, hold, now, work)
-            end_event(r.STICKS if hold.mode == STICK else r.SLIPS, now, clock, records)
+            end_event(system, r.STICKS if hold.mode == STICK else r.SLIPS, now, clock, records)
     if refresh_pairs(system, controls, held, now, work) or opened:
         regroup(system, held, work)
-
-
-@inlined
-def finite(state):
-    """Return whether the state is made of numbers."""
-    s = 0.0
-    for b in range(state.shape[0]):
-        for k in range(3):
-            s += state[b].x[k] + state[b].v[k] + state[b].w[k]
-        s += state[b].Q[0]
-    return math.isfinite(s)
-
-
-@entry
-def save_now(system, held, now, clocks, work, records):
-    """Write the present state: at the start, and after a failure."""
-    save(system, held, now, clocks[0], work, records)
-
-
-@inlined
-def save(system, held, now, clock, work, records):
-    """Write the present state into the next row."""
-    k = clock.saved
-    row = records.series[k]
-    row.t = clock.now
-    row.loads, row.impacts = clock.loads, clock.impacts
-    row.friction, row.bounces = clock.friction, clock.bounces
-    for b in range(now.shape[0]):
-        keep(now[b], records.state[k, b])
-    if held.count[0] > 0:
-        save_contacts(system, held, now, k, work, records)
-    clock.saved += 1
-
-
-@kernel
-def save_contacts(system, held, now, k, work, records):
-    """Write modes, forces and moments of the contacts into row k: sums over their held points."""
-    for c in range(records.touch.shape[1]):
-        touch = records.touch[k, c]
-        touch.mode = OPEN
-        for j in range(3):
-            touch.force[j], touch.moment[j] = 0.0, 0.0
-            touch.push[j], touch.other_moment[j] = 0.0, 0.0
-    for i in range(held.count[0]):
-        hold, point = held.points[i], work.point[0]
-        contact, f = system.contacts[hold.contact], hold.force
-        touch = records.touch[k, contact.scene]
-        place_any(system, contact, hold.feature, hold.point, now, point, work)
-        E, arm, other = point.axes, point.arm_a, point.arm_b
-        touch.mode = max(touch.mode, hold.mode)
-        fx = f[0] * E[0, 0] + f[1] * E[1, 0] + f[2] * E[2, 0]
-        fy = f[0] * E[0, 1] + f[1] * E[1, 1] + f[2] * E[2, 1]
-        fz = f[0] * E[0, 2] + f[1] * E[1, 2] + f[2] * E[2, 2]
-        tx, ty, tz = cross(arm[0], arm[1], arm[2], fx, fy, fz)
-        sx, sy, sz = cross(other[0], other[1], other[2], -fx, -fy, -fz)
-        t, o, p = touch.moment, touch.other_moment, touch.push
-        t[0], t[1], t[2] = t[0] + tx, t[1] + ty, t[2] + tz
-        o[0], o[1], o[2] = o[0] + sx, o[1] + sy, o[2] + sz
-        p[0], p[1], p[2] = p[0] + fx, p[1] + fy, p[2] + fz
-        for j in range(3):
-            touch.force[j] += f[j]
 
 
 @inlined

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom import loop
+from carom import loop, march, save
 from carom.geometry import quaternion
 from carom.hold.lifecycle import hold_unit, settle_unit
 from carom.hold.press import press_unit
 from carom.impact.corner.layout import MULTIPLE, CornerSettings
 from carom.impact.strike import strike_unit
 from carom.impact.strike_several import corner_unit
+from carom.islands.layout import Islands, NoIslands, new_islands, roomier
 from carom.jit import address
 from carom.motion.acceleration import acceleration_unit
 from carom.motion.explicit import constrained_unit, rk4
@@ -96,6 +97,8 @@ class Run:
         check_start(scene, self.compiled, self.work, options)
         if system.contacts.size:
             self.work.body.group = system.bodies.component
+        apart = method == "rk4" and impact_location == "locate"
+        self.islands = new_islands(system, self.held) if apart else NoIslands(0)
         self.cluster = new_cluster(system)
         self.corner = new_corner(system, corner_settings(options))
         self.clock = r.new_clock()
@@ -108,7 +111,7 @@ class Run:
 
     def save_now(self) -> None:
         """Write the present state into the records."""
-        loop.save_now(
+        save.save_now(
             self.compiled.system, self.held, self.now, self.clock, self.work, self.records
         )
 
@@ -187,9 +190,9 @@ class Run:
     def go_on(self, until: int) -> Status:
         """Go on to step number `until`, or to a failure."""
         while True:
-            code = loop.run(
+            code = march.run(
                 self.compiled.system, self.method, self.controls, self.held, self.now, self.work,
-                self.cluster, self.corner, self.clock, self.records, until,
+                self.islands, self.cluster, self.corner, self.clock, self.records, until,
             )  # fmt: skip
             if code == r.FULL:
                 self.records = r.longer(self.records)
@@ -198,6 +201,9 @@ class Run:
                 self.find_hold()
             elif code == r.NEEDS_CORNER:
                 self.find_corner()
+            elif code == r.NEEDS_ROOM:
+                assert isinstance(self.islands, Islands)
+                self.islands = roomier(self.islands)
             else:
                 return Status(code)
 

@@ -38,10 +38,6 @@ class Solution:
         One record for each impact.
     events : EventTable
         Impacts and changes of held contacts, in their order.
-    contact_mode : (T, C)
-        0 open, 1 slipping, 2 sticking (or rolling, or at rest).
-    contact_force : (T, C, 3)
-        Force of held contacts in contact axes (normal, tangent 1, tangent 2) [N].
     ledger : Ledger
         Where the energy went.
     status : Status
@@ -59,14 +55,13 @@ class Solution:
     potential_energy: np.ndarray
     impacts: ImpactTable
     events: EventTable
-    contact_mode: np.ndarray
-    contact_force: np.ndarray
     ledger: Ledger
     status: Status
     stats: dict[str, int]
     scene: Scene = field(repr=False)
     settings: dict[str, Any]
     _run: Run = field(repr=False)
+    _touch: np.recarray = field(repr=False)
 
     @classmethod
     def from_run(cls, run: Run, status: Status) -> Solution:
@@ -139,19 +134,28 @@ class Solution:
         times = np.atleast_1d(np.asarray(t, dtype=float))
         if not np.all((times >= self.t[0]) & (times <= self.t[-1])):
             raise ValueError(f"t must be within [{self.t[0]:g}, {self.t[-1]:g}] s, got {t!r}")
-        at, pose, left, right = self._nodes
-        i = np.searchsorted(at, times, side="right" if side == "right" else "left") - 1
-        i = np.clip(i, 0, max(len(at) - 2, 0))
-        n = np.minimum(i + 1, len(at) - 1)
-        start = (pose[i, :, :3], pose[i, :, 3:], right[i, :, :3], right[i, :, 3:])
-        end = (pose[n, :, :3], pose[n, :, 3:], left[n, :, :3], left[n, :, 3:])
-        x, Q, v, w = spline.interpolate(times, at[i], at[n], start, end)
-        last = times == at[-1]
-        if side == "right" and np.any(last):
-            v[last], w[last] = right[-1, :, :3], right[-1, :, 3:]
+        bodies = [_between(node, times, side) for node in self._nodes]
+        x, Q, v, w = (np.stack(column, axis=1) for column in zip(*bodies))
         Q = quaternion.multiply(Q, quaternion.conjugate(self._run.compiled.to_principal))
         result = (x, Q, v, w)
         return tuple(a[0] for a in result) if np.ndim(t) == 0 else result
+
+    @property
+    def contact_mode(self) -> np.ndarray:
+        """Modes (T, C) of the contacts: 0 open, 1 slipping, 2 sticking (or rolling, or at rest)."""
+        return self._contact_sums[0]
+
+    @property
+    def contact_force(self) -> np.ndarray:
+        """Forces (T, C, 3) of held contacts in contact axes (normal, tangent 1, tangent 2) [N]."""
+        return self._contact_sums[1]
+
+    @cached_property
+    def _contact_sums(self) -> tuple[np.ndarray, np.ndarray]:
+        from carom.assemble import contact_sums
+
+        number = self._run.compiled.system.contacts.number
+        return contact_sums(self._touch, len(self.t), int(number.max(initial=-1)) + 1)
 
     @cached_property
     def _nodes(self):
@@ -185,7 +189,7 @@ class Solution:
                 "no boundary layer of its own; look at one with impacts.together == 1"
             )
         contacts = self._run.compiled.system.contacts
-        row = contacts[int(np.searchsorted(contacts.scene, record.contact))]
+        row = contacts[int(np.searchsorted(contacts.number, record.contact))]
         return impact_layer(
             record.inverse_mass, record.relative_velocity_before, record.friction,
             record.restitution, penetration=float(row.penetration), width=float(row.width),
@@ -198,3 +202,18 @@ class Solution:
             f"<Solution: {self.position.shape[1]} bodies, t = {self.t[0]:g} .. {self.t[-1]:g} s in "
             f"{len(self.t)} saved steps, {len(self.impacts)} impacts; {self.message}>"
         )
+
+
+def _between(node, times: np.ndarray, side: str):
+    """Return position, attitude and velocities of one body at times (K,), from its nodes."""
+    at, pose, left, right = node
+    i = np.searchsorted(at, times, side="right" if side == "right" else "left") - 1
+    i = np.clip(i, 0, max(len(at) - 2, 0))
+    n = np.minimum(i + 1, len(at) - 1)
+    start = (pose[i, :3], pose[i, 3:], right[i, :3], right[i, 3:])
+    end = (pose[n, :3], pose[n, 3:], left[n, :3], left[n, 3:])
+    x, Q, v, w = spline.interpolate(times, at[i], at[n], start, end)
+    last = times == at[-1]
+    if side == "right" and np.any(last):
+        v[last], w[last] = right[-1, :3], right[-1, 3:]
+    return x, Q, v, w

@@ -47,9 +47,9 @@ def run(given) -> int:
 def _cache() -> list[str]:
     if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
         return ["NUMBA_DISABLE_JIT is set: everything runs uncompiled, a thousand times slower"]
-    from carom import loop
+    from carom import march
 
-    cache = getattr(loop.run, "_cache", None)
+    cache = getattr(march.run, "_cache", None)
     folder = getattr(cache, "cache_path", None)
     if not folder:
         return ["no place for compiled code: set NUMBA_CACHE_DIR to a folder that can be written"]

@@ -65,16 +65,16 @@ def gather_closed(system, controls, held, c, state, cluster, work, strikes):
     as flat, too. Writes seats and points. Bodies that closed points link become one group, in which all
     closed points count.
     """
-    group, k, more = work.body[system.contacts[c].body].group, 0, True
+    first, k, more = system.contacts[c].body, 0, True
     if system.contacts[c].other >= 0:
-        unite(work, system.contacts[c].body, system.contacts[c].other)
+        unite(work, first, system.contacts[c].other)
     for i in range(system.contacts.shape[0]):
         held.brinks[i].seen = 0
     while more:
         more = False
         for i in range(system.contacts.shape[0]):
             contact, brink = system.contacts[i], held.brinks[i]
-            if brink.seen == 1 or not concerns(contact, group, work):
+            if brink.seen == 1 or not concerns(contact, work.body[first].group, work):
                 continue
             brink.seen = 1
             near = closed_within(controls, contact, state)

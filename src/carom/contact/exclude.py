@@ -7,7 +7,8 @@ Of each vertex the gap z and its rate are known at both ends, and |d2z/dt2| <= a
 and the path is clear if the times for which either bound is positive, (z0' + sqrt(z0'^2 + 2 a z0))/a
 and the same from the end, together reach h. If not, the caller cuts the step in half. In free flight a is
 exact: |n.g| + |w|^2 r, with |w| bounded by the energy of rotation; otherwise it is taken as twice what the
-stages of the step have seen.
+stages of the step have seen. A held body moves as the cubic does that has the gaps and rates at both ends,
+which is never less than its control points (Bezier): z0, z0 + h z0'/3, z1 - h z1'/3, z1.
 """
 
 from __future__ import annotations
@@ -50,6 +51,12 @@ def reach(z, rate, a):
 
 
 @inlined
+def cubic_clears(z0, rate0, z1, rate1, h, tiny):
+    """Return whether the cubic with these ends and rates stays above -tiny: its control points do."""
+    return min(min(z0, z0 + h * rate0 / 3.0), min(z1, z1 - h * rate1 / 3.0)) >= -tiny
+
+
+@inlined
 def ball_clears(system, contact, start, end, h, centre, work):
     """Return whether the ball around the body keeps clear: the first look, and mostly the last."""
     b, margin = contact.body, contact.extent + contact.radius + contact.offset
@@ -74,7 +81,7 @@ def passage(system, contact, held, leaving, start, end, h, work, tolerance):
     centre, a = greatest_acceleration(system, contact, start, work)
     if ball_clears(system, contact, start, end, h, centre, work):
         return CLEAR, h
-    verdict, first = CLEAR, h
+    verdict, first, flies = CLEAR, h, work.body[contact.body].status == FREE
     tiny = max(tolerance * contact.extent, round_off(contact, end))
     sag = 0.125 * a * h * h  # a path keeps this near its chord
     before, after = plane_in_body(contact, start), plane_in_body(contact, end)
@@ -94,6 +101,7 @@ def passage(system, contact, held, leaving, start, end, h, work, tolerance):
             and t0 + reach(z1, -rate1, a) < h * (1.0 - 1e-12)
             and sag > tiny  # what could be missed is more than the tolerance
             and leaving == 0
+            and (flies or not cubic_clears(z0, rate0, z1, rate1, h, tiny))
         ):
             verdict = UNSURE
     return verdict, first

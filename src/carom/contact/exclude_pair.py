@@ -16,6 +16,7 @@ from carom.contact.exclude import (
     CLEAR,
     UNSURE,
     ball_clears,
+    cubic_clears,
     greatest_acceleration,
     reach,
 )
@@ -211,7 +212,7 @@ def _passage_pair(system, contact, c, held, leaving, start, end, h, work, tolera
         touching = touching or held.points[j].contact == c
     tiny = 4.0 * max(tolerance * smaller(contact), round_off_of_both(contact, end))
     count = find_touches(system, contact, end, REACH * smaller(contact), work)
-    least, _ = lowest_open(system, contact, c, count, held, end, work)
+    least, rate = lowest_open(system, contact, c, count, held, end, work)
     nearest = work.touches[0]
     for i in range(1, count):
         if work.touches[i].gap < nearest.gap:
@@ -231,6 +232,7 @@ def _passage_pair(system, contact, c, held, leaving, start, end, h, work, tolera
     if touching:
         return CLEAR, h
     last = time_apart(system, contact, nearest.normal, -1.0, end, most, h)
+    feature = nearest.feature
     if last >= h:
         return CLEAR, h
     count = find_touches(system, contact, start, 0.0, work)
@@ -240,6 +242,13 @@ def _passage_pair(system, contact, c, held, leaving, start, end, h, work, tolera
             nearest = work.touches[i]
     first = time_apart(system, contact, nearest.normal, 1.0, start, most, h)
     sag = 0.125 * most * h * h
+    flies = work.body[contact.body].status == FREE
+    if contact.other >= 0:
+        flies = flies and work.body[contact.other].status == FREE
+    rate0 = touch_rate(contact, nearest, start)
+    alike = feature == nearest.feature  # the same points are nearest at both ends
+    if alike and not flies and cubic_clears(nearest.gap, rate0, least, rate, h, tiny):
+        return CLEAR, first
     if first + last < h * (1.0 - 1e-12) and sag > tiny and leaving == 0:
         return UNSURE, first
     return CLEAR, first

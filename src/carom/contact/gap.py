@@ -69,11 +69,15 @@ def speed_of(b, extent, state):
 
 @kernel
 def slow(contact, state):
-    """Return the speed [m/s] that counts as none: round-off of the speeds of the body, or of both."""
+    """Return the speed [m/s] that counts as none: round-off of the speeds of the body, or of both.
+
+    At least that of the speed that gravity gives over the size of the body: what all but rests in a heap has no
+    speeds of its own to compare with.
+    """
     s = speed_of(contact.body, contact.extent, state)
     if contact.other >= 0:
         s += speed_of(contact.other, contact.other_extent, state)
-    return 1e-13 * s
+    return 1e-13 * s + contact.still
 
 
 @kernel

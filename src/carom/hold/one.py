@@ -31,13 +31,13 @@ def hold_one(system, controls, held, state, horizon, cluster, work, clock, recor
     g = -contact_acceleration(point, state, work.stages[0])[0]
     if not bounces_end(contact, u[0], g, still, horizon):
         return
-    begin_event(seat.contact, seat.feature, state, clock, records)
+    begin_event(system, seat.contact, seat.feature, state, clock, records)
     i = enlist(system, held, seat, STICK, state, work)
     hold = held.points[i]
     begin_hold(system, contact, hold, state, 0.0, work, clock)
     find_mode(system, contact, hold, held, state, work)
     clock.holds += 1
-    end_event(HOLD, state, clock, records)
+    end_event(system, HOLD, state, clock, records)
 
 
 @kernel
@@ -48,10 +48,10 @@ def settle_one(system, controls, hold, held, state, work, clock, records):
     stop = 1e-3 * controls.step * abs(hold.force[0]) * hold.W[1, 1]
     hold.heading[0], hold.heading[1] = 0.0, 0.0
     acceleration(system, state, held, work, work.stages[0])
-    begin_event(hold.contact, hold.feature, state, clock, records)
+    begin_event(system, hold.contact, hold.feature, state, clock, records)
     if begin_hold(system, contact, hold, state, stop, work, clock):
         find_mode(system, contact, hold, held, state, work)
-    end_event(STICKS if hold.mode == STICK else SLIPS, state, clock, records)
+    end_event(system, STICKS if hold.mode == STICK else SLIPS, state, clock, records)
 
 
 @kernel

@@ -35,7 +35,7 @@ def hold_several(system, controls, held, k, group, state, horizon, cluster, work
             held.brinks[seat.contact].leaving = 1  # lifts off without speed
     if new >= 0:
         seat = cluster.seats[new]
-        begin_event(seat.contact, seat.feature, state, clock, records)
+        begin_event(system, seat.contact, seat.feature, state, clock, records)
     if stay:
         drop_bounces(system, k, state, cluster, work, clock)
         set_modes(system, held, k, state, cluster, work, clock, records)
@@ -48,23 +48,28 @@ def judge(system, k, state, horizon, cluster):
     """Mark the points that stay.
 
     First those that do not leave, as far as they press; then those whose bounces end within `horizon` under the
-    acceleration that these leave them.
+    acceleration that these leave them; then those for which that is so under the new ones, and so on: what lies
+    on a body that falls comes to rest only with it.
     """
     for i in range(k):
         contact, u = system.contacts[cluster.seats[i].contact], cluster.v[U][3 * i]
         cluster.seats[i].stays = 1 if abs(u) <= slow(contact, state) else 0
-    solve_forces(k, cluster)
     push = 0.0
     for i in range(3 * k):
         push = max(push, abs(cluster.v[C][i]))
-    for i in range(k):
-        contact, u = system.contacts[cluster.seats[i].contact], cluster.v[U][3 * i]
-        a = cluster.v[OLD][3 * i]
-        if cluster.seats[i].stays == 1:
-            cluster.seats[i].stays = 1 if a <= 1e-10 * push else 0
-        else:
-            ends = bounces_end(contact, u, -a, slow(contact, state), horizon)
-            cluster.seats[i].stays = 1 if ends else 0
+    for turn in range(k + 1):
+        solve_forces(k, cluster)
+        more = False
+        for i in range(k):
+            contact, u = system.contacts[cluster.seats[i].contact], cluster.v[U][3 * i]
+            a = cluster.v[OLD][3 * i]
+            if cluster.seats[i].stays == 0:
+                if bounces_end(contact, u, -a, slow(contact, state), horizon):
+                    cluster.seats[i].stays, more = 1, True
+            elif turn == 0 and not a <= 1e-10 * push:
+                cluster.seats[i].stays = 0
+        if not more:
+            break
 
 
 @kernel
@@ -106,11 +111,11 @@ def set_modes(system, held, k, state, cluster, work, clock, records):
             held.points[seat.held].mode = mode
             continue
         if not begun:
-            begin_event(seat.contact, seat.feature, state, clock, records)
+            begin_event(system, seat.contact, seat.feature, state, clock, records)
         begun = False
         seat.held = enlist(system, held, seat, mode, state, work)
         clock.holds += 1
-        end_event(HOLD, state, clock, records)
+        end_event(system, HOLD, state, clock, records)
 
 
 @kernel
@@ -136,7 +141,7 @@ def strike_off_open(system, held, k, group, state, cluster, work, clock, records
         for i in range(k):
             seat = cluster.seats[i]
             if seat.contact == hold.contact and seat.feature == hold.feature and seat.stays == 0:
-                begin_event(seat.contact, seat.feature, state, clock, records)
+                begin_event(system, seat.contact, seat.feature, state, clock, records)
                 strike_off(held, j)
-                end_event(OPENS, state, clock, records)
+                end_event(system, OPENS, state, clock, records)
                 break

@@ -10,6 +10,7 @@ from carom.contact.work_mode import restore_work
 from carom.dispatch import by_address, by_method
 from carom.impact import layout
 from carom.impact.alike import as_one
+from carom.impact.collapse import what_is_left
 from carom.impact.layer import traverse
 from carom.impact.resolve import resolve
 from carom.impact.strike_several import strike_several
@@ -81,16 +82,18 @@ def strike_unit(method, system, controls, held, c, state, cluster, corner, work,
         if not single and controls.corner_at == 0:
             hit.code = NEEDS_CORNER
             return
-        begin_event(c, cluster.seats[0].feature, state, clock, records)
+        begin_event(system, c, cluster.seats[0].feature, state, clock, records)
         if single:
-            strike_one(method, system, controls, c, state, work, clock, records)
+            strike_one(method, system, controls, held, c, state, work, clock, records)
         else:
-            strike_several(system, controls, c, k, state, cluster, corner, work, clock, records)
+            strike_several(
+                system, controls, held, c, k, state, cluster, corner, work, clock, records
+            )  # fmt: skip
         if hit.code != 0:
             return
         if system.joints.shape[0] > 0:
             project_velocity(system, state, work)
-        end_event(IMPACT, state, clock, records)
+        end_event(system, IMPACT, state, clock, records)
         for i in range(held.brinks.shape[0]):
             if concerns(system.contacts[i], work.body[contact.body].group, work):
                 held.brinks[i].near = 1
@@ -105,9 +108,11 @@ strike = by_address(strike_unit)
 
 
 @kernel
-def strike_one(method, system, controls, c, state, work, clock, records):
+def strike_one(method, system, controls, held, c, state, work, clock, records):
     """Resolve the impact of the one point in work.point, with W and u in work.hit."""
     contact, hit, point = system.contacts[c], work.hit[0], work.point[0]
+    hit.restitution = what_is_left(contact, held.brinks[c])
+    held.brinks[c].blows += 1
     if collide(method, controls, contact, hit, work.history) != layout.OK:
         hit.code = IMPACT_FAILED
         return
@@ -120,14 +125,14 @@ def strike_one(method, system, controls, c, state, work, clock, records):
 @kernel
 def by_impulse(method, controls, contact, hit, history):
     """Solve the impact to round-off."""
-    return resolve(hit.W, hit.u, contact.friction, contact.restitution, contact.law, hit.out)
+    return resolve(hit.W, hit.u, contact.friction, hit.restitution, contact.law, hit.out)
 
 
 @kernel
 def by_layer(method, controls, contact, hit, history):
     """Pass the boundary layer by cubic splines, as the paper does."""
     return traverse(
-        hit.W, hit.u, contact.friction, contact.restitution, contact.law, contact.width,
+        hit.W, hit.u, contact.friction, hit.restitution, contact.law, contact.width,
         contact.penetration, controls.layer_steps, history, hit.out,
     )  # fmt: skip
 

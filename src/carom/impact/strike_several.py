@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from carom.contact.gap import slow
 from carom.dispatch import by_address
+from carom.impact.collapse import what_is_left
 from carom.impact.corner.layout import OK
 from carom.impact.corner.resolve import resolve_corner
 from carom.jit import kernel, unit
@@ -28,7 +29,7 @@ at_corner = by_address(corner_unit)
 
 
 @kernel
-def strike_several(system, controls, c, k, state, cluster, corner, work, clock, records):
+def strike_several(system, controls, held, c, k, state, cluster, corner, work, clock, records):
     """Resolve the impact of all k closed points; add their impulses, write a row for each that has one."""
     hit, u = work.hit[0], cluster.v[U]
     inverse_masses(system, k, cluster.points[0], state, work, cluster.m[0])
@@ -37,8 +38,10 @@ def strike_several(system, controls, c, k, state, cluster, corner, work, clock, 
         contact = system.contacts[cluster.seats[i].contact]
         if abs(u[3 * i]) <= slow(contact, state):
             u[3 * i] = 0.0  # touching, not striking
-        cluster.mu[i], corner.e[i] = contact.friction, contact.restitution
+        brink = held.brinks[cluster.seats[i].contact]
+        cluster.mu[i], corner.e[i] = contact.friction, what_is_left(contact, brink)
         corner.law[i], corner.kappa[i] = contact.law, contact.stiffness
+    count_blows(held, k, cluster)
     at_corner(controls.corner_at, k, cluster.m[0], u, cluster.mu, corner)
     if corner.scratch.work.clock[0].code != OK:
         hit.code = IMPACT_FAILED
@@ -47,17 +50,29 @@ def strike_several(system, controls, c, k, state, cluster, corner, work, clock, 
     for i in range(k):
         n, t1, t2 = P[3 * i], P[3 * i + 1], P[3 * i + 2]
         if n != 0.0:
-            write_share(i, k, state, cluster, corner, clock, records)
+            write_share(system, i, k, state, cluster, corner, clock, records)
             spread(system, cluster.points[0][i], state, n, t1, t2, work)
             add_velocity(system, cluster.points[0][i], work, state)
 
 
 @kernel
-def write_share(i, k, state, cluster, corner, clock, records):
+def count_blows(held, k, cluster):
+    """Count the blow for each contact of which a point strikes."""
+    last = -1
+    for i in range(k):
+        c = cluster.seats[i].contact
+        if cluster.v[U][3 * i] < 0.0 and c != last:
+            held.brinks[c].blows += 1
+            last = c
+
+
+@kernel
+def write_share(system, i, k, state, cluster, corner, clock, records):
     """Write the part of point i in an impact of k points."""
     row, point, result = records.impact[clock.struck], cluster.points[0][i], corner.result
     x, u = state[point.a].x, cluster.v[U]
-    row.time, row.contact, row.together = clock.now, cluster.seats[i].contact, k
+    row.time, row.together = clock.now, k
+    row.contact = system.contacts[cluster.seats[i].contact].number
     for r in range(3):
         row.point[r], row.normal[r] = x[r] + point.arm_a[r], point.axes[0, r]
         row.before[r], row.after[r] = u[3 * i + r], result.velocity[3 * i + r]

@@ -58,14 +58,14 @@ share = by_solver({FreeSolver: keep_shares, TreeSolver: keep_shares, LoopSolver:
 
 
 @kernel
-def add_touch(contact, touch, work):
+def add_touch(touch, work):
     """Add what a contact does to its bodies: force and moment about their centres, world axes."""
-    wrench = work.body[contact.body].wrench
+    wrench = work.body[touch.body].wrench
     for k in range(3):
         wrench[k] += touch.push[k]
         wrench[3 + k] += touch.moment[k]
-    if contact.other >= 0:
-        wrench = work.body[contact.other].wrench
+    if touch.other >= 0:
+        wrench = work.body[touch.other].wrench
         for k in range(3):
             wrench[k] -= touch.push[k]
             wrench[3 + k] += touch.other_moment[k]
@@ -74,15 +74,13 @@ def add_touch(contact, touch, work):
 @entry
 def reactions(system, augment, states, touch, work, out):
     """Write the wrench (T, J, 6) of each joint on its child at saved states."""
+    h = 0
     for k in range(states.shape[0]):
         state = states[k]
         applied_wrenches(system, state, True, work)
-        for r in range(system.contacts.shape[0]):
-            contact = system.contacts[r]
-            c = contact.scene
-            first = r == 0 or system.contacts[r - 1].scene != c  # of the rows of one contact
-            if first and touch[k, c].mode != 0:
-                add_touch(contact, touch[k, c], work)
+        while h < touch.shape[0] and touch[h].saved == k:
+            add_touch(touch[h], work)
+            h += 1
         for j in range(system.joints.shape[0]):
             acceleration_bias(system.joints[j], state, work.joint[j].bias)
         solve(system, state, True, work)

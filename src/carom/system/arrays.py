@@ -32,6 +32,8 @@ BODY = [
     ("isolated", "i8"),  # 1 where no joint acts
     ("ballistic", "i8"),  # 1 where no joint and no force but gravity acts
     ("component", "i8"),  # its own number, or N for all that have joints
+    ("number", "i8"),  # among all bodies of the scene
+    ("ball", "f8"),  # radius of the ball around its centre that holds its shapes
 ]
 
 JOINT = [
@@ -61,7 +63,7 @@ LOAD = [("body", "i8"), ("anchor", "f8", 3), ("force", "f8", 3), ("torque", "f8"
 
 #: hull of vertices, swollen by a radius, against a half-space; or two solids, the other perhaps a half-space
 CONTACT = [
-    ("scene", "i8"),  # number of the scene's own contact, whose pieces these are
+    ("number", "i8"),  # among all contacts of the scene
     ("body", "i8"),
     ("other", "i8"),  # -1 for a half-space
     (
@@ -85,6 +87,7 @@ CONTACT = [
     ("stiffness", "f8"),  # of its boundary layer, relative to the others
     ("extent", "f8"),  # largest distance of the shape from the mass centre
     ("other_extent", "f8"),
+    ("still", "f8"),  # speed that is round-off of what gravity gives over the body's size
     ("width", "f8"),  # b of the boundary layer
     ("penetration", "f8"),  # delta
 ]
@@ -112,6 +115,8 @@ BRINK = [
     ("seen", "i8"),  # while a group is gathered
     ("near", "i8"),  # 1 where something happened at the last event: look before stepping
     ("leaving", "i8"),  # 1 where the body lifts off without speed: it may touch at the start
+    ("blows", "i8"),  # impacts in this step
+    ("step", "i8"),  # the last in which the two were near each other, plus 1
 ]
 
 #: a point that is held, over time (see `carom.hold`)
@@ -160,6 +165,8 @@ BODY_WORK = [
     ("spin", "f8", 3),  # angular velocity for which the invariants of free flight below hold
     ("momentum", "f8", 3),  # spatial angular momentum
     ("energy", "f8"),  # twice the energy of rotation
+    ("home", "f8", 3),  # centre at the start of the step
+    ("room", "f8"),  # how far from it the centre may go in this step
 ]
 
 JOINT_WORK = [
@@ -211,6 +218,7 @@ HIT = [
     ("u", "f8", 3),
     ("point", "f8", 3),
     ("out", "f8", 32),
+    ("restitution", "f8"),
     ("closed", "i8"),
     ("code", "i8"),
 ]

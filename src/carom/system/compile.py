@@ -192,5 +192,7 @@ def _bodies(scene, moments, joints, springs, loads):
     bodies.inertia, bodies.extent = moments, size
     bodies.isotropic = np.ptp(moments, axis=1) == 0.0
     bodies.isolated, bodies.ballistic = isolated, ballistic
+    bodies.number = np.arange(len(bodies))
+    bodies.ball = [0.0 if b.shape is None else b.shape.size for b in scene.bodies]
     bodies.component = np.where(isolated == 1, np.arange(len(bodies)), len(bodies))
     return bodies

@@ -39,27 +39,28 @@ def compile_contacts(scene: Scene, to_principal, options: Options):
     A contact of the scene has a row for each pair of pieces; against a half-space one for all vertices that
     are swollen alike, and one for each curved piece.
     """
-    pairs = [(k, c, *sides) for k, c in enumerate(all_contacts(scene)) for sides in _rows(c)]
+    pairs = [(c, *sides) for c in all_contacts(scene) for sides in _rows(c)]
     rows, vertices = table(CONTACT, len(pairs)), _Vertices(to_principal)
     shaped = _shaped(pairs)
     solids, tables = solid_table([b.shape for b in shaped], [to_principal[b.index] for b in shaped])
-    number = {b: int(np.searchsorted(solids.body, k)) for k, b in enumerate(shaped)}
-    for row, (k, c, mine, others) in zip(rows, pairs):
-        row.scene, row.body, row.other = k, c.body.index, -1
+    place = {b: int(np.searchsorted(solids.body, k)) for k, b in enumerate(shaped)}
+    for row, (c, mine, others) in zip(rows, pairs):
+        row.number, row.body, row.other = c.index, c.body.index, -1
         row.touches, row.part = _touches(c, mine), len(c.body.shape.pieces) > 1
         row.extent, row.radius = c.body.shape.size, c.body.shape.pieces[mine[0]].radius
         row.first, row.last = vertices.range_of(c.body, mine)
-        row.solid = number.get(c.body, 0) + mine[0]
+        row.solid = place.get(c.body, 0) + mine[0]
         if isinstance(c.other, HalfSpace):
             row.axes[:] = contact_axes(c.other.normal)
             row.offset = c.other.point @ c.other.normal
         else:
             row.other = c.other.index
             row.other_first, row.other_last = vertices.range_of(c.other, others)
-            row.other_solid = number[c.other] + others[0]
+            row.other_solid = place[c.other] + others[0]
             row.other_extent = c.other.shape.size
             row.radius += c.other.shape.pieces[others[0]].radius
             row.part = max(row.part, len(c.other.shape.pieces) > 1)
+        row.still = 1e-14 * np.sqrt(np.linalg.norm(scene.gravity) * row.extent)
         row.friction, row.friction_held = c.friction, c.friction_held
         row.restitution, row.stiffness = c.restitution, c.stiffness
         row.law = IMPACT_LAWS.index(c.impact_law)
@@ -93,8 +94,8 @@ def _touches(contact: Contact, mine: list[int]) -> bool:
 
 def _shaped(pairs) -> list[Body]:
     """Return the bodies that need solids, each once."""
-    found = [c.body for _, c, mine, _ in pairs if _touches(c, mine)]
-    found += [c.other for _, c, _, others in pairs if len(others) > 0]
+    found = [c.body for c, mine, _ in pairs if _touches(c, mine)]
+    found += [c.other for c, _, others in pairs if len(others) > 0]
     return list(dict.fromkeys(found))
 
 

@@ -1,4 +1,4 @@
-"""Writing down an event: pose, and velocities before and after, of all bodies."""
+"""Writing down an event: pose, and velocities before and after, of the bodies that it concerns."""
 
 from __future__ import annotations
 
@@ -6,14 +6,15 @@ from carom.jit import kernel
 
 
 @kernel
-def begin_event(c, feature, state, clock, records):
-    """Write the state before an event into the next row."""
-    k = clock.event
-    records.event[k].time = clock.now
-    records.event[k].contact, records.event[k].feature = c, feature
-    records.event[k].saved = clock.saved
+def begin_event(system, c, feature, state, clock, records):
+    """Write the state before an event of contact c into the next rows."""
+    event, k = records.event[clock.event], clock.snapped
+    clock.concerns = c
+    event.time, event.saved, event.first = clock.now, clock.saved, k
+    event.contact, event.feature = system.contacts[c].number, feature
     for b in range(state.shape[0]):
-        row = records.snapshot[k, b]
+        row = records.snapshot[k + b]
+        row.event, row.body = clock.event, b
         for i in range(3):
             row.x[i], row.v0[i], row.w0[i] = state[b].x[i], state[b].v[i], state[b].w[i]
         for i in range(4):
@@ -21,14 +22,24 @@ def begin_event(c, feature, state, clock, records):
 
 
 @kernel
-def end_event(kind, state, clock, records):
-    """Write the velocities after the event, and close its row."""
-    k = clock.event
-    records.event[k].kind = kind
+def end_event(system, kind, state, clock, records):
+    """Write the velocities after the event, and close its row.
+
+    Only bodies of the contact, and those whose velocity has changed, keep their snapshots.
+    """
+    contact, k = system.contacts[clock.concerns], clock.snapped
     for b in range(state.shape[0]):
-        row = records.snapshot[k, b]
+        row = records.snapshot[clock.snapped + b]
+        changed = b == contact.body or b == contact.other
         for i in range(3):
             row.v1[i], row.w1[i] = state[b].v[i], state[b].w[i]
+            changed = changed or row.v0[i] != row.v1[i] or row.w0[i] != row.w1[i]
+        if changed:
+            row.body = system.bodies[b].number
+            records.snapshot[k] = records.snapshot[clock.snapped + b]
+            k += 1
+    records.event[clock.event].kind = kind
+    clock.snapped = k
     clock.event += 1
     clock.in_step += 1
     clock.at_once += 1

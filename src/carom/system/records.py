@@ -40,6 +40,10 @@ CLOCK = [
     ("saved", "i8"),
     ("struck", "i8"),
     ("event", "i8"),
+    ("snapped", "i8"),  # rows of snapshots
+    ("touched", "i8"),  # rows of touches
+    ("first_touch", "i8"),  # rows of touches when the island began with the step
+    ("concerns", "i8"),  # contact of the event that is being written
     ("in_step", "i8"),  # impacts and events in the present step
     ("at_once", "i8"),  # impacts and events since time last went on
     ("cuts", "i8"),
@@ -51,8 +55,13 @@ CLOCK = [
 ]
 
 SERIES = [("t", "f8"), *LEDGER]
-#: a contact: the sum over its held points, moment about the mass centre of the body (world axes)
+#: a held point at a saved time; moments about the mass centres (world axes)
 TOUCH = [
+    ("saved", "i8"),
+    ("contact", "i8"),
+    ("feature", "i8"),
+    ("body", "i8"),
+    ("other", "i8"),
     ("mode", "i8"),
     ("force", "f8", 3),  # contact axes
     ("push", "f8", 3),  # the same in world axes
@@ -78,10 +87,19 @@ IMPACTS = [
     ("phases", "i8"),
 ]
 
-EVENT = [("time", "f8"), ("kind", "i8"), ("contact", "i8"), ("feature", "i8"), ("saved", "i8")]
+EVENT = [
+    ("time", "f8"),
+    ("kind", "i8"),
+    ("contact", "i8"),
+    ("feature", "i8"),
+    ("saved", "i8"),  # rows that were saved before
+    ("first", "i8"),  # its snapshots, up to that of the next event
+]
 
-#: a body at an event, velocities before and after
+#: a body at an event that concerns it, velocities before and after
 SNAPSHOT = [
+    ("event", "i8"),
+    ("body", "i8"),
     ("x", "f8", 3),
     ("Q", "f8", 4),
     ("v0", "f8", 3),
@@ -90,21 +108,23 @@ SNAPSHOT = [
     ("w1", "f8", 3),
 ]
 
-MARGIN = 260  # rows that one turn of the loop may write
+MARGIN = 260  # impacts, or events, that one turn of the loop may write
 FULL = 100  # a record is full: the caller makes it longer and goes on
 NEEDS_CORNER = 102  # several points strike: the same
 NEEDS_HOLD = 101  # a contact is to be held: the caller compiles what that needs and goes on
+NEEDS_ROOM = 103  # more pairs are near each other than there is room for: the same
+STRAYED = 104  # a body has left the ball that its island gave it
 
 
 class Records(NamedTuple):
-    """T saved steps, K impacts, E events."""
+    """T saved steps, K impacts, E events, S snapshots, H touches."""
 
     series: np.recarray  # (T,) SERIES
     state: np.recarray  # (T, N) STATE
-    touch: np.recarray  # (T, C) TOUCH, C contacts of the scene
+    touch: np.recarray  # (H,) TOUCH
     impact: np.recarray  # (K,) IMPACTS
     event: np.recarray  # (E,) EVENT
-    snapshot: np.recarray  # (E, N) SNAPSHOT
+    snapshot: np.recarray  # (S,) SNAPSHOT
 
 
 def new_clock() -> np.recarray:
@@ -129,8 +149,10 @@ def new_held(system: System) -> Held:
 def new_work(system: System, stages: int) -> Work:
     """Return the scratch of one run."""
     n, j = system.bodies.size, system.joints.size
+    body = table(BODY_WORK, n)
+    body.room = np.inf
     return Work(
-        body=table(BODY_WORK, n),
+        body=body,
         joint=table(JOINT_WORK, j),
         stages=table(STAGE, stages, n),
         stage=table(STATE, n),
@@ -150,23 +172,23 @@ def new_work(system: System, stages: int) -> Work:
 
 def new_records(system: System, saves: int, events: int) -> Records:
     """Return empty records for `saves` saved steps and `events` impacts and events."""
-    n, c = system.bodies.size, int(system.contacts.scene.max(initial=-1)) + 1
+    n = system.bodies.size
     return Records(
         series=table(SERIES, saves),
         state=table(STATE, saves, n),
-        touch=table(TOUCH, saves, c),
+        touch=table(TOUCH, events),
         impact=table(IMPACTS, events),
         event=table(EVENT, events),
-        snapshot=table(SNAPSHOT, events, n),
+        snapshot=table(SNAPSHOT, 2 * events + 2 * n),
     )
 
 
 def longer(records: Records) -> Records:
-    """Return the records with room for twice as many impacts and events."""
+    """Return the records with room for twice as many impacts, events and held points."""
     return records._replace(
         **{
             name: np.concatenate([a, np.zeros_like(a)]).view(np.recarray)
-            for name in ("impact", "event", "snapshot")
+            for name in ("touch", "impact", "event", "snapshot")
             for a in [getattr(records, name)]
         }
     )
@@ -179,7 +201,7 @@ def room_for_one(records: Records, saved: int) -> Records:
     return records._replace(
         **{
             name: np.concatenate([a, np.zeros_like(a[:1])]).view(np.recarray)
-            for name in ("series", "state", "touch")
+            for name in ("series", "state")
             for a in [getattr(records, name)]
         }
     )
@@ -188,7 +210,8 @@ def room_for_one(records: Records, saved: int) -> Records:
 def trimmed(records: Records, clock: np.recarray) -> Records:
     """Return copies of the rows that were written."""
     ends = {
-        "impact": clock[0].struck, "event": clock[0].event, "snapshot": clock[0].event,
+        "touch": clock[0].touched, "impact": clock[0].struck, "event": clock[0].event,
+        "snapshot": clock[0].snapped,
     }  # fmt: skip
     return Records(
         **{k: a[: ends.get(k, clock[0].saved)].copy() for k, a in records._asdict().items()}

@@ -78,11 +78,41 @@ def find_classes(k, W, u, mu, e, law, kappa, scale_W, scale_u, index):
 
 
 @kernel
-def _same_velocity(u, i, j, rough, tolerance):
-    for r in range(3 if rough else 1):
-        if not abs(u[3 * i + r] - u[3 * j + r]) <= tolerance:
+def friction_sleeps(k, W, mu, count, scale_W, index):
+    """Return whether friction never acts on contacts that do not slip: no normal force makes them slip.
+
+    `index` has the classes of contacts without friction, whose normal forces are equal.
+    """
+    for i in range(k):
+        if not mu[i] > 0.0:
+            continue
+        for r in range(1, 3):
+            for q in range(count):
+                total = 0.0
+                for j in range(k):
+                    if index[CLASS, j] == q:
+                        total += W[3 * i + r, 3 * j]
+                if not abs(total) <= SAME * scale_W:
+                    return False
+    return True
+
+
+@kernel
+def nothing_slips(k, u, mu, scale_u):
+    """Return whether no contact with friction slips."""
+    for i in range(k):
+        slip = abs(u[3 * i + 1]) + abs(u[3 * i + 2])
+        if mu[i] > 0.0 and not slip <= SAME * scale_u:
             return False
     return True
+
+
+@kernel
+def _same_velocity(u, i, j, rough, tolerance):
+    same = abs(u[3 * i] - u[3 * j]) <= tolerance
+    for r in range(1, 3 if rough else 1):
+        same = same and abs(u[3 * i + r] - u[3 * j + r]) <= tolerance
+    return same
 
 
 @kernel

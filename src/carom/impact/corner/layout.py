@@ -103,7 +103,7 @@ class CornerWork(NamedTuple):
     clock: np.recarray  # (1,) CLOCK
     index: np.ndarray  # (9, 3K) rows below
     matrix: np.ndarray  # (9, 3K, 3K) below
-    vector: np.ndarray  # (33, 3K) rows below
+    vector: np.ndarray  # (34, 3K) rows below
     series: np.ndarray  # (13, ORDERS, 3K) below
     single: np.ndarray  # result of one contact, as `carom.impact.layout` says
 
@@ -139,6 +139,8 @@ U0, P, U, NEW_P, NEW_U, D, NEW_D, SAVED_P, SAVED_D, WHEN, SCRATCH, ERROR, TRY = 
 DISC_C, DISC_T, DISC_W, DISC_F, DISC_STEP, DISC_TRY, RADIUS = range(13, 20)
 #: velocities of contacts that jam, with a seed
 SEEDED = 32
+#: friction as far as it acts
+FRICTION = 33
 #: of the series and of stick
 WEIGHT, SCALE, LEFT, STICK_T = range(20, 24)
 #: of the outer iteration: ln e_*, misses, new misses, step, change of misses, a product, best e_*, its misses
@@ -187,7 +189,7 @@ def corner_arrays(capacity: int) -> CornerScratch:
         clock=table(CLOCK, 1),
         index=np.zeros((9, n), dtype=np.int64),
         matrix=np.zeros((9, n, n)),
-        vector=np.zeros((33, n)),
+        vector=np.zeros((34, n)),
         series=np.zeros((13, ORDERS, n)),
         single=np.zeros(one.SIZE),
     )

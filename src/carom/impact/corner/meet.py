@@ -10,11 +10,12 @@ from carom.jit import kernel
 
 _GAIN = 0.8  # a round is a gain if it leaves at most this part of the greatest miss
 _PATIENCE = 4  # rounds without gain before the iteration begins again, damped; twice that: it ends
+_COARSE = 1e-4  # greatest tolerance of a passage; less as the misses fall
 _NEAR = 0.1  # greatest ln(target/reached) at which the nearest found is taken
 
 
 @kernel
-def run(k, work, units, settings, fixed, anew):
+def run(k, work, units, settings, rtol, fixed, anew):
     """Pass the layer with the coefficients e_* as they are."""
     p, most_events = settings.exponent, settings.max_events * k
     if anew:
@@ -26,7 +27,7 @@ def run(k, work, units, settings, fixed, anew):
     if not anew:
         resume(k, work)
     most = settings.max_steps * k
-    pass_layer(units.layer, k, work, units, settings.rtol, p, most_events, most)
+    pass_layer(units.layer, k, work, units, rtol, p, most_events, most)
     return work.clock[0].code
 
 
@@ -43,11 +44,17 @@ def meet_laws(k, work, units, settings, fixed, result):
     worst, capped = r.misses(k, work, o[OUT_F])
     r.keep_best(k, work)
     best, stale, ended, rounds = worst, 0, ENDED, 0
+    rtol = settings.rtol
     while worst > tolerance and rounds < settings.max_rounds and ended == ENDED:
         r.improve(k, work)
-        ended = again(k, work, units, settings, fixed)
+        rtol = max(settings.rtol, min(_COARSE, 0.01 * worst))
+        ended = again(k, work, units, settings, rtol, fixed)
         rounds += 1
         worst, capped = r.misses(k, work, o[OUT_NEW])
+        if not worst > tolerance and rtol > settings.rtol:
+            rtol = settings.rtol
+            ended = again(k, work, units, settings, rtol, fixed)
+            worst, capped = r.misses(k, work, o[OUT_NEW])
         r.learn(k, work)
         stale += 1
         if worst < best:
@@ -67,14 +74,14 @@ def meet_laws(k, work, units, settings, fixed, result):
             r.back_to_best(k, work)
         else:
             r.energetic(k, work)
-        return again(k, work, units, settings, fixed)
+        return again(k, work, units, settings, settings.rtol, fixed)
     if capped:
         result.marks |= CAPPED
     return ended
 
 
 @kernel
-def again(k, work, units, settings, fixed):
+def again(k, work, units, settings, rtol, fixed):
     """Run with other coefficients, from the first unloading on where that was saved."""
     anew = fixed > 0 or work.clock[0].branched == 0
-    return run(k, work, units, settings, fixed, anew)
+    return run(k, work, units, settings, rtol, fixed, anew)

@@ -31,17 +31,17 @@ def pass_group(k, work, cones, units, settings, result):
         result.marks |= PLASTIC
         return
     fixed = 0 if k <= settings.adaptive_up_to else settings.fixed_steps
-    ended = run(k, work, units, settings, fixed, True)
+    ended = run(k, work, units, settings, settings.rtol, fixed, True)
     if ended != ENDED and fixed == 0 and work.clock[0].steps >= settings.max_steps * k:
         fixed = settings.fixed_steps
-        ended = run(k, work, units, settings, fixed, True)
+        ended = run(k, work, units, settings, settings.rtol, fixed, True)
     if r.any_aims(k, work) and ended == ENDED:
         ended = meet_laws(k, work, units, settings, fixed, result)
     if fixed > 0:
         result.marks |= FIXED
         for i in range(3 * k):
             work.vector[TRY, i] = work.vector[U, i]
-        ended = run(k, work, units, settings, 2 * fixed, True)
+        ended = run(k, work, units, settings, settings.rtol, 2 * fixed, True)
         for i in range(3 * k):
             result.error = max(result.error, abs(work.vector[TRY, i] - work.vector[U, i]))
     result.steps += work.clock[0].steps

@@ -12,6 +12,7 @@ from carom.impact.corner.layout import (
     CLEAN,
     EXACT,
     FIRST,
+    FRICTION,
     GROUP,
     MASS,
     MEMBER,
@@ -43,7 +44,7 @@ def resolve_corner(k, W, u, mu, e, law, kappa, settings, scratch, out):
     `kappa` (K,): friction, restitution, its law as in `carom.impact.laws`, stiffness (only ratios matter).
     `settings`: `CornerSettings`; `scratch` from `new_corner_work`, `out` from `new_corner_result`, for K >= k.
     """
-    scale = _check(k, W, u, mu, e, kappa)
+    scale = _check(k, W, u, mu, e, law, kappa)
     if not scale >= 0.0:
         return BAD_INPUT
     result, index, clean = out.summary[0], scratch.work.index, scratch.work.matrix[CLEAN]
@@ -60,20 +61,32 @@ def resolve_corner(k, W, u, mu, e, law, kappa, settings, scratch, out):
         approaches = approaches or u[3 * i] < -_TOUCHES * scale
     if not approaches:
         return OK
-    largest = alike.clean(k, W, mu, clean)
-    count = alike.find_classes(k, clean, u, mu, e, law, kappa, largest, scale, index)
+    friction, count = scratch.work.vector[FRICTION], 0
+    if alike.nothing_slips(k, u, mu, scale):
+        for i in range(k):
+            friction[i] = 0.0
+        largest = alike.clean(k, W, friction, clean)
+        count = alike.find_classes(k, clean, u, friction, e, law, kappa, largest, scale, index)
+        if not alike.friction_sleeps(k, W, mu, count, largest, index):
+            count = 0
+    if count == 0:
+        for i in range(k):
+            friction[i] = mu[i]
+        largest = alike.clean(k, W, friction, clean)
+        count = alike.find_classes(k, clean, u, friction, e, law, kappa, largest, scale, index)
     result.classes = count
     groups = alike.find_groups(k, count, clean, index)
     code = OK
     for g in range(groups):
-        code = max(code, _group(k, g, count, u, mu, e, law, kappa, scale, settings, scratch, out))
+        one_code = _group(k, g, count, u, friction, e, law, kappa, scale, settings, scratch, out)
+        code = max(code, one_code)
     if code != OK:
         return code
     return _finish(k, W, u, scale, out)
 
 
 @kernel
-def _check(k, W, u, mu, e, kappa):
+def _check(k, W, u, mu, e, law, kappa):
     """Return the greatest velocity, or NaN where the input is unsound."""
     total, scale = 0.0, 0.0
     for a in range(3 * k):
@@ -84,7 +97,7 @@ def _check(k, W, u, mu, e, kappa):
             total += row[b]
     for i in range(k):
         total += mu[i] + e[i] + kappa[i]
-        sound = mu[i] >= 0.0 and 0.0 <= e[i] <= 1.0 and kappa[i] > 0.0
+        sound = mu[i] >= 0.0 and 0.0 <= e[i] <= 1.0 and kappa[i] > 0.0 and 0 <= law[i] <= 2
         if not (sound and W[3 * i, 3 * i] >= 0.0):
             return math.nan
     return scale if math.isfinite(total) else math.nan

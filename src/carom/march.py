@@ -1,0 +1,161 @@
+"""The loop of a run, compiled as a whole: steps, each island by island, and their records."""
+
+from __future__ import annotations
+
+from carom.dispatch import by_method
+from carom.islands import parts
+from carom.islands.layout import Islands, NoIslands
+from carom.jit import entry, kernel
+from carom.loop import NOT_FINITE, advance
+from carom.save import finite, save
+from carom.system import records as r
+
+
+@entry
+def run(
+    system, method, controls, held, now, work, islands, cluster, corner, clocks, records, until
+):
+    """Go on from `now` to step number `until`. Returns 0, what the caller is to do, or a `Status`."""
+    clock = clocks[0]
+    while clock.step < until:
+        begin = clock.step * controls.step
+        length = min(controls.step, controls.duration - begin)
+        if not start(islands, system, held, now, length, clocks, work):
+            return r.NEEDS_ROOM
+        code = 0
+        while code == 0 and some_left(islands, length, clock):
+            part, own, here, scratch = take(islands, system, held, now, work)
+            enter(islands, part, own, held, scratch, begin, clock)
+            code = advance(
+                part, method, controls, own, here, begin, length, cluster, corner, scratch, clocks,
+                records,
+            )  # fmt: skip
+            if code == 0:
+                leave(islands, own)
+        if code != 0:
+            if not lost(islands, code, held, clocks):
+                return code
+            continue
+        if clock.touched + held.points.shape[0] > records.touch.shape[0]:
+            return r.FULL
+        end(islands, system, held, now, length, clock, work)
+        clock.spent = 0.0
+        clock.step += 1
+        clock.in_step = 0
+        clock.now = begin + length
+        if not finite(now):
+            return NOT_FINITE
+        if clock.step % controls.save_every == 0 or clock.step == controls.last:
+            save(system, held, now, clock, work, records)
+    return 0
+
+
+@kernel
+def _start_all(islands, system, held, now, length, clocks, work):
+    """Begin a step of all bodies together."""
+    clocks[0].first_touch = 0
+    if clocks[0].spent == 0.0:
+        for c in range(held.brinks.shape[0]):
+            held.brinks[c].blows = 0
+    return True
+
+
+@kernel
+def _start_islands(islands, system, held, now, length, clocks, work):
+    """Begin a step: find its islands, unless it has begun already; return False if there is no room."""
+    if islands.plan[0].planned == 1:
+        return True
+    islands.plan[0].widen = max(1.0, islands.plan[0].widen)
+    return parts.begin_step(system, held, now, length, clocks, work, islands)
+
+
+@kernel
+def _all_left(islands, length, clock):
+    """Return whether the step has not ended."""
+    return clock.spent < length
+
+
+@kernel
+def _islands_left(islands, length, clock):
+    """Return whether an island has not been moved."""
+    return islands.plan[0].at < islands.plan[0].count
+
+
+@kernel
+def _take_all(islands, system, held, now, work):
+    """Return what there is."""
+    return system, held, now, work
+
+
+@kernel
+def _take_island(islands, system, held, now, work):
+    """Return the island at hand as a system, with what it holds, its state and its scratch."""
+    i = islands.plan[0].at
+    state = islands.state[islands.first[0, i] : islands.first[0, i + 1]]
+    return (
+        parts.part_system(system, islands, i),
+        parts.part_held(held, islands, i),
+        state,
+        parts.part_work(work, islands, i),
+    )
+
+
+@kernel
+def _enter_all(islands, part, own, held, work, begin, clock):
+    """All bodies are there already."""
+
+
+@kernel
+def _enter_island(islands, part, own, held, work, begin, clock):
+    """Begin with an island, unless that was done before the loop was left."""
+    if islands.plan[0].entered == 0:
+        parts.enter(part, own, held, work, islands, begin, clock)
+        clock.first_touch = clock.touched
+
+
+@kernel
+def _leave_all(islands, own):
+    """Nothing is to be put back."""
+
+
+@kernel
+def _leave_island(islands, own):
+    """End with an island."""
+    parts.leave(own, islands)
+
+
+@kernel
+def _all_lost(islands, code, held, clocks):
+    """There is nothing to do again."""
+    return False
+
+
+@kernel
+def _island_lost(islands, code, held, clocks):
+    """Go back to the start of the step after a failure, or to do it again with more room; return whether so."""
+    if r.FULL <= code < r.STRAYED:
+        return False  # the caller sees to it, and comes back
+    parts.forget_step(held, clocks, islands)
+    if code == r.STRAYED:
+        islands.plan[0].widen *= 2.0
+    return code == r.STRAYED
+
+
+@kernel
+def _end_all(islands, system, held, now, length, clock, work):
+    """All bodies are there already."""
+
+
+@kernel
+def _end_islands(islands, system, held, now, length, clock, work):
+    """Put all islands back."""
+    parts.end_step(system, held, now, length, clock, work, islands)
+
+
+start = by_method({Islands: _start_islands, NoIslands: _start_all})
+some_left = by_method({Islands: _islands_left, NoIslands: _all_left})
+take = by_method({Islands: _take_island, NoIslands: _take_all})
+enter = by_method({Islands: _enter_island, NoIslands: _enter_all})
+leave = by_method({Islands: _leave_island, NoIslands: _leave_all})
+lost = by_method({Islands: _island_lost, NoIslands: _all_lost})
+end = by_method({Islands: _end_islands, NoIslands: _end_all})

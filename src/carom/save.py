@@ -1,0 +1,66 @@
+"""Writing the state of a run into its records."""
+
+from __future__ import annotations
+
+import math
+
+from carom.contact.pair_point import place_any
+from carom.geometry.rotation import cross
+from carom.jit import entry, inlined, kernel
+from carom.motion.explicit import keep
+
+
+@inlined
+def finite(state):
+    """Return whether the state is made of numbers."""
+    s = 0.0
+    for b in range(state.shape[0]):
+        for k in range(3):
+            s += state[b].x[k] + state[b].v[k] + state[b].w[k]
+        s += state[b].Q[0]
+    return math.isfinite(s)
+
+
+@entry
+def save_now(system, held, now, clocks, work, records):
+    """Write the present state: at the start, and after a failure."""
+    save(system, held, now, clocks[0], work, records)
+
+
+@inlined
+def save(system, held, now, clock, work, records):
+    """Write the present state into the next row."""
+    k = clock.saved
+    row = records.series[k]
+    row.t = clock.now
+    row.loads, row.impacts = clock.loads, clock.impacts
+    row.friction, row.bounces = clock.friction, clock.bounces
+    for b in range(now.shape[0]):
+        keep(now[b], records.state[k, b])
+    if held.count[0] > 0:
+        save_contacts(system, held, now, k, clock, work, records)
+    clock.saved += 1
+
+
+@kernel
+def save_contacts(system, held, now, k, clock, work, records):
+    """Write forces and moments of all held points at saved time k."""
+    for i in range(held.count[0]):
+        hold, point, touch = held.points[i], work.point[0], records.touch[clock.touched]
+        contact = system.contacts[hold.contact]
+        place_any(system, contact, hold.feature, hold.point, now, point, work)
+        E, arm, other, f = point.axes, point.arm_a, point.arm_b, hold.force
+        touch.saved, touch.contact, touch.feature = k, contact.number, hold.feature
+        touch.mode, touch.body, touch.other = hold.mode, system.bodies[hold.body].number, -1
+        if hold.other >= 0:
+            touch.other = system.bodies[hold.other].number
+        fx = f[0] * E[0, 0] + f[1] * E[1, 0] + f[2] * E[2, 0]
+        fy = f[0] * E[0, 1] + f[1] * E[1, 1] + f[2] * E[2, 1]
+        fz = f[0] * E[0, 2] + f[1] * E[1, 2] + f[2] * E[2, 2]
+        t, o, p = touch.moment, touch.other_moment, touch.push
+        t[0], t[1], t[2] = cross(arm[0], arm[1], arm[2], fx, fy, fz)
+        o[0], o[1], o[2] = cross(other[0], other[1], other[2], -fx, -fy, -fz)
+        p[0], p[1], p[2] = fx, fy, fz
+        for j in range(3):
+            touch.force[j] = f[j]
+        clock.touched += 1
