@@ -16,7 +16,7 @@ from carom.jit import kernel
 
 FLAT = 0.2  # sine of the tilt below which a rim is looked at here
 OTHER_SIDE = 1.5  # square of the way, relative to r, from which on a point is another one
-SMOOTH = 0.12  # up to which a step may follow it
+SMOOTH = 0.03  # up to which a step may follow it: 10 degrees
 
 
 @kernel
