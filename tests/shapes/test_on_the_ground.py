@@ -1,5 +1,7 @@
 """Cylinders, discs and ellipsoids on a half-space: falling, coming to rest, rolling."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -11,7 +13,9 @@ G = 9.81
 R = 0.05
 
 
-def on_ground(shape, duration, step, *, normal=(0, 0, 1), restitution=0.3, friction=0.4, **start):
+def on_ground(
+    shape, duration, step, *, normal: Any = (0, 0, 1), restitution=0.3, friction=0.4, **start
+):
     scene = Scene(gravity=(0, 0, -G))
     ground = scene.add_half_space((0, 0, 0), normal)
     body = scene.add_body(shape, mass=1.0, **start)
@@ -62,7 +66,7 @@ def test_a_cylinder_rolls_down_an_incline(hollow, factor):
     angle = 0.3
     normal = np.array([np.sin(angle), 0, np.cos(angle)])
     down = np.array([np.cos(angle), 0, -np.sin(angle)])
-    turn = {"orientation": quaternion.exp(np.array([np.pi / 2, 0, 0]))}
+    turn: dict[str, Any] = {"orientation": quaternion.exp(np.array([np.pi / 2, 0, 0]))}
     if hollow:
         turn["inertia"] = np.diag([1.0, 1.0, 1.0]) * R**2
     s = on_ground(
@@ -167,7 +171,9 @@ def test_the_scene_may_be_turned_about_the_vertical():
     start = {"position": (0, 0, 0.2), "velocity": (0.5, 0, 0), "angular_velocity": (4, 2, 1)}
     tilt = quaternion.exp(np.array([0.9, 0.2, 0]))
     one = on_ground(Cylinder(R, 0.1), 0.35, 2e-3, orientation=tilt, **start)
-    turned = {name: quaternion.rotate(Q, np.array(v, float)) for name, v in start.items()}
+    turned: dict[str, Any] = {
+        name: quaternion.rotate(Q, np.array(v, float)) for name, v in start.items()
+    }
     two = on_ground(
         Cylinder(R, 0.1), 0.35, 2e-3, orientation=quaternion.multiply(Q, tilt), **turned
     )

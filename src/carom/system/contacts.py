@@ -13,6 +13,7 @@ from carom.options import Options
 from carom.scene.bodies import Body, HalfSpace
 from carom.scene.contacts import IMPACT_LAWS, Contact
 from carom.scene.scene import Scene
+from carom.scene.shapes import Shape
 from carom.system.arrays import CONTACT, table
 from carom.system.frames import contact_axes
 
@@ -45,21 +46,23 @@ def compile_contacts(scene: Scene, to_principal, options: Options):
     solids, tables = solid_table([b.shape for b in shaped], [to_principal[b.index] for b in shaped])
     place = {b: int(np.searchsorted(solids.body, k)) for k, b in enumerate(shaped)}
     for row, (c, mine, others) in zip(rows, pairs):
+        shape = _shape(c.body)
         row.number, row.body, row.other = c.index, c.body.index, -1
-        row.touches, row.part = _touches(c, mine), len(c.body.shape.pieces) > 1
-        row.extent, row.radius = c.body.shape.size, c.body.shape.pieces[mine[0]].radius
+        row.touches, row.part = _touches(c, mine), len(shape.pieces) > 1
+        row.extent, row.radius = shape.size, shape.pieces[mine[0]].radius
         row.first, row.last = vertices.range_of(c.body, mine)
         row.solid = place.get(c.body, 0) + mine[0]
         if isinstance(c.other, HalfSpace):
             row.axes[:] = contact_axes(c.other.normal)
             row.offset = c.other.point @ c.other.normal
         else:
+            other = _shape(c.other)
             row.other = c.other.index
             row.other_first, row.other_last = vertices.range_of(c.other, others)
             row.other_solid = place[c.other] + others[0]
-            row.other_extent = c.other.shape.size
-            row.radius += c.other.shape.pieces[others[0]].radius
-            row.part = max(row.part, len(c.other.shape.pieces) > 1)
+            row.other_extent = other.size
+            row.radius += other.pieces[others[0]].radius
+            row.part = max(row.part, len(other.pieces) > 1)
         row.still = 1e-14 * np.sqrt(np.linalg.norm(scene.gravity) * row.extent)
         row.friction, row.friction_held = c.friction, c.friction_held
         row.restitution, row.stiffness = c.restitution, c.stiffness
@@ -69,13 +72,17 @@ def compile_contacts(scene: Scene, to_principal, options: Options):
     return rows, vertices.all(), solids, tables if shaped else NoHulls(0)
 
 
+def _shape(body: Body) -> Shape:
+    """Return the shape of a body that touches."""
+    assert body.shape is not None
+    return body.shape
+
+
 def _rows(contact: Contact) -> list[tuple[list[int], list[int]]]:
     """Return the numbers of the pieces of the body, and of the other, that each row of a contact is of."""
-    assert contact.body.shape is not None
-    pieces = contact.body.shape.pieces
+    pieces = _shape(contact.body).pieces
     if not isinstance(contact.other, HalfSpace):
-        assert contact.other.shape is not None
-        others = range(len(contact.other.shape.pieces))
+        others = range(len(_shape(contact.other).pieces))
         return [([a], [b]) for a, b in product(range(len(pieces)), others)]
     alike: dict[float, list[int]] = {}
     for k, piece in enumerate(pieces):
@@ -87,9 +94,8 @@ def _rows(contact: Contact) -> list[tuple[list[int], list[int]]]:
 
 def _touches(contact: Contact, mine: list[int]) -> bool:
     """Return whether the kernels of pairs find the points of a row."""
-    assert contact.body.shape is not None
     between = not isinstance(contact.other, HalfSpace)
-    return between or contact.body.shape.pieces[mine[0]].corners is None
+    return between or _shape(contact.body).pieces[mine[0]].corners is None
 
 
 def _shaped(pairs) -> list[Body]:
