@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import math
-
 from carom.contact.gap import slow
 from carom.dispatch import by_address
 from carom.impact.collapse import what_is_left
-from carom.impact.corner.layout import OK, SEQUENTIAL, CornerSettings
+from carom.impact.corner.layout import OK
 from carom.impact.corner.resolve import resolve_corner
 from carom.jit import kernel, unit
 from carom.motion.contact_point import add_velocity, spread
@@ -15,42 +13,15 @@ from carom.motion.several import inverse_masses, velocities
 from carom.system.cluster import U
 
 IMPACT_FAILED = 6
-BLOWN_UP = 1e3  # times the greatest speed before the impact
 
 
 @unit
 def corner_unit(k, W, u, mu, corner):
-    """Resolve the impact of k points; its code goes to the clock of the scratch.
-
-    An answer that has blown up is none (seen where many rows depend on each other): again with a smaller
-    tolerance, at last blow by blow.
-    """
-    given, code = corner.settings, OK
-    rtol, multiple = given.rtol, given.multiple
-    for attempt in range(3):
-        settings = CornerSettings(
-            multiple, rtol, given.exponent, given.adaptive_up_to, given.fixed_steps,
-            given.max_events, given.max_steps, given.max_rounds,
-        )  # fmt: skip
-        code = resolve_corner(
-            k, W, u, mu, corner.e, corner.law, corner.kappa, settings, corner.scratch,
-            corner.result,
-        )  # fmt: skip
-        if code == OK and largest(k, corner.result.velocity) <= BLOWN_UP * largest(k, u):
-            break
-        rtol, multiple = 1e-2 * rtol, SEQUENTIAL if attempt == 1 else multiple
-    corner.scratch.work.clock[0].code = code
-
-
-@kernel
-def largest(k, u):
-    """Return the largest component of k velocities; infinity if one is not a number."""
-    most = 0.0
-    for i in range(3 * k):
-        if not abs(u[i]) < math.inf:
-            return math.inf
-        most = max(most, abs(u[i]))
-    return most
+    """Resolve the impact of k points; its code goes to the clock of the scratch."""
+    corner.scratch.work.clock[0].code = resolve_corner(
+        k, W, u, mu, corner.e, corner.law, corner.kappa, corner.settings, corner.scratch,
+        corner.result,
+    )  # fmt: skip
 
 
 #: at_corner(address, k, W, u, mu, corner)

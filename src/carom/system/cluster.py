@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom.contact.pairs.layout import MOST_POINTS
 from carom.coulomb.layout import ConeWork, cone_arrays
 from carom.impact.corner.layout import (
     CornerResult,
@@ -17,7 +18,7 @@ from carom.impact.corner.layout import (
 from carom.system.arrays import POINT, STATE, System, table
 
 #: most points that are solved for together
-MOST = 64
+MOST = 192
 
 #: a closed point: what touches, and where it stands in the list of held points
 SEAT = [
@@ -70,7 +71,8 @@ def capacity(system: System) -> int:
     """Return the greatest number of points that may be closed in one group."""
     contacts = system.contacts
     if np.any(contacts.touches == 1):
-        return MOST
+        points = np.where(contacts.touches == 1, MOST_POINTS, contacts.last - contacts.first)
+        return max(1, min(MOST, int(points.sum())))
     count = np.zeros(system.bodies.size + 1, dtype=np.int64)
     np.add.at(count, system.bodies.component[contacts.body], contacts.last - contacts.first)
     return max(1, min(MOST, int(count.max())))

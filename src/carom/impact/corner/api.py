@@ -35,6 +35,9 @@ class CornerImpact:
         law could not be met; 0 where all are met.
     capped : bool
         Whether somewhere the law asks for more energy than the contact took: it gives back all, not more.
+    at_once : bool
+        Whether the boundary layer could not be passed, and the impact was solved as one contact problem instead
+        (Newton's law at each contact; Moreau 1988).
     steps, events : int
         Steps of integration, and changes between open, loading and unloading.
     """
@@ -48,6 +51,7 @@ class CornerImpact:
     plastic_change: float
     law_missed: float
     capped: bool
+    at_once: bool
     steps: int
     events: int
 
@@ -113,6 +117,7 @@ def resolve_impacts(
     stiffness is divided among them.
     """
     from carom.impact.corner.layout import (
+        AT_ONCE,
         CAPPED,
         MESSAGES,
         MULTIPLE,
@@ -159,6 +164,7 @@ def resolve_impacts(
         plastic_change=float(summary["plastic_change"]),
         law_missed=float(summary["miss"]),
         capped=bool(summary["marks"] & CAPPED),
+        at_once=bool(summary["marks"] & AT_ONCE),
         steps=int(summary["steps"]),
         events=int(summary["events"]),
     )

@@ -28,6 +28,7 @@ MISSED = 2  #: the law of Newton or Poisson was not met: the nearest was taken, 
 CAPPED = 4  #: the law asks for more than e_* = 1 somewhere: not met there, energy cannot grow
 FIXED = 8  #: passed with fixed steps
 EXACT = 16  #: contacts that move alike, resolved exactly as one
+AT_ONCE = 64  #: the layer could not be passed: one contact problem instead
 REPELLED = 32  #: the impulse was scaled back by round-off, so that energy does not grow
 
 

@@ -6,7 +6,9 @@ import math
 
 from carom.impact import layout as one
 from carom.impact.corner import alike
+from carom.impact.corner.at_once import all_at_once, unsound
 from carom.impact.corner.layout import (
+    AT_ONCE,
     BAD_INPUT,
     CLASS,
     CLEAN,
@@ -37,7 +39,7 @@ _TOUCHES = 1e-13  # approach below this part of the greatest velocity is none
 
 @entry
 def resolve_corner(k, W, u, mu, e, law, kappa, settings, scratch, out):
-    """Resolve an impact of `k` contacts; return OK, BAD_INPUT or NOT_RESOLVED (nothing is written then).
+    """Resolve an impact of `k` contacts; return OK or BAD_INPUT (nothing is written then).
 
     `W` (3K, 3K) symmetric inverse mass, often singular, and `u` (3K,) velocities before, rows (n, t1, t2) of
     each contact, approach negative; of contacts that touch or are held u_n = 0. `mu`, `e`, `law` and
@@ -80,9 +82,14 @@ def resolve_corner(k, W, u, mu, e, law, kappa, settings, scratch, out):
     for g in range(groups):
         one_code = _group(k, g, count, u, friction, e, law, kappa, scale, settings, scratch, out)
         code = max(code, one_code)
-    if code != OK:
-        return code
-    return _finish(k, W, u, scale, out)
+    if code == OK:
+        _finish(k, W, u, scale, out)
+    exact = (result.marks & EXACT) != 0  # that of one contact may gain energy, by Newton's law
+    if code != OK or (not exact and unsound(k, u, scale, out)):
+        result.marks, result.miss, result.plastic_change = AT_ONCE, 0.0, 0.0
+        all_at_once(k, u, mu, e, scratch, out)
+        _finish(k, W, u, scale, out)
+    return OK
 
 
 @kernel
@@ -247,7 +254,6 @@ def _finish(k, W, u, scale, out):
             P_[a] *= 1.0 - energy / gain
         result.marks |= REPELLED
     close_ledger(k, out)
-    return OK
 
 
 @kernel
