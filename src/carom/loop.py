@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from carom.contact.closed import apart, closed_within
 from carom.contact.exclude import CLEAR, UNSURE, greatest_acceleration
+from carom.contact.exclude_pair import FLAT_RIM
 from carom.contact.gap import gap_and_rate, plane_in_body, slow
 from carom.contact.pair_point import REACH, find_touches, smaller, touch_rate
 from carom.dispatch import only_with_pairs
@@ -119,6 +120,9 @@ def advance(
                         dt = propose(search)
                         continue
                 verdict, kind, other, low, d1, d2 = examine(system, controls, held, now, dt, work)
+                if verdict == FLAT_RIM:  # its points strike together where they are
+                    search.pending, search.contact, search.horizon = STRIKE, other, remaining
+                    break
                 own = search.active == 1 and kind == search.kind and other == search.contact
                 if verdict == CLEAR or (own and verdict != UNSURE):
                     found = search.active == 1
@@ -146,6 +150,8 @@ def advance(
                 f, rate = event_value(system, controls, held, search, trial, work)
                 narrow(search, dt, f, rate)
                 dt = propose(search)
+            if search.pending != NOTHING:
+                continue
             accept(now, trial, dt, applied, friction, begin, clock)
             if strayed(now, work):
                 return r.STRAYED
@@ -235,14 +241,14 @@ def _look_at_pair(system, controls, held, contact, c, now, still, work):
             rate = touch_rate(contact, touch, now)
             if rate < -still:
                 return STRIKE
-            if rate <= still and not is_held(held, c, touch.feature):
+            if rate <= still and not is_held(system, held, c, touch, now):
                 action = HOLD
     return action
 
 
 @kernel
 def _look_at_none(system, controls, held, contact, c, now, still, work):
-    """No two bodies touch."""
+    """No kernels of pairs are needed."""
     return NOTHING
 
 
@@ -258,7 +264,7 @@ def look_near(system, controls, held, now, work):
             continue
         near, still = controls.tie * contact.extent, slow(contact, now)
         action = NOTHING
-        if contact.other >= 0:
+        if contact.touches == 1:
             action = look_at_pair(system, controls, held, contact, c, now, still, work)
         else:
             plane = plane_in_body(contact, now)
@@ -285,7 +291,7 @@ def may_end(contact, system, state, horizon, work):
 
     A first look, with a bound of the acceleration where there is one, before the forces are worked out.
     """
-    if contact.other >= 0:
+    if contact.touches == 1:
         return True
     point = work.point[0]
     rate = contact_velocity(point, state)[0]

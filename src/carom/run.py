@@ -90,7 +90,7 @@ class Run:
         )
         self.held = r.new_held(system)
         self.work = r.new_work(system, self.method.b.size)
-        if np.any(system.contacts.other >= 0):
+        if np.any(system.contacts.touches == 1):
             system = self.find_touches(system)
         system = with_address(system, self.now, self.work)
         self.compiled = self.compiled._replace(system=system)
@@ -116,15 +116,25 @@ class Run:
         )
 
     def find_touches(self, system):
-        """Compile what finds the points of two bodies; return the system with its address."""
+        """Compile what finds the points of two solids; return the system with its addresses."""
         from carom.contact.pairs.layout import new_pair_work
+        from carom.contact.pairs.plane import plane_unit
         from carom.contact.pairs.touch import touch_unit
 
+        contacts = system.contacts[system.contacts.touches == 1]
+        solid, pose, out = system.solids[0], self.work.solid_pose, self.work.touches
+        if np.any(contacts.other < 0):
+            found = address(
+                plane_unit, solid, system.hulls, pose[0, :3], pose[0, 3:],
+                system.contacts[0].axes[0], 0.0, 0.0, self.work.pair, out,
+            )  # fmt: skip
+            system = system._replace(plane_at=found)
+        if not np.any(contacts.other >= 0):
+            return system
         self.work = self.work._replace(pair=new_pair_work())
-        solid, pose = system.solids[0], self.work.solid_pose
         found = address(
             touch_unit, solid, solid, system.hulls, pose[0, :3], pose[0, 3:], pose[0, :3],
-            pose[0, 3:], 0.0, self.work.pair, self.work.touches,
+            pose[0, 3:], 0.0, self.work.pair, out,
         )  # fmt: skip
         return system._replace(touch_at=found)
 

@@ -199,10 +199,11 @@ class Solution:
                 "no boundary layer of its own; look at one with impacts.together == 1"
             )
         contacts = self._run.compiled.system.contacts
+        row = contacts[int(np.searchsorted(contacts.number, record.contact))]
         return impact_layer(
             record.inverse_mass, record.relative_velocity_before, record.friction,
-            record.restitution, penetration=float(contacts.penetration[record.contact]),
-            width=float(contacts.width[record.contact]), law=record.law,
+            record.restitution, penetration=float(row.penetration), width=float(row.width),
+            law=record.law,
             steps=self._run.options.layer_steps if steps is None else steps,
         )  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""The closed points of a group of bodies: vertices on a surface, points of two bodies, all that is held."""
+"""The closed points of a group of bodies: vertices on a surface, points of two solids, all that is held."""
 
 from __future__ import annotations
 
@@ -12,26 +12,30 @@ from carom.contact.pair_point import (
     smaller,
     write_touch,
 )
+from carom.contact.rim import OTHER_SIDE, closed_rim, way_round
 from carom.dispatch import only_with_pairs
 from carom.jit import kernel
 from carom.motion.contact_point import place
+
+#: part of the step in which a rim that turns flat is flat, as far as the step can tell
+RIM_TIME = 1.0 / 64.0
 
 
 @kernel
 def closed_within(controls, contact, state):
     """Return the gap up to which a point counts as closed [m]."""
     near = max(controls.tie, controls.gap) * smaller(contact)
-    near = max(near, 4.0 * round_off(contact, state))
-    return (
-        near if contact.other < 0 else max(near, 4.0 * round_off_of(contact.other, contact, state))
-    )
+    return max(near, 4.0 * round_off_of_both(contact, state))
 
 
 @kernel
-def round_off_of(b, contact, state):
-    """Return the round-off of a gap between two bodies."""
-    x = state[b].x
-    return 1e-15 * (abs(x[0]) + abs(x[1]) + abs(x[2]) + contact.other_extent)
+def round_off_of_both(contact, state):
+    """Return the round-off of a gap, of the coordinates of both bodies."""
+    tiny = round_off(contact, state)
+    if contact.other < 0:
+        return tiny
+    x = state[contact.other].x
+    return max(tiny, 1e-15 * (abs(x[0]) + abs(x[1]) + abs(x[2]) + contact.other_extent))
 
 
 @kernel
@@ -54,11 +58,12 @@ def apart(contact, state, near):
 
 
 @kernel
-def gather_closed(system, controls, held, c, state, cluster, work):
+def gather_closed(system, controls, held, c, state, cluster, work, strikes):
     """List what is closed in `state` with contact c; return how many points, -1 if they are too many.
 
-    Closed: within the tolerance of ties or of a located gap, or held. Writes seats and points. Bodies that
-    closed points link become one group, in which all closed points count.
+    Closed: within the tolerance of ties or of a located gap, or held; where it `strikes`, a rim that is as good
+    as flat, too. Writes seats and points. Bodies that closed points link become one group, in which all
+    closed points count.
     """
     first, k, more = system.contacts[c].body, 0, True
     if system.contacts[c].other >= 0:
@@ -76,16 +81,18 @@ def gather_closed(system, controls, held, c, state, cluster, work):
             if apart(contact, state, near):
                 continue
             before = k
-            if contact.other < 0:
+            if contact.touches == 0:
                 k = add_vertices(system, held, contact, i, near, state, k, cluster)
             else:
-                k = add_touches(system, contact, i, near, state, k, cluster, work)
-                if k > before:
+                k = add_touches(
+                    system, controls, contact, i, near, state, k, cluster, work, strikes
+                )
+                if k > before and contact.other >= 0:
                     unite(work, contact.body, contact.other)
                     more = True
             if k < 0:
                 return -1
-    seat_held(held, k, cluster)
+    seat_held(system, held, k, state, cluster, work)
     return k
 
 
@@ -106,9 +113,12 @@ def add_vertices(system, held, contact, c, near, state, k, cluster):
 
 
 @kernel
-def _add_touches(system, contact, c, near, state, k, cluster, work):
-    """Add the points of two bodies that are closed; return the new count, -1 if there is no room."""
+def _add_touches(system, controls, contact, c, near, state, k, cluster, work, strikes):
+    """Add the points of two solids that are closed; return the new count, -1 if there is no room."""
     count = find_touches(system, contact, state, REACH * smaller(contact), work)
+    if strikes:
+        n, time = work.touches[0].normal, RIM_TIME * controls.step
+        near = max(near, closed_rim(system, contact, n, state, time))
     for i in range(count):
         touch = work.touches[i]
         if touch.gap <= near:
@@ -123,8 +133,8 @@ def _add_touches(system, contact, c, near, state, k, cluster, work):
 
 
 @kernel
-def _add_none(system, contact, c, near, state, k, cluster, work):
-    """No two bodies touch."""
+def _add_none(system, controls, contact, c, near, state, k, cluster, work, strikes):
+    """No kernels of pairs are needed."""
     return k
 
 
@@ -132,14 +142,32 @@ add_touches = only_with_pairs(_add_touches, _add_none)
 
 
 @kernel
-def seat_held(held, k, cluster):
+def _seat_stays(system, hold, point, state, work):
+    """Return whether a closed point with the feature of a held one is the same point."""
+    contact, r, n = system.contacts[hold.contact], point.arm_a, point.axes[0]
+    way = way_round(system, contact, n, r[0], r[1], r[2], hold.point, state)
+    return way < OTHER_SIDE
+
+
+@kernel
+def _stays(system, hold, point, state, work):
+    """No kernels of pairs are needed."""
+    return True
+
+
+seat_stays = only_with_pairs(_seat_stays, _stays)
+
+
+@kernel
+def seat_held(system, held, k, state, cluster, work):
     """Note the place of each closed point among the held ones."""
     for i in range(held.count[0]):
         hold = held.points[i]
         for j in range(k):
             seat = cluster.seats[j]
             if seat.contact == hold.contact and seat.feature == hold.feature:
-                seat.held = i
+                if hold.touches == 0 or seat_stays(system, hold, cluster.points[0][j], state, work):
+                    seat.held = i
 
 
 @kernel

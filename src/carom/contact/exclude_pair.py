@@ -1,22 +1,37 @@
-"""Can two bodies have touched between two states? The plane that parts them at either end decides.
+"""Can two solids have touched between two states? The plane that parts them at either end decides.
 
 Along a fixed normal n the gap of any two core points is z(t) >= z0 + z0' t - a t^2/2, a the bound of their
 relative acceleration; the bodies are apart as long as all pairs of vertices are. With n of the nearest points
 at the start, and the same backwards from the end, the path is clear if the two times together reach the step.
+Cores without vertices: `parting`.
 """
 
 from __future__ import annotations
 
 import math
 
-from carom.contact.closed import round_off_of
-from carom.contact.exclude import BELOW, CLEAR, MISSED, UNSURE, cubic_clears, reach
-from carom.contact.gap import round_off
+from carom.contact.closed import round_off_of_both
+from carom.contact.exclude import (
+    BELOW,
+    CLEAR,
+    MISSED,
+    UNSURE,
+    ball_clears,
+    cubic_clears,
+    greatest_acceleration,
+    reach,
+)
+from carom.contact.gap import slow
 from carom.contact.pair_point import REACH, find_touches, smaller, touch_rate
+from carom.contact.parting import time_parted
+from carom.contact.rim import OTHER_SIDE, SMOOTH, closed_rim, longest_way, same_point
 from carom.dispatch import only_with_pairs
-from carom.geometry.rotation import cross, rotate_back
+from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.jit import kernel
+from carom.motion.forces import point_velocity
 from carom.system.arrays import FREE, RESTS
+
+FLAT_RIM = 3  # after CLEAR, BELOW, UNSURE: a rim that was held on one side goes through flat
 
 
 @kernel
@@ -83,6 +98,38 @@ def balls_clear(contact, start, end, h, centres):
 
 
 @kernel
+def solids_clear(system, contact, start, end, h, most):
+    """Return whether the balls around two pieces of bodies keep apart."""
+    a, b = contact.body, contact.other
+    p, q = system.solids[contact.solid], system.solids[contact.other_solid]
+    time = 0.0
+    for side in range(2):
+        state, sign = (start, 1.0) if side == 0 else (end, -1.0)
+        ra = rotate_by(state[a], p.x)
+        rb = rotate_by(state[b], q.x)
+        ua = point_velocity(state, a, ra[0], ra[1], ra[2])
+        ub = point_velocity(state, b, rb[0], rb[1], rb[2])
+        d, rate = 0.0, 0.0
+        for k in range(3):
+            s = state[a].x[k] - state[b].x[k] + (ra[k] - rb[k])
+            d += s * s
+            rate += s * (ua[k] - ub[k])
+        d = math.sqrt(d)
+        gap = d - p.extent - q.extent
+        if not gap > 0.0:
+            return False
+        time += reach(gap, sign * rate / d, most)
+    return time >= h
+
+
+@kernel
+def rotate_by(body, p):
+    """Return a vector of a body in world axes."""
+    q = body.Q
+    return rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
+
+
+@kernel
 def seen_along(n, b, state, p):
     """Return height along n, and its rate, of the point p (body axes) of body b."""
     q, w, x, v = state[b].Q, state[b].w, state[b].x, state[b].v
@@ -95,8 +142,10 @@ def seen_along(n, b, state, p):
 
 
 @kernel
-def time_apart(system, contact, n, sign, state, a):
-    """Return how long all pairs of vertices stay apart along n; backwards in time for sign -1."""
+def time_apart(system, contact, n, sign, state, a, h):
+    """Return how long all pairs of core points stay apart along n; backwards in time for sign -1."""
+    if contact.first == contact.last or contact.other_first == contact.other_last:
+        return time_parted(system, contact, n, sign, state, a, h)
     least = math.inf
     for i in range(contact.first, contact.last):
         z, rate = seen_along(n, contact.body, state, system.vertices[i])
@@ -107,7 +156,7 @@ def time_apart(system, contact, n, sign, state, a):
 
 
 @kernel
-def lowest_open(contact, c, count, held, state, work):
+def lowest_open(system, contact, c, count, held, state, work):
     """Return the least gap of the points in work.touches that are not held, and its rate."""
     least, rate = math.inf, 0.0
     for i in range(count):
@@ -115,43 +164,87 @@ def lowest_open(contact, c, count, held, state, work):
         open_ = True
         for j in range(held.count[0]):
             hold = held.points[j]
-            open_ = open_ and not (hold.contact == c and hold.feature == touch.feature)
+            if hold.contact == c and open_:
+                feature, p = hold.feature, hold.point
+                open_ = not same_point(system, contact, touch, feature, p, state)
         if open_ and touch.gap < least:
             least, rate = touch.gap, touch_rate(contact, touch, state)
     return least, rate
 
 
 @kernel
-def _lowest_pair(system, contact, c, held, state, work):
-    """Return the gap of two bodies, of points that are not held, and its rate."""
+def flat_rim_strikes(system, contact, state, time, work):
+    """Return whether a point of a rim that is as good as flat approaches the other body."""
     count = find_touches(system, contact, state, REACH * smaller(contact), work)
-    return lowest_open(contact, c, count, held, state, work)
+    near = closed_rim(system, contact, work.touches[0].normal, state, time)
+    for i in range(count):
+        touch = work.touches[i]
+        if touch.gap <= near and touch_rate(contact, touch, state) < -slow(contact, state):
+            return True
+    return False
 
 
 @kernel
-def _passage_pair(system, contact, c, held, leaving, start, end, h, work, tolerance):
-    """Return CLEAR, BELOW (they overlap at the end) or UNSURE, and a time before any contact."""
+def _lowest_pair(system, contact, c, held, state, work):
+    """Return the gap of two solids, of points that are not held, and its rate."""
+    count = find_touches(system, contact, state, REACH * smaller(contact), work)
+    return lowest_open(system, contact, c, count, held, state, work)
+
+
+@kernel
+def far_apart(system, contact, start, end, h, work):
+    """Return a bound of the relative acceleration of any two points; -1 where balls keep the two apart."""
     a, b = contact.body, contact.other
+    if b < 0:
+        if work.body[a].status == RESTS:
+            return -1.0
+        centre, most = greatest_acceleration(system, contact, start, work)
+        return -1.0 if ball_clears(system, contact, start, end, h, centre, work) else most
     if work.body[a].status == RESTS and work.body[b].status == RESTS:
-        return CLEAR, h
+        return -1.0
     centres, most = relative_bound(system, contact, start, work)
     if balls_clear(contact, start, end, h, centres):
+        return -1.0
+    if contact.part == 1 and solids_clear(system, contact, start, end, h, most):
+        return -1.0
+    return most
+
+
+@kernel
+def _passage_pair(system, contact, c, held, leaving, start, end, h, work, tolerance, longest):
+    """Return CLEAR, BELOW (they overlap at the end), UNSURE or FLAT_RIM, and a time before any contact.
+
+    Of a rim that wobbles only steps up to `longest` may follow its lowest point far round.
+    """
+    most = far_apart(system, contact, start, end, h, work)
+    if most < 0.0:
         return CLEAR, h
     touching = False
     for j in range(held.count[0]):
         touching = touching or held.points[j].contact == c
-    tiny = max(tolerance * smaller(contact), round_off(contact, end))
-    tiny = 4.0 * max(tiny, round_off_of(b, contact, end))
+    tiny = 4.0 * max(tolerance * smaller(contact), round_off_of_both(contact, end))
     count = find_touches(system, contact, end, REACH * smaller(contact), work)
-    least, rate = lowest_open(contact, c, count, held, end, work)
+    least, rate = lowest_open(system, contact, c, count, held, end, work)
     nearest = work.touches[0]
     for i in range(1, count):
         if work.touches[i].gap < nearest.gap:
             nearest = work.touches[i]
+    if touching:
+        way = longest_way(system, contact, c, count, held, end, work)
+        if way > SMOOTH and h > longest:
+            return UNSURE, 0.0
+        if way > SMOOTH:
+            if flat_rim_strikes(system, contact, start, longest, work):
+                return FLAT_RIM, 0.0
+            if way > OTHER_SIDE and h > 0.1 * longest:
+                return UNSURE, 0.0
+            find_touches(system, contact, end, REACH * smaller(contact), work)
+    flies = work.body[contact.body].status == FREE
+    if contact.other >= 0:
+        flies = flies and work.body[contact.other].status == FREE
     if not least >= -(tiny if not touching else MISSED * smaller(contact)):
         before, _ = _lowest_pair(system, contact, c, held, start, work)
         if before <= tiny:  # they touch already: on their way apart, or pushed about by others
-            flies = work.body[a].status == FREE and work.body[b].status == FREE
             if (before < -tiny and least >= before) or (
                 not flies and least >= -MISSED * smaller(contact)
             ):
@@ -159,7 +252,8 @@ def _passage_pair(system, contact, c, held, leaving, start, end, h, work, tolera
         return BELOW, 0.0
     if touching:
         return CLEAR, h
-    last, feature = time_apart(system, contact, nearest.normal, -1.0, end, most), nearest.feature
+    last = time_apart(system, contact, nearest.normal, -1.0, end, most, h)
+    feature = nearest.feature
     if last >= h:
         return CLEAR, h
     count = find_touches(system, contact, start, 0.0, work)
@@ -167,9 +261,8 @@ def _passage_pair(system, contact, c, held, leaving, start, end, h, work, tolera
     for i in range(1, count):
         if work.touches[i].gap < nearest.gap:
             nearest = work.touches[i]
-    first = time_apart(system, contact, nearest.normal, 1.0, start, most)
+    first = time_apart(system, contact, nearest.normal, 1.0, start, most, h)
     sag = 0.125 * most * h * h
-    flies = work.body[a].status == FREE and work.body[b].status == FREE
     rate0 = touch_rate(contact, nearest, start)
     alike = feature == nearest.feature  # the same points are nearest at both ends
     smooth = not flies or sag <= MISSED * smaller(contact)
@@ -182,13 +275,13 @@ def _passage_pair(system, contact, c, held, leaving, start, end, h, work, tolera
 
 @kernel
 def _no_gap(system, contact, c, held, state, work):
-    """No two bodies touch."""
+    """No kernels of pairs are needed."""
     return 0.0, 0.0
 
 
 @kernel
-def _no_passage(system, contact, c, held, leaving, start, end, h, work, tolerance):
-    """No two bodies touch."""
+def _no_passage(system, contact, c, held, leaving, start, end, h, work, tolerance, longest):
+    """No kernels of pairs are needed."""
     return CLEAR, h
 
 

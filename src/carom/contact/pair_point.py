@@ -1,10 +1,15 @@
-"""The points of contact of two bodies, as the rest of the library sees them: arms, axes, gap, rates."""
+"""The points of contact that the kernels of pairs find, as the rest of the library sees them: arms, axes, gap.
+
+Of two bodies, or of a curved body and a half-space (the other is -1 then).
+"""
 
 from __future__ import annotations
 
 import math
 
+from carom.contact.pairs.plane import touch_plane_at
 from carom.contact.pairs.touch import touch_at
+from carom.contact.rim import same_point
 from carom.dispatch import only_with_pairs
 from carom.geometry.rotation import exp, multiply, normalize, rotate, rotate_back
 from carom.jit import kernel
@@ -28,14 +33,21 @@ def pose_solid(solid, body, pose):
 
 @kernel
 def find_touches(system, contact, state, reach, work):
-    """Write the points of two bodies into work.touches; return how many."""
-    a, b, pose = system.solids[contact.solid], system.solids[contact.other_solid], work.solid_pose
+    """Write the points of a contact into work.touches; return how many."""
+    a, pose = system.solids[contact.solid], work.solid_pose
     pose_solid(a, state[contact.body], pose[0])
-    pose_solid(b, state[contact.other], pose[1])
-    touch_at(
-        system.touch_at, a, b, system.hulls, pose[0, :3], pose[0, 3:], pose[1, :3], pose[1, 3:],
-        reach, work.pair, work.touches,
-    )  # fmt: skip
+    if contact.other < 0:
+        touch_plane_at(
+            system.plane_at, a, system.hulls, pose[0, :3], pose[0, 3:], contact.axes[0],
+            contact.offset, reach, work.pair, work.touches,
+        )  # fmt: skip
+    else:
+        b = system.solids[contact.other_solid]
+        pose_solid(b, state[contact.other], pose[1])
+        touch_at(
+            system.touch_at, a, b, system.hulls, pose[0, :3], pose[0, 3:], pose[1, :3],
+            pose[1, 3:], reach, work.pair, work.touches,
+        )  # fmt: skip
     return work.pair.state[0].total
 
 
@@ -67,33 +79,41 @@ def tangents(n0, n1, n2, axes):
 
 @kernel
 def write_touch(contact, touch, state, point):
-    """Write a point of two bodies as a point of contact."""
+    """Write a point that was found as a point of contact."""
     n = touch.normal
     point.a, point.b, point.gap = contact.body, contact.other, touch.gap
     for k in range(3):
         point.arm_a[k] = touch.on_a[k] - state[contact.body].x[k]
-        point.core[k] = point.arm_a[k]
-        point.arm_b[k] = touch.on_b[k] - state[contact.other].x[k]
-    tangents(n[0], n[1], n[2], point.axes)
+        point.core[k] = (
+            0.0  # how the velocity there changes as the bodies go on is for `drift` to say
+        )
+        if contact.other >= 0:
+            point.arm_b[k] = touch.on_b[k] - state[contact.other].x[k]
+    if contact.other >= 0:
+        tangents(n[0], n[1], n[2], point.axes)
+        return
+    for k in range(3):
+        for i in range(3):
+            point.axes[i, k] = contact.axes[i, k]
 
 
 @kernel
 def own_point(contact, touch, state, p):
-    """Write where a point of two bodies is on the first, in its axes."""
+    """Write where a point that was found is on the first body, in its axes."""
     q, x, s = state[contact.body].Q, state[contact.body].x, touch.on_a
     r = rotate_back(q[0], q[1], q[2], q[3], s[0] - x[0], s[1] - x[1], s[2] - x[2])
     p[0], p[1], p[2] = r
 
 
 @kernel
-def which_touch(contact, count, feature, p, state, work):
+def which_touch(system, contact, count, feature, p, state, work):
     """Return the point that has the feature; where it is no more, the one nearest to the core point p."""
     q, x = state[contact.body].Q, state[contact.body].x
     r = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
     best, chosen = math.inf, 0
     for i in range(count):
         touch = work.touches[i]
-        if touch.feature == feature:
+        if same_point(system, contact, touch, feature, p, state):
             return i
         d = 0.0
         for k in range(3):
@@ -105,20 +125,30 @@ def which_touch(contact, count, feature, p, state, work):
 
 @kernel
 def _place_pair(system, contact, feature, p, state, point, work):
-    """Write the point of two bodies that has the feature, or took its place."""
+    """Write the point that has the feature, or took its place."""
     count = find_touches(system, contact, state, HELD_REACH * smaller(contact), work)
-    i = which_touch(contact, count, feature, p, state, work)
+    i = which_touch(system, contact, count, feature, p, state, work)
     write_touch(contact, work.touches[i], state, point)
 
 
 @kernel
 def touch_rate(contact, touch, state):
-    """Return the rate of the gap at a point of two bodies."""
-    n, xa, xb = touch.normal, state[contact.body].x, state[contact.other].x
-    p, q = touch.on_a, touch.on_b
-    ax, ay, az = point_velocity(state, contact.body, p[0] - xa[0], p[1] - xa[1], p[2] - xa[2])
-    bx, by, bz = point_velocity(state, contact.other, q[0] - xb[0], q[1] - xb[1], q[2] - xb[2])
-    return n[0] * (ax - bx) + n[1] * (ay - by) + n[2] * (az - bz)
+    """Return the rate of the gap at a point that was found."""
+    n = touch.normal
+    ux, uy, uz = slip_velocity(contact, touch, state)
+    return n[0] * ux + n[1] * uy + n[2] * uz
+
+
+@kernel
+def slip_velocity(contact, touch, state):
+    """Return the velocity of the first body relative to the other at a point, in the world."""
+    x, p = state[contact.body].x, touch.on_a
+    ax, ay, az = point_velocity(state, contact.body, p[0] - x[0], p[1] - x[1], p[2] - x[2])
+    if contact.other < 0:
+        return ax, ay, az
+    x, p = state[contact.other].x, touch.on_b
+    bx, by, bz = point_velocity(state, contact.other, p[0] - x[0], p[1] - x[1], p[2] - x[2])
+    return ax - bx, ay - by, az - bz
 
 
 @kernel
@@ -142,10 +172,11 @@ def _drift(system, contact, feature, p, point, state, work):
     """
     a, b = contact.body, contact.other
     speed = 0.0
-    for body in (a, b):
+    for side in range(2 if b >= 0 else 1):
+        body = a if side == 0 else b
         v, w = state[body].v, state[body].w
         spin = math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
-        extent = contact.extent if body == a else contact.other_extent
+        extent = contact.extent if side == 0 else contact.other_extent
         speed = max(speed, math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + extent * spin)
     if not speed > 0.0:
         return 0.0, 0.0, 0.0
@@ -154,13 +185,11 @@ def _drift(system, contact, feature, p, point, state, work):
     for side in range(2):
         s = t if side == 1 else -t
         advance(state[a], s, moved[a])
-        advance(state[b], s, moved[b])
+        if b >= 0:
+            advance(state[b], s, moved[b])
         count = find_touches(system, contact, moved, HELD_REACH * smaller(contact), work)
-        touch = work.touches[which_touch(contact, count, feature, p, moved, work)]
-        xa, xb, P, R = moved[a].x, moved[b].x, touch.on_a, touch.on_b
-        ux, uy, uz = point_velocity(moved, a, P[0] - xa[0], P[1] - xa[1], P[2] - xa[2])
-        vx, vy, vz = point_velocity(moved, b, R[0] - xb[0], R[1] - xb[1], R[2] - xb[2])
-        ux, uy, uz = ux - vx, uy - vy, uz - vz
+        touch = work.touches[which_touch(system, contact, count, feature, p, moved, work)]
+        ux, uy, uz = slip_velocity(contact, touch, moved)
         n = touch.normal
         other[side, 0] = n[0] * ux + n[1] * uy + n[2] * uz
         other[side, 1] = E[1, 0] * ux + E[1, 1] * uy + E[1, 2] * uz
@@ -175,12 +204,12 @@ def _drift(system, contact, feature, p, point, state, work):
 
 @kernel
 def _no_pair(system, contact, feature, p, state, point, work):
-    """No two bodies touch."""
+    """No kernels of pairs are needed."""
 
 
 @kernel
 def _no_drift(system, contact, feature, p, point, state, work):
-    """No two bodies touch."""
+    """No kernels of pairs are needed."""
     return 0.0, 0.0, 0.0
 
 
@@ -190,8 +219,8 @@ drift = only_with_pairs(_drift, _no_drift)
 
 @kernel
 def place_any(system, contact, feature, p, state, point, work):
-    """Write the point that touches with a feature: a core point p, or a point of two bodies."""
-    if contact.other < 0:
+    """Write the point that touches with a feature: a core point p, or one that the kernels of pairs find."""
+    if contact.touches == 0:
         place(contact, p, state, point)
     else:
         place_pair(system, contact, feature, p, state, point, work)

@@ -31,7 +31,7 @@ def pose_forces(system, controls, held, k, state, cluster, work):
     for i in range(k):
         seat = cluster.seats[i]
         contact = system.contacts[seat.contact]
-        if contact.other >= 0 and seat.turns == 0:
+        if contact.touches == 1 and seat.turns == 0:
             d = drift(system, contact, seat.feature, seat.point, cluster.points[0][i], state, work)
             for r in range(3):
                 cluster.v[C][3 * i + r] += d[r]

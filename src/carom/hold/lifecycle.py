@@ -27,7 +27,7 @@ def hold_unit(system, controls, held, c, state, horizon, cluster, work, clocks, 
     """Hold what is closed in the group of contact c, does not approach, and shall be held by the rule."""
     contact, clock, hit = system.contacts[c], clocks[0], work.hit[0]
     hit.code = 0
-    k = gather_closed(system, controls, held, c, state, cluster, work)
+    k = gather_closed(system, controls, held, c, state, cluster, work, False)
     group = work.body[contact.body].group
     for i in range(held.count[0]):
         hold = held.points[i]

@@ -5,8 +5,17 @@ from __future__ import annotations
 import math
 
 from carom.contact.closed import closed_within
+from carom.contact.gap import slow
 from carom.contact.groups import label_groups
-from carom.contact.pair_point import REACH, find_touches, own_point, place_any, smaller
+from carom.contact.pair_point import (
+    REACH,
+    find_touches,
+    own_point,
+    place_any,
+    smaller,
+    touch_rate,
+)
+from carom.contact.rim import same_point
 from carom.dispatch import only_with_pairs
 from carom.jit import kernel
 
@@ -18,7 +27,7 @@ def enlist(system, held, seat, mode, state, work):
     held.count[0] = i + 1
     hold, contact = held.points[i], system.contacts[seat.contact]
     hold.contact, hold.feature = seat.contact, seat.feature
-    hold.body, hold.other = contact.body, contact.other
+    hold.body, hold.other, hold.touches = contact.body, contact.other, contact.touches
     hold.mode, hold.next, hold.rest, hold.several = mode, mode, 0, 0
     hold.jams, hold.due, hold.lift, hold.grip = 0, 0, 1.0, 1.0
     hold.settles, hold.stop = 0, math.inf
@@ -30,7 +39,7 @@ def enlist(system, held, seat, mode, state, work):
             hold.W[k, j] = 0.0
     hold.heading[0], hold.heading[1] = 0.0, 0.0
     set_anchor(system, hold, state, work)
-    if contact.other < 0:
+    if contact.touches == 0:
         held.carries[seat.feature] = 1
     held.brinks[seat.contact].leaving = 0
     return i
@@ -48,7 +57,7 @@ def set_anchor(system, hold, state, work):
 @kernel
 def strike_off(held, i):
     """Take point i off the list, the others keep their order."""
-    if held.points[i].other < 0:
+    if held.points[i].touches == 0:
         held.carries[held.points[i].feature] = 0
     held.brinks[held.points[i].contact].leaving = 1
     last = held.count[0] - 1
@@ -63,6 +72,7 @@ def copy(a, b):
     b.contact, b.feature, b.body, b.other, b.mode = a.contact, a.feature, a.body, a.other, a.mode
     b.next, b.several, b.rest, b.stop = a.next, a.several, a.rest, a.stop
     b.settles, b.jams, b.due, b.lift, b.grip = a.settles, a.jams, a.due, a.lift, a.grip
+    b.touches = a.touches
     for k in range(3):
         b.point[k], b.anchor[k], b.force[k] = a.point[k], a.anchor[k], a.force[k]
         for j in range(3):
@@ -75,7 +85,7 @@ def copy(a, b):
 @kernel
 def together(contact):
     """Return whether a point of a contact is always stepped as one of several."""
-    return contact.other >= 0 or contact.turning[0] > 0.0 or contact.turning[1] > 0.0
+    return contact.touches == 1 or contact.turning[0] > 0.0 or contact.turning[1] > 0.0
 
 
 @kernel
@@ -93,32 +103,39 @@ def regroup(system, held, work):
 
 
 @kernel
-def is_held(held, c, feature):
-    """Return whether a feature of contact c is held."""
+def is_held(system, held, c, touch, state):
+    """Return whether a point of contact c that was found is held."""
+    contact = system.contacts[c]
     for i in range(held.count[0]):
-        if held.points[i].contact == c and held.points[i].feature == feature:
+        hold = held.points[i]
+        if hold.contact == c and same_point(
+            system, contact, touch, hold.feature, hold.point, state
+        ):
             return True
     return False
 
 
 @kernel
 def _refresh_pairs(system, controls, held, state, work):
-    """Let points of two bodies whose features are no more give way to those that took their place.
+    """Let points whose features are no more give way to those that took their place.
 
     As faces slide on each other the corners of their overlap change; the set stays that of the closed
-    points. Returns whether anything changed.
+    points. Others are noted where they are now. Returns whether anything changed.
     """
     changed, i = False, 0
     while i < held.count[0]:
         hold = held.points[i]
-        if hold.other < 0 or hold.rest == 1:
+        if hold.touches == 0 or hold.rest == 1:
             i += 1
             continue
         c, contact = hold.contact, system.contacts[hold.contact]
         count = find_touches(system, contact, state, REACH * smaller(contact), work)
         there = False
         for t in range(count):
-            there = there or work.touches[t].feature == hold.feature
+            touch = work.touches[t]
+            if same_point(system, contact, touch, hold.feature, hold.point, state):
+                own_point(contact, touch, state, hold.point)
+                there = True
         if there:
             i += 1
             continue
@@ -126,22 +143,24 @@ def _refresh_pairs(system, controls, held, state, work):
         strike_off(held, i)
         held.brinks[c].leaving = 0
         changed = True
-        near = closed_within(controls, contact, state)
+        near, still = closed_within(controls, contact, state), 10.0 * slow(contact, state)
         for t in range(count):
             touch = work.touches[t]
             free = held.count[0] < held.points.shape[0]
-            if touch.gap <= near and free and not is_held(held, c, touch.feature):
+            if touch.gap > near or is_held(system, held, c, touch, state):
+                continue
+            if free and (contact.other >= 0 or touch_rate(contact, touch, state) >= -still):
                 enlist_touch(contact, c, touch, mode, state, held)
     return changed
 
 
 @kernel
 def enlist_touch(contact, c, touch, mode, state, held):
-    """Add a point of two bodies to the list, without an event."""
+    """Add a point that was found to the list, without an event."""
     hold = held.points[held.count[0]]
     held.count[0] += 1
     hold.contact, hold.feature = c, touch.feature
-    hold.body, hold.other = contact.body, contact.other
+    hold.body, hold.other, hold.touches = contact.body, contact.other, 1
     hold.mode, hold.next, hold.rest, hold.several = mode, mode, 0, 1
     hold.jams, hold.due, hold.lift, hold.grip = 0, 0, 1.0, 1.0
     hold.settles, hold.stop = 0, math.inf
@@ -156,7 +175,7 @@ def enlist_touch(contact, c, touch, mode, state, held):
 
 @kernel
 def _refresh_none(system, controls, held, state, work):
-    """No two bodies touch."""
+    """No kernels of pairs are needed."""
     return False
 
 

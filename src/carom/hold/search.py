@@ -7,9 +7,9 @@ an event is as exact as the method.
 
 from __future__ import annotations
 
-from carom.contact.closed import round_off_of
+from carom.contact.closed import RIM_TIME, round_off_of_both
 from carom.contact.exclude import BELOW, CLEAR, UNSURE, passage
-from carom.contact.exclude_pair import lowest_pair, passage_pair
+from carom.contact.exclude_pair import FLAT_RIM, lowest_pair, passage_pair
 from carom.contact.gap import lowest, round_off
 from carom.contact.pair_point import smaller
 from carom.hold.events import GAP, find_held_event, held_value, turned
@@ -26,16 +26,17 @@ def examine(system, controls, held, now, dt, work):
     for c in range(held.brinks.shape[0]):
         contact = system.contacts[c]
         leaving = held.brinks[c].leaving
-        if contact.other < 0:
+        if contact.touches == 0:
             verdict, first = passage(
                 system, contact, held, leaving, now, work.trial, dt, work, controls.gap
             )
         else:
             verdict, first = passage_pair(
-                system, contact, c, held, leaving, now, work.trial, dt, work, controls.gap
-            )
-        if verdict == UNSURE:
-            return UNSURE, GAP, c, 0.0, 0.0, 0.0
+                system, contact, c, held, leaving, now, work.trial, dt, work, controls.gap,
+                RIM_TIME * controls.step,
+            )  # fmt: skip
+        if verdict in (UNSURE, FLAT_RIM):
+            return verdict, GAP, c, 0.0, 0.0, 0.0
         if verdict == BELOW and found == CLEAR:
             found, which, low = BELOW, c, 0.5 * first
         elif verdict == CLEAR and leaving == 1 and first > 0.0:
@@ -59,9 +60,9 @@ def event_value(system, controls, held, search, state, work):
     if search.kind == GAP:
         contact = system.contacts[search.contact]
         search.tolerance = max(controls.gap * smaller(contact), round_off(contact, state))
-        if contact.other < 0:
+        if contact.touches == 0:
             return lowest(contact, system.vertices, state)
-        search.tolerance = 4.0 * max(search.tolerance, round_off_of(contact.other, contact, state))
+        search.tolerance = 4.0 * max(search.tolerance, round_off_of_both(contact, state))
         return lowest_pair(system, contact, search.contact, held, state, work)
     hold = held.points[search.contact]
     if hold.several == 1:

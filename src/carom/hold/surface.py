@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from carom.contact.closed import place_seats, round_off_of
+from carom.contact.closed import place_seats, round_off_of_both
 from carom.contact.gap import round_off
 from carom.contact.pair_point import place_any
 from carom.jit import kernel
@@ -42,7 +42,7 @@ def mark_rows(system, held, k, cluster):
             some = True
             friction = math.sqrt(p[q + 1] * p[q + 1] + p[q + 2] * p[q + 2])
             contact = system.contacts[hold.contact]
-            core = contact.radius == 0.0 and contact.other < 0
+            core = contact.radius == 0.0 and contact.touches == 0
             sticks = hold.mode == STICK and friction < (1.0 - 1e-9) * cluster.mu[i] * p[q]
             cluster.seats[i].rows = 3 if core and sticks else 1
     return some
@@ -87,8 +87,8 @@ def errors(system, held, k, state, cluster, x, work):
             continue
         place_any(system, contact, hold.feature, hold.point, state, point, work)
         tiny = round_off(contact, state)
-        if contact.other >= 0:
-            tiny = 4.0 * max(tiny, round_off_of(contact.other, contact, state))
+        if contact.touches == 1:
+            tiny = 4.0 * round_off_of_both(contact, state)
         x[3 * i] = point.gap
         small = small and abs(point.gap) <= tiny
         if cluster.seats[i].rows == 3:

@@ -39,7 +39,7 @@ def onto_surface(system, controls, c, state, work):
     velocity block is solved again with the position now fixed.
     """
     contact, point = system.contacts[c], work.hit[0].point
-    if contact.other >= 0:
+    if contact.touches == 1:
         return 0  # found within the tolerance of a located gap
     tie = controls.tie * contact.extent
     tolerance = max(controls.gap * contact.extent, round_off(contact, state))
@@ -69,7 +69,7 @@ def strike_unit(method, system, controls, held, c, state, cluster, corner, work,
     hit.code = onto_surface(system, controls, c, state, work)
     if hit.code != 0:
         return
-    k = gather_closed(system, controls, held, c, state, cluster, work)
+    k = gather_closed(system, controls, held, c, state, cluster, work, True)
     if k < 0:
         hit.code = TOO_MANY_POINTS
         return

@@ -70,6 +70,7 @@ def part_system(system, islands, i):
         system.solids,
         system.hulls,
         system.touch_at,
+        system.plane_at,
         system.acceleration_at,
         system.solver,
     )
@@ -186,10 +187,10 @@ def forget_step(held, clocks, islands):
     for k in range(2):
         for i in range(plan.kept if k == 1 else islands.carried[0]):
             feature = islands.points[k, i].feature
-            if islands.points[k, i].other < 0:
+            if islands.points[k, i].touches == 0:
                 held.carries[feature] = 0
     for i in range(held.count[0]):
-        if held.points[i].other < 0:
+        if held.points[i].touches == 0:
             held.carries[held.points[i].feature] = 1
     clocks[0] = islands.clock[0]
     plan.planned, plan.entered = 0, 0

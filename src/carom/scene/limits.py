@@ -3,40 +3,22 @@
 from __future__ import annotations
 
 from carom.scene.bodies import Body
-from carom.scene.pieces import VERTEX_KINDS
-
-
-def check_supported(scene) -> None:
-    """Refuse contacts that the motion does not handle yet."""
-    for contact in scene.contacts:
-        if isinstance(contact.other, Body):
-            _check_pieces(contact.body)
-            _check_pieces(contact.other)
-        else:
-            _ = contact.body.shape.vertices  # refused by a shape that is no hull of vertices
-    if scene.contact_default is not None:
-        for body in scene.bodies:
-            if body.shape is not None:
-                _check_pieces(body)
 
 
 def check_location(scene, impact_location: str) -> None:
-    """Refuse contacts between bodies where impacts are not located."""
-    default = scene.contact_default is not None and len(scene.bodies) > 1
-    if impact_location != "locate" and (
-        default or any(isinstance(c.other, Body) for c in scene.contacts)
-    ):
-        raise ValueError(
-            f'impact_location must be "locate" where bodies may touch each other, got {impact_location!r}'
+    """Refuse contacts between bodies, and of curved ones, where impacts are not located."""
+    if impact_location == "locate":
+        return
+    between = any(isinstance(c.other, Body) for c in scene.contacts)
+    touching = [c.body for c in scene.contacts]
+    if scene.contact_default is not None:
+        between = between or len(scene.bodies) > 1
+        touching += [body for body in scene.bodies if body.shape is not None]
+    curved = [body for body in touching if any(p.corners is None for p in body.shape.pieces)]
+    if between or curved:
+        why = (
+            f"shapes are curved, as that of {curved[0].name!r}"
+            if curved
+            else "bodies may touch each other"
         )
-
-
-def _check_pieces(body: Body) -> None:
-    """Refuse shapes that cannot touch other bodies yet."""
-    assert body.shape is not None
-    pieces = body.shape.pieces
-    if len(pieces) != 1 or pieces[0].kind not in VERTEX_KINDS:
-        raise ValueError(
-            f"body {body.name!r}: simulate cannot let {body.shape!r} touch another body yet; so far Sphere, "
-            "Capsule, Box and Convex can, rounded or not"
-        )
+        raise ValueError(f'impact_location must be "locate" where {why}, got {impact_location!r}')

@@ -61,21 +61,26 @@ SPRING = [
 #: a constant force and torque (world axes) on a point of a body
 LOAD = [("body", "i8"), ("anchor", "f8", 3), ("force", "f8", 3), ("torque", "f8", 3)]
 
-#: hull of vertices, swollen by a radius, against a half-space; or two solids of two bodies
+#: hull of vertices, swollen by a radius, against a half-space; or two solids, the other perhaps a half-space
 CONTACT = [
     ("number", "i8"),  # among all contacts of the scene
     ("body", "i8"),
     ("other", "i8"),  # -1 for a half-space
+    (
+        "touches",
+        "i8",
+    ),  # 1 where the kernels of pairs find the points, 0 where they are the vertices
+    ("part", "i8"),  # 1 where a body has several pieces
     ("first", "i8"),  # range of the vertices of the body
     ("last", "i8"),
     ("other_first", "i8"),  # of the other body
     ("other_last", "i8"),
-    ("solid", "i8"),  # of two bodies: the two solids
+    ("solid", "i8"),  # where the kernels of pairs find the points: the two solids
     ("other_solid", "i8"),
     ("law", "i8"),  # 0 newton, 1 poisson, 2 stronge
     ("axes", "f8", (3, 3)),  # of a half-space: rows n, t1, t2
     ("offset", "f8"),  # n . point of the plane
-    ("radius", "f8"),  # of both, where they are two bodies
+    ("radius", "f8"),  # of both, where they are two solids
     ("friction", "f8"),
     ("friction_held", "f8"),
     ("turning", "f8", 2),  # rolling and pivoting friction [m]
@@ -123,6 +128,7 @@ HELD = [
     ("feature", "i8"),  # what touches, the same as long as it does: number of the vertex
     ("body", "i8"),  # of the contact
     ("other", "i8"),
+    ("touches", "i8"),
     ("mode", "i8"),  # 0 open, 1 slipping, 2 sticking
     ("next", "i8"),  # mode after the step on trial
     ("settles", "i8"),  # 1 where that step puts the body to rest
@@ -149,7 +155,11 @@ POINT = [
     ("b", "i8"),  # the other, -1 for the ground
     ("arm_a", "f8", 3),  # from the mass centre, world axes
     ("arm_b", "f8", 3),
-    ("core", "f8", 3),  # from the mass centre of a: the part of the arm that turns with it
+    (
+        "core",
+        "f8",
+        3,
+    ),  # from the mass centre of a: the part of the arm that turns with it; 0 if it rolls on
     ("axes", "f8", (3, 3)),  # rows n, t1, t2
     ("gap", "f8"),
     ("turns", "i8"),  # 0; or its rows are of relative rotation: 1 rolling (t1, t2), 2 pivoting (t1)
@@ -276,6 +286,7 @@ class System(NamedTuple):
     solids: np.recarray  # SOLID of `carom.contact.pairs`, of bodies that may touch each other
     hulls: Hulls | NoHulls
     touch_at: int  # address of what finds the points of two solids
+    plane_at: int  # of a solid and a half-space
     acceleration_at: int  # of what works out all accelerations, 0 while nobody asks
     solver: FreeSolver | TreeSolver | LoopSolver
 

@@ -72,8 +72,8 @@ class Corner(NamedTuple):
 def capacity(system: System) -> int:
     """Return the greatest number of points that may be closed in one group."""
     contacts = system.contacts
-    if np.any(contacts.other >= 0):
-        points = np.where(contacts.other >= 0, MOST_POINTS, contacts.last - contacts.first)
+    if np.any(contacts.touches == 1):
+        points = np.where(contacts.touches == 1, MOST_POINTS, contacts.last - contacts.first)
         return max(1, min(MOST, int(points.sum())))
     count = np.zeros(system.bodies.size + 1, dtype=np.int64)
     rows = 1 + np.sum(contacts.turning > 0.0, axis=1)

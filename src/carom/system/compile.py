@@ -45,7 +45,7 @@ def compile_scene(scene: Scene, options: Options, loops: bool = False) -> Compil
     contacts, vertices, solids, hulls = compile_contacts(scene, to_principal, options)
     gravity = np.array(scene.gravity)
     system = System(
-        bodies, gravity, joints, springs, loads, contacts, vertices, solids, hulls, 0, 0, solver
+        bodies, gravity, joints, springs, loads, contacts, vertices, solids, hulls, 0, 0, 0, solver
     )
     return Compiled(system, start, to_principal, flipped)
 

@@ -1,0 +1,105 @@
+"""Rims of cylinders and discs that are nearly flat on what they touch: the lowest point runs round.
+
+The lowest point of a rim of radius r has the same feature wherever it is. At a small tilt it runs round the rim
+much faster than the body turns; as the rim passes through flat it is on the other side at once. There a
+step is cut until the point has a way to go that it can follow; if that takes no time against the step, the rim
+is flat as far as the step can tell, and all its points strike together.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom.contact.pairs.layout import CYLINDER
+from carom.geometry.rotation import rotate, rotate_back
+from carom.jit import kernel
+
+FLAT = 0.2  # sine of the tilt below which a rim is looked at here
+OTHER_SIDE = 1.5  # square of the way, relative to r, from which on a point is another one
+SMOOTH = 0.03  # up to which a step may follow it: 10 degrees
+
+
+@kernel
+def along_axis(solid, body, n):
+    """Return the component of a unit world vector along z of a solid."""
+    q, s = body.Q, solid.Q
+    a = rotate_back(q[0], q[1], q[2], q[3], n[0], n[1], n[2])
+    return rotate_back(s[0], s[1], s[2], s[3], a[0], a[1], a[2])[2]
+
+
+@kernel
+def flat_rim(system, contact, n, state):
+    """Return the radius of a rim that is nearly flat on what it touches with the normal n, and its tilt.
+
+    The radius is 0 if there is none; the tilt is a sine.
+    """
+    for side in range(2 if contact.other >= 0 else 1):
+        solid = system.solids[contact.solid if side == 0 else contact.other_solid]
+        if solid.kind == CYLINDER:
+            c = along_axis(solid, state[contact.body if side == 0 else contact.other], n)
+            if 1.0 - c * c < FLAT * FLAT:
+                return solid.half[0], tilt_of(solid, state, contact, side, n)
+    return 0.0, 0.0
+
+
+@kernel
+def tilt_of(solid, state, contact, side, n):
+    """Return the sine of the tilt of a solid's axis from n, exact also where it is small."""
+    q, s = state[contact.body if side == 0 else contact.other].Q, solid.Q
+    a = rotate_back(q[0], q[1], q[2], q[3], n[0], n[1], n[2])
+    x, y, _ = rotate_back(s[0], s[1], s[2], s[3], a[0], a[1], a[2])
+    return math.sqrt(x * x + y * y)
+
+
+@kernel
+def way_round(system, contact, n, arm0, arm1, arm2, p, state):
+    """Return the square of the way from p (body axes) to an arm (world), relative to r; 0 if steep."""
+    radius, _ = flat_rim(system, contact, n, state)
+    if radius == 0.0:
+        return 0.0
+    q = state[contact.body].Q
+    r = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
+    d = (arm0 - r[0]) ** 2 + (arm1 - r[1]) ** 2 + (arm2 - r[2]) ** 2
+    return d / (radius * radius)
+
+
+@kernel
+def way_to(system, contact, touch, p, state):
+    """Return `way_round` to a point that was found."""
+    x, s = state[contact.body].x, touch.on_a
+    return way_round(system, contact, touch.normal, s[0] - x[0], s[1] - x[1], s[2] - x[2], p, state)
+
+
+@kernel
+def same_point(system, contact, touch, feature, p, state):
+    """Return whether a point that was found is the one with the feature that was at p (body axes)."""
+    return touch.feature == feature and way_to(system, contact, touch, p, state) < OTHER_SIDE
+
+
+@kernel
+def longest_way(system, contact, c, count, held, state, work):
+    """Return the longest `way_round` of the held points of a contact, to where they are found now."""
+    longest = 0.0
+    for j in range(held.count[0]):
+        hold = held.points[j]
+        if hold.contact == c:
+            for i in range(count):
+                touch = work.touches[i]
+                if touch.feature == hold.feature:
+                    longest = max(longest, way_to(system, contact, touch, hold.point, state))
+    return longest
+
+
+@kernel
+def closed_rim(system, contact, n, state, time):
+    """Return the greatest gap of a rim that would be flat within `time`, as it turns now; 0 if none would."""
+    radius, tilt = flat_rim(system, contact, n, state)
+    if radius == 0.0:
+        return 0.0
+    spin = 0.0
+    for k in range(3):
+        w = state[contact.body].w[k]
+        if contact.other >= 0:
+            w -= state[contact.other].w[k]
+        spin += w * w
+    return 2.0 * radius * tilt if tilt < time * math.sqrt(spin) else 0.0

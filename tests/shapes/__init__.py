@@ -1,0 +1,1 @@
+"""Tests of shapes of all kinds in motion."""
