@@ -20,8 +20,8 @@ def assemble(run, status: Status) -> dict:
     rec = r.trimmed(run.records, run.clock)
     state, clock = rec.state, run.clock[0]
     # of a step, one island after the other
-    event = rec.event[np.argsort(rec.event.time, kind="stable")]
-    rec = rec._replace(impact=rec.impact[np.argsort(rec.impact.time, kind="stable")])
+    event = _rows(rec.event, np.argsort(rec.event.time, kind="stable"))
+    rec = rec._replace(impact=_rows(rec.impact, np.argsort(rec.impact.time, kind="stable")))
     kinetic, potential = energies(run.compiled.system, state)
     ledger = Ledger(kinetic, potential, *(rec.series[name].copy() for name, _ in r.LEDGER))
     return {
@@ -52,6 +52,11 @@ def assemble(run, status: Status) -> dict:
         "_run": run,
         "_touch": rec.touch,
     }  # fmt: skip
+
+
+def _rows(records: np.recarray, which) -> np.recarray:
+    """Return the chosen rows."""
+    return records[which].view(np.recarray)
 
 
 @np.errstate(over="ignore", invalid="ignore")  # of a motion that diverged
@@ -118,7 +123,7 @@ def nodes(run) -> list[Nodes]:
     """Return the nodes of each body, in the order of time."""
     rec = r.trimmed(run.records, run.clock)
     state, shot = rec.state, rec.snapshot
-    events = rec.event[shot.event]
+    events = _rows(rec.event, shot.event)
     # an event stands after the saved rows that were written before it
     place = np.arange(1.0, len(state) + 1)
     by_body = np.argsort(shot.body, kind="stable")
@@ -126,7 +131,7 @@ def nodes(run) -> list[Nodes]:
     out = []
     for b in range(state.shape[1]):
         own = by_body[ends[b] : ends[b + 1]]
-        here, event = state[:, b], shot[own]
+        here, event = state[:, b].view(np.recarray), _rows(shot, own)
         order = np.argsort(np.concatenate([place, events.saved[own] + 0.5]), kind="stable")
         speed = np.hstack([here.v, here.w])
         columns = (

@@ -9,7 +9,6 @@ from carom.scene.bodies import GROUND, Body, Ground, HalfSpace, make_body, make_
 from carom.scene.contacts import check_gap
 from carom.scene.forces import FORCES, AppliedForce, ForceDefinition, make_force
 from carom.scene.joints import JOINTS, Joint, JointDefinition, make_joint
-from carom.scene.limits import check_supported
 from carom.scene.materials import Material
 from carom.scene.pairs import Pairs
 from carom.scene.registry import Registry
@@ -218,7 +217,6 @@ class Scene(TouchingPairs):
         for contact in self.contacts:
             check_gap(contact)
         self._pairs.check_all(self.bodies, self.half_spaces)
-        check_supported(self)
 
     def __repr__(self) -> str:
         return f"<Scene: {counts(self)}>"
