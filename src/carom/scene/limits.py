@@ -1,4 +1,4 @@
-"""What a scene may state and a method of `simulate` does not do: refused before a run, never left out in silence."""
+"""What a scene may state and a method of `simulate` does not do: refused before a run, never left out."""
 
 from __future__ import annotations
 
