@@ -41,7 +41,8 @@ def test_dropped_tilted_it_comes_to_rest_flat_or_on_its_side(length, tilt, heigh
     s = on_ground(shape, 1.2, 1e-3, position=(0, 0, 0.25), orientation=turn)
     assert np.all(s.velocity[-1] == 0.0)
     assert np.all(s.angular_velocity[-1] == 0.0)
-    assert s.position[-1, 0, 2] == pytest.approx(height, abs=1e-12)
+    # closed is what is within the tolerance of ties, 1e-9 of the size
+    assert s.position[-1, 0, 2] == pytest.approx(height, abs=1e-10)
     assert s.contact_force[-1, 0] == pytest.approx([G, 0, 0], abs=1e-9)
     assert np.min(gaps(shape, s)) > -1e-9
     assert np.max(np.abs(s.ledger.residual)) < 1e-6 * s.total_energy[0]
