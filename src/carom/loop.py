@@ -153,7 +153,7 @@ def advance(
             if search.pending != NOTHING:
                 continue
             accept(now, trial, dt, applied, friction, begin, clock)
-            if strayed(now, work):
+            if strayed(system, now, dt, work):
                 return r.STRAYED
             if dt == remaining:
                 clock.spent = length
@@ -217,14 +217,21 @@ def full(system, held, clock, records):
 
 
 @inlined
-def strayed(now, work):
-    """Return whether a body has left the ball that was given to it for this step."""
+def strayed(system, now, dt, work):
+    """Return whether a body may have left the ball that was given to it for this step.
+
+    Both ends of a piece of its path are within it by what a fall of that time can bulge between them.
+    """
+    g = system.gravity
+    bulge = 0.125 * dt * dt * math.sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2])
     for b in range(now.shape[0]):
         memory, d = work.body[b], 0.0
+        if not math.isfinite(memory.room):
+            continue
         for k in range(3):
             d += (now[b].x[k] - memory.home[k]) ** 2
-        if not d <= memory.room * memory.room:
-            return math.isfinite(memory.room)
+        if not math.sqrt(d) + bulge <= memory.room:
+            return True
     return False
 
 

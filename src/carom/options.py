@@ -28,8 +28,8 @@ class Options:
         An impact is located when the gap is within gap_tolerance * size of the body of zero, or within
         the round-off of the coordinates where that is larger. Default 1e-15.
     tie_tolerance : float
-        Points of a body whose gaps differ by less than this part of its size strike together, as
-        their mean. Default 1e-9.
+        Points of a body whose gaps differ by less than this part of its size strike together: as their mean
+        if they move alike, else each for itself. Default 1e-9.
     multiple : {"simultaneous", "sequential", "newton"}
         Impacts while several points of the bodies are closed: their boundary layers are passed together
         (default), or one blow after the other, the fastest first, or all by Newton's law in one contact

@@ -56,7 +56,7 @@ _MESSAGES = {
         "position that it cannot leave, or the step is too large. Take a smaller step."
     ),
     Status.TOO_MANY_POINTS: (
-        "More than 64 points of a group of joined bodies are closed at once. Give the shapes fewer vertices."
+        "More than 192 points of a group of bodies are closed at once. Give the shapes fewer vertices."
     ),
     Status.INTERRUPTED: "The run was interrupted; the solution holds what was computed until then.",
 }

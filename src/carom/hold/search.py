@@ -16,7 +16,7 @@ from carom.hold.events import GAP, find_held_event, held_value, turned
 from carom.hold.margins import LEAST, NEAR
 from carom.jit import inlined, kernel
 
-AGAIN = 3  # verdict of a step: the same once more, by the implicit method
+AGAIN = 4  # verdict of a step, after FLAT_RIM: the same once more, by the implicit method
 
 
 @inlined

@@ -1,0 +1,56 @@
+"""Cost of a step against the number of contacts: blocks side by side, a stack, and both asleep."""
+
+from __future__ import annotations
+
+import carom
+from common import per_step, report, spread
+
+STEP = 1e-3
+MICRO = 1e-6
+
+
+def blocks(count: int, *, stacked: bool, speed: float, friction: float = 0.01) -> carom.Scene:
+    """Return blocks that slide without an end in sight, side by side or on each other, four points each."""
+    scene = carom.Scene(gravity=(0, 0, -9.81))
+    scene.add_half_space((0, 0, 0), (0, 0, 1))
+    for k in range(count):
+        place = (0, 0, 0.05 + 0.1 * k) if stacked else (0, 0.2 * k, 0.05)
+        scene.add_body(carom.Box(0.1, 0.1, 0.1), mass=1.0, position=place, velocity=(speed, 0, 0))
+    scene.set_contact_default(restitution=0.0, friction=friction)
+    return scene
+
+
+def runner(scene):
+    """Return ``run(steps)`` of a scene, nothing saved but both ends."""
+
+    def run(steps):
+        carom.simulate(scene, duration=steps * STEP, step=STEP, save_every=steps)
+
+    return run
+
+
+def main() -> None:
+    """Measure and report."""
+    rows = []
+    for count in (1, 4, 16, 64):
+        case = blocks(count, stacked=False, speed=5.0)
+        rest = blocks(count, stacked=False, speed=0.0)
+        tall = (
+            spread(per_step(runner(blocks(count, stacked=True, speed=5.0)), 10, 60), MICRO)
+            if count <= 16
+            else "-"
+        )
+        rows.append(
+            [
+                str(4 * count), spread(per_step(runner(case), 10, 110), MICRO), tall,
+                spread(per_step(runner(rest), 10, 1010), MICRO),
+            ]
+        )  # fmt: skip
+    report(
+        "contacts", "A step with held contacts / microseconds",
+        ["points", "blocks that slide side by side", "a stack that slides", "blocks at rest"], rows,
+    )  # fmt: skip
+
+
+if __name__ == "__main__":
+    main()
