@@ -35,11 +35,8 @@ def main() -> None:
     for count in (1, 4, 16, 64):
         case = blocks(count, stacked=False, speed=5.0)
         rest = blocks(count, stacked=False, speed=0.0)
-        tall = (
-            spread(per_step(runner(blocks(count, stacked=True, speed=5.0)), 10, 60), MICRO)
-            if count <= 16
-            else "-"
-        )
+        stack = runner(blocks(count, stacked=True, speed=5.0))
+        tall = spread(per_step(stack, 10, 60), MICRO) if count <= 16 else "-"
         rows.append(
             [
                 str(4 * count), spread(per_step(runner(case), 10, 110), MICRO), tall,
