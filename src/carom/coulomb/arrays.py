@@ -89,7 +89,7 @@ def new_island_work(graph: IslandGraph, body: np.ndarray) -> IslandWork:
             table(CONTACT, k),
             link,
             np.zeros((VECTORS, 3 * k)),
-            np.zeros(2, dtype=np.int64),
+            np.zeros(3, dtype=np.int64),
             np.zeros(1),
             table(ISLAND_BODY, bodies),
             graph.place,
