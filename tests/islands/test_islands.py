@@ -43,6 +43,7 @@ def test_dice_thrown_together_move_as_each_alone():
                 np.testing.assert_array_equal(a[k], b[0])
 
 
+@pytest.mark.plain
 def test_rest_is_asleep_until_it_is_touched():
     """A ball that rests does not move at all; one that falls on it from h comes after sqrt(2 h/g)."""
     scene = carom.Scene(gravity=(0, 0, -G))
@@ -63,6 +64,7 @@ def test_rest_is_asleep_until_it_is_touched():
     assert s.stats["trial_steps"] < 300
 
 
+@pytest.mark.plain
 @pytest.mark.parametrize("step", [0.02, 0.01])
 def test_a_light_body_that_is_thrown_out_of_its_ball(step):
     """1e6 kg strikes 1e3 kg, which strikes 1 kg, which goes on at nearly 4 v and meets a wall in the same step.
@@ -89,6 +91,7 @@ def test_a_light_body_that_is_thrown_out_of_its_ball(step):
     np.testing.assert_allclose(s.total_energy, s.total_energy[0], rtol=1e-12)
 
 
+@pytest.mark.plain
 def test_many_near_each_other():
     """More pairs than there is room for at first: a swarm that flies in step, where all balls overlap."""
     scene = carom.Scene(gravity=(0, 0, -G))

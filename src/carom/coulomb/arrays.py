@@ -65,7 +65,7 @@ class IslandWork(NamedTuple):
     contact: np.recarray  # (k,) CONTACT
     link: np.recarray  # (k,) LINK
     vector: np.ndarray  # (VECTORS, 3k)
-    count: np.ndarray  # (2,) int64
+    count: np.ndarray  # (3,) int64
     mismatch: np.ndarray  # (1,) what Newton reached
     body: np.recarray  # (N,) ISLAND_BODY
     place: np.recarray  # (N,) PLACE
