@@ -36,10 +36,10 @@ def main() -> None:
         case = blocks(count, stacked=False, speed=5.0)
         rest = blocks(count, stacked=False, speed=0.0)
         stack = runner(blocks(count, stacked=True, speed=5.0))
-        tall = spread(per_step(stack, 10, 60), MICRO) if count <= 16 else "-"
+        tall = spread(per_step(stack, 5, 25), MICRO) if count <= 4 else "-"
         rows.append(
             [
-                str(4 * count), spread(per_step(runner(case), 10, 110), MICRO), tall,
+                str(4 * count), spread(per_step(runner(case), 10, 60), MICRO), tall,
                 spread(per_step(runner(rest), 10, 1010), MICRO),
             ]
         )  # fmt: skip
