@@ -10,8 +10,7 @@ import math
 from typing import NamedTuple
 
 from carom.contact.closed import apart, closed_within
-from carom.contact.exclude import CLEAR, UNSURE, greatest_acceleration
-from carom.contact.exclude_pair import FLAT_RIM
+from carom.contact.exclude import AGAIN, CLEAR, FLAT_RIM, UNSURE, greatest_acceleration
 from carom.contact.gap import gap_and_rate, plane_in_body, slow
 from carom.contact.pair_point import REACH, find_touches, smaller, touch_rate
 from carom.dispatch import only_with_pairs
@@ -31,7 +30,7 @@ from carom.hold.lifecycle import hold_contact, settle
 from carom.hold.margins import meet_due, note_due
 from carom.hold.press import press
 from carom.hold.roster import is_held, refresh_pairs, regroup, set_anchor, strike_off
-from carom.hold.search import AGAIN, begin_search, event_value, examine, narrow, propose
+from carom.hold.search import begin_search, event_value, examine, narrow, propose
 from carom.impact.strike import strike
 from carom.jit import inlined, kernel
 from carom.motion.acceleration import OPEN, SLIP, STICK

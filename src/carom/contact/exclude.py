@@ -19,10 +19,10 @@ from carom.contact.gap import along_normal, gap_and_rate, plane_in_body, round_o
 from carom.jit import inlined
 from carom.system.arrays import FREE, RESTS
 
-CLEAR, BELOW, UNSURE = range(3)
-MISSED = (
-    1e-9  # of the body: where no more than this can be missed, the cubic decides in free flight too
-)
+#: verdicts on a step: nothing was touched; something is inside at the end; too long to say; a rim that was held
+#: on one side goes through flat; the same once more, by the implicit method
+CLEAR, BELOW, UNSURE, FLAT_RIM, AGAIN = range(5)
+MISSED = 1e-9  # of the body: where no more can be missed, the cubic decides in free flight too
 
 
 @inlined

@@ -14,6 +14,7 @@ from carom.contact.closed import round_off_of_both
 from carom.contact.exclude import (
     BELOW,
     CLEAR,
+    FLAT_RIM,
     MISSED,
     UNSURE,
     ball_clears,
@@ -30,8 +31,6 @@ from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.jit import kernel
 from carom.motion.forces import point_velocity
 from carom.system.arrays import FREE, RESTS
-
-FLAT_RIM = 3  # after CLEAR, BELOW, UNSURE: a rim that was held on one side goes through flat
 
 
 @kernel
@@ -68,32 +67,34 @@ def relative_bound(system, contact, state, work):
         for body, free in ((a, free_a), (b, free_b)):
             if work.body[body].status != RESTS:
                 centres += fall if free else 2.0 * work.body[body].bound[0]
-    r, s = (
-        core_extent(system.solids[contact.solid]),
-        core_extent(system.solids[contact.other_solid]),
-    )
+    r = core_extent(system.solids[contact.solid])
     spin = spin_bound(system.bodies[a], r, state[a].w, work.body[a])
-    spin += spin_bound(system.bodies[b], s, state[b].w, work.body[b])
+    r = core_extent(system.solids[contact.other_solid])
+    spin += spin_bound(system.bodies[b], r, state[b].w, work.body[b])
     return centres, centres + spin
+
+
+@kernel
+def balls_apart(s0, s1, s2, u0, u1, u2, radii, sign, a):
+    """Return how long two balls stay apart, centres s apart and moving apart at u; -inf if they overlap."""
+    d = math.sqrt(s0 * s0 + s1 * s1 + s2 * s2)
+    if not d > radii:
+        return -math.inf
+    return reach(d - radii, sign * (s0 * u0 + s1 * u1 + s2 * u2) / d, a)
 
 
 @kernel
 def balls_clear(contact, start, end, h, centres):
     """Return whether the balls around both keep apart."""
-    a, b = contact.body, contact.other
+    a, b, radii = contact.body, contact.other, contact.extent + contact.other_extent
     time = 0.0
     for side in range(2):
         state, sign = (start, 1.0) if side == 0 else (end, -1.0)
-        d, rate = 0.0, 0.0
-        for k in range(3):
-            s = state[a].x[k] - state[b].x[k]
-            d += s * s
-            rate += s * (state[a].v[k] - state[b].v[k])
-        d = math.sqrt(d)
-        gap = d - contact.extent - contact.other_extent
-        if not gap > 0.0:
-            return False
-        time += reach(gap, sign * rate / d, centres)
+        x, y, v, w = state[a].x, state[b].x, state[a].v, state[b].v
+        time += balls_apart(
+            x[0] - y[0], x[1] - y[1], x[2] - y[2], v[0] - w[0], v[1] - w[1], v[2] - w[2],
+            radii, sign, centres,
+        )  # fmt: skip
     return time >= h
 
 
@@ -109,16 +110,12 @@ def solids_clear(system, contact, start, end, h, most):
         rb = rotate_by(state[b], q.x)
         ua = point_velocity(state, a, ra[0], ra[1], ra[2])
         ub = point_velocity(state, b, rb[0], rb[1], rb[2])
-        d, rate = 0.0, 0.0
-        for k in range(3):
-            s = state[a].x[k] - state[b].x[k] + (ra[k] - rb[k])
-            d += s * s
-            rate += s * (ua[k] - ub[k])
-        d = math.sqrt(d)
-        gap = d - p.extent - q.extent
-        if not gap > 0.0:
-            return False
-        time += reach(gap, sign * rate / d, most)
+        x, y = state[a].x, state[b].x
+        time += balls_apart(
+            x[0] - y[0] + (ra[0] - rb[0]), x[1] - y[1] + (ra[1] - rb[1]),
+            x[2] - y[2] + (ra[2] - rb[2]), ua[0] - ub[0], ua[1] - ub[1], ua[2] - ub[2],
+            p.extent + q.extent, sign, most,
+        )  # fmt: skip
     return time >= h
 
 

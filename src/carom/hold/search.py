@@ -8,15 +8,13 @@ an event is as exact as the method.
 from __future__ import annotations
 
 from carom.contact.closed import RIM_TIME, round_off_of_both
-from carom.contact.exclude import BELOW, CLEAR, UNSURE, passage
-from carom.contact.exclude_pair import FLAT_RIM, lowest_pair, passage_pair
+from carom.contact.exclude import AGAIN, BELOW, CLEAR, FLAT_RIM, UNSURE, passage
+from carom.contact.exclude_pair import lowest_pair, passage_pair
 from carom.contact.gap import lowest, round_off
 from carom.contact.pair_point import smaller
 from carom.hold.events import GAP, find_held_event, held_value, turned
 from carom.hold.margins import LEAST, NEAR
 from carom.jit import inlined, kernel
-
-AGAIN = 4  # verdict of a step, after FLAT_RIM: the same once more, by the implicit method
 
 
 @inlined

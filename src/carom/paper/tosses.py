@@ -42,7 +42,6 @@ DT = 1.0 / 148.0  # [s]
 EDGE, MASS, INERTIA = 0.1048, 0.37, 8.1e-4  # [m], [kg], [kg m^2]
 CLEARANCE = 0.003  # [m]
 STEP = DT / 4.0  # for levels; a search takes DT, which moves the means by 0.03 % and 0.02 deg
-SHORT = 0.0512 / 0.0524  # recorded over true lengths
 GRAVITY = {"A": 9.81, "B": 9.614}
 HALF = {"A": 0.0524, "B": 0.0512}  # half edge of the model [m]
 LENGTH, ANGLE = 0.135 * EDGE, np.radians(16.5)  # errors of the best published simulator

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -93,13 +94,13 @@ class Piece:
         )
 
 
-class Touching:
+class Touching(ABC):
     """What all shapes have in common: pieces to touch with, and what follows from them."""
 
     @property
+    @abstractmethod
     def pieces(self) -> tuple[Piece, ...]:
         """The convex pieces of the shape."""
-        raise NotImplementedError
 
     def support(self, direction: ArrayLike) -> np.ndarray:
         """Return the point (3,) of the shape [m] farthest along `direction` (3,), in body axes."""

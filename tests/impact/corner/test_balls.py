@@ -42,7 +42,10 @@ def test_two_springs_in_closed_form():
     from scipy.optimize import brentq
 
     r = np.sqrt(3.0)
-    d1 = lambda t: np.sin(t) / 2 + np.sin(r * t) / (2 * r)  # noqa: E731
+
+    def d1(t):
+        return np.sin(t) / 2 + np.sin(r * t) / (2 * r)
+
     t = brentq(d1, 2.0, 3.0)
     first = (np.cos(t) + np.cos(r * t)) / 2  # approach speed of contact 1, negative: it opens
     d2, rate2 = np.sin(t) / 2 - np.sin(r * t) / (2 * r), (np.cos(t) - np.cos(r * t)) / 2
