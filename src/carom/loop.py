@@ -68,6 +68,8 @@ class Controls(NamedTuple):
     corner_at: int
     settle_at: int
     press_at: int
+    heap_at: int
+    heap: int  # an island of so many bodies takes its steps whole
 
 
 @inlined

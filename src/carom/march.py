@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from carom.dispatch import by_method
+from carom.heap.step import step_heap
 from carom.islands import parts
 from carom.islands.layout import Islands, NoIslands
-from carom.jit import entry, kernel
-from carom.loop import NOT_FINITE, advance
+from carom.jit import entry, inlined, kernel
+from carom.loop import NOT_FINITE, advance, strayed
 from carom.save import finite, save
 from carom.system import records as r
 
 
 @entry
 def run(
-    system, method, controls, held, now, work, islands, cluster, corner, clocks, records, until
-):
+    system, method, controls, held, now, work, islands, cluster, corner, heap, clocks, records,
+    until,
+):  # fmt: skip
     """Go on from `now` to step number `until`. Returns 0, what the caller is to do, or a `Status`."""
     clock = clocks[0]
     while clock.step < until:
@@ -26,9 +28,9 @@ def run(
         while code == 0 and some_left(islands, length, clock):
             part, own, here, scratch = take(islands, system, held, now, work)
             enter(islands, part, own, held, scratch, begin, clock)
-            code = advance(
-                part, method, controls, own, here, begin, length, cluster, corner, scratch, clocks,
-                records,
+            code = move(
+                islands, part, method, controls, own, here, begin, length, cluster, corner, heap,
+                scratch, clocks, records,
             )  # fmt: skip
             if code == 0:
                 leave(islands, own)
@@ -113,6 +115,36 @@ def _enter_island(islands, part, own, held, work, begin, clock):
         clock.first_touch = clock.touched
 
 
+@inlined
+def _move_all(
+    islands, system, method, controls, held, now, begin, length, cluster, corner, heap, work,
+    clocks, records,
+):  # fmt: skip
+    """Move all bodies to the end of the step."""
+    return advance(
+        system, method, controls, held, now, begin, length, cluster, corner, work, clocks, records
+    )
+
+
+@inlined
+def _move_island(
+    islands, part, method, controls, own, here, begin, length, cluster, corner, heap, work, clocks,
+    records,
+):  # fmt: skip
+    """Move an island to the end of the step: event by event, or whole if it is large."""
+    if part.bodies.shape[0] < controls.heap:
+        return advance(
+            part, method, controls, own, here, begin, length, cluster, corner, work, clocks, records
+        )
+    if controls.heap_at == 0:
+        return r.NEEDS_HEAP
+    step_heap(
+        controls.heap_at, part, controls, own, here, begin, length, heap, work, clocks, records
+    )
+    code = work.result[0].code
+    return r.STRAYED if code == 0 and strayed(part, here, length, work) else code
+
+
 @kernel
 def _leave_all(islands, own):
     """Nothing is to be put back."""
@@ -156,6 +188,7 @@ start = by_method({Islands: _start_islands, NoIslands: _start_all})
 some_left = by_method({Islands: _islands_left, NoIslands: _all_left})
 take = by_method({Islands: _take_island, NoIslands: _take_all})
 enter = by_method({Islands: _enter_island, NoIslands: _enter_all})
+move = by_method({Islands: _move_island, NoIslands: _move_all})
 leave = by_method({Islands: _leave_island, NoIslands: _leave_all})
 lost = by_method({Islands: _island_lost, NoIslands: _all_lost})
 end = by_method({Islands: _end_islands, NoIslands: _end_all})

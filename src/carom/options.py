@@ -34,6 +34,10 @@ class Options:
         Impacts while several points of the bodies are closed: their boundary layers are passed together
         (default), or one blow after the other, the fastest first, or all by Newton's law in one contact
         problem (Moreau 1988), which is the quickest and meant for heaps. (Mathematics page, V.)
+    heap : int
+        An island of this many bodies or more is a heap: it takes its steps whole, with all contacts in
+        one problem, Newton's law of impact, and order 1 in the times of impacts. Default 24.
+        (Mathematics page, VI.9.)
     corner_tolerance : float
         Relative error of the velocities after a simultaneous impact. Default 1e-8.
     corner_exponent : float
@@ -75,6 +79,7 @@ class Options:
     gap_tolerance: float = 1e-15
     tie_tolerance: float = 1e-9
     multiple: str = "simultaneous"
+    heap: int = 24
     corner_tolerance: float = 1e-8
     corner_exponent: float = 1.0
     hold: bool = True
@@ -99,6 +104,7 @@ class Options:
             check.number(name, getattr(self, name), above=0.0, below=1.0)
         for name in ("natural_frequency", "damping_ratio"):
             check.number(name, getattr(self, name), least=0.0)
+        check.integer("heap", self.heap, least=2)
         check.integer("layer_steps", self.layer_steps, least=1)
         for name in ("max_iterations", "max_impacts_per_step", "max_cuts"):
             check.integer(name, getattr(self, name), least=1)

@@ -6,6 +6,8 @@ import numpy as np
 
 from carom import loop, march, save
 from carom.geometry import quaternion
+from carom.heap.layout import new_heap, roomier_heap
+from carom.heap.step import heap_unit
 from carom.hold.lifecycle import hold_unit, settle_unit
 from carom.hold.press import press_unit
 from carom.impact.corner.layout import MULTIPLE, CornerSettings
@@ -87,6 +89,8 @@ class Run:
             corner_at=0,
             settle_at=0,
             press_at=0,
+            heap_at=0,
+            heap=options.heap if np.all(self.compiled.system.contacts.turning == 0.0) else 1 << 62,
         )
         self.held = r.new_held(system)
         self.work = r.new_work(system, self.method.b.size)
@@ -100,6 +104,7 @@ class Run:
         apart = method == "rk4" and impact_location == "locate"
         self.islands = new_islands(system, self.held) if apart else NoIslands(0)
         self.cluster = new_cluster(system)
+        self.heap = new_heap(1, 1, 1)  # made when there is one
         self.corner = new_corner(system, corner_settings(options))
         self.clock = r.new_clock()
         self.records = r.new_records(system, -(-steps // save_every) + 1, 512)
@@ -173,6 +178,16 @@ class Run:
         press = address(press_unit, system, self.controls, held, now, 0.0, now, *scratch)
         self.controls = self.controls._replace(hold_at=hold or 1, settle_at=settle, press_at=press)
 
+    def find_heap(self) -> None:
+        """Compile the step of a heap: only when the first one is met."""
+        system = self.compiled.system
+        self.heap = new_heap(len(system.bodies), len(self.held.points), 8 * len(system.bodies))
+        found = address(
+            heap_unit, system, self.controls, self.held, self.now, 0.0, 0.0, self.heap, self.work,
+            self.clock, self.records,
+        )  # fmt: skip
+        self.controls = self.controls._replace(heap_at=found or 1)
+
     def find_corner(self) -> None:
         """Compile the impact of several points: only when the first one is to be resolved."""
         from carom.impact.corner.work import with_units
@@ -192,7 +207,7 @@ class Run:
         while True:
             code = march.run(
                 self.compiled.system, self.method, self.controls, self.held, self.now, self.work,
-                self.islands, self.cluster, self.corner, self.clock, self.records, until,
+                self.islands, self.cluster, self.corner, self.heap, self.clock, self.records, until,
             )  # fmt: skip
             if code == r.FULL:
                 self.records = r.longer(self.records)
@@ -201,6 +216,10 @@ class Run:
                 self.find_hold()
             elif code == r.NEEDS_CORNER:
                 self.find_corner()
+            elif code == r.NEEDS_HEAP:
+                self.find_heap()
+            elif code == r.NEEDS_SPOTS:
+                self.heap = roomier_heap(self.heap)
             elif code == r.NEEDS_ROOM:
                 assert isinstance(self.islands, Islands)
                 self.islands = roomier(self.islands)

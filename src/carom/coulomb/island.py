@@ -21,14 +21,18 @@ from carom.jit import kernel
 @kernel
 def multiply(work, k, x, out):
     """Add W x to `out`."""
-    _rest(work)
-    for i in range(k):
-        _push(work, i, x[3 * i], x[3 * i + 1], x[3 * i + 2])
+    _impart(work, k, x)
     for i in range(k):
         u0, u1, u2 = _pull(work, i)
         out[3 * i] += u0
         out[3 * i + 1] += u1
         out[3 * i + 2] += u2
+
+
+@kernel
+def impart(work, k):
+    """Write the motion that the impulses at hand cause."""
+    _impart(work, k, work.vector[o.P])
 
 
 @kernel
@@ -61,9 +65,7 @@ def magnitude(work, k):
 def sweep(work, k, backward):
     """Solve each contact in turn, the others held."""
     p, c = work.vector[o.P], work.vector[o.C]
-    _rest(work)
-    for i in range(k):
-        _push(work, i, p[3 * i], p[3 * i + 1], p[3 * i + 2])
+    _impart(work, k, p)
     for place in range(k):
         i = k - 1 - place if backward else place
         n = 3 * i
@@ -179,6 +181,14 @@ def _assemble(work, k):
                     Y, A = link.response[other], work.block[link.corner[other, side]]
                     for r in range(6):
                         A[r, j] += Y[r, 0] * a + Y[r, 1] * b + Y[r, 2] * c
+
+
+@kernel
+def _impart(work, k, x):
+    """Write the motion that impulses x cause."""
+    _rest(work)
+    for i in range(k):
+        _push(work, i, x[3 * i], x[3 * i + 1], x[3 * i + 2])
 
 
 @kernel

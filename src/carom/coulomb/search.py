@@ -140,7 +140,7 @@ def _polished(work, k, least_norm, patient):
         for i in range(k):
             n = 3 * i
             p[n], p[n + 1], p[n + 2] = project(work.contact[i], p[n], p[n + 1], p[n + 2])
-        r, goal, tolerance = _residual(work, k)
+        r, goal, tolerance = residual(work, k)
         enough = r <= goal or not r < 0.5 * least
         if r < least:
             least = r
@@ -156,7 +156,7 @@ def _polished(work, k, least_norm, patient):
 
 
 @kernel
-def _residual(work, k):
+def residual(work, k):
     """Return (residual, goal, tolerance) of p in velocity; the goal is what round-off allows."""
     velocity(work, k)
     p, w, c = work.vector[o.P], work.vector[o.VELOCITY], work.vector[o.C]

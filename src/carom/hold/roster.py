@@ -21,23 +21,31 @@ from carom.jit import kernel
 
 
 @kernel
+def begin_point(hold, contact, c, feature, mode):
+    """Write a point of contact c that is held from now on, as one of several and without a force."""
+    hold.contact, hold.feature = c, feature
+    hold.body, hold.other, hold.touches = contact.body, contact.other, contact.touches
+    hold.mode, hold.next, hold.rest, hold.several = mode, mode, 0, 1
+    hold.jams, hold.due, hold.lift, hold.grip = 0, 0, 1.0, 1.0
+    hold.settles, hold.stop = 0, math.inf
+    hold.turn_stop[0], hold.turn_stop[1] = math.inf, math.inf
+    hold.heading[0], hold.heading[1] = 0.0, 0.0
+    for k in range(3):
+        hold.force[k], hold.torque[k] = 0.0, 0.0
+        for j in range(3):
+            hold.W[k, j] = 0.0
+
+
+@kernel
 def enlist(system, held, seat, mode, state, work):
     """Add a closed point to the list; return its place."""
     i = held.count[0]
     held.count[0] = i + 1
     hold, contact = held.points[i], system.contacts[seat.contact]
-    hold.contact, hold.feature = seat.contact, seat.feature
-    hold.body, hold.other, hold.touches = contact.body, contact.other, contact.touches
-    hold.mode, hold.next, hold.rest, hold.several = mode, mode, 0, 0
-    hold.jams, hold.due, hold.lift, hold.grip = 0, 0, 1.0, 1.0
-    hold.settles, hold.stop = 0, math.inf
-    hold.turn_stop[0], hold.turn_stop[1] = math.inf, math.inf
+    begin_point(hold, contact, seat.contact, seat.feature, mode)
+    hold.several = 0
     for k in range(3):
         hold.point[k] = seat.point[k]
-        hold.force[k], hold.torque[k] = 0.0, 0.0
-        for j in range(3):
-            hold.W[k, j] = 0.0
-    hold.heading[0], hold.heading[1] = 0.0, 0.0
     set_anchor(system, hold, state, work)
     if contact.touches == 0:
         held.carries[seat.feature] = 1
@@ -92,14 +100,20 @@ def together(contact):
 def regroup(system, held, work):
     """Label the groups that held points make, and note which points share their bodies with others."""
     label_groups(system, held, work)
+    joined, n = 0, work.body.shape[0]  # the number N is of all that have joints
+    for b in range(n):
+        work.body[b].holds = 0
+    for i in range(held.count[0]):
+        group = work.body[held.points[i].body].group
+        if group < n:
+            work.body[group].holds += 1
+        else:
+            joined += 1
     for i in range(held.count[0]):
         hold = held.points[i]
         group = work.body[hold.body].group
-        several = 1 if together(system.contacts[hold.contact]) else 0
-        for j in range(held.count[0]):
-            if j != i and work.body[held.points[j].body].group == group:
-                several = 1
-        hold.several = several
+        others = (work.body[group].holds if group < n else joined) - 1
+        hold.several = 1 if others > 0 or together(system.contacts[hold.contact]) else 0
 
 
 @kernel
@@ -159,18 +173,8 @@ def enlist_touch(contact, c, touch, mode, state, held):
     """Add a point that was found to the list, without an event."""
     hold = held.points[held.count[0]]
     held.count[0] += 1
-    hold.contact, hold.feature = c, touch.feature
-    hold.body, hold.other, hold.touches = contact.body, contact.other, 1
-    hold.mode, hold.next, hold.rest, hold.several = mode, mode, 0, 1
-    hold.jams, hold.due, hold.lift, hold.grip = 0, 0, 1.0, 1.0
-    hold.settles, hold.stop = 0, math.inf
-    hold.turn_stop[0], hold.turn_stop[1] = math.inf, math.inf
+    begin_point(hold, contact, c, touch.feature, mode)
     own_point(contact, touch, state, hold.point)
-    for k in range(3):
-        hold.force[k], hold.torque[k] = 0.0, 0.0
-        for j in range(3):
-            hold.W[k, j] = 0.0
-    hold.heading[0], hold.heading[1] = 0.0, 0.0
 
 
 @kernel

@@ -114,7 +114,7 @@ ROW = [
 
 #: a contact between looks
 BRINK = [
-    ("seen", "i8"),  # while a group is gathered
+    ("seen", "i8"),  # scratch: while a group is gathered; 1 + first held point, in a heap
     ("near", "i8"),  # 1 where something happened at the last event: look before stepping
     ("jams", "i8"),  # 1 where a held point of it jams: an impact without collision is due
     ("leaving", "i8"),  # 1 where the body lifts off without speed: it may touch at the start
@@ -172,6 +172,7 @@ BODY_WORK = [
     ("bound", "f8", 3),  # greatest linear, angular acceleration and spin of the last step
     ("inverse", "f8", 6),  # inverse inertia, world axes
     ("group", "i8"),  # bodies with the same number move each other: joined, or held to each other
+    ("holds", "i8"),  # of the body that its group is named after: held points of the group
     ("status", "i8"),  # FREE, ONE, RESTS or SEVERAL held points
     ("push", "f8", 6),  # change of momentum (linear, angular about the centre) in a step
     ("spin", "f8", 3),  # angular velocity for which the invariants of free flight below hold

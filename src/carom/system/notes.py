@@ -43,3 +43,13 @@ def end_event(system, kind, state, clock, records):
     clock.event += 1
     clock.in_step += 1
     clock.at_once += 1
+
+
+@kernel
+def note_event(system, c, feature, kind, mode, clock, records):
+    """Write an event that no body is interpolated about: of a step that is taken as a whole."""
+    event = records.event[clock.event]
+    event.time, event.saved, event.first = clock.now, clock.saved, clock.snapped
+    event.contact, event.feature = system.contacts[c].number, feature
+    event.kind, event.mode = kind, mode
+    clock.event += 1

@@ -115,7 +115,9 @@ FULL = 100  # a record is full: the caller makes it longer and goes on
 NEEDS_CORNER = 102  # several points strike: the same
 NEEDS_HOLD = 101  # a contact is to be held: the caller compiles what that needs and goes on
 NEEDS_ROOM = 103  # more pairs are near each other than there is room for: the same
-STRAYED = 104  # a body has left the ball that its island gave it
+NEEDS_HEAP = 104  # an island is a heap: the caller compiles its step and goes on
+NEEDS_SPOTS = 105  # more points may touch in a heap than there is room for: the caller makes more
+STRAYED = 106  # a body has left the ball that its island gave it
 
 
 class Records(NamedTuple):

@@ -1,0 +1,77 @@
+"""Scratch of a step of a heap: made when the first one is met, longer where it has more points."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from carom.coulomb.arrays import ISLAND_BODY, LINK, PLACE, IslandWork
+from carom.coulomb.layout import CONTACT, VECTORS
+from carom.system.arrays import HELD, POINT, STATE, table
+
+#: a point that may touch in the step
+SPOT = [
+    ("contact", "i8"),
+    ("feature", "i8"),
+    ("point", "f8", 3),  # of the first body, its axes
+    ("held", "i8"),  # its place among the held points, -1 where it is open
+    ("gap", "f8"),  # at the start
+    ("left", "f8"),  # at the end, without contacts
+    ("before", "f8", 3),  # velocity at the start, by the rows of the middle of the step
+    ("free", "f8", 3),  # the same at the end, without contacts
+    ("bound", "f8"),  # least normal velocity after
+    ("impulse", "f8", 3),
+    ("strikes", "i8"),  # 1 for an impact, 0 for what stays, or is far
+]
+
+
+class Heap(NamedTuple):
+    """K points at most, of N bodies; P points are held at most. Vectors have rows n, t1, t2 a point."""
+
+    spots: np.recarray  # (K,) SPOT
+    points: np.recarray  # (2, K) POINT: in the middle of the step; at its end
+    c: np.ndarray  # (3K,) velocities without impulses, less their bounds
+    p: np.ndarray  # (3K,) impulses
+    problem: IslandWork
+    flight: np.recarray  # (N,) STATE at the end of the step without contacts
+    held: np.recarray  # (P,) HELD, as it will be
+    follows: np.ndarray  # (P,) next held point of the same contact, -1 after the last
+    parent: np.ndarray  # (N,) of the union-find of what touches
+    speed: np.ndarray  # (2, N) greatest speed of such a set, at the start and at the end
+
+
+def new_heap(bodies: int, held: int, points: int) -> Heap:
+    """Return the scratch for `points` points that may touch, and `held` that may be held."""
+    problem = IslandWork(
+        address=0,
+        newton=0,
+        contact=table(CONTACT, points),
+        link=table(LINK, points),
+        vector=np.zeros((VECTORS, 3 * points)),
+        count=np.zeros(3, dtype=np.int64),
+        mismatch=np.zeros(1),
+        body=table(ISLAND_BODY, bodies),
+        place=table(PLACE, 0),  # no factors are made
+        later=np.zeros(0, dtype=np.int64),
+        target=np.zeros((0, 3), dtype=np.int64),
+        block=np.zeros((0, 6, 6)),
+        sums=np.zeros((2, bodies, 6)),
+    )
+    return Heap(
+        spots=table(SPOT, points),
+        points=table(POINT, 2, points),
+        c=np.zeros(3 * points),
+        p=np.zeros(3 * points),
+        problem=problem,
+        flight=table(STATE, bodies),
+        held=table(HELD, held),
+        follows=np.zeros(held, dtype=np.int64),
+        parent=np.zeros(bodies, dtype=np.int64),
+        speed=np.zeros((2, bodies)),
+    )
+
+
+def roomier_heap(heap: Heap) -> Heap:
+    """Return the scratch for twice as many points."""
+    return new_heap(len(heap.flight), len(heap.held), 2 * len(heap.spots))

@@ -1,0 +1,87 @@
+"""The contact problem of a heap: rows in the middle of the step, velocities without impulses, bounds."""
+
+from __future__ import annotations
+
+from carom.coulomb.layout import CONE
+from carom.coulomb.solve import set_contact
+from carom.geometry.rotation import cross, rotate, rotate_back
+from carom.jit import kernel
+from carom.motion.contact_point import contact_velocity
+
+
+@kernel
+def pose(system, held, k, h, fall, start, heap):
+    """Write the problem of k points whose rows are in `heap.points[0]`; start from the last forces."""
+    for i in range(k):
+        spot, point = heap.spots[i], heap.points[0][i]
+        contact, p = system.contacts[spot.contact], heap.p
+        spot.before[0], spot.before[1], spot.before[2] = contact_velocity(point, start)
+        spot.free[0], spot.free[1], spot.free[2] = contact_velocity(point, heap.flight)
+        set_bound(spot, contact, h, fall)
+        set_link(system, point, heap.flight, contact.friction, heap.problem, i)
+        for r in range(3):
+            heap.c[3 * i + r] = spot.free[r]
+            p[3 * i + r] = h * held.points[spot.held].force[r] if spot.held >= 0 else 0.0
+        heap.c[3 * i] -= spot.bound
+        if spot.held >= 0:
+            heap.problem.contact[i].mu = contact.friction_held
+
+
+@kernel
+def set_bound(spot, contact, h, fall):
+    """Write the least normal velocity after the step, and whether the point strikes.
+
+    An impact leaves with e times the approach at the start (Moreau 1988), unless all its bounces, which last
+    2 e|u|/(g (1 - e)), end within the step: then it stays. What is open at the end without contacts
+    may close no faster than its gap allows.
+    """
+    u, e = spot.before[0], contact.restitution
+    spot.bound, spot.strikes = 0.0, 0
+    if spot.gap > 0.0 and spot.left > 0.0:
+        spot.bound = -spot.gap / h
+    elif 2.0 * e * -u > (1.0 - e) * fall * h + contact.still:
+        spot.bound, spot.strikes = -e * u, 1
+    elif -u > 2.0 * fall * h + contact.still:
+        spot.strikes = 1
+
+
+@kernel
+def set_link(system, point, flight, mu, work, i):
+    """Write rows G of a point for both bodies, M^-1 G^T, and their product, scaled."""
+    link, contact, E = work.link[i], work.contact[i], point.axes
+    link.body[0], link.body[1] = point.a, point.b
+    local = link.local
+    for j in range(6):
+        local[j] = 0.0
+    for side in range(2):
+        b = link.body[side]
+        if b < 0:
+            continue
+        sign, arm = (1.0, point.arm_a) if side == 0 else (-1.0, point.arm_b)
+        body, q, J = system.bodies[b], flight[b].Q, system.bodies[b].inertia
+        G, Y = link.rows[side], link.response[side]
+        for r in range(3):
+            x, y, z = sign * E[r, 0], sign * E[r, 1], sign * E[r, 2]
+            a = cross(arm[0], arm[1], arm[2], x, y, z)
+            G[r, 0], G[r, 1], G[r, 2] = x, y, z
+            G[r, 3], G[r, 4], G[r, 5] = a
+            Y[0, r], Y[1, r], Y[2, r] = x / body.mass, y / body.mass, z / body.mass
+            t = rotate_back(q[0], q[1], q[2], q[3], a[0], a[1], a[2])
+            t = rotate(q[0], q[1], q[2], q[3], t[0] / J[0], t[1] / J[1], t[2] / J[2])
+            Y[3, r], Y[4, r], Y[5, r] = t
+        at = 0
+        for r in range(3):
+            for s in range(r, 3):
+                for j in range(6):
+                    local[at] += G[r, j] * Y[j, s]
+                at += 1
+    set_contact(contact, mu, CONE, (0.0, 0.0), local[0] + local[3] + local[5])
+    scale = contact.scale
+    for j in range(6):
+        local[j] *= scale * scale
+    for side in range(2):
+        if link.body[side] >= 0:
+            for r in range(6):
+                for a in range(3):
+                    link.rows[side, a, r] *= scale
+                    link.response[side, r, a] *= scale

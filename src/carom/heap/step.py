@@ -1,0 +1,122 @@
+"""A step of a heap, taken whole: free flight, one contact problem, back to the surfaces (Moreau 1988).
+
+With rows G of the middle of the free flight from (q_0, v_0) to (q_f, v_f), and the inverse mass P at its end,
+
+    w = G v_f + G P G^T p,    0 <= p_n _|_ w_n - b >= 0,    p_t in -mu p_n d|w_t|,
+    pi_1 = pi_f + G^T p,      q_1 = Exp_q_f(h/2 P G^T p),
+
+b = e |u_n| where a contact strikes, 0 where it stays (`pose.set_bound`). So q_1 goes with the mean of the
+velocities, and the energy changes by p . (G v_0 + G v_1)/2, up to what the return to the surfaces moves.
+Order 1. (Mathematics page, VI.9.)
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom.dispatch import by_address
+from carom.geometry.rotation import rotate, rotate_back
+from carom.heap.finish import finish
+from carom.heap.pose import pose
+from carom.heap.relax import relax
+from carom.heap.spots import gather, norm, place_all
+from carom.heap.surface import move, onto_surfaces
+from carom.hold.middle import halfway, spin_momentum
+from carom.jit import kernel, unit
+from carom.motion.explicit import keep
+from carom.motion.free import free_flight
+from carom.system import records as r
+
+SWEEPS = 200  # most in a step; what is left shows in the residual
+FINE = 0.1  # of the speed below which bodies rest: to be reached, or they never would
+FAR = 0.25  # of its ball: a body goes no further in a piece of the step
+
+
+@unit
+def heap_unit(system, controls, held, now, begin, length, heap, work, clocks, records):
+    """Move all bodies of an island to the end of the step; a code for `run` goes to `work.result`."""
+    clock, result = clocks[0], work.result[0]
+    result.code = 0
+    while clock.spent < length:
+        dt = piece(system, now, controls.step, length - clock.spent)
+        result.code = move_on(system, controls, held, now, begin, dt, heap, work, clock, records)
+        if result.code != 0:
+            return
+        if dt == length - clock.spent:
+            clock.spent = length
+        else:
+            clock.spent += dt
+
+
+#: step_heap(address, system, controls, held, now, begin, length, heap, work, clocks, records)
+step_heap = by_address(heap_unit)
+
+
+@kernel
+def piece(system, now, step, left):
+    """Return the time of the next piece: what is left in equal parts, so that no body goes too far in one."""
+    g = norm(system.gravity)
+    parts = 1.0
+    for b in range(now.shape[0]):
+        way = (norm(now[b].v) + g * left) * left
+        parts = max(parts, math.ceil(way / (FAR * system.bodies[b].ball)))
+    return left if parts == 1.0 else max(left / parts, 1e-4 * step)
+
+
+@kernel
+def move_on(system, controls, held, now, begin, h, heap, work, clock, records):
+    """Make one piece of the step; return 0 or a code."""
+    n, fall = now.shape[0], norm(system.gravity)
+    k = gather(system, held, h, fall, now, heap, work)
+    if k < 0:
+        return r.NEEDS_SPOTS
+    rows = r.MARGIN + k + held.count[0]
+    if max(clock.event, clock.struck) + rows > records.event.shape[0]:
+        return r.FULL
+    for b in range(n):
+        free_flight(system.bodies[b], system.gravity, h, now[b], heap.flight[b], work.body[b])
+        halfway(now[b], heap.flight[b], work.stage[b])
+        keep(heap.flight[b], work.trial[b])
+    place_all(system, k, heap.flight, heap, heap.points[1], work)
+    for i in range(k):
+        heap.spots[i].left = heap.points[1][i].gap
+    place_all(system, k, work.stage, heap, heap.points[0], work)
+    pose(system, held, k, h, fall, now, heap)
+    gamma, residual = relax(heap, k, FINE * controls.rest * fall * h, SWEEPS, clock)
+    for i in range(k):
+        for j in range(3):
+            heap.spots[i].impulse[j] = heap.p[3 * i + j]
+    clock.trials += 1
+    clock.pressed += 1
+    clock.residual = max(clock.residual, residual)
+    gain(system, gamma, heap, work.trial)
+    move(n, 0.5 * h * gamma, work.trial, heap.problem)
+    respin(system, heap.flight, work.trial)
+    onto_surfaces(system, k, n, work.trial, heap, clock, work)
+    clock.now = begin + clock.spent + h
+    finish(system, controls, held, k, h, fall, now, work.trial, heap, work, clock, records)
+    for b in range(n):
+        keep(work.trial[b], now[b])
+    return 0
+
+
+@kernel
+def gain(system, gamma, heap, end):
+    """Add to the velocities what the impulses give, with the inertia at the end of the flight."""
+    for b in range(end.shape[0]):
+        xi = heap.problem.body[b].motion
+        for j in range(3):
+            end[b].v[j] += gamma * xi[j]
+            end[b].w[j] += gamma * xi[3 + j]
+
+
+@kernel
+def respin(system, flight, end):
+    """Keep angular momenta as the bodies are turned on: w = J(q_1)^-1 J(q_f) w."""
+    for b in range(end.shape[0]):
+        if system.bodies[b].isotropic == 1:
+            continue
+        q, w, J = end[b].Q, end[b].w, system.bodies[b].inertia
+        l = spin_momentum(system.bodies[b], flight[b].Q, w[0], w[1], w[2])
+        a = rotate_back(q[0], q[1], q[2], q[3], l[0], l[1], l[2])
+        w[0], w[1], w[2] = rotate(q[0], q[1], q[2], q[3], a[0] / J[0], a[1] / J[1], a[2] / J[2])
