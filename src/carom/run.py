@@ -90,7 +90,7 @@ class Run:
             settle_at=0,
             press_at=0,
             heap_at=0,
-            heap=options.heap if np.all(self.compiled.system.contacts.turning == 0.0) else 1 << 62,
+            heap=options.heap,
         )
         self.held = r.new_held(system)
         self.work = r.new_work(system, self.method.b.size)

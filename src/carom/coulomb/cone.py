@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from carom.coulomb.layout import CONE, SLIDING
+from carom.coulomb.layout import CONE, DISC, SLIDING
 from carom.jit import kernel
 
 
@@ -15,6 +15,8 @@ def project(contact, x0, x1, x2):
     A solution is a fixed point p = project(p - rho w), for every rho > 0.
     """
     kind, mu = contact.kind, contact.mu
+    if kind == DISC:
+        return in_disc(contact.h1, x1, x2)
     if not x0 > 0.0:
         if kind in (CONE, SLIDING):
             return 0.0, 0.0, 0.0
@@ -33,6 +35,12 @@ def project(contact, x0, x1, x2):
 def slope(contact, x0, x1, x2):
     """Return the derivative of `project`: d00, d10, d11, d12, d20, d21, d22 (the others are zero)."""
     kind, mu = contact.kind, contact.mu
+    if kind == DISC:
+        size, radius = math.sqrt(x1 * x1 + x2 * x2), contact.h1
+        if size <= radius:
+            return 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0
+        e1, e2, r = x1 / size, x2 / size, radius / size
+        return 0.0, 0.0, r * e2 * e2, -r * e1 * e2, 0.0, -r * e1 * e2, r * e1 * e1
     if not x0 > 0.0:
         if kind in (CONE, SLIDING):
             return 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
@@ -50,7 +58,9 @@ def slope(contact, x0, x1, x2):
 
 @kernel
 def nearest(kind, mu, h1, h2, x0, x1, x2):
-    """Return the nearest point: of the cone, of the ray (1, -mu h), or of the half-space."""
+    """Return the nearest point: of the cone, of the ray (1, -mu h), of the half-space, or of a disc."""
+    if kind == DISC:
+        return in_disc(h1, x1, x2)
     if kind == CONE:
         size = math.sqrt(x1 * x1 + x2 * x2)
         if size <= mu * x0:
@@ -64,6 +74,14 @@ def nearest(kind, mu, h1, h2, x0, x1, x2):
         n = max(0.0, (x0 - mu * (h1 * x1 + h2 * x2)) / (1.0 + mu * mu * (h1 * h1 + h2 * h2)))
         return n, -mu * n * h1, -mu * n * h2
     return max(0.0, x0), x1, x2
+
+
+@kernel
+def in_disc(radius, x1, x2):
+    """Return the nearest point of the disc |p_t| <= radius, in which p_n = radius."""
+    size = math.sqrt(x1 * x1 + x2 * x2)
+    r = radius / size if size > radius else 1.0
+    return radius, r * x1, r * x2
 
 
 @kernel

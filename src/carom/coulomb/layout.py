@@ -9,7 +9,7 @@ import numpy as np
 from carom.system.arrays import table
 
 # What a contact may do.
-CONE, SLIDING, STICKING = 0, 1, 2
+CONE, SLIDING, STICKING, DISC = range(4)
 
 # How a solve ended.
 SOLVED, NOT_SOLVED, BAD_INPUT = 0, 1, 2
@@ -28,7 +28,7 @@ MESSAGES = {
 CONTACT = [
     ("mu", "f8"),
     ("kind", "i8"),
-    ("h1", "f8"),  # direction of slip where that is known
+    ("h1", "f8"),  # direction of slip where that is known; of a DISC, its radius
     ("h2", "f8"),
     ("scale", "f8"),  # impulse / scaled impulse
 ]

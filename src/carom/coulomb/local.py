@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from carom.coulomb.layout import CONE, SLIDING
+from carom.coulomb.layout import CONE, DISC, SLIDING
 from carom.coulomb.one import solve_one
 from carom.impact.rays import solve_tangential
 from carom.jit import kernel
@@ -14,6 +14,8 @@ def solve_local(contact, w00, w01, w02, w11, w12, w22, c0, c1, c2):
     kind, mu = contact.kind, contact.mu
     if kind == CONE:
         return solve_one(w00, w01, w02, w11, w12, w22, c0, c1, c2, mu)
+    if kind == DISC:
+        return solve_one(1.0, 0.0, 0.0, w11, w12, w22, -contact.h1, c1, c2, 1.0)
     if kind == SLIDING:
         h1, h2 = contact.h1, contact.h2
         if c0 >= 0.0:

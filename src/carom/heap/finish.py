@@ -26,6 +26,8 @@ def finish(system, controls, held, k, h, fall, start, end, heap, work, clock, re
         pressure = 0.5 * p[0] * (u[0] + w[0])
         rubbing = 0.5 * (p[1] * (u[1] + w[1]) + p[2] * (u[2] + w[2]))
         clock.friction += rubbing
+        if spot.turns > 0:
+            continue
         if p[0] > 0.0 and spot.strikes == 1:
             clock.impacts += pressure
             write_impact(
@@ -78,8 +80,13 @@ def list_held(system, held, k, h, tolerance, end, heap, clock, records):
         spot, point = heap.spots[i], heap.points[1][i]
         p, c = spot.impulse, spot.contact
         contact, x = system.contacts[c], end[point.a].x
+        if spot.turns > 0:
+            take_torque(heap, spot, point.length / h)
+            continue
+        spot.place = -1
         if not (p[0] > 0.0 and spot.strikes == 0) or count == heap.held.shape[0]:
             continue
+        spot.place = count
         hold = heap.held[count]
         _, w1, w2 = contact_velocity(heap.points[0][i], end)
         slips = math.sqrt(w1 * w1 + w2 * w2) > max(tolerance, 10.0 * slow(contact, end))
@@ -107,6 +114,19 @@ def list_held(system, held, k, h, tolerance, end, heap, clock, records):
             hold = held.points[i]
             note_event(system, hold.contact, hold.feature, OPENS, 0, clock, records)
     return count
+
+
+@kernel
+def take_torque(heap, spot, factor):
+    """Put the torque of rolling or of pivoting into the list."""
+    place, p = heap.spots[spot.parent].place, spot.impulse
+    if place < 0:
+        return
+    torque = heap.held[place].torque
+    if spot.turns == 1:
+        torque[1], torque[2] = factor * p[1], factor * p[2]
+    else:
+        torque[0] = factor * p[1]
 
 
 @kernel

@@ -15,6 +15,9 @@ SPOT = [
     ("contact", "i8"),
     ("feature", "i8"),
     ("point", "f8", 3),  # of the first body, its axes
+    ("turns", "i8"),  # of its POINT
+    ("parent", "i8"),  # of rolling and pivoting: the spot whose normal impulse bounds the torque
+    ("place", "i8"),  # among the held points after the step, -1 where it is none
     ("held", "i8"),  # its place among the held points, -1 where it is open
     ("gap", "f8"),  # at the start
     ("left", "f8"),  # at the end, without contacts

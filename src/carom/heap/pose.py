@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from carom.coulomb.layout import CONE
+from carom.coulomb.layout import CONE, DISC
 from carom.coulomb.solve import set_contact
 from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.jit import kernel
@@ -17,14 +17,24 @@ def pose(system, held, k, h, fall, start, heap):
         contact, p = system.contacts[spot.contact], heap.p
         spot.before[0], spot.before[1], spot.before[2] = contact_velocity(point, start)
         spot.free[0], spot.free[1], spot.free[2] = contact_velocity(point, heap.flight)
-        set_bound(spot, contact, h, fall)
-        set_link(system, point, heap.flight, contact.friction, heap.problem, i)
+        set_link(system, point, heap.flight, heap.problem, i)
         for r in range(3):
-            heap.c[3 * i + r] = spot.free[r]
-            p[3 * i + r] = h * held.points[spot.held].force[r] if spot.held >= 0 else 0.0
+            heap.c[3 * i + r], p[3 * i + r] = spot.free[r], 0.0
+        row = heap.problem.contact[i]
+        if spot.turns > 0:
+            row.kind, row.mu = DISC, 1.0
+            if spot.held >= 0:
+                torque, s = held.points[spot.held].torque, h / point.length
+                p[3 * i + 1] = s * (torque[1] if spot.turns == 1 else torque[0])
+                p[3 * i + 2] = s * torque[2] if spot.turns == 1 else 0.0
+            continue
+        set_bound(spot, contact, h, fall)
         heap.c[3 * i] -= spot.bound
+        row.kind, row.mu = CONE, contact.friction
         if spot.held >= 0:
-            heap.problem.contact[i].mu = contact.friction_held
+            row.mu = contact.friction_held
+            for r in range(3):
+                p[3 * i + r] = h * held.points[spot.held].force[r]
 
 
 @kernel
@@ -46,7 +56,7 @@ def set_bound(spot, contact, h, fall):
 
 
 @kernel
-def set_link(system, point, flight, mu, work, i):
+def set_link(system, point, flight, work, i):
     """Write rows G of a point for both bodies, M^-1 G^T, and their product, scaled."""
     link, contact, E = work.link[i], work.contact[i], point.axes
     link.body[0], link.body[1] = point.a, point.b
@@ -61,8 +71,7 @@ def set_link(system, point, flight, mu, work, i):
         body, q, J = system.bodies[b], flight[b].Q, system.bodies[b].inertia
         G, Y = link.rows[side], link.response[side]
         for r in range(3):
-            x, y, z = sign * E[r, 0], sign * E[r, 1], sign * E[r, 2]
-            a = cross(arm[0], arm[1], arm[2], x, y, z)
+            x, y, z, a = row_of(point, sign, r, arm, E)
             G[r, 0], G[r, 1], G[r, 2] = x, y, z
             G[r, 3], G[r, 4], G[r, 5] = a
             Y[0, r], Y[1, r], Y[2, r] = x / body.mass, y / body.mass, z / body.mass
@@ -75,7 +84,7 @@ def set_link(system, point, flight, mu, work, i):
                 for j in range(6):
                     local[at] += G[r, j] * Y[j, s]
                 at += 1
-    set_contact(contact, mu, CONE, (0.0, 0.0), local[0] + local[3] + local[5])
+    set_contact(contact, 0.0, CONE, (0.0, 0.0), local[0] + local[3] + local[5])
     scale = contact.scale
     for j in range(6):
         local[j] *= scale * scale
@@ -85,3 +94,19 @@ def set_link(system, point, flight, mu, work, i):
                 for a in range(3):
                     link.rows[side, a, r] *= scale
                     link.response[side, r, a] *= scale
+
+
+@kernel
+def row_of(point, sign, r, arm, E):
+    """Return row r of a point for one body: linear part, angular part.
+
+    Of rolling and pivoting the angular part is a direction times a length, and the normal row is none.
+    """
+    x, y, z = sign * E[r, 0], sign * E[r, 1], sign * E[r, 2]
+    if point.turns == 0:
+        return x, y, z, cross(arm[0], arm[1], arm[2], x, y, z)
+    s = sign * point.length
+    if r == 0 or (point.turns == 2 and r == 2):
+        s = 0.0
+    t = 0 if point.turns == 2 else r
+    return 0.0, 0.0, 0.0, (s * E[t, 0], s * E[t, 1], s * E[t, 2])

@@ -56,7 +56,15 @@ def gather(system, held, h, fall, state, heap, work):
         if k < 0:
             return -1
         for i in range(first, k):
-            find_held(system, held, heap.spots[i], state, heap)
+            find_held(held, heap.spots[i], heap)
+        last = k
+        for i in range(first, last):
+            for turns in range(1, 3):
+                if contact.turning[turns - 1] > 0.0:
+                    if k == heap.spots.shape[0]:
+                        return -1
+                    take_turning(heap.spots[i], heap.spots[k], i, turns)
+                    k += 1
     return k
 
 
@@ -94,8 +102,16 @@ def add_touches(system, contact, c, reach, state, k, heap, work):
 @kernel
 def take(spot, c, feature, gap, p0, p1, p2):
     """Write a point that may touch."""
-    spot.contact, spot.feature, spot.gap, spot.held = c, feature, gap, -1
+    spot.contact, spot.feature, spot.gap, spot.held, spot.turns = c, feature, gap, -1, 0
     spot.point[0], spot.point[1], spot.point[2] = p0, p1, p2
+
+
+@kernel
+def take_turning(parent, spot, i, turns):
+    """Write the rolling (turns = 1) or pivoting (2) of spot i."""
+    p = parent.point
+    take(spot, parent.contact, parent.feature, parent.gap, p[0], p[1], p[2])
+    spot.turns, spot.parent, spot.held = turns, i, parent.held
 
 
 @kernel
@@ -110,7 +126,7 @@ def chain(system, held, heap):
 
 
 @kernel
-def find_held(system, held, spot, state, heap):
+def find_held(held, spot, heap):
     """Note which held point a spot is."""
     i = held.brinks[spot.contact].seen - 1
     while i >= 0:
@@ -130,6 +146,7 @@ def place_all(system, k, state, heap, points, work):
         contact = system.contacts[c]
         if contact.touches == 0:
             place(contact, heap.spots[i].point, state, points[i])
+            points[i].turns, points[i].length = heap.spots[i].turns, contact.extent
             i += 1
             continue
         count = find_touches(system, contact, state, HELD_REACH * smaller(contact), work)
@@ -137,4 +154,5 @@ def place_all(system, k, state, heap, points, work):
             spot = heap.spots[i]
             t = which_touch(system, contact, count, spot.feature, spot.point, state, work)
             write_touch(contact, work.touches[t], state, points[i])
+            points[i].turns, points[i].length = spot.turns, smaller(contact)
             i += 1

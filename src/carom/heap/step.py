@@ -82,7 +82,7 @@ def move_on(system, controls, held, now, begin, h, heap, work, clock, records):
         heap.spots[i].left = heap.points[1][i].gap
     place_all(system, k, work.stage, heap, heap.points[0], work)
     pose(system, held, k, h, fall, now, heap)
-    gamma, residual = relax(heap, k, FINE * controls.rest * fall * h, SWEEPS, clock)
+    gamma, residual = relax(system, heap, k, FINE * controls.rest * fall * h, SWEEPS, clock)
     for i in range(k):
         for j in range(3):
             heap.spots[i].impulse[j] = heap.p[3 * i + j]
