@@ -45,6 +45,9 @@ from carom.system.notes import begin_event, end_event
 LOCATE, PROJECT, WORK = range(3)
 STEP_CUT, TOO_MANY, NOT_FINITE = 2, 3, 4
 NOTHING, STRIKE, HOLD, SETTLE = range(4)
+NO_CONVERGENCE = 1
+TRIES = 3000  # trial steps in a step, before it is given up
+UNSOLVED = 0.01  # residual of held contacts, as a part of what gravity gives in a step: the same
 
 
 class Controls(NamedTuple):
@@ -70,6 +73,7 @@ class Controls(NamedTuple):
     press_at: int
     heap_at: int
     heap: int  # an island of so many bodies takes its steps whole
+    retry: int  # 1: a step that does not get on is given up, to be taken whole
 
 
 @inlined
@@ -100,6 +104,9 @@ def advance(
             while True:
                 applied, friction, code = step(method, system, held, now, dt, trial, work)
                 clock.trials += 1
+                clock.tries += 1
+                if controls.retry == 1 and clock.tries > TRIES:
+                    return TOO_MANY
                 if code != 0:
                     return code
                 if held.count[0] > 0:
@@ -153,6 +160,8 @@ def advance(
                 dt = propose(search)
             if search.pending != NOTHING:
                 continue
+            if controls.retry == 1 and held.count[0] > 0 and unsolved(system, controls, work):
+                return NO_CONVERGENCE
             accept(now, trial, dt, applied, friction, begin, clock)
             if strayed(system, now, dt, work):
                 return r.STRAYED
@@ -215,6 +224,14 @@ def full(system, held, clock, records):
     if last > records.event.shape[0] or clock.touched + rows > records.touch.shape[0]:
         return True
     return clock.snapped + 2 * (system.bodies.shape[0] + rows) > records.snapshot.shape[0]
+
+
+@kernel
+def unsolved(system, controls, work):
+    """Return whether the contact problem of the last trial step was not solved."""
+    g = system.gravity
+    gained = controls.step * math.sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2])
+    return gained > 0.0 and not work.result[0].residual <= UNSOLVED * gained
 
 
 @inlined

@@ -35,7 +35,7 @@ def run(
             if code == 0:
                 leave(islands, own)
         if code != 0:
-            if not lost(islands, code, held, clocks):
+            if not lost(islands, controls, code, held, clocks):
                 return code
             continue
         if clock.touched + held.points.shape[0] > records.touch.shape[0]:
@@ -132,7 +132,8 @@ def _move_island(
     records,
 ):  # fmt: skip
     """Move an island to the end of the step: event by event, or whole if it is large."""
-    if part.bodies.shape[0] < controls.heap:
+    n = part.bodies.shape[0]
+    if n < controls.heap and (n == 1 or islands.plan[0].whole == 0):
         return advance(
             part, method, controls, own, here, begin, length, cluster, corner, work, clocks, records
         )
@@ -157,20 +158,29 @@ def _leave_island(islands, own):
 
 
 @kernel
-def _all_lost(islands, code, held, clocks):
+def _all_lost(islands, controls, code, held, clocks):
     """There is nothing to do again."""
     return False
 
 
 @kernel
-def _island_lost(islands, code, held, clocks):
-    """Go back to the start of the step after a failure, or to do it again with more room; return whether so."""
+def _island_lost(islands, controls, code, held, clocks):
+    """Go back to the start of the step; return whether it is to be done again.
+
+    With more room for bodies that have left theirs; with islands as heaps where one could not go from event to event.
+    """
     if r.FULL <= code < r.STRAYED:
         return False  # the caller sees to it, and comes back
+    alone, plan = parts.alone(islands), islands.plan[0]
     parts.forget_step(held, clocks, islands)
     if code == r.STRAYED:
-        islands.plan[0].widen *= 2.0
-    return code == r.STRAYED
+        plan.widen *= 2.0
+        return True
+    if plan.whole == 1 or alone or controls.hold == 0:
+        return False
+    plan.whole = 1
+    clocks[0].whole += 1
+    return True
 
 
 @kernel

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from carom import loop, march, save
+from carom.coulomb.newton import newton_unit
 from carom.geometry import quaternion
 from carom.heap.layout import new_heap, roomier_heap
 from carom.heap.step import heap_unit
@@ -91,6 +92,7 @@ class Run:
             press_at=0,
             heap_at=0,
             heap=options.heap,
+            retry=0,
         )
         self.held = r.new_held(system)
         self.work = r.new_work(system, self.method.b.size)
@@ -103,6 +105,7 @@ class Run:
             self.work.body.group = system.bodies.component
         apart = method == "rk4" and impact_location == "locate"
         self.islands = new_islands(system, self.held) if apart else NoIslands(0)
+        self.controls = self.controls._replace(retry=int(isinstance(self.islands, Islands)))
         self.cluster = new_cluster(system)
         self.heap = new_heap(1, 1, 1)  # made when there is one
         self.corner = new_corner(system, corner_settings(options))
@@ -182,6 +185,9 @@ class Run:
         """Compile the step of a heap: only when the first one is met."""
         system = self.compiled.system
         self.heap = new_heap(len(system.bodies), len(self.held.points), 8 * len(system.bodies))
+        problem = self.heap.problem
+        newton = address(newton_unit, problem, 1, 1.0, True)
+        self.heap = self.heap._replace(problem=problem._replace(newton=newton))
         found = address(
             heap_unit, system, self.controls, self.held, self.now, 0.0, 0.0, self.heap, self.work,
             self.clock, self.records,
@@ -219,7 +225,9 @@ class Run:
             elif code == r.NEEDS_HEAP:
                 self.find_heap()
             elif code == r.NEEDS_SPOTS:
+                newton = self.heap.problem.newton
                 self.heap = roomier_heap(self.heap)
+                self.heap = self.heap._replace(problem=self.heap.problem._replace(newton=newton))
             elif code == r.NEEDS_ROOM:
                 assert isinstance(self.islands, Islands)
                 self.islands = roomier(self.islands)

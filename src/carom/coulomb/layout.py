@@ -51,6 +51,7 @@ VECTORS = 11
 # Numbers of a search.
 ITERATIONS = 0
 ROWS = 1  # of the factors at hand, -1 where there are none
+LIMIT = 3  # most steps of one call of Newton, 0: what is usual
 NEAR = 2  # 1: of several solutions the one near the start is wanted, not that of least norm
 
 
@@ -61,7 +62,7 @@ class ConeWork(NamedTuple):
     newton: int  # of what it calls
     contact: np.recarray  # (K,) CONTACT
     vector: np.ndarray  # (VECTORS, 3K)
-    count: np.ndarray  # (3,) int64
+    count: np.ndarray  # (4,) int64
     mismatch: np.ndarray  # (1,) what Newton reached
     W: np.ndarray  # (3K, 3K) scaled inverse mass: each diagonal block has trace 3
     matrix: np.ndarray  # (3K, 3K) of a linear system, and its factors
@@ -85,7 +86,7 @@ def cone_arrays(capacity: int) -> ConeWork:
         0,
         table(CONTACT, contacts),
         np.zeros((VECTORS, n)),
-        np.zeros(3, dtype=np.int64),
+        np.zeros(4, dtype=np.int64),
         np.zeros(1),
         np.zeros((n, n)),
         np.zeros((n, n)),

@@ -29,10 +29,10 @@ def newton_unit(work, k, eps, patient):
     hand (work.count[ROWS] >= 0) are tried first.
     """
     p, step, change = work.vector[o.P], work.vector[o.STEP], work.vector[o.CHANGE]
-    count = 0
+    count, limit = 0, work.count[o.LIMIT] if work.count[o.LIMIT] > 0 else _LIMIT
     size = _arrive(work, k, eps)
     before1, before2, before3 = 0.0, 0.0, 0.0
-    while count < _LIMIT and size > 0.0:
+    while count < limit and size > 0.0:
         count += 1
         chord = work.count[o.ROWS] >= 0
         if not chord:

@@ -48,7 +48,7 @@ def search_unit(work, k):
                 p[i] = given[i]
         elif start > 1:
             _approach(work, k, (start - 2) % 3, (start - 2) // 3)
-        r, goal, tolerance = _polished(
+        r, goal, tolerance = polished(
             work, k, start == 0 and work.count[o.NEAR] == 0, start % 3 == 2
         )
         if r < least:
@@ -121,7 +121,7 @@ def _release(work, k):
 
 
 @kernel
-def _polished(work, k, least_norm, patient):
+def polished(work, k, least_norm, patient):
     """Newton until the proximal term has no effect; return (residual, goal, tolerance).
 
     The term is centred at 0, for the solution of least norm, or at p; then it is moved to each new solution

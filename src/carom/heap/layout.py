@@ -8,6 +8,7 @@ import numpy as np
 
 from carom.coulomb.arrays import ISLAND_BODY, LINK, PLACE, IslandWork
 from carom.coulomb.layout import CONTACT, VECTORS
+from carom.heap.graph import WORD
 from carom.system.arrays import HELD, POINT, STATE, table
 
 #: a point that may touch in the step
@@ -29,6 +30,16 @@ SPOT = [
 ]
 
 
+class Graph(NamedTuple):
+    """What finding an order of elimination needs (`carom.heap.graph`)."""
+
+    count: np.ndarray  # (4,) bodies, points, updates (-1: no room), pairs
+    body: np.ndarray  # (K, 2) bodies of each point
+    near: np.ndarray  # (N, words) neighbours, a bit each
+    degree: np.ndarray  # (N,) how many, -1 once eliminated
+    rank: np.ndarray  # (N,) place in the order
+
+
 class Heap(NamedTuple):
     """K points at most, of N bodies; P points are held at most. Vectors have rows n, t1, t2 a point."""
 
@@ -37,6 +48,7 @@ class Heap(NamedTuple):
     c: np.ndarray  # (3K,) velocities without impulses, less their bounds
     p: np.ndarray  # (3K,) impulses
     problem: IslandWork
+    graph: Graph
     flight: np.recarray  # (N,) STATE at the end of the step without contacts
     held: np.recarray  # (P,) HELD, as it will be
     follows: np.ndarray  # (P,) next held point of the same contact, -1 after the last
@@ -46,19 +58,21 @@ class Heap(NamedTuple):
 
 def new_heap(bodies: int, held: int, points: int) -> Heap:
     """Return the scratch for `points` points that may touch, and `held` that may be held."""
+    # what 500 spheres in a box need is half of this; where it is not enough there are sweeps only
+    pairs, updates = 4 * points, 128 * points
     problem = IslandWork(
         address=0,
         newton=0,
         contact=table(CONTACT, points),
         link=table(LINK, points),
         vector=np.zeros((VECTORS, 3 * points)),
-        count=np.zeros(3, dtype=np.int64),
+        count=np.zeros(4, dtype=np.int64),
         mismatch=np.zeros(1),
         body=table(ISLAND_BODY, bodies),
-        place=table(PLACE, 0),  # no factors are made
-        later=np.zeros(0, dtype=np.int64),
-        target=np.zeros((0, 3), dtype=np.int64),
-        block=np.zeros((0, 6, 6)),
+        place=table(PLACE, bodies),
+        later=np.zeros(pairs, dtype=np.int64),
+        target=np.zeros((updates, 3), dtype=np.int64),
+        block=np.zeros((bodies + 2 * pairs, 6, 6)),
         sums=np.zeros((2, bodies, 6)),
     )
     return Heap(
@@ -67,6 +81,13 @@ def new_heap(bodies: int, held: int, points: int) -> Heap:
         c=np.zeros(3 * points),
         p=np.zeros(3 * points),
         problem=problem,
+        graph=Graph(
+            count=np.zeros(4, dtype=np.int64),
+            body=np.zeros((points, 2), dtype=np.int64),
+            near=np.zeros((bodies, bodies // WORD + 1), dtype=np.int64),
+            degree=np.zeros(bodies, dtype=np.int64),
+            rank=np.zeros(bodies, dtype=np.int64),
+        ),
         flight=table(STATE, bodies),
         held=table(HELD, held),
         follows=np.zeros(held, dtype=np.int64),

@@ -1,8 +1,6 @@
 """The contact problem by sweeps: each contact in turn solved exactly, the others as they are (Gauss-Seidel).
 
-A sweep costs 60 ns a contact and goes on from the last step's impulses. Newton on the graph of the bodies
-(`carom.coulomb.solve_island`) takes as long for one factor as a hundred sweeps, and needs hundreds of factors
-where a thousand contacts slip and open.
+A sweep costs 60 ns a contact, and goes on from the last step's impulses.
 """
 
 from __future__ import annotations
@@ -17,25 +15,29 @@ EACH = 10  # sweeps between looks at the residual
 
 
 @kernel
-def relax(system, heap, k, tolerance, most, clock):
-    """Sweep until the residual is below the tolerance [m/s], or round-off; return a factor, and the residual.
+def relax(system, heap, k, tolerance, most):
+    """Sweep until the residual is below the tolerance [m/s], or round-off; return a factor.
 
-    Impulses go to `heap.p`; the motion that they cause, over the factor, to the bodies of the problem.
+    The motion that the impulses cause, over the factor, goes to the bodies of the problem.
     """
-    work = heap.problem
-    gamma, done = scale_vectors(work, k, heap.c, heap.p), 0
+    gamma = scale_vectors(heap.problem, k, heap.c, heap.p)
+    sweep_until(system, heap, k, tolerance / gamma, most)
+    impart(heap.problem, k)
+    return gamma
+
+
+@kernel
+def sweep_until(system, heap, k, tolerance, most):
+    """Sweep until the scaled residual is below the tolerance; return it, what round-off makes of it, and how often."""
+    work, done = heap.problem, 0
     r, goal, _ = residual(work, k)
-    while not gamma * r <= max(tolerance, gamma * goal) and done < most:
+    while not r <= max(tolerance, goal) and done < most:
         bound_torques(system, heap, k)
         for i in range(EACH):
             sweep(work, k, i % 2 == 1)
         done += EACH
         r, goal, _ = residual(work, k)
-    impart(work, k)
-    for i in range(3 * k):
-        heap.p[i] = gamma * work.contact[i // 3].scale * work.vector[P, i]
-    clock.rounds += done
-    return gamma, gamma * r
+    return r, goal, done
 
 
 @kernel

@@ -18,7 +18,7 @@ from carom.dispatch import by_address
 from carom.geometry.rotation import rotate, rotate_back
 from carom.heap.finish import finish
 from carom.heap.pose import pose
-from carom.heap.relax import relax
+from carom.heap.solve import solve
 from carom.heap.spots import gather, norm, place_all
 from carom.heap.surface import move, onto_surfaces
 from carom.hold.middle import halfway, spin_momentum
@@ -27,7 +27,6 @@ from carom.motion.explicit import keep
 from carom.motion.free import free_flight
 from carom.system import records as r
 
-SWEEPS = 200  # most in a step; what is left shows in the residual
 FINE = 0.1  # of the speed below which bodies rest: to be reached, or they never would
 FAR = 0.25  # of its ball: a body goes no further in a piece of the step
 
@@ -82,7 +81,7 @@ def move_on(system, controls, held, now, begin, h, heap, work, clock, records):
         heap.spots[i].left = heap.points[1][i].gap
     place_all(system, k, work.stage, heap, heap.points[0], work)
     pose(system, held, k, h, fall, now, heap)
-    gamma, residual = relax(system, heap, k, FINE * controls.rest * fall * h, SWEEPS, clock)
+    gamma, residual = solve(system, heap, k, n, FINE * controls.rest * fall * h, clock)
     for i in range(k):
         for j in range(3):
             heap.spots[i].impulse[j] = heap.p[3 * i + j]
@@ -92,7 +91,7 @@ def move_on(system, controls, held, now, begin, h, heap, work, clock, records):
     gain(system, gamma, heap, work.trial)
     move(n, 0.5 * h * gamma, work.trial, heap.problem)
     respin(system, heap.flight, work.trial)
-    onto_surfaces(system, k, n, work.trial, heap, clock, work)
+    onto_surfaces(system, k, n, work.trial, heap, work)
     clock.now = begin + clock.spent + h
     finish(system, controls, held, k, h, fall, now, work.trial, heap, work, clock, records)
     for b in range(n):

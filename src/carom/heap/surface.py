@@ -19,7 +19,7 @@ PASSES, SWEEPS = 6, 200
 
 
 @kernel
-def onto_surfaces(system, k, count, end, heap, clock, work):
+def onto_surfaces(system, k, count, end, heap, work):
     """Move the bodies apart where points have sunk in; `heap.points[1]` are those at the end."""
     problem = heap.problem
     for i in range(k):
@@ -37,7 +37,7 @@ def onto_surfaces(system, k, count, end, heap, clock, work):
                 heap.p[3 * i + r] = 0.0
         if deepest == 0.0:
             break
-        gamma, _ = relax(system, heap, k, tiny, SWEEPS, clock)
+        gamma = relax(system, heap, k, tiny, SWEEPS)
         move(count, gamma, end, problem)
 
 

@@ -123,6 +123,7 @@ def enter(part, own, held, work, islands, begin, clock):
         own.count[0] += 1
     regroup(part, own, work)
     clock.spent, clock.in_step, clock.at_once, clock.now = 0.0, 0, 0, begin
+    clock.tries = 0
     islands.plan[0].entered = 1
 
 
@@ -138,6 +139,13 @@ def slot_of(islands, i, c):
         else:
             high = middle
     return low - first
+
+
+@kernel
+def alone(islands):
+    """Return whether the island at hand is one body."""
+    at = islands.plan[0].at
+    return islands.first[0, at + 1] - islands.first[0, at] == 1
 
 
 @kernel
@@ -177,7 +185,7 @@ def end_step(system, held, now, length, clock, work, islands):
     for i in range(plan.kept):
         held.points[i] = islands.points[1, i]
     held.count[0] = plan.kept
-    plan.planned, plan.widen = 0, 1.0
+    plan.planned, plan.widen, plan.whole = 0, 1.0, 0
 
 
 @kernel

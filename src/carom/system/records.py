@@ -48,10 +48,15 @@ CLOCK = [
     ("at_once", "i8"),  # impacts and events since time last went on
     ("cuts", "i8"),
     ("trials", "i8"),
+    ("tries", "i8"),  # trial steps of the present step of an island
     ("located", "i8"),
     ("holds", "i8"),
     ("pressed", "i8"),  # steps of groups held at several points, on trial too
     ("rounds", "i8"),  # of their iteration
+    (
+        "whole",
+        "i8",
+    ),  # steps whose islands were taken as heaps, as one could not go from event to event
     ("residual", "f8"),  # greatest of held contacts since the last saved row
 ]
 

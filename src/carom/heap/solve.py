@@ -1,0 +1,93 @@
+"""The contact problem of a heap: sweeps, then Newton on the graph of the bodies as far as that pays.
+
+Sweeps go on well from the last step's impulses where bodies move about, and hardly get on where one stands on the other (80 corners of
+twenty boxes: 1e-2 of g h after 200). Newton does the latter in a few factors, and needs hundreds of them where a
+thousand contacts slip and open.
+"""
+
+from __future__ import annotations
+
+from carom.coulomb import layout as o
+from carom.coulomb.arrays import IslandWork
+from carom.coulomb.island import impart
+from carom.coulomb.search import polished
+from carom.coulomb.solve import scale_vectors
+from carom.heap.graph import find_order
+from carom.heap.relax import sweep_until
+from carom.jit import kernel
+
+FIRST, MOST = 50, 200  # sweeps before Newton, and in all
+SWEEP, UPDATE, CONTACT = 60.0, 130.0, 1000.0  # cost [ns] of a contact in a sweep, of factors
+SHARE = 4.0  # of what all sweeps cost: for Newton
+
+
+@kernel
+def solve(system, heap, k, n, tolerance, clock):
+    """Solve for the impulses `heap.p`; return a factor, and the residual [m/s].
+
+    The motion that they cause, over the factor, goes to the bodies of the problem.
+    """
+    work = heap.problem
+    gamma = scale_vectors(work, k, heap.c, heap.p)
+    r, goal, done = sweep_until(system, heap, k, tolerance / gamma, FIRST)
+    if r > max(tolerance / gamma, goal) and not_turning(heap, k):
+        r = newton_on_graph(heap, k, n, r)
+    if r > max(tolerance / gamma, goal):
+        r, _, more = sweep_until(system, heap, k, tolerance / gamma, MOST - FIRST)
+        done += more
+    impart(work, k)
+    for i in range(3 * k):
+        heap.p[i] = gamma * work.contact[i // 3].scale * work.vector[o.P, i]
+    clock.rounds += done
+    return gamma, gamma * r
+
+
+@kernel
+def not_turning(heap, k):
+    """Return whether no torques of rolling or pivoting are among the unknowns: their bounds follow in sweeps."""
+    for i in range(k):
+        if heap.spots[i].turns > 0:
+            return False
+    return True
+
+
+@kernel
+def newton_on_graph(heap, k, n, before):
+    """Improve the scaled impulses at hand; return the residual of what is better."""
+    if not find_order(n, k, heap):
+        return before
+    pairs, updates = heap.graph.count[3], heap.graph.count[2]
+    factors = SHARE * MOST * SWEEP * k / (UPDATE * updates + CONTACT * k)
+    if factors < 3.0:
+        return before
+    work = part(heap.problem, n, pairs, updates)
+    p, best = work.vector[o.P], work.vector[o.BEST]
+    for i in range(3 * k):
+        best[i] = p[i]
+    work.count[o.LIMIT] = int(factors)
+    r, _, _ = polished(work, k, False, True)
+    if not r < before:
+        for i in range(3 * k):
+            p[i] = best[i]
+        return before
+    return r
+
+
+@kernel
+def part(work, n, pairs, updates):
+    """Return the problem with its arrays as long as the bodies and blocks at hand are many."""
+    return IslandWork(
+        work.address,
+        work.newton,
+        work.contact,
+        work.link,
+        work.vector,
+        work.count,
+        work.mismatch,
+        work.body[:n],
+        work.place[:n],
+        work.later[:pairs],
+        work.target[:updates],
+        work.block[: n + 2 * pairs],
+        work.sums,
+    )
