@@ -11,8 +11,8 @@ from carom.scene.bodies import Body, HalfSpace
 from carom.scene.materials import ContactLaw
 
 
-class AllPairs(NamedTuple):
-    """C pairs: of bodies and half-spaces, body by body; then of two bodies."""
+class PairTable(NamedTuple):
+    """C pairs that may touch: a body, and a half-space or another body."""
 
     body: np.ndarray  # (C,) its index
     other: np.ndarray  # (C,) index of the other body, -1 for a half-space
@@ -21,9 +21,10 @@ class AllPairs(NamedTuple):
     laws: list[ContactLaw]
 
 
-def no_pairs() -> AllPairs:
+def no_pairs() -> PairTable:
     """Return an empty list of pairs."""
-    return AllPairs(*np.zeros((4, 0), dtype=np.int64), [])
+    none = np.zeros(0, dtype=np.int64)
+    return PairTable(none, none, none, none, [])
 
 
 def all_pairs(
@@ -31,10 +32,11 @@ def all_pairs(
     half_spaces: Sequence[HalfSpace],
     left_out: Iterable[frozenset],
     law: Callable[[Body, Body | HalfSpace], ContactLaw],
-) -> AllPairs:
-    """Return the pairs of bodies with shapes that are not `left_out`.
+) -> PairTable:
+    """Return all pairs of bodies with shapes that are not `left_out`.
 
-    `law` is asked once for each pair of materials, with the first pair that has them.
+    First those of bodies and half-spaces, body by body, then those of two bodies. `law` is asked once for each
+    pair of materials, with the first pair that has them.
     """
     grounded, joined = _open(bodies, half_spaces, left_out)
     (b, h), (i, j) = np.nonzero(grounded), np.nonzero(joined)
@@ -49,10 +51,10 @@ def all_pairs(
     _, first, which = np.unique(materials, return_index=True, return_inverse=True)
     order = np.argsort(first)  # a pair that has no law is refused in the order of the pairs
     laws = [
-        law(bodies[body[k]], half_spaces[plane[k]] if other[k] < 0 else bodies[other[k]])
-        for k in first[order]
+        law(bodies[b], half_spaces[h] if j < 0 else bodies[j])
+        for b, j, h in np.stack([body, other, plane], axis=1)[first[order]].tolist()
     ]
-    return AllPairs(body, other, plane, np.argsort(order)[which], laws)
+    return PairTable(body, other, plane, np.argsort(order)[which], laws)
 
 
 def _open(bodies, half_spaces, left_out) -> tuple[np.ndarray, np.ndarray]:
@@ -70,7 +72,7 @@ def _open(bodies, half_spaces, left_out) -> tuple[np.ndarray, np.ndarray]:
     return grounded, joined
 
 
-def near(pairs: AllPairs, bodies: Sequence[Body], half_spaces: Sequence[HalfSpace]) -> np.ndarray:
+def near(pairs: PairTable, bodies: Sequence[Body], half_spaces: Sequence[HalfSpace]) -> np.ndarray:
     """Return the pairs, by number, where the balls around the bodies reach the other."""
     places = np.array([body.position for body in bodies]).reshape(-1, 3)
     sizes = np.array([0.0 if body.shape is None else body.shape.size for body in bodies])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom.scene.all_pairs import AllPairs, all_pairs, near, no_pairs
+from carom.scene.all_pairs import PairTable, all_pairs, near, no_pairs
 from carom.scene.bodies import Body, HalfSpace
 from carom.scene.contacts import check_overlap
 from carom.scene.materials import ContactLaw, checked_rule, law_of
@@ -62,12 +62,12 @@ class Pairs:
             return None
         return self.law(body, other, {})
 
-    def by_default(self, bodies, half_spaces) -> AllPairs:
+    def by_default(self, bodies, half_spaces) -> PairTable:
         """Return all pairs that touch without a contact of their own, with their laws."""
         if self.default is None:
             return no_pairs()
         left_out = self._own | self._ignored
-        return all_pairs(bodies, half_spaces, left_out, lambda *pair: self.law(*pair, {}))
+        return all_pairs(bodies, half_spaces, left_out, lambda a, b: self.law(a, b, {}))
 
     def check_all(self, bodies, half_spaces) -> None:
         """Refuse pairs that touch by default and start inside each other, or have no law."""

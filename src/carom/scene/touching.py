@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from carom.scene.all_pairs import AllPairs
+from carom.scene.all_pairs import PairTable
 from carom.scene.bodies import Body, HalfSpace
 from carom.scene.contacts import Contact, make_contact
 from carom.scene.materials import ContactLaw, Rule
@@ -144,7 +144,7 @@ class TouchingPairs:
         """
         return self._pairs.default_law(body, other)
 
-    def pairs_by_default(self) -> AllPairs:
+    def pairs_by_default(self) -> PairTable:
         """Return all pairs that touch by `set_contact_default`, with their laws, as arrays.
 
         Raises

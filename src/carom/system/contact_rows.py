@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom.scene.all_pairs import AllPairs
+from carom.scene.all_pairs import PairTable
 from carom.scene.bodies import HalfSpace
 from carom.scene.scene import Scene
 from carom.system.arrays import table
@@ -21,24 +21,22 @@ class Rows(NamedTuple):
     other: np.recarray  # (R,) CORE of the other body, zero for a half-space
 
 
-def touching_pairs(scene: Scene) -> AllPairs:
+def touching_pairs(scene: Scene) -> PairTable:
     """Return the pairs of the contacts of a scene: those added, then those of `set_contact_default`."""
-    added = scene.contacts
-    planes = [isinstance(c.other, HalfSpace) for c in added]
-    index = np.array([c.other.index for c in added], dtype=np.int64)
-    rest = scene.pairs_by_default()
-    own = (
-        np.array([c.body.index for c in added], dtype=np.int64),
-        np.where(planes, -1, index),
-        np.where(planes, index, -1),
-        np.arange(len(added)),
+    added, rest = scene.contacts, scene.pairs_by_default()
+    body = np.array([c.body.index for c in added], dtype=np.int64)
+    other = np.array([c.other.index for c in added], dtype=np.int64)
+    planes = np.array([isinstance(c.other, HalfSpace) for c in added], dtype=bool)
+    return PairTable(
+        np.append(body, rest.body),
+        np.append(np.where(planes, -1, other), rest.other),
+        np.append(np.where(planes, other, -1), rest.plane),
+        np.append(np.arange(len(added)), rest.law + len(added)),
+        [*added, *rest.laws],
     )
-    shifted = rest._replace(law=rest.law + len(added))
-    columns = [np.concatenate([a, b]) for a, b in zip(own, shifted)]
-    return AllPairs(*columns, [*added, *rest.laws])
 
 
-def contact_rows(pairs: AllPairs, grounded: Cores, single: Cores) -> Rows:
+def contact_rows(pairs: PairTable, grounded: Cores, single: Cores) -> Rows:
     """Return the rows of contacts: one for each core on a half-space, and for each two pieces of bodies.
 
     `grounded` are the cores of bodies against half-spaces, `single` those of their pieces one by one.

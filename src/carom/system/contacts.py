@@ -6,7 +6,7 @@ import numpy as np
 
 from carom.contact.pairs.layout import NoHulls, solid_table
 from carom.options import Options
-from carom.scene.all_pairs import AllPairs
+from carom.scene.all_pairs import PairTable
 from carom.scene.contacts import IMPACT_LAWS
 from carom.scene.scene import Scene
 from carom.scene.shapes import Shape
@@ -55,7 +55,7 @@ def _write_half_spaces(rows: np.recarray, scene: Scene, plane: np.ndarray) -> No
 
 
 def _write_shapes(rows: np.recarray, which: Rows) -> None:
-    """Write what touches, by whom its points are found, and its sizes."""
+    """Write of which form and size the two are, and who finds the points where they touch."""
     core, other = which.core, which.other
     rows.touches = np.where(rows.other >= 0, 1, core.curved)
     rows.part = np.maximum(core.several, other.several)
@@ -69,16 +69,17 @@ def _write_vertices(rows: np.recarray, which: Rows, grounded: Cores, single: Cor
     A vertex on a half-space is a feature that a contact is held at: each contact has its own. Points of two
     bodies are found anew in each state, and all contacts of a piece share its vertices.
     """
-    flat, core, other = rows.other < 0, which.core, which.other
+    core, other, flat, pair = which.core, which.other, rows.touches == 0, rows.other >= 0
     length = np.where(flat, core.last - core.first, 0)
-    rows.last = np.cumsum(length)
-    rows.first = rows.last - length
-    own = np.repeat(core.first - rows.first, length) + np.arange(length.sum())
-    rows.first[flat & (length == 0)] = rows.last[flat & (length == 0)] = 0
-    pair = ~flat
-    rows.first[pair], rows.last[pair] = core.first[pair] + len(own), core.last[pair] + len(own)
-    rows.other_first[pair] = other.first[pair] + len(own)
-    rows.other_last[pair] = other.last[pair] + len(own)
+    last = np.cumsum(length)
+    first = last - length
+    own = np.repeat(core.first - first, length) + np.arange(length.sum())
+    rows.first[flat], rows.last[flat] = first[flat], last[flat]
+    shared = len(own)
+    rows.first[pair], rows.last[pair] = core.first[pair] + shared, core.last[pair] + shared
+    rows.other_first[pair], rows.other_last[pair] = (
+        other.first[pair] + shared, other.last[pair] + shared,
+    )  # fmt: skip
     return np.concatenate([grounded.vertices[own], single.vertices])
 
 
@@ -96,7 +97,7 @@ def _write_solids(rows: np.recarray, which: Rows, scene: Scene, to_principal: np
     return solids, hulls if shapes else NoHulls(0)
 
 
-def _write_laws(rows: np.recarray, pairs: AllPairs, which: Rows) -> None:
+def _write_laws(rows: np.recarray, pairs: PairTable, which: Rows) -> None:
     """Write the law of each contact to its rows."""
     law, laws = pairs.law[which.number], pairs.laws
     for name in ("friction", "friction_held", "restitution", "stiffness"):
