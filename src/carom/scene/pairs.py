@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from carom.scene.all_pairs import PairTable, all_pairs, near, no_pairs
 from carom.scene.bodies import Body, HalfSpace
 from carom.scene.contacts import check_overlap
 from carom.scene.materials import ContactLaw, checked_rule, law_of
@@ -56,54 +57,28 @@ class Pairs:
         """Return the law by which a pair touches without a contact of its own; None if it does not."""
         no_shape = any(isinstance(part, Body) and part.shape is None for part in (body, other))
         key = _key(body, other)
-        if self.default is None or no_shape or body is other or key in self._own | self._ignored:
+        left_out = key in self._own or key in self._ignored
+        if self.default is None or no_shape or body is other or left_out:
             return None
         return self.law(body, other, {})
 
+    def by_default(self, bodies, half_spaces) -> PairTable:
+        """Return all pairs that touch without a contact of their own, with their laws."""
+        if self.default is None:
+            return no_pairs()
+        left_out = self._own | self._ignored
+        return all_pairs(bodies, half_spaces, left_out, lambda a, b: self.law(a, b, {}))
+
     def check_all(self, bodies, half_spaces) -> None:
         """Refuse pairs that touch by default and start inside each other, or have no law."""
-        if self.default is None:
-            return
-        solid = [body for body in bodies if body.shape is not None]
-        for body in solid:
-            for plane in half_spaces:
-                if self.default_law(body, plane) is not None:
-                    check_overlap(f"{body.name!r} and {plane.name!r}", body, plane)
-        for i, j in _near(solid):
-            if self.default_law(solid[i], solid[j]) is not None:
-                names = f"{solid[i].name!r} and {solid[j].name!r}"
-                check_overlap(names, solid[i], solid[j])
-        self._check_materials([*solid, *half_spaces])
-
-    def _check_materials(self, parts) -> None:
-        """Refuse materials that no rule combines, also of pairs that are still apart."""
-        kinds: dict = {}
-        for part in parts:
-            kinds.setdefault((part.material, isinstance(part, HalfSpace)), []).append(part)
-        chosen = [part for same in kinds.values() for part in same[:2]]
-        for k, first in enumerate(chosen):
-            for second in chosen[:k]:
-                if isinstance(first, HalfSpace) and isinstance(second, HalfSpace):
-                    continue
-                body, other = (second, first) if isinstance(first, HalfSpace) else (first, second)
-                self.default_law(body, other)
+        pairs = self.by_default(bodies, half_spaces)
+        for b in np.union1d(pairs.body, pairs.other[pairs.other >= 0]):
+            _ = bodies[b].shape.pieces  # refused by a shape that has nothing to touch with
+        for k in near(pairs, bodies, half_spaces):
+            body, other = bodies[pairs.body[k]], pairs.other[k]
+            other = half_spaces[pairs.plane[k]] if other < 0 else bodies[other]
+            check_overlap(f"{body.name!r} and {other.name!r}", body, other)
 
 
 def _key(first, second):
     return frozenset((first, second))
-
-
-def _near(bodies) -> np.ndarray:
-    """Return the pairs (m,2) of bodies whose bounding balls overlap."""
-    if len(bodies) < 2:
-        return np.zeros((0, 2), dtype=np.int64)
-    from scipy.spatial import KDTree
-
-    centres = np.array([body.position for body in bodies])
-    sizes = np.array([body.shape.size for body in bodies])
-    tree, found = KDTree(centres), []
-    for i, (centre, size) in enumerate(zip(centres, sizes)):
-        for j in tree.query_ball_point(centre, size + sizes.max()):
-            if j > i and np.linalg.norm(centres[j] - centre) <= size + sizes[j]:
-                found.append((i, j))
-    return np.array(found, dtype=np.int64).reshape(-1, 2)

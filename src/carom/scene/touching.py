@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from carom.scene.all_pairs import PairTable
 from carom.scene.bodies import Body, HalfSpace
 from carom.scene.contacts import Contact, make_contact
 from carom.scene.materials import ContactLaw, Rule
@@ -142,6 +143,16 @@ class TouchingPairs:
             If materials are given that no rule combines.
         """
         return self._pairs.default_law(body, other)
+
+    def pairs_by_default(self) -> PairTable:
+        """Return all pairs that touch by `set_contact_default`, with their laws, as arrays.
+
+        Raises
+        ------
+        ValueError
+            If materials are given that no rule combines.
+        """
+        return self._pairs.by_default(self._parts.parts(Body), self._parts.parts(HalfSpace))
 
     @property
     def contacts(self) -> tuple[Contact, ...]:

@@ -145,8 +145,9 @@ def new_held(system: System) -> Held:
     """Return what is held at the start: nothing, and all contacts are to be looked at first."""
     contacts = system.contacts
     grounded = int(np.sum((contacts.touches == 1) & (contacts.other < 0)))
+    between = max(len(system.bodies), len(system.solids))  # bodies, or pieces of them
     held = Held(
-        points=table(HELD, len(system.vertices) + 24 * len(system.bodies) + 8 * grounded),
+        points=table(HELD, len(system.vertices) + 24 * between + 8 * grounded),
         brinks=table(BRINK, system.contacts.size),
         carries=np.zeros(len(system.vertices), dtype=np.int64),
         count=np.zeros(1, dtype=np.int64),

@@ -1,0 +1,55 @@
+"""The contacts of a scene, own ones and those of all pairs, and the rows of each: one for two cores."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from carom.scene.all_pairs import PairTable
+from carom.scene.bodies import HalfSpace
+from carom.scene.scene import Scene
+from carom.system.arrays import table
+from carom.system.cores import CORE, Cores
+
+
+class Rows(NamedTuple):
+    """R rows: what touches what."""
+
+    number: np.ndarray  # (R,) of the contact
+    core: np.recarray  # (R,) CORE of the body
+    other: np.recarray  # (R,) CORE of the other body, zero for a half-space
+
+
+def touching_pairs(scene: Scene) -> PairTable:
+    """Return the pairs of the contacts of a scene: those added, then those of `set_contact_default`."""
+    added, rest = scene.contacts, scene.pairs_by_default()
+    body = np.array([c.body.index for c in added], dtype=np.int64)
+    other = np.array([c.other.index for c in added], dtype=np.int64)
+    planes = np.array([isinstance(c.other, HalfSpace) for c in added], dtype=bool)
+    return PairTable(
+        np.append(body, rest.body),
+        np.append(np.where(planes, -1, other), rest.other),
+        np.append(np.where(planes, other, -1), rest.plane),
+        np.append(np.arange(len(added)), rest.law + len(added)),
+        [*added, *rest.laws],
+    )
+
+
+def contact_rows(pairs: PairTable, grounded: Cores, single: Cores) -> Rows:
+    """Return the rows of contacts: one for each core on a half-space, and for each two pieces of bodies.
+
+    `grounded` are the cores of bodies against half-spaces, `single` those of their pieces one by one.
+    """
+    between = pairs.other >= 0
+    mine, others = np.diff(single.first)[pairs.body], np.diff(single.first)[pairs.other]
+    count = np.where(between, mine * others, np.diff(grounded.first)[pairs.body])
+    number = np.repeat(np.arange(len(count)), count)
+    k = np.arange(len(number)) - np.repeat(np.cumsum(count) - count, count)
+    core, other = table(CORE, len(number)), table(CORE, len(number))
+    flat = ~between[number]
+    core[flat] = grounded.group[grounded.first[pairs.body[number[flat]]] + k[flat]]
+    pair, k = number[~flat], k[~flat]
+    core[~flat] = single.group[single.first[pairs.body[pair]] + k // others[pair]]
+    other[~flat] = single.group[single.first[pairs.other[pair]] + k % others[pair]]
+    return Rows(number, core, other)
