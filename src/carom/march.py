@@ -167,7 +167,8 @@ def _all_lost(islands, controls, code, held, clocks):
 def _island_lost(islands, controls, code, held, clocks):
     """Go back to the start of the step; return whether it is to be done again.
 
-    With more room for bodies that have left theirs; with islands as heaps where one could not go from event to event.
+    With more room for bodies that have left theirs; with islands as heaps where one could not go from event
+    to event.
     """
     if r.FULL <= code < r.STRAYED:
         return False  # the caller sees to it, and comes back

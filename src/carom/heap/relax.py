@@ -28,7 +28,7 @@ def relax(system, heap, k, tolerance, most):
 
 @kernel
 def sweep_until(system, heap, k, tolerance, most):
-    """Sweep until the scaled residual is below the tolerance; return it, what round-off makes of it, and how often."""
+    """Sweep until the scaled residual is small; return it, what round-off makes of it, and how often."""
     work, done = heap.problem, 0
     r, goal, _ = residual(work, k)
     while not r <= max(tolerance, goal) and done < most:
