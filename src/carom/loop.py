@@ -46,7 +46,10 @@ LOCATE, PROJECT, WORK = range(3)
 STEP_CUT, TOO_MANY, NOT_FINITE = 2, 3, 4
 NOTHING, STRIKE, HOLD, SETTLE = range(4)
 NO_CONVERGENCE = 1
-TRIES = 3000  # trial steps in a step, before it is given up
+TRIES, EFFORT = (
+    3000,
+    2e7,
+)  # of a step, before it is given up: trial steps, and work for held contacts
 UNSOLVED = 0.01  # residual of held contacts, as a part of what gravity gives in a step: the same
 
 
@@ -105,7 +108,7 @@ def advance(
                 applied, friction, code = step(method, system, held, now, dt, trial, work)
                 clock.trials += 1
                 clock.tries += 1
-                if controls.retry == 1 and clock.tries > TRIES:
+                if controls.retry == 1 and (clock.tries > TRIES or clock.effort > EFFORT):
                     return TOO_MANY
                 if code != 0:
                     return code

@@ -35,7 +35,7 @@ def run(
             if code == 0:
                 leave(islands, own)
         if code != 0:
-            if not lost(islands, controls, code, held, clocks):
+            if not lost(islands, controls, code, held, clocks, work):
                 return code
             continue
         if clock.touched + held.points.shape[0] > records.touch.shape[0]:
@@ -132,8 +132,8 @@ def _move_island(
     records,
 ):  # fmt: skip
     """Move an island to the end of the step: event by event, or whole if it is large."""
-    n = part.bodies.shape[0]
-    if n < controls.heap and (n == 1 or islands.plan[0].whole == 0):
+    if not parts.is_heap(part, controls.heap, clocks[0].step, work):
+        parts.recover(part, clocks[0].step, work)
         return advance(
             part, method, controls, own, here, begin, length, cluster, corner, work, clocks, records
         )
@@ -158,13 +158,13 @@ def _leave_island(islands, own):
 
 
 @kernel
-def _all_lost(islands, controls, code, held, clocks):
+def _all_lost(islands, controls, code, held, clocks, work):
     """There is nothing to do again."""
     return False
 
 
 @kernel
-def _island_lost(islands, controls, code, held, clocks):
+def _island_lost(islands, controls, code, held, clocks, work):
     """Go back to the start of the step; return whether it is to be done again.
 
     With more room for bodies that have left theirs; with islands as heaps where one could not go from event
@@ -172,16 +172,15 @@ def _island_lost(islands, controls, code, held, clocks):
     """
     if r.FULL <= code < r.STRAYED:
         return False  # the caller sees to it, and comes back
-    alone, plan = parts.alone(islands), islands.plan[0]
+    again = code == r.STRAYED
+    if again:
+        islands.plan[0].widen *= 2.0
+    elif controls.hold == 1:
+        again = parts.tire(islands, clocks[0].step, work)
     parts.forget_step(held, clocks, islands)
-    if code == r.STRAYED:
-        plan.widen *= 2.0
-        return True
-    if plan.whole == 1 or alone or controls.hold == 0:
-        return False
-    plan.whole = 1
-    clocks[0].whole += 1
-    return True
+    if again and code != r.STRAYED:
+        clocks[0].whole += 1
+    return again
 
 
 @kernel

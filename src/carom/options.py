@@ -36,7 +36,7 @@ class Options:
         problem (Moreau 1988), which is the quickest and meant for heaps. (Mathematics page, V.)
     heap : int
         An island of this many bodies or more is a heap: it takes its steps whole, with all contacts in
-        one problem, Newton's law of impact, and order 1 in the times of impacts. Default 12.
+        one problem, Newton's law of impact, and order 1 in the times of impacts. Default 8.
         (Mathematics page, VI.9.)
     corner_tolerance : float
         Relative error of the velocities after a simultaneous impact. Default 1e-8.
@@ -79,7 +79,7 @@ class Options:
     gap_tolerance: float = 1e-15
     tie_tolerance: float = 1e-9
     multiple: str = "simultaneous"
-    heap: int = 12
+    heap: int = 8
     corner_tolerance: float = 1e-8
     corner_exponent: float = 1.0
     hold: bool = True

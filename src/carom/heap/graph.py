@@ -1,18 +1,18 @@
 """The order in which the bodies of a heap are eliminated, found anew when other bodies touch.
 
 Bodies are neighbours where they may touch. The one with fewest neighbours goes first, and makes those that it
-leaves neighbours of each other (least degree; rows of bits). The lists are those of `carom.coulomb.graph`, which
-makes them once, in Python.
+leaves neighbours of each other (least degree; rows of bits). The lists are those of `carom.coulomb.graph`,
+which makes them once, in Python.
 """
 
 from __future__ import annotations
 
-from carom.jit import kernel
+from carom.jit import entry, kernel
 
 WORD = 63  # bits of a row that an int64 takes
 
 
-@kernel
+@entry
 def find_order(n, k, heap):
     """Write the lists for the bodies and points at hand, unless they are known; return False without room."""
     graph, link = heap.graph, heap.problem.link

@@ -1,8 +1,8 @@
 """The contact problem of a heap: sweeps, then Newton on the graph of the bodies as far as that pays.
 
-Sweeps go on well from the last step's impulses where bodies move about, and hardly get on where one stands on the
-other (a tower of twenty boxes: 1e-2 of g h after 200, and it falls). Newton does the latter in a few factors, and
-needs hundreds of them where a thousand contacts slip and open.
+Sweeps go on well from the last step's impulses where bodies move about, and hardly get on where one stands on
+the other (a tower of twenty boxes: 1e-2 of g h after 200, and it falls). Newton does the latter in a few
+factors, and needs hundreds of them where a thousand contacts slip and open.
 """
 
 from __future__ import annotations

@@ -97,10 +97,11 @@ def press_group(system, controls, held, group, start, h, end, cluster, work, clo
             )
         pose(k, start, cluster, work)
         bound_turning(system, k, cluster)
-        solve_cones(
+        _, _, iterations = solve_cones(
             k, cluster.m[0], cluster.v[C], cluster.mu, cluster.kind, cluster.heading, cluster.v[P],
             cluster.cone,
         )  # fmt: skip
+        clock.effort += iterations * k * k
         change = moved(size, cluster)
         if change <= 1e-14 or (change <= 1e-7 and change >= 0.3 * before):
             break

@@ -19,7 +19,6 @@ PLAN = [
     ("entered", "i8"),  # 1 from when its bodies were taken until they are put back
     ("planned", "i8"),  # 1 while a step is going on
     ("widen", "f8"),  # how much more room than expected bodies are given
-    ("whole", "i8"),  # 1 where the step is done again, its islands as heaps
     ("pairs", "i8"),  # balls that overlap
     ("used", "i8"),  # contacts in all islands
     ("kept", "i8"),  # held points after the step, so far

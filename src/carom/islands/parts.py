@@ -123,7 +123,7 @@ def enter(part, own, held, work, islands, begin, clock):
         own.count[0] += 1
     regroup(part, own, work)
     clock.spent, clock.in_step, clock.at_once, clock.now = 0.0, 0, 0, begin
-    clock.tries = 0
+    clock.tries, clock.effort = 0, 0.0
     islands.plan[0].entered = 1
 
 
@@ -142,10 +142,39 @@ def slot_of(islands, i, c):
 
 
 @kernel
-def alone(islands):
-    """Return whether the island at hand is one body."""
-    at = islands.plan[0].at
-    return islands.first[0, at + 1] - islands.first[0, at] == 1
+def is_heap(part, least, step, work):
+    """Return whether an island takes its step whole: large, or of late unable to go from event to event."""
+    n = part.bodies.shape[0]
+    heap = n >= least
+    for b in range(n if n > 1 else 0):
+        heap = heap or work.body[b].whole_until > step
+    return heap
+
+
+@kernel
+def tire(islands, step, work):
+    """Have the bodies of the island at hand take this step and some more whole; return False if they do.
+
+    The more often in a row, the more of them: 1, 2, 4, ... 128.
+    """
+    first, at, new = islands.first, islands.plan[0].at, True
+    for slot in range(first[0, at], first[0, at + 1]):
+        new = new and not work.body[islands.body_of[slot]].whole_until > step
+    if not new or first[0, at + 1] - first[0, at] == 1:
+        return False
+    for slot in range(first[0, at], first[0, at + 1]):
+        memory = work.body[islands.body_of[slot]]
+        memory.whole_for = min(128, max(1, 2 * memory.whole_for))
+        memory.whole_until = step + memory.whole_for
+    return True
+
+
+@kernel
+def recover(part, step, work):
+    """Note that an island has gone from event to event."""
+    for b in range(part.bodies.shape[0]):
+        if work.body[b].whole_until < step:
+            work.body[b].whole_for //= 2
 
 
 @kernel
@@ -185,7 +214,7 @@ def end_step(system, held, now, length, clock, work, islands):
     for i in range(plan.kept):
         held.points[i] = islands.points[1, i]
     held.count[0] = plan.kept
-    plan.planned, plan.widen, plan.whole = 0, 1.0, 0
+    plan.planned, plan.widen = 0, 1.0
 
 
 @kernel

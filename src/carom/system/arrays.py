@@ -178,6 +178,8 @@ BODY_WORK = [
     ("spin", "f8", 3),  # angular velocity for which the invariants of free flight below hold
     ("momentum", "f8", 3),  # spatial angular momentum
     ("energy", "f8"),  # twice the energy of rotation
+    ("whole_until", "i8"),  # steps up to this are taken whole
+    ("whole_for", "i8"),  # for so many steps, when that was last found
     ("home", "f8", 3),  # centre at the start of the step
     ("room", "f8"),  # how far from it the centre may go in this step
 ]

@@ -49,6 +49,7 @@ CLOCK = [
     ("cuts", "i8"),
     ("trials", "i8"),
     ("tries", "i8"),  # trial steps of the present step of an island
+    ("effort", "f8"),  # iterations of its contact problems, times the squares of their sizes
     ("located", "i8"),
     ("holds", "i8"),
     ("pressed", "i8"),  # steps of groups held at several points, on trial too
