@@ -133,6 +133,8 @@ def _move_island(
 ):  # fmt: skip
     """Move an island to the end of the step: event by event, or whole if it is large."""
     if not parts.is_heap(part, controls.heap, clocks[0].step, work):
+        if own.count[0] > 0 and controls.hold_at == 0:  # by a heap
+            return r.NEEDS_HOLD
         parts.recover(part, clocks[0].step, work)
         return advance(
             part, method, controls, own, here, begin, length, cluster, corner, work, clocks, records
