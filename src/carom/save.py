@@ -69,5 +69,5 @@ def save_contacts(system, held, now, k, clock, work, records):
         o[0], o[1], o[2] = sx - mx, sy - my, sz - mz
         p[0], p[1], p[2] = fx, fy, fz
         for j in range(3):
-            touch.force[j] = f[j]
+            touch.force[j], touch.point[j] = f[j], now[hold.body].x[j] + arm[j]
         clock.touched += 1

@@ -101,6 +101,27 @@ class ContactTable(NamedTuple):
     mode: np.ndarray  #: (M,) "slipping" or "sticking" (or rolling, or at rest)
 
 
+class ForceTable(NamedTuple):
+    """Forces of contacts that stay, one row a held point and saved time, in the order of time."""
+
+    saved: np.ndarray  #: (M,) number of the saved time
+    contact: np.ndarray  #: (M,) index of the contact
+    body: np.ndarray  #: (M,) index of its body
+    other: np.ndarray  #: (M,) index of the other body, -1 for a half-space
+    mode: np.ndarray  #: (M,) "slipping" or "sticking" (or rolling, or at rest)
+    point: np.ndarray  #: (M, 3) where, world [m]
+    force: np.ndarray  #: (M, 3) on the body, contact axes [N]
+    vector: np.ndarray  #: (M, 3) the same in world axes [N]
+
+
+def force_table(touch) -> ForceTable:
+    """Return the forces of all held points that were saved, (M,)."""
+    row = touch[np.argsort(touch.saved, kind="stable")].view(np.recarray)
+    mode = np.array(["open", "slipping", "sticking"])[row.mode]
+    columns = (row.saved, row.contact, row.body, row.other, mode, row.point, row.force, row.push)
+    return ForceTable(*(np.array(column) for column in columns))
+
+
 def contact_table(event, kinds, first, end: float) -> ContactTable:
     """Return the intervals that events make.
 

@@ -70,6 +70,7 @@ TOUCH = [
     ("body", "i8"),
     ("other", "i8"),
     ("mode", "i8"),
+    ("point", "f8", 3),  # world
     ("force", "f8", 3),  # contact axes
     ("push", "f8", 3),  # the same in world axes
     ("moment", "f8", 3),
