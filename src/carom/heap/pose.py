@@ -16,10 +16,10 @@ def pose(system, held, k, h, fall, start, heap):
         spot, point = heap.spots[i], heap.points[0][i]
         contact, p = system.contacts[spot.contact], heap.p
         spot.before[0], spot.before[1], spot.before[2] = contact_velocity(point, start)
-        spot.free[0], spot.free[1], spot.free[2] = contact_velocity(point, heap.flight)
+        free = contact_velocity(point, heap.flight)
         set_link(system, point, heap.flight, heap.problem, i)
         for r in range(3):
-            heap.c[3 * i + r], p[3 * i + r] = spot.free[r], 0.0
+            heap.c[3 * i + r], p[3 * i + r] = free[r], 0.0
         row = heap.problem.contact[i]
         if spot.turns > 0:
             row.kind, row.mu = DISC, 1.0

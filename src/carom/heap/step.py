@@ -59,7 +59,7 @@ def piece(system, now, step, left):
     for b in range(now.shape[0]):
         way = (norm(now[b].v) + g * left) * left
         parts = max(parts, math.ceil(way / (FAR * system.bodies[b].ball)))
-    return left if parts == 1.0 else max(left / parts, 1e-4 * step)
+    return min(left, max(left / parts, 1e-4 * step))
 
 
 @kernel
