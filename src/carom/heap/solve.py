@@ -13,12 +13,12 @@ from carom.coulomb.island import impart
 from carom.coulomb.search import polished
 from carom.coulomb.solve import scale_vectors
 from carom.heap.graph import find_order
-from carom.heap.relax import sweep_until
+from carom.heap.sweeps import sweep_until
 from carom.jit import kernel
 
-FIRST, MOST = 50, 200  # sweeps before Newton, and in all
+FIRST, MOST = 40, 200  # sweeps before Newton, and in all
 SWEEP, UPDATE, CONTACT = 60.0, 130.0, 1000.0  # cost [ns] of a contact in a sweep, of factors
-SHARE = 4.0  # of what all sweeps cost: for Newton
+SHARE = 2.0  # of what all sweeps cost: for Newton
 
 
 @kernel

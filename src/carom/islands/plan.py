@@ -133,7 +133,12 @@ def number(system, held, now, work, islands):
         for i in range(plan.count + 1):
             islands.first[s, i] = 0
     give_slots(n, islands)
-    for phase in range(2):  # count, then fill
+    for phase in range(2):  # count, then fill; half-spaces first, as `set_contact_default` numbers them
+        for b in range(n):
+            if member[b].kind == MEETS:
+                for q in range(islands.plane_first[b], islands.plane_first[b + 1]):
+                    if near_plane(system, islands.plane[q], now, work):
+                        put(islands, phase, member[root(member, b)].island, islands.plane[q])
         for p in range(plan.pairs):
             i, j = islands.pair[p, 0], islands.pair[p, 1]
             island = member[root(member, i)].island
@@ -143,11 +148,6 @@ def number(system, held, now, work, islands):
             while q < islands.partner_first[i + 1] and islands.partner[0, q] == j:
                 put(islands, phase, island, islands.partner[1, q])
                 q += 1
-        for b in range(n):
-            if member[b].kind == MEETS:
-                for q in range(islands.plane_first[b], islands.plane_first[b + 1]):
-                    if near_plane(system, islands.plane[q], now, work):
-                        put(islands, phase, member[root(member, b)].island, islands.plane[q])
         if phase == 0:
             plan.used = ranges(islands, 1)
             if plan.used > islands.which.shape[0]:

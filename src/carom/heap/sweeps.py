@@ -5,25 +5,12 @@ A sweep costs 60 ns a contact, and goes on from the last step's impulses.
 
 from __future__ import annotations
 
-from carom.coulomb.island import impart, sweep
+from carom.coulomb.island import sweep
 from carom.coulomb.layout import P
 from carom.coulomb.search import residual
-from carom.coulomb.solve import scale_vectors
 from carom.jit import kernel
 
-EACH = 10  # sweeps between looks at the residual
-
-
-@kernel
-def relax(system, heap, k, tolerance, most):
-    """Sweep until the residual is below the tolerance [m/s], or round-off; return a factor.
-
-    The motion that the impulses cause, over the factor, goes to the bodies of the problem.
-    """
-    gamma = scale_vectors(heap.problem, k, heap.c, heap.p)
-    sweep_until(system, heap, k, tolerance / gamma, most)
-    impart(heap.problem, k)
-    return gamma
+EACH = 20  # sweeps between looks at the residual
 
 
 @kernel
