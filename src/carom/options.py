@@ -51,6 +51,9 @@ class Options:
     constraint_tolerance : float
         Greatest error of position (relative to the size of the bodies) and of velocity (relative
         to their speeds) that joints may have at the start. Default 1e-8.
+    project_start : bool
+        Take from the initial velocities what joints forbid: the least change in the kinetic metric. Default
+        False: velocities that break a joint are refused.
     drop_tolerance : float
         A constraint row is redundant when its pivot is below this part of its own diagonal. Default 1e-8.
     augmentation : float
@@ -85,6 +88,7 @@ class Options:
     hold: bool = True
     rest_tolerance: float = 1e-9
     constraint_tolerance: float = 1e-8
+    project_start: bool = False
     drop_tolerance: float = 1e-8
     augmentation: float = 1e-3
     natural_frequency: float = 1.0
@@ -111,7 +115,7 @@ class Options:
         check.choice("multiple", self.multiple, ("simultaneous", "sequential", "newton"))
         check.number("corner_tolerance", self.corner_tolerance, above=0.0, below=1.0)
         check.number("corner_exponent", self.corner_exponent, least=1.0, most=3.0)
-        for name in ("add_layer_time", "hold"):
+        for name in ("add_layer_time", "hold", "project_start"):
             if not isinstance(getattr(self, name), bool):
                 raise ValueError(f"{name} must be True or False, got {getattr(self, name)!r}")
 

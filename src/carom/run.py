@@ -18,6 +18,7 @@ from carom.islands.layout import Islands, NoIslands, new_islands, roomier
 from carom.jit import address
 from carom.motion.acceleration import acceleration_unit
 from carom.motion.explicit import constrained_unit, rk4
+from carom.motion.project import project_start
 from carom.motion.reactions import velocity_rows
 from carom.motion.solve import with_address
 from carom.motion.three_field import ThreeField
@@ -100,7 +101,9 @@ class Run:
             system = self.find_touches(system)
         system = with_address(system, self.now, self.work)
         self.compiled = self.compiled._replace(system=system)
-        check_start(scene, self.compiled, self.work, options)
+        if options.project_start and scene.joints:
+            project_start(system, self.now, self.work)
+        check_start(scene, self.compiled, self.now, self.work, options)
         if system.contacts.size:
             self.work.body.group = system.bodies.component
         apart = method == "rk4" and impact_location == "locate"
@@ -243,9 +246,9 @@ class Run:
         return Solution.from_run(self, status)
 
 
-def check_start(scene: Scene, compiled, work, options: Options) -> None:
+def check_start(scene: Scene, compiled, start, work, options: Options) -> None:
     """Refuse an initial velocity that breaks a joint, naming the joint and by how much."""
-    system, start = compiled.system, compiled.start
+    system = compiled.system
     if not scene.joints:
         return
     errors = np.zeros((len(scene.joints), 6))
@@ -259,7 +262,8 @@ def check_start(scene: Scene, compiled, work, options: Options) -> None:
             raise ValueError(
                 f"velocity of {joint.child.name!r} breaks joint {joint.name!r} ({joint.kind}): the "
                 f"joint's own velocity must be 0, got {np.max(np.abs(errors[j])):.6g}; give velocity "
-                "and angular_velocity of all joined bodies that fit their joints"
+                "and angular_velocity of all joined bodies that fit their joints, or "
+                "Options(project_start=True)"
             )
 
 

@@ -133,7 +133,9 @@ def number(system, held, now, work, islands):
         for i in range(plan.count + 1):
             islands.first[s, i] = 0
     give_slots(n, islands)
-    for phase in range(2):  # count, then fill; half-spaces first, as `set_contact_default` numbers them
+    for phase in range(
+        2
+    ):  # count, then fill; half-spaces first, as `set_contact_default` numbers them
         for b in range(n):
             if member[b].kind == MEETS:
                 for q in range(islands.plane_first[b], islands.plane_first[b + 1]):

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from carom.dispatch import only_with_joints
 from carom.geometry.rotation import exp, multiply, normalize
-from carom.jit import kernel
+from carom.jit import entry, kernel
 from carom.motion.contact_point import clear_wrenches
 from carom.motion.joints import position_error, velocity_error
 from carom.motion.solve import solve
@@ -71,6 +71,13 @@ def _project_velocity(system, state, work):
         for k in range(3):
             v[k] += motion[k]
             w[k] += motion[3 + k]
+
+
+@entry
+def project_start(system, state, work):
+    """Bring an initial state to the joints: what `Options.project_start` asks for."""
+    _project_position(system, state, work, 1e-14)
+    _project_velocity(system, state, work)
 
 
 @kernel

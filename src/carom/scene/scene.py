@@ -218,6 +218,30 @@ class Scene(TouchingPairs):
             check_gap(contact)
         self._pairs.check_all(self.bodies, self.half_spaces)
 
+    def check(self):
+        """Return the degrees of freedom of the scene, and which constraints are redundant.
+
+        Returns
+        -------
+        carom.system.mobility.Mobility
+            At the start: a mechanism may have more freedom in singular positions. Print it for a summary.
+
+        Raises
+        ------
+        ValueError
+            As of `validate`.
+
+        Examples
+        --------
+        >>> print(scene.check())
+        3 bodies, 20 constraint rows: 1 degrees of freedom
+        3 redundant rows, among a, b, c, d
+        """
+        from carom.system.mobility import mobility
+
+        self.validate()
+        return mobility(self)
+
     def __repr__(self) -> str:
         return f"<Scene: {counts(self)}>"
 
