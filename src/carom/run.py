@@ -17,7 +17,7 @@ from carom.impact.strike_several import corner_unit
 from carom.islands.layout import Islands, NoIslands, new_islands, roomier
 from carom.jit import address
 from carom.motion.acceleration import acceleration_unit
-from carom.motion.explicit import constrained_unit, rk4
+from carom.motion.explicit import EXPLICIT, constrained_unit, tableau
 from carom.motion.project import project_start
 from carom.motion.reactions import velocity_rows
 from carom.motion.solve import with_address
@@ -35,9 +35,8 @@ LOCATIONS = {"locate": loop.LOCATE, "project": loop.PROJECT, "work": loop.WORK}
 
 def make_method(name: str, options: Options):
     """Return the settings of a method by its name."""
-    tableau = rk4()
-    if name == "rk4":
-        return tableau
+    if name in EXPLICIT:
+        return tableau(name)
     return ThreeField(
         int(name == "paper-ode"),
         options.natural_frequency,
@@ -45,7 +44,7 @@ def make_method(name: str, options: Options):
         options.augmentation,
         options.residual_tolerance,
         options.max_iterations,
-        *tableau,
+        *tableau("rk4"),
     )
 
 
@@ -68,7 +67,7 @@ class Run:
             "duration": duration, "step": step, "method": method,
             "impact_location": impact_location, "save_every": save_every,
         }  # fmt: skip
-        paper = method != "rk4"
+        paper = method not in EXPLICIT
         self.compiled = compile_scene(scene, options, loops=paper)
         system, self.now = self.compiled.system, self.compiled.start
         self.method = make_method(method, options)
@@ -106,7 +105,7 @@ class Run:
         check_start(scene, self.compiled, self.now, self.work, options)
         if system.contacts.size:
             self.work.body.group = system.bodies.component
-        apart = method == "rk4" and impact_location == "locate"
+        apart = method in EXPLICIT and impact_location == "locate"
         self.islands = new_islands(system, self.held) if apart else NoIslands(0)
         self.controls = self.controls._replace(retry=int(isinstance(self.islands, Islands)))
         self.cluster = new_cluster(system)
@@ -159,13 +158,13 @@ class Run:
 
     def find_constrained_step(self) -> None:
         """Compile the step of bodies that are joined, loaded or held."""
-        system, tableau = self.compiled.system, (self.method.A, self.method.b)
+        system, coefficients = self.compiled.system, (self.method.A, self.method.b)
         found = address(
             acceleration_unit, system, self.now, self.held, self.work, self.work.stages[0]
         )
         self.compiled = self.compiled._replace(system=system._replace(acceleration_at=found))
         found = address(
-            constrained_unit, *tableau, self.compiled.system, self.held, self.now, 0.0, self.now,
+            constrained_unit, *coefficients, self.compiled.system, self.held, self.now, 0.0, self.now,
             self.work,
         )  # fmt: skip
         self.method = self.method._replace(address=found)

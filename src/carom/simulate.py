@@ -13,7 +13,7 @@ from carom.scene.scene import Scene
 from carom.solution import Solution
 from carom.status import SimulationError, Status
 
-METHODS = ("rk4", "paper", "paper-ode")
+METHODS = ("rk4", "rk5", "rk8", "paper", "paper-ode")
 LOCATIONS = ("locate", "project", "work")
 CHUNKS = 100  # calls of the compiled loop in one run, for progress and for Ctrl-C
 
@@ -40,9 +40,11 @@ def simulate(
         Time to simulate [s].
     step : float
         Time step h [s]. The last step is shorter where `duration` is not a multiple of it.
-    method : {"rk4", "paper", "paper-ode"}
+    method : {"rk4", "rk5", "rk8", "paper", "paper-ode"}
         How free motion is stepped. ``"rk4"`` (default): explicit, order 4, constraints exact, free bodies
-        exact in energy and momentum, impacts solved to round-off. ``"paper"``: the paper's chain,
+        exact in energy and momentum, impacts solved to round-off. ``"rk5"``, ``"rk8"``: the same with order
+        5 (6 stages) and 8 (12 stages), for joints, loads and contact held at one point; bodies of unequal
+        moments fly with order 4 all the same. ``"paper"``: the paper's chain,
         three fields of order 2 with exact constraints, impacts through the boundary layer by
         cubic splines. ``"paper-ode"``: the same with the paper's second-order equations of the multipliers
         instead of exact constraints.

@@ -62,10 +62,10 @@ def scene_of(case, law, state=None):
 
 
 @functools.cache
-def to_the_wall(case, law, method="rk4"):
+def to_the_wall(case, law, method="rk4", step=5e-4):
     """The run up to 0.2 s after the impact, in steps of 0.5 ms."""
     end = DATA["cases"][case]["impact_time"] + DATA["after"]
-    return carom.simulate(scene_of(case, law), end, step=5e-4, method=method, options=OPTIONS)
+    return carom.simulate(scene_of(case, law), end, step=step, method=method, options=OPTIONS)
 
 
 def rates(solution, t, side):
@@ -87,6 +87,16 @@ def test_rates_before_and_after(case, law):
     np.testing.assert_allclose(rates(s, t, "left"), known["rates_before"], rtol=0, atol=1e-9)
     after = known["laws"][law]["rates_after"]
     np.testing.assert_allclose(rates(s, t, "right"), after, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize(("case", "law"), ALL[:3])
+def test_order_eight_in_steps_of_10_ms(case, law):
+    """A twentieth of the steps; the impact is located by steps of the method itself."""
+    s, known = to_the_wall(case, law, "rk8", 0.01), DATA["cases"][case]
+    assert s.impacts[0].time == pytest.approx(known["impact_time"], abs=1e-11)
+    np.testing.assert_allclose(
+        -s.angular_velocity[-1, :2, 1], known["laws"][law]["rates_end"], rtol=0, atol=1e-8
+    )
 
 
 @pytest.mark.parametrize(("case", "law"), ALL)

@@ -51,6 +51,17 @@ def test_default_method_has_order_four():
     assert np.all(found[-1] < 1e-10)
 
 
+@pytest.mark.parametrize(
+    ("method", "steps", "order", "last"),
+    [("rk5", (1e-3, 5e-4), 5.0, 2e-10), ("rk8", (1e-2, 5e-3), 8.0, 3e-9)],
+)
+def test_methods_of_higher_order(method, steps, order, last):
+    """The reference itself is good to 4e-13."""
+    found = np.array([errors(simulate(0.2, h, method)) for h in steps])
+    assert np.all(orders(found) > order - 0.35)
+    assert np.all(found[-1] < last)
+
+
 def test_papers_method_has_order_two():
     found = np.array([errors(simulate(1.0, h, "paper"))[0] for h in (5e-4, 2.5e-4, 1.25e-4)])
     np.testing.assert_allclose(orders(found), 2.0, rtol=0, atol=0.1)

@@ -34,12 +34,26 @@ class Explicit(NamedTuple):
     address: int  # of the step for bodies that are joined, loaded or held; 0 while none is
 
 
-def rk4() -> Explicit:
-    """Return the classical Runge-Kutta method of order 4 (Kutta 1901)."""
-    A = np.zeros((4, 4))
-    A[1, 0] = A[2, 1] = 0.5
-    A[3, 2] = 1.0
-    return Explicit(A, np.array([1.0, 2.0, 2.0, 1.0]) / 6.0, 0)
+#: names of the explicit methods
+EXPLICIT = ("rk4", "rk5", "rk8")
+
+
+def tableau(name: str) -> Explicit:
+    """Return an explicit method: the classical one of order 4 (Kutta 1901); of order 5, 6 stages (Dormand
+    and Prince 1980); of order 8, 12 stages (Hairer, Norsett and Wanner 1993, DOP853).
+    """
+    if name == "rk4":
+        A = np.zeros((4, 4))
+        A[1, 0] = A[2, 1] = 0.5
+        A[3, 2] = 1.0
+        return Explicit(A, np.array([1.0, 2.0, 2.0, 1.0]) / 6.0, 0)
+    from scipy.integrate import DOP853, RK45
+
+    chosen = {"rk5": RK45, "rk8": DOP853}[name]
+    stages = len(chosen.B)
+    A = np.zeros((stages, stages))
+    A[:, : chosen.A.shape[1]] = chosen.A[:stages]
+    return Explicit(A, np.array(chosen.B), 0)
 
 
 @inlined
