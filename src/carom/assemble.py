@@ -8,6 +8,7 @@ import numpy as np
 
 from carom.geometry import quaternion
 from carom.ledger import Ledger
+from carom.motion.mounts import mounted
 from carom.status import Status
 from carom.system import records as r
 from carom.tables import LAWS, EventTable, ImpactTable, contact_table
@@ -75,6 +76,9 @@ def energies(system, state) -> tuple[np.ndarray, np.ndarray]:
         ]
         stretch = np.linalg.norm(ends[1] - ends[0], axis=-1) - s.rest_length
         potential += 0.5 * s.stiffness * stretch**2
+    for s in system.bushings:
+        d, turn, *_ = mounted(s, x, Q)
+        potential += 0.5 * (d**2 @ s.stiffness + turn**2 @ s.turn_stiffness)
     return kinetic, potential
 
 

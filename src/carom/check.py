@@ -81,6 +81,13 @@ def choice(name: str, value, allowed: Iterable[str]) -> str:
     raise ValueError(f"{name} must be one of {', '.join(map(repr, options))}, got {value!r}{hint}")
 
 
+def flag(name: str, value) -> bool:
+    """Return True or False."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise ValueError(f"{name} must be True or False, got {value!r}")
+    return bool(value)
+
+
 def unit_vector(name: str, value) -> np.ndarray:
     """Return `value` (3,) divided by its length; refuse a zero vector."""
     vector = finite_array(name, value, (3,))

@@ -29,7 +29,7 @@ from carom.contact.rim import OTHER_SIDE, SMOOTH, closed_rim, longest_way, same_
 from carom.dispatch import only_with_pairs
 from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.jit import kernel
-from carom.motion.forces import point_velocity
+from carom.motion.wrench import point_velocity
 from carom.system.arrays import FREE, RESTS
 
 

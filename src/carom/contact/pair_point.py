@@ -14,7 +14,7 @@ from carom.dispatch import only_with_pairs
 from carom.geometry.rotation import exp, multiply, normalize, rotate, rotate_back
 from carom.jit import kernel
 from carom.motion.contact_point import place
-from carom.motion.forces import point_velocity
+from carom.motion.wrench import point_velocity
 
 REACH = 1e-3  # of the smaller body: points that are looked for beyond the nearest
 HELD_REACH = 0.2  # the same for points that are held, which stay so while a step is found in rounds

@@ -65,6 +65,7 @@ def part_system(system, islands, i):
         system.joints,
         system.springs,
         system.loads,
+        system.bushings,
         islands.contacts[first[1, i] : first[1, i + 1]],
         system.vertices,
         system.solids,

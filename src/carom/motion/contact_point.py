@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from carom.geometry.rotation import cross, rotate
 from carom.jit import kernel
-from carom.motion.forces import add_force, point_velocity
 from carom.motion.solve import free_body, solve
+from carom.motion.wrench import add_force, point_velocity
 
 
 @kernel

@@ -39,8 +39,9 @@ EXPLICIT = ("rk4", "rk5", "rk8")
 
 
 def tableau(name: str) -> Explicit:
-    """Return an explicit method: the classical one of order 4 (Kutta 1901); of order 5, 6 stages (Dormand
-    and Prince 1980); of order 8, 12 stages (Hairer, Norsett and Wanner 1993, DOP853).
+    """Return an explicit method: `"rk4"`, the classical one (Kutta 1901); `"rk5"`, `"rk8"`.
+
+    Order 5 with 6 stages (Dormand and Prince 1980), order 8 with 12 (Hairer, Norsett and Wanner 1993, DOP853).
     """
     if name == "rk4":
         A = np.zeros((4, 4))

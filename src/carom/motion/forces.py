@@ -6,42 +6,9 @@ import math
 
 from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.jit import kernel
+from carom.motion.bushing import add_bushing, bushing_energy
 from carom.motion.joints import arm
-
-
-@kernel
-def point(state, b, local):
-    """Return the arm from the centre of body b (-1: ground) to `local`, and the point (world)."""
-    rx, ry, rz = arm(state, b, local)
-    if b < 0:
-        return rx, ry, rz, rx, ry, rz
-    x = state[b].x
-    return rx, ry, rz, rx + x[0], ry + x[1], rz + x[2]
-
-
-@kernel
-def point_velocity(state, b, rx, ry, rz):
-    """Return the velocity of the point at arm r of body b (-1: ground)."""
-    if b < 0:
-        return 0.0, 0.0, 0.0
-    v, w = state[b].v, state[b].w
-    ux, uy, uz = cross(w[0], w[1], w[2], rx, ry, rz)
-    return ux + v[0], uy + v[1], uz + v[2]
-
-
-@kernel
-def add_force(work, b, rx, ry, rz, fx, fy, fz):
-    """Add the force f at arm r to the wrench on body b (-1: ground)."""
-    if b < 0:
-        return
-    wrench = work.body[b].wrench
-    tx, ty, tz = cross(rx, ry, rz, fx, fy, fz)
-    wrench[0] += fx
-    wrench[1] += fy
-    wrench[2] += fz
-    wrench[3] += tx
-    wrench[4] += ty
-    wrench[5] += tz
+from carom.motion.wrench import add_force, point, point_velocity
 
 
 @kernel
@@ -66,8 +33,9 @@ def add_spring(spring, state, work):
 
 @kernel
 def add_load(load, state, work):
-    """Add a constant force and torque; return their power."""
-    b, f, t, w = load.body, load.force, load.torque, state[load.body].w
+    """Add a force and torque, constant in the world or in the axes of a body; return their power."""
+    b, w = load.body, state[load.body].w
+    f, t = arm(state, load.frame, load.force), arm(state, load.frame, load.torque)
     rx, ry, rz, _px, _py, _pz = point(state, b, load.anchor)
     add_force(work, b, rx, ry, rz, f[0], f[1], f[2])
     ux, uy, uz = point_velocity(state, b, rx, ry, rz)
@@ -101,6 +69,8 @@ def applied_wrenches(system, state, gyroscopic, work):
         power += add_spring(system.springs[i], state, work)
     for i in range(system.loads.shape[0]):
         power += add_load(system.loads[i], state, work)
+    for i in range(system.bushings.shape[0]):
+        power += add_bushing(system.bushings[i], state, work)
     return power
 
 
@@ -118,4 +88,6 @@ def potential_energy(system, state):
         dx, dy, dz = qx - px, qy - py, qz - pz
         stretch = math.sqrt(dx * dx + dy * dy + dz * dz) - s.rest_length
         potential += 0.5 * s.stiffness * stretch * stretch
+    for i in range(system.bushings.shape[0]):
+        potential += bushing_energy(system.bushings[i], state)
     return potential

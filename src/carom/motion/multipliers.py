@@ -27,6 +27,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from carom.geometry import quaternion
+from carom.motion.mounts import mount_wrench
 from carom.system import records as r
 from carom.system.arrays import DISTANCE, FIXED, KNIFE_EDGE, PRISMATIC, REVOLUTE, System
 from carom.system.compile import compile_scene
@@ -204,7 +205,7 @@ def _directions(joint, x, Q, v, w):
 
 
 def applied_force(system: System, x, Q, v, w) -> np.ndarray:
-    """Return gravity, springs, dampers and loads (T, N, 6): force, and torque in principal axes."""
+    """Return gravity, springs, dampers, mounts and loads (T, N, 6): force, and torque in principal axes."""
     out = np.zeros((*x.shape[:2], 6))
     out[..., :3] = system.bodies.mass[:, None] * system.gravity
 
@@ -229,8 +230,17 @@ def applied_force(system: System, x, Q, v, w) -> np.ndarray:
         add(c, ac, -pull)
         add(p, ap, pull)
     for load in system.loads:
-        b = int(load.body)
-        add(b, ends(b, load.anchor)[0], np.zeros_like(x[:, b]) + load.force, load.torque)
+        b, frame = int(load.body), int(load.frame)
+        force, torque = (
+            np.zeros_like(x[:, b]) + a if frame < 0 else quaternion.rotate(Q[:, frame], a)
+            for a in (load.force, load.torque)
+        )
+        add(b, ends(b, load.anchor)[0], force, torque)
+    for mount in system.bushings:
+        place, force, torque = mount_wrench(mount, x, Q, v, w)
+        for b, sign in ((int(mount.child), 1.0), (int(mount.parent), -1.0)):
+            if b >= 0:
+                add(b, place - x[:, b], sign * force, sign * torque)
     return out
 
 

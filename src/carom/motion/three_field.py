@@ -34,13 +34,14 @@ from carom.dispatch import by_solver
 from carom.geometry.rotation import exp, multiply, normalize, rotate, rotate_back
 from carom.jit import kernel
 from carom.motion.explicit import constrained, fly, keep, mark_held
-from carom.motion.forces import add_force, applied_wrenches
+from carom.motion.forces import applied_wrenches
 from carom.motion.free import invariants
 from carom.motion.joints import arm, parent_arm, position_error, velocity_error
 from carom.motion.loops import factor, substitute, subtract_rows
 from carom.motion.project import project_position
 from carom.motion.rows import direction, row_target
 from carom.motion.solve import free_body
+from carom.motion.wrench import add_force
 from carom.system.arrays import RESTS, FreeSolver, LoopSolver
 
 NO_CONVERGENCE = 1

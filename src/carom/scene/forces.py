@@ -1,7 +1,7 @@
-"""Forces on bodies, beyond gravity: springs with dampers, constant forces and torques.
+"""Forces on bodies, beyond gravity: springs with dampers, elastic mounts, forces and torques.
 
 Give a definition to `Scene.add_force`. Points are in the world as the system stands at the start,
-and then fixed in their body; vectors are in world axes and stay as they are.
+and then fixed in their body; vectors are in world axes and stay as they are, or follow the body.
 """
 
 from __future__ import annotations
@@ -71,32 +71,101 @@ class Spring:
 class Torque:
     """A constant torque `vector` (3,) [N m] on the child, in world axes.
 
-    Its opposite acts on the parent; the ground takes it without moving.
+    Its opposite acts on the parent; the ground takes it without moving. With `follow` the vector, as it is at
+    the start, turns with the child.
     """
 
     vector: np.ndarray
+    follow: bool
 
-    def __init__(self, vector: ArrayLike):
-        keep(self, vector=check.finite_array("vector", vector, (3,), unit="N m"))
+    def __init__(self, vector: ArrayLike, follow: bool = False):
+        vector = check.finite_array("vector", vector, (3,), unit="N m")
+        keep(self, vector=vector, follow=check.flag("follow", follow))
 
 
 @dataclass(frozen=True, init=False, eq=False)
 class Force:
     """A constant force `vector` (3,) [N], world axes, on a point of the child.
 
-    `anchor` (3,) is the point, in the world at the start [m]; None is the mass centre.
+    `anchor` (3,) is the point, in the world at the start [m]; None is the mass centre. With `follow` the
+    vector, as it is at the start, turns with the child (a thruster).
     """
 
     vector: np.ndarray
     anchor: np.ndarray | None
+    follow: bool
 
-    def __init__(self, vector: ArrayLike, anchor: ArrayLike | None = None):
+    def __init__(self, vector: ArrayLike, anchor: ArrayLike | None = None, follow: bool = False):
         vector = check.finite_array("vector", vector, (3,), unit="N")
-        keep(self, vector=vector, anchor=optional_point("anchor", anchor))
+        anchor = optional_point("anchor", anchor)
+        keep(self, vector=vector, anchor=anchor, follow=check.flag("follow", follow))
 
 
-ForceDefinition = Spring | Torque | Force
-FORCES = (Spring, Torque, Force)
+@dataclass(frozen=True, init=False, eq=False)
+class Bushing:
+    """An elastic mount of the child on the parent, relaxed as the system stands at the start.
+
+    It resists displacement along and across an axis of the parent, and turning about and across it: with the
+    displacement d and the rotation vector theta of the child seen from the parent, U = (d.K d + theta.K_t
+    theta)/2, for turns below half a turn.
+
+    Parameters
+    ----------
+    stiffness
+        [N/m], one number or (along the axis, across it), at least 0.
+    turn_stiffness
+        [N m/rad], the same about the axis and across it. Default 0.
+    damping, turn_damping
+        [N s/m], [N m s/rad], the same. Default 0.
+    axis : (3,), default (0, 0, 1)
+        In the world at the start; turns with the parent.
+    anchor : (3,), optional
+        Where it acts, in the world at the start [m]. Default: the mass centre of the child.
+
+    Attributes
+    ----------
+    stiffness, turn_stiffness, damping, turn_damping : (3,)
+        Along, or about, the axis and two directions across it.
+    """
+
+    stiffness: np.ndarray
+    turn_stiffness: np.ndarray
+    damping: np.ndarray
+    turn_damping: np.ndarray
+    axis: np.ndarray
+    anchor: np.ndarray | None
+
+    def __init__(
+        self,
+        stiffness: ArrayLike,
+        turn_stiffness: ArrayLike = 0.0,
+        damping: ArrayLike = 0.0,
+        turn_damping: ArrayLike = 0.0,
+        axis: ArrayLike = (0, 0, 1),
+        anchor: ArrayLike | None = None,
+    ):
+        keep(
+            self,
+            stiffness=_along_across("stiffness", stiffness, "N/m"),
+            turn_stiffness=_along_across("turn_stiffness", turn_stiffness, "N m/rad"),
+            damping=_along_across("damping", damping, "N s/m"),
+            turn_damping=_along_across("turn_damping", turn_damping, "N m s/rad"),
+            axis=check.unit_vector("axis", axis),
+            anchor=optional_point("anchor", anchor),
+        )
+
+
+def _along_across(name: str, value: ArrayLike, unit: str) -> np.ndarray:
+    """Return (along, across, across) from one number or a pair, at least 0."""
+    pair = np.full(2, value) if np.ndim(value) == 0 else value
+    pair = check.finite_array(name, pair, (2,), unit=unit)
+    if np.any(pair < 0.0):
+        raise ValueError(f"{name} must be at least 0, got {value!r} [{unit}]")
+    return np.array([pair[0], pair[1], pair[1]])
+
+
+ForceDefinition = Spring | Torque | Force | Bushing
+FORCES = (Spring, Torque, Force, Bushing)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -108,7 +177,7 @@ class AppliedForce:
     index : int
         Place in `Scene.forces`.
     name : str
-    definition : Spring, Torque or Force
+    definition : Spring, Torque, Force or Bushing
     parent : Body or carom.GROUND
     child : Body
     """

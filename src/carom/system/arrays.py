@@ -58,8 +58,28 @@ SPRING = [
     ("rest_length", "f8"),
 ]
 
-#: a constant force and torque (world axes) on a point of a body
-LOAD = [("body", "i8"), ("anchor", "f8", 3), ("force", "f8", 3), ("torque", "f8", 3)]
+#: a force and torque on a point of a body, constant in the axes of a body or of the world
+LOAD = [
+    ("body", "i8"),
+    ("frame", "i8"),  # the body whose axes the vectors are in, -1 for the world
+    ("anchor", "f8", 3),
+    ("force", "f8", 3),
+    ("torque", "f8", 3),
+]
+
+#: an elastic mount: springs and dampers along and about three axes of the parent
+BUSHING = [
+    ("parent", "i8"),
+    ("child", "i8"),
+    ("parent_anchor", "f8", 3),
+    ("child_anchor", "f8", 3),
+    ("parent_frame", "f8", 4),  # from the axes of the mount to those of the body
+    ("child_frame", "f8", 4),
+    ("stiffness", "f8", 3),
+    ("damping", "f8", 3),
+    ("turn_stiffness", "f8", 3),
+    ("turn_damping", "f8", 3),
+]
 
 #: hull of vertices, swollen by a radius, against a half-space; or two solids, the other perhaps a half-space
 CONTACT = [
@@ -284,6 +304,7 @@ class System(NamedTuple):
     joints: np.recarray  # (J,) JOINT
     springs: np.recarray  # SPRING
     loads: np.recarray  # LOAD
+    bushings: np.recarray  # BUSHING
     contacts: np.recarray  # (C,) CONTACT
     vertices: np.ndarray  # (V, 3) of all contacts, body axes
     solids: np.recarray  # SOLID of `carom.contact.pairs`, of bodies that may touch each other

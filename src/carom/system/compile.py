@@ -8,11 +8,11 @@ import numpy as np
 
 from carom.geometry import quaternion
 from carom.options import Options
-from carom.scene.forces import Spring, Torque
+from carom.scene.forces import Bushing, Force, Spring, Torque
 from carom.scene.joints import Distance, Fixed, KnifeEdge, Prismatic, Revolute, Spherical
 from carom.scene.scene import Scene
 from carom.system import arrays, graph, solvers
-from carom.system.arrays import BODY, JOINT, LOAD, SPRING, STATE, System, table
+from carom.system.arrays import BODY, BUSHING, JOINT, LOAD, SPRING, STATE, System, table
 from carom.system.contacts import compile_contacts
 from carom.system.frames import triad
 
@@ -41,11 +41,25 @@ def compile_scene(scene: Scene, options: Options, loops: bool = False) -> Compil
     frames = _Frames(start)
     joints, flipped, solver = _joints(scene, frames, options, loops)
     springs, loads = _springs(scene, frames), _loads(scene, frames)
-    bodies = _bodies(scene, moments, joints, springs, loads)
+    bushings = _bushings(scene, frames)
+    bodies = _bodies(scene, moments, joints, springs, loads, bushings)
     contacts, vertices, solids, hulls = compile_contacts(scene, to_principal, options)
     gravity = np.array(scene.gravity)
     system = System(
-        bodies, gravity, joints, springs, loads, contacts, vertices, solids, hulls, 0, 0, 0, solver
+        bodies,
+        gravity,
+        joints,
+        springs,
+        loads,
+        bushings,
+        contacts,
+        vertices,
+        solids,
+        hulls,
+        0,
+        0,
+        0,
+        solver,
     )
     return Compiled(system, start, to_principal, flipped)
 
@@ -156,24 +170,44 @@ def _springs(scene, frames):
 
 
 def _loads(scene, frames):
-    rows = []
+    rows, none = [], np.zeros(3)
     for f in scene.forces:
-        d, none = f.definition, np.zeros(3)
+        d = f.definition
+        if not isinstance(d, (Torque, Force)):
+            continue
+        frame = f.child.index if d.follow else -1
+        vector = frames.axes(f.child, d.vector[:, None])[:, 0] if d.follow else d.vector
         if isinstance(d, Torque):
-            rows.append((f.child.index, none, none, d.vector))
+            rows.append((f.child.index, frame, none, none, vector))
             if f.parent.index >= 0:
-                rows.append((f.parent.index, none, none, -d.vector))
-        elif not isinstance(d, Spring):
+                rows.append((f.parent.index, frame, none, none, -vector))
+        else:
             anchor = f.child.position if d.anchor is None else d.anchor
-            rows.append((f.child.index, frames.point(f.child, anchor), d.vector, none))
+            rows.append((f.child.index, frame, frames.point(f.child, anchor), vector, none))
     loads = table(LOAD, len(rows))
-    for k, (body, anchor, force, torque) in enumerate(rows):
-        loads.body[k] = body
+    for k, (body, frame, anchor, force, torque) in enumerate(rows):
+        loads.body[k], loads.frame[k] = body, frame
         loads.anchor[k], loads.force[k], loads.torque[k] = anchor, force, torque
     return loads
 
 
-def _bodies(scene, moments, joints, springs, loads):
+def _bushings(scene, frames):
+    chosen = [f for f in scene.forces if isinstance(f.definition, Bushing)]
+    bushings = table(BUSHING, len(chosen))
+    for b, f in zip(bushings, chosen):
+        d = f.definition
+        b.parent, b.child = f.parent.index, f.child.index
+        anchor, world = f.child.position if d.anchor is None else d.anchor, triad(d.axis)
+        b.parent_anchor[:] = frames.point(f.parent, anchor)
+        b.child_anchor[:] = frames.point(f.child, anchor)
+        b.parent_frame[:] = quaternion.from_matrix(frames.axes(f.parent, world))
+        b.child_frame[:] = quaternion.from_matrix(frames.axes(f.child, world))
+        for name in ("stiffness", "damping", "turn_stiffness", "turn_damping"):
+            b[name][:] = getattr(d, name)
+    return bushings
+
+
+def _bodies(scene, moments, joints, springs, loads, bushings):
     bodies = table(BODY, len(scene.bodies))
     size = np.array([0.0 if b.shape is None else b.shape.size for b in scene.bodies])
     isolated = np.ones(len(scene.bodies), dtype=np.int64)
@@ -186,7 +220,9 @@ def _bodies(scene, moments, joints, springs, loads):
         np.maximum.at(size, sides[inside], np.linalg.norm(anchors[inside], axis=1))
     size[size == 0.0] = 1.0
     ballistic = isolated.copy()
-    for loaded in (springs.parent, springs.child, loads.body):
+    for loaded in (
+        springs.parent, springs.child, loads.body, bushings.parent, bushings.child
+    ):  # fmt: skip
         ballistic[loaded[loaded >= 0]] = 0
     bodies.mass = [b.mass for b in scene.bodies]
     bodies.inertia, bodies.extent = moments, size
