@@ -49,15 +49,16 @@ def where(kind, anchor, axis):
     return out
 
 
-def plan(rng, count, floating=0.2, kinds=KINDS):
+def plan(rng, count, floating=0.2, kinds=KINDS, each=False):
     """Draw a forest: for each body its parent (-1 ground, None floating), joint, pose and inertia.
 
-    Positions and velocities are those of the whole, by rigid motion from parent to child.
+    Joints are drawn from `kinds`, or those of `kinds` `each` in turn. Positions and velocities
+    are those of the whole, by rigid motion from parent to child.
     """
     rows, motion = [], []
     for k in range(count):
         parent = None if rng.random() < floating else int(rng.integers(-1, k))
-        kind = kinds[rng.integers(len(kinds))]
+        kind = kinds[rng.integers(len(kinds))] if not each else kinds[k]
         x, anchor, axis = rng.normal(size=3), rng.normal(size=3), unit(rng)
         if parent is None:
             v, w = rng.normal(size=3), rng.normal(size=3)
@@ -117,6 +118,9 @@ def build(rows, *, gravity=(0.3, -0.2, -9.81), bodies=None, edges=None, flips=()
         pair = (parent, scene[row["name"]])
         if k in flips and row["parent"] >= 0:
             pair = pair[::-1]
+            if row["kind"] == "Universal":  # the same axes in the same bodies
+                first, other = arguments["axis_parent"], arguments["axis_child"]
+                arguments.update(axis_parent=other, axis_child=first)
         scene.add_joint(make(**arguments), *pair, name=f"j{k}")
     return scene
 
