@@ -260,6 +260,11 @@ def test_back_ends_orders_and_flips_move_alike(seed):
             sign = 1.0 if same.child.name == joint.child.name else -1.0
             f, g = tree.joint_reactions[-1, joint.index], other.joint_reactions[-1, same.index]
             np.testing.assert_allclose(sign * g[:3], f[:3], rtol=1e-7, atol=1e-6)
+    twice = build(rows)  # every joint once more: half the rows are redundant
+    for joint in twice.joints:
+        twice.add_joint(joint.definition, joint.parent, joint.child)
+    double = moved(twice, 0.1, 1e-3, LoopSolver)
+    np.testing.assert_allclose(double.position[-1], tree.position[-1], rtol=0, atol=1e-10)
     fine = carom.simulate(build(rows), 0.1, step=5e-4)
     drift = [np.max(np.abs(s.ledger.residual)) for s in (tree, fine)]
     assert drift[1] < 1e-8 * np.max(fine.kinetic_energy)
