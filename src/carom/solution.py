@@ -110,6 +110,47 @@ class Solution:
 
         return joint_reactions(self)
 
+    def joint_coordinates(self, joint) -> tuple[np.ndarray, np.ndarray]:
+        """Return (coordinates, rates), each (T, n), of a joint at saved times, worked out from the states.
+
+        Of the child against the parent, positive along the directions of the definition (turns by
+        the right-hand rule), 0 at the start. Directions turn with the parent; only `axis_child` with the child.
+
+        ==================  ========================================================================
+        Revolute            turn [rad]
+        Prismatic           slide of the child's anchor [m]
+        Cylindrical, Screw  turn, slide
+        Universal           q1 about `axis_parent`, q2 about `axis_child`: in axes of the parent the child is
+                            turned by R1(q1) R2(q2) since the start
+        Planar              two slides, turn about the normal; slides along t1, the world axis least along
+                            the normal (x before y before z) at the start made tangent, and normal x t1
+        PointOnLine         slide
+        PointOnPlane        two slides, as for Planar
+        Distance            length [m] (not 0 at the start)
+        Spherical           rotation vector [rad], angle in [0, pi], in the world axes of the start, fixed in
+                            the parent; its rates are the relative angular velocity in the same axes
+        Fixed, KnifeEdge    none: n = 0
+        ==================  ========================================================================
+
+        Turns are counted over the run by the mean of the rates between two saved times, which must
+        not be wrong by half a turn: save often enough (`save_every`). At an impact the rate is that after it.
+
+        Parameters
+        ----------
+        joint : Joint or str
+            A joint of the scene, or its name.
+
+        Raises
+        ------
+        KeyError
+            If nothing in the scene is called so.
+        TypeError, ValueError
+            If it is no joint, or one of another scene.
+        """
+        from carom.coordinates import joint_coordinates
+
+        return joint_coordinates(self, joint)
+
     @cached_property
     def constraint_errors(self) -> tuple[np.ndarray, np.ndarray]:
         """Largest error of the joints at each saved time: position (T,) [m] and velocity (T,) [m/s]."""

@@ -29,6 +29,11 @@ def _frame(axis):
     return across[0], across[1]
 
 
+def first_axis(definition):
+    names = ("axis", "normal", "direction")
+    return next(getattr(definition, n) for n in names if hasattr(definition, n))
+
+
 def constraints(joint):
     """Return phi(x, R) of a joint: a function of (centres, matrices) with value (rows,)."""
     p, c, d = joint.parent, joint.child, joint.definition
@@ -53,19 +58,33 @@ def constraints(joint):
         return lambda x, R: np.array([np.linalg.norm(b(x, R) - a(x, R)) - d.length])
     anchor = c.position if d.anchor is None else d.anchor
     a, b = local(p, anchor), local(c, anchor)
-    turns = []
-    if joint.kind == "Revolute":
-        e, (f, g) = fixed(c, d.axis), (fixed(p, k) for k in _frame(d.axis))
+    turns, more = [], []
+    if joint.kind in ("Revolute", "Cylindrical", "Screw", "Planar"):
+        e, (f, g) = fixed(c, first_axis(d)), (fixed(p, k) for k in _frame(first_axis(d)))
         turns = [(f, e), (g, e)]
     elif joint.kind in ("Fixed", "Prismatic"):
         e = np.eye(3)
         turns = [(fixed(p, e[k]), fixed(c, e[(k + 1) % 3])) for k in range(3)]
-    if joint.kind == "Prismatic":
-        across = [fixed(p, k) for k in _frame(d.axis)]
+    elif joint.kind == "Universal":
+        turns = [(fixed(p, d.axis_parent), fixed(c, d.axis_child))]
+    if joint.kind in ("Prismatic", "Cylindrical", "Screw", "PointOnLine", "Planar", "PointOnPlane"):
+        in_plane = joint.kind.startswith("P") and joint.kind.endswith(("ar", "Plane"))
+        across = [fixed(p, k) for k in ([first_axis(d)] if in_plane else _frame(first_axis(d)))]
         gaps = [lambda x, R, k=k: k(x, R) @ (b(x, R) - a(x, R)) for k in across]
     else:
         gaps = [lambda x, R, k=k: (b(x, R) - a(x, R))[k] for k in range(3)]
-    parts = [*gaps, *(lambda x, R, f=f, g=g: f(x, R) @ g(x, R) for f, g in turns)]
+    if joint.kind == "Screw":
+        line, (f, g) = fixed(p, d.axis), (fixed(p, k) for k in _frame(d.axis))
+        start = fixed(c, _frame(d.axis)[0])
+        sense = np.sign(np.linalg.det([d.axis, *_frame(d.axis)]))
+
+        def thread(x, R):  # near the start: less than half a turn
+            u = start(x, R)
+            turn = sense * np.arctan2(g(x, R) @ u, f(x, R) @ u)
+            return line(x, R) @ (b(x, R) - a(x, R)) - d.pitch / (2 * np.pi) * turn
+
+        more = [thread]
+    parts = [*gaps, *more, *(lambda x, R, f=f, g=g: f(x, R) @ g(x, R) for f, g in turns)]
     return lambda x, R: np.array([part(x, R) for part in parts])
 
 

@@ -6,6 +6,8 @@ from scipy.spatial.transform import Rotation
 from carom import GROUND, Scene, joints
 
 KINDS = ("Revolute", "Spherical", "Fixed", "Prismatic")
+MORE = ("Cylindrical", "Universal", "Planar", "PointOnLine", "PointOnPlane", "Screw")
+PITCH = 0.7
 
 
 def unit(rng):
@@ -13,30 +15,66 @@ def unit(rng):
     return e / np.linalg.norm(e)
 
 
-def plan(rng, count, floating=0.2):
+def second(axis):
+    """A direction across an axis."""
+    e = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    return e / np.linalg.norm(e)
+
+
+def free_motion(kind, axis, rng):
+    """Draw the angular and linear velocity that one of MORE leaves free."""
+    turn, slide = rng.normal(size=3), rng.normal(size=3)
+    along, across = slide @ axis * axis, slide - slide @ axis * axis
+    about, b = turn @ axis * axis, second(axis)
+    return {
+        "Cylindrical": (about, along),
+        "Universal": (about + turn @ b * b, 0.0),
+        "Planar": (about, across),
+        "PointOnLine": (turn, along),
+        "PointOnPlane": (turn, across),
+        "Screw": (about, PITCH / (2.0 * np.pi) * about),
+    }[kind]
+
+
+def where(kind, anchor, axis):
+    """Arguments of the definition of a joint."""
+    if kind == "Universal":
+        return dict(anchor=anchor, axis_parent=axis, axis_child=second(axis))
+    name = {"Planar": "normal", "PointOnPlane": "normal", "PointOnLine": "direction"}
+    out = dict(anchor=anchor)
+    if kind not in ("Spherical", "Fixed"):
+        out[name.get(kind, "axis")] = axis
+    if kind == "Screw":
+        out["pitch"] = PITCH
+    return out
+
+
+def plan(rng, count, floating=0.2, kinds=KINDS, each=False):
     """Draw a forest: for each body its parent (-1 ground, None floating), joint, pose and inertia.
 
-    Positions and velocities are those of the whole, by rigid motion from parent to child.
+    Joints are drawn from `kinds`, or those of `kinds` `each` in turn. Positions and velocities
+    are those of the whole, by rigid motion from parent to child.
     """
     rows, motion = [], []
     for k in range(count):
         parent = None if rng.random() < floating else int(rng.integers(-1, k))
-        kind = KINDS[rng.integers(len(KINDS))]
+        kind = kinds[rng.integers(len(kinds))] if not each else kinds[k]
         x, anchor, axis = rng.normal(size=3), rng.normal(size=3), unit(rng)
         if parent is None:
             v, w = rng.normal(size=3), rng.normal(size=3)
         else:
             xp, vp, wp = motion[parent] if parent >= 0 else np.zeros((3, 3))
-            w = (
-                wp
-                + {
+            if kind in MORE:
+                turn, slide = free_motion(kind, axis, rng)
+            else:
+                slide, turn = 0.0, {
                     "Revolute": rng.normal() * axis,
                     "Spherical": rng.normal(size=3),
                     "Fixed": np.zeros(3),
                     "Prismatic": np.zeros(3),
-                }[kind]
-            )
-            v = vp + np.cross(wp, anchor - xp) + np.cross(w, x - anchor)
+                }[kind]  # fmt: skip
+            w = wp + turn
+            v = slide + vp + np.cross(wp, anchor - xp) + np.cross(w, x - anchor)
             if kind == "Prismatic":
                 v = v + rng.normal() * axis
         motion.append((x, v, w))
@@ -75,14 +113,15 @@ def build(rows, *, gravity=(0.3, -0.2, -9.81), bodies=None, edges=None, flips=()
         if row["parent"] is None:
             continue
         make = getattr(joints, row["kind"])
-        where = dict(anchor=R @ row["anchor"])
-        if row["kind"] in ("Revolute", "Prismatic"):
-            where["axis"] = R @ row["axis"]
+        arguments = where(row["kind"], R @ row["anchor"], R @ row["axis"])
         parent = GROUND if row["parent"] < 0 else scene[f"b{row['parent']}"]
         pair = (parent, scene[row["name"]])
         if k in flips and row["parent"] >= 0:
             pair = pair[::-1]
-        scene.add_joint(make(**where), *pair, name=f"j{k}")
+            if row["kind"] == "Universal":  # the same axes in the same bodies
+                first, other = arguments["axis_parent"], arguments["axis_child"]
+                arguments.update(axis_parent=other, axis_child=first)
+        scene.add_joint(make(**arguments), *pair, name=f"j{k}")
     return scene
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from dense_reference import solve
 from mechanism_scenes import G, chain, four_bar, matrix, orders, pendulum
-from random_forests import build, plan
+from random_forests import MORE, build, plan
 
 import carom
 from carom import GROUND, Options, Scene, forces, joints
@@ -32,7 +32,8 @@ def wrenches(solution, m):
 def mechanisms():
     rng = np.random.default_rng(3)
     rows = plan(rng, 4)
-    for row in rows:  # principal axes are the body's: rows are then in the body's axes
+    more = plan(rng, len(MORE), floating=0.0, kinds=MORE, each=True)
+    for row in [*rows, *more]:  # principal axes are the body's: rows are then in the body's axes
         row["inertia"] = np.diag(np.linalg.eigvalsh(row["inertia"]))
     sleigh = Scene(gravity=(0, 0, 0))
     body = sleigh.add_body(
@@ -45,7 +46,7 @@ def mechanisms():
     sleigh.add_joint(joints.KnifeEdge((0, 0, 0), (1, 0, 0)), GROUND, body)
     return dict(
         pendulum=pendulum(), hinge=pendulum("Revolute"), ball=pendulum("Spherical"),
-        chain=chain(3, angles=[0.2, 1.0, -0.3]), forest=build(rows), blade=sleigh,
+        chain=chain(3, angles=[0.2, 1.0, -0.3]), forest=build(rows), blade=sleigh, more=build(more),
         four_bar=four_bar(2, angle=0.4),
     )  # fmt: skip
 

@@ -29,6 +29,12 @@ def test_definitions_normalise_and_freeze():
     np.testing.assert_array_equal(joints.Spherical((1, 2, 3)).anchor, [1, 2, 3])
 
 
+def test_axes_of_a_universal_joint_are_made_perpendicular():
+    cross = joints.Universal((0, 0, 0), (2, 0, 0), (4e-10, 3, 0))
+    assert cross.axis_parent @ cross.axis_child == 0.0
+    np.testing.assert_allclose(cross.axis_child, [0, 1, 0], rtol=0, atol=1e-9)
+
+
 def test_distance_has_the_length_at_the_start():
     assert joints.Distance((1, 0, 0), (1, 3, 4)).length == 5.0
 
@@ -60,6 +66,25 @@ def test_knife_edge_has_a_lateral_direction():
         (lambda: joints.KnifeEdge(ZERO, (0, 0, 5)), "not be parallel to normal, got (0, 0, 5)"),
         (lambda: joints.KnifeEdge(ZERO, (1, 0, 0), ZERO), "normal must not be the zero vector"),
         (lambda: joints.KnifeEdge(NAN, (1, 0, 0)), "anchor must be finite"),
+        (lambda: joints.Cylindrical(ZERO, ZERO), "axis must not be the zero vector, got (0, 0, 0)"),
+        (lambda: joints.Cylindrical(NAN, UP), "anchor must be finite"),
+        (lambda: joints.Screw(ZERO, ZERO, 1.0), "axis must not be the zero vector"),
+        (lambda: joints.Screw(ZERO, UP, 0), "pitch must not be 0, got 0.0; for no slide use Revol"),
+        (lambda: joints.Screw(ZERO, UP, math.inf), "pitch must be finite [m], got inf"),
+        (
+            lambda: joints.Universal(ZERO, UP, (0, 0, 5)),
+            "axis_child must be perpendicular to axis_parent, got (0, 0, 5) and (0, 0, 1), with an "
+            "angle of 0 degrees",
+        ),
+        (lambda: joints.Universal(ZERO, UP, (1, 0, 1)), "with an angle of 45 degrees"),
+        (lambda: joints.Universal(ZERO, ZERO, UP), "axis_parent must not be the zero vector"),
+        (lambda: joints.Universal(ZERO, UP, ZERO), "axis_child must not be the zero vector"),
+        (lambda: joints.Planar(ZERO), "normal must not be the zero vector, got (0, 0, 0)"),
+        (lambda: joints.Planar(UP, NAN), "anchor must be finite"),
+        (lambda: joints.PointOnLine(ZERO, ZERO), "direction must not be the zero vector"),
+        (lambda: joints.PointOnLine(NAN, UP), "anchor must be finite"),
+        (lambda: joints.PointOnPlane(ZERO, ZERO), "normal must not be the zero vector"),
+        (lambda: joints.PointOnPlane(NAN, UP), "anchor must be finite"),
     ],
 )
 def test_bad_definitions_are_refused(make, message):

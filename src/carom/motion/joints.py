@@ -17,7 +17,16 @@ import math
 
 from carom.geometry.rotation import cross, rotate
 from carom.jit import kernel
-from carom.system.arrays import DISTANCE, FIXED, KNIFE_EDGE, PRISMATIC, REVOLUTE
+from carom.system.arrays import (
+    DISTANCE,
+    KNIFE_EDGE,
+    RIGID,
+    SCREW,
+    SLIDING,
+    TURNING,
+    UNIVERSAL,
+    WITHIN,
+)
 
 
 @kernel
@@ -56,7 +65,7 @@ def parent_arm(joint, state):
     Where the joint slides it reaches to the point of the parent that now lies at the child's anchor.
     """
     p = joint.parent
-    if joint.kind == PRISMATIC:
+    if joint.kind in SLIDING:
         c = joint.child
         rx, ry, rz = arm(state, c, joint.child_anchor)
         rx, ry, rz = rx + state[c].x[0], ry + state[c].x[1], rz + state[c].x[2]
@@ -84,16 +93,23 @@ def anchor_speed(joint, state):
 def turn_error(joint, state):
     """Return the rotation vector (world) of the child against the parent, as far as it is forbidden.
 
-    The sine of the tilt for a revolute joint, all of it for a fixed one.
+    The sine of the tilt where an axis is shared, all of it where nothing may turn; of a universal joint
+    minus a_1 . a_2 about n = a_1 x a_2, with n . (w_c - w_p) as its rate.
     """
     kind = joint.kind
     c, p = joint.child, joint.parent
-    if kind == REVOLUTE:
+    if kind in TURNING:
         ax, ay, az = axis(state, p, joint.parent_frame, 0)
         bx, by, bz = axis(state, c, joint.child_frame, 0)
         return cross(ax, ay, az, bx, by, bz)
+    if kind == UNIVERSAL:
+        ax, ay, az = axis(state, p, joint.parent_frame, 0)
+        bx, by, bz = axis(state, c, joint.child_frame, 1)
+        nx, ny, nz = cross(ax, ay, az, bx, by, bz)
+        f = -(ax * bx + ay * by + az * bz)
+        return f * nx, f * ny, f * nz
     ex, ey, ez = 0.0, 0.0, 0.0
-    if kind in (FIXED, PRISMATIC):
+    if kind in RIGID:
         # half the sum of e_p x e_c over the three axes: the rotation vector to first order,
         # zero only where the frames agree (or are half a turn apart, excluded at the start)
         for k in range(3):
@@ -102,6 +118,23 @@ def turn_error(joint, state):
             sx, sy, sz = cross(ax, ay, az, bx, by, bz)
             ex, ey, ez = ex + 0.5 * sx, ey + 0.5 * sy, ez + 0.5 * sz
     return ex, ey, ez
+
+
+@kernel
+def screw_error(joint, state, slide):
+    """Return how far the child of a screw is from where its turn would have it, whole turns aside.
+
+    The turn is known but for whole turns, the slide wholly: (slide/k - turn) modulo 2 pi, times k.
+    So no turns are counted.
+    """
+    c, p = joint.child, joint.parent
+    bx, by, bz = axis(state, c, joint.child_frame, 1)
+    ax, ay, az = axis(state, p, joint.parent_frame, 1)
+    cosine = ax * bx + ay * by + az * bz
+    ax, ay, az = axis(state, p, joint.parent_frame, 2)
+    sine = ax * bx + ay * by + az * bz
+    s, r = math.sin(slide / joint.length), math.cos(slide / joint.length)
+    return joint.length * math.atan2(s * cosine - r * sine, r * cosine + s * sine)
 
 
 @kernel
@@ -114,10 +147,15 @@ def position_error(joint, state, out):
         length = math.sqrt(dx * dx + dy * dy + dz * dz)
         f = (length - joint.length) / length
         dx, dy, dz = f * dx, f * dy, f * dz
-    elif kind == PRISMATIC:  # sliding is no error
+    elif kind in SLIDING:  # sliding is no error
         ax, ay, az = axis(state, joint.parent, joint.parent_frame, 0)
         f = ax * dx + ay * dy + az * dz
-        dx, dy, dz = dx - f * ax, dy - f * ay, dz - f * az
+        if kind in WITHIN:
+            dx, dy, dz = f * ax, f * ay, f * az
+        else:
+            if kind == SCREW:
+                f -= screw_error(joint, state, f)
+            dx, dy, dz = dx - f * ax, dy - f * ay, dz - f * az
     elif kind == KNIFE_EDGE:
         dx, dy, dz = 0.0, 0.0, 0.0
     out[3], out[4], out[5] = dx, dy, dz
@@ -138,7 +176,8 @@ def acceleration_bias(joint, state, out):
 
     Angular: an axis that turns with the parent, w_p x (a qd) = w_p x w_c. Linear: centripetal
     accelerations of the two anchors, w_p x (w_p x r_p) - w_c x (w_c x r_c). A distance adds
-    -|u_perp|^2/d along the line, a sliding joint 2 w_p x u, the knife edge the turning of its own row.
+    -|u_perp|^2/d along the line, a sliding joint 2 w_p x u, the knife edge and the universal joint the
+    turning of their own row.
     """
     c, p = joint.child, joint.parent
     kind = joint.kind
@@ -154,9 +193,9 @@ def acceleration_bias(joint, state, out):
         tx, ty, tz = cross(wx, wy, wz, rx, ry, rz)
         sx, sy, sz = cross(wx, wy, wz, tx, ty, tz)
         lx, ly, lz = lx + sx, ly + sy, lz + sz
-        if kind == REVOLUTE:
+        if kind in TURNING:
             ax, ay, az = cross(wx, wy, wz, state[c].w[0], state[c].w[1], state[c].w[2])
-        elif kind == PRISMATIC:
+        if kind in SLIDING:
             ux, uy, uz = anchor_speed(joint, state)
             sx, sy, sz = cross(wx, wy, wz, 2.0 * ux, 2.0 * uy, 2.0 * uz)
             lx, ly, lz = lx + sx, ly + sy, lz + sz
@@ -175,5 +214,18 @@ def acceleration_bias(joint, state, out):
         tx, ty, tz = cross(state[c].w[0], state[c].w[1], state[c].w[2], ex, ey, ez)
         f = tx * ux + ty * uy + tz * uz
         lx, ly, lz = lx - f * ex, ly - f * ey, lz - f * ez
+    elif kind == UNIVERSAL:
+        # n . (w_c - w_p) = 0 with n = a x b: n . alpha + n' . (w_c - w_p) = 0, a bias along n
+        ax, ay, az = axis(state, p, joint.parent_frame, 0)
+        bx, by, bz = axis(state, c, joint.child_frame, 1)
+        nx, ny, nz = cross(ax, ay, az, bx, by, bz)
+        ux, uy, uz = state[c].w[0], state[c].w[1], state[c].w[2]
+        tx, ty, tz = cross(ux, uy, uz, bx, by, bz)
+        sx, sy, sz = cross(ax, ay, az, tx, ty, tz)
+        tx, ty, tz = cross(wx, wy, wz, ax, ay, az)
+        rx, ry, rz = cross(tx, ty, tz, bx, by, bz)
+        f = (sx + rx) * (ux - wx) + (sy + ry) * (uy - wy) + (sz + rz) * (uz - wz)
+        f /= -(nx * nx + ny * ny + nz * nz)
+        ax, ay, az = f * nx, f * ny, f * nz
     out[0], out[1], out[2] = ax, ay, az
     out[3], out[4], out[5] = lx, ly, lz

@@ -28,8 +28,9 @@ import numpy as np
 
 from carom.geometry import quaternion
 from carom.motion.mounts import mount_wrench
+from carom.system import arrays as kinds
 from carom.system import records as r
-from carom.system.arrays import DISTANCE, FIXED, KNIFE_EDGE, PRISMATIC, REVOLUTE, System
+from carom.system.arrays import DISTANCE, KNIFE_EDGE, System
 from carom.system.compile import compile_scene
 
 
@@ -175,32 +176,40 @@ def _directions(joint, x, Q, v, w):
     xp, vp, wp = (x[:, p], v[:, p], w[:, p]) if p >= 0 else (zero, zero, zero)
     rc, rp = to_world(c, joint.child_anchor), to_world(p, joint.parent_anchor)
     gap = x[:, c] + rc - xp - rp
-    if kind == PRISMATIC:
+    if kind in kinds.SLIDING:
         rp = rp + gap
     wc = w[:, c]
     u = v[:, c] + np.cross(wc, rc) - vp - np.cross(wp, rp)
     turning = zero
     bias = np.cross(wp, np.cross(wp, rp)) - np.cross(wc, np.cross(wc, rc))
     frame = [to_world(p, joint.parent_frame[:, k]) for k in range(3)]
-    angular, linear = [zero] * 3, [zero + e for e in np.eye(3)]
     if kind == DISTANCE:
         length = np.linalg.norm(gap, axis=1, keepdims=True)
         e = gap / length
         across = u - np.sum(u * e, axis=1, keepdims=True) * e
         bias = bias - np.sum(across**2, axis=1, keepdims=True) / length * e
-        angular, linear = [zero], [e]
-    elif kind == KNIFE_EDGE:
+        return [zero], [e], (rc, rp), (turning, bias)
+    if kind == KNIFE_EDGE:
         e = to_world(c, joint.child_frame[:, 1])
         bias = bias - np.sum(np.cross(wc, e) * u, axis=1, keepdims=True) * e
-        angular, linear = [zero], [e]
-    elif kind == PRISMATIC:
+        return [zero], [e], (rc, rp), (turning, bias)
+    along, about = [zero + e for e in np.eye(3)], []
+    if kind in kinds.SLIDING:
         bias = bias + 2.0 * np.cross(wp, u)
-        angular, linear = [zero, zero, *frame], [frame[1], frame[2], zero, zero, zero]
-    elif kind == REVOLUTE:
+        along = frame[1:] if kind in kinds.ALONG else frame[:1]
+    if kind in kinds.TURNING:
         turning = np.cross(wp, wc)
-        angular, linear = [*angular, *frame[1:]], [*linear, zero, zero]
-    elif kind == FIXED:
-        angular, linear = [*angular, *frame], [*linear, zero, zero, zero]
+        about = frame[1:]
+    elif kind in kinds.RIGID:
+        about = frame
+    elif kind == kinds.UNIVERSAL:
+        a, b = frame[0], to_world(c, joint.child_frame[:, 1])
+        n, turned = np.cross(a, b), np.cross(np.cross(wp, a), b) + np.cross(a, np.cross(wc, b))
+        turning = -np.sum(turned * (wc - wp), axis=1, keepdims=True) * n
+        about = [n]
+    screw = [frame[0]] if kind == kinds.SCREW else []
+    angular = [zero] * len(along) + [-joint.length * a for a in screw] + about
+    linear = [*along, *screw] + [zero] * len(about)
     return angular, linear, (rc, rp), (turning, bias)
 
 

@@ -11,7 +11,15 @@ import math
 from carom.geometry.rotation import cross, matrix, spin_tensor
 from carom.jit import kernel
 from carom.motion.joints import anchor_gap, arm, axis, parent_arm
-from carom.system.arrays import DISTANCE, KNIFE_EDGE, PRISMATIC, REVOLUTE
+from carom.system.arrays import (
+    ALONG,
+    DISTANCE,
+    KNIFE_EDGE,
+    RIGID,
+    SCREW,
+    UNIVERSAL,
+    WITHIN,
+)
 
 
 @kernel
@@ -26,17 +34,33 @@ def direction(joint, r, state):
         dx, dy, dz = anchor_gap(joint, state)
         s = 1.0 / math.sqrt(dx * dx + dy * dy + dz * dz)
         return 0.0, 0.0, 0.0, s * dx, s * dy, s * dz
-    if kind == PRISMATIC:
+    if kind in ALONG:  # no sliding across the first axis
+        linear = 2
         if r < 2:
             ex, ey, ez = axis(state, p, joint.parent_frame, 1 + r)
             return 0.0, 0.0, 0.0, ex, ey, ez
-        ex, ey, ez = axis(state, p, joint.parent_frame, r - 2)
+        if kind == SCREW:
+            linear, k = 3, -joint.length
+            if r == 2:  # along it as the child turns
+                ex, ey, ez = axis(state, p, joint.parent_frame, 0)
+                return k * ex, k * ey, k * ez, ex, ey, ez
+    elif kind in WITHIN:
+        linear = 1
+        if r == 0:
+            ex, ey, ez = axis(state, p, joint.parent_frame, 0)
+            return 0.0, 0.0, 0.0, ex, ey, ez
+    else:  # the anchors coincide
+        linear = 3
+        if r < 3:
+            e0, e1, e2 = 1.0 if r == 0 else 0.0, 1.0 if r == 1 else 0.0, 1.0 if r == 2 else 0.0
+            return 0.0, 0.0, 0.0, e0, e1, e2
+    if kind == UNIVERSAL:  # no turning about the normal of both axes
+        ax, ay, az = axis(state, p, joint.parent_frame, 0)
+        bx, by, bz = axis(state, joint.child, joint.child_frame, 1)
+        ex, ey, ez = cross(ax, ay, az, bx, by, bz)
         return ex, ey, ez, 0.0, 0.0, 0.0
-    if r < 3:  # spherical, revolute, fixed: the anchors coincide
-        e0, e1, e2 = 1.0 if r == 0 else 0.0, 1.0 if r == 1 else 0.0, 1.0 if r == 2 else 0.0
-        return 0.0, 0.0, 0.0, e0, e1, e2
-    # revolute: no turning about the second and third axis; fixed: about none
-    ex, ey, ez = axis(state, p, joint.parent_frame, r - 2 if kind == REVOLUTE else r - 3)
+    # where the first axis is shared: no turning about the second and third; else about none
+    ex, ey, ez = axis(state, p, joint.parent_frame, r - linear + (0 if kind in RIGID else 1))
     return ex, ey, ez, 0.0, 0.0, 0.0
 
 

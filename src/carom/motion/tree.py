@@ -20,7 +20,7 @@ from __future__ import annotations
 from carom.geometry.rotation import cross, matrix, spin_tensor
 from carom.jit import kernel, unit
 from carom.motion.joints import arm, axis, parent_arm
-from carom.system.arrays import PRISMATIC, REVOLUTE, SPHERICAL
+from carom.system.arrays import ALONG, BALL, SCREW, TURNING, UNIVERSAL, WITHIN
 
 FIRST = 39  # start of the freedoms in a row of scratch
 WIDTH = 14  # numbers a freedom
@@ -106,24 +106,29 @@ def freedoms(joint, state, row):
     """
     kind = joint.kind
     c, p = joint.child, joint.parent
-    rx, ry, rz = row[27], row[28], row[29]
-    if kind == REVOLUTE:
-        ax, ay, az = axis(state, p, joint.parent_frame, 0)
-        row[FIRST], row[FIRST + 1], row[FIRST + 2] = cross(rx, ry, rz, ax, ay, az)
-        row[FIRST + 3], row[FIRST + 4], row[FIRST + 5] = ax, ay, az
-        return 1
-    if kind == SPHERICAL:
-        for k in range(3):
-            f = FIRST + WIDTH * k
+    n = 0
+    for k in range(3):  # slides
+        if (k == 0 and kind in ALONG and kind != SCREW) or (k > 0 and kind in WITHIN):
+            f = FIRST + WIDTH * n
+            row[f], row[f + 1], row[f + 2] = axis(state, p, joint.parent_frame, k)
+            row[f + 3], row[f + 4], row[f + 5] = 0.0, 0.0, 0.0
+            n += 1
+    for k in range(3):  # turns
+        if kind in BALL or (kind == UNIVERSAL and k == 1):
             ax, ay, az = axis(state, c, joint.child_frame, k)
-            row[f], row[f + 1], row[f + 2] = cross(rx, ry, rz, ax, ay, az)
-            row[f + 3], row[f + 4], row[f + 5] = ax, ay, az
-        return 3
-    if kind == PRISMATIC:
-        row[FIRST], row[FIRST + 1], row[FIRST + 2] = axis(state, p, joint.parent_frame, 0)
-        row[FIRST + 3], row[FIRST + 4], row[FIRST + 5] = 0.0, 0.0, 0.0
-        return 1
-    return 0
+        elif k == 0 and (kind in TURNING or kind == UNIVERSAL):
+            ax, ay, az = axis(state, p, joint.parent_frame, 0)
+        else:
+            continue
+        f = FIRST + WIDTH * n
+        row[f], row[f + 1], row[f + 2] = cross(row[27], row[28], row[29], ax, ay, az)
+        row[f + 3], row[f + 4], row[f + 5] = ax, ay, az
+        if kind == SCREW:
+            row[f] += joint.length * ax
+            row[f + 1] += joint.length * ay
+            row[f + 2] += joint.length * az
+        n += 1
+    return n
 
 
 @kernel

@@ -12,11 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom.check import unit_vector
+from carom.check import number, unit_vector
 from carom.scene.bodies import Body, Ground
 from carom.scene.values import keep, optional_point, point
 
 PARALLEL = 1e-9  # sine of the angle between two directions below which they count as parallel
+ACROSS = 1e-9  # cosine below which they count as perpendicular
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -59,6 +60,112 @@ class Prismatic:
 
     def __init__(self, axis: ArrayLike, anchor: ArrayLike | None = None):
         keep(self, axis=unit_vector("axis", axis), anchor=optional_point("anchor", anchor))
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class Cylindrical:
+    """A sleeve: the child turns about and slides along the line through `anchor` (3,) along `axis` (3,)."""
+
+    anchor: np.ndarray
+    axis: np.ndarray
+
+    def __init__(self, anchor: ArrayLike, axis: ArrayLike):
+        keep(self, anchor=point("anchor", anchor), axis=unit_vector("axis", axis))
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class Screw:
+    """A nut on a thread: as it turns about the line through `anchor` along `axis`, the child slides along it.
+
+    Parameters
+    ----------
+    anchor, axis : (3,)
+        The line, in the world at the start.
+    pitch : float
+        How far the child moves along `axis` in one turn about it by the right-hand rule [m]. Negative: a
+        left-hand thread. Zero is refused.
+    """
+
+    anchor: np.ndarray
+    axis: np.ndarray
+    pitch: float
+
+    def __init__(self, anchor: ArrayLike, axis: ArrayLike, pitch: float):
+        pitch = number("pitch", pitch, unit="m")
+        if pitch == 0.0:
+            raise ValueError(f"pitch must not be 0, got {pitch!r}; for no slide use Revolute")
+        keep(self, anchor=point("anchor", anchor), axis=unit_vector("axis", axis), pitch=pitch)
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class Universal:
+    """A Cardan joint: a shared point, and two axes that stay perpendicular, one fixed in each body.
+
+    Parameters
+    ----------
+    anchor : (3,)
+        The shared point, in the world at the start [m].
+    axis_parent, axis_child : (3,)
+        Axes of the cross: of its pin in the parent and of its pin in the child. Perpendicular at the start (the
+        cosine of their angle below 1e-9).
+    """
+
+    anchor: np.ndarray
+    axis_parent: np.ndarray
+    axis_child: np.ndarray
+
+    def __init__(self, anchor: ArrayLike, axis_parent: ArrayLike, axis_child: ArrayLike):
+        first, second = (
+            unit_vector("axis_parent", axis_parent),
+            unit_vector("axis_child", axis_child),
+        )
+        cosine = float(first @ second)
+        if not abs(cosine) < ACROSS:
+            raise ValueError(
+                f"axis_child must be perpendicular to axis_parent, got {axis_child!r} and "
+                f"{axis_parent!r}, with an angle of {np.degrees(np.arccos(cosine)):.6g} degrees"
+            )
+        second = unit_vector("axis_child", second - cosine * first)
+        keep(self, anchor=point("anchor", anchor), axis_parent=first, axis_child=second)
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class Planar:
+    """A plate on a table: the child slides across `normal` (3,), a direction of both, and turns about it."""
+
+    normal: np.ndarray
+    anchor: np.ndarray | None
+
+    def __init__(self, normal: ArrayLike, anchor: ArrayLike | None = None):
+        keep(self, normal=unit_vector("normal", normal), anchor=optional_point("anchor", anchor))
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class PointOnLine:
+    """A bead on a wire: the point `anchor` (3,) of the child stays on a line of the parent.
+
+    The line goes through `anchor` along `direction` (3,); the child turns freely.
+    """
+
+    anchor: np.ndarray
+    direction: np.ndarray
+
+    def __init__(self, anchor: ArrayLike, direction: ArrayLike):
+        keep(self, anchor=point("anchor", anchor), direction=unit_vector("direction", direction))
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class PointOnPlane:
+    """A pin in a slot between two plates: the point `anchor` (3,) of the child stays in a plane of the parent.
+
+    The plane goes through `anchor` across `normal` (3,), on both sides; the child turns freely.
+    """
+
+    anchor: np.ndarray
+    normal: np.ndarray
+
+    def __init__(self, anchor: ArrayLike, normal: ArrayLike):
+        keep(self, anchor=point("anchor", anchor), normal=unit_vector("normal", normal))
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -118,8 +225,14 @@ class KnifeEdge:
         keep(self, lateral=unit_vector("lateral", across))
 
 
-JointDefinition = Revolute | Spherical | Fixed | Prismatic | Distance | KnifeEdge
-JOINTS = (Revolute, Spherical, Fixed, Prismatic, Distance, KnifeEdge)
+JointDefinition = (
+    Revolute | Spherical | Fixed | Prismatic | Distance | KnifeEdge
+    | Cylindrical | Universal | Planar | PointOnLine | PointOnPlane | Screw
+)  # fmt: skip
+JOINTS = (
+    Revolute, Spherical, Fixed, Prismatic, Distance, KnifeEdge,
+    Cylindrical, Universal, Planar, PointOnLine, PointOnPlane, Screw,
+)  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -131,7 +244,7 @@ class Joint:
     index : int
         Place in `Scene.joints`.
     name : str
-    definition : Revolute, Spherical, Fixed, Prismatic, Distance or KnifeEdge
+    definition : Revolute, Spherical, ... (one of `carom.joints`)
     parent : Body or carom.GROUND
     child : Body
     """

@@ -18,8 +18,20 @@ from carom.contact.pairs.layout import Hulls, NoHulls, PairWork
 
 #: kinds of joints in kernels
 SPHERICAL, REVOLUTE, FIXED, PRISMATIC, DISTANCE, KNIFE_EDGE = range(6)
+CYLINDRICAL, UNIVERSAL, PLANAR, POINT_ON_LINE, POINT_ON_PLANE, SCREW = range(6, 12)
 #: numbers of constraint rows, by kind
-ROWS = (3, 5, 6, 5, 1, 1)
+ROWS = (3, 5, 6, 5, 1, 1, 4, 4, 3, 2, 1, 5)
+#: the child's anchor moves along the first direction of the parent's frame
+ALONG = (PRISMATIC, CYLINDRICAL, POINT_ON_LINE, SCREW)
+#: it moves in the plane across it
+WITHIN = (PLANAR, POINT_ON_PLANE)
+SLIDING = ALONG + WITHIN
+#: the child turns about the first direction alone
+TURNING = (REVOLUTE, CYLINDRICAL, PLANAR, SCREW)
+#: it turns freely
+BALL = (SPHERICAL, POINT_ON_LINE, POINT_ON_PLANE)
+#: it does not turn
+RIGID = (FIXED, PRISMATIC)
 
 #: absolute coordinates, world axes; Q takes principal axes of inertia to the world
 STATE = [("x", "f8", 3), ("Q", "f8", 4), ("v", "f8", 3), ("w", "f8", 3)]
@@ -45,7 +57,7 @@ JOINT = [
     ("child_anchor", "f8", 3),
     ("parent_frame", "f8", (3, 3)),  # columns: axis, second, third direction, in the parent's axes
     ("child_frame", "f8", (3, 3)),
-    ("length", "f8"),  # of a distance
+    ("length", "f8"),  # of a distance; way of a screw, a radian
 ]
 
 SPRING = [

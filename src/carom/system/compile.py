@@ -8,8 +8,9 @@ import numpy as np
 
 from carom.geometry import quaternion
 from carom.options import Options
+from carom.scene import joints as definitions
 from carom.scene.forces import Bushing, Force, Spring, Torque
-from carom.scene.joints import Distance, Fixed, KnifeEdge, Prismatic, Revolute, Spherical
+from carom.scene.joints import Distance, KnifeEdge, Universal
 from carom.scene.scene import Scene
 from carom.system import arrays, graph, solvers
 from carom.system.arrays import BODY, BUSHING, JOINT, LOAD, SPRING, STATE, System, table
@@ -17,12 +18,18 @@ from carom.system.contacts import compile_contacts
 from carom.system.frames import triad
 
 KIND = {
-    Spherical: arrays.SPHERICAL,
-    Revolute: arrays.REVOLUTE,
-    Fixed: arrays.FIXED,
-    Prismatic: arrays.PRISMATIC,
-    Distance: arrays.DISTANCE,
-    KnifeEdge: arrays.KNIFE_EDGE,
+    definitions.Spherical: arrays.SPHERICAL,
+    definitions.Revolute: arrays.REVOLUTE,
+    definitions.Fixed: arrays.FIXED,
+    definitions.Prismatic: arrays.PRISMATIC,
+    definitions.Distance: arrays.DISTANCE,
+    definitions.KnifeEdge: arrays.KNIFE_EDGE,
+    definitions.Cylindrical: arrays.CYLINDRICAL,
+    definitions.Universal: arrays.UNIVERSAL,
+    definitions.Planar: arrays.PLANAR,
+    definitions.PointOnLine: arrays.POINT_ON_LINE,
+    definitions.PointOnPlane: arrays.POINT_ON_PLANE,
+    definitions.Screw: arrays.SCREW,
 }
 
 
@@ -113,8 +120,8 @@ class _Frames:
         return quaternion.rotate_back(self.start.Q[body.index], world.T).T
 
 
-def _anchors(joint):
-    """World anchors of parent and child, and the joint's frame, of a definition."""
+def _anchors(joint, flipped):
+    """World anchors of the scene's parent and child, and the joint's frame, of a definition."""
     d = joint.definition
     if isinstance(d, Distance):
         return d.anchor_parent, d.anchor_child, np.eye(3)
@@ -122,8 +129,15 @@ def _anchors(joint):
     if isinstance(d, KnifeEdge):
         along = np.cross(d.lateral, d.normal)
         return anchor, anchor, np.stack([along, d.lateral, d.normal], axis=1)
-    frame = triad(d.axis) if isinstance(d, (Revolute, Prismatic)) else np.eye(3)
-    return anchor, anchor, frame
+    if isinstance(d, Universal):  # first the axis of the (walked) parent, then that of the child
+        first, second = d.axis_parent, d.axis_child
+        if flipped:
+            first, second = second, first
+        return anchor, anchor, np.stack([first, second, np.cross(first, second)], axis=1)
+    for name in ("axis", "normal", "direction"):
+        if hasattr(d, name):
+            return anchor, anchor, triad(getattr(d, name))
+    return anchor, anchor, np.eye(3)
 
 
 def _joints(scene, frames, options, loops):
@@ -136,18 +150,21 @@ def _joints(scene, frames, options, loops):
     forest = not loops and graph.is_forest(count, kind, parent, child)
     order, carrier = np.arange(count), np.full(count, -1)
     if forest:
-        order, carrier, flipped = graph.forest_order(count, parent, child)
+        order, carrier, turned = graph.forest_order(count, parent, child)
+        forest = not np.any(turned & graph.cannot_flip(kind))
+    if forest:
+        flipped = turned
         parent, child = np.where(flipped, child, parent), np.where(flipped, parent, child)
     joints = table(JOINT, number)
     joints.kind, joints.parent, joints.child = kind, parent, child
     joints.rows = [arrays.ROWS[k] for k in kind]
     for j, joint in enumerate(defined):
-        first, second, world = _anchors(joint)
+        first, second, world = _anchors(joint, flipped[j])
         sides = [(joint.parent, first), (joint.child, second)]
         (a, p), (b, q) = sides[::-1] if flipped[j] else sides
         joints.parent_anchor[j], joints.child_anchor[j] = frames.point(a, p), frames.point(b, q)
         joints.parent_frame[j], joints.child_frame[j] = frames.axes(a, world), frames.axes(b, world)
-        joints.length[j] = getattr(joint.definition, "length", 0.0)
+        joints.length[j] = _length(joint.definition)
     if number == 0:
         solver = arrays.FreeSolver(0)
     elif forest:
@@ -155,6 +172,12 @@ def _joints(scene, frames, options, loops):
     else:
         solver = solvers.loop_solver(joints, options.drop_tolerance)
     return joints, flipped, solver
+
+
+def _length(definition):
+    if isinstance(definition, definitions.Screw):
+        return definition.pitch / (2.0 * np.pi)
+    return getattr(definition, "length", 0.0)
 
 
 def _springs(scene, frames):

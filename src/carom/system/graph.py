@@ -7,7 +7,7 @@ from collections import deque
 
 import numpy as np
 
-from carom.system.arrays import DISTANCE, KNIFE_EDGE
+from carom.system.arrays import DISTANCE, KNIFE_EDGE, POINT_ON_LINE, POINT_ON_PLANE
 
 
 def is_forest(count: int, kind, parent, child) -> bool:
@@ -28,6 +28,11 @@ def is_forest(count: int, kind, parent, child) -> bool:
             return False
         root[a] = b
     return True
+
+
+def cannot_flip(kind) -> np.ndarray:
+    """Return (J,) which joints carry a tree from parent to child only: a line or plane of one body."""
+    return np.isin(kind, (POINT_ON_LINE, POINT_ON_PLANE))
 
 
 def forest_order(count: int, parent, child) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

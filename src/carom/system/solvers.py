@@ -4,20 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom.system.arrays import (
-    FIXED,
-    LINK,
-    PRISMATIC,
-    REVOLUTE,
-    ROW,
-    SPHERICAL,
-    LoopSolver,
-    TreeSolver,
-    table,
-)
+from carom.system.arrays import LINK, ROW, ROWS, LoopSolver, TreeSolver, table
 from carom.system.graph import elimination
 
-FREEDOMS = {SPHERICAL: 3, REVOLUTE: 1, FIXED: 0, PRISMATIC: 1}
 SCRATCH = 124  # 39 + 6 * 14 + 1: see carom.motion.tree
 
 
@@ -29,7 +18,7 @@ def tree_solver(joints: np.recarray, order: np.ndarray, joint: np.ndarray) -> Tr
     for b, j in enumerate(joint):
         if j >= 0:
             links.parent[b] = p = joints.parent[j]
-            links.freedoms[b] = FREEDOMS[int(joints.kind[j])]
+            links.freedoms[b] = 6 - ROWS[int(joints.kind[j])]
             if p >= 0:
                 links.has_child[p] = 1
     return TreeSolver(0, links, np.zeros((order.size, SCRATCH)))
