@@ -23,6 +23,7 @@ the left-invariant frame: linear components in world axes, angular ones in princ
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -224,7 +225,7 @@ def applied_force(system: System, x, Q, v, w) -> np.ndarray:
         arm = quaternion.rotate(Q[:, b], local)
         return arm, x[:, b] + arm, v[:, b] + np.cross(w[:, b], arm)
 
-    def add(b, arm, force, torque=0.0):
+    def add(b, arm, force, torque: Any = 0.0):
         if b >= 0:
             out[:, b, :3] += force
             out[:, b, 3:] += quaternion.rotate_back(Q[:, b], np.cross(arm, force) + torque)
