@@ -42,6 +42,15 @@ def seconds(function, rounds: int = ROUNDS) -> list[float]:
     return times
 
 
+def stepper(scene, step: float):
+    """Return ``run(steps)`` of a scene, nothing saved but both ends."""
+
+    def run(steps):
+        carom.simulate(scene, duration=steps * step, step=step, save_every=steps)
+
+    return run
+
+
 def per_step(run, few: int, many: int, rounds: int = ROUNDS) -> list[float]:
     """Return the time [s] of one more step: ``run(many)`` against ``run(few)``, each round anew.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import carom
-from common import per_step, report, spread
+from common import per_step, report, spread, stepper
 
 STEP = 1e-3
 MICRO = 1e-6
@@ -20,27 +20,18 @@ def blocks(count: int, *, stacked: bool, speed: float, friction: float = 0.01) -
     return scene
 
 
-def runner(scene):
-    """Return ``run(steps)`` of a scene, nothing saved but both ends."""
-
-    def run(steps):
-        carom.simulate(scene, duration=steps * STEP, step=STEP, save_every=steps)
-
-    return run
-
-
 def main() -> None:
     """Measure and report."""
     rows = []
     for count in (1, 4, 16, 64):
         case = blocks(count, stacked=False, speed=5.0)
         rest = blocks(count, stacked=False, speed=0.0)
-        stack = runner(blocks(count, stacked=True, speed=5.0))
+        stack = stepper(blocks(count, stacked=True, speed=5.0), STEP)
         tall = spread(per_step(stack, 5, 25), MICRO) if count <= 4 else "-"
         rows.append(
             [
-                str(4 * count), spread(per_step(runner(case), 10, 60), MICRO), tall,
-                spread(per_step(runner(rest), 10, 1010), MICRO),
+                str(4 * count), spread(per_step(stepper(case, STEP), 10, 60), MICRO), tall,
+                spread(per_step(stepper(rest, STEP), 10, 1010), MICRO),
             ]
         )  # fmt: skip
     report(

@@ -10,7 +10,7 @@ import time
 import numpy as np
 
 import carom
-from common import per_step, report, spread
+from common import per_step, report, spread, stepper
 
 STEP, RADIUS = 1e-3, 0.01
 MILLI = 1e-3
@@ -40,15 +40,6 @@ def poured(count: int, turning: float) -> carom.Scene:
     return scene
 
 
-def runner(scene):
-    """Return ``run(steps)`` of a scene, nothing saved but both ends."""
-
-    def run(steps):
-        carom.simulate(scene, duration=steps * STEP, step=STEP, save_every=steps)
-
-    return run
-
-
 def to_rest(count: int, duration: float) -> list[str]:
     """Pour once; return what is to be told."""
     scene = poured(count, 1e-4)
@@ -69,7 +60,7 @@ def main() -> None:
     """Measure and report."""
     rows = []
     for count in (30, 60, 125, 250, 500):
-        lands = runner(poured(count, 0.0))
+        lands = stepper(poured(count, 0.0), STEP)
         rows.append([str(count), spread(per_step(lands, 150, 250), MILLI)])
     report("heaps", "A step of spheres that land / milliseconds", ["spheres", "a step"], rows)
     report(
