@@ -14,6 +14,7 @@ from carom.contact.exclude import AGAIN, CLEAR, FLAT_RIM, UNSURE, greatest_accel
 from carom.contact.gap import gap_and_rate, plane_in_body, slow
 from carom.contact.pair_point import REACH, find_touches, smaller, touch_rate
 from carom.dispatch import only_with_pairs
+from carom.geometry.rotation import norm
 from carom.hold.events import (
     CONE,
     GAP,
@@ -46,11 +47,8 @@ LOCATE, PROJECT, WORK = range(3)
 STEP_CUT, TOO_MANY, NOT_FINITE = 2, 3, 4
 NOTHING, STRIKE, HOLD, SETTLE = range(4)
 NO_CONVERGENCE = 1
-TRIES, EFFORT = (
-    3000,
-    2e7,
-)  # of a step, before it is given up: trial steps, and work for held contacts
-UNSOLVED = 0.01  # residual of held contacts, as a part of what gravity gives in a step: the same
+# where a step is given up: trial steps, work for held contacts, their residual as a part of what gravity gives
+TRIES, EFFORT, UNSOLVED = 3000, 2e7, 0.01
 
 
 class Controls(NamedTuple):
@@ -232,8 +230,7 @@ def full(system, held, clock, records):
 @kernel
 def unsolved(system, controls, work):
     """Return whether the contact problem of the last trial step was not solved."""
-    g = system.gravity
-    gained = controls.step * math.sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2])
+    gained = controls.step * norm(system.gravity)
     return gained > 0.0 and not work.result[0].residual <= UNSOLVED * gained
 
 
@@ -243,8 +240,7 @@ def strayed(system, now, dt, work):
 
     Both ends of a piece of its path are within it by what a fall of that time can bulge between them.
     """
-    g = system.gravity
-    bulge = 0.125 * dt * dt * math.sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2])
+    bulge = 0.125 * dt * dt * norm(system.gravity)
     for b in range(now.shape[0]):
         memory, d = work.body[b], 0.0
         if not math.isfinite(memory.room):

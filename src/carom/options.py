@@ -116,8 +116,7 @@ class Options:
         check.number("corner_tolerance", self.corner_tolerance, above=0.0, below=1.0)
         check.number("corner_exponent", self.corner_exponent, least=1.0, most=3.0)
         for name in ("add_layer_time", "hold", "project_start"):
-            if not isinstance(getattr(self, name), bool):
-                raise ValueError(f"{name} must be True or False, got {getattr(self, name)!r}")
+            check.flag(name, getattr(self, name))
 
     def as_dict(self) -> dict:
         """All settings by name."""

@@ -227,9 +227,7 @@ class Run:
             elif code == r.NEEDS_HEAP:
                 self.find_heap()
             elif code == r.NEEDS_SPOTS:
-                newton = self.heap.problem.newton
                 self.heap = roomier_heap(self.heap)
-                self.heap = self.heap._replace(problem=self.heap.problem._replace(newton=newton))
             elif code == r.NEEDS_ROOM:
                 assert isinstance(self.islands, Islands)
                 self.islands = roomier(self.islands)

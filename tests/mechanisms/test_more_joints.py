@@ -160,13 +160,19 @@ def test_rod_whose_tip_slides_on_a_plane(looped):
     np.testing.assert_allclose(s.position[:, 0, :2], centre[:2] + 0 * s.t[:, None], atol=1e-13)
     cos = s.position[:, 0, 2] / l
     assert cos[-1] < 0.3  # it has gone far
-    inertia = lambda c: l**2 * (1.0 - c * c) + 1 / 12  # noqa: E731
+
+    def inertia(c):
+        return l**2 * (1.0 - c * c) + 1 / 12
+
     energy = 0.5 * inertia(np.cos(lean)) * spin**2 + G * l * np.cos(lean)
     fast = np.sqrt(2.0 * (energy - G * l * cos) / inertia(cos))
     # up to 8 rad/s: (q' h)^4 = 2e-7
     np.testing.assert_allclose(s.angular_velocity[:, 0] @ axis, fast, rtol=0, atol=1e-7)
+
     # the time to get there, by quadrature
-    falls = lambda a: np.sqrt(inertia(np.cos(a)) / (2.0 * (energy - G * l * np.cos(a))))  # noqa: E731
+    def falls(a):
+        return np.sqrt(inertia(np.cos(a)) / (2.0 * (energy - G * l * np.cos(a))))
+
     time = quad(falls, lean, np.arccos(cos[-1]), epsabs=1e-13)[0]
     assert time == pytest.approx(0.5, abs=1e-8)
     # the tip slides against the fall
@@ -201,8 +207,11 @@ def test_cardan_shaft_has_order_four():
     dq2/dq1 = r = cos(bend)/(1 - sin^2(bend) sin^2(q1)), q1' = (2 E/(J1 + J2 r^2))^(1/2).
     """
     bend, errors = 0.6, []
-    ratio = lambda a: np.cos(bend) / (1.0 - (np.sin(bend) * np.sin(a)) ** 2)  # noqa: E731
-    inertia = lambda a: 0.02 + 0.05 * ratio(a) ** 2  # noqa: E731
+
+    def inertia(a):
+        ratio = np.cos(bend) / (1.0 - (np.sin(bend) * np.sin(a)) ** 2)
+        return 0.02 + 0.05 * ratio**2
+
     start = 9.0 * inertia(0.0)
     for step in (0.02, 0.01, 0.005):
         s = carom.simulate(shafts(bend), 3.0, step=step)

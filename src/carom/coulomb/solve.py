@@ -88,6 +88,43 @@ def set_contact(contact, mu, kind, heading, trace):
 
 
 @kernel
+def scale_link(link, contact, mu, kind, heading):
+    """Write the product of rows and responses, and scale all three; return whether the contact is sound."""
+    local = link.local
+    for r in range(6):
+        local[r] = 0.0
+    for side in range(2):
+        if link.body[side] < 0:
+            continue
+        G, Y, at = link.rows[side], link.response[side], 0
+        for a in range(3):
+            for d in range(a, 3):
+                for j in range(6):
+                    local[at] += G[a, j] * Y[j, d]
+                at += 1
+    if not set_contact(contact, mu, kind, heading, local[0] + local[3] + local[5]):
+        return False
+    for r in range(6):
+        local[r] *= contact.scale * contact.scale
+    for side in range(2):
+        for r in range(6 if link.body[side] >= 0 else 0):
+            for a in range(3):
+                link.rows[side, a, r] *= contact.scale
+                link.response[side, r, a] *= contact.scale
+    return True
+
+
+@kernel
+def inverse_mass_of(link, contact, W):
+    """Write the block W (3, 3) of a contact whose link is scaled."""
+    at = 0
+    for a in range(3):
+        for b in range(a, 3):
+            W[a, b] = W[b, a] = link.local[at] / (contact.scale * contact.scale)
+            at += 1
+
+
+@kernel
 def scale_vectors(work, k, c, p):
     """Write c and p in scaled variables; return gamma, or NaN if c is not finite."""
     gamma = 0.0

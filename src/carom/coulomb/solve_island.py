@@ -8,7 +8,7 @@ from carom.coulomb import layout as o
 from carom.coulomb.layout import BAD_INPUT, NOT_SOLVED, SOLVED
 from carom.coulomb.residual import measure_island
 from carom.coulomb.search import search
-from carom.coulomb.solve import scale_vectors, set_contact
+from carom.coulomb.solve import scale_link, scale_vectors
 from carom.jit import entry, kernel
 
 
@@ -37,34 +37,21 @@ def solve_island(k, island, mu, kind, heading, p, scratch):
 def _load(work, k, island, mu, kind, heading, p):
     """Write the problem in the scaled variables of `solve`; return gamma, or NaN if the input is bad."""
     for i in range(k):
-        contact, link = work.contact[i], work.link[i]
-        local = link.local
-        for r in range(6):
-            local[r] = 0.0
+        link = work.link[i]
         for side in range(2):
             b = link.body[side]
             if b < 0:
                 continue
-            G, M, Y = island.rows[i, side], island.inverse_mass[b], link.response[side]
+            M, G, Y = island.inverse_mass[b], link.rows[side], link.response[side]
+            for r in range(6):
+                for a in range(3):
+                    G[a, r] = island.rows[i, side, a, r]
             for r in range(6):
                 for a in range(3):
                     s = 0.0
                     for j in range(6):
                         s += M[r, j] * G[a, j]
                     Y[r, a] = s
-            at = 0
-            for a in range(3):
-                for d in range(a, 3):
-                    for j in range(6):
-                        local[at] += G[a, j] * Y[j, d]
-                    at += 1
-        if not set_contact(contact, mu[i], kind[i], heading[i], local[0] + local[3] + local[5]):
+        if not scale_link(link, work.contact[i], mu[i], kind[i], heading[i]):
             return math.nan
-        for r in range(6):
-            local[r] *= contact.scale * contact.scale
-        for side in range(2):
-            for r in range(6):
-                for a in range(3):
-                    link.rows[side, a, r] = contact.scale * island.rows[i, side, a, r]
-                    link.response[side, r, a] *= contact.scale
     return scale_vectors(work, k, island.c, p)

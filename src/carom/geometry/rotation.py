@@ -95,6 +95,12 @@ def exp(ax, ay, az):
 
 
 @entry
+def norm(a):
+    """Return the length of a vector (3,)."""
+    return math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
+
+
+@entry
 def log(w, x, y, z):
     """Return the rotation vector of a unit quaternion, its angle in [0, pi]; safe at 0 and pi."""
     if w < 0.0:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 
 from carom.contact.gap import slow
-from carom.heap.spots import norm
+from carom.coulomb.solve import inverse_mass_of
+from carom.geometry.rotation import norm
 from carom.hold.roster import begin_point
 from carom.jit import kernel
 from carom.motion.acceleration import SLIP, STICK
@@ -56,14 +57,10 @@ def write_impact(contact, spot, point, w, pressure, rubbing, i, k, end, heap, cl
     """Write the row of an impact; it has no duration, and its point is one of all that press."""
     row, x = records.impact[clock.struck], end[point.a].x
     row.time, row.contact, row.together = clock.now, contact.number, max(2, k)
-    link, s = heap.problem.link[i], heap.problem.contact[i].scale
-    at = 0
+    inverse_mass_of(heap.problem.link[i], heap.problem.contact[i], row.W)
     for a in range(3):
         row.point[a], row.normal[a] = x[a] + point.arm_a[a], point.axes[0, a]
         row.before[a], row.after[a], row.impulse[a] = spot.before[a], w[a], spot.impulse[a]
-        for b in range(a, 3):
-            row.W[a, b] = row.W[b, a] = link.local[at] / (s * s)
-            at += 1
     row.energy_change = pressure + rubbing
     row.compression_work, row.restitution_work = min(0.0, pressure), max(0.0, pressure)
     row.friction_loss, row.duration, row.phases = -rubbing, 0.0, 0
@@ -100,14 +97,10 @@ def list_held(system, held, k, h, tolerance, end, heap, clock, records):
                 kind = SLIPS if slips else STICKS
                 note_event(system, c, spot.feature, kind, mode, clock, records)
         begin_point(hold, contact, c, spot.feature, mode)
-        link, s = heap.problem.link[i], heap.problem.contact[i].scale
-        at = 0
+        inverse_mass_of(heap.problem.link[i], heap.problem.contact[i], hold.W)
         for a in range(3):
             hold.point[a], hold.force[a] = spot.point[a], p[a] / h
             hold.anchor[a] = x[a] + point.arm_a[a]
-            for b in range(a, 3):
-                hold.W[a, b] = hold.W[b, a] = link.local[at] / (s * s)
-                at += 1
         count += 1
     for i in range(held.count[0]):
         if heap.follows[i] == 0:

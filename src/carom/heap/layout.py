@@ -96,5 +96,6 @@ def new_heap(bodies: int, held: int, points: int) -> Heap:
 
 
 def roomier_heap(heap: Heap) -> Heap:
-    """Return the scratch for twice as many points."""
-    return new_heap(len(heap.flight), len(heap.held), 2 * len(heap.spots))
+    """Return the scratch for twice as many points, with what is compiled for it."""
+    more = new_heap(len(heap.flight), len(heap.held), 2 * len(heap.spots))
+    return more._replace(problem=more.problem._replace(newton=heap.problem.newton))

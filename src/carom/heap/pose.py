@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from carom.coulomb.layout import CONE, DISC
-from carom.coulomb.solve import set_contact
+from carom.coulomb.solve import scale_link
 from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.jit import kernel
 from carom.motion.contact_point import contact_velocity
@@ -60,9 +60,6 @@ def set_link(system, point, flight, work, i):
     """Write rows G of a point for both bodies, M^-1 G^T, and their product, scaled."""
     link, contact, E = work.link[i], work.contact[i], point.axes
     link.body[0], link.body[1] = point.a, point.b
-    local = link.local
-    for j in range(6):
-        local[j] = 0.0
     for side in range(2):
         b = link.body[side]
         if b < 0:
@@ -78,22 +75,7 @@ def set_link(system, point, flight, work, i):
             t = rotate_back(q[0], q[1], q[2], q[3], a[0], a[1], a[2])
             t = rotate(q[0], q[1], q[2], q[3], t[0] / J[0], t[1] / J[1], t[2] / J[2])
             Y[3, r], Y[4, r], Y[5, r] = t
-        at = 0
-        for r in range(3):
-            for s in range(r, 3):
-                for j in range(6):
-                    local[at] += G[r, j] * Y[j, s]
-                at += 1
-    set_contact(contact, 0.0, CONE, (0.0, 0.0), local[0] + local[3] + local[5])
-    scale = contact.scale
-    for j in range(6):
-        local[j] *= scale * scale
-    for side in range(2):
-        if link.body[side] >= 0:
-            for r in range(6):
-                for a in range(3):
-                    link.rows[side, a, r] *= scale
-                    link.response[side, r, a] *= scale
+    scale_link(link, contact, 0.0, CONE, (0.0, 0.0))
 
 
 @kernel

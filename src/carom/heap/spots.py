@@ -14,6 +14,7 @@ from carom.contact.pair_point import (
     which_touch,
     write_touch,
 )
+from carom.geometry.rotation import norm
 from carom.jit import kernel
 from carom.motion.contact_point import place
 
@@ -27,12 +28,6 @@ def closing_speed(contact, state):
         s += contact.other_extent * norm(state[b].w)
         v0, v1, v2 = v0 - state[b].v[0], v1 - state[b].v[1], v2 - state[b].v[2]
     return s + math.sqrt(v0 * v0 + v1 * v1 + v2 * v2)
-
-
-@kernel
-def norm(a):
-    """Return the length of a vector."""
-    return math.sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
 
 
 @kernel

@@ -15,11 +15,11 @@ from __future__ import annotations
 import math
 
 from carom.dispatch import by_address
-from carom.geometry.rotation import rotate, rotate_back
+from carom.geometry.rotation import norm, rotate, rotate_back
 from carom.heap.finish import finish
 from carom.heap.pose import pose
 from carom.heap.solve import solve
-from carom.heap.spots import gather, norm, place_all
+from carom.heap.spots import gather, place_all
 from carom.heap.surface import move, onto_surfaces
 from carom.hold.middle import halfway, spin_momentum
 from carom.jit import kernel, unit

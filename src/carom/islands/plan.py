@@ -8,10 +8,9 @@ islands are exact: bodies of different ones have not met.
 
 from __future__ import annotations
 
-import math
-
 from carom.contact.gap import along_normal
 from carom.contact.pairs.sweep import sweep
+from carom.geometry.rotation import norm
 from carom.islands.layout import ASLEEP, FLIES, MEETS
 from carom.jit import kernel
 from carom.system.arrays import FREE, RESTS
@@ -45,13 +44,11 @@ def join(member, a, b):
 @kernel
 def seek(system, held, now, length, work, islands):
     """Find the sets of bodies that may meet; return False if there is no room for all pairs."""
-    member, plan, g = islands.member, islands.plan[0], system.gravity
-    fall = math.sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2])
+    member, plan, fall = islands.member, islands.plan[0], norm(system.gravity)
     for b in range(system.bodies.shape[0]):
         v, w, memory, m = now[b].v, now[b].w, work.body[b], member[b]
         m.parent, m.bodies, m.awake = b, 1, 0 if memory.status == RESTS else 1
-        spin = math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
-        m.speed = math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) + spin * system.bodies[b].ball
+        m.speed = norm(v) + norm(w) * system.bodies[b].ball
         memory.room = m.awake * plan.widen * (m.speed + fall * length) * length
         for k in range(3):
             memory.home[k] = now[b].x[k]
@@ -133,9 +130,8 @@ def number(system, held, now, work, islands):
         for i in range(plan.count + 1):
             islands.first[s, i] = 0
     give_slots(n, islands)
-    for phase in range(
-        2
-    ):  # count, then fill; half-spaces first, as `set_contact_default` numbers them
+    # count, then fill; half-spaces first, as `set_contact_default` numbers them
+    for phase in range(2):
         for b in range(n):
             if member[b].kind == MEETS:
                 for q in range(islands.plane_first[b], islands.plane_first[b + 1]):
