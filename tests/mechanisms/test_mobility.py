@@ -65,6 +65,15 @@ def test_free_bodies_and_blades():
     assert (found.degrees_of_freedom, found.nonholonomic) == (5, 1)
 
 
+def test_a_turn_counts_at_the_size_of_the_body():
+    """A slider that turns at 2 rad/s: 2 m/s for each metre of its shape."""
+    scene = carom.Scene()
+    box = carom.Box(0.6, 0.8, 2.4)
+    body = scene.add_body(box, mass=1.0, angular_velocity=(0, 0, 2.0))
+    scene.add_joint(joints.Prismatic((1, 0, 0)), GROUND, body, name="rail")
+    assert scene.check().velocity_errors["rail"] == pytest.approx(2.0 * box.size, rel=1e-12)
+
+
 def test_initial_velocities_are_brought_to_the_joints():
     """A pendulum of one bar with v = (1, 0, 0) and no spin: w from the angular momentum about the pin.
 

@@ -77,6 +77,8 @@ def mobility(scene) -> Mobility:
     A = A[0]
     spin = quaternion.rotate_back(start.Q, start.w)
     speeds = np.einsum("knc,nc->k", A, np.concatenate([start.v, spin], axis=1))
+    turning = ~np.any(A[..., :3], axis=(1, 2))
+    speeds[turning] *= system.bodies.extent[system.joints.child[owner[turning]]]
     dependent, involved = _dependent(A / np.sqrt(mass_matrix(system)), owner, system)
     blades = np.array([joint.kind == "KnifeEdge" for joint in joints])[owner]
     return Mobility(
