@@ -13,7 +13,13 @@ from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
 
-_RULES = ("jit.py", "parts.py", "dispatch.py", "stamp.py")  # how everything is compiled
+_RULES = (
+    "jit.py",
+    "parts.py",
+    "dispatch.py",
+    "stamp.py",
+    "functions.py",
+)  # how everything is compiled
 _CONSTANTS = (int, float, str, bool, tuple, frozenset)
 
 
