@@ -74,7 +74,7 @@ def test_a_spring_with_a_curve():
     length = np.linspace(0.2, 3.0, 6)
     tension = CubicSpline(length, 3 * (length - 1) ** 3 + (length - 1))
     scene.add_force(forces.CurveSpring((0, 0, 0), (1.7, 0, 0), tension), GROUND, body)
-    solution = carom.simulate(scene, 2.0, step=0.005)
+    solution = carom.simulate(scene, 2.5, step=0.005)
     assert np.min(solution.position[:, 0, 0]) < 0.301
 
     def energy(l):
