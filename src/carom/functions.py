@@ -15,6 +15,7 @@ import ctypes
 from collections.abc import Callable
 from typing import Any
 
+import numba
 import numpy as np
 from numba import carray, cfunc
 from numba.core import types
@@ -47,6 +48,23 @@ class Functions:
         assert address is not None
         return address
 
+    def written(self, function: Callable, inside: tuple[int, ...], outside: tuple[int, ...]) -> int:
+        """Return the address of ``function(t, x, out)`` that only reads and writes numbers of its arguments.
+
+        Compiled as it stands, without arrays: for code that the library itself has written.
+        """
+        if numba.config.DISABLE_JIT:
+
+            def answer(t, x):
+                out = np.empty(outside)
+                function(t, x, out)
+                return out
+
+            return self.address(answer, inside, outside)
+        made: Any = cfunc(_SIGNATURE)(function)
+        self._kept.append(made)
+        return made.address
+
     def _plain(self, function, inside, outside):
         def call(t, read, write):
             out = np.ctypeslib.as_array(write, outside)
@@ -74,7 +92,7 @@ def _compiled(function, inside, outside):
 
 def call_function(address, t, x, out):
     """Call the function at `address` from a kernel: out = f(t, x), both arrays contiguous."""
-    _FORM(address)(t, x.ctypes.data_as(_NUMBERS), out.ctypes.data_as(_NUMBERS))
+    _FORM(int(address))(t, x.ctypes.data_as(_NUMBERS), out.ctypes.data_as(_NUMBERS))
 
 
 _options: Any = OPTIONS

@@ -18,6 +18,8 @@ class Status(IntEnum):
     CONSTRAINTS_LOST = 7
     INTERRUPTED = 9
     TOO_MANY_POINTS = 10
+    SINGULAR_METRIC = 11
+    FUNCTION_FAILED = 12
 
     @property
     def message(self) -> str:
@@ -57,6 +59,13 @@ _MESSAGES = {
     ),
     Status.TOO_MANY_POINTS: (
         "More than 192 points of a group of bodies are closed at once. Give the shapes fewer vertices."
+    ),
+    Status.SINGULAR_METRIC: (
+        "The metric is not positive definite at a position on the way: the coordinates are singular there. "
+        "Take others, or a smaller step."
+    ),
+    Status.FUNCTION_FAILED: (
+        "A function of the system raised an error: it is the cause of the exception, and `failure` of the run."
     ),
     Status.INTERRUPTED: "The run was interrupted; the solution holds what was computed until then.",
 }

@@ -1,0 +1,72 @@
+"""The compiled loop: step after step, until one has an event that Python resolves."""
+
+from __future__ import annotations
+
+from carom.functions import call_function
+from carom.generalized.events import keep, locate, note_start
+from carom.generalized.layout import DONE, EVENT, LOADS, NOTHING, TOUCHES, N
+from carom.generalized.motion import find_metric
+from carom.generalized.step import take
+from carom.jit import entry, kernel
+
+
+@entry
+def march(system, method, held, x, duration, h, every, until, work, clock, series, states):
+    """Go on to step number `until`; return DONE, EVENT (`clock` says which) or a status of failure."""
+    c = clock[0]
+    while c.step < until:
+        target = min((c.step + 1) * h, duration)
+        left = target - c.now
+        if left > 1e-13 * h:
+            note_start(system, c.now, x, work)
+            code = take(system, method, held, c.now, x, left, work.end, work)
+            if code != 0:
+                return code
+            c.trials += 1
+            s, kind, index, code = locate(system, method, held, c.now, x, left, work.end, work)
+            if code != 0:
+                return code
+            keep(work.end, x)
+            c.loads += work.spent[0]
+            c.friction += work.spent[1]
+            if kind != NOTHING:
+                c.now += s
+                c.kind, c.index = kind, index
+                return EVENT
+        c.now = target
+        c.step += 1
+        if c.step % every == 0 or target >= duration:
+            save(x, c, series, states)
+    return DONE
+
+
+@kernel
+def save(x, clock, series, states):
+    """Write the state into the next row."""
+    row = series[clock.saved]
+    row.t, row.loads, row.impacts = clock.now, clock.loads, clock.impacts
+    row.friction, row.bounces = clock.friction, clock.bounces
+    keep(x, states[clock.saved])
+    clock.saved += 1
+
+
+@entry
+def save_now(x, clock, series, states):
+    """`save`, for Python: at the start, and after a failure."""
+    save(x, clock[0], series, states)
+
+
+@entry
+def energies(system, t, states, kinetic, potential, work):
+    """Write kinetic and potential energy of the states (T, 2n)."""
+    n = system.size[N]
+    for k in range(t.size):
+        find_metric(system, t[k], states[k], work)
+        total = 0.0
+        for i in range(n):
+            for j in range(n):
+                total += work.M[i, j] * states[k, n + i] * states[k, n + j]
+        kinetic[k] = 0.5 * total
+        call_function(system.address[LOADS], t[k], states[k], work.loads)
+        potential[k] = work.loads[0]
+    return system.size[TOUCHES]
