@@ -21,7 +21,7 @@ from carom.jit import entry, kernel
 
 _STRAIGHT = 1e-4  # Gamma(xi, xi)/2 below this part of xi: two terms of the series do
 _PARTS = 8  # steps of order 4 for longer arcs
-_LONG = 32  # and for those of the return map that are more than round-off
+_LONG = 64  # and for those of the return map that are more than round-off
 
 
 @kernel

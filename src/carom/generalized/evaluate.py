@@ -102,7 +102,8 @@ class Evaluation:
     def return_map(self, q, contact: int):
         """Return coordinates on the surface of a contact."""
         x = np.concatenate([q, np.zeros(self.n)])
-        tolerance, steps = 1e-14 * max(1e-300, abs(float(self.look(q).gap[contact]))), -1
+        self.look(q)
+        tolerance = 1e-15 * float(self.work.gap_scale[contact])
         for _ in range(20):
             steps, code = return_map(
                 self.system, self.none_held, 0.0, x, contact, tolerance, self.work

@@ -17,15 +17,21 @@ import numpy as np
 
 STEP = float(np.finfo(float).eps ** 0.2)
 STEP_TWICE = float(np.finfo(float).eps ** (1.0 / 6.0))
+_FIRST = (1.0 / 12.0, -2.0 / 3.0, 0.0, 2.0 / 3.0, -1.0 / 12.0)  # weights of f(-2h) ... f(2h)
+_SECOND = (-1.0 / 12.0, 4.0 / 3.0, -2.5, 4.0 / 3.0, -1.0 / 12.0)
 
 
 class FunctionalModel:
-    """Functions of a system of n coordinates."""
+    """Functions of a system of n coordinates, with `holonomic` and `rows` further constraints."""
 
     def __init__(self, n: int, given: dict[str, Callable | None], holonomic: int, rows: int):
         self.n, self.holonomic, self.rows = n, holonomic, holonomic + rows
-        self.given = given
-        self.contacts: list[tuple[Callable, Callable | None, Callable | None, int]] = []
+        self.given = {name: as_array(one) for name, one in given.items()}
+        self.contacts: list[tuple[Any, Any, Any, int]] = []
+
+    def add_contact(self, gap, gradient, tangent, count: int) -> None:
+        """Take the functions of a contact; `count` tangents."""
+        self.contacts.append((as_array(gap), as_array(gradient), as_array(tangent), count))
 
     def metric_at(self, q) -> np.ndarray:
         """Return M (n, n) at numbers."""
@@ -45,8 +51,8 @@ class FunctionalModel:
 
     def inertia(self) -> Callable:
         """Return M and Gamma_kij v_i v_j."""
-        n, metric, slope = self.n, self.given["metric"], self.given["metric_derivative"]
-        slope = slope or _each(metric, n, n * n, (n, n, n))
+        n, metric = self.n, self.given["metric"]
+        slope = self.given["metric_derivative"] or derivative(metric, n, (n, n))
 
         def inertia(t, x):
             q, v = x[:n].copy(), x[n:]
@@ -60,17 +66,14 @@ class FunctionalModel:
                         out[n * n + i] += dM[k, i, j] * w - 0.5 * dM[i, k, j] * w
             return out
 
-        return _joined(inertia, metric, slope)
+        return joined(inertia, metric, slope)
 
     def loads(self) -> Callable:
         """Return V, Q - dV, Q v."""
-        n, nothing = self.n, _as(self.given["metric"], _nothing)
-        potential, force = self.given["potential"] or nothing, self.given["force"]
-        slope = self.given["potential_gradient"]
-        if slope is None:
-            slope = _gradient(potential, n)
-        if force is None:
-            force = _as(self.given["metric"], _no_force)
+        n, like = self.n, self.given["metric"]
+        potential = self.given["potential"] or joined(_nothing, like)
+        slope = self.given["potential_gradient"] or derivative(potential, n, ())
+        force = self.given["force"] or joined(_no_force, like)
 
         def loads(t, x):
             q, v = x[:n].copy(), x[n:].copy()
@@ -82,126 +85,104 @@ class FunctionalModel:
                 out[n + 1] += Q[j] * v[j]
             return out
 
-        return _joined(loads, potential, slope, force)
+        return joined(loads, potential, slope, force)
 
     def row_terms(self) -> Callable:
         """Return phi, A, (dA/dt) v."""
-        n, h, k, given = self.n, self.holonomic, self.rows, self.given
-        like = given["metric"]
-        phi = given["constraint"] or _as(like, _nothing_at_all)
-        slope = given["constraint_jacobian"]
-        if slope is None:
-            slope = _jacobian(phi, n, h) if h else _as(like, _no_rows)
-        rows = given["rows"] or _as(like, _no_rows)
-
-        bend = _along(slope, n, h) if given["constraint_jacobian"] else _second(phi, h)
-        along = _along(rows, n, k - h)
-
-        def row_terms(t, x):
-            q, v = x[:n].copy(), x[n:].copy()
-            out = np.zeros(h + k * n + k)
-            a, r = h + k * n, h + h * n
-            if h > 0:
-                out[:h] = phi(q)
-                out[h:r] = slope(q).ravel()
-                out[a : a + h] = bend(q, v)
-            if k > h:
-                out[r:a] = rows(q).ravel()
-                out[a + h :] = along(q, v)
-            return out
-
-        return _joined(row_terms, phi, slope, bend, rows, along)
-
-    def contact_terms(self) -> Callable:
-        """Return gaps, G, (dG/dt) v."""
-        n, C = self.n, len(self.contacts)
-        parts = [self.contact_part(*one) for one in self.contacts]
-        size = 4 + 3 * n
-
-        def scatter(out, c, part):
-            out[c] = part[0]
-            g, r = C + 3 * n * c, C + 3 * n * C + 3 * c
-            for j in range(3 * n):
-                out[g + j] = part[1 + j]
-            for j in range(3):
-                out[r + j] = part[1 + 3 * n + j]
-
-        chain = parts[0]
-        scatter = _joined(scatter, chain) if C else scatter
+        n, h, given = self.n, self.holonomic, self.given
+        parts = []
+        if h:
+            phi, slope = given["constraint"], given["constraint_jacobian"]
+            bend = along(slope, n, h) if slope else second(phi, n, (h,))
+            slope = slope or swapped(derivative(phi, n, (h,)), n, h)
+            parts.append((h, phi, slope, bend))
+        if self.rows > h:
+            rows = given["rows"]
+            parts.append((0, joined(_no_positions, rows), rows, along(rows, n, self.rows - h)))
         made = None
-        for c, part in enumerate(
-            parts
-        ):  # one calls the one before: no list of functions in compiled code
-            made = _chained(made, part, scatter, c, C * size)
+        for start, (values, phi, slope, bend) in zip((0, h) if h else (h,), parts):
+            made = _rows(made, n, values, h, self.rows, start, phi, slope, bend)
         assert made is not None
         return made
 
-    def contact_part(self, gap, gradient, tangent, count) -> Callable:
-        """Return gap, G, (dG/dt) v of one contact."""
-        n = self.n
-        slope = gradient or _gradient(gap, n)
-        rows = tangent or _as(gap, _no_rows)
-
-        def G(q):
-            out = np.zeros((3, n))
-            out[0] = slope(q)
-            if count == 1:
-                out[1] = np.asarray(rows(q)).reshape(n)
-            elif count == 2:
-                out[1:] = rows(q)
-            return out
-
-        def one(q):
-            out = np.zeros(1)
-            out[0] = gap(q)
-            return out
-
-        G = _joined(G, slope, rows)
-        along = _along(G, n, 3)
-        bend = _second(_joined(one, gap), 1)
-        exact = gradient is not None
-
-        def part(t, x):
-            q, v = x[:n].copy(), x[n:].copy()
-            out = np.zeros(4 + 3 * n)
-            out[0] = gap(q)
-            out[1 : 1 + 3 * n] = G(q).ravel()
-            out[1 + 3 * n :] = along(q, v)
-            if not exact:
-                out[1 + 3 * n] = bend(q, v)[0]
-            return out
-
-        return _joined(part, gap, G, along, bend)
+    def contact_terms(self) -> Callable:
+        """Return gaps, G, (dG/dt) v."""
+        n, made = self.n, None
+        for c, (gap, gradient, tangent, count) in enumerate(self.contacts):
+            normal = gradient or derivative(gap, n, ())
+            bend = along_one(gradient, n) if gradient else second(gap, n, ())
+            if tangent is None:
+                tangent = joined(_no_rows, gap)
+            elif np.ndim(tangent(np.ones(n))) == 1:
+                tangent = as_rows(tangent, n)
+            turn = along(tangent, n, count)
+            made = _contact(made, n, c, len(self.contacts), count, gap, normal, tangent, bend, turn)
+        assert made is not None
+        return made
 
 
-def _chained(before, part, scatter, c, size):
-    if before is None:
+# A function for several contacts calls the one for those before: compiled code has no list of functions.
 
-        def first(t, x):
-            out = np.zeros(size)
-            scatter(out, c, part(t, x))
-            return out
 
-        return _joined(first, part)
+def _rows(before, n, values, h, k, start, phi, slope, bend):
+    """Return the terms of one block of rows, after those of the blocks `before`."""
+    before = before or joined(_zeros(h + k * n + k), phi, slope, bend)
+    height = values if values else k - start
 
-    def further(t, x):
+    def rows(t, x):
         out = before(t, x)
-        scatter(out, c, part(t, x))
+        q, v = x[:n].copy(), x[n:].copy()
+        y, A, rate = phi(q), slope(q), bend(q, v)
+        for i in range(values):
+            out[i] = y[i]
+        for i in range(height):
+            for j in range(n):
+                out[h + (start + i) * n + j] = A[i, j]
+            out[h + k * n + start + i] = rate[i]
         return out
 
-    return _joined(further, part, before)
+    return joined(rows, before, phi, slope, bend)
+
+
+def _contact(before, n, c, C, count, gap, normal, tangent, bend, turn):
+    """Return the terms of one contact, after those of the contacts `before`."""
+    before = before or joined(_zeros(C * (4 + 3 * n)), gap, normal, tangent)
+    g, r = C + 3 * n * c, C + 3 * n * C + 3 * c
+
+    def contact(t, x):
+        out = before(t, x)
+        q, v = x[:n].copy(), x[n:].copy()
+        out[c] = gap(q)
+        G, rows, rate = normal(q), tangent(q), turn(q, v)
+        for j in range(n):
+            out[g + j] = G[j]
+        out[r] = bend(q, v)
+        for i in range(count):
+            for j in range(n):
+                out[g + n * (1 + i) + j] = rows[i, j]
+            out[r + 1 + i] = rate[i]
+        return out
+
+    return joined(contact, before, gap, normal, tangent, bend, turn)
+
+
+def _zeros(size):
+    def zeros(t, x):
+        return np.zeros(size)
+
+    return zeros
 
 
 def _nothing(q):
     return 0.0
 
 
-def _nothing_at_all(q):
-    return np.zeros(0)
-
-
 def _no_force(t, q, v):
     return np.zeros(q.size)
+
+
+def _no_positions(q):
+    return np.zeros(0)
 
 
 def _no_rows(q):
@@ -215,11 +196,14 @@ def compiled(function) -> bool:
     return isinstance(function, Dispatcher)
 
 
-def _as(other, function) -> Any:
-    return _joined(function, other)
+def as_array(function) -> Any:
+    """Return a plain function that gives an array, where it may give lists; others as they are."""
+    if function is None or compiled(function):
+        return function
+    return lambda *arguments: np.asarray(function(*arguments), dtype=float)
 
 
-def _joined(function, *parts) -> Any:
+def joined(function, *parts) -> Any:
     """Compile `function` if all that it calls is compiled."""
     if all(compiled(one) for one in parts):
         from numba import njit
@@ -228,87 +212,135 @@ def _joined(function, *parts) -> Any:
     return function
 
 
-def _each(f, n, size, shape):
-    """Return the derivatives of an array-valued f, the coordinate first."""
-
-    def derivative(q):
-        out = np.zeros((n, size))
-        for k in range(n):
-            h, at = STEP * max(1.0, abs(q[k])), q[k]
-            for s in range(1, 3):
-                w = (8.0 if s == 1 else -1.0) / (12.0 * h)
-                q[k] = at + s * h
-                out[k] += w * np.asarray(f(q)).ravel()
-                q[k] = at - s * h
-                out[k] -= w * np.asarray(f(q)).ravel()
-            q[k] = at
-        return out.reshape(shape)
-
-    return _joined(derivative, f)
+# What follows is in loops over numbers: array expressions would take Numba seconds to compile.
 
 
-def _gradient(f, n):
-    """Return the gradient of a scalar f."""
+def derivative(f, n, shape):
+    """Return the derivatives (n, *shape) of f, a number or an array of one or two axes."""
+    a, b = (*shape, 1, 1)[:2]
 
-    def gradient(q):
+    def of_number(q):
         out = np.zeros(n)
         for k in range(n):
             h, at = STEP * max(1.0, abs(q[k])), q[k]
-            for s in range(1, 3):
-                w = (8.0 if s == 1 else -1.0) / (12.0 * h)
+            for s in (-2, -1, 1, 2):
                 q[k] = at + s * h
-                out[k] += w * f(q)
-                q[k] = at - s * h
-                out[k] -= w * f(q)
+                out[k] += _FIRST[s + 2] / h * f(q)
             q[k] = at
         return out
 
-    return _joined(gradient, f)
+    def of_vector(q):
+        out = np.zeros((n, a))
+        for k in range(n):
+            h, at = STEP * max(1.0, abs(q[k])), q[k]
+            for s in (-2, -1, 1, 2):
+                q[k] = at + s * h
+                y = f(q)
+                for i in range(a):
+                    out[k, i] += _FIRST[s + 2] / h * y[i]
+            q[k] = at
+        return out
+
+    def of_matrix(q):
+        out = np.zeros((n, a, b))
+        for k in range(n):
+            h, at = STEP * max(1.0, abs(q[k])), q[k]
+            for s in (-2, -1, 1, 2):
+                q[k] = at + s * h
+                y = f(q)
+                for i in range(a):
+                    for j in range(b):
+                        out[k, i, j] += _FIRST[s + 2] / h * y[i, j]
+            q[k] = at
+        return out
+
+    return joined((of_number, of_vector, of_matrix)[len(shape)], f)
 
 
-def _jacobian(f, n, m):
-    """Return the rows (m, n) of a vector-valued f."""
-    each = _each(f, n, m, (n, m))
+def swapped(f, n, m):
+    """Return the rows (m, n) from derivatives (n, m)."""
 
-    def jacobian(q):
-        return each(q).T.copy()
+    def rows(q):
+        y, out = f(q), np.zeros((m, n))
+        for i in range(m):
+            for j in range(n):
+                out[i, j] = y[j, i]
+        return out
 
-    return _joined(jacobian, each)
+    return joined(rows, f)
 
 
-def _along(rows, n, m):
-    """Return (d rows/dt) v, from the rows a little further along v and back."""
+def as_rows(f, n):
+    """Return one row (1, n) of a function that gives (n,)."""
 
-    def along(q, v):
-        speed, size = np.max(np.abs(v)), max(1.0, np.max(np.abs(q)))
-        out = np.zeros(m)
-        if not speed > 0.0:
-            return out
-        h = STEP * size / speed
-        for s in range(1, 3):
-            w = (8.0 if s == 1 else -1.0) / (12.0 * h)
-            ahead, back = rows(q + s * h * v), rows(q - s * h * v)
-            for r in range(m):
+    def rows(q):
+        y, out = f(q), np.zeros((1, n))
+        for j in range(n):
+            out[0, j] = y[j]
+        return out
+
+    return joined(rows, f)
+
+
+def _reach(q, v):
+    """Return how long a motion with velocities v takes to go as far as coordinates of order 1 are."""
+    speed, size = 0.0, 1.0
+    for j in range(q.size):
+        speed, size = max(speed, abs(v[j])), max(size, abs(q[j]))
+    return size / speed if speed > 0.0 else 0.0
+
+
+def along(rows, n, m):
+    """Return (d rows/dt) v (m,), from the rows a little further along v and back."""
+    reach = joined(_reach, rows)
+
+    def rates(q, v):
+        out, h, y = np.zeros(m), STEP * reach(q, v), np.zeros(n)
+        if h > 0.0:
+            for s in (-2, -1, 1, 2):
                 for j in range(n):
-                    out[r] += w * (ahead[r, j] - back[r, j]) * v[j]
+                    y[j] = q[j] + s * h * v[j]
+                A = rows(y)
+                for r in range(m):
+                    for j in range(n):
+                        out[r] += _FIRST[s + 2] / h * A[r, j] * v[j]
         return out
 
-    return _joined(along, rows)
+    return joined(rates, rows, reach)
 
 
-def _second(f, m):
-    """Return the second derivative of a vector-valued f along v."""
+def along_one(row, n):
+    """Return (d row/dt) v of one row (n,)."""
+    each = along(as_rows(row, n), n, 1)
 
-    def second(q, v):
-        speed, size = np.max(np.abs(v)), max(1.0, np.max(np.abs(q)))
-        out = np.zeros(m)
-        if not speed > 0.0:
-            return out
-        h = STEP_TWICE * size / speed
-        w = 1.0 / (12.0 * h * h)
-        out -= 30.0 * w * f(q)
-        for s in range(1, 3):
-            out += (16.0 if s == 1 else -1.0) * w * (f(q + s * h * v) + f(q - s * h * v))
+    def rate(q, v):
+        return each(q, v)[0]
+
+    return joined(rate, each)
+
+
+def second(f, n, shape):
+    """Return the second derivative of f along v; f is a number or has one axis."""
+    reach, m = joined(_reach, f), (*shape, 1)[0]
+
+    def of_number(q, v):
+        out, h, y = 0.0, STEP_TWICE * reach(q, v), np.zeros(n)
+        if h > 0.0:
+            for s in range(-2, 3):
+                for j in range(n):
+                    y[j] = q[j] + s * h * v[j]
+                out += _SECOND[s + 2] / (h * h) * f(y)
         return out
 
-    return _joined(second, f)
+    def of_vector(q, v):
+        out, h, y = np.zeros(m), STEP_TWICE * reach(q, v), np.zeros(n)
+        if h > 0.0:
+            for s in range(-2, 3):
+                for j in range(n):
+                    y[j] = q[j] + s * h * v[j]
+                z = f(y)
+                for i in range(m):
+                    out[i] += _SECOND[s + 2] / (h * h) * z[i]
+        return out
+
+    return joined((of_number, of_vector)[len(shape)], f, reach)

@@ -268,7 +268,7 @@ class GeneralizedSystem:
                     f"tangent(q) must have shape ({n},) or (2, {n}), got shape {rows.shape}"
                 )
             count = rows.size // n
-        self._model.contacts.append((gap, gradient, tangent, count))
+        self._model.add_contact(gap, gradient, tangent, count)
 
     def evaluation(self) -> Evaluation:
         """Return the system's functions, compiled, for use at single states."""
