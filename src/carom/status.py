@@ -65,7 +65,7 @@ _MESSAGES = {
         "Take others, or a smaller step."
     ),
     Status.FUNCTION_FAILED: (
-        "A function of the system raised an error: it is the cause of the exception, and `failure` of the run."
+        "A function of the system raised an error, which is the cause of this one."
     ),
     Status.INTERRUPTED: "The run was interrupted; the solution holds what was computed until then.",
 }

@@ -150,7 +150,8 @@ class GeneralizedSolution:
         """How the run ended, in a sentence; if it failed, with the time it reached."""
         if self.success:
             return self.status.message
-        return f"{self.status.message} (reached t = {self.t[-1]:.9g} s)"
+        why = f"{self._run.failure!r}, " if self._run.failure is not None else ""
+        return f"{self.status.message} ({why}reached t = {self.t[-1]:.9g} s)"
 
     @property
     def total_energy(self) -> np.ndarray:

@@ -195,6 +195,7 @@ class SymbolicModel:
 
     def write(self, name: str, terms: list):
         """Return ``name(t, x, out)`` as Python code of scalars, common subexpressions once."""
+        from sympy.printing.codeprinter import PrintMethodNotImplementedError
         from sympy.printing.pycode import PythonCodePrinter
 
         sp, printer = self.sp, PythonCodePrinter({"fully_qualified_modules": False})
@@ -206,13 +207,14 @@ class SymbolicModel:
         used = set().union(*(e.free_symbols for e in [*terms, *(e for _, e in shared)]))
         lines = [f"def {name}(t, x, out):"]
         lines += [f"    x{i} = x[{i}]" for i in range(2 * self.n) if x[i] in used]
-        lines += [f"    {symbol} = {printer.doprint(e)}" for symbol, e in shared]
-        lines += [f"    out[{i}] = {printer.doprint(e)}" for i, e in enumerate(terms)]
-        code = "\n".join(lines)
-        if "Not supported in Python" in code or "unsupported" in code:
+        try:
+            lines += [f"    {symbol} = {printer.doprint(e)}" for symbol, e in shared]
+            lines += [f"    out[{i}] = {printer.doprint(e)}" for i, e in enumerate(terms)]
+        except PrintMethodNotImplementedError as error:
             raise ValueError(
-                f"an expression has a function that cannot be compiled, or whose derivative cannot:\n{code}"
-            )
+                f"an expression has a function that cannot be compiled, or whose derivative cannot: {error}"
+            ) from None
+        code = "\n".join(lines)
         space: dict[str, Any] = {"math": math, **{k: getattr(math, k) for k in dir(math)}}
         exec(code, space)
         return space[name]

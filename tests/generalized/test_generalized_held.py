@@ -1,0 +1,149 @@
+"""Contact that stays: slip, stick and opening, in closed form."""
+
+import numpy as np
+import pytest
+import sympy as sp
+from coordinate_systems import symbols
+
+import carom
+from carom import GeneralizedSystem
+
+G = 9.81
+
+
+def particle(position, velocity, potential, **contact):
+    """A particle of 1 kg over the floor z = 0; `potential` of (x, z)."""
+    q, v = symbols("x z")
+    system = GeneralizedSystem.from_sympy(
+        q, v, metric=sp.eye(2), potential=potential(*q), position=position, velocity=velocity
+    )
+    system.add_contact(q[1], tangent=v[0], **contact)
+    return system
+
+
+def on_floor(position, velocity, friction=0.3, restitution=0.5):
+    return particle(
+        position, velocity, lambda x, z: G * z, restitution=restitution, friction=friction
+    )
+
+
+@pytest.mark.plain
+def test_block_slides_to_a_stop():
+    # t = v/(mu g), s = v^2/(2 mu g); forces are constant, so nothing but round-off.
+    run = carom.simulate(on_floor([0, 0], [1, 0]), 0.5, step=0.02)
+    assert [str(kind) for kind in run.events.kind] == ["held", "sticks"]
+    assert run.events.time[1] == pytest.approx(1 / (0.3 * G), rel=1e-14)
+    assert run.q[-1, 0] == pytest.approx(1 / (0.6 * G), rel=1e-14)
+    np.testing.assert_allclose(run.v[-1], 0.0, atol=1e-15)
+    assert run.ledger.friction[-1] == pytest.approx(-0.5, rel=1e-13)
+
+
+def test_bounces_end():
+    # From 1 m with e = 1/2: bounces end at t0 (1 + 2 e/(1 - e)) = 3 t0; handed over within one step.
+    run = carom.simulate(on_floor([0, 1], [0, 0], 0.0), 2.0, step=0.01)
+    times = np.sqrt(2 / G) * (1 + 2 * np.cumsum(0.5 ** np.arange(1, len(run.impacts))))
+    np.testing.assert_allclose(run.impacts.time[1:], times, rtol=0, atol=1e-12)
+    held = run.events.time[np.flatnonzero(run.events.kind == "held")]
+    assert len(held) == 1
+    assert 0 < 3 * np.sqrt(2 / G) - held[0] < 0.02
+    assert run.q[-1, 1] == pytest.approx(0.0, abs=1e-15)
+    assert -1e-3 < run.ledger.bounces[-1] < 0
+    assert np.max(np.abs(run.ledger.residual)) < 1e-12
+
+
+@pytest.mark.parametrize(("friction", "slides"), [(0.4999, True), (0.5001, False)])
+def test_incline_holds_up_to_the_friction_angle(friction, slides):
+    slope = np.arctan(0.5)
+    system = particle(
+        [0, 0], [0, 0], lambda x, z: G * (z * np.cos(slope) - x * np.sin(slope)),
+        restitution=0.0, friction=friction,
+    )  # fmt: skip
+    run = carom.simulate(system, 1.0, step=0.01)
+    speed = G * (np.sin(slope) - friction * np.cos(slope)) if slides else 0.0
+    np.testing.assert_allclose(run.v[-1], [speed, 0.0], rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize("polar", [False, True])
+def test_particle_leaves_a_circle(polar):
+    # From rest at angle 0.1 on a frictionless circle: cos th_s = 2/3 cos 0.1, at t = .9071101110440. Order 4.
+    errors = []
+    for step in (0.02, 0.01, 0.005):
+        q, v = symbols("a b")
+        if polar:
+            metric, height, gap = sp.diag(1, q[0] ** 2), q[0] * sp.cos(q[1]), q[0] - 1
+            start = [1, 0.1]
+        else:
+            metric, height, gap = sp.eye(2), q[1], sp.sqrt(q[0] ** 2 + q[1] ** 2) - 1
+            start = [np.sin(0.1), np.cos(0.1)]
+        system = GeneralizedSystem.from_sympy(
+            q, v, metric=metric, potential=G * height, position=start, velocity=[0, 0]
+        )
+        system.add_contact(gap, restitution=0.0)
+        run = carom.simulate(system, 1.0, step=step)
+        assert [str(kind) for kind in run.events.kind] == ["held", "opens"]
+        errors.append(abs(run.events.time[1] - 0.9071101110440))
+    assert errors[-1] < 1e-9
+    assert errors[0] / errors[1] > 10.0
+    assert errors[1] / errors[2] > 10.0
+
+
+def test_stick_gives_way():
+    # A force that grows, F = t: stick until t = mu m g, then x'' = t - mu g. Located: x is exact for RK4.
+    q, v = symbols("x z")
+    t = sp.Symbol("t", real=True)
+    system = GeneralizedSystem.from_sympy(
+        q, v, metric=sp.eye(2), potential=G * q[1], forces=[t, 0], time=t, position=[0, 0],
+        velocity=[0, 0],
+    )  # fmt: skip
+    system.add_contact(q[1], tangent=v[0], restitution=0.0, friction=0.1)
+    run = carom.simulate(system, 2.0, step=0.03)
+    start = 0.1 * G
+    assert [str(kind) for kind in run.events.kind] == ["held", "slips"]
+    assert run.events.time[1] == pytest.approx(start, abs=1e-11)
+    assert run.q[-1, 0] == pytest.approx((2 - start) ** 3 / 6, abs=1e-11)
+    assert np.max(np.abs(run.ledger.residual)) < 1e-11
+
+
+def test_puck_in_the_plane_stops_along_its_line():
+    q, v = symbols("x y z")
+    system = GeneralizedSystem.from_sympy(
+        q, v, metric=sp.eye(3), potential=G * q[2], position=[0, 0, 0], velocity=[0.6, 0.8, 0]
+    )
+    system.add_contact(q[2], tangent=v[:2], restitution=0.0, friction=0.3)
+    run = carom.simulate(system, 0.5, step=0.01)
+    np.testing.assert_allclose(run.q[-1], np.array([0.6, 0.8, 0]) / (0.6 * G), rtol=0, atol=1e-15)
+
+
+def test_jam_is_resolved_by_an_impact():
+    # Painleve: a rod of 1 m, 1 kg at 60 degrees, mu = 1.6: W = [[1.75, 1.299], [1.299, 3.25]], u = (0, 1),
+    # e = 0: P = (.3247595264, -.4375), at rest at once at the point. (Mathematics page, VI.6.)
+    q, v = symbols("x z a")
+    x, z, a = q
+    foot = x - sp.cos(a) / 2, z - sp.sin(a) / 2
+    turn = np.pi / 3
+    system = GeneralizedSystem.from_sympy(
+        q, v, metric=sp.diag(1, 1, sp.Rational(1, 12)), potential=G * z,
+        position=[np.cos(turn) / 2, np.sin(turn) / 2, turn], velocity=[-1, 0, 0],
+    )  # fmt: skip
+    tangent = sum(sp.diff(foot[0], one) * rate for one, rate in zip(q, v))
+    system.add_contact(foot[1], tangent=tangent, restitution=0.0, friction=1.6)
+    run = carom.simulate(system, 0.01, step=1e-3)
+    first = run.impacts[0]
+    assert first.time == 0.0
+    np.testing.assert_allclose(first.inverse_mass[0, 1], -1.299038105677, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(first.impulse[:2], [0.3247595264, 0.4375], rtol=0, atol=1e-6)
+    np.testing.assert_allclose(first.relative_velocity_after, 0.0, atol=1e-12)
+
+
+def test_two_blocks_collide_and_stop_together():
+    # A row of two on a line with a wall: both contacts are resolved at one instant when they close together.
+    q, v = symbols("x y")
+    system = GeneralizedSystem.from_sympy(
+        q, v, metric=sp.eye(2), position=[1, 2], velocity=[-1, -1]
+    )
+    system.add_contact(q[0], restitution=0.0, name="wall")
+    system.add_contact(q[1] - q[0] - 1, restitution=0.0, name="pair")
+    run = carom.simulate(system, 2.0, step=0.1)
+    np.testing.assert_allclose(run.q[-1], [0, 1], rtol=0, atol=1e-14)
+    np.testing.assert_allclose(run.v[-1], 0.0, atol=1e-14)
+    assert run.ledger.impacts[-1] == pytest.approx(-1.0, rel=1e-13)
