@@ -49,7 +49,7 @@ def test_double_pendulum_moves_as_its_bodies(pendulum):
     np.testing.assert_allclose(-scene.angular_velocity[:, :, 1], here.v, rtol=0, atol=2e-9)
     elbow = np.stack([np.sin(here.q[:, 0]), -np.cos(here.q[:, 0])], axis=1)
     np.testing.assert_allclose(2.0 * scene.position[:, 0, ::2], elbow, rtol=0, atol=1e-9)
-    assert np.max(np.abs(here.ledger.residual)) < 1e-8
+    assert np.max(np.abs(here.ledger.residual)) < 3e-8  # energy: order 4 too
 
 
 @pytest.mark.parametrize("case", WALL["cases"])

@@ -25,6 +25,7 @@ class Strike:
     def __init__(self, contacts: Contacts):
         self.contacts = contacts
         self.records: list[dict[str, Any]] = []
+        self.room: Any = None  # scratch for several contacts, made when it is first needed
 
     def all(self, closed: list[int], now: float, jams: int) -> int:
         """Strike until no closed contact approaches; return a status."""
@@ -100,10 +101,12 @@ class Strike:
             multiple=MULTIPLE[options.multiple], rtol=options.corner_tolerance,
             exponent=options.corner_exponent,
         )  # fmt: skip
+        if self.room is None:
+            self.room = new_corner_work(len(here.friction))
         out = new_corner_result(k)
         code = resolve_corner(
             k, W, u.reshape(-1), here.friction[closed], e, here.law[closed], np.ones(k), settings,
-            new_corner_work(k), out,
+            self.room, out,
         )  # fmt: skip
         if code != OK:
             return Status.IMPACT_FAILED
