@@ -15,9 +15,8 @@ import ctypes
 from collections.abc import Callable
 from typing import Any
 
-import numba
 import numpy as np
-from numba import carray, cfunc
+from numba import carray, cfunc, njit
 from numba.core import types
 from numba.core.dispatcher import Dispatcher
 from numba.extending import intrinsic, overload
@@ -53,7 +52,7 @@ class Functions:
 
         Compiled as it stands, without arrays: for code that the library itself has written.
         """
-        if numba.config.DISABLE_JIT:
+        if njit(function) is function:  # NUMBA_DISABLE_JIT=1
 
             def answer(t, x):
                 out = np.empty(outside)

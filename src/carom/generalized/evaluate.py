@@ -61,8 +61,10 @@ class Evaluation:
         code = look(self.system, self.none_held if held is None else held, t, x, self.work)
         self.failed()
         w = self.work
-        views = (w.M, w.c, w.loads[1:-1], w.phi, w.A, w.A_rate, w.gap, w.G, w.G_rate, w.a)
-        return Look(*(one.copy() for one in views), code)
+        return Look(
+            w.M.copy(), w.c.copy(), w.loads[1:-1].copy(), w.phi.copy(), w.A.copy(), w.A_rate.copy(),
+            w.gap.copy(), w.G.copy(), w.G_rate.copy(), w.a.copy(), code,
+        )  # fmt: skip
 
     def failed(self) -> None:
         """Raise what a function of the user's has raised."""

@@ -119,7 +119,8 @@ class GeneralizedSolution:
         from carom.generalized.loop import energies
 
         saved, n = int(run.clock[0].saved), run.n
-        series, states = run.series[:saved], run.states[:saved].copy()
+        series: Any = run.series[:saved]
+        states = run.states[:saved].copy()
         kinetic, potential = np.zeros(saved), np.zeros(saved)
         t = np.array(series.t)
         failed, run.made.functions.failed = run.made.functions.failed, None

@@ -3,28 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from carom import check
+from carom.generalized.stated import CoordinateContact, answer, checked_contact, checked_functions
 
 if TYPE_CHECKING:
     from carom.generalized.evaluate import Evaluation
-
-LAWS = ("newton", "poisson", "stronge")
-
-
-@dataclass(frozen=True)
-class CoordinateContact:
-    """A contact of a system in coordinates: its law; what touches is told by its gap."""
-
-    name: str
-    restitution: float
-    friction: float
-    impact_law: str
-    index: int
 
 
 class GeneralizedSystem:
@@ -100,14 +87,14 @@ class GeneralizedSystem:
         v = check.finite_array("velocity", velocity, (n,))
         answers = {"metric": (n, n), "potential": (), "metric_derivative": (n, n, n)}
         answers["potential_gradient"] = (n,)
-        h = 0 if constraint is None else _answer("constraint(q)", constraint, (None,), q).size
-        k = 0 if rows is None else len(_answer("rows(q)", rows, (None, n), q))
+        h = 0 if constraint is None else answer("constraint(q)", constraint, (None,), q).size
+        k = 0 if rows is None else len(answer("rows(q)", rows, (None, n), q))
         answers["constraint_jacobian"] = (h, n)
         for name, shape in answers.items():
             if given[name] is not None:
-                _answer(f"{name}(q)", given[name], shape, q)
+                answer(f"{name}(q)", given[name], shape, q)
         if force is not None:
-            _answer("force(t, q, v)", force, (n,), 0.0, q, v)
+            answer("force(t, q, v)", force, (n,), 0.0, q, v)
         from carom.generalized.functional import FunctionalModel
 
         self._start(FunctionalModel(n, given, h, k), q, v)
@@ -234,41 +221,17 @@ class GeneralizedSystem:
         ValueError
             If an argument is not as above, or `friction` is given without `tangent`.
         """
-        e = check.number("restitution", restitution, least=0.0, most=1.0)
-        mu = check.number("friction", friction, least=0.0)
-        check.choice("impact_law", impact_law, LAWS)
-        if mu > 0.0 and tangent is None:
-            raise ValueError(f"friction needs a tangent, got friction {friction!r} without one")
-        name = f"contact {len(self._contacts)}" if name is None else name
-        if any(name == other.name for other in self._contacts):
-            raise ValueError(f"name must be new, got {name!r} twice")
+        contact = checked_contact(self._contacts, tangent, restitution, friction, impact_law, name)
         if hasattr(self._model, "sp"):
             if callable(gap) and not hasattr(gap, "free_symbols"):
                 raise ValueError("gap must be an expression in a system from SymPy, got a function")
             self._model.add_contact(gap, tangent)
         else:
-            self._add_functions(gap, gap_gradient, tangent)
+            count = checked_functions(self.position, gap, gap_gradient, tangent)
+            self._model.add_contact(gap, gap_gradient, tangent, count)
         self._made = None
-        contact = CoordinateContact(name, e, mu, impact_law, len(self._contacts))
         self._contacts.append(contact)
         return contact
-
-    def _add_functions(self, gap, gradient, tangent) -> None:
-        n, q, count = self.coordinates, self.position, 0
-        for what, one in (("gap", gap), ("gap_gradient", gradient), ("tangent", tangent)):
-            if not callable(one) and (one is not None or what == "gap"):
-                raise TypeError(f"{what} must be a function, got {one!r}")
-        _answer("gap(q)", gap, (), q)
-        if gradient is not None:
-            _answer("gap_gradient(q)", gradient, (n,), q)
-        if tangent is not None:
-            rows = np.asarray(tangent(q.copy()), dtype=float)
-            if rows.shape not in ((n,), (1, n), (2, n)):
-                raise ValueError(
-                    f"tangent(q) must have shape ({n},) or (2, {n}), got shape {rows.shape}"
-                )
-            count = rows.size // n
-        self._model.add_contact(gap, gradient, tangent, count)
 
     def evaluation(self) -> Evaluation:
         """Return the system's functions, compiled, for use at single states."""
@@ -307,7 +270,7 @@ class GeneralizedSystem:
     def return_map(self, position, contact: CoordinateContact | str) -> np.ndarray:
         """Return coordinates where the gap of a contact is zero, along an autoparallel normal to it there.
 
-        Normal in the metric (paper, contact detection; mathematics page, II.6), and within the constraints.
+        Normal in the metric (paper, contact detection; mathematics page, VII.2), and within the constraints.
 
         Raises
         ------
@@ -334,9 +297,3 @@ class GeneralizedSystem:
             f"<GeneralizedSystem: {self.coordinates} coordinates, {self._model.rows} constraints, "
             f"{len(self._contacts)} contacts>"
         )
-
-
-def _answer(name: str, function: Callable, shape: tuple, *arguments) -> np.ndarray:
-    """Return what a function gives at the start; refuse another shape than `shape`."""
-    result = function(*(np.copy(a) if np.ndim(a) else a for a in arguments))
-    return check.finite_array(name, result, shape)
