@@ -122,6 +122,39 @@ def test_an_error_of_a_function_is_the_cause():
     assert np.all(caught.value.solution.q[:, 0] <= -1.0)
 
 
+def test_an_error_at_an_event_is_the_cause_too():
+    def fails(t, q, v):
+        if v[0] > 0.0:
+            raise RuntimeError("upwards")
+        return [-9.81]
+
+    system = GeneralizedSystem(lambda q: [[1.0]], [1.0], [0.0], force=fails)
+    system.add_contact(lambda q: q[0], restitution=0.5)
+    run = carom.simulate(system, 1.0, step=1e-2, throw=False)
+    assert run.status is carom.Status.FUNCTION_FAILED
+    assert "upwards" in run.message
+    assert run.t[-1] == pytest.approx(np.sqrt(2 / 9.81), abs=1e-12)
+
+
+def test_ctrl_c_within_a_function():
+    def stops(t, q, v):
+        if t > 0.5:
+            raise KeyboardInterrupt
+        return [0.0]
+
+    system = GeneralizedSystem(lambda q: [[1.0]], [1.0], [1.0], force=stops)
+    run = carom.simulate(system, 1.0, step=1e-2, throw=False)
+    assert run.status is carom.Status.INTERRUPTED
+    assert run.t[-1] == pytest.approx(0.5)
+
+
+def test_a_gap_that_is_no_number_ends_the_run():
+    system = GeneralizedSystem(lambda q: [[1.0]], [1.0], [-1.0])
+    system.add_contact(lambda q: np.nan if q[0] < 0.5 else q[0] + 1.0, restitution=0.5)
+    run = carom.simulate(system, 1.0, step=1e-2, throw=False)
+    assert run.status is carom.Status.NOT_FINITE
+
+
 def test_motion_that_diverges_ends_with_a_status():
     system = GeneralizedSystem(lambda q: [[1.0]], [1.0], [1.0], force=lambda t, q, v: [v[0] ** 3])
     with np.errstate(all="ignore"):  # v = 1/sqrt(1 - 2 t)

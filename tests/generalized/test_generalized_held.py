@@ -147,3 +147,29 @@ def test_two_blocks_collide_and_stop_together():
     np.testing.assert_allclose(run.q[-1], [0, 1], rtol=0, atol=1e-14)
     np.testing.assert_allclose(run.v[-1], 0.0, atol=1e-14)
     assert run.ledger.impacts[-1] == pytest.approx(-1.0, rel=1e-13)
+
+
+def test_slip_that_turns():
+    # A side wind F on a puck, du/dt = F - mu g u/|u|. With s the angle of slip from the wind, w = tan(s/2) and
+    # k = mu g/F: d|u|/ds = |u| (k - cos s)/sin s and ds/dt = -F sin s/|u|.
+    # Here k = 1/2 and s = 90 degrees at the start: |u| = (v0/2) w^(-1/2) (1 + w^2).
+    from scipy.integrate import quad
+
+    q, v = symbols("x y z")
+    force, start = 2.0 * 0.3 * G, 1.0
+    system = GeneralizedSystem.from_sympy(
+        q, v, metric=sp.eye(3), potential=G * q[2], forces=[0, force, 0], position=[0, 0, 0],
+        velocity=[start, 0, 0],
+    )  # fmt: skip
+    system.add_contact(q[2], tangent=v[:2], restitution=0.0, friction=0.3)
+    angle = 0.2
+
+    def speed(s):
+        w = np.tan(s / 2)
+        return 0.5 * start * w**-0.5 * (1 + w * w)
+
+    time, _ = quad(lambda s: speed(s) / (force * np.sin(s)), angle, np.pi / 2, epsabs=1e-13)
+    for step, most in ((0.02, 1e-4), (2e-3, 1e-8)):
+        run = carom.simulate(system, time, step=step)
+        exact = speed(angle) * np.array([np.sin(angle), np.cos(angle)])
+        np.testing.assert_allclose(run.v[-1, :2], exact, rtol=0, atol=most)

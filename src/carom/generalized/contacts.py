@@ -59,7 +59,9 @@ class Contacts:
         self.W_nn = W[:, 0, 0]
         size = np.sqrt(np.maximum(np.trace(W, axis1=1, axis2=2), 0.0))
         speed = np.sqrt(max(run.x[n:] @ M @ run.x[n:], 0.0))
-        push = np.sqrt(max(self.seen.load @ np.linalg.solve(M, self.seen.load), 0.0)) * run.step
+        push = (
+            np.sqrt(max(self.seen.load @ np.linalg.solve(M, self.seen.load), 0.0)) * run.plan.step
+        )
         self.still = STILL * size * max(speed, push)
 
     def held(self) -> list[int]:
@@ -188,7 +190,7 @@ class Contacts:
             e = 0.0
         if not u >= -10.0 * self.still[c]:
             return False
-        return u <= self.still[c] or (e < 1.0 and 2.0 * u < draw * (1.0 - e) * self.run.step)
+        return u <= self.still[c] or (e < 1.0 and 2.0 * u < draw * (1.0 - e) * self.run.plan.step)
 
     def settle(self, chosen, closed, kind: int, marked: int, free: np.ndarray) -> int:
         """Hold `chosen`: find stick or slip of each from the accelerations; return a status."""
@@ -277,7 +279,9 @@ class Contacts:
                     c == marked and kind == REVERSE
                 ):  # what friction takes away in a thousandth of a step
                     W_tt = np.einsum("in,nm,im->", self.seen.G[c, 1:], self.P, self.seen.G[c, 1:])
-                    stop = max(stop, 1e-3 * run.step * self.friction[c] * abs(forces[c][0]) * W_tt)
+                    stop = max(
+                        stop, 1e-3 * run.plan.step * self.friction[c] * abs(forces[c][0]) * W_tt
+                    )
                 if slip <= stop:
                     rows.extend(self.seen.G[c, 1:])
         R = np.array(rows)

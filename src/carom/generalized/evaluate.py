@@ -45,6 +45,7 @@ class Evaluation:
         n, C = system.coordinates, len(contacts)
         self.n = n
         self.functions = Functions()
+        self.raised: BaseException | None = None
         addresses = model.addresses(self.functions)
         self.system = Coordinates(
             np.array(addresses, dtype=np.int64),
@@ -70,6 +71,7 @@ class Evaluation:
         """Raise what a function of the user's has raised."""
         error, self.functions.failed = self.functions.failed, None
         if error is not None:
+            self.raised = error
             raise error
 
     def metric(self, q) -> np.ndarray:

@@ -25,7 +25,7 @@ from carom.generalized.layout import (
     TOUCHES,
     N,
 )
-from carom.generalized.motion import acceleration, copy_row, find_contacts, slip_of
+from carom.generalized.motion import NOT_FINITE, acceleration, copy_row, find_contacts, slip_of
 from carom.generalized.step import take
 from carom.jit import kernel
 
@@ -55,6 +55,9 @@ def examine(system, held, t, x, work):
     if system.size[TOUCHES] == 0:
         return 0
     find_contacts(system, t, x, work)
+    for c in range(system.size[TOUCHES]):
+        if not math.isfinite(work.gap[c]):
+            return NOT_FINITE
     if held.count[0] == 0:
         return 0
     _, _, code = acceleration(system, held, t, x, work, work.trial)
@@ -78,6 +81,23 @@ def value(system, held, kind, i, x, work):
         return held.yields[i], 0.0
     u1, u2 = slip_of(system, held, i, x, work)
     return u1 * held.heading[i, 0] + u2 * held.heading[i, 1], 0.0
+
+
+@kernel
+def turned(system, held, t, x, work):
+    """Return whether slip has turned by more than 60 degrees within a step, and not just come to a stop."""
+    looked = False
+    for i in range(held.count[0]):
+        if held.mode[i] == SLIP and system.friction[held.contact[i]] > 0.0:
+            if not looked:
+                find_contacts(system, t, x, work)
+                looked = True
+            u1, u2 = slip_of(system, held, i, x, work)
+            h1, h2 = held.heading[i, 0], held.heading[i, 1]
+            along, across = u1 * h1 + u2 * h2, abs(u1 * h2 - u2 * h1)
+            if across > (1.7320508 * along if along > 0.0 else -0.1 * along):
+                return True
+    return False
 
 
 @kernel

@@ -39,7 +39,7 @@ class FunctionalModel:
         """Return where the four functions are."""
         n, C = self.n, len(self.contacts)
         sizes = (n * n + n, n + 2, self.holonomic + self.rows * (n + 1), C * (4 + 3 * n))
-        made = [self.inertia(), self.loads()]
+        made: list[Any] = [self.inertia(), self.loads()]
         made.append(self.row_terms() if self.rows else None)
         made.append(self.contact_terms() if C else None)
         return [

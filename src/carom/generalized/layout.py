@@ -83,6 +83,15 @@ class Work(NamedTuple):
     spent: np.ndarray  # (2,) work of loads and of friction in the last step
 
 
+class Plan(NamedTuple):
+    """What is to be run."""
+
+    duration: float
+    step: float
+    steps: int
+    every: int  # steps from one saved state to the next
+
+
 #: one run: where it is
 CLOCK = [
     ("now", "f8"), ("step", "i8"), ("saved", "i8"), ("loads", "f8"), ("friction", "f8"),

@@ -3,27 +3,35 @@
 from __future__ import annotations
 
 from carom.functions import call_function
-from carom.generalized.events import keep, locate, note_start
+from carom.generalized.events import keep, locate, note_start, turned
 from carom.generalized.layout import DONE, EVENT, LOADS, NOTHING, TOUCHES, N
 from carom.generalized.motion import find_metric
 from carom.generalized.step import take
 from carom.jit import entry, kernel
 
+CUTS = 12  # most halvings of a step in which slip turns
+
 
 @entry
-def march(system, method, held, x, duration, h, every, until, work, clock, series, states):
+def march(system, method, held, x, plan, until, work, clock, series, states):
     """Go on to step number `until`; return DONE, EVENT (`clock` says which) or a status of failure."""
-    c = clock[0]
+    c, h = clock[0], plan.step
     while c.step < until:
-        target = min((c.step + 1) * h, duration)
+        last = c.step + 1 == plan.steps
+        target = plan.duration if last else (c.step + 1) * h
         left = target - c.now
         if left > 1e-13 * h:
             note_start(system, c.now, x, work)
-            code = take(system, method, held, c.now, x, left, work.end, work)
-            if code != 0:
-                return code
-            c.trials += 1
-            s, kind, index, code = locate(system, method, held, c.now, x, left, work.end, work)
+            part = left
+            for cut in range(CUTS):
+                code = take(system, method, held, c.now, x, part, work.end, work)
+                if code != 0:
+                    return code
+                c.trials += 1
+                if cut + 1 == CUTS or not turned(system, held, c.now + part, work.end, work):
+                    break
+                part *= 0.5
+            s, kind, index, code = locate(system, method, held, c.now, x, part, work.end, work)
             if code != 0:
                 return code
             keep(work.end, x)
@@ -33,9 +41,12 @@ def march(system, method, held, x, duration, h, every, until, work, clock, serie
                 c.now += s
                 c.kind, c.index = kind, index
                 return EVENT
+            if part < left:
+                c.now += part
+                continue
         c.now = target
         c.step += 1
-        if c.step % every == 0 or target >= duration:
+        if c.step % plan.every == 0 or last:
             save(x, c, series, states)
     return DONE
 

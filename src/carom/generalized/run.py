@@ -8,7 +8,7 @@ import numpy as np
 
 from carom.generalized.contacts import Contacts
 from carom.generalized.evaluate import Evaluation
-from carom.generalized.layout import CLOCK, DONE, EVENT, SERIES, new_held, new_work
+from carom.generalized.layout import CLOCK, DONE, EVENT, SERIES, Plan, new_held, new_work
 from carom.generalized.loop import march, save_now
 from carom.generalized.step import settle_rates
 from carom.motion.explicit import tableau
@@ -30,7 +30,7 @@ class GeneralizedRun:
         save_every: int, options: Options,
     ):  # fmt: skip
         self.user, self.options = system, options
-        self.duration, self.step, self.every = duration, step, save_every
+        self.plan = Plan(duration, step, steps, save_every)
         self.settings = {
             "duration": duration, "step": step, "method": method, "save_every": save_every,
             "options": options.as_dict(),
@@ -99,14 +99,17 @@ class GeneralizedRun:
         code = self.start_code
         while code == 0:
             code = march(
-                self.system, self.method, self.held, self.x, self.duration, self.step, self.every,
-                until, self.work, self.clock, self.series, self.states,
+                self.system, self.method, self.held, self.x, self.plan, until, self.work, self.clock, self.series, self.states,
             )  # fmt: skip
             if code != EVENT:
                 break
             code = self.event()
         if self.made.functions.failed is not None:
             self.failure, self.made.functions.failed = self.made.functions.failed, None
+        if isinstance(self.failure, KeyboardInterrupt):  # while a plain function ran
+            self.failure = None
+            return Status.INTERRUPTED
+        if self.failure is not None:
             return Status.FUNCTION_FAILED
         return Status.SUCCESS if code == DONE else Status(code)
 
@@ -117,12 +120,18 @@ class GeneralizedRun:
         if clock.step != self.in_step:
             self.in_step = int(clock.step)
             self.contacts.new_step()
-        near = clock.now - self.last <= 1e-12 * self.step
+        near = clock.now - self.last <= 1e-12 * self.plan.step
         self.at_once = self.at_once + 1 if near else 0
         self.last = float(clock.now)
         if self.at_once > AT_ONCE:
             return Status.TOO_MANY_IMPACTS
-        return self.contacts.resolve(int(clock.kind), int(clock.index))
+        try:
+            return self.contacts.resolve(int(clock.kind), int(clock.index))
+        except BaseException as error:
+            if error is not self.made.raised:
+                raise
+            self.failure = error
+            return Status.FUNCTION_FAILED
 
     def solution(self, status: Status):
         """Return what was computed; after a failure up to the last state."""
