@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import sympy as sp
-from coordinate_systems import symbols
+from coordinate_systems import rate, symbols
 
 import carom
 from carom import GeneralizedSystem
@@ -173,3 +173,36 @@ def test_slip_that_turns():
         run = carom.simulate(system, time, step=step)
         exact = speed(angle) * np.array([np.sin(angle), np.cos(angle)])
         np.testing.assert_allclose(run.v[-1, :2], exact, rtol=0, atol=most)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.15])
+def test_two_held_contacts_keep_the_order(friction):
+    # A rod slides on both ends over the hill z = cos(x)/10, to a stop if there is friction. Against rk8.
+    from scipy.optimize import root
+
+    q, v = symbols("x z a")
+    x, z, a = q
+    ends = [(x + k * sp.cos(a) / 2, z + k * sp.sin(a) / 2) for k in (-1, 1)]
+    gaps = [Z - sp.cos(X) / 10 for X, Z in ends]
+    given = {x: 0.3}
+    at = root(sp.lambdify([(z, a)], [one.subs(given) for one in gaps]), [0.1, 0.0], tol=1e-14).x
+    given |= {z: at[0], a: at[1]}
+    J = np.array(sp.Matrix(gaps).jacobian(q).subs(given), dtype=float)
+    system = GeneralizedSystem.from_sympy(
+        q, v, metric=sp.diag(1, 1, sp.Rational(1, 12)), potential=G * z, position=[0.3, *at],
+        velocity=[0.8, *np.linalg.solve(J[:, 1:], -0.8 * J[:, 0])],
+    )  # fmt: skip
+    for (X, Z), gap in zip(ends, gaps):
+        slope = -sp.sin(X) / 10
+        n = sp.sqrt(1 + slope**2)
+        tangent = (rate(X, q, v) + slope * rate(Z, q, v)) / n
+        system.add_contact(gap / n, tangent=tangent, restitution=0.0, friction=friction)
+    exact = carom.simulate(system, 1.2, step=2e-3, method="rk8")
+    runs = [carom.simulate(system, 1.2, step=h) for h in (0.04, 0.02, 0.01)]
+    errors = np.array([np.max(np.abs(run.q[-1] - exact.q[-1])) for run in runs])
+    assert np.all(np.log2(errors[:-1] / errors[1:]) > 3.7)
+    assert errors[-1] < 1e-10
+    if friction > 0.0:
+        assert [str(kind) for kind in exact.events.kind] == ["held", "held", "sticks", "sticks"]
+        assert runs[-1].events.time[2] == pytest.approx(exact.events.time[2], abs=1e-10)
+        np.testing.assert_allclose(runs[-1].v[-1], 0.0, atol=1e-14)

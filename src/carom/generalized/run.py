@@ -99,7 +99,8 @@ class GeneralizedRun:
         code = self.start_code
         while code == 0:
             code = march(
-                self.system, self.method, self.held, self.x, self.plan, until, self.work, self.clock, self.series, self.states,
+                self.system, self.method, self.held, self.x, self.plan, until, self.work,
+                self.clock, self.series, self.states,
             )  # fmt: skip
             if code != EVENT:
                 break
