@@ -24,6 +24,7 @@ from carom.scene import (
     Mesh,
     Scene,
     Sphere,
+    constraints,
     forces,
     joints,
 )
@@ -62,6 +63,7 @@ __all__ = [
     "Sphere",
     "Status",
     "baselines",
+    "constraints",
     "forces",
     "identify",
     "impact_layer",

@@ -8,6 +8,7 @@ from carom.islands import parts
 from carom.islands.layout import Islands, NoIslands
 from carom.jit import entry, inlined, kernel
 from carom.loop import NOT_FINITE, advance, strayed
+from carom.motion.more_forces import note_turns
 from carom.save import finite, save
 from carom.system import records as r
 
@@ -45,6 +46,7 @@ def run(
         clock.step += 1
         clock.in_step = 0
         clock.now = begin + length
+        note_turns(system, now)
         if not finite(now):
             return NOT_FINITE
         if clock.step % controls.save_every == 0 or clock.step == controls.last:

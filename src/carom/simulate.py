@@ -23,32 +23,18 @@ CHUNKS = 100  # calls of the compiled loop in one run, for progress and for Ctrl
 
 @overload
 def simulate(
-    scene: Scene,
-    duration: float,
-    *,
-    step: float,
-    method: str = "rk4",
-    impact_location: str = "locate",
-    save_every: int = 1,
-    progress: bool | Callable[[int, int], None] | None = None,
-    options: Options | None = None,
-    throw: bool = True,
-) -> Solution: ...
+    scene: Scene, duration: float, *, step: float, method: str = ..., impact_location: str = ...,
+    save_every: int = ..., progress: bool | Callable[[int, int], None] | None = ...,
+    options: Options | None = ..., throw: bool = ...,
+) -> Solution: ...  # fmt: skip
 
 
 @overload
 def simulate(
-    scene: GeneralizedSystem,
-    duration: float,
-    *,
-    step: float,
-    method: str = "rk4",
-    impact_location: str = "locate",
-    save_every: int = 1,
-    progress: bool | Callable[[int, int], None] | None = None,
-    options: Options | None = None,
-    throw: bool = True,
-) -> GeneralizedSolution: ...
+    scene: GeneralizedSystem, duration: float, *, step: float, method: str = ..., impact_location: str = ...,
+    save_every: int = ..., progress: bool | Callable[[int, int], None] | None = ...,
+    options: Options | None = ..., throw: bool = ...,
+) -> GeneralizedSolution: ...  # fmt: skip
 
 
 def simulate(
@@ -161,7 +147,7 @@ def simulate(
             close()
     solution = run.solution(status)
     if throw and not solution.success:
-        raise SimulationError(solution.message, solution) from getattr(run, "failure", None)
+        raise SimulationError(solution.message, solution) from run.failure
     return solution
 
 

@@ -16,10 +16,10 @@ class Status(IntEnum):
     RETURN_MAP_FAILED = 5
     IMPACT_FAILED = 6
     CONSTRAINTS_LOST = 7
+    FUNCTION_FAILED = 8
     INTERRUPTED = 9
     TOO_MANY_POINTS = 10
     SINGULAR_METRIC = 11
-    FUNCTION_FAILED = 12
 
     @property
     def message(self) -> str:
@@ -57,15 +57,16 @@ _MESSAGES = {
         "The bilateral constraints could not be met at the end of a step: the mechanism is in a "
         "position that it cannot leave, or the step is too large. Take a smaller step."
     ),
+    Status.FUNCTION_FAILED: (
+        "A function given by the user raised an error, which is the cause of this one; the solution holds what "
+        "was computed until then."
+    ),
     Status.TOO_MANY_POINTS: (
         "More than 192 points of a group of bodies are closed at once. Give the shapes fewer vertices."
     ),
     Status.SINGULAR_METRIC: (
         "The metric is not positive definite at a position on the way: the coordinates are singular there. "
         "Take others, or a smaller step."
-    ),
-    Status.FUNCTION_FAILED: (
-        "A function of the system raised an error, which is the cause of this one."
     ),
     Status.INTERRUPTED: "The run was interrupted; the solution holds what was computed until then.",
 }
