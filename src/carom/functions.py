@@ -45,7 +45,7 @@ class Functions:
         self._kept.append(made)
         return ctypes.cast(made, ctypes.c_void_p).value
 
-    def written(self, function: Callable, inside: tuple[int, ...], outside: tuple[int, ...]) -> int:
+    def written(self, function: Callable, inside: tuple[int, ...], outside: tuple[int, ...]):
         """Return the address of ``function(t, x, out)`` that only reads and writes numbers of its arguments.
 
         Compiled as it stands, without arrays: for code that the library itself has written.
