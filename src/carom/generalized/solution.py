@@ -75,7 +75,7 @@ class CoordinateImpactTable:
 
 @dataclass(frozen=True, eq=False)
 class GeneralizedSolution:
-    r"""The motion of a system in n coordinates at T saved times, with K impacts.
+    """The motion of a system in n coordinates at T saved times, with K impacts.
 
     Attributes
     ----------
@@ -90,7 +90,7 @@ class GeneralizedSolution:
     events : EventTable
         Impacts and changes of held contacts, in their order.
     constraint_errors : tuple of (T,), (T,)
-        Greatest |phi(q)| and greatest |A v|.
+        Greatest entries of phi(q) and of A v, the rates of the constraints.
     ledger : Ledger
         Where the energy went.
     status : Status
@@ -161,7 +161,7 @@ class GeneralizedSolution:
 
     @cached_property
     def constraint_errors(self) -> tuple[np.ndarray, np.ndarray]:
-        """Greatest error of the constraints at each saved time: |phi(q)| (T,) and |A v| (T,)."""
+        """Greatest errors of the constraints at each saved time: of phi(q) (T,) and of A v (T,)."""
         position, rate = np.zeros(len(self.t)), np.zeros(len(self.t))
         for k in range(len(self.t)):
             seen = self._run.made.look(self.q[k], self.v[k], float(self.t[k]))
