@@ -9,6 +9,7 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING
 
+from carom.generalized import GeneralizedSystem
 from carom.options import Options
 from carom.scene import (
     GROUND,
@@ -50,6 +51,7 @@ __all__ = [
     "Cylinder",
     "Disc",
     "Ellipsoid",
+    "GeneralizedSystem",
     "Impact",
     "LayerHistory",
     "Material",

@@ -16,7 +16,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numba import carray, cfunc  # pyright: ignore[reportPrivateImportUsage]
+from numba import carray, cfunc, njit  # pyright: ignore[reportPrivateImportUsage]
 from numba.core import types
 from numba.core.dispatcher import Dispatcher
 from numba.extending import intrinsic, overload
@@ -44,6 +44,23 @@ class Functions:
         made = _FORM(self._plain(function, inside, outside))
         self._kept.append(made)
         return ctypes.cast(made, ctypes.c_void_p).value
+
+    def written(self, function: Callable, inside: tuple[int, ...], outside: tuple[int, ...]):
+        """Return the address of ``function(t, x, out)`` that only reads and writes numbers of its arguments.
+
+        Compiled as it stands, without arrays: for code that the library itself has written.
+        """
+        if njit(function) is function:  # NUMBA_DISABLE_JIT=1
+
+            def answer(t, x):
+                out = np.empty(outside)
+                function(t, x, out)
+                return out
+
+            return self.address(answer, inside, outside)
+        made: Any = cfunc(_SIGNATURE)(function)
+        self._kept.append(made)
+        return made.address
 
     def _plain(self, function, inside, outside):
         def call(t, read, write):

@@ -219,6 +219,11 @@ class Run:
         """Number of finished steps."""
         return int(self.clock[0].step)
 
+    @property
+    def failure(self) -> BaseException | None:
+        """What a function of the user's has raised."""
+        return self.compiled.functions.failed
+
     def go_on(self, until: int) -> Status:
         """Go on to step number `until`, or to a failure."""
         while True:

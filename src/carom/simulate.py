@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import overload
 
 import numpy as np
 
 from carom import check
+from carom.generalized.solution import GeneralizedSolution
+from carom.generalized.system import GeneralizedSystem
 from carom.options import Options
 from carom.scene.limits import check_location
 from carom.scene.scene import Scene
@@ -18,8 +21,24 @@ LOCATIONS = ("locate", "project", "work")
 CHUNKS = 100  # calls of the compiled loop in one run, for progress and for Ctrl-C
 
 
+@overload
 def simulate(
-    scene: Scene,
+    scene: Scene, duration: float, *, step: float, method: str = ..., impact_location: str = ...,
+    save_every: int = ..., progress: bool | Callable[[int, int], None] | None = ...,
+    options: Options | None = ..., throw: bool = ...,
+) -> Solution: ...  # fmt: skip
+
+
+@overload
+def simulate(
+    scene: GeneralizedSystem, duration: float, *, step: float, method: str = ..., impact_location: str = ...,
+    save_every: int = ..., progress: bool | Callable[[int, int], None] | None = ...,
+    options: Options | None = ..., throw: bool = ...,
+) -> GeneralizedSolution: ...  # fmt: skip
+
+
+def simulate(
+    scene: Scene | GeneralizedSystem,
     duration: float,
     *,
     step: float,
@@ -29,13 +48,13 @@ def simulate(
     progress: bool | Callable[[int, int], None] | None = None,
     options: Options | None = None,
     throw: bool = True,
-) -> Solution:
+) -> Solution | GeneralizedSolution:
     """Simulate the motion of a scene with its impacts.
 
     Parameters
     ----------
-    scene : Scene
-        What moves. It is not changed.
+    scene : Scene or GeneralizedSystem
+        What moves. It is not changed. A system in coordinates takes the explicit methods, and "locate".
     duration : float
         Time to simulate [s].
     step : float
@@ -65,6 +84,7 @@ def simulate(
     Returns
     -------
     Solution
+        Of a `GeneralizedSystem` a `generalized.solution.GeneralizedSolution`.
 
     Raises
     ------
@@ -76,8 +96,10 @@ def simulate(
     SimulationError
         If the run fails part-way and `throw` is True.
     """
-    if not isinstance(scene, Scene):
-        raise TypeError(f"scene must be a carom.Scene, got {type(scene).__name__}")
+    if not isinstance(scene, (Scene, GeneralizedSystem)):
+        raise TypeError(
+            f"scene must be a carom.Scene or a carom.GeneralizedSystem, got {type(scene).__name__}"
+        )
     duration = check.number("duration", duration, above=0.0, unit="s")
     step = check.number("step", step, above=0.0, unit="s")
     check.choice("method", method, METHODS)
@@ -92,13 +114,21 @@ def simulate(
         raise ValueError(
             f"step must be above duration / 1e12 = {duration / 1e12:g} s, got {step!r}"
         )
-    scene.validate()
-    check_location(scene, impact_location)
-
-    from carom.run import Run
-
     steps = max(1, int(np.ceil(duration / step * (1.0 - 1e-12))))
-    run = Run(scene, duration, step, steps, method, impact_location, save_every, options)
+    if isinstance(scene, GeneralizedSystem):
+        check.choice("method of a system in coordinates", method, METHODS[:3])
+        check.choice("impact_location of a system in coordinates", impact_location, LOCATIONS[:1])
+
+        from carom.generalized.run import GeneralizedRun
+
+        run = GeneralizedRun(scene, duration, step, steps, method, save_every, options)
+    else:
+        scene.validate()
+        check_location(scene, impact_location)
+
+        from carom.run import Run
+
+        run = Run(scene, duration, step, steps, method, impact_location, save_every, options)
     status = Status.SUCCESS
     report = _reporter(progress, steps)
     chunk = max(1, -(-steps // CHUNKS)) if report is not None else steps
@@ -117,7 +147,7 @@ def simulate(
             close()
     solution = run.solution(status)
     if throw and not solution.success:
-        raise SimulationError(solution.message, solution) from run.compiled.functions.failed
+        raise SimulationError(solution.message, solution) from run.failure
     return solution
 
 

@@ -19,6 +19,7 @@ class Status(IntEnum):
     FUNCTION_FAILED = 8
     INTERRUPTED = 9
     TOO_MANY_POINTS = 10
+    SINGULAR_METRIC = 11
 
     @property
     def message(self) -> str:
@@ -62,6 +63,10 @@ _MESSAGES = {
     ),
     Status.TOO_MANY_POINTS: (
         "More than 192 points of a group of bodies are closed at once. Give the shapes fewer vertices."
+    ),
+    Status.SINGULAR_METRIC: (
+        "The metric is not positive definite at a position on the way: the coordinates are singular there. "
+        "Take others, or a smaller step."
     ),
     Status.INTERRUPTED: "The run was interrupted; the solution holds what was computed until then.",
 }

@@ -38,7 +38,7 @@ NAN, INF = math.nan, math.inf
         ({"save_every": 1.5}, ValueError, r"save_every must be a whole number, got 1.5"),
         ({"save_every": True}, ValueError, r"save_every must be a whole number, got True"),
         ({"options": {"hold": True}}, TypeError, r"options must be carom.Options, got dict"),
-        ({"scene": None}, TypeError, r"scene must be a carom.Scene, got NoneType"),
+        ({"scene": None}, TypeError, r"scene must be a carom.Scene or a carom.GeneralizedSystem, got"),
         ({"progress": "yes"}, TypeError, r"progress must be True, False or a function, got 'yes'"),
         ({"progress": 3}, TypeError, r"progress must be True, False or a function, got 3"),
         ({"throw": "no"}, TypeError, r"throw must be True or False, got 'no'"),

@@ -1,0 +1,292 @@
+"""Events of contacts: impacts, contacts that are held from then on, stick, slip and opening.
+
+At one state, in the arrays of NumPy; the impact and the contact problem are solved by the kernels that the
+scenes of bodies use.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from carom.generalized.autoparallel import return_map
+from carom.generalized.layout import CONE, GAP, JAM, REVERSE, SEPARATE, SLIP, STICK
+from carom.generalized.step import settle_rates
+from carom.generalized.strike import Strike
+from carom.impact.laws import NUMBERS
+from carom.status import Status
+
+if TYPE_CHECKING:
+    from carom.generalized.run import GeneralizedRun
+
+STILL = 1e-12  # of the speeds of a contact: a relative velocity that is round-off
+ROUNDS = 50
+
+
+class Contacts:
+    """The contacts of a run: which are held, and what has happened to them."""
+
+    def __init__(self, run: GeneralizedRun):
+        contacts = run.user.contacts
+        self.run = run
+        self.restitution = np.array([one.restitution for one in contacts])
+        self.friction = np.array([one.friction for one in contacts])
+        self.law = np.array([NUMBERS[one.impact_law] for one in contacts], dtype=np.int64)
+        self.blows = np.zeros(len(contacts), dtype=np.int64)
+        self.events: list[tuple[float, str, int]] = []
+        self.strike = Strike(self)
+        self.cones: Any = None  # scratch of the contact problem, made when it is first needed
+
+    def new_step(self) -> None:
+        """Forget the blows of the last step."""
+        self.blows[:] = 0
+
+    # --- what the state says -------------------------------------------------------------------
+
+    def look(self) -> None:
+        """Work out the state: P, the relative velocities u (C, 3), and what counts as still (C,)."""
+        run, n = self.run, self.run.n
+        self.seen = run.made.look(run.x[:n], run.x[n:], float(run.clock[0].now), run.held)
+        M, A = self.seen.M, self.seen.A
+        P = np.linalg.inv(M)
+        if len(A):
+            Y = P @ A.T
+            P = P - Y @ np.linalg.pinv(A @ Y, rcond=run.system.drop, hermitian=True) @ Y.T
+        self.P = 0.5 * (P + P.T)
+        self.u = self.seen.G @ run.x[n:]
+        W = np.einsum("cin,nm,cjm->cij", self.seen.G, self.P, self.seen.G)
+        self.W_nn = W[:, 0, 0]
+        size = np.sqrt(np.maximum(np.trace(W, axis1=1, axis2=2), 0.0))
+        speed = np.sqrt(max(run.x[n:] @ M @ run.x[n:], 0.0))
+        push = (
+            np.sqrt(max(self.seen.load @ np.linalg.solve(M, self.seen.load), 0.0)) * run.plan.step
+        )
+        self.still = STILL * size * max(speed, push)
+
+    def held(self) -> list[int]:
+        """Return the contacts that are held."""
+        held = self.run.held
+        return [int(c) for c in held.contact[: held.count[0]]]
+
+    def closed(self, struck: int) -> list[int]:
+        """Return the contacts that are closed: held, just located, or with a gap that is nothing."""
+        scale = self.run.options.tie_tolerance * self.run.work.gap_scale
+        gap = self.seen.gap
+        held = self.held()
+        return [c for c in range(len(gap)) if c in held or c == struck or gap[c] <= scale[c]]
+
+    # --- one event --------------------------------------------------------------------------------
+
+    def resolve(self, kind: int, index: int) -> int:
+        """Resolve what has been located (0: the start); return a status."""
+        run = self.run
+        if run.system.size[3] == 0:
+            return 0
+        now = float(run.clock[0].now)
+        before = run.x.copy()
+        struck = index if kind == GAP else -1
+        marked = int(run.held.contact[index]) if kind in (SEPARATE, CONE, REVERSE, JAM) else -1
+        if struck >= 0:
+            code = self.return_to(struck)
+            if code != 0:
+                return code
+        self.look()
+        if self.seen.status != 0:
+            return self.seen.status
+        was = {c: int(run.held.mode[i]) for i, c in enumerate(self.held())}
+        closed = self.closed(struck)
+        if kind == SEPARATE:
+            self.let_go(marked)
+        code = self.strike.all(closed, now, marked if kind == JAM else -1)
+        if code != 0:
+            return code
+        if run.options.hold:
+            code = self.hold(closed, kind, marked, struck)
+            if code != 0:
+                return code
+        self.note_changes(was, kind, marked, now)
+        run.nodes.append((now, before, run.x.copy()))
+        return 0
+
+    def return_to(self, contact: int) -> int:
+        """Polish the located state by the return map; return a status."""
+        run, now = self.run, float(self.run.clock[0].now)
+        tolerance = 1e-15 * float(run.work.gap_scale[contact])
+        steps, code = return_map(run.system, run.held, now, run.x, contact, tolerance, run.work)
+        if code == 0 and steps > 0 and (run.system.size[2] > 0 or run.held.count[0] > 0):
+            code = settle_rates(run.system, run.held, now, run.x, run.work)
+        return Status.RETURN_MAP_FAILED if code == 0 and steps < 0 else code
+
+    def let_go(self, contact: int) -> None:
+        """Take a contact from the held ones."""
+        held = self.run.held
+        keep = [i for i, c in enumerate(self.held()) if c != contact]
+        for array in (held.contact, held.mode, held.heading, held.force, held.yields):
+            array[: len(keep)] = array[keep]
+        held.count[0] = len(keep)
+
+    def note_changes(self, was: dict, kind: int, marked: int, now: float) -> None:
+        """Write the events of contacts whose mode has changed."""
+        held = self.run.held
+        modes = {c: int(held.mode[i]) for i, c in enumerate(self.held())}
+        for c in {**was, **modes}:
+            if c not in modes:
+                self.events.append((now, "opens", c))
+            elif c not in was:
+                self.run.counts["holds"] += 1
+                self.events.append((now, "held", c))
+            elif modes[c] != was[c]:
+                self.events.append((now, "sticks" if modes[c] == STICK else "slips", c))
+            elif c == marked and kind == REVERSE:
+                self.events.append((now, "slips", c))
+
+    # --- contacts that stay -----------------------------------------------------------------------
+
+    def bilateral(self, rows: np.ndarray, rates: np.ndarray, free: np.ndarray) -> np.ndarray:
+        """Return the acceleration with further rows kept at ``rows a = -rates``."""
+        if not len(rows):
+            return free
+        Y = self.P @ rows.T
+        S = rows @ Y
+        return free - Y @ np.linalg.lstsq(S, rows @ free + rates, rcond=1e-12)[0]
+
+    def free_acceleration(self) -> np.ndarray:
+        """Return the acceleration with the constraints, without contacts."""
+        seen = self.seen
+        Minv_f = np.linalg.solve(seen.M, seen.load - seen.c)
+        if not len(seen.A):
+            return Minv_f
+        Y = np.linalg.solve(seen.M, seen.A.T)
+        S = seen.A @ Y
+        lam = np.linalg.lstsq(S, -seen.A_rate - seen.A @ Minv_f, rcond=self.run.system.drop)[0]
+        return Minv_f + Y @ lam
+
+    def hold(self, closed: list[int], kind: int, marked: int, struck: int) -> int:
+        """Decide which closed contacts stay closed, and how; return a status."""
+        skip = marked if kind == SEPARATE else -1
+        self.look()
+        for c in self.held():
+            if self.u[c, 0] > 10.0 * self.still[c]:
+                self.let_go(c)
+        held = self.held()
+        free = self.free_acceleration()
+        chosen = list(held)
+        for c in sorted(set(closed) - {skip} - set(held), key=lambda c: abs(self.u[c, 0])):
+            rows, rates = self.seen.G[chosen, 0], self.seen.G_rate[chosen, 0]
+            a = self.bilateral(rows, rates, free)
+            draw = -(self.seen.G[c, 0] @ a + self.seen.G_rate[c, 0])
+            size = float(np.sqrt(free @ self.seen.M @ free * self.W_nn[c]))
+            # one that the others keep closed (the fourth leg of a table) has come here by round-off
+            least = -1e-9 if c == struck and chosen else 1e-12
+            if draw > least * size and self.stays(c, draw):
+                chosen.append(c)
+        return self.settle(chosen, closed, kind, marked, free)
+
+    def stays(self, c: int, draw: float) -> bool:
+        """Return whether the bounces of a contact, drawn back by `draw`, end within a step."""
+        u, e = float(self.u[c, 0]), self.restitution[c]
+        if self.blows[c] > 0 and e < 1.0 and e ** float(self.blows[c]) <= 1e-6:
+            e = 0.0
+        if not u >= -10.0 * self.still[c]:
+            return False
+        return u <= self.still[c] or (e < 1.0 and 2.0 * u < draw * (1.0 - e) * self.run.plan.step)
+
+    def settle(self, chosen, closed, kind: int, marked: int, free: np.ndarray) -> int:
+        """Hold `chosen`: find stick or slip of each from the accelerations; return a status."""
+        from carom.coulomb.layout import CONE as FREE
+        from carom.coulomb.layout import SLIDING, SOLVED, new_cone_work
+        from carom.coulomb.solve import solve_cones
+
+        run, n, held = self.run, self.run.n, self.run.held
+        old = {c: held.heading[i].copy() for i, c in enumerate(self.held())}
+        forces = {c: held.force[i].copy() for i, c in enumerate(self.held())}
+        was = {c: int(held.mode[i]) for i, c in enumerate(self.held())}
+        for _ in range(ROUNDS):
+            k = len(chosen)
+            held.count[0] = k
+            if k == 0:
+                return 0
+            self.take_out(chosen, kind, marked, forces)
+            driven = [c for c in closed if c not in chosen and self.u[c, 0] < -10.0 * self.still[c]]
+            if driven:  # by what was taken out of the others
+                chosen = chosen + driven
+                continue
+            G = self.seen.G[chosen].reshape(3 * k, n)
+            W = G @ self.P @ G.T
+            c0 = G @ free + self.seen.G_rate[chosen].reshape(3 * k)
+            mu = self.friction[chosen]
+            kinds, heading = np.full(k, FREE), np.zeros((k, 2))
+            for i, c in enumerate(chosen):
+                slip = self.u[c, 1:]
+                size = float(np.linalg.norm(slip))
+                if mu[i] > 0.0 and size > 10.0 * self.still[c]:
+                    kinds[i], heading[i] = SLIDING, slip / size
+                elif c == marked and kind == CONE and mu[i] > 0.0:  # stick has just given way
+                    pull = forces[c][1:]
+                    kinds[i], heading[i] = SLIDING, -pull / np.linalg.norm(pull)
+            p = np.zeros(3 * k)
+            if self.cones is None:
+                self.cones = new_cone_work(len(self.friction))
+            status, _, _ = solve_cones(k, W, c0, mu, kinds, heading, p, self.cones)
+            if status != SOLVED:
+                jams = [
+                    c for i, c in enumerate(chosen)
+                    if kinds[i] == SLIDING and W[3 * i, 3 * i] - mu[i] * heading[i]
+                    @ W[3 * i, 3 * i + 1 : 3 * i + 3] <= 0.0
+                ]  # fmt: skip
+                if jams:
+                    code = self.strike.all(chosen, float(run.clock[0].now), jams[0])
+                    if code != 0:
+                        return code
+                    self.look()
+                    chosen = [c for c in chosen if not self.u[c, 0] > 10.0 * self.still[c]]
+                    free = self.free_acceleration()
+                    continue
+                return Status.NO_CONVERGENCE
+            p = p.reshape(k, 3)
+            w = (W @ p.ravel() + c0).reshape(k, 3)
+            pressed = [
+                p[i, 0] > 0.0 or abs(w[i, 0]) <= 1e-12 * np.max(np.abs(c0)) for i in range(k)
+            ]
+            if not all(pressed):
+                chosen = [c for c, is_pressed in zip(chosen, pressed) if is_pressed]
+                continue
+            for i, c in enumerate(chosen):
+                held.contact[i], held.mode[i], held.force[i] = c, SLIP, p[i]
+                held.heading[i] = heading[i]
+                if kinds[i] == FREE and mu[i] > 0.0:
+                    pull = float(np.linalg.norm(p[i, 1:]))
+                    if pull <= mu[i] * p[i, 0] * (1.0 - 1e-10) or was.get(c) == STICK:
+                        held.mode[i] = STICK
+                    elif pull > 0.0:
+                        held.heading[i] = -p[i, 1:] / pull
+                    elif c in old:
+                        held.heading[i] = old[c]
+            return settle_rates(run.system, held, float(run.clock[0].now), run.x, run.work)
+        return Status.NO_CONVERGENCE
+
+    def take_out(self, chosen, kind, marked, forces) -> None:
+        """Take out normal velocities of contacts to be held, and slip that has stopped."""
+        run, n = self.run, self.run.n
+        rows = []
+        for c in chosen:
+            rows.append(self.seen.G[c, 0])
+            if self.friction[c] > 0.0:
+                slip = float(np.linalg.norm(self.u[c, 1:]))
+                stop = 10.0 * self.still[c]
+                if (
+                    c == marked and kind == REVERSE
+                ):  # what friction takes away in a thousandth of a step
+                    W_tt = np.einsum("in,nm,im->", self.seen.G[c, 1:], self.P, self.seen.G[c, 1:])
+                    stop = max(
+                        stop, 1e-3 * run.plan.step * self.friction[c] * abs(forces[c][0]) * W_tt
+                    )
+                if slip <= stop:
+                    rows.extend(self.seen.G[c, 1:])
+        R = np.array(rows)
+        v, M = run.x[n:].copy(), self.seen.M
+        after = self.bilateral(R, np.zeros(len(R)), v)
+        run.x[n:] = after
+        run.clock[0].bounces += 0.5 * (after @ M @ after - v @ M @ v)
+        self.look()

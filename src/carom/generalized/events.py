@@ -1,0 +1,246 @@
+"""What ends a mode of motion within a step, and where: functions that are positive before, negative after.
+
+GAP        gap                  of a contact that is open
+RATE       d gap/dt, turned     where a gap dips below zero and returns within a step
+SEPARATE   N                    of a held contact
+CONE       mu N - |T|           while it sticks
+REVERSE    u_t . e              while it slips, e its direction at the start of the step
+JAM        W_nn - mu W_nt . e   while it slips (mathematics page, VI.6)
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom.generalized.layout import (
+    CONE,
+    GAP,
+    JAM,
+    NOTHING,
+    RATE,
+    REVERSE,
+    SEPARATE,
+    SLIP,
+    STICK,
+    TOUCHES,
+    N,
+)
+from carom.generalized.motion import NOT_FINITE, acceleration, copy_row, find_contacts, slip_of
+from carom.generalized.step import take
+from carom.jit import kernel
+
+ROUND_OFF = 1e-15  # of the gap's own terms
+
+
+@kernel
+def rate_of(system, c, x, work):
+    """Return the rate of gap c; contact rows must be those of `x`."""
+    n, rate = system.size[N], 0.0
+    for j in range(n):
+        rate += work.G[c, 0, j] * x[n + j]
+    return rate
+
+
+@kernel
+def note_start(system, t, x, work):
+    """Note gaps and their rates at the start of a step."""
+    find_contacts(system, t, x, work)
+    for c in range(system.size[TOUCHES]):
+        work.before[0, c], work.before[1, c] = work.gap[c], rate_of(system, c, x, work)
+
+
+@kernel
+def examine(system, held, t, x, work):
+    """Work out at `x` all that `value` reads; return a status."""
+    if system.size[TOUCHES] == 0:
+        return 0
+    find_contacts(system, t, x, work)
+    for c in range(system.size[TOUCHES]):
+        if not math.isfinite(work.gap[c]):
+            return NOT_FINITE
+    if held.count[0] == 0:
+        return 0
+    _, _, code = acceleration(system, held, t, x, work, work.trial)
+    return code
+
+
+@kernel
+def value(system, held, kind, i, x, work):
+    """Return (event function, what counts as zero of it)."""
+    if kind == GAP:
+        return work.gap[i], ROUND_OFF * work.gap_scale[i]
+    if kind == RATE:
+        return -rate_of(system, i, x, work), 0.0
+    force, mu = held.force[i], system.friction[held.contact[i]]
+    if kind == SEPARATE:
+        return force[0], 0.0
+    if kind == CONE:
+        pull = math.sqrt(force[1] * force[1] + force[2] * force[2])
+        return mu * force[0] - pull, 1e-12 * abs(force[0])
+    if kind == JAM:
+        return held.yields[i], 0.0
+    u1, u2 = slip_of(system, held, i, x, work)
+    return u1 * held.heading[i, 0] + u2 * held.heading[i, 1], 0.0
+
+
+@kernel
+def turned(system, held, t, x, work):
+    """Return whether slip has turned by more than 60 degrees within a step, and not just come to a stop."""
+    looked = False
+    for i in range(held.count[0]):
+        if held.mode[i] == SLIP and system.friction[held.contact[i]] > 0.0:
+            if not looked:
+                find_contacts(system, t, x, work)
+                looked = True
+            u1, u2 = slip_of(system, held, i, x, work)
+            h1, h2 = held.heading[i, 0], held.heading[i, 1]
+            along, across = u1 * h1 + u2 * h2, abs(u1 * h2 - u2 * h1)
+            if across > (1.7320508 * along if along > 0.0 else -0.1 * along):
+                return True
+    return False
+
+
+@kernel
+def open_contact(held, c):
+    """Return whether contact c is not held."""
+    for i in range(held.count[0]):
+        if held.contact[i] == c:
+            return False
+    return True
+
+
+@kernel
+def violated(system, held, kind, i, x, work):
+    """Return whether an event function is below zero."""
+    f, none = value(system, held, kind, i, x, work)
+    return f < -none
+
+
+@kernel
+def first_violated(system, held, x, work):
+    """Return (kind, index) of an event function that is below zero at `x`, (NOTHING, -1) if none is."""
+    for c in range(system.size[TOUCHES]):
+        if open_contact(held, c) and violated(system, held, GAP, c, x, work):
+            return GAP, c
+    for i in range(held.count[0]):
+        if held.mode[i] == SLIP and system.friction[held.contact[i]] > 0.0:
+            if violated(system, held, REVERSE, i, x, work):
+                return REVERSE, i
+            if not held.yields[i] > 0.0:
+                return JAM, i
+        if violated(system, held, SEPARATE, i, x, work):
+            return SEPARATE, i
+        if held.mode[i] == STICK and violated(system, held, CONE, i, x, work):
+            return CONE, i
+    return NOTHING, -1
+
+
+@kernel
+def dips(system, held, h, x, work):
+    """Return a contact whose gap may have been below zero within the step, -1 if none.
+
+    By the cubic through gaps and rates of both ends: its least value is below a tenth of the depth of the dip.
+    """
+    for c in range(system.size[TOUCHES]):
+        g0, r0 = work.before[0, c], h * work.before[1, c]
+        g1, r1 = work.gap[c], h * rate_of(system, c, x, work)
+        if not (r0 < 0.0 < r1 and open_contact(held, c)):
+            continue
+        a, b = 2.0 * (g0 - g1) + r0 + r1, 3.0 * (g1 - g0) - 2.0 * r0 - r1
+        root = math.sqrt(max(b * b - 3.0 * a * r0, 0.0))  # of 3 a s^2 + 2 b s + r0
+        s = -r0 / (b + root) if b > 0.0 else (root - b) / (3.0 * a)
+        least = g0 + s * (r0 + s * (b + s * a))
+        if least <= 0.1 * (min(g0, g1) - least):
+            return c
+    return -1
+
+
+@kernel
+def find_root(system, method, held, kind, i, t, x, low, high, end, work):
+    """Return (s, status): the time s in (low, high] where an event function crosses zero; its state in `end`.
+
+    Positive at `low` (or zero there: then a later time where it is positive is looked for first), negative at
+    `high`. Regula falsi with the weights of Anderson and Bjorck (1973), halving where that is slow.
+    """
+    f_low, f_high, length = 0.0, 0.0, high - low
+    for _ in range(40):  # from the end of the step down to where it is still positive
+        code = state_at(system, method, held, t, x, high, end, work)
+        if code != 0:
+            return high, code
+        f_high, none = value(system, held, kind, i, end, work)
+        s = low + 0.5 * (high - low)
+        code = state_at(system, method, held, t, x, s, end, work)
+        if code != 0:
+            return s, code
+        f_low, none = value(system, held, kind, i, end, work)
+        if f_low > none:
+            low = s
+            break
+        high = s
+        if abs(f_low) <= none and high - low <= 1e-9 * length:
+            return s, 0
+    for turn in range(200):
+        s = low - f_low * (high - low) / (f_high - f_low)
+        if not low < s < high or turn % 4 == 3:
+            s = low + 0.5 * (high - low)
+        code = state_at(system, method, held, t, x, s, end, work)
+        if code != 0:
+            return s, code
+        f, none = value(system, held, kind, i, end, work)
+        if abs(f) <= none or not high - low > 4e-16 * (t + high):
+            break
+        if f > 0.0:
+            weight = 1.0 - f / f_low
+            low, f_low = s, f
+            f_high *= weight if weight > 0.0 else 0.5
+        else:
+            weight = 1.0 - f / f_high
+            high, f_high = s, f
+            f_low *= weight if weight > 0.0 else 0.5
+    return s, 0
+
+
+@kernel
+def state_at(system, method, held, t, x, s, end, work):
+    """Write the state a time s after `x` into `end`, with all that `value` reads."""
+    code = take(system, method, held, t, x, s, end, work)
+    return max(code, 0 if code != 0 else examine(system, held, t + s, end, work))
+
+
+@kernel
+def locate(system, method, held, t, x, h, end, work):
+    """Look for the first event of the step h from `x`, whose end is in `end`; return (s, kind, index, status).
+
+    `end` is then the state at s. Kind NOTHING: there is none, and s = h.
+    """
+    code = examine(system, held, t + h, end, work)
+    if code != 0:
+        return h, NOTHING, -1, code
+    kind, i = first_violated(system, held, end, work)
+    high = h
+    if kind == NOTHING:
+        c = dips(system, held, h, end, work)
+        if c < 0:
+            return h, NOTHING, -1, 0
+        high, code = find_root(system, method, held, RATE, c, t, x, 0.0, h, end, work)
+        if code == 0 and violated(system, held, GAP, c, end, work):
+            kind, i = GAP, c
+        else:
+            code = max(code, state_at(system, method, held, t, x, h, end, work))
+            return h, NOTHING, -1, code
+    s = high
+    for _ in range(20):
+        s, code = find_root(system, method, held, kind, i, t, x, 0.0, high, end, work)
+        if code != 0:
+            break
+        other, j = first_violated(system, held, end, work)
+        if other == NOTHING or (other == kind and j == i):
+            break
+        kind, i, high = other, j, s
+    return s, kind, i, code
+
+
+@kernel
+def keep(end, x):
+    """Make the end of a step the state."""
+    copy_row(end, x, x.size)

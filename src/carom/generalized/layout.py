@@ -1,0 +1,133 @@
+"""The arrays of a system in the user's own coordinates: what it is, what is held, and scratch.
+
+A state is one array ``x = (q, v)`` of 2n numbers. Everything that the user states reaches the kernels as four
+functions ``f(t, x, out)`` (`carom.functions`), whose answers are laid out here.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+# The four functions, by their place in `Coordinates.address`.
+INERTIA = 0  #: M (n, n), Gamma_kij v_i v_j (n,), first kind
+LOADS = 1  #: V, generalised forces Q - dV (n,), power Q.v of those that have no potential
+ROWS = 2  #: phi (h,), A (k, n), (dA/dt) v (k,)
+CONTACTS = 3  #: gap (C,), G (C, 3, n), (dG/dt) v (C, 3)
+
+# The four sizes, by their place in `Coordinates.size`.
+N, HOLONOMIC, ALL_ROWS, TOUCHES = range(4)
+
+# What a held contact does.
+SLIP, STICK = 1, 2
+
+# What ends a mode of motion.
+NOTHING, GAP, RATE, SEPARATE, CONE, REVERSE, JAM = range(7)
+
+# How a call of the loop ended, if not by a `carom.status.Status`.
+DONE, EVENT = 0, 100
+
+
+class Coordinates(NamedTuple):
+    """A system: where its functions are, its sizes, friction of its contacts."""
+
+    address: np.ndarray  # (4,) int64
+    size: np.ndarray  # (4,) int64
+    friction: np.ndarray  # (C,)
+    drop: float  # part of its diagonal below which the pivot of a row is left out
+
+
+class Held(NamedTuple):
+    """Contacts that are held, `count` of them in use."""
+
+    count: np.ndarray  # (1,) int64
+    contact: np.ndarray  # (C,) int64
+    mode: np.ndarray  # (C,) int64, SLIP or STICK
+    heading: np.ndarray  # (C, 2) direction of slip
+    force: np.ndarray  # (C, 3) normal first
+    yields: np.ndarray  # (C,) W_nn - mu W_nt.heading of one that slips
+
+
+class Work(NamedTuple):
+    """Scratch. The first four are the answers of the functions, those below are views of them."""
+
+    inertia: np.ndarray
+    loads: np.ndarray
+    rows: np.ndarray
+    contacts: np.ndarray
+    M: np.ndarray  # (n, n)
+    c: np.ndarray  # (n,)
+    phi: np.ndarray  # (h,)
+    A: np.ndarray  # (k, n)
+    A_rate: np.ndarray  # (k,)
+    gap: np.ndarray  # (C,)
+    G: np.ndarray  # (C, 3, n)
+    G_rate: np.ndarray  # (C, 3)
+    L: np.ndarray  # (n, n) Cholesky factor of M
+    a: np.ndarray  # (n,)
+    R: np.ndarray  # (m, n) rows that must keep their rate
+    D: np.ndarray  # (m, n) directions of their reactions: R itself, but for a contact that slips
+    Z: np.ndarray  # (m, n) M^-1 D
+    K: np.ndarray  # (m, m) R M^-1 D and its factors
+    inverse: np.ndarray  # (m,) inverse pivots, 0 where left out
+    rhs: np.ndarray  # (m,), then the multipliers
+    stages: np.ndarray  # (S, 2n)
+    trial: np.ndarray  # (2n,)
+    end: np.ndarray  # (2n,)
+    best: np.ndarray  # (2n,)
+    arc: np.ndarray  # (8, 2n) of autoparallels
+    before: np.ndarray  # (2, C) gaps and their rates at the start of a step
+    row_scale: np.ndarray  # (h,) greatest sum |A_j q_j|
+    gap_scale: np.ndarray  # (C,) the same of the gaps, or the greatest gap
+    spent: np.ndarray  # (2,) work of loads and of friction in the last step
+
+
+class Plan(NamedTuple):
+    """What is to be run."""
+
+    duration: float
+    step: float
+    steps: int
+    every: int  # steps from one saved state to the next
+
+
+#: one run: where it is
+CLOCK = [
+    ("now", "f8"), ("step", "i8"), ("saved", "i8"), ("loads", "f8"), ("friction", "f8"),
+    ("impacts", "f8"), ("bounces", "f8"), ("kind", "i8"), ("index", "i8"), ("trials", "i8"),
+]  # fmt: skip
+
+#: one saved state, beside the state itself
+SERIES = [("t", "f8"), ("loads", "f8"), ("impacts", "f8"), ("friction", "f8"), ("bounces", "f8")]
+
+
+def new_held(contacts: int) -> Held:
+    """Return room for all contacts, none held."""
+    return Held(
+        np.zeros(1, dtype=np.int64),
+        np.zeros(contacts, dtype=np.int64),
+        np.zeros(contacts, dtype=np.int64),
+        np.zeros((contacts, 2)),
+        np.zeros((contacts, 3)),
+        np.zeros(contacts),
+    )
+
+
+def new_work(n: int, holonomic: int, rows: int, contacts: int, stages: int) -> Work:
+    """Return scratch for a system of these sizes and a method of so many stages."""
+    m = rows + 3 * contacts
+    inertia, loads = np.zeros(n * n + n), np.zeros(n + 2)
+    row = np.zeros(holonomic + rows * n + rows)
+    touch = np.zeros(contacts * (4 + 3 * n))
+    k, g = holonomic + rows * n, contacts * (1 + 3 * n)
+    return Work(
+        inertia, loads, row, touch,
+        inertia[: n * n].reshape(n, n), inertia[n * n :],
+        row[:holonomic], row[holonomic:k].reshape(rows, n), row[k:],
+        touch[:contacts], touch[contacts:g].reshape(contacts, 3, n), touch[g:].reshape(contacts, 3),
+        np.zeros((n, n)), np.zeros(n), np.zeros((m, n)), np.zeros((m, n)), np.zeros((m, n)),
+        np.zeros((m, m)), np.zeros(m), np.zeros(m), np.zeros((stages, 2 * n)), np.zeros(2 * n),
+        np.zeros(2 * n), np.zeros(2 * n), np.zeros((8, 2 * n)), np.zeros((2, contacts)),
+        np.zeros(holonomic), np.zeros(contacts), np.zeros(2),
+    )  # fmt: skip

@@ -1,0 +1,83 @@
+"""The compiled loop: step after step, until one has an event that Python resolves."""
+
+from __future__ import annotations
+
+from carom.functions import call_function
+from carom.generalized.events import keep, locate, note_start, turned
+from carom.generalized.layout import DONE, EVENT, LOADS, NOTHING, TOUCHES, N
+from carom.generalized.motion import find_metric
+from carom.generalized.step import take
+from carom.jit import entry, kernel
+
+CUTS = 12  # most halvings of a step in which slip turns
+
+
+@entry
+def march(system, method, held, x, plan, until, work, clock, series, states):
+    """Go on to step number `until`; return DONE, EVENT (`clock` says which) or a status of failure."""
+    c, h = clock[0], plan.step
+    while c.step < until:
+        last = c.step + 1 == plan.steps
+        target = plan.duration if last else (c.step + 1) * h
+        left = target - c.now
+        if left > 1e-13 * h:
+            note_start(system, c.now, x, work)
+            part = left
+            for cut in range(CUTS):
+                code = take(system, method, held, c.now, x, part, work.end, work)
+                if code != 0:
+                    return code
+                c.trials += 1
+                if cut + 1 == CUTS or not turned(system, held, c.now + part, work.end, work):
+                    break
+                part *= 0.5
+            s, kind, index, code = locate(system, method, held, c.now, x, part, work.end, work)
+            if code != 0:
+                return code
+            keep(work.end, x)
+            c.loads += work.spent[0]
+            c.friction += work.spent[1]
+            if kind != NOTHING:
+                c.now += s
+                c.kind, c.index = kind, index
+                return EVENT
+            if part < left:
+                c.now += part
+                continue
+        c.now = target
+        c.step += 1
+        if c.step % plan.every == 0 or last:
+            save(x, c, series, states)
+    return DONE
+
+
+@kernel
+def save(x, clock, series, states):
+    """Write the state into the next row."""
+    row = series[clock.saved]
+    row.t, row.loads, row.impacts = clock.now, clock.loads, clock.impacts
+    row.friction, row.bounces = clock.friction, clock.bounces
+    keep(x, states[clock.saved])
+    clock.saved += 1
+
+
+@entry
+def save_now(x, clock, series, states):
+    """`save`, for Python: at the start, and after a failure."""
+    save(x, clock[0], series, states)
+
+
+@entry
+def energies(system, t, states, kinetic, potential, work):
+    """Write kinetic and potential energy of the states (T, 2n)."""
+    n = system.size[N]
+    for k in range(t.size):
+        find_metric(system, t[k], states[k], work)
+        total = 0.0
+        for i in range(n):
+            for j in range(n):
+                total += work.M[i, j] * states[k, n + i] * states[k, n + j]
+        kinetic[k] = 0.5 * total
+        call_function(system.address[LOADS], t[k], states[k], work.loads)
+        potential[k] = work.loads[0]
+    return system.size[TOUCHES]

@@ -1,0 +1,208 @@
+"""Accelerations in coordinates: ``M v' = Q - dV - Gamma(v, v) + D^T lam`` with ``R v' = -R' v``.
+
+R are the constraint rows and those of held contacts; D = R, but for a contact that slips, whose reaction is
+N (G_n - mu e G_t). (Mathematics page, VII.1 and VII.4.)
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom.functions import call_function
+from carom.generalized.layout import (
+    ALL_ROWS,
+    CONTACTS,
+    HOLONOMIC,
+    INERTIA,
+    LOADS,
+    ROWS,
+    SLIP,
+    STICK,
+    TOUCHES,
+    N,
+)
+from carom.generalized.linear import cholesky, factor, solve_metric, substitute
+from carom.jit import entry, kernel
+
+SINGULAR_METRIC, NOT_FINITE = 11, 4  # as in `carom.status.Status`
+
+
+@kernel
+def find_metric(system, t, x, work):
+    """Work out M, its factor and Gamma(v, v) at the state `x`; return a status."""
+    call_function(system.address[INERTIA], t, x, work.inertia)
+    n = system.size[N]
+    if cholesky(work.M, work.L, n):
+        return 0
+    total = 0.0
+    for i in range(n * n):
+        total += work.inertia[i]
+    return SINGULAR_METRIC if math.isfinite(total) else NOT_FINITE
+
+
+@kernel
+def find_rows(system, held, t, x, work):
+    """Work out constraint rows, and contacts where any is held."""
+    if system.size[ALL_ROWS] > 0:
+        call_function(system.address[ROWS], t, x, work.rows)
+    if held.count[0] > 0:
+        call_function(system.address[CONTACTS], t, x, work.contacts)
+
+
+@kernel
+def find_contacts(system, t, x, work):
+    """Work out gaps and contact rows, and how large a gap is by its own terms."""
+    if system.size[TOUCHES] == 0:
+        return
+    call_function(system.address[CONTACTS], t, x, work.contacts)
+    for c in range(system.size[TOUCHES]):
+        size = abs(work.gap[c])
+        total = 0.0
+        for j in range(system.size[N]):
+            total += abs(work.G[c, 0, j] * x[j])
+        size = max(size, total)
+        if math.isfinite(size):
+            work.gap_scale[c] = max(work.gap_scale[c], size)
+
+
+@kernel
+def slip_of(system, held, i, x, work):
+    """Return the slip (u_1, u_2) of held contact i; rows must be those of `x`."""
+    n, c = system.size[N], held.contact[i]
+    u1, u2 = 0.0, 0.0
+    for j in range(n):
+        u1 += work.G[c, 1, j] * x[n + j]
+        u2 += work.G[c, 2, j] * x[n + j]
+    return u1, u2
+
+
+@kernel
+def direction(held, i, u1, u2):
+    """Return the direction of slip: where it would turn about within a stage, what it was before."""
+    h1, h2 = held.heading[i, 0], held.heading[i, 1]
+    size = math.sqrt(u1 * u1 + u2 * u2)
+    if size > 0.0 and u1 * h1 + u2 * h2 > 0.0:
+        return u1 / size, u2 / size
+    return h1, h2
+
+
+@kernel
+def copy_row(row, out, n):
+    """Copy n numbers."""
+    for j in range(n):
+        out[j] = row[j]
+
+
+@kernel
+def gather(system, held, x, work):
+    """Write R, D and the targets -R' v into `rhs`; return how many rows."""
+    n, m = system.size[N], system.size[ALL_ROWS]
+    for r in range(m):
+        copy_row(work.A[r], work.R[r], n)
+        copy_row(work.A[r], work.D[r], n)
+        work.rhs[r] = -work.A_rate[r]
+    for i in range(held.count[0]):
+        c = held.contact[i]
+        mu = system.friction[c]
+        copy_row(work.G[c, 0], work.R[m], n)
+        copy_row(work.G[c, 0], work.D[m], n)
+        work.rhs[m] = -work.G_rate[c, 0]
+        if held.mode[i] == SLIP and mu > 0.0:
+            u1, u2 = slip_of(system, held, i, x, work)
+            e1, e2 = direction(held, i, u1, u2)
+            for j in range(n):
+                work.D[m, j] -= mu * (e1 * work.G[c, 1, j] + e2 * work.G[c, 2, j])
+        m += 1
+        if held.mode[i] == STICK:
+            for r in range(1, 3):
+                copy_row(work.G[c, r], work.R[m], n)
+                copy_row(work.G[c, r], work.D[m], n)
+                work.rhs[m] = -work.G_rate[c, r]
+                m += 1
+    return m
+
+
+@kernel
+def factor_rows(system, m, work):
+    """Work out Z = M^-1 D and factor K = R M^-1 D."""
+    n = system.size[N]
+    for r in range(m):
+        copy_row(work.D[r], work.Z[r], n)
+        solve_metric(work.L, work.Z[r], n)
+    for r in range(m):
+        for s in range(m):
+            total = 0.0
+            for j in range(n):
+                total += work.R[r, j] * work.Z[s, j]
+            work.K[r, s] = total
+    factor(work.K, work.inverse, m, system.drop)
+
+
+@kernel
+def react(system, m, out, work):
+    """Add to `out` (n,) the reactions that give it the rates in `rhs`; these become the multipliers."""
+    n = system.size[N]
+    for r in range(m):
+        for j in range(n):
+            work.rhs[r] -= work.R[r, j] * out[j]
+    substitute(work.K, work.inverse, work.rhs, m)
+    for r in range(m):
+        for j in range(n):
+            out[j] += work.Z[r, j] * work.rhs[r]
+
+
+@kernel
+def acceleration(system, held, t, x, work, rate):
+    """Write x' into `rate` (2n,); return power of loads, of friction, and a status.
+
+    Forces of held contacts go to `held.force`.
+    """
+    n = system.size[N]
+    code = find_metric(system, t, x, work)
+    if code != 0:
+        return 0.0, 0.0, code
+    call_function(system.address[LOADS], t, x, work.loads)
+    a = work.a
+    for j in range(n):
+        a[j] = work.loads[1 + j] - work.c[j]
+    solve_metric(work.L, a, n)
+    friction = 0.0
+    if system.size[ALL_ROWS] > 0 or held.count[0] > 0:
+        find_rows(system, held, t, x, work)
+        m = gather(system, held, x, work)
+        factor_rows(system, m, work)
+        react(system, m, a, work)
+        friction = note_forces(system, held, x, work)
+    for j in range(n):
+        rate[j], rate[n + j] = x[n + j], a[j]
+    return work.loads[n + 1], friction, 0
+
+
+@kernel
+def note_forces(system, held, x, work):
+    """Write the forces of held contacts from the multipliers; return the power of friction."""
+    power, m = 0.0, system.size[ALL_ROWS]
+    for i in range(held.count[0]):
+        force, mu = held.force[i], system.friction[held.contact[i]]
+        force[0] = work.rhs[m]
+        held.yields[i] = work.K[m, m]
+        if held.mode[i] == STICK:
+            force[1], force[2] = work.rhs[m + 1], work.rhs[m + 2]
+            m += 3
+        else:
+            u1, u2 = slip_of(system, held, i, x, work)
+            e1, e2 = direction(held, i, u1, u2)
+            force[1], force[2] = -mu * force[0] * e1, -mu * force[0] * e2
+            power += force[1] * u1 + force[2] * u2
+            m += 1
+    return power
+
+
+@entry
+def look(system, held, t, x, work):
+    """Work out everything at a state, for Python; return a status. The acceleration goes to `work.a`."""
+    find_contacts(system, t, x, work)
+    if system.size[HOLONOMIC] > 0 or system.size[ALL_ROWS] > 0:
+        call_function(system.address[ROWS], t, x, work.rows)
+    _, _, code = acceleration(system, held, t, x, work, work.trial)
+    return code

@@ -1,0 +1,144 @@
+"""One run of a system in coordinates: the compiled loop, and Python where it stops at an event."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from carom.generalized.contacts import Contacts
+from carom.generalized.evaluate import Evaluation
+from carom.generalized.layout import CLOCK, DONE, EVENT, SERIES, Plan, new_held, new_work
+from carom.generalized.loop import march, save_now
+from carom.generalized.step import settle_rates
+from carom.motion.explicit import tableau
+from carom.status import Status
+from carom.system.arrays import table
+
+if TYPE_CHECKING:
+    from carom.generalized.system import GeneralizedSystem
+    from carom.options import Options
+
+AT_ONCE = 200  # events at one instant
+
+
+class GeneralizedRun:
+    """State, records and scratch of a run."""
+
+    def __init__(
+        self, system: GeneralizedSystem, duration: float, step: float, steps: int, method: str,
+        save_every: int, options: Options,
+    ):  # fmt: skip
+        self.user, self.options = system, options
+        self.plan = Plan(duration, step, steps, save_every)
+        self.settings = {
+            "duration": duration, "step": step, "method": method, "save_every": save_every,
+            "options": options.as_dict(),
+        }  # fmt: skip
+        made = system.evaluation()
+        same = made.system.drop == options.drop_tolerance
+        self.made: Evaluation = made if same else Evaluation(system, options.drop_tolerance)
+        self.made.functions.failed = None
+        self.system = self.made.system
+        n, h, k, C = (int(one) for one in self.system.size)
+        self.n = n
+        self.method = tableau(method)
+        self.held, self.work = new_held(C), new_work(n, h, k, C, len(self.method.b))
+        self.x = np.concatenate([system.position, system.velocity])
+        self.clock = table(CLOCK, 1)
+        rows = -(-steps // save_every) + 3
+        self.series, self.states = table(SERIES, rows), np.zeros((rows, 2 * n))
+        self.nodes: list[tuple[float, np.ndarray, np.ndarray]] = []  # time, state before, after
+        self.contacts = Contacts(self)
+        self.counts = {"located events": 0, "impacts": 0, "holds": 0}
+        self.failure: BaseException | None = None
+        self.at_once, self.last, self.in_step = 0, -1.0, -1
+        self.check_start()
+        self.start_code = self.contacts.resolve(0, -1)
+        self.save_now()
+
+    def check_start(self) -> None:
+        """Refuse a start that breaks constraints or contacts; project velocities if that is asked for."""
+        options, x, n = self.options, self.x, self.n
+        seen = self.made.look(x[:n], x[n:])
+        tolerance = options.constraint_tolerance
+        scale = np.abs(seen.A[: len(seen.phi)]) @ np.abs(x[:n]) + 1.0
+        if np.any(~(np.abs(seen.phi) <= tolerance * scale)):
+            raise ValueError(
+                f"position must meet the constraints, got phi(q) = {seen.phi.tolist()} at the start"
+            )
+        speed = np.abs(seen.A) @ np.abs(x[n:])
+        if np.any(~(np.abs(seen.A @ x[n:]) <= tolerance * np.maximum(speed, 1e-300))):
+            if not options.project_start:
+                raise ValueError(
+                    "velocity must meet the constraints, got A v = "
+                    f"{(seen.A @ x[n:]).tolist()} at the start; Options(project_start=True) makes it"
+                )
+        sizes = np.abs(seen.G[:, 0]) @ np.abs(x[:n]) if len(seen.gap) else np.zeros(0)
+        inside = seen.gap < -1e-9 * np.maximum(sizes, np.abs(seen.gap))
+        inside &= seen.gap < -1e-9 * sizes
+        for contact in np.flatnonzero(inside):
+            name = self.user.contacts[contact].name
+            raise ValueError(
+                f"position must not be inside a contact, got the gap {seen.gap[contact]:.6g} of {name!r}"
+            )
+        if seen.status == 0 and self.system.size[2] > 0:
+            settle_rates(self.system, self.held, 0.0, x, self.work)
+
+    @property
+    def steps_done(self) -> int:
+        """Number of finished steps."""
+        return int(self.clock[0].step)
+
+    def save_now(self) -> None:
+        """Write the present state into the records."""
+        save_now(self.x, self.clock, self.series, self.states)
+
+    def go_on(self, until: int) -> Status:
+        """Go on to step number `until`, or to a failure."""
+        code = self.start_code
+        while code == 0:
+            code = march(
+                self.system, self.method, self.held, self.x, self.plan, until, self.work,
+                self.clock, self.series, self.states,
+            )  # fmt: skip
+            if code != EVENT:
+                break
+            code = self.event()
+        if self.made.functions.failed is not None:
+            self.failure, self.made.functions.failed = self.made.functions.failed, None
+        if isinstance(self.failure, KeyboardInterrupt):  # while a plain function ran
+            self.failure = None
+            return Status.INTERRUPTED
+        if self.failure is not None:
+            return Status.FUNCTION_FAILED
+        return Status.SUCCESS if code == DONE else Status(code)
+
+    def event(self) -> int:
+        """Resolve the event that the loop has stopped at; return a status."""
+        clock = self.clock[0]
+        self.counts["located events"] += 1
+        if clock.step != self.in_step:
+            self.in_step = int(clock.step)
+            self.contacts.new_step()
+        near = clock.now - self.last <= 1e-12 * self.plan.step
+        self.at_once = self.at_once + 1 if near else 0
+        self.last = float(clock.now)
+        if self.at_once > AT_ONCE:
+            return Status.TOO_MANY_IMPACTS
+        try:
+            return self.contacts.resolve(int(clock.kind), int(clock.index))
+        except BaseException as error:
+            if error is not self.made.raised:
+                raise
+            self.failure = error
+            return Status.FUNCTION_FAILED
+
+    def solution(self, status: Status):
+        """Return what was computed; after a failure up to the last state."""
+        from carom.generalized.solution import GeneralizedSolution
+
+        clock = self.clock[0]
+        if status is not Status.SUCCESS and clock.now > self.series.t[clock.saved - 1]:
+            self.save_now()
+        return GeneralizedSolution.from_run(self, status)

@@ -1,0 +1,240 @@
+"""What a run in coordinates hands back."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from carom.ledger import Ledger
+from carom.status import Status
+from carom.tables import EventTable
+
+if TYPE_CHECKING:
+    from carom.generalized.run import GeneralizedRun
+    from carom.generalized.system import GeneralizedSystem
+
+
+class CoordinateImpact(NamedTuple):
+    """One impact of a system in coordinates. Vectors (3,) in contact axes (normal, tangents 1, 2)."""
+
+    time: float  #: [s]
+    contact: int  #: index of the contact in `GeneralizedSystem.contacts`
+    position: np.ndarray  #: (n,) coordinates
+    relative_velocity_before: np.ndarray  #: (3,) approach negative
+    relative_velocity_after: np.ndarray  #: (3,)
+    impulse: np.ndarray  #: (3,)
+    energy_change: float  #: of the whole system [J]
+    law: str  #: law of restitution
+    inverse_mass: np.ndarray  #: (3, 3) W of the contact
+    restitution: float
+    friction: float
+    compression_work: float  #: of the normal force [J]
+    restitution_work: float  #: of the normal force [J]
+    friction_loss: float  #: [J]
+    together: int  #: contacts that were resolved together, each with a row of its own
+
+
+class CoordinateImpactTable:
+    """All impacts of a run in the order of time; fields of `CoordinateImpact` as columns (K, ...)."""
+
+    def __init__(self, records: list[dict], n: int):
+        shapes = {"position": (n,), "inverse_mass": (3, 3)}
+        for name in CoordinateImpact._fields:
+            kind = object if name == "law" else int if name in ("contact", "together") else float
+            vector = name.startswith("relative") or name == "impulse"
+            shape = (len(records), *shapes.get(name, (3,) if vector else ()))
+            column = np.array(
+                [one[name] for one in records], dtype=None if kind is object else kind
+            )
+            setattr(self, name, column.reshape(shape))
+
+    def __getattr__(self, name: str) -> Any:  # for type checkers: columns are set above
+        raise AttributeError(name)
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def __getitem__(self, k: int) -> CoordinateImpact:
+        if not -len(self) <= k < len(self):
+            raise IndexError(f"impact {k} of {len(self)}")
+        row = (getattr(self, name)[k] for name in CoordinateImpact._fields)
+        return CoordinateImpact(
+            *(one.item() if isinstance(one, np.generic) else one for one in row)
+        )
+
+    def __iter__(self) -> Iterator[CoordinateImpact]:
+        return (self[k] for k in range(len(self)))
+
+    def __repr__(self) -> str:
+        return f"<CoordinateImpactTable: {len(self)} impacts>"
+
+
+@dataclass(frozen=True, eq=False)
+class GeneralizedSolution:
+    """The motion of a system in n coordinates at T saved times, with K impacts.
+
+    Attributes
+    ----------
+    t : (T,)
+        Saved times [s].
+    q, v : (T, n)
+        Coordinates and their rates; at a time where an impact happened, after it.
+    kinetic_energy, potential_energy, total_energy : (T,)
+        [J].
+    impacts : CoordinateImpactTable
+        One record for each impact.
+    events : EventTable
+        Impacts and changes of held contacts, in their order.
+    constraint_errors : tuple of (T,), (T,)
+        Greatest entries of phi(q) and of A v, the rates of the constraints.
+    ledger : Ledger
+        Where the energy went.
+    status : Status
+        How the run ended; `success` and `message` say it shorter and longer.
+    stats : dict
+        Counts: steps, located events, impacts, holds.
+    """
+
+    t: np.ndarray
+    q: np.ndarray
+    v: np.ndarray
+    kinetic_energy: np.ndarray
+    potential_energy: np.ndarray
+    impacts: CoordinateImpactTable
+    events: EventTable
+    ledger: Ledger
+    status: Status
+    stats: dict[str, int]
+    system: GeneralizedSystem = field(repr=False)
+    settings: dict[str, Any]
+    _run: GeneralizedRun = field(repr=False)
+
+    @classmethod
+    def from_run(cls, run: GeneralizedRun, status: Status) -> GeneralizedSolution:
+        """Collect what a run has written down."""
+        from carom.generalized.loop import energies
+
+        saved, n = int(run.clock[0].saved), run.n
+        series: Any = run.series[:saved]
+        states = run.states[:saved].copy()
+        kinetic, potential = np.zeros(saved), np.zeros(saved)
+        t = np.array(series.t)
+        failed, run.made.functions.failed = run.made.functions.failed, None
+        energies(run.system, t, states, kinetic, potential, run.work)
+        run.made.functions.failed = failed
+        events = run.contacts.events
+        columns = [np.array(column) for column in zip(*events)]
+        return cls(
+            t=t, q=states[:, :n].copy(), v=states[:, n:].copy(), kinetic_energy=kinetic,
+            potential_energy=potential,
+            impacts=CoordinateImpactTable(run.contacts.strike.records, n),
+            events=EventTable(*columns) if columns else EventTable(*(np.zeros(0) for _ in range(3))),
+            ledger=Ledger(
+                kinetic, potential, *(np.array(series[one]) for one in ("loads", "impacts",
+                                                                        "friction", "bounces"))
+            ),
+            status=status, stats={"steps": run.steps_done, **run.counts}, system=run.user,
+            settings=run.settings, _run=run,
+        )  # fmt: skip
+
+    @property
+    def success(self) -> bool:
+        """Whether the run reached its end."""
+        return self.status is Status.SUCCESS
+
+    @property
+    def message(self) -> str:
+        """How the run ended, in a sentence; if it failed, with the time it reached."""
+        if self.success:
+            return self.status.message
+        why = f"{self._run.failure!r}, " if self._run.failure is not None else ""
+        return f"{self.status.message} ({why}reached t = {self.t[-1]:.9g} s)"
+
+    @property
+    def total_energy(self) -> np.ndarray:
+        """Kinetic plus potential energy (T,) [J]."""
+        return self.kinetic_energy + self.potential_energy
+
+    @cached_property
+    def constraint_errors(self) -> tuple[np.ndarray, np.ndarray]:
+        """Greatest errors of the constraints at each saved time: of phi(q) (T,) and of A v (T,)."""
+        position, rate = np.zeros(len(self.t)), np.zeros(len(self.t))
+        for k in range(len(self.t)):
+            seen = self._run.made.look(self.q[k], self.v[k], float(self.t[k]))
+            position[k] = np.max(np.abs(seen.phi), initial=0.0)
+            rate[k] = np.max(np.abs(seen.A @ self.v[k]), initial=0.0)
+        return position, rate
+
+    def evaluate(self, t, side: str = "right") -> tuple[np.ndarray, np.ndarray]:
+        """Return (q, v) at times between saved ones: cubic between saved steps and events.
+
+        Error of order 4 in the saved interval for q, of order 3 for v.
+
+        Parameters
+        ----------
+        t : float or (m,)
+            Times within the run [s].
+        side : {"right", "left"}
+            Which velocity at the time of an event: after it (default) or before it.
+
+        Returns
+        -------
+        tuple of arrays
+            (m, n), (m, n); without the first axis for a single time.
+
+        Raises
+        ------
+        ValueError
+            If a time is outside the run, or `side` is another word.
+        """
+        if side not in ("right", "left"):
+            raise ValueError(f"side must be 'right' or 'left', got {side!r}")
+        times = np.atleast_1d(np.asarray(t, dtype=float))
+        if not np.all((times >= self.t[0]) & (times <= self.t[-1])):
+            raise ValueError(f"t must be within [{self.t[0]:g}, {self.t[-1]:g}] s, got {t!r}")
+        at, before, after = self._nodes
+        i = np.searchsorted(at, times, side=side) - 1
+        i = np.clip(i, 0, max(len(at) - 2, 0))
+        k = np.minimum(i + 1, len(at) - 1)
+        n, h = self.q.shape[1], np.maximum(at[k] - at[i], 1e-300)[:, None]
+        s = (times - at[i])[:, None] / h
+        q0, v0, q1, v1 = after[i, :n], h * after[i, n:], before[k, :n], h * before[k, n:]
+        a, b = 2.0 * (q0 - q1) + v0 + v1, 3.0 * (q1 - q0) - 2.0 * v0 - v1
+        q, v = q0 + s * (v0 + s * (b + s * a)), (v0 + s * (2.0 * b + 3.0 * s * a)) / h
+        last = times == at[-1]
+        if side == "right" and np.any(last):
+            v[last] = after[-1, n:]
+        return (q[0], v[0]) if np.ndim(t) == 0 else (q, v)
+
+    @cached_property
+    def _nodes(self):
+        """Times (K,), states before and after (K, 2n), of saved steps and events in order."""
+        saved = np.concatenate([self.q, self.v], axis=1)
+        events = {time: (before, after) for time, before, after in self._run_events()}
+        times = np.union1d(self.t, list(events))
+        place = np.searchsorted(self.t, times)
+        before, after = (
+            np.zeros((len(times), saved.shape[1])),
+            np.zeros((len(times), saved.shape[1])),
+        )
+        for k, (time, j) in enumerate(zip(times, place)):
+            first, second = events.get(time, (saved[min(j, len(saved) - 1)],) * 2)
+            before[k], after[k] = first, second
+        return times, before, after
+
+    def _run_events(self):
+        """Yield (time, state before the first event of a time, state after the last)."""
+        merged: dict[float, list] = {}
+        for time, before, after in self._run.nodes:
+            merged.setdefault(time, [before, after])[1] = after
+        return [(time, one[0], one[1]) for time, one in merged.items()]
+
+    def __repr__(self) -> str:
+        return (
+            f"<GeneralizedSolution: {self.q.shape[1]} coordinates, t = {self.t[0]:g} .. "
+            f"{self.t[-1]:g} s in {len(self.t)} saved steps, {len(self.impacts)} impacts; {self.message}>"
+        )

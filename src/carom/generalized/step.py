@@ -1,0 +1,158 @@
+"""One explicit Runge-Kutta step in coordinates, returned to the constraints in the kinetic metric."""
+
+from __future__ import annotations
+
+import math
+
+from carom.generalized.autoparallel import correct
+from carom.generalized.layout import ALL_ROWS, HOLONOMIC, STICK, N
+from carom.generalized.motion import (
+    acceleration,
+    copy_row,
+    direction,
+    factor_rows,
+    find_metric,
+    find_rows,
+    react,
+    slip_of,
+)
+from carom.jit import entry, kernel
+
+CONSTRAINTS_LOST = 7
+_NONE = 4e-16  # of its terms: error of a row that cannot be smaller
+
+
+@kernel
+def take(system, method, held, t, x, h, end, work):
+    """Write the state a time h after `x` into `end`; return a status. Works go to `work.spent`."""
+    n, stages = system.size[N], method.b.size
+    aim(system, held, t, x, work)
+    loads, friction = 0.0, 0.0
+    for s in range(stages):
+        ahead = combine(method.A[s], s, h, x, work.stages, work.trial)
+        p, f, code = acceleration(system, held, t + ahead, work.trial, work, work.stages[s])
+        if code != 0:
+            return code
+        loads += h * method.b[s] * p
+        friction += h * method.b[s] * f
+    combine(method.b, stages, h, x, work.stages, end)
+    work.spent[0], work.spent[1] = loads, friction
+    total = 0.0
+    for j in range(2 * n):
+        total += end[j]
+    if not math.isfinite(total):
+        return 4
+    if system.size[ALL_ROWS] > 0 or held.count[0] > 0:
+        return project(system, held, t + h, end, work)
+    return 0
+
+
+@kernel
+def combine(weight, count, h, x, stages, out):
+    """Write x + h sum weight[r] stages[r], r < count; return h sum weight."""
+    ahead = 0.0
+    for j in range(x.size):
+        out[j] = x[j]
+    for r in range(count):
+        a = h * weight[r]
+        ahead += a
+        if a != 0.0:
+            for j in range(x.size):
+                out[j] += a * stages[r, j]
+    return ahead
+
+
+@kernel
+def aim(system, held, t, x, work):
+    """Note the direction of slip of held contacts at the start of a step."""
+    if held.count[0] == 0:
+        return
+    find_rows(system, held, t, x, work)
+    for i in range(held.count[0]):
+        if held.mode[i] != STICK:
+            u1, u2 = slip_of(system, held, i, x, work)
+            held.heading[i, 0], held.heading[i, 1] = direction(held, i, u1, u2)
+
+
+@kernel
+def place_rows(system, held, x, work):
+    """Write into R = D what must be zero of positions, -phi and -gap into `rhs`; return (rows, error).
+
+    The error is the greatest, each as a part of the terms that make up its row.
+    """
+    n, m, worst = system.size[N], 0, 0.0
+    for r in range(system.size[HOLONOMIC] + held.count[0]):
+        h = r - system.size[HOLONOMIC]
+        row = work.A[r] if h < 0 else work.G[held.contact[h], 0]
+        value = work.phi[r] if h < 0 else work.gap[held.contact[h]]
+        size = 0.0
+        for j in range(n):
+            size += abs(row[j] * x[j])
+        if h < 0:
+            work.row_scale[r] = max(work.row_scale[r], size)
+            size = work.row_scale[r]
+        else:
+            size = max(size, work.gap_scale[held.contact[h]])
+        copy_row(row, work.R[m], n)
+        copy_row(row, work.D[m], n)
+        work.rhs[m] = -value
+        worst = max(worst, abs(value) / size if size > 0.0 else abs(value))
+        m += 1
+    return m, worst
+
+
+@kernel
+def rate_rows(system, held, work):
+    """Write into R = D what must be zero of velocities, `rhs` 0; return how many rows."""
+    n, m = system.size[N], 0
+    for r in range(system.size[ALL_ROWS]):
+        copy_row(work.A[r], work.R[m], n)
+        m += 1
+    for i in range(held.count[0]):
+        for r in range(3 if held.mode[i] == STICK else 1):
+            copy_row(work.G[held.contact[i], r], work.R[m], n)
+            m += 1
+    for r in range(m):
+        copy_row(work.R[r], work.D[r], n)
+        work.rhs[r] = 0.0
+    return m
+
+
+@kernel
+def project(system, held, t, x, work):
+    """Return `x` to constraints and held contacts: coordinates along autoparallels, then velocities."""
+    n, last = system.size[N], 0.0
+    for iteration in range(20):
+        code = find_metric(system, t, x, work)
+        if code != 0:
+            return code
+        find_rows(system, held, t, x, work)
+        m, error = place_rows(system, held, x, work)
+        if not error > _NONE or (iteration > 0 and error >= 0.5 * last):
+            break
+        last = error
+        factor_rows(system, m, work)
+        xi = work.a
+        for j in range(n):
+            xi[j] = 0.0
+        react(system, m, xi, work)
+        code = correct(system, t, x, xi, work)
+        if code != 0:
+            return code
+    if not error <= 1e-9:
+        return CONSTRAINTS_LOST
+    m = rate_rows(system, held, work)
+    factor_rows(system, m, work)
+    v = work.a
+    for j in range(n):
+        v[j] = x[n + j]
+    react(system, m, v, work)
+    for j in range(n):
+        x[n + j] = v[j]
+    return 0
+
+
+@entry
+def settle_rates(system, held, t, x, work):
+    """`project`, for Python."""
+    return project(system, held, t, x, work)

@@ -1,0 +1,150 @@
+"""Impacts at one state: of one contact, or of all that are closed together."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from carom.impact import layout as o
+from carom.impact.resolve import resolve
+from carom.status import Status
+
+if TYPE_CHECKING:
+    from carom.generalized.contacts import Contacts
+
+BLOWS = 200  # at one instant
+SEED = 1e-7  # approach of a contact that jams, as a part of its slip (mathematics page, VI.6)
+NEARLY = 1e-14  # of W_nn: room in directions in which nothing moves
+SPENT = 1e-6
+
+
+class Strike:
+    """Resolves the impacts of a run and keeps their records."""
+
+    def __init__(self, contacts: Contacts):
+        self.contacts = contacts
+        self.records: list[dict[str, Any]] = []
+        self.room: Any = None  # scratch for several contacts, made when it is first needed
+
+    def all(self, closed: list[int], now: float, jams: int) -> int:
+        """Strike until no closed contact approaches; return a status."""
+        here = self.contacts
+        for _ in range(BLOWS):
+            here.look()
+            if here.seen.status != 0:
+                return here.seen.status
+            approach = [c for c in closed if here.u[c, 0] < -here.still[c]]
+            if not approach and jams < 0:
+                return 0
+            if len(closed) == 1:
+                code = self.one(closed[0], now, jams >= 0 and not approach)
+            else:
+                code = self.several(closed, now, jams if not approach else -1)
+            if code != 0:
+                return code
+            jams = -1
+        return Status.TOO_MANY_IMPACTS
+
+    def restitution(self, c: int) -> float:
+        """Return e of the next blow: 0 where so many in one step have left nothing."""
+        here = self.contacts
+        e, blows = float(here.restitution[c]), float(here.blows[c])
+        here.blows[c] += 1
+        return 0.0 if e < 1.0 and e**blows <= SPENT else e
+
+    def one(self, c: int, now: float, jams: bool) -> int:
+        """Resolve the impact of one contact."""
+        here = self.contacts
+        G = here.seen.G[c]
+        W, u, out = G @ here.P @ G.T, here.u[c].copy(), np.zeros(o.SIZE)
+        W = np.ascontiguousarray(0.5 * (W + W.T))
+        if jams:
+            u[0] = -SEED * np.linalg.norm(u[1:])
+        mu, e, law = float(here.friction[c]), self.restitution(c), int(here.law[c])
+        code = resolve(W, u, mu, e, law, out)
+        if code != o.OK:
+            code = resolve(W + NEARLY * W[0, 0] * np.eye(3), u, mu, e, law, out)
+        if code != o.OK:
+            return Status.IMPACT_FAILED
+        impulse = out[o.IMPULSE : o.IMPULSE + 3].copy()
+        self.apply(G, impulse)
+        self.write(
+            c, now, 1, W, e, u, out[o.VELOCITY : o.VELOCITY + 3], impulse, out[o.ENERGY_CHANGE],
+            out[o.WORK_C], out[o.WORK_R], out[o.FRICTION_LOSS],
+        )  # fmt: skip
+        return 0
+
+    def several(self, closed: list[int], now: float, jams: int) -> int:
+        """Resolve the impact of all closed contacts together (mathematics page, V)."""
+        from carom.impact.corner.layout import (
+            MULTIPLE,
+            OK,
+            CornerSettings,
+            new_corner_result,
+        )
+        from carom.impact.corner.resolve import resolve_corner
+        from carom.impact.corner.work import new_corner_work
+
+        here, k = self.contacts, len(closed)
+        options, n = here.run.options, here.run.n
+        G = here.seen.G[closed].reshape(3 * k, n)
+        W = G @ here.P @ G.T
+        W = np.ascontiguousarray(0.5 * (W + W.T))
+        u = here.u[closed].copy()
+        u[np.abs(u[:, 0]) <= here.still[closed], 0] = 0.0
+        if jams >= 0:
+            i = closed.index(jams)
+            u[i, 0] = -SEED * np.linalg.norm(u[i, 1:])
+        e = np.array([self.restitution(c) for c in closed])
+        settings = CornerSettings(
+            multiple=MULTIPLE[options.multiple], rtol=options.corner_tolerance,
+            exponent=options.corner_exponent,
+        )  # fmt: skip
+        if self.room is None:
+            self.room = new_corner_work(len(here.friction))
+        out = new_corner_result(k)
+        code = resolve_corner(
+            k, W, u.reshape(-1), here.friction[closed], e, here.law[closed], np.ones(k), settings,
+            self.room, out,
+        )  # fmt: skip
+        if code != OK:
+            return Status.IMPACT_FAILED
+        p = out.impulse.reshape(k, 3)
+        after = out.velocity.reshape(k, 3)
+        self.apply(G, out.impulse)
+        works = out.compression + out.restitution - out.friction
+        for i, c in enumerate(closed):
+            if np.any(p[i] != 0.0):
+                self.write(
+                    c, now, k, W[3 * i : 3 * i + 3, 3 * i : 3 * i + 3], e[i], u[i], after[i], p[i],
+                    works[i], out.compression[i], out.restitution[i], out.friction[i],
+                )  # fmt: skip
+        return 0
+
+    def apply(self, G: np.ndarray, impulse: np.ndarray) -> None:
+        """Change the velocities by impulses along rows."""
+        run = self.contacts.run
+        n, M = run.n, self.contacts.seen.M
+        v = run.x[n:].copy()
+        run.x[n:] += self.contacts.P @ (G.T @ impulse)
+        run.clock[0].impacts += 0.5 * (run.x[n:] - v) @ M @ (run.x[n:] + v)
+
+    def write(
+        self, c, now, together, W, e, before, after, impulse, energy, compression, restitution, loss
+    ) -> None:
+        """Keep the record of an impact."""
+        here = self.contacts
+        here.run.counts["impacts"] += 1
+        here.events.append((now, "impact", c))
+        self.records.append(
+            {
+                "time": now, "contact": c, "position": here.run.x[: here.run.n].copy(),
+                "relative_velocity_before": before.copy(), "relative_velocity_after": after.copy(),
+                "impulse": impulse.copy(), "energy_change": float(energy),
+                "law": here.run.user.contacts[c].impact_law, "inverse_mass": W.copy(),
+                "restitution": float(e), "friction": float(here.friction[c]),
+                "compression_work": float(compression), "restitution_work": float(restitution),
+                "friction_loss": float(loss), "together": together,
+            }
+        )  # fmt: skip

@@ -1,0 +1,225 @@
+"""A system in coordinates from SymPy expressions: derivatives taken exactly, code written for Numba.
+
+SymPy is imported here and nowhere else.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from carom import check
+
+
+def sympy() -> Any:
+    """Return the module, or say how to get it."""
+    try:
+        import sympy
+    except ImportError:
+        raise ImportError(
+            'GeneralizedSystem.from_sympy needs the package sympy: pip install "carom[sympy]"'
+        ) from None
+    return sympy
+
+
+class SymbolicModel:
+    """Expressions of a system, in symbols of its own: coordinates q, velocities v, time t."""
+
+    def __init__(
+        self, coordinates, velocities, kinetic_energy, metric, potential, forces, constraints, rates,
+        parameters, time,
+    ):  # fmt: skip
+        sp = self.sp = sympy()
+        self.coordinates = [sp.sympify(q) for q in coordinates]
+        n = self.n = len(self.coordinates)
+        if n == 0:
+            raise ValueError("coordinates must name at least one coordinate, got none")
+        functions = all(isinstance(q, sp.core.function.AppliedUndef) for q in self.coordinates)
+        if velocities is None and functions:
+            velocities = [q.diff(q.args[0]) for q in self.coordinates]
+        self.velocities = [sp.sympify(v) for v in velocities or ()]
+        if velocities is not None and len(self.velocities) != n:
+            raise ValueError(f"velocities must be {n}, one a coordinate, got {velocities!r}")
+        self.parameters = dict(parameters or {})
+        for symbol, value in self.parameters.items():
+            check.number(f"parameters[{symbol}]", value)
+        self.time = time if time is not None or not functions else self.coordinates[0].args[0]
+        self.q = sp.symbols(f"q:{n}", real=True, cls=sp.Dummy)
+        self.v = sp.symbols(f"v:{n}", real=True, cls=sp.Dummy)
+        self.t = sp.Dummy("t", real=True)
+        q, v = list(self.q), list(self.v)
+
+        if (kinetic_energy is None) == (metric is None):
+            raise ValueError("give kinetic_energy or metric, and not both")
+        if metric is None:
+            T = self.take("kinetic_energy", kinetic_energy, "qv")
+            self.M = sp.hessian(T, v)
+            rest = T - sum(self.M[i, j] * v[i] * v[j] for i in range(n) for j in range(n)) / 2
+            if self.M.has(*v) or not self.is_zero(rest):
+                raise ValueError(
+                    "kinetic_energy must be a quadratic form of the velocities (no term without "
+                    f"velocities, none linear in them), got {kinetic_energy}"
+                )
+        else:
+            M = sp.Matrix(metric)
+            if M.shape != (n, n):
+                raise ValueError(f"metric must have shape ({n}, {n}), got {M.shape}")
+            self.M = M.applyfunc(lambda one: self.take("metric", one, "q"))
+            if not all(self.is_zero(one) for one in self.M - self.M.T):
+                raise ValueError(f"metric must be symmetric, got {metric}")
+        self.V = self.take("potential", potential, "q")
+        given = [0] * n if forces is None else list(forces)
+        if len(given) != n:
+            raise ValueError(f"forces must be {n}, one a coordinate, got {forces!r}")
+        self.forces = [self.take("forces", one, "tqv") for one in given]
+        self.phi = [self.take("constraints", one, "q") for one in constraints]
+        speeds = [self.linear("rates", one) for one in rates]
+        self.holonomic = len(self.phi)
+        self.A = [[sp.diff(one, x) for x in q] for one in self.phi] + speeds
+        self.rows = len(self.A)
+        self.contacts: list[tuple[Any, list]] = []
+
+    def take(self, name: str, expression, allowed: str):
+        """Return an expression in the symbols of this model; refuse others than `allowed` (of t, q, v)."""
+        sp = self.sp
+        try:
+            result = sp.sympify(expression)
+        except (sp.SympifyError, TypeError):
+            raise ValueError(f"{name} must be a SymPy expression, got {expression!r}") from None
+        result = result.subs(list(zip(self.velocities, self.v)))  # first: they may be derivatives
+        result = result.subs(list(zip(self.coordinates, self.q)))
+        result = result.subs(list(self.parameters.items()))
+        if self.time is not None:
+            result = result.subs(self.time, self.t)
+        known = {
+            *(self.q if "q" in allowed else ()),
+            *(self.v if "v" in allowed else ()),
+            *((self.t,) if "t" in allowed else ()),
+        }
+        unknown = sorted(map(str, result.free_symbols - known))
+        if unknown or result.atoms(sp.Derivative):
+            what = {"t": "the time", "q": "coordinates", "v": "velocities"}
+            raise ValueError(
+                f"{name} must be in terms of {' and '.join(what[a] for a in allowed)} and parameters "
+                f"with a value, got {expression} with {', '.join(unknown) or 'derivatives'}"
+            )
+        return result
+
+    def linear(self, name: str, expression) -> list:
+        """Return the row of an expression that is linear in the velocities."""
+        taken = self.take(name, expression, "qv")
+        row = [self.sp.diff(taken, v) for v in self.v]
+        rest = taken - sum(a * v for a, v in zip(row, self.v))
+        if any(a.has(*self.v) for a in row) or not self.is_zero(rest):
+            raise ValueError(
+                f"{name} must be linear in the velocities, without a term that has none, got {expression}"
+            )
+        return row
+
+    def is_zero(self, expression) -> bool:
+        """Return whether an expression is zero, by its form or at some points."""
+        sp = self.sp
+        if expression == 0:
+            return True
+        symbols = [*self.q, *self.v, self.t]
+        f = sp.lambdify(symbols, [expression, sp.Integer(1)], "math")
+        points = 0.1 + 0.8 * np.random.default_rng(0).random((4, len(symbols)))
+        return all(abs(f(*point)[0]) <= 1e-9 for point in points)
+
+    def add_contact(self, gap, tangent) -> None:
+        """Take the expressions of a contact."""
+        given = () if tangent is None else tangent
+        given = tuple(given) if isinstance(given, Sequence) else (given,)
+        if len(given) > 2:
+            raise ValueError(f"tangent must be one or two expressions, got {len(given)}")
+        rho = self.take("gap", gap, "q")
+        rows = [self.linear("tangent", one) for one in given]
+        normal = [self.sp.diff(rho, q) for q in self.q]
+        if all(one == 0 for one in normal):
+            raise ValueError(f"gap must depend on the coordinates, got {gap}")
+        empty = [[self.sp.Integer(0)] * self.n] * (2 - len(rows))
+        self.contacts.append((rho, [normal, *rows, *empty]))
+
+    def metric_at(self, q) -> np.ndarray:
+        """Return M (n, n) at numbers."""
+        return np.array(
+            self.sp.lambdify(self.q, self.M.tolist(), "math")(*map(float, q)), dtype=float
+        )
+
+    def inertia(self) -> list:
+        """Return M and Gamma_kij v_i v_j = (dM/dt v)_k - d_k (v M v) / 2."""
+        sp, v = self.sp, sp_column(self.sp, self.v)
+        momentum = list(self.M * v)
+        twice = sum(p * w for p, w in zip(momentum, self.v))
+        bend = [self.rate(p) - sp.diff(twice, q) / 2 for p, q in zip(momentum, self.q)]
+        return [*self.M, *bend]
+
+    def loads(self) -> list:
+        """Return V, Q - dV, Q v."""
+        total = [f - self.sp.diff(self.V, q) for f, q in zip(self.forces, self.q)]
+        return [self.V, *total, sum(f * v for f, v in zip(self.forces, self.v))]
+
+    def row_terms(self) -> list:
+        """Return phi, A, (dA/dt) v."""
+        entries = [a for row in self.A for a in row]
+        return [*self.phi, *entries, *(self.bent(row) for row in self.A)]
+
+    def contact_terms(self) -> list:
+        """Return gaps, G, (dG/dt) v."""
+        rows = [row for _, G in self.contacts for row in G]
+        entries = [a for row in rows for a in row]
+        return [*(rho for rho, _ in self.contacts), *entries, *(self.bent(row) for row in rows)]
+
+    def rate(self, expression):
+        """Return the rate of a function of the coordinates, velocities held."""
+        return sum(self.sp.diff(expression, q) * v for q, v in zip(self.q, self.v))
+
+    def bent(self, row):
+        """Return (d row/dt) v."""
+        return sum(self.rate(a) * v for a, v in zip(row, self.v))
+
+    def addresses(self, functions) -> list[int]:
+        """Return where the four compiled functions are."""
+        result = []
+        for name in ("inertia", "loads", "row_terms", "contact_terms"):
+            terms = getattr(self, name)()
+            if not terms:
+                result.append(0)
+                continue
+            written = self.write(name, terms)
+            result.append(functions.written(written, (2 * self.n,), (len(terms),)))
+        return result
+
+    def write(self, name: str, terms: list):
+        """Return ``name(t, x, out)`` as Python code of scalars, common subexpressions once."""
+        from sympy.printing.codeprinter import PrintMethodNotImplementedError
+        from sympy.printing.pycode import PythonCodePrinter
+
+        sp, printer = self.sp, PythonCodePrinter({"fully_qualified_modules": False})
+        x = [sp.Symbol(f"x{i}", real=True) for i in range(2 * self.n)]
+        t = sp.Symbol("t", real=True)
+        exchange = dict(zip([*self.q, *self.v, self.t], [*x, t]))
+        terms = [sp.sympify(term).xreplace(exchange) for term in terms]
+        shared, terms = sp.cse(terms, symbols=sp.numbered_symbols("s"), order="none")
+        used = set().union(*(e.free_symbols for e in [*terms, *(e for _, e in shared)]))
+        lines = [f"def {name}(t, x, out):"]
+        lines += [f"    x{i} = x[{i}]" for i in range(2 * self.n) if x[i] in used]
+        try:
+            lines += [f"    {symbol} = {printer.doprint(e)}" for symbol, e in shared]
+            lines += [f"    out[{i}] = {printer.doprint(e)}" for i, e in enumerate(terms)]
+        except PrintMethodNotImplementedError as error:
+            raise ValueError(
+                f"an expression has a function that cannot be compiled, or whose derivative cannot: {error}"
+            ) from None
+        code = "\n".join(lines)
+        space: dict[str, Any] = {"math": math, **{k: getattr(math, k) for k in dir(math)}}
+        exec(code, space)
+        return space[name]
+
+
+def sp_column(sp, symbols):
+    """Return a column of symbols."""
+    return sp.Matrix(list(symbols))

@@ -1,0 +1,299 @@
+"""What the user states: a system in coordinates of their own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from carom import check
+from carom.generalized.stated import CoordinateContact, answer, checked_contact, checked_functions
+
+if TYPE_CHECKING:
+    from carom.generalized.evaluate import Evaluation
+
+
+class GeneralizedSystem:
+    r"""A system in generalised coordinates: metric, forces, constraints and contacts (paper, Eqs. (1), (6)).
+
+    .. math:: M_{kj} (\dot v^j + \Gamma^j_{il} v^i v^l) = Q_k - \partial_k V + \lambda_R a^R_k,
+       \qquad T = \tfrac12 M_{ij} v^i v^j, \quad v = \dot q
+
+    with the Christoffel affinities of the metric M, constraints phi(q) = 0 and a(q) v = 0. Give it to
+    `carom.simulate` as a scene is given. This constructor takes functions; `from_sympy` takes expressions.
+
+    Parameters
+    ----------
+    metric : callable
+        ``metric(q) -> (n, n)``, symmetric, positive definite. Kinetic energy is ``v M v / 2``.
+    position, velocity : array_like, shape (n,)
+        Coordinates and their rates at the start.
+    potential : callable, optional
+        ``potential(q) -> float`` [J].
+    force : callable, optional
+        ``force(t, q, v) -> (n,)``: generalised forces that have no potential.
+    constraint : callable, optional
+        ``constraint(q) -> (h,)``, kept zero.
+    rows : callable, optional
+        ``rows(q) -> (k, n)``: nonholonomic constraints ``rows(q) v = 0``.
+    metric_derivative, potential_gradient, constraint_jacobian : callable, optional
+        ``(n, n, n)`` with the coordinate of the derivative first, ``(n,)``, ``(h, n)``. Default: central
+        differences of order 4, good to about 1e-12 where functions change over lengths of 1 of a coordinate
+        (second derivatives of constraints: 1e-10); see the notes.
+
+    Raises
+    ------
+    ValueError
+        If a shape does not fit, a number is not finite, or the metric at the start is not symmetric and
+        positive definite.
+    TypeError
+        If a function is none.
+
+    Notes
+    -----
+    Functions compiled by ``numba.njit`` are called from the compiled loop, plain ones through Python (some
+    10 microseconds a call). Steps of the differences are ``7.4e-4 max(1, |q|)``: choose units
+    in which coordinates of order 1 matter, or give the derivatives.
+
+    Coordinates must be good for the whole run: a chart that is singular on the way (the pole of a sphere) ends
+    it with a status.
+    """
+
+    def __init__(
+        self,
+        metric: Callable,
+        position,
+        velocity,
+        *,
+        potential: Callable | None = None,
+        force: Callable | None = None,
+        constraint: Callable | None = None,
+        rows: Callable | None = None,
+        metric_derivative: Callable | None = None,
+        potential_gradient: Callable | None = None,
+        constraint_jacobian: Callable | None = None,
+    ):
+        given = {
+            "metric": metric, "potential": potential, "force": force, "constraint": constraint,
+            "rows": rows, "metric_derivative": metric_derivative,
+            "potential_gradient": potential_gradient, "constraint_jacobian": constraint_jacobian,
+        }  # fmt: skip
+        for name, one in given.items():
+            if not (callable(one) or (one is None and name != "metric")):
+                raise TypeError(f"{name} must be a function, got {one!r}")
+        q = check.finite_array("position", position, (None,))
+        n = len(q)
+        v = check.finite_array("velocity", velocity, (n,))
+        answers = {"metric": (n, n), "potential": (), "metric_derivative": (n, n, n)}
+        answers["potential_gradient"] = (n,)
+        h = 0 if constraint is None else answer("constraint(q)", constraint, (None,), q).size
+        k = 0 if rows is None else len(answer("rows(q)", rows, (None, n), q))
+        answers["constraint_jacobian"] = (h, n)
+        for name, shape in answers.items():
+            if given[name] is not None:
+                answer(f"{name}(q)", given[name], shape, q)
+        if force is not None:
+            answer("force(t, q, v)", force, (n,), 0.0, q, v)
+        from carom.generalized.functional import FunctionalModel
+
+        self._start(FunctionalModel(n, given, h, k), q, v)
+
+    @classmethod
+    def from_sympy(
+        cls,
+        coordinates: Sequence,
+        velocities: Sequence | None = None,
+        *,
+        kinetic_energy=None,
+        metric=None,
+        potential=0,
+        forces: Sequence | None = None,
+        constraints: Sequence = (),
+        rates: Sequence = (),
+        parameters: Mapping | None = None,
+        time=None,
+        position,
+        velocity,
+    ) -> GeneralizedSystem:
+        """State a system by SymPy expressions; all derivatives are taken exactly, and compiled.
+
+        Parameters
+        ----------
+        coordinates : sequence of n symbols, or functions of time such as ``dynamicsymbols("q")``
+        velocities : sequence of n symbols, optional
+            Their rates. Default for functions of time: their derivatives.
+        kinetic_energy : expression
+            A quadratic form of the velocities. Or
+        metric : (n, n) matrix of expressions
+        potential : expression in the coordinates
+            Default 0 [J].
+        forces : sequence of n expressions, optional
+            Generalised forces without potential, in time, coordinates and velocities.
+        constraints : sequence of expressions in the coordinates
+            Kept zero.
+        rates : sequence of expressions, linear in the velocities
+            Nonholonomic constraints, kept zero.
+        parameters : mapping of symbol to number, optional
+        time : symbol, optional
+        position, velocity : array_like, shape (n,)
+            The start.
+
+        Raises
+        ------
+        ImportError
+            Without SymPy (``pip install "carom[sympy]"``).
+        ValueError
+            If an expression has a symbol without a value, or not the form that it must have.
+        """
+        from carom.generalized.symbolic import SymbolicModel
+
+        model = SymbolicModel(
+            coordinates, velocities, kinetic_energy, metric, potential, forces, tuple(constraints),
+            tuple(rates), parameters, time,
+        )  # fmt: skip
+        q = check.finite_array("position", position, (model.n,))
+        v = check.finite_array("velocity", velocity, (model.n,))
+        system = cls.__new__(cls)
+        system._start(model, q, v)
+        return system
+
+    def _start(self, model, q, v) -> None:
+        self._model: Any = model
+        self._contacts: list[CoordinateContact] = []
+        self._made: Evaluation | None = None
+        self.position, self.velocity = q, v
+        M = check.finite_array("metric at the start", model.metric_at(q), (model.n, model.n))
+        if not np.allclose(M, M.T, rtol=0, atol=1e-12 * np.max(np.abs(M))):
+            raise ValueError(f"metric must be symmetric, got {M.tolist()} at the start")
+        if not np.linalg.eigvalsh(M)[0] > 0.0:
+            raise ValueError(f"metric must be positive definite, got {M.tolist()} at the start")
+
+    def set_state(self, position, velocity) -> None:
+        """Start from other coordinates and velocities, each (n,)."""
+        self.position = check.finite_array("position", position, (self.coordinates,))
+        self.velocity = check.finite_array("velocity", velocity, (self.coordinates,))
+
+    @property
+    def coordinates(self) -> int:
+        """Number n of coordinates."""
+        return self._model.n
+
+    @property
+    def contacts(self) -> tuple[CoordinateContact, ...]:
+        """All contacts, in the order in which they were added."""
+        return tuple(self._contacts)
+
+    def add_contact(
+        self,
+        gap,
+        *,
+        tangent=None,
+        gap_gradient: Callable | None = None,
+        restitution: float,
+        friction: float = 0.0,
+        impact_law: str = "newton",
+        name: str | None = None,
+    ) -> CoordinateContact:
+        """Keep a gap from becoming negative, by impacts and contact forces.
+
+        Parameters
+        ----------
+        gap : expression or callable ``gap(q) -> float``
+            A distance [m], positive while the contact is open: friction compares forces along its
+            gradient and along `tangent`, so both must be speeds of the same point.
+        tangent : expression, or two; or callable ``tangent(q) -> (n,)`` or ``(2, n)``, optional
+            Tangential speeds of the point, linear in the velocities; of a function the rows that
+            multiply them. Two must be perpendicular directions. Default: none, without friction.
+        gap_gradient : callable, optional
+            ``gap_gradient(q) -> (n,)``, with functions only. Default: central differences.
+        restitution : float
+            In [0, 1].
+        friction : float
+            Coulomb's coefficient, at least 0. Default 0.
+        impact_law : {"newton", "poisson", "stronge"}
+            As in `carom.resolve_impact`.
+        name : str, optional
+            Default ``"contact k"``.
+
+        Raises
+        ------
+        ValueError
+            If an argument is not as above, or `friction` is given without `tangent`.
+        """
+        contact = checked_contact(self._contacts, tangent, restitution, friction, impact_law, name)
+        if hasattr(self._model, "sp"):
+            if callable(gap) and not hasattr(gap, "free_symbols"):
+                raise ValueError("gap must be an expression in a system from SymPy, got a function")
+            self._model.add_contact(gap, tangent)
+        else:
+            count = checked_functions(self.position, gap, gap_gradient, tangent)
+            self._model.add_contact(gap, gap_gradient, tangent, count)
+        self._made = None
+        self._contacts.append(contact)
+        return contact
+
+    def evaluation(self) -> Evaluation:
+        """Return the system's functions, compiled, for use at single states."""
+        if self._made is None:
+            from carom.generalized.evaluate import Evaluation
+
+            self._made = Evaluation(self)
+        return self._made
+
+    def metric(self, position) -> np.ndarray:
+        """Return M (n, n) at coordinates (n,)."""
+        return self.evaluation().metric(self._at(position))
+
+    def christoffel(self, position) -> np.ndarray:
+        r"""Return the affinities :math:`\Gamma^k_{ij}` (n, n, n), k first, at `position` (n,)."""
+        return self.evaluation().christoffel(self._at(position))
+
+    def gaps(self, position) -> np.ndarray:
+        """Return the gaps (C,) of all contacts at coordinates (n,)."""
+        return self.evaluation().look(self._at(position)).gap.copy()
+
+    def autoparallel(self, position, velocity, parts: int = 100) -> tuple[np.ndarray, np.ndarray]:
+        """Return the end (q, v) of the autoparallel from `position` with `velocity`, after a time of 1.
+
+        A geodesic of the metric: ``q'' + Gamma(q', q') = 0``. In `parts` Runge-Kutta steps of order 4.
+
+        Raises
+        ------
+        ValueError
+            If an argument is not as above, or the metric is singular on the way.
+        """
+        v = check.finite_array("velocity", velocity, (self.coordinates,))
+        parts = check.integer("parts", parts, least=1)
+        return self.evaluation().autoparallel(self._at(position), v, parts)
+
+    def return_map(self, position, contact: CoordinateContact | str) -> np.ndarray:
+        """Return coordinates where the gap of a contact is zero, along an autoparallel normal to it there.
+
+        Normal in the metric (paper, contact detection; mathematics page, VII.2), and within the constraints.
+
+        Raises
+        ------
+        KeyError
+            If no contact is called so.
+        ValueError
+            If `position` is not finite, or the map does not converge.
+        """
+        index = self._contact(contact).index
+        return self.evaluation().return_map(self._at(position), index)
+
+    def _contact(self, contact) -> CoordinateContact:
+        name = getattr(contact, "name", contact)
+        for one in self._contacts:
+            if one.name == name:
+                return one
+        raise KeyError(f"no contact is called {name!r}")
+
+    def _at(self, position) -> np.ndarray:
+        return check.finite_array("position", position, (self.coordinates,))
+
+    def __repr__(self) -> str:
+        return (
+            f"<GeneralizedSystem: {self.coordinates} coordinates, {self._model.rows} constraints, "
+            f"{len(self._contacts)} contacts>"
+        )

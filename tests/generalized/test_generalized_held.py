@@ -1,0 +1,208 @@
+"""Contact that stays: slip, stick and opening, in closed form."""
+
+import numpy as np
+import pytest
+import sympy as sp
+from coordinate_systems import rate, symbols
+
+import carom
+from carom import GeneralizedSystem
+
+G = 9.81
+
+
+def particle(position, velocity, potential, **contact):
+    """A particle of 1 kg over the floor z = 0; `potential` of (x, z)."""
+    q, v = symbols("x z")
+    system = GeneralizedSystem.from_sympy(
+        q, v, metric=sp.eye(2), potential=potential(*q), position=position, velocity=velocity
+    )
+    system.add_contact(q[1], tangent=v[0], **contact)
+    return system
+
+
+def on_floor(position, velocity, friction=0.3, restitution=0.5):
+    return particle(
+        position, velocity, lambda x, z: G * z, restitution=restitution, friction=friction
+    )
+
+
+@pytest.mark.plain
+def test_block_slides_to_a_stop():
+    # t = v/(mu g), s = v^2/(2 mu g); forces are constant, so nothing but round-off.
+    run = carom.simulate(on_floor([0, 0], [1, 0]), 0.5, step=0.02)
+    assert [str(kind) for kind in run.events.kind] == ["held", "sticks"]
+    assert run.events.time[1] == pytest.approx(1 / (0.3 * G), rel=1e-14)
+    assert run.q[-1, 0] == pytest.approx(1 / (0.6 * G), rel=1e-14)
+    np.testing.assert_allclose(run.v[-1], 0.0, atol=1e-15)
+    assert run.ledger.friction[-1] == pytest.approx(-0.5, rel=1e-13)
+
+
+def test_bounces_end():
+    # From 1 m with e = 1/2: bounces end at t0 (1 + 2 e/(1 - e)) = 3 t0; handed over within one step.
+    run = carom.simulate(on_floor([0, 1], [0, 0], 0.0), 2.0, step=0.01)
+    times = np.sqrt(2 / G) * (1 + 2 * np.cumsum(0.5 ** np.arange(1, len(run.impacts))))
+    np.testing.assert_allclose(run.impacts.time[1:], times, rtol=0, atol=1e-12)
+    held = run.events.time[np.flatnonzero(run.events.kind == "held")]
+    assert len(held) == 1
+    assert 0 < 3 * np.sqrt(2 / G) - held[0] < 0.02
+    assert run.q[-1, 1] == pytest.approx(0.0, abs=1e-15)
+    assert -1e-3 < run.ledger.bounces[-1] < 0
+    assert np.max(np.abs(run.ledger.residual)) < 1e-12
+
+
+@pytest.mark.parametrize(("friction", "slides"), [(0.4999, True), (0.5001, False)])
+def test_incline_holds_up_to_the_friction_angle(friction, slides):
+    slope = np.arctan(0.5)
+    system = particle(
+        [0, 0], [0, 0], lambda x, z: G * (z * np.cos(slope) - x * np.sin(slope)),
+        restitution=0.0, friction=friction,
+    )  # fmt: skip
+    run = carom.simulate(system, 1.0, step=0.01)
+    speed = G * (np.sin(slope) - friction * np.cos(slope)) if slides else 0.0
+    np.testing.assert_allclose(run.v[-1], [speed, 0.0], rtol=0, atol=1e-14)
+
+
+@pytest.mark.parametrize("polar", [False, True])
+def test_particle_leaves_a_circle(polar):
+    # From rest at angle 0.1 on a frictionless circle: cos th_s = 2/3 cos 0.1, at t = .9071101110440. Order 4.
+    errors = []
+    for step in (0.02, 0.01, 0.005):
+        q, v = symbols("a b")
+        if polar:
+            metric, height, gap = sp.diag(1, q[0] ** 2), q[0] * sp.cos(q[1]), q[0] - 1
+            start = [1, 0.1]
+        else:
+            metric, height, gap = sp.eye(2), q[1], sp.sqrt(q[0] ** 2 + q[1] ** 2) - 1
+            start = [np.sin(0.1), np.cos(0.1)]
+        system = GeneralizedSystem.from_sympy(
+            q, v, metric=metric, potential=G * height, position=start, velocity=[0, 0]
+        )
+        system.add_contact(gap, restitution=0.0)
+        run = carom.simulate(system, 1.0, step=step)
+        assert [str(kind) for kind in run.events.kind] == ["held", "opens"]
+        errors.append(abs(run.events.time[1] - 0.9071101110440))
+    assert errors[-1] < 1e-9
+    assert errors[0] / errors[1] > 10.0
+    assert errors[1] / errors[2] > 10.0
+
+
+def test_stick_gives_way():
+    # A force that grows, F = t: stick until t = mu m g, then x'' = t - mu g. Located: x is exact for RK4.
+    q, v = symbols("x z")
+    t = sp.Symbol("t", real=True)
+    system = GeneralizedSystem.from_sympy(
+        q, v, metric=sp.eye(2), potential=G * q[1], forces=[t, 0], time=t, position=[0, 0],
+        velocity=[0, 0],
+    )  # fmt: skip
+    system.add_contact(q[1], tangent=v[0], restitution=0.0, friction=0.1)
+    run = carom.simulate(system, 2.0, step=0.03)
+    start = 0.1 * G
+    assert [str(kind) for kind in run.events.kind] == ["held", "slips"]
+    assert run.events.time[1] == pytest.approx(start, abs=1e-11)
+    assert run.q[-1, 0] == pytest.approx((2 - start) ** 3 / 6, abs=1e-11)
+    assert np.max(np.abs(run.ledger.residual)) < 1e-11
+
+
+def test_puck_in_the_plane_stops_along_its_line():
+    q, v = symbols("x y z")
+    system = GeneralizedSystem.from_sympy(
+        q, v, metric=sp.eye(3), potential=G * q[2], position=[0, 0, 0], velocity=[0.6, 0.8, 0]
+    )
+    system.add_contact(q[2], tangent=v[:2], restitution=0.0, friction=0.3)
+    run = carom.simulate(system, 0.5, step=0.01)
+    np.testing.assert_allclose(run.q[-1], np.array([0.6, 0.8, 0]) / (0.6 * G), rtol=0, atol=1e-15)
+
+
+def test_jam_is_resolved_by_an_impact():
+    # Painleve: a rod of 1 m, 1 kg at 60 degrees, mu = 1.6: W = [[1.75, 1.299], [1.299, 3.25]], u = (0, 1),
+    # e = 0: P = (.3247595264, -.4375), at rest at once at the point. (Mathematics page, VI.6.)
+    q, v = symbols("x z a")
+    x, z, a = q
+    foot = x - sp.cos(a) / 2, z - sp.sin(a) / 2
+    turn = np.pi / 3
+    system = GeneralizedSystem.from_sympy(
+        q, v, metric=sp.diag(1, 1, sp.Rational(1, 12)), potential=G * z,
+        position=[np.cos(turn) / 2, np.sin(turn) / 2, turn], velocity=[-1, 0, 0],
+    )  # fmt: skip
+    tangent = sum(sp.diff(foot[0], one) * rate for one, rate in zip(q, v))
+    system.add_contact(foot[1], tangent=tangent, restitution=0.0, friction=1.6)
+    run = carom.simulate(system, 0.01, step=1e-3)
+    first = run.impacts[0]
+    assert first.time == 0.0
+    np.testing.assert_allclose(first.inverse_mass[0, 1], -1.299038105677, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(first.impulse[:2], [0.3247595264, 0.4375], rtol=0, atol=1e-6)
+    np.testing.assert_allclose(first.relative_velocity_after, 0.0, atol=1e-12)
+
+
+def test_two_blocks_collide_and_stop_together():
+    # A row of two on a line with a wall: both contacts are resolved at one instant when they close together.
+    q, v = symbols("x y")
+    system = GeneralizedSystem.from_sympy(
+        q, v, metric=sp.eye(2), position=[1, 2], velocity=[-1, -1]
+    )
+    system.add_contact(q[0], restitution=0.0, name="wall")
+    system.add_contact(q[1] - q[0] - 1, restitution=0.0, name="pair")
+    run = carom.simulate(system, 2.0, step=0.1)
+    np.testing.assert_allclose(run.q[-1], [0, 1], rtol=0, atol=1e-14)
+    np.testing.assert_allclose(run.v[-1], 0.0, atol=1e-14)
+    assert run.ledger.impacts[-1] == pytest.approx(-1.0, rel=1e-13)
+
+
+def test_slip_that_turns():
+    # A side wind F on a puck, du/dt = F - mu g u/|u|. With s the angle of slip from the wind, w = tan(s/2) and
+    # k = mu g/F: d|u|/ds = |u| (k - cos s)/sin s and ds/dt = -F sin s/|u|.
+    # Here k = 1/2 and s = 90 degrees at the start: |u| = (v0/2) w^(-1/2) (1 + w^2).
+    from scipy.integrate import quad
+
+    q, v = symbols("x y z")
+    force, start = 2.0 * 0.3 * G, 1.0
+    system = GeneralizedSystem.from_sympy(
+        q, v, metric=sp.eye(3), potential=G * q[2], forces=[0, force, 0], position=[0, 0, 0],
+        velocity=[start, 0, 0],
+    )  # fmt: skip
+    system.add_contact(q[2], tangent=v[:2], restitution=0.0, friction=0.3)
+    angle = 0.2
+
+    def speed(s):
+        w = np.tan(s / 2)
+        return 0.5 * start * w**-0.5 * (1 + w * w)
+
+    time, _ = quad(lambda s: speed(s) / (force * np.sin(s)), angle, np.pi / 2, epsabs=1e-13)
+    for step, most in ((0.02, 1e-4), (2e-3, 1e-8)):
+        run = carom.simulate(system, time, step=step)
+        exact = speed(angle) * np.array([np.sin(angle), np.cos(angle)])
+        np.testing.assert_allclose(run.v[-1, :2], exact, rtol=0, atol=most)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.15])
+def test_two_held_contacts_keep_the_order(friction):
+    # A rod slides on both ends over the hill z = cos(x)/10, to a stop if there is friction. Against rk8.
+    from scipy.optimize import root
+
+    q, v = symbols("x z a")
+    x, z, a = q
+    ends = [(x + k * sp.cos(a) / 2, z + k * sp.sin(a) / 2) for k in (-1, 1)]
+    gaps = [Z - sp.cos(X) / 10 for X, Z in ends]
+    given = {x: 0.3}
+    at = root(sp.lambdify([(z, a)], [one.subs(given) for one in gaps]), [0.1, 0.0], tol=1e-14).x
+    given |= {z: at[0], a: at[1]}
+    J = np.array(sp.Matrix(gaps).jacobian(q).subs(given), dtype=float)
+    system = GeneralizedSystem.from_sympy(
+        q, v, metric=sp.diag(1, 1, sp.Rational(1, 12)), potential=G * z, position=[0.3, *at],
+        velocity=[0.8, *np.linalg.solve(J[:, 1:], -0.8 * J[:, 0])],
+    )  # fmt: skip
+    for (X, Z), gap in zip(ends, gaps):
+        slope = -sp.sin(X) / 10
+        n = sp.sqrt(1 + slope**2)
+        tangent = (rate(X, q, v) + slope * rate(Z, q, v)) / n
+        system.add_contact(gap / n, tangent=tangent, restitution=0.0, friction=friction)
+    exact = carom.simulate(system, 1.2, step=2e-3, method="rk8")
+    runs = [carom.simulate(system, 1.2, step=h) for h in (0.04, 0.02, 0.01)]
+    errors = np.array([np.max(np.abs(run.q[-1] - exact.q[-1])) for run in runs])
+    assert np.all(np.log2(errors[:-1] / errors[1:]) > 3.7)
+    assert errors[-1] < 1e-10
+    if friction > 0.0:
+        assert [str(kind) for kind in exact.events.kind] == ["held", "held", "sticks", "sticks"]
+        assert runs[-1].events.time[2] == pytest.approx(exact.events.time[2], abs=1e-10)
+        np.testing.assert_allclose(runs[-1].v[-1], 0.0, atol=1e-14)
