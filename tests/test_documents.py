@@ -39,7 +39,7 @@ def same(shown: str, printed: str) -> bool:
 def test_code_of_a_page_prints_what_is_shown(page, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("MPLBACKEND", "agg")
-    space, printed = {"__name__": "page"}, ""
+    space, printed = {"__name__": "__main__"}, ""  # a module that Numba finds
     for language, text in blocks(page):
         if language == "python":
             output = io.StringIO()
