@@ -19,6 +19,7 @@ from carom.jit import address
 from carom.motion.acceleration import acceleration_unit
 from carom.motion.explicit import EXPLICIT, constrained_unit, tableau
 from carom.motion.project import project_start
+from carom.motion.rattle import SYMPLECTIC, Rattle, composition, rattle_unit
 from carom.motion.reactions import velocity_rows
 from carom.motion.solve import with_address
 from carom.motion.three_field import ThreeField
@@ -37,6 +38,8 @@ def make_method(name: str, options: Options):
     """Return the settings of a method by its name."""
     if name in EXPLICIT:
         return tableau(name)
+    if name in SYMPLECTIC:
+        return Rattle(composition(name), 0, *tableau("rk8" if name == "rattle6" else "rk4"))
     return ThreeField(
         int(name == "paper-ode"),
         options.natural_frequency,
@@ -67,7 +70,7 @@ class Run:
             "duration": duration, "step": step, "method": method,
             "impact_location": impact_location, "save_every": save_every,
         }  # fmt: skip
-        paper = method not in EXPLICIT
+        paper = method.startswith("paper")
         self.compiled = compile_scene(scene, options, loops=paper)
         system, self.now = self.compiled.system, self.compiled.start
         self.method = make_method(method, options)
@@ -105,7 +108,7 @@ class Run:
         check_start(scene, self.compiled, self.now, self.work, options)
         if system.contacts.size:
             self.work.body.group = system.bodies.component
-        apart = method in EXPLICIT and impact_location == "locate"
+        apart = not paper and impact_location == "locate"
         self.islands = new_islands(system, self.held) if apart else NoIslands(0)
         self.controls = self.controls._replace(retry=int(isinstance(self.islands, Islands)))
         self.cluster = new_cluster(system)
@@ -168,6 +171,11 @@ class Run:
             self.work,
         )  # fmt: skip
         self.method = self.method._replace(address=found)
+        if isinstance(self.method, Rattle) and self.method.at == 0:
+            found = address(
+                rattle_unit, self.method.parts, system, self.now, 0.0, self.now, self.work
+            )
+            self.method = self.method._replace(at=found)
 
     def find_hold(self) -> None:
         """Compile what a held contact needs: only when the first one is to be held."""

@@ -13,7 +13,7 @@ from carom.scene.scene import Scene
 from carom.solution import Solution
 from carom.status import SimulationError, Status
 
-METHODS = ("rk4", "rk5", "rk8", "paper", "paper-ode")
+METHODS = ("rk4", "rk5", "rk8", "rattle", "rattle4", "rattle6", "paper", "paper-ode")
 LOCATIONS = ("locate", "project", "work")
 CHUNKS = 100  # calls of the compiled loop in one run, for progress and for Ctrl-C
 

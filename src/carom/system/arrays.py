@@ -234,6 +234,7 @@ RESULT = [
     ("power", "f8"),  # of loads, and of friction, with the last accelerations
     ("drag", "f8"),
     ("residual", "f8"),  # greatest of the groups held at several points
+    ("fallen", "i8"),  # steps of a symplectic method that the explicit one has taken
 ]
 
 #: search for an event inside a step

@@ -1,0 +1,335 @@
+"""RATTLE: symmetric, symplectic, constraints exact; order 2, and compositions of order 4 and 6.
+
+Half a kick, a move by the rotation group's own discrete Lagrangian, half a kick. With linear momenta m v and
+spatial angular momenta l = R J W as P (Hamilton-Pontryagin form; Bou-Rabee and Marsden 2009, with unit
+quaternions as the map):
+
+    P_h = P_0 + h/2 f(q_0, v_0) + A(q_0)^T Lam     with Lam such that phi(q_1) = 0,
+    x_1 = x_0 + h P_h/m,     Q_1 = Q_0 (a, b),     a J b + b x J b = h/2 R_0^T l_h,   a^2 + |b|^2 = 1,
+    P_1 = P_h + h/2 f(q_1, v_1) + A(q_1)^T Mu      with Mu such that A(q_1) v_1 = 0.
+
+Reactions of a joint do no work on a common motion of all bodies, so momenta of a floating system are kept;
+what turns a body is in the map, no gyroscopic torque is applied. (Mathematics page, II.3.)
+
+Lam by repeated solves in q_0: with no wrench and the bias -phi(q_1)/h the constrained solve gives the motion dV
+with M dV = A(q_0)^T dLam and A dV = -phi/h, so P_h gains M dV. Each turn gains a factor of the order of
+the angle turned in the step, down to round-off. A blade (nonholonomic) has no phi: its anchor goes from q_0 to q_1 at right
+angles to the mean of its two lateral directions.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from carom.dispatch import by_address, by_solver, only_with_joints
+from carom.geometry.rotation import cross, rotate, rotate_back
+from carom.jit import inlined, kernel, unit
+from carom.motion.acceleration import bias_joints
+from carom.motion.contact_point import clear_wrenches
+from carom.motion.explicit import CONSTRAINTS_LOST, constrained, fly, keep
+from carom.motion.forces import applied_wrenches
+from carom.motion.joints import anchor_gap, axis
+from carom.motion.loops import dropped_rows, solve_factored
+from carom.motion.project import largest_position_error, project_velocity
+from carom.motion.solve import free_body, solve
+from carom.motion.turn import turn_by_momentum
+from carom.system.arrays import KNIFE_EDGE, SLIDING, FreeSolver, LoopSolver, TreeSolver
+
+NO_CONVERGENCE = 1
+DONE, STALLED, TOO_FAR = range(3)  # how a part of a step ended
+MOST = 60  # solves for Lam
+
+
+class Rattle(NamedTuple):
+    """Parts of a step, and the explicit method for held contacts and singular positions."""
+
+    parts: np.ndarray  # (S,) of h, sum 1
+    at: int  # address of the step; 0 while none is needed
+    A: np.ndarray
+    b: np.ndarray
+    address: int
+
+
+#: names of the symplectic methods
+SYMPLECTIC = ("rattle", "rattle4", "rattle6")
+
+
+def composition(name: str) -> np.ndarray:
+    """Return the parts of a step: 1; 5 of order 4 (Suzuki 1990); 9 of order 6 (Kahan and Li 1997)."""
+    if name == "rattle":
+        return np.ones(1)
+    if name == "rattle4":
+        g = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
+        return np.array([g, g, 1.0 - 4.0 * g, g, g])
+    half = [
+        0.39216144400731413927925056, 0.33259913678935943859974864, -0.70624617255763935980996482,
+        0.08221359629355080023149045,
+    ]  # fmt: skip
+    return np.array([*half, 1.0 - 2.0 * sum(half), *half[::-1]])
+
+
+@inlined
+def rattle_step(method, system, held, start, h, end, work):
+    """Write the state a time h after `start` into `end`; return work of loads, of friction, a status.
+
+    While contacts are held all goes by the explicit method.
+    """
+    if not fly(system, held, start, h, end, work):
+        return 0.0, 0.0, 0
+    for i in range(held.count[0]):
+        if held.points[i].rest == 0:
+            return constrained(method, system, held, start, h, end, work)
+    result = work.result[0]
+    whole_step(method.at, method.parts, system, start, h, end, work)
+    if result.code == STALLED:
+        result.fallen += 1
+        return constrained(method, system, held, start, h, end, work)
+    return result.applied, 0.0, NO_CONVERGENCE if result.code == TOO_FAR else 0
+
+
+@unit
+def rattle_unit(parts, system, start, h, end, work):
+    """Make the parts of a step, one after the other."""
+    applied, code, result = 0.0, DONE, work.result[0]
+    for b in range(start.shape[0]):
+        bound = work.body[b].bound
+        keep(start[b], work.middle[b])
+        if system.bodies[b].ballistic == 0:
+            bound[0], bound[1], bound[2] = 0.0, 0.0, 0.0
+    for s in range(parts.size):
+        p, code = one_part(system, work.middle, parts[s] * h, end, work)
+        applied += p
+        if code != DONE:
+            break
+        for b in range(start.shape[0]):
+            if system.bodies[b].ballistic == 0:
+                bound_changes(work.middle[b], end[b], parts[s] * h, work.body[b].bound)
+                keep(end[b], work.middle[b])
+    result.applied, result.code = applied, code
+
+
+#: whole_step(address, parts, system, start, h, end, work)
+whole_step = by_address(rattle_unit)
+
+
+@kernel
+def bound_changes(start, end, h, bound):
+    """Raise the bounds of accelerations and of spin: means over the part, doubled."""
+    linear, angular, spin = 0.0, 0.0, 0.0
+    for k in range(3):
+        a, c = (end.v[k] - start.v[k]) / h, (end.w[k] - start.w[k]) / h
+        linear += a * a
+        angular += c * c
+        spin += max(end.w[k] ** 2, start.w[k] ** 2)
+    bound[0] = max(bound[0], 2.0 * math.sqrt(linear))
+    bound[1] = max(bound[1], 2.0 * math.sqrt(angular))
+    bound[2] = max(bound[2], math.sqrt(spin))
+
+
+@kernel
+def one_part(system, start, h, end, work):
+    """Make one step of order 2; return the work of loads and how it ended."""
+    before = first_kick(system, start, h, work)
+    lost = dropped_rows(system)
+    least, last = math.inf, math.inf
+    for k in range(MOST):
+        if not move_all(system, start, h, end, work):
+            return 0.0, TOO_FAR
+        error = error_of_move(system, start, end, work)
+        if error <= 1e-15 or (error <= 1e-11 and not error < 0.5 * last):
+            break
+        if not error < 1e3 * least or k == MOST - 1:
+            return 0.0, STALLED
+        least, last = min(least, error), error
+        correct(system, start, h, work)
+    after = second_kick(system, h, end, work)
+    if dropped_rows(system) != lost:
+        return 0.0, STALLED
+    return 0.5 * h * (before + after), DONE
+
+
+@kernel
+def first_kick(system, start, h, work):
+    """Write P_h, with the reactions of this moment as a first guess, into `push`; return the power of loads.
+
+    M a is the applied forces, the reactions and -w x l, which turns l with the body and is no kick.
+    """
+    power = applied_wrenches(system, start, True, work)
+    bias_joints(system, start, work)
+    solve(system, start, True, work)
+    for b in range(start.shape[0]):
+        body, push, w = system.bodies[b], work.body[b].push, start[b].w
+        l = times_inertia(body, start[b].Q, w[0], w[1], w[2])
+        t = cross(w[0], w[1], w[2], l[0], l[1], l[2])
+        for k in range(3):
+            push[k], push[3 + k] = body.mass * start[b].v[k], l[k] + 0.5 * h * t[k]
+        add_momentum(body, start[b].Q, 0.5 * h, work.body[b])
+    return power
+
+
+@kernel
+def times_inertia(body, q, wx, wy, wz):
+    """Return the spatial angular momentum of a body that turns by w (world)."""
+    W = rotate_back(q[0], q[1], q[2], q[3], wx, wy, wz)
+    J = body.inertia
+    return rotate(q[0], q[1], q[2], q[3], J[0] * W[0], J[1] * W[1], J[2] * W[2])
+
+
+@kernel
+def add_momentum(body, q, factor, memory):
+    """Add factor times M motion to the momenta of a body."""
+    motion, push = memory.motion, memory.push
+    l = times_inertia(body, q, motion[3], motion[4], motion[5])
+    for k in range(3):
+        push[k] += factor * body.mass * motion[k]
+        push[3 + k] += factor * l[k]
+
+
+@kernel
+def move_all(system, start, h, end, work):
+    """Move all bodies with the momenta of the middle; return False if one turns too far."""
+    for b in range(start.shape[0]):
+        body, push = system.bodies[b], work.body[b].push
+        if body.ballistic == 1:
+            continue
+        for k in range(3):
+            end[b].x[k] = start[b].x[k] + h * push[k] / body.mass
+        if not turn_by_momentum(body, start[b].Q, h, push, end[b].Q):
+            return False
+    return True
+
+
+@kernel
+def _error_of_move(system, start, end, work):
+    """Bias all joints by minus their error at the end, in axes of the start; return the largest.
+
+    Directions of most joints turn with the parent, so errors are turned back with it.
+    """
+    error = largest_position_error(system, end, work)
+    for j in range(system.joints.shape[0]):
+        joint, bias = system.joints[j], work.joint[j].bias
+        if joint.kind == KNIFE_EDGE:
+            error = max(error, blade_error(joint, start, end, bias) / system.bodies[joint.child].extent)
+        elif joint.parent >= 0:
+            turn_back(start[joint.parent].Q, end[joint.parent].Q, bias[:3])
+            if joint.kind in SLIDING:
+                turn_back(start[joint.parent].Q, end[joint.parent].Q, bias[3:])
+    return error
+
+
+@kernel
+def turn_back(p, q, a):
+    """Turn the vector a with the body from attitude q to attitude p."""
+    bx, by, bz = rotate_back(q[0], q[1], q[2], q[3], a[0], a[1], a[2])
+    a[0], a[1], a[2] = rotate(p[0], p[1], p[2], p[3], bx, by, bz)
+
+
+@kernel
+def blade_error(joint, start, end, bias):
+    """Bias a blade by minus the sideways part of its way, against the mean of both directions."""
+    x0, y0, z0 = anchor_gap(joint, start)
+    x1, y1, z1 = anchor_gap(joint, end)
+    ex, ey, ez = axis(start, joint.child, joint.child_frame, 1)
+    fx, fy, fz = axis(end, joint.child, joint.child_frame, 1)
+    s = 0.5 * ((ex + fx) * (x1 - x0) + (ey + fy) * (y1 - y0) + (ez + fz) * (z1 - z0))
+    bias[3], bias[4], bias[5] = -s * ex, -s * ey, -s * ez
+    return abs(s)
+
+
+@inlined
+def _solve(system, state, work):
+    """Solve with biased joints."""
+    solve(system, state, True, work)
+
+
+@kernel
+def _solve_factored(system, state, work):
+    """The same with the factor that is there."""
+    solve_factored(system, state, True, work)
+
+
+#: solve_again(system, state, work): solve with biased joints in the position of the last solve
+solve_again = by_solver({FreeSolver: _solve, TreeSolver: _solve, LoopSolver: _solve_factored})
+
+
+@kernel
+def _correct(system, start, h, work):
+    """Change the momenta of the middle by reactions at the start that take out the error."""
+    for j in range(system.joints.shape[0]):
+        bias = work.joint[j].bias
+        for k in range(6):
+            bias[k] /= h
+    clear_wrenches(work)
+    solve_again(system, start, work)
+    for b in range(start.shape[0]):
+        add_momentum(system.bodies[b], start[b].Q, 1.0, work.body[b])
+
+
+@kernel
+def _no_error(system, start, end, work):
+    """Without joints there is no error of position."""
+    return 0.0
+
+
+@kernel
+def _nothing(system, start, h, work):
+    """Nothing is to be corrected."""
+
+
+error_of_move = only_with_joints(_error_of_move, _no_error)
+correct = only_with_joints(_correct, _nothing)
+
+
+@kernel
+def second_kick(system, h, end, work):
+    """Write v_1 from the momenta of the middle; return the power of loads.
+
+    Dampers make it an equation for v_1, solved by substitution (the adjoint of the first half: the step
+    stays symmetric).
+    """
+    power, change = 0.0, math.inf
+    for k in range(MOST):
+        if k == 0:
+            set_velocities(system, 0.0, end, work)
+        power = applied_wrenches(system, end, False, work)
+        previous, change = change, note_kick(system, k, work)
+        if change == 0.0 or (change <= 1e-12 and not change < 0.5 * previous):
+            break
+        set_velocities(system, 0.5 * h, end, work)
+        project_velocity(system, end, work)
+    return power
+
+
+@kernel
+def note_kick(system, k, work):
+    """Keep the wrenches; return their greatest change since they were kept, relative to the greatest."""
+    change, size = 0.0, 0.0
+    for b in range(system.bodies.shape[0]):
+        wrench, kept = work.body[b].wrench, work.stages[0, b].rate
+        length = system.bodies[b].extent
+        for i in range(6):
+            unit_of = 1.0 if i < 3 else length
+            size = max(size, abs(wrench[i]) / unit_of)
+            if not abs(wrench[i] - kept[i]) / unit_of <= change:
+                change = abs(wrench[i] - kept[i]) / unit_of
+            kept[i] = wrench[i]
+    if k == 0:
+        return math.inf
+    return change / size if size > 0.0 else 0.0
+
+
+@kernel
+def set_velocities(system, factor, end, work):
+    """Write v = M(q_1)^-1 (P_h + factor * kick)."""
+    for b in range(end.shape[0]):
+        if system.bodies[b].ballistic == 1:
+            continue
+        memory, v, w = work.body[b], end[b].v, end[b].w
+        for i in range(6):
+            memory.wrench[i] = memory.push[i] + factor * work.stages[0, b].rate[i]
+        free_body(system.bodies[b], end[b].Q, memory)
+        for i in range(3):
+            v[i], w[i] = memory.motion[i], memory.motion[3 + i]
