@@ -47,7 +47,7 @@ def assemble(run, status: Status) -> dict:
             "steps": int(clock.step), "trial_steps": int(clock.trials), "cuts": int(clock.cuts),
             "located": int(clock.located), "impacts": int(clock.struck), "holds": int(clock.holds),
             "held_steps": int(clock.pressed), "held_rounds": int(clock.rounds),
-            "whole_steps": int(clock.whole),
+            "whole_steps": int(clock.whole), "explicit_steps": int(run.work.result[0].fallen),
         },
         "scene": run.scene,
         "settings": dict(run.settings),

@@ -11,10 +11,12 @@ quaternions as the map):
 Reactions of a joint do no work on a common motion of all bodies, so momenta of a floating system are kept;
 what turns a body is in the map, no gyroscopic torque is applied. (Mathematics page, II.3.)
 
-Lam by repeated solves in q_0: with no wrench and the bias -phi(q_1)/h the constrained solve gives the motion dV
-with M dV = A(q_0)^T dLam and A dV = -phi/h, so P_h gains M dV. Each turn gains a factor of the order of
-the angle turned in the step, down to round-off. A blade (nonholonomic) has no phi: its anchor goes from q_0 to q_1 at right
-angles to the mean of its two lateral directions.
+Lam by repeated solves in q_0: with no wrench and the bias -phi(q_1)/h the constrained solve gives the motion
+dV with M dV = A(q_0)^T dLam and A dV = -phi/h, so P_h gains M dV. Each turn gains a factor of the order of
+the angle turned in the step, down to round-off. A blade (nonholonomic) has no phi: its anchor goes from q_0
+to q_1 at right angles to the mean of its two lateral directions. Near a singular position the rows of
+q_0 do not reach those of q_1: where the turns do not converge, or rows are left out at one end and not
+at the other, the explicit method takes the step.
 """
 
 from __future__ import annotations
@@ -29,7 +31,7 @@ from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.jit import inlined, kernel, unit
 from carom.motion.acceleration import bias_joints
 from carom.motion.contact_point import clear_wrenches
-from carom.motion.explicit import CONSTRAINTS_LOST, constrained, fly, keep
+from carom.motion.explicit import constrained, fly, keep
 from carom.motion.forces import applied_wrenches
 from carom.motion.joints import anchor_gap, axis
 from carom.motion.loops import dropped_rows, solve_factored
@@ -134,12 +136,12 @@ def one_part(system, start, h, end, work):
     """Make one step of order 2; return the work of loads and how it ended."""
     before = first_kick(system, start, h, work)
     lost = dropped_rows(system)
-    least, last = math.inf, math.inf
+    least, last, fine = math.inf, math.inf, round_off(system, start)
     for k in range(MOST):
         if not move_all(system, start, h, end, work):
-            return 0.0, TOO_FAR
+            return 0.0, TOO_FAR if k == 0 else STALLED
         error = error_of_move(system, start, end, work)
-        if error <= 1e-15 or (error <= 1e-11 and not error < 0.5 * last):
+        if error <= 1e-15 or (error <= 100.0 * fine and not error < 0.5 * last):
             break
         if not error < 1e3 * least or k == MOST - 1:
             return 0.0, STALLED
@@ -149,6 +151,16 @@ def one_part(system, start, h, end, work):
     if dropped_rows(system) != lost:
         return 0.0, STALLED
     return 0.5 * h * (before + after), DONE
+
+
+@kernel
+def round_off(system, state):
+    """Return the round-off of the coordinates, relative to the body where that is largest."""
+    most = 1.0
+    for b in range(state.shape[0]):
+        x = state[b].x
+        most = max(most, max(abs(x[0]), max(abs(x[1]), abs(x[2]))) / system.bodies[b].extent)
+    return 2e-16 * most
 
 
 @kernel
@@ -212,7 +224,9 @@ def _error_of_move(system, start, end, work):
     for j in range(system.joints.shape[0]):
         joint, bias = system.joints[j], work.joint[j].bias
         if joint.kind == KNIFE_EDGE:
-            error = max(error, blade_error(joint, start, end, bias) / system.bodies[joint.child].extent)
+            error = max(
+                error, blade_error(joint, start, end, bias) / system.bodies[joint.child].extent
+            )
         elif joint.parent >= 0:
             turn_back(start[joint.parent].Q, end[joint.parent].Q, bias[:3])
             if joint.kind in SLIDING:
@@ -247,7 +261,7 @@ def _solve(system, state, work):
 
 @kernel
 def _solve_factored(system, state, work):
-    """The same with the factor that is there."""
+    """Do the same with the factor that is there."""
     solve_factored(system, state, True, work)
 
 
