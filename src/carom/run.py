@@ -17,7 +17,7 @@ from carom.impact.strike_several import corner_unit
 from carom.islands.layout import Islands, NoIslands, new_islands, roomier
 from carom.jit import address
 from carom.motion.acceleration import acceleration_unit
-from carom.motion.explicit import EXPLICIT, constrained_unit, tableau
+from carom.motion.explicit import EXPLICIT, constrained_unit, tableau, with_error
 from carom.motion.project import project_start
 from carom.motion.rattle import SYMPLECTIC, Rattle, composition, rattle_unit
 from carom.motion.reactions import velocity_rows
@@ -31,11 +31,15 @@ from carom.system import records as r
 from carom.system.cluster import new_cluster, new_corner
 from carom.system.compile import compile_scene
 
+ORDERS = {"rk5": 5, "rk8": 8}  # of the error of a step, for the length of the next
+FIRST = 1e-3  # of the longest step: the first
 LOCATIONS = {"locate": loop.LOCATE, "project": loop.PROJECT, "work": loop.WORK}
 
 
-def make_method(name: str, options: Options):
+def make_method(name: str, options: Options, adapts: bool = False):
     """Return the settings of a method by its name."""
+    if adapts:
+        return with_error(name)
     if name in EXPLICIT:
         return tableau(name)
     if name in SYMPLECTIC:
@@ -51,6 +55,19 @@ def make_method(name: str, options: Options):
     )
 
 
+def time_of_bounces(system, tolerances: tuple[float, float], longest: float) -> float:
+    """Return the time of a bounce as high as the tolerance, sqrt(8 tol/g): shorter ones are not resolved.
+
+    It takes the place of the step wherever that is a measure of time: for what is held, and what rests.
+    """
+    g = float(np.linalg.norm(system.gravity))
+    if not system.contacts.size or g == 0.0:
+        return longest
+    rtol, atol = tolerances
+    size = float(np.min(system.bodies.extent[system.contacts.body]))
+    return min(longest, float(np.sqrt(8.0 * (atol + rtol * size) / g)))
+
+
 def corner_settings(options: Options) -> CornerSettings:
     """Return the settings of impacts of several points."""
     return CornerSettings(
@@ -63,8 +80,9 @@ class Run:
     """A run that can be continued step by step; `solution` may be taken at any time."""
 
     def __init__(
-        self, scene: Scene, duration, step, steps, method, impact_location, save_every, options
-    ):
+        self, scene: Scene, duration, step, steps, method, impact_location, save_every, options,
+        tolerances: tuple[float, float] | None = None,
+    ):  # fmt: skip
         self.scene, self.options = scene, options
         self.settings = {
             "duration": duration, "step": step, "method": method,
@@ -73,7 +91,11 @@ class Run:
         paper = method.startswith("paper")
         self.compiled = compile_scene(scene, options, loops=paper)
         system, self.now = self.compiled.system, self.compiled.start
-        self.method = make_method(method, options)
+        self.method = make_method(method, options, tolerances is not None)
+        longest = step
+        if tolerances is not None:
+            self.settings.update(step="auto", rtol=tolerances[0], atol=tolerances[1])
+            longest, step = step, time_of_bounces(system, tolerances, step)
         self.controls = loop.Controls(
             step=step,
             duration=duration,
@@ -96,6 +118,10 @@ class Run:
             heap_at=0,
             heap=options.heap,
             retry=0,
+            order=0 if tolerances is None else ORDERS[method],
+            rtol=tolerances[0] if tolerances else 0.0,
+            atol=tolerances[1] if tolerances else 0.0,
+            longest=longest,
         )
         self.held = r.new_held(system)
         self.work = r.new_work(system, self.method.b.size)
@@ -108,14 +134,16 @@ class Run:
         check_start(scene, self.compiled, self.now, self.work, options)
         if system.contacts.size:
             self.work.body.group = system.bodies.component
-        apart = not paper and impact_location == "locate"
+        apart = not paper and impact_location == "locate" and tolerances is None
         self.islands = new_islands(system, self.held) if apart else NoIslands(0)
         self.controls = self.controls._replace(retry=int(isinstance(self.islands, Islands)))
         self.cluster = new_cluster(system)
         self.heap = new_heap(1, 1, 1)  # made when there is one
         self.corner = new_corner(system, corner_settings(options))
         self.clock = r.new_clock()
-        self.records = r.new_records(system, -(-steps // save_every) + 1, 512)
+        self.clock.ahead = FIRST * longest
+        rows = 256 if tolerances else -(-steps // save_every) + 1
+        self.records = r.new_records(system, rows, 512)
         if system.contacts.size:
             self.find_strike()
         if not np.all(system.bodies.ballistic):
@@ -161,7 +189,7 @@ class Run:
 
     def find_constrained_step(self) -> None:
         """Compile the step of bodies that are joined, loaded or held."""
-        system, coefficients = self.compiled.system, (self.method.A, self.method.b)
+        system, coefficients = self.compiled.system, (self.method.A, self.method.b, self.method.E)
         found = address(
             acceleration_unit, system, self.now, self.held, self.work, self.work.stages[0]
         )
@@ -218,15 +246,23 @@ class Run:
         """Number of finished steps."""
         return int(self.clock[0].step)
 
-    def go_on(self, until: int) -> Status:
-        """Go on to step number `until`, or to a failure."""
+    @property
+    def reached(self) -> float:
+        """Time that the run has come to."""
+        return float(self.clock[0].now)
+
+    def go_on(self, until: float) -> Status:
+        """Go on to step number `until`, or to that time if steps vary, or to a failure."""
         while True:
             code = march.run(
                 self.compiled.system, self.method, self.controls, self.held, self.now, self.work,
-                self.islands, self.cluster, self.corner, self.heap, self.clock, self.records, until,
+                self.islands, self.cluster, self.corner, self.heap, self.clock, self.records,
+                float(until),
             )  # fmt: skip
             if code == r.FULL:
                 self.records = r.longer(self.records)
+            elif code == r.NEEDS_ROWS:
+                self.records = r.more_rows(self.records)
             elif code == r.NEEDS_HOLD:
                 self.find_constrained_step()
                 self.find_hold()

@@ -18,6 +18,7 @@ class Status(IntEnum):
     CONSTRAINTS_LOST = 7
     INTERRUPTED = 9
     TOO_MANY_POINTS = 10
+    STEP_TOO_SMALL = 11
 
     @property
     def message(self) -> str:
@@ -57,6 +58,10 @@ _MESSAGES = {
     ),
     Status.TOO_MANY_POINTS: (
         "More than 192 points of a group of bodies are closed at once. Give the shapes fewer vertices."
+    ),
+    Status.STEP_TOO_SMALL: (
+        "The step that the tolerances ask for has become too small: a force jumps or grows without "
+        "bound, or rtol and atol are below round-off. Raise them, or give a step."
     ),
     Status.INTERRUPTED: "The run was interrupted; the solution holds what was computed until then.",
 }

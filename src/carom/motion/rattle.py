@@ -51,6 +51,7 @@ class Rattle(NamedTuple):
     at: int  # address of the step; 0 while none is needed
     A: np.ndarray
     b: np.ndarray
+    E: np.ndarray
     address: int
 
 

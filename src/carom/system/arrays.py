@@ -202,6 +202,7 @@ BODY_WORK = [
     ("wrench", "f8", 6),  # what a solve takes: force and torque, or impulse
     ("motion", "f8", 6),  # what a solve gives: linear, angular
     ("bound", "f8", 3),  # greatest linear, angular acceleration and spin of the last step
+    ("miss", "f8", 3),  # two estimates of the error of a step [m], and what they are measured by
     ("inverse", "f8", 6),  # inverse inertia, world axes
     ("group", "i8"),  # bodies with the same number move each other: joined, or held to each other
     ("holds", "i8"),  # of the body that its group is named after: held points of the group
