@@ -59,7 +59,7 @@ class Controls(NamedTuple):
     duration: float
     location: int  # LOCATE, PROJECT or WORK
     save_every: int
-    last: int  # number of the last step
+    last: int  # number of the last step; 0 where steps vary
     gap: float  # tolerance of a located gap, relative to the body
     tie: float  # vertices this near the lowest strike together, relative to the body
     hold: int

@@ -101,7 +101,7 @@ class Run:
             duration=duration,
             location=LOCATIONS[impact_location],
             save_every=save_every,
-            last=steps,
+            last=steps if tolerances is None else 0,
             gap=options.gap_tolerance,
             tie=options.tie_tolerance,
             hold=int(options.hold),

@@ -93,6 +93,10 @@ def simulate(
         raise TypeError(f"scene must be a carom.Scene, got {type(scene).__name__}")
     duration = check.number("duration", duration, above=0.0, unit="s")
     adapts = isinstance(step, str) and step == "auto"
+    if not adapts:
+        if isinstance(step, str):
+            raise ValueError(f'step must be a number [s] or "auto", got {step!r}')
+        step = check.number("step", step, above=0.0, unit="s")
     method = ("rk5" if adapts else "rk4") if method is None else method
     check.choice("method", method, METHODS)
     check.choice("impact_location", impact_location, LOCATIONS)
@@ -105,8 +109,6 @@ def simulate(
         raise TypeError(f"options must be carom.Options, got {type(options).__name__}")
     if adapts:
         step = min(duration, options.max_step or duration / 50.0)
-    else:
-        step = check.number('step (or "auto")', step, above=0.0, unit="s")
     if not duration / step < 1e12:
         name = "Options.max_step" if adapts else "step"
         raise ValueError(
