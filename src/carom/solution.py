@@ -53,8 +53,8 @@ class Solution:
     stats : dict
         Counts: steps, trial steps, rejected ones (``step="auto"``), cuts, located events, impacts, holds;
         steps of held points and their rounds (of a heap: sweeps); `explicit_steps`, those that a symplectic
-        method left to the explicit one in singular positions; and `whole_steps`, how often bodies that could not go from event to event
-        took steps as a heap.
+        method left to the explicit one in singular positions; and `whole_steps`, how often bodies that could
+        not go from event to event took steps as a heap.
     """
 
     t: np.ndarray
