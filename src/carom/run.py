@@ -16,13 +16,13 @@ from carom.impact.strike import strike_unit
 from carom.impact.strike_several import corner_unit
 from carom.islands.layout import Islands, NoIslands, new_islands, roomier
 from carom.jit import address
+from carom.methods import FIRST, ORDERS, make_method, time_of_bounces
 from carom.motion.acceleration import acceleration_unit
-from carom.motion.explicit import EXPLICIT, constrained_unit, tableau, with_error
+from carom.motion.explicit import constrained_unit
 from carom.motion.project import project_start
-from carom.motion.rattle import SYMPLECTIC, Rattle, composition, rattle_unit
+from carom.motion.rattle import Rattle, rattle_unit
 from carom.motion.reactions import velocity_rows
 from carom.motion.solve import with_address
-from carom.motion.three_field import ThreeField
 from carom.options import Options
 from carom.scene.scene import Scene
 from carom.solution import Solution
@@ -31,41 +31,7 @@ from carom.system import records as r
 from carom.system.cluster import new_cluster, new_corner
 from carom.system.compile import compile_scene
 
-ORDERS = {"rk5": 5, "rk8": 8}  # of the error of a step, for the length of the next
-FIRST = 1e-3  # of the longest step: the first
 LOCATIONS = {"locate": loop.LOCATE, "project": loop.PROJECT, "work": loop.WORK}
-
-
-def make_method(name: str, options: Options, adapts: bool = False):
-    """Return the settings of a method by its name."""
-    if adapts:
-        return with_error(name)
-    if name in EXPLICIT:
-        return tableau(name)
-    if name in SYMPLECTIC:
-        return Rattle(composition(name), 0, *tableau("rk8" if name == "rattle6" else "rk4"))
-    return ThreeField(
-        int(name == "paper-ode"),
-        options.natural_frequency,
-        options.damping_ratio,
-        options.augmentation,
-        options.residual_tolerance,
-        options.max_iterations,
-        *tableau("rk4"),
-    )
-
-
-def time_of_bounces(system, tolerances: tuple[float, float], longest: float) -> float:
-    """Return the time of a bounce as high as the tolerance, sqrt(8 tol/g): shorter ones are not resolved.
-
-    It takes the place of the step wherever that is a measure of time: for what is held, and what rests.
-    """
-    g = float(np.linalg.norm(system.gravity))
-    if not system.contacts.size or g == 0.0:
-        return longest
-    rtol, atol = tolerances
-    size = float(np.min(system.bodies.extent[system.contacts.body]))
-    return min(longest, float(np.sqrt(8.0 * (atol + rtol * size) / g)))
 
 
 def corner_settings(options: Options) -> CornerSettings:

@@ -107,22 +107,17 @@ def simulate(
     options = Options() if options is None else options
     if not isinstance(options, Options):
         raise TypeError(f"options must be carom.Options, got {type(options).__name__}")
-    if adapts:
-        step = min(duration, options.max_step or duration / 50.0)
-    if not duration / step < 1e12:
+    h = min(duration, options.max_step or duration / 50.0) if adapts else float(step)
+    if not duration / h < 1e12:
         name = "Options.max_step" if adapts else "step"
-        raise ValueError(
-            f"{name} must be above duration / 1e12 = {duration / 1e12:g} s, got {step!r}"
-        )
+        raise ValueError(f"{name} must be above duration / 1e12 = {duration / 1e12:g} s, got {h!r}")
     scene.validate()
     check_location(scene, impact_location)
 
     from carom.run import Run
 
-    steps = max(1, int(np.ceil(duration / step * (1.0 - 1e-12))))
-    run = Run(
-        scene, duration, step, steps, method, impact_location, save_every, options, tolerances
-    )
+    steps = max(1, int(np.ceil(duration / h * (1.0 - 1e-12))))
+    run = Run(scene, duration, h, steps, method, impact_location, save_every, options, tolerances)
     status = Status.SUCCESS
     total = duration if adapts else steps
     report = _reporter(progress, total, "s" if adapts else "step")
