@@ -249,3 +249,53 @@ def test_a_turn_too_far_is_refused():
     scene.add_joint(joints.Revolute((0, 0, 0), (0, 0, 1)), GROUND, scene.bodies[0])
     s = carom.simulate(scene, 0.5, step=0.05, method="rattle", throw=False)
     assert s.status is carom.Status.NO_CONVERGENCE
+
+
+JOINTS = {
+    "Prismatic": joints.Prismatic((1, 0, 0), (1, 1, 0)),
+    "Cylindrical": joints.Cylindrical((1, 0, 0), (1, 1, 0)),
+    "Universal": joints.Universal((1, 0, 0), (0, 1, 0), (0, 0, 1)),
+    "Planar": joints.Planar((1, 0, 0), (0, 1, 1)),
+    "PointOnLine": joints.PointOnLine((1, 0, 0), (1, 0, 0.3)),
+    "PointOnPlane": joints.PointOnPlane((1, 0, 0), (0, 0.2, 1)),
+    "Screw": joints.Screw((1, 0, 0), (0, 0, 1), 0.3),
+    "Fixed": joints.Fixed(),
+    "Distance": joints.Distance((1, 0, 0), (1.5, 0.2, 0)),
+}
+
+
+@pytest.mark.parametrize(
+    ("method", "steps"),
+    [("rattle", (1e-2, 5e-3)), ("rattle4", (2e-2, 1e-2)), ("rattle6", (4e-2, 2e-2))],
+)
+@pytest.mark.parametrize("kind", JOINTS)
+def test_order_with_each_joint(kind, method, steps):
+    """Two bodies of unequal moments in space, on a ball joint, moving against each other."""
+
+    def make():
+        scene = Scene(gravity=(0.3, -2, -9.81))
+        one = scene.add_body(mass=1, inertia=[0.1, 0.2, 0.3], position=(0.5, 0, 0))
+        two = scene.add_body(mass=2, inertia=[0.2, 0.2, 0.1], position=(1.5, 0.2, 0))
+        scene.add_joint(joints.Spherical((0, 0, 0)), GROUND, one)
+        scene.add_joint(JOINTS[kind], one, two)
+        return scene
+
+    known = run(make(), 0.6, 1e-3, method="rk8").position[-1]
+    runs = [carom.simulate(make(), 0.6, step=h, method=method) for h in steps]
+    found = [np.max(np.abs(s.position[-1] - known)) for s in runs]
+    np.testing.assert_allclose(orders(found), METHODS[method], rtol=0, atol=0.15)
+    assert max(np.max(e) for e in runs[0].constraint_errors) < 1e-13
+
+
+def test_while_a_contact_is_held_the_explicit_method_steps():
+    """A pendulum that comes to lie on a table: held to its end, at rest, energy accounted for."""
+    scene = Scene()
+    table = scene.add_half_space(point=(0, 0, -0.5), normal=(0, 0, 1))
+    ball = scene.add_body(carom.Sphere(0.05), mass=1.0, position=(1.0, 0, 0))
+    scene.add_joint(joints.Revolute((0, 0, 0), (0, 1, 0)), GROUND, ball)
+    scene.add_contact(ball, table, restitution=0.3)
+    s = carom.simulate(scene, 3.0, step=2e-3, method="rattle4")
+    assert s.stats["holds"] == 1
+    assert s.position[-1, 0, 2] == pytest.approx(-0.45, abs=1e-13)
+    assert np.max(np.abs(s.ledger.residual)) < 1e-8
+    assert np.max(np.abs(s.velocity[-1])) < 1e-12
