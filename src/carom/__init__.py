@@ -23,6 +23,7 @@ from carom.scene import (
     Mesh,
     Scene,
     Sphere,
+    constraints,
     forces,
     joints,
 )
@@ -60,6 +61,7 @@ __all__ = [
     "Sphere",
     "Status",
     "baselines",
+    "constraints",
     "forces",
     "identify",
     "impact_layer",

@@ -6,9 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom.coordinates import Motion, coordinates_of
 from carom.geometry import quaternion
 from carom.ledger import Ledger
 from carom.motion.mounts import mounted
+from carom.scene.more_forces import JointSpring, UserForce
 from carom.status import Status
 from carom.system import records as r
 from carom.tables import LAWS, EventTable, ImpactTable, contact_table
@@ -16,14 +18,13 @@ from carom.tables import LAWS, EventTable, ImpactTable, contact_table
 
 def assemble(run, status: Status) -> dict:
     """Return the fields of a `Solution`."""
-    from carom.run import to_scene_axes
-
     rec = r.trimmed(run.records, run.clock)
     state, clock = rec.state, run.clock[0]
     # of a step, one island after the other
     event = _rows(rec.event, np.argsort(rec.event.time, kind="stable"))
     rec = rec._replace(impact=_rows(rec.impact, np.argsort(rec.impact.time, kind="stable")))
     kinetic, potential = energies(run.compiled.system, state)
+    potential += more_energies(run, rec.series.t, state)
     ledger = Ledger(kinetic, potential, *(rec.series[name].copy() for name, _ in r.LEDGER))
     return {
         "t": rec.series.t.copy(),
@@ -75,12 +76,52 @@ def energies(system, state) -> tuple[np.ndarray, np.ndarray]:
             anchor if b < 0 else x[:, b] + quaternion.rotate(Q[:, b], anchor)
             for b, anchor in ((s.parent, s.parent_anchor), (s.child, s.child_anchor))
         ]
-        stretch = np.linalg.norm(ends[1] - ends[0], axis=-1) - s.rest_length
+        length = np.linalg.norm(ends[1] - ends[0], axis=-1)
+        if s.last_piece > s.piece:
+            potential += _curve_energy(system.relations.pieces[s.piece : s.last_piece], length)
+            continue
+        stretch = length - s.rest_length
         potential += 0.5 * s.stiffness * stretch**2
     for s in system.bushings:
         d, turn, *_ = mounted(s, x, Q)
         potential += 0.5 * (d**2 @ s.stiffness + turn**2 @ s.turn_stiffness)
     return kinetic, potential
+
+
+def _curve_energy(pieces, length: np.ndarray) -> np.ndarray:
+    """Return the integral of a curve from its first point to each length."""
+    powers = np.arange(1, 7)
+    whole = np.sum(pieces.c / powers * (pieces.end - pieces.start)[:, None] ** powers, axis=1)
+    before = np.concatenate([[0.0], np.cumsum(whole)])
+    i = np.clip(np.searchsorted(pieces.start, length, side="right") - 1, 0, len(pieces) - 1)
+    s = length - pieces.start[i]
+    return before[i] + np.sum(pieces.c[i] / powers * s[:, None] ** powers, axis=1)
+
+
+def more_energies(run, t, state) -> np.ndarray:
+    """Return the potential energy (T,) of springs along coordinates, and of forces of the user's with one."""
+    scene, total = run.scene, np.zeros(len(t))
+    for force in scene.forces:
+        d = force.definition
+        if isinstance(d, JointSpring) and d.stiffness > 0.0:
+            motion = Motion(
+                t, state.x, to_scene_axes(state.Q, run.compiled.to_principal), state.v, state.w
+            )
+            q = coordinates_of(motion, d.joint)[0][:, d.coordinate]
+            total += 0.5 * d.stiffness * (q - d.rest) ** 2
+        elif isinstance(d, UserForce) and d.potential is not None:
+            own = [b.index for b in d.bodies]
+            Q = to_scene_axes(state.Q, run.compiled.to_principal)
+            states = np.concatenate([state.x, Q, state.v, state.w], axis=2)[:, own]
+            total += [float(d.potential(time, s)) for time, s in zip(t, states)]
+    return total
+
+
+def to_scene_axes(Q: np.ndarray, to_principal: np.ndarray) -> np.ndarray:
+    """Return attitudes (T, N, 4) of the scene's body axes, from those of the principal axes."""
+    if np.all(to_principal == np.array([1.0, 0.0, 0.0, 0.0])):
+        return Q.copy()
+    return quaternion.multiply(Q, quaternion.conjugate(to_principal)[None])
 
 
 def first_vertices(contacts) -> np.ndarray:
@@ -159,15 +200,31 @@ def contact_sums(touch: np.recarray, saved: int, contacts: int) -> tuple[np.ndar
     return mode, force
 
 
-def joint_reactions(solution) -> np.ndarray:
-    """Return force and torque (T, J, 6) on the children, world axes, in the scene's order."""
+def element_reactions(solution) -> np.ndarray:
+    """Return what each joint, then each constraint answers with (T, E, 6), as the solver has it."""
     from carom.motion.reactions import reactions
 
     run = solution._run
     system, rec = run.compiled.system, r.trimmed(run.records, run.clock)
     out = np.zeros((len(rec.state), system.joints.size, 6))
     work = r.new_work(system, run.method.b.size)
-    reactions(system, run.options.augmentation, rec.state, rec.touch, work, out)
+    reactions(system, run.options.augmentation, rec.series.t, rec.state, rec.touch, work, out)
+    return out
+
+
+def constraint_forces(solution) -> np.ndarray:
+    """Return the multipliers (T, K) of the rows of all constraints beyond joints."""
+    first = len(solution.scene.joints)
+    out = solution._reactions[:, first:]
+    rows = [out[:, k, : c.rows] for k, c in enumerate(solution.scene.constraints)]
+    return np.concatenate([np.zeros((len(out), 0)), *rows], axis=1)
+
+
+def joint_reactions(solution) -> np.ndarray:
+    """Return force and torque (T, J, 6) on the children, world axes, in the scene's order."""
+    run = solution._run
+    system, rec = run.compiled.system, r.trimmed(run.records, run.clock)
+    out = solution._reactions[:, : len(run.scene.joints)].copy()
     for j in np.flatnonzero(run.compiled.flipped):  # the scene's child is the tree's parent there
         out[:, j] *= -1.0
         joint = system.joints[j]
@@ -189,5 +246,5 @@ def constraint_errors(solution) -> tuple[np.ndarray, np.ndarray]:
     run = solution._run
     system, rec = run.compiled.system, r.trimmed(run.records, run.clock)
     out = np.zeros((len(rec.state), 2))
-    row_errors(system, rec.state, r.new_work(system, run.method.b.size), out)
+    row_errors(system, rec.series.t, rec.state, r.new_work(system, run.method.b.size), out)
     return out[:, 0], out[:, 1]

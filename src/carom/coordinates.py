@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from carom import check
@@ -13,8 +15,26 @@ from carom.system.frames import triad
 
 def joint_coordinates(solution, joint) -> tuple[np.ndarray, np.ndarray]:
     """Return coordinates and rates (T, n) of a joint; see `Solution.joint_coordinates`."""
-    joint = _of_scene(solution.scene, joint)
-    d, sides = joint.definition, _Sides(solution, joint)
+    motion = Motion(
+        solution.t, solution.position, solution.orientation, solution.velocity,
+        solution.angular_velocity,
+    )  # fmt: skip
+    return coordinates_of(motion, _of_scene(solution.scene, joint))
+
+
+class Motion(NamedTuple):
+    """A motion at T times, orientations of the scene's body axes."""
+
+    t: np.ndarray
+    position: np.ndarray
+    orientation: np.ndarray
+    velocity: np.ndarray
+    angular_velocity: np.ndarray
+
+
+def coordinates_of(motion: Motion, joint: Joint) -> tuple[np.ndarray, np.ndarray]:
+    """Return coordinates and rates (T, n) of a joint of the scene in a motion."""
+    d, sides = joint.definition, _Sides(motion, joint)
     if isinstance(d, j.Distance):
         columns = [sides.length(d.anchor_parent, d.anchor_child)]
     elif isinstance(d, j.Spherical):
@@ -23,14 +43,14 @@ def joint_coordinates(solution, joint) -> tuple[np.ndarray, np.ndarray]:
         columns = sides.cross(d.axis_parent, d.axis_child)
     else:
         columns = _columns(sides, joint)
-    q = np.stack([a for a, _ in columns], axis=1) if columns else np.zeros((len(solution.t), 0))
+    q = np.stack([a for a, _ in columns], axis=1) if columns else np.zeros((len(motion.t), 0))
     return q, np.stack([b for _, b in columns], axis=1) if columns else q.copy()
 
 
 def _columns(sides, joint):
     """Pairs (coordinate, rate) of joints with one direction that is fixed in the parent."""
     d = joint.definition
-    if isinstance(d, (j.Fixed, j.KnifeEdge)):
+    if isinstance(d, (j.Fixed, j.KnifeEdge, j.RollingSphere, j.RollingDisc)):
         return []
     if isinstance(d, j.Revolute):
         return [sides.turn(d.axis)]

@@ -13,7 +13,7 @@ from numba.extending import intrinsic, overload
 
 from carom.contact.pairs.layout import NoHulls
 from carom.jit import OPTIONS
-from carom.system.arrays import FreeSolver, LoopSolver, TreeSolver
+from carom.system.arrays import FreeSolver, LoopSolver, Relations, TreeSolver
 
 
 def by_method(table: Mapping[type, Callable]) -> Callable:
@@ -85,6 +85,32 @@ def only_with_joints(function: Callable, without: Callable) -> Callable:
     So that a scene of free bodies does not wait for the compiler to go through its joints.
     """
     return by_solver({FreeSolver: without, TreeSolver: function, LoopSolver: function})
+
+
+def only_with_relations(function: Callable, without: Callable) -> Callable:
+    """Return `function` for systems with relations or rows of the user's among their joints."""
+    return _by_relations(function, without, (LoopSolver,))
+
+
+def only_with_coordinates(function: Callable, without: Callable) -> Callable:
+    """Return `function` for systems with coordinates of joints, or functions of the user's."""
+    return _by_relations(function, without, (LoopSolver, TreeSolver, FreeSolver))
+
+
+def _by_relations(function, without, solvers):
+    def choose(system, *arguments):
+        there = type(system.relations) is Relations and type(system.solver) in solvers
+        return (function if there else without)(system, *arguments)
+
+    def chosen(system, *arguments):
+        relations, solver = (
+            system.types[system.fields.index(name)].instance_class
+            for name in ("relations", "solver")
+        )
+        implementation = function if relations is Relations and solver in solvers else without
+        return lambda system, *arguments: implementation(system, *arguments)
+
+    return _overloaded(choose, chosen, function, without)
 
 
 def only_with_pairs(function: Callable, without: Callable) -> Callable:

@@ -74,7 +74,7 @@ def _compiled(function, inside, outside):
 
 def call_function(address, t, x, out):
     """Call the function at `address` from a kernel: out = f(t, x), both arrays contiguous."""
-    _FORM(address)(t, x.ctypes.data_as(_NUMBERS), out.ctypes.data_as(_NUMBERS))
+    _FORM(int(address))(t, x.ctypes.data_as(_NUMBERS), out.ctypes.data_as(_NUMBERS))
 
 
 _options: Any = OPTIONS

@@ -13,6 +13,7 @@ from carom.contact.closed import apart, closed_within
 from carom.contact.exclude import AGAIN, CLEAR, FLAT_RIM, UNSURE, greatest_acceleration
 from carom.contact.gap import gap_and_rate, plane_in_body, slow
 from carom.contact.pair_point import REACH, find_touches, smaller, touch_rate
+from carom.contact.stop import STOP, look_at_stop
 from carom.dispatch import only_with_pairs
 from carom.geometry.rotation import norm
 from carom.hold.events import (
@@ -34,6 +35,7 @@ from carom.hold.roster import is_held, refresh_pairs, regroup, set_anchor, strik
 from carom.hold.search import begin_search, event_value, examine, narrow, propose
 from carom.impact.strike import strike
 from carom.jit import inlined, kernel
+from carom.loop_codes import HOLD, NOTHING, SETTLE, STRIKE
 from carom.motion.acceleration import OPEN, SLIP, STICK
 from carom.motion.adapt import NOTHING_LEFT, plan_next, shorter, step_error
 from carom.motion.contact_point import contact_velocity
@@ -46,8 +48,7 @@ from carom.system.notes import begin_event, end_event
 
 LOCATE, PROJECT, WORK = range(3)
 STEP_CUT, TOO_MANY, NOT_FINITE = 2, 3, 4
-NOTHING, STRIKE, HOLD, SETTLE = range(4)
-NO_CONVERGENCE, STEP_TOO_SMALL = 1, 11
+NO_CONVERGENCE, STEP_TOO_SMALL = 1, 12
 # where a step is given up: trial steps, work for held contacts, their residual as a part of what gravity gives
 TRIES, EFFORT, UNSOLVED = 3000, 2e7, 0.01
 
@@ -109,6 +110,7 @@ def advance(
                 dt = until_stop(controls, held, dt, clock)
             search.active, search.eager = 0, 1 if clock.in_step < 20 else 0
             while True:
+                work.result[0].start = clock.now
                 applied, friction, code = step(method, system, held, now, dt, trial, work)
                 clock.trials += 1
                 clock.tries += 1
@@ -311,6 +313,8 @@ def look_near(system, controls, held, now, work):
         action = NOTHING
         if contact.touches == 1:
             action = look_at_pair(system, controls, held, contact, c, now, still, work)
+        elif contact.touches == STOP:
+            action = look_at_stop(system, controls, held, contact, c, now, work)
         else:
             plane = plane_in_body(contact, now)
             for i in range(contact.first, contact.last):
@@ -336,7 +340,7 @@ def may_end(contact, system, state, horizon, work):
 
     A first look, with a bound of the acceleration where there is one, before the forces are worked out.
     """
-    if contact.touches == 1:
+    if contact.touches != 0:
         return True
     point = work.point[0]
     rate = contact_velocity(point, state)[0]

@@ -9,6 +9,7 @@ from carom.islands.layout import Islands, NoIslands
 from carom.jit import entry, inlined, kernel
 from carom.loop import NOT_FINITE, advance, strayed
 from carom.motion.adapt import begin_step
+from carom.motion.more_forces import note_turns
 from carom.save import finite, save
 from carom.system import records as r
 
@@ -57,6 +58,7 @@ def run(
         clock.step += 1
         clock.in_step = 0
         clock.now = begin + length
+        note_turns(system, now)
         last = clock.step == controls.last
         if controls.order > 0 and length == controls.duration - begin:
             clock.now, last = controls.duration, True

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from carom import loop, march, save
+from carom.contact.stop import write_stop_gaps
 from carom.coulomb.newton import newton_unit
-from carom.geometry import quaternion
 from carom.heap.layout import new_heap, roomier_heap
 from carom.heap.step import heap_unit
 from carom.hold.lifecycle import hold_unit, settle_unit
@@ -21,7 +21,7 @@ from carom.motion.acceleration import acceleration_unit
 from carom.motion.explicit import constrained_unit
 from carom.motion.project import project_start
 from carom.motion.rattle import Rattle, rattle_unit
-from carom.motion.reactions import velocity_rows
+from carom.motion.reactions import start_errors, start_speeds
 from carom.motion.solve import with_address
 from carom.options import Options
 from carom.scene.scene import Scene
@@ -95,9 +95,10 @@ class Run:
             system = self.find_touches(system)
         system = with_address(system, self.now, self.work)
         self.compiled = self.compiled._replace(system=system)
-        if options.project_start and scene.joints:
+        if options.project_start and len(system.joints):
             project_start(system, self.now, self.work)
         check_start(scene, self.compiled, self.now, self.work, options)
+        check_stops(scene, self.compiled, self.now, self.work, options)
         if system.contacts.size:
             self.work.body.group = system.bodies.component
         apart = not paper and impact_location == "locate" and tolerances is None
@@ -241,6 +242,8 @@ class Run:
             elif code == r.NEEDS_ROOM:
                 assert isinstance(self.islands, Islands)
                 self.islands = roomier(self.islands)
+            elif self.compiled.functions.failed is not None:
+                return Status.FUNCTION_FAILED
             else:
                 return Status(code)
 
@@ -253,29 +256,53 @@ class Run:
         return Solution.from_run(self, status)
 
 
-def check_start(scene: Scene, compiled, start, work, options: Options) -> None:
-    """Refuse an initial velocity that breaks a joint, naming the joint and by how much."""
-    system = compiled.system
-    if not scene.joints:
+def check_stops(scene: Scene, compiled, start, work, options: Options) -> None:
+    """Refuse a joint that is beyond its stop at the start."""
+    if not scene.stops:
         return
-    errors = np.zeros((len(scene.joints), 6))
-    velocity_rows(system, start, work, errors)
-    size = system.bodies.extent
-    speed = np.max(np.abs(start.v)) + np.max(np.abs(start.w) * size[:, None])
-    for j, joint in enumerate(scene.joints):
-        # angular rows come after the linear ones where there are any: as a speed at the body's size
-        worst = np.max(np.abs(errors[j])) * max(1.0, size[system.joints.child[j]])
-        if not worst <= options.constraint_tolerance * speed + 1e-300:
+    system = compiled.system
+    gaps = np.zeros((len(system.contacts), 2))
+    write_stop_gaps(system, start, work, gaps)
+    first = len(system.contacts) - len(scene.stops)
+    for stop, gap in zip(scene.stops, gaps[first:, 0]):
+        extent = system.contacts.extent[first + stop.index]
+        if not gap >= -options.constraint_tolerance * extent:
             raise ValueError(
-                f"velocity of {joint.child.name!r} breaks joint {joint.name!r} ({joint.kind}): the "
-                f"joint's own velocity must be 0, got {np.max(np.abs(errors[j])):.6g}; give velocity "
-                "and angular_velocity of all joined bodies that fit their joints, or "
-                "Options(project_start=True)"
+                f"stop {stop.name!r} of {stop.joint.name!r} must not be passed at the start, got a gap of "
+                f"{gap:.6g}"
             )
 
 
-def to_scene_axes(Q: np.ndarray, to_principal: np.ndarray) -> np.ndarray:
-    """Return attitudes (T, N, 4) of the scene's body axes, from those of the principal axes."""
-    if np.all(to_principal == np.array([1.0, 0.0, 0.0, 0.0])):
-        return Q.copy()
-    return quaternion.multiply(Q, quaternion.conjugate(to_principal)[None])
+def check_start(scene: Scene, compiled, start, work, options: Options) -> None:
+    """Refuse an initial state that breaks a joint or a constraint, naming it and by how much."""
+    system, elements = compiled.system, (*scene.joints, *scene.constraints)
+    if not elements:
+        return
+    errors = np.zeros((2, len(elements), 6))
+    work.result[0].time = 0.0
+    start_errors(system, start, work, *errors)
+    if compiled.functions.failed is not None:
+        raise compiled.functions.failed
+    size = system.bodies.extent
+    speed = np.max(np.abs(start.v)) + np.max(np.abs(start.w) * size[:, None])
+    speed += np.max(np.abs(start_speeds(system, start, work)), initial=0.0)
+    for j, element in enumerate(elements):
+        # angular rows come after the linear ones where there are any: as a speed at the body's size
+        weight = max(1.0, size[system.joints.child[j]])
+        off, rate = (float(np.max(np.abs(e[j]))) for e in errors)
+        what = f"{element.name!r} ({element.kind})"
+        fits = "give a start that fits, or Options(project_start=True)"
+        if not off <= options.constraint_tolerance * weight:
+            raise ValueError(f"position breaks {what}: its error must be 0, got {off:.6g}; {fits}")
+        if rate * weight <= options.constraint_tolerance * speed + 1e-300:
+            continue
+        if j < len(scene.joints):
+            raise ValueError(
+                f"velocity of {element.child.name!r} breaks joint {what}: the "
+                f"joint's own velocity must be 0, got {rate:.6g}; give velocity "
+                "and angular_velocity of all joined bodies that fit their joints, or "
+                "Options(project_start=True)"
+            )
+        raise ValueError(
+            f"velocity breaks {what}: what it prescribes is missed by {rate:.6g}; {fits}"
+        )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from carom.contact.pair_point import place_any
+from carom.contact.place import place_any
 from carom.geometry.rotation import cross
 from carom.jit import entry, inlined, kernel
 from carom.motion.explicit import keep
@@ -60,6 +60,9 @@ def save_contacts(system, held, now, k, clock, work, records):
         fz = f[0] * E[0, 2] + f[1] * E[1, 2] + f[2] * E[2, 2]
         tx, ty, tz = cross(arm[0], arm[1], arm[2], fx, fy, fz)
         sx, sy, sz = cross(other[0], other[1], other[2], -fx, -fy, -fz)
+        if point.turns == 3:  # the force of such a stop is a torque
+            tx, ty, tz, sx, sy, sz = fx, fy, fz, -fx, -fy, -fz
+            fx, fy, fz = 0.0, 0.0, 0.0
         m = hold.torque
         mx = m[0] * E[0, 0] + m[1] * E[1, 0] + m[2] * E[2, 0]
         my = m[0] * E[0, 1] + m[1] * E[1, 1] + m[2] * E[2, 1]

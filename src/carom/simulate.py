@@ -136,7 +136,7 @@ def simulate(
             close()
     solution = run.solution(status)
     if throw and not solution.success:
-        raise SimulationError(solution.message, solution)
+        raise SimulationError(solution.message, solution) from run.compiled.functions.failed
     return solution
 
 

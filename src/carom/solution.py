@@ -101,6 +101,12 @@ class Solution:
         return self.kinetic_energy + self.potential_energy
 
     @cached_property
+    def _reactions(self) -> np.ndarray:
+        from carom.assemble import element_reactions
+
+        return element_reactions(self)
+
+    @cached_property
     def joint_reactions(self) -> np.ndarray:
         """Force and torque (T, J, 6) of each joint on its child at its anchor, world axes [N], [N m].
 
@@ -110,6 +116,17 @@ class Solution:
         from carom.assemble import joint_reactions
 
         return joint_reactions(self)
+
+    @cached_property
+    def constraint_forces(self) -> np.ndarray:
+        """Multipliers (T, K) of the rows of `Scene.constraints`, in their order.
+
+        Of a `Driver` the force [N] or torque [N m] of its motor along the coordinate; of a `Coupling` that
+        which acts on each joint, divided by its factor; of `Rows` the factor of each row in the force.
+        """
+        from carom.assemble import constraint_forces
+
+        return constraint_forces(self)
 
     def joint_coordinates(self, joint) -> tuple[np.ndarray, np.ndarray]:
         """Return (coordinates, rates), each (T, n), of a joint at saved times, worked out from the states.
@@ -130,7 +147,8 @@ class Solution:
         Distance            length [m] (not 0 at the start)
         Spherical           rotation vector [rad], angle in [0, pi], in the world axes of the start, fixed in
                             the parent; its rates are the relative angular velocity in the same axes
-        Fixed, KnifeEdge    none: n = 0
+        Fixed, KnifeEdge,   none: n = 0
+        rolling
         ==================  ========================================================================
 
         Turns are counted over the run by the mean of the rates between two saved times, which must

@@ -16,9 +16,10 @@ class Status(IntEnum):
     RETURN_MAP_FAILED = 5
     IMPACT_FAILED = 6
     CONSTRAINTS_LOST = 7
+    FUNCTION_FAILED = 8
     INTERRUPTED = 9
     TOO_MANY_POINTS = 10
-    STEP_TOO_SMALL = 11
+    STEP_TOO_SMALL = 12
 
     @property
     def message(self) -> str:
@@ -55,6 +56,10 @@ _MESSAGES = {
     Status.CONSTRAINTS_LOST: (
         "The bilateral constraints could not be met at the end of a step: the mechanism is in a "
         "position that it cannot leave, or the step is too large. Take a smaller step."
+    ),
+    Status.FUNCTION_FAILED: (
+        "A function given by the user raised an error, which is the cause of this one; the solution holds what "
+        "was computed until then."
     ),
     Status.TOO_MANY_POINTS: (
         "More than 192 points of a group of bodies are closed at once. Give the shapes fewer vertices."

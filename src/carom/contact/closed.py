@@ -8,11 +8,12 @@ from carom.contact.pair_point import (
     REACH,
     find_touches,
     own_point,
-    place_any,
     smaller,
     write_touch,
 )
+from carom.contact.place import place_any
 from carom.contact.rim import OTHER_SIDE, closed_rim, way_round
+from carom.contact.stop import STOP, is_held_stop, place_stop
 from carom.dispatch import only_with_pairs
 from carom.jit import kernel
 from carom.motion.contact_point import place
@@ -78,11 +79,13 @@ def gather_closed(system, controls, held, c, state, cluster, work, strikes):
                 continue
             brink.seen = 1
             near = closed_within(controls, contact, state)
-            if apart(contact, state, near):
+            if contact.touches != STOP and apart(contact, state, near):
                 continue
             before = k
             if contact.touches == 0:
                 k = add_vertices(system, held, contact, i, near, state, k, cluster)
+            elif contact.touches == STOP:
+                k = add_stop(system, held, contact, i, near, state, k, cluster)
             else:
                 k = add_touches(
                     system, controls, contact, i, near, state, k, cluster, work, strikes
@@ -107,9 +110,21 @@ def add_vertices(system, held, contact, c, near, state, k, cluster):
                 return -1
             take_seat(c, i, system.vertices[i], cluster.seats[k])
             place(contact, cluster.seats[k].point, state, cluster.points[0][k])
-            cluster.points[0][k].turns = 0
             k += 1
     return k
+
+
+@kernel
+def add_stop(system, held, contact, c, near, state, k, cluster):
+    """Add a stop that is closed or held; return the new count, -1 if there is no room."""
+    if k == cluster.seats.shape[0]:
+        return -1
+    point = cluster.points[0][k]
+    place_stop(system, contact, state, point)
+    if point.gap > near and not is_held_stop(held, c):
+        return k
+    take_seat(c, 0, point.core, cluster.seats[k])
+    return k + 1
 
 
 @kernel
@@ -127,7 +142,6 @@ def _add_touches(system, controls, contact, c, near, state, k, cluster, work, st
             own_point(contact, touch, state, cluster.seats[k].point)
             take_seat(c, touch.feature, cluster.seats[k].point, cluster.seats[k])
             write_touch(contact, touch, state, cluster.points[0][k])
-            cluster.points[0][k].turns = 0
             k += 1
     return k
 
@@ -166,7 +180,7 @@ def seat_held(system, held, k, state, cluster, work):
         for j in range(k):
             seat = cluster.seats[j]
             if seat.contact == hold.contact and seat.feature == hold.feature:
-                if hold.touches == 0 or seat_stays(system, hold, cluster.points[0][j], state, work):
+                if hold.touches != 1 or seat_stays(system, hold, cluster.points[0][j], state, work):
                     seat.held = i
 
 
@@ -201,7 +215,9 @@ def place_seats(system, k, state, cluster, points, work):
         place_any(
             system, system.contacts[seat.contact], seat.feature, seat.point, state, points[i], work
         )
-        points[i].turns, points[i].length = seat.turns, smaller(system.contacts[seat.contact])
+        if seat.turns > 0:
+            points[i].turns = seat.turns
+            points[i].length = smaller(system.contacts[seat.contact])
 
 
 @kernel

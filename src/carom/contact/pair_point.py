@@ -13,7 +13,6 @@ from carom.contact.rim import same_point
 from carom.dispatch import only_with_pairs
 from carom.geometry.rotation import exp, multiply, normalize, rotate, rotate_back
 from carom.jit import kernel
-from carom.motion.contact_point import place
 from carom.motion.wrench import point_velocity
 
 REACH = 1e-3  # of the smaller body: points that are looked for beyond the nearest
@@ -81,7 +80,7 @@ def tangents(n0, n1, n2, axes):
 def write_touch(contact, touch, state, point):
     """Write a point that was found as a point of contact."""
     n = touch.normal
-    point.a, point.b, point.gap = contact.body, contact.other, touch.gap
+    point.a, point.b, point.gap, point.turns = contact.body, contact.other, touch.gap, 0
     for k in range(3):
         point.arm_a[k] = touch.on_a[k] - state[contact.body].x[k]
         point.core[k] = (
@@ -215,12 +214,3 @@ def _no_drift(system, contact, feature, p, point, state, work):
 
 place_pair = only_with_pairs(_place_pair, _no_pair)
 drift = only_with_pairs(_drift, _no_drift)
-
-
-@kernel
-def place_any(system, contact, feature, p, state, point, work):
-    """Write the point that touches with a feature: a core point p, or one that the kernels of pairs find."""
-    if contact.touches == 0:
-        place(contact, p, state, point)
-    else:
-        place_pair(system, contact, feature, p, state, point, work)

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 
 from carom.contact.gap import slow
-from carom.contact.pair_point import drift
+from carom.contact.place import drift_of
 from carom.coulomb.layout import CONE, SLIDING
 from carom.coulomb.solve import solve_cones
 from carom.hold.turning import bound_turning, take_torque
@@ -31,8 +31,10 @@ def pose_forces(system, controls, held, k, state, cluster, work):
     for i in range(k):
         seat = cluster.seats[i]
         contact = system.contacts[seat.contact]
-        if contact.touches == 1 and seat.turns == 0:
-            d = drift(system, contact, seat.feature, seat.point, cluster.points[0][i], state, work)
+        if contact.touches != 0 and seat.turns == 0:
+            d = drift_of(
+                system, contact, seat.feature, seat.point, cluster.points[0][i], state, work
+            )
             for r in range(3):
                 cluster.v[C][3 * i + r] += d[r]
     push = 0.0

@@ -11,10 +11,10 @@ from carom.contact.pair_point import (
     REACH,
     find_touches,
     own_point,
-    place_any,
     smaller,
     touch_rate,
 )
+from carom.contact.place import place_any
 from carom.contact.rim import same_point
 from carom.dispatch import only_with_pairs
 from carom.jit import kernel
@@ -93,7 +93,7 @@ def copy(a, b):
 @kernel
 def together(contact):
     """Return whether a point of a contact is always stepped as one of several."""
-    return contact.touches == 1 or contact.turning[0] > 0.0 or contact.turning[1] > 0.0
+    return contact.touches != 0 or contact.turning[0] > 0.0 or contact.turning[1] > 0.0
 
 
 @kernel
@@ -139,7 +139,7 @@ def _refresh_pairs(system, controls, held, state, work):
     changed, i = False, 0
     while i < held.count[0]:
         hold = held.points[i]
-        if hold.touches == 0 or hold.rest == 1:
+        if hold.touches != 1 or hold.rest == 1:
             i += 1
             continue
         c, contact = hold.contact, system.contacts[hold.contact]

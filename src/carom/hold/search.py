@@ -12,6 +12,7 @@ from carom.contact.exclude import AGAIN, BELOW, CLEAR, FLAT_RIM, UNSURE, passage
 from carom.contact.exclude_pair import lowest_pair, passage_pair
 from carom.contact.gap import lowest, round_off
 from carom.contact.pair_point import smaller
+from carom.contact.stop import STOP, passage_stop, stop_gap
 from carom.hold.events import GAP, find_held_event, held_value, turned
 from carom.hold.margins import LEAST, NEAR
 from carom.jit import inlined, kernel
@@ -27,6 +28,10 @@ def examine(system, controls, held, now, dt, work):
         if contact.touches == 0:
             verdict, first = passage(
                 system, contact, held, leaving, now, work.trial, dt, work, controls.gap
+            )
+        elif contact.touches == STOP:
+            verdict, first = passage_stop(
+                system, contact, c, held, leaving, now, work.trial, dt, work, controls.gap
             )
         else:
             verdict, first = passage_pair(
@@ -60,6 +65,8 @@ def event_value(system, controls, held, search, state, work):
         search.tolerance = max(controls.gap * smaller(contact), round_off(contact, state))
         if contact.touches == 0:
             return lowest(contact, system.vertices, state)
+        if contact.touches == STOP:
+            return stop_gap(system, contact, state, work)
         search.tolerance = 4.0 * max(search.tolerance, round_off_of_both(contact, state))
         return lowest_pair(system, contact, search.contact, held, state, work)
     hold = held.points[search.contact]

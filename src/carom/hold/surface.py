@@ -12,7 +12,7 @@ import math
 
 from carom.contact.closed import place_seats, round_off_of_both
 from carom.contact.gap import round_off
-from carom.contact.pair_point import place_any
+from carom.contact.place import place_any
 from carom.jit import kernel
 from carom.motion.acceleration import STICK
 from carom.motion.contact_point import in_axes

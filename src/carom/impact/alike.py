@@ -30,7 +30,7 @@ def as_one(system, k, state, cluster, work):
     hit, point, seats = work.hit[0], work.point[0], cluster.seats
     c = seats[0].contact
     contact, core = system.contacts[c], hit.point
-    if contact.touches == 1:
+    if contact.touches != 0:
         if k > 1:
             return False
         copy_point(cluster.points[0][0], point)

@@ -41,21 +41,27 @@ def onto_surface(system, controls, c, state, work):
     velocity block is solved again with the position now fixed.
     """
     contact, point = system.contacts[c], work.hit[0].point
-    if contact.touches == 1:
+    if contact.touches != 0:
         return 0  # found within the tolerance of a located gap
     tie = controls.tie * contact.extent
     tolerance = max(controls.gap * contact.extent, round_off(contact, state))
     rho, _ = strike_point(contact, system.vertices, state, tie, point)
     if rho >= -(tie if controls.location == LOCATE else tolerance):
         return 0
-    before = potential_energy(system, state)
+    before = potential_energy(system, state, work.result[0].time)
     if return_map(system, contact, state, work, tie, tolerance) < 0:
         return RETURN_MAP_FAILED
     if system.joints.shape[0] > 0:
         project_velocity(system, state, work)
     strike_point(contact, system.vertices, state, tie, point)
     if controls.location == WORK:
-        restore_work(system, contact, state, before - potential_energy(system, state), work)
+        restore_work(
+            system,
+            contact,
+            state,
+            before - potential_energy(system, state, work.result[0].time),
+            work,
+        )
     return 0
 
 

@@ -63,6 +63,7 @@ def part_system(system, islands, i):
         islands.bodies[first[0, i] : first[0, i + 1]],
         system.gravity,
         system.joints,
+        system.relations,
         system.springs,
         system.loads,
         system.bushings,

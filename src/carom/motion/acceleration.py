@@ -20,9 +20,9 @@ from carom.motion.contact_point import (
     place,
     spread,
 )
+from carom.motion.elements import acceleration_bias, driven_power
 from carom.motion.forces import applied_wrenches
 from carom.motion.friction import slip_force, stick_force
-from carom.motion.joints import acceleration_bias
 from carom.motion.solve import solve
 
 OPEN, SLIP, STICK = range(3)
@@ -32,7 +32,7 @@ OPEN, SLIP, STICK = range(3)
 def _bias_joints(system, state, work):
     """Write the bias of the relative acceleration of each joint."""
     for j in range(system.joints.shape[0]):
-        acceleration_bias(system.joints[j], state, work.joint[j].bias)
+        acceleration_bias(system, j, state, work)
 
 
 @kernel
@@ -49,6 +49,7 @@ def acceleration_unit(system, state, held, work, stage):
     applied = applied_wrenches(system, state, True, work)
     bias_joints(system, state, work)
     solve(system, state, True, work)
+    applied += driven_power(system, state, work)
     for b in range(system.bodies.shape[0]):
         motion, rate = work.body[b].motion, stage[b].rate
         for k in range(6):

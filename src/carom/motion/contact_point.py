@@ -18,7 +18,7 @@ def place(contact, p, state, point):
     b, n, r = contact.body, contact.axes, contact.radius
     q, x, core, arm, axes = state[b].Q, state[b].x, point.core, point.arm_a, point.axes
     core[0], core[1], core[2] = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
-    point.a, point.b = b, -1
+    point.a, point.b, point.turns = b, -1, 0
     gap = -contact.offset
     for k in range(3):
         arm[k] = core[k] - r * n[0, k]
@@ -31,7 +31,7 @@ def place(contact, p, state, point):
 @kernel
 def copy_point(p, q):
     """Copy a point."""
-    q.a, q.b, q.gap = p.a, p.b, p.gap
+    q.a, q.b, q.gap, q.turns, q.length = p.a, p.b, p.gap, p.turns, p.length
     for k in range(3):
         q.arm_a[k], q.arm_b[k], q.core[k] = p.arm_a[k], p.arm_b[k], p.core[k]
         for i in range(3):
@@ -51,17 +51,30 @@ def in_axes(point, x, y, z):
 
 @kernel
 def turning_rows(point, x, y, z):
-    """Return the rows of a point of rolling or pivoting: relative angular velocity times a length."""
+    """Return the rows of a point of rolling or pivoting: relative angular velocity times a length.
+
+    Of a stop that ends a turn the relative angular velocity about its axis.
+    """
     n, t1, t2 = in_axes(point, x, y, z)
+    if point.turns == 3:
+        return n, 0.0, 0.0
     if point.turns == 1:
         return 0.0, point.length * t1, point.length * t2
     return 0.0, point.length * n, 0.0
 
 
 @kernel
+def own_rows(point, u):
+    """Return u, the normal component alone of a stop."""
+    if point.turns == 4:
+        return u[0], 0.0, 0.0
+    return u
+
+
+@kernel
 def contact_velocity(point, state):
     """Return u = G v, in contact axes."""
-    if point.turns > 0:
+    if 0 < point.turns < 4:
         w, z = state[point.a].w, (0.0, 0.0, 0.0)
         if point.b >= 0:
             z = (state[point.b].w[0], state[point.b].w[1], state[point.b].w[2])
@@ -69,7 +82,7 @@ def contact_velocity(point, state):
     r, s = point.arm_a, point.arm_b
     ux, uy, uz = point_velocity(state, point.a, r[0], r[1], r[2])
     vx, vy, vz = point_velocity(state, point.b, s[0], s[1], s[2])
-    return in_axes(point, ux - vx, uy - vy, uz - vz)
+    return own_rows(point, in_axes(point, ux - vx, uy - vy, uz - vz))
 
 
 @kernel
@@ -82,7 +95,7 @@ def motion_there(motion, r):
 @kernel
 def contact_motion(point, work):
     """Return G of the motions that the last solve wrote, in contact axes."""
-    if point.turns > 0:
+    if 0 < point.turns < 4:
         m, z = work.body[point.a].motion, (0.0, 0.0, 0.0)
         if point.b >= 0:
             o = work.body[point.b].motion
@@ -92,16 +105,16 @@ def contact_motion(point, work):
     if point.b >= 0:
         vx, vy, vz = motion_there(work.body[point.b].motion, point.arm_b)
         ux, uy, uz = ux - vx, uy - vy, uz - vz
-    return in_axes(point, ux, uy, uz)
+    return own_rows(point, in_axes(point, ux, uy, uz))
 
 
 @kernel
 def contact_acceleration(point, state, stage):
     """Return du/dt in contact axes: a + alpha x r + w x (w x core) (a ball around the core does not turn).
 
-    That is of a half-space, whose normal stays; of two bodies G times the accelerations alone.
+    That is of a half-space, whose normal stays; of two bodies and of stops G times the accelerations alone.
     """
-    if point.turns > 0:
+    if 0 < point.turns < 4:
         m, z = stage[point.a].rate, (0.0, 0.0, 0.0)
         if point.b >= 0:
             o = stage[point.b].rate
@@ -110,12 +123,12 @@ def contact_acceleration(point, state, stage):
     if point.b >= 0:
         ax, ay, az = motion_there(stage[point.a].rate, point.arm_a)
         bx, by, bz = motion_there(stage[point.b].rate, point.arm_b)
-        return in_axes(point, ax - bx, ay - by, az - bz)
+        return own_rows(point, in_axes(point, ax - bx, ay - by, az - bz))
     w, c = state[point.a].w, point.core
     cx, cy, cz = cross(w[0], w[1], w[2], c[0], c[1], c[2])
     cx, cy, cz = cross(w[0], w[1], w[2], cx, cy, cz)
     ux, uy, uz = motion_there(stage[point.a].rate, point.arm_a)
-    return in_axes(point, ux + cx, uy + cy, uz + cz)
+    return own_rows(point, in_axes(point, ux + cx, uy + cy, uz + cz))
 
 
 @kernel
@@ -146,7 +159,15 @@ def spread(system, point, state, ln, l1, l2, work):
 def add_impulse(point, ln, l1, l2, work):
     """Add G^T (ln, l1, l2) to the wrenches."""
     E, r, s = point.axes, point.arm_a, point.arm_b
-    if point.turns > 0:
+    if point.turns == 3:
+        for k in range(3):
+            work.body[point.a].wrench[3 + k] += ln * E[0, k]
+            if point.b >= 0:
+                work.body[point.b].wrench[3 + k] -= ln * E[0, k]
+        return
+    if point.turns == 4:
+        l1, l2 = 0.0, 0.0
+    elif point.turns > 0:
         i, j = (1, 2) if point.turns == 1 else (0, 2)
         f1, f2 = point.length * l1, point.length * l2 if point.turns == 1 else 0.0
         for k in range(3):
@@ -187,6 +208,10 @@ def effective_inverse_mass(system, point, state, work, W):
         for k in range(i):
             m = 0.5 * (W[i, k] + W[k, i])
             W[i, k], W[k, i] = m, m
+    if (
+        point.turns >= 3
+    ):  # a stop has no tangents; what they are given does not matter, without friction
+        W[1, 1], W[2, 2] = W[0, 0], W[0, 0]
 
 
 @kernel

@@ -103,14 +103,14 @@ def constrained_unit(A, weight, E, system, held, start, h, end, work):
         if part == 1:  # what the whole step gave is void
             forget_misses(work)
             applied, friction = 0.0, 0.0
-        first, last, dt = start, end, h
+        first, last, dt, t0 = start, end, h, work.result[0].start
         if part == 1:
             for b in range(start.shape[0]):
                 keep(start[b], work.middle[b])
             last, dt = work.middle, share * h
         elif part == 2:
-            first, dt = work.middle, (1.0 - share) * h
-        p, f, code, where = constrained_step(system, A, weight, E, held, first, dt, last, work)
+            first, dt, t0 = work.middle, (1.0 - share) * h, t0 + share * h
+        p, f, code, where = constrained_step(system, A, weight, E, held, first, t0, dt, last, work)
         applied, friction = applied + p, friction + f
         if code != 0 or (part == 0 and where == EVEN):
             break
@@ -163,8 +163,8 @@ def mark_held(system, held, work):
 
 
 @kernel
-def constrained_step(system, A, weight, E, held, start, h, end, work):
-    """Step the bodies that are joined, loaded or held; the others are in `end` already.
+def constrained_step(system, A, weight, E, held, start, t0, h, end, work):
+    """Step the bodies that are joined, loaded or held, from the time t0; the others are in `end` already.
 
     Returns work of loads, of friction, a status, and which stages left out more rows than others.
     """
@@ -174,6 +174,7 @@ def constrained_step(system, A, weight, E, held, start, h, end, work):
     least, most, at_first, at_last = 1 << 30, 0, 0, 0
     for s in range(stages):
         combine(A[s], s, h, start, work.stages, stage)
+        work.result[0].time = t0 + h * node(A[s], s)
         for b in range(stage.shape[0]):
             speed, attitude = work.stages[s, b].speed, work.stages[s, b].attitude
             for k in range(3):
@@ -187,6 +188,7 @@ def constrained_step(system, A, weight, E, held, start, h, end, work):
         at_first = at_last if s == 0 else at_first
         least, most = min(least, at_last), max(most, at_last)
     combine(weight, stages, h, start, work.stages, stage)
+    work.result[0].time = t0 + h
     bound_accelerations(work, stages)
     if E.shape[0] > 0:
         note_misses(system, E, h, work)
@@ -205,6 +207,15 @@ def constrained_step(system, A, weight, E, held, start, h, end, work):
     if most == least:
         return applied, friction, 0, EVEN
     return applied, friction, 0, FIRST if at_first > least else LAST if at_last > least else MIDDLE
+
+
+@kernel
+def node(weights, count):
+    """Return the place of a stage in the step, from 0 to 1."""
+    total = 0.0
+    for r in range(count):
+        total += weights[r]
+    return total
 
 
 @kernel

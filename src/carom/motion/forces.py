@@ -8,11 +8,12 @@ from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.jit import kernel
 from carom.motion.bushing import add_bushing, bushing_energy
 from carom.motion.joints import arm
+from carom.motion.more_forces import add_more_forces, more_energy, spring_energy, tension
 from carom.motion.wrench import add_force, point, point_velocity
 
 
 @kernel
-def add_spring(spring, state, work):
+def add_spring(system, spring, state, work):
     """Add the force of a spring with damper to both ends; return the power of the damper."""
     p, c = spring.parent, spring.child
     ax, ay, az, px, py, pz = point(state, p, spring.parent_anchor)
@@ -25,7 +26,7 @@ def add_spring(spring, state, work):
     sx, sy, sz = point_velocity(state, p, ax, ay, az)
     rate = dx * (ux - sx) + dy * (uy - sy) + dz * (uz - sz)
     drag = spring.damping * rate
-    f = spring.stiffness * (length - spring.rest_length) + drag
+    f = tension(system, spring, length) + drag
     add_force(work, c, bx, by, bz, -f * dx, -f * dy, -f * dz)
     add_force(work, p, ax, ay, az, f * dx, f * dy, f * dz)
     return -drag * rate
@@ -66,16 +67,16 @@ def applied_wrenches(system, state, gyroscopic, work):
             wrench[3], wrench[4], wrench[5] = rotate(q[0], q[1], q[2], q[3], tx, ty, tz)
     power = 0.0
     for i in range(system.springs.shape[0]):
-        power += add_spring(system.springs[i], state, work)
+        power += add_spring(system, system.springs[i], state, work)
     for i in range(system.loads.shape[0]):
         power += add_load(system.loads[i], state, work)
     for i in range(system.bushings.shape[0]):
         power += add_bushing(system.bushings[i], state, work)
-    return power
+    return power + add_more_forces(system, state, work)
 
 
 @kernel
-def potential_energy(system, state):
+def potential_energy(system, state, t):
     """Return the potential energy of gravity and springs [J]."""
     g, potential = system.gravity, 0.0
     for b in range(system.bodies.shape[0]):
@@ -86,8 +87,7 @@ def potential_energy(system, state):
         _, _, _, px, py, pz = point(state, s.parent, s.parent_anchor)
         _, _, _, qx, qy, qz = point(state, s.child, s.child_anchor)
         dx, dy, dz = qx - px, qy - py, qz - pz
-        stretch = math.sqrt(dx * dx + dy * dy + dz * dz) - s.rest_length
-        potential += 0.5 * s.stiffness * stretch * stretch
+        potential += spring_energy(system, s, math.sqrt(dx * dx + dy * dy + dz * dz))
     for i in range(system.bushings.shape[0]):
         potential += bushing_energy(system.bushings[i], state)
-    return potential
+    return potential + more_energy(system, state, t)

@@ -21,6 +21,8 @@ from carom.system.arrays import (
     DISTANCE,
     KNIFE_EDGE,
     RIGID,
+    ROLLING,
+    ROLLING_DISC,
     SCREW,
     SLIDING,
     TURNING,
@@ -48,10 +50,62 @@ def axis(state, b, frame, k):
 
 
 @kernel
+def child_arm(joint, state):
+    """Return the arm r_c of the child (3), world; of what rolls it reaches to the point on the plane.
+
+    With n the normal of the plane and a the axis of a disc: -r n of a sphere, -r e of a disc, e the unit vector
+    along n - (n.a) a.
+    """
+    if joint.kind not in ROLLING:
+        return arm(state, joint.child, joint.child_anchor)
+    nx, ny, nz = axis(state, joint.parent, joint.parent_frame, 0)
+    if joint.kind == ROLLING_DISC:
+        ax, ay, az = axis(state, joint.child, joint.child_frame, 1)
+        f = nx * ax + ny * ay + nz * az
+        nx, ny, nz = nx - f * ax, ny - f * ay, nz - f * az
+    s = -joint.length / math.sqrt(nx * nx + ny * ny + nz * nz)
+    return s * nx, s * ny, s * nz
+
+
+@kernel
+def rolling_bias(joint, state):
+    """Return what turns the arms of rolling add: w_p x r_p' - w_c x r_c' (3), as a linear bias.
+
+    r_c' = -r e', e' = (g' - (g'.e) e)/|g|, g = n - (n.a) a, n' = w_p x n, a' = w_c x a;
+    r_p' = v_c + r_c' - v_p.
+    """
+    c, p = joint.child, joint.parent
+    w, v = state[c].w, state[c].v
+    px, py, pz = 0.0, 0.0, 0.0
+    ux, uy, uz = v[0], v[1], v[2]
+    if p >= 0:
+        o = state[p].w
+        px, py, pz = o[0], o[1], o[2]
+        ux, uy, uz = ux - state[p].v[0], uy - state[p].v[1], uz - state[p].v[2]
+    nx, ny, nz = axis(state, p, joint.parent_frame, 0)
+    hx, hy, hz = cross(px, py, pz, nx, ny, nz)
+    if joint.kind == ROLLING_DISC:
+        ax, ay, az = axis(state, c, joint.child_frame, 1)
+        bx, by, bz = cross(w[0], w[1], w[2], ax, ay, az)
+        f = nx * ax + ny * ay + nz * az
+        g = hx * ax + hy * ay + hz * az + nx * bx + ny * by + nz * bz
+        nx, ny, nz = nx - f * ax, ny - f * ay, nz - f * az
+        hx, hy, hz = hx - g * ax - f * bx, hy - g * ay - f * by, hz - g * az - f * bz
+    s = 1.0 / math.sqrt(nx * nx + ny * ny + nz * nz)
+    nx, ny, nz = s * nx, s * ny, s * nz
+    f = hx * nx + hy * ny + hz * nz
+    s *= -joint.length
+    dx, dy, dz = s * (hx - f * nx), s * (hy - f * ny), s * (hz - f * nz)
+    tx, ty, tz = cross(w[0], w[1], w[2], dx, dy, dz)
+    sx, sy, sz = cross(px, py, pz, ux + dx, uy + dy, uz + dz)
+    return sx - tx, sy - ty, sz - tz
+
+
+@kernel
 def anchor_gap(joint, state):
     """Return the child's anchor minus the parent's anchor (3)."""
     c, p = joint.child, joint.parent
-    cx, cy, cz = arm(state, c, joint.child_anchor)
+    cx, cy, cz = child_arm(joint, state)
     px, py, pz = arm(state, p, joint.parent_anchor)
     if p >= 0:
         px, py, pz = px + state[p].x[0], py + state[p].x[1], pz + state[p].x[2]
@@ -65,9 +119,9 @@ def parent_arm(joint, state):
     Where the joint slides it reaches to the point of the parent that now lies at the child's anchor.
     """
     p = joint.parent
-    if joint.kind in SLIDING:
+    if joint.kind in SLIDING or joint.kind in ROLLING:
         c = joint.child
-        rx, ry, rz = arm(state, c, joint.child_anchor)
+        rx, ry, rz = child_arm(joint, state)
         rx, ry, rz = rx + state[c].x[0], ry + state[c].x[1], rz + state[c].x[2]
         if p >= 0:
             rx, ry, rz = rx - state[p].x[0], ry - state[p].x[1], rz - state[p].x[2]
@@ -79,7 +133,7 @@ def parent_arm(joint, state):
 def anchor_speed(joint, state):
     """Return the velocity of the child's anchor minus that of the parent's (3)."""
     c, p = joint.child, joint.parent
-    rx, ry, rz = arm(state, c, joint.child_anchor)
+    rx, ry, rz = child_arm(joint, state)
     ux, uy, uz = cross(state[c].w[0], state[c].w[1], state[c].w[2], rx, ry, rz)
     ux, uy, uz = ux + state[c].v[0], uy + state[c].v[1], uz + state[c].v[2]
     if p >= 0:
@@ -158,6 +212,10 @@ def position_error(joint, state, out):
             dx, dy, dz = dx - f * ax, dy - f * ay, dz - f * az
     elif kind == KNIFE_EDGE:
         dx, dy, dz = 0.0, 0.0, 0.0
+    elif kind in ROLLING:  # only the distance from the plane
+        ax, ay, az = axis(state, joint.parent, joint.parent_frame, 0)
+        f = ax * dx + ay * dy + az * dz
+        dx, dy, dz = f * ax, f * ay, f * az
     out[3], out[4], out[5] = dx, dy, dz
 
 
@@ -181,7 +239,11 @@ def acceleration_bias(joint, state, out):
     """
     c, p = joint.child, joint.parent
     kind = joint.kind
-    rx, ry, rz = arm(state, c, joint.child_anchor)
+    if kind in ROLLING:
+        out[0], out[1], out[2] = 0.0, 0.0, 0.0
+        out[3], out[4], out[5] = rolling_bias(joint, state)
+        return
+    rx, ry, rz = child_arm(joint, state)
     tx, ty, tz = cross(state[c].w[0], state[c].w[1], state[c].w[2], rx, ry, rz)
     sx, sy, sz = cross(state[c].w[0], state[c].w[1], state[c].w[2], tx, ty, tz)
     lx, ly, lz = -sx, -sy, -sz

@@ -10,6 +10,7 @@ import math
 from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.jit import kernel
 from carom.motion.acceleration import bias_joints
+from carom.motion.elements import driven_power
 from carom.motion.forces import applied_wrenches
 from carom.motion.project import project_velocity
 from carom.motion.solve import free_body, solve
@@ -19,7 +20,7 @@ MOST = 60  # substitutions
 
 @kernel
 def first_kick(system, start, h, work):
-    """Write P_h, with the reactions of this moment as a first guess, into `push`; return the power of loads.
+    """Write P_h, with the reactions of this moment as a first guess, into `push`; return the work done.
 
     M a is the applied forces, the reactions and -w x l, which turns l with the body and is no kick.
     """
@@ -33,7 +34,7 @@ def first_kick(system, start, h, work):
         for k in range(3):
             push[k], push[3 + k] = body.mass * start[b].v[k], l[k] + 0.5 * h * t[k]
         add_momentum(body, start[b].Q, 0.5 * h, work.body[b])
-    return power
+    return 0.5 * h * (power + driven_power(system, start, work))
 
 
 @kernel
@@ -56,12 +57,12 @@ def add_momentum(body, q, factor, memory):
 
 @kernel
 def second_kick(system, h, end, work):
-    """Write v_1 from the momenta of the middle; return the power of loads.
+    """Write v_1 from the momenta of the middle; return the work of loads and motors.
 
     Dampers make it an equation for v_1, solved by substitution (the adjoint of the first half: the step
     stays symmetric).
     """
-    power, change = 0.0, math.inf
+    power, driven, change = 0.0, 0.0, math.inf
     for k in range(MOST):
         if k == 0:
             set_velocities(system, 0.0, end, work)
@@ -71,7 +72,8 @@ def second_kick(system, h, end, work):
             break
         set_velocities(system, 0.5 * h, end, work)
         project_velocity(system, end, work)
-    return power
+        driven = driven_power(system, end, work)  # of an impulse: its work
+    return 0.5 * h * power + driven
 
 
 @kernel

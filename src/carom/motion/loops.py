@@ -13,7 +13,8 @@ from __future__ import annotations
 
 from carom.dispatch import by_solver
 from carom.jit import kernel
-from carom.motion.rows import build_rows, row_target, times_inverse_mass
+from carom.motion.elements import build_rows, row_target
+from carom.motion.rows import times_inverse_mass
 from carom.system.arrays import FreeSolver, LoopSolver, TreeSolver
 
 
@@ -25,11 +26,14 @@ def factor(system, state, augment, work):
     for k in range(block.shape[0]):
         clear(block[k])
     for t in range(solver.term.shape[0]):
-        i, j = solver.term[t, 1], solver.term[t, 3]
+        one, two = solver.sides[solver.term[t, 1]], solver.sides[solver.term[t, 2]]
         add_product(
-            block[solver.term[t, 0]], solver.rows[i].Y, solver.term[t, 2],
-            solver.rows[j].A, solver.term[t, 4], joints[i].rows, joints[j].rows,
-        )  # fmt: skip
+            block[solver.term[t, 0]],
+            one.Y,
+            two.A,
+            joints[one.element].rows,
+            joints[two.element].rows,
+        )
     count = joints.shape[0]
     for j in range(count):
         for r in range(joints[j].rows):
@@ -60,13 +64,13 @@ def clear(S):
 
 
 @kernel
-def add_product(S, Y, p, A, q, m, n):
-    """Add Y[p] A[q]^T, m rows of Y and n rows of A, six columns, to S."""
+def add_product(S, Y, A, m, n):
+    """Add Y A^T, m rows of Y and n rows of A, six columns, to S."""
     for i in range(m):
         for j in range(n):
             S[i, j] += (
-                Y[p, i, 0] * A[q, j, 0] + Y[p, i, 1] * A[q, j, 1] + Y[p, i, 2] * A[q, j, 2]
-                + Y[p, i, 3] * A[q, j, 3] + Y[p, i, 4] * A[q, j, 4] + Y[p, i, 5] * A[q, j, 5]
+                Y[i, 0] * A[j, 0] + Y[i, 1] * A[j, 1] + Y[i, 2] * A[j, 2]
+                + Y[i, 3] * A[j, 3] + Y[i, 4] * A[j, 4] + Y[i, 5] * A[j, 5]
             )  # fmt: skip
 
 
@@ -161,33 +165,26 @@ def free_motion(system, work):
 @kernel
 def subtract_rows(system, work):
     """Rhs <- rhs - A motion."""
-    for j in range(system.joints.shape[0]):
-        joint, row = system.joints[j], system.solver.rows[j]
-        for side in range(2):
-            b = joint.child if side == 0 else joint.parent
-            if b < 0:
-                continue
-            A, motion, rhs = row.A, work.body[b].motion, row.rhs
-            for r in range(joint.rows):
-                s = 0.0
-                for k in range(6):
-                    s += A[side, r, k] * motion[k]
-                rhs[r] -= s
+    for i in range(system.solver.sides.shape[0]):
+        side = system.solver.sides[i]
+        A, motion, rhs = side.A, work.body[side.body].motion, system.solver.rows[side.element].rhs
+        for r in range(system.joints[side.element].rows):
+            s = 0.0
+            for k in range(6):
+                s += A[r, k] * motion[k]
+            rhs[r] -= s
 
 
 @kernel
 def add_reactions(system, work):
     """Motion <- motion + M^-1 A^T multipliers, where rhs holds the multipliers."""
-    for j in range(system.joints.shape[0]):
-        joint, row = system.joints[j], system.solver.rows[j]
-        for side in range(2):
-            b = joint.child if side == 0 else joint.parent
-            if b < 0:
-                continue
-            Y, motion, multiplier = row.Y, work.body[b].motion, row.rhs
-            for r in range(joint.rows):
-                for k in range(6):
-                    motion[k] += Y[side, r, k] * multiplier[r]
+    for i in range(system.solver.sides.shape[0]):
+        side = system.solver.sides[i]
+        Y, motion = side.Y, work.body[side.body].motion
+        multiplier = system.solver.rows[side.element].rhs
+        for r in range(system.joints[side.element].rows):
+            for k in range(6):
+                motion[k] += Y[r, k] * multiplier[r]
 
 
 @kernel
@@ -197,7 +194,7 @@ def solve_factored(system, state, biased, work):
     for j in range(system.joints.shape[0]):
         rhs = system.solver.rows[j].rhs
         if biased:
-            row_target(system.joints[j], state, work.joint[j].bias, rhs)
+            row_target(system, j, state, work.joint[j].bias, rhs)
         else:
             for r in range(6):
                 rhs[r] = 0.0

@@ -31,7 +31,7 @@ from carom.geometry import quaternion
 from carom.motion.mounts import mount_wrench
 from carom.system import arrays as kinds
 from carom.system import records as r
-from carom.system.arrays import DISTANCE, KNIFE_EDGE, System
+from carom.system.arrays import DISTANCE, KNIFE_EDGE, Relations, System
 from carom.system.compile import compile_scene
 
 
@@ -82,10 +82,15 @@ def second_order_multipliers(solution) -> Multipliers:
     Raises
     ------
     ValueError
-        If the scene has no joints, or a contact is held.
+        If the scene has no joints, or constraints beyond them or forces of the user's, or a contact is held.
     """
     if not solution.scene.joints:
         raise ValueError("solution must be of a scene with joints, got none")
+    if solution.scene.constraints or isinstance(solution._run.compiled.system.relations, Relations):
+        raise ValueError(
+            "solution must be without constraints beyond joints, and without forces along coordinates, by "
+            "curves or functions, got some"
+        )
     if np.any(solution.contact_mode != 0):
         raise ValueError("solution must be without held contacts, got some")
     run = solution._run
@@ -184,6 +189,14 @@ def _directions(joint, x, Q, v, w):
     turning = zero
     bias = np.cross(wp, np.cross(wp, rp)) - np.cross(wc, np.cross(wc, rc))
     frame = [to_world(p, joint.parent_frame[:, k]) for k in range(3)]
+    if kind in kinds.ROLLING:
+        a = to_world(c, joint.child_frame[:, 1]) if kind == kinds.ROLLING_DISC else zero
+        rc, turned = _rolling_arm(
+            joint.length, frame[0], np.cross(wp, frame[0]), a, np.cross(wc, a)
+        )
+        rp = x[:, c] + rc - xp
+        bias = np.cross(wp, v[:, c] + turned - vp) - np.cross(wc, turned)
+        return [zero] * 3, [zero + e for e in np.eye(3)], (rc, rp), (zero, bias)
     if kind == DISTANCE:
         length = np.linalg.norm(gap, axis=1, keepdims=True)
         e = gap / length
@@ -212,6 +225,19 @@ def _directions(joint, x, Q, v, w):
     angular = [zero] * len(along) + [-joint.length * a for a in screw] + about
     linear = [*along, *screw] + [zero] * len(about)
     return angular, linear, (rc, rp), (turning, bias)
+
+
+def _rolling_arm(radius, n, n_rate, a, a_rate):
+    """Return the arm (T, 3) of what rolls and its rate: `carom.motion.joints.rolling_bias`, in columns."""
+
+    def dot(p, q):
+        return np.sum(p * q, axis=1, keepdims=True)
+
+    g = n - dot(n, a) * a
+    rate = n_rate - (dot(n_rate, a) + dot(n, a_rate)) * a - dot(n, a) * a_rate
+    size = np.linalg.norm(g, axis=1, keepdims=True)
+    e = g / size
+    return -radius * e, -radius * (rate - dot(rate, e) * e) / size
 
 
 def applied_force(system: System, x, Q, v, w) -> np.ndarray:

@@ -11,7 +11,7 @@ from carom.dispatch import only_with_joints
 from carom.geometry.rotation import exp, multiply, normalize
 from carom.jit import entry, kernel
 from carom.motion.contact_point import clear_wrenches
-from carom.motion.joints import position_error, velocity_error
+from carom.motion.elements import position_error, velocity_error
 from carom.motion.solve import solve
 
 
@@ -32,7 +32,7 @@ def largest_position_error(system, state, work):
     largest = 0.0
     for j in range(system.joints.shape[0]):
         bias, size = work.joint[j].bias, system.bodies[system.joints[j].child].extent
-        position_error(system.joints[j], state, bias)
+        position_error(system, j, state, work)
         for k in range(6):
             e = abs(bias[k]) / (1.0 if k < 3 else size)
             if not (e <= largest):
@@ -61,7 +61,7 @@ def _project_velocity(system, state, work):
     """Take from the velocities what the joints forbid."""
     for j in range(system.joints.shape[0]):
         bias = work.joint[j].bias
-        velocity_error(system.joints[j], state, bias)
+        velocity_error(system, j, state, work)
         for k in range(6):
             bias[k] = -bias[k]
     clear_wrenches(work)

@@ -13,8 +13,8 @@ what turns a body is in the map, no gyroscopic torque is applied. (Mathematics p
 
 Lam by repeated solves in q_0: with no wrench and the bias -phi(q_1)/h the constrained solve gives the motion
 dV with M dV = A(q_0)^T dLam and A dV = -phi/h, so P_h gains M dV. Each turn gains a factor of the order of
-the angle turned in the step, down to round-off. A blade (nonholonomic) has no phi: its anchor goes from q_0
-to q_1 at right angles to the mean of its two lateral directions. Near a singular position the rows of
+the angle turned in the step, down to round-off. Rows without phi (nonholonomic)
+hold in the mean of both ends for the way from q_0 to q_1. Near a singular position the rows of
 q_0 do not reach those of q_1: where the turns do not converge, or rows are left out at one end and not
 at the other, the explicit method takes the step.
 """
@@ -26,18 +26,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom.dispatch import by_address, by_solver, only_with_joints
-from carom.geometry.rotation import rotate, rotate_back
+from carom.dispatch import by_address, by_solver, only_with_joints, only_with_relations
 from carom.jit import inlined, kernel, unit
 from carom.motion.contact_point import clear_wrenches
+from carom.motion.elements import driven_power
 from carom.motion.explicit import constrained, fly, keep
-from carom.motion.joints import anchor_gap, axis
 from carom.motion.kick import add_momentum, first_kick, second_kick
 from carom.motion.loops import dropped_rows, solve_factored
-from carom.motion.project import largest_position_error
-from carom.motion.solve import solve
+from carom.motion.move_error import error_of_move
+from carom.motion.solve import joint_wrench, solve
 from carom.motion.turn import turn_by_momentum
-from carom.system.arrays import KNIFE_EDGE, SLIDING, FreeSolver, LoopSolver, TreeSolver
+from carom.system.arrays import RELATION, FreeSolver, LoopSolver, TreeSolver
 
 NO_CONVERGENCE = 1
 DONE, STALLED, TOO_FAR = range(3)  # how a part of a step ended
@@ -95,15 +94,15 @@ def rattle_step(method, system, held, start, h, end, work):
 @unit
 def rattle_unit(parts, system, start, h, end, work):
     """Make the parts of a step, one after the other."""
-    applied, code, result = 0.0, DONE, work.result[0]
+    applied, code, result, t = 0.0, DONE, work.result[0], work.result[0].start
     for b in range(start.shape[0]):
         bound = work.body[b].bound
         keep(start[b], work.middle[b])
         if system.bodies[b].ballistic == 0:
             bound[0], bound[1], bound[2] = 0.0, 0.0, 0.0
     for s in range(parts.size):
-        p, code = one_part(system, work.middle, parts[s] * h, end, work)
-        applied += p
+        p, code = one_part(system, work.middle, t, parts[s] * h, end, work)
+        applied, t = applied + p, t + parts[s] * h
         if code != DONE:
             break
         for b in range(start.shape[0]):
@@ -132,25 +131,30 @@ def bound_changes(start, end, h, bound):
 
 
 @kernel
-def one_part(system, start, h, end, work):
-    """Make one step of order 2; return the work of loads and how it ended."""
-    before = first_kick(system, start, h, work)
+def one_part(system, start, t, h, end, work):
+    """Make one step of order 2 from the time t; return the work of loads and motors, and how it ended."""
+    result = work.result[0]
+    result.time = t
+    total = first_kick(system, start, h, work)
     lost = dropped_rows(system)
     least, last, fine = math.inf, math.inf, round_off(system, start)
     for k in range(MOST):
         if not move_all(system, start, h, end, work):
             return 0.0, TOO_FAR if k == 0 else STALLED
-        error = error_of_move(system, start, end, work)
+        error = error_of_move(system, start, t, h, end, work)
         if error <= 1e-15 or (error <= 100.0 * fine and not error < 0.5 * last):
             break
         if not error < 1e3 * least or k == MOST - 1:
             return 0.0, STALLED
         least, last = min(least, error), error
+        result.time = t
         correct(system, start, h, work)
-    after = second_kick(system, h, end, work)
+        total += driven_power(system, start, work)  # of an impulse: its work
+    result.time = t + h
+    total += second_kick(system, h, end, work)
     if dropped_rows(system) != lost:
         return 0.0, STALLED
-    return 0.5 * h * (before + after), DONE
+    return total, DONE
 
 
 @kernel
@@ -177,45 +181,6 @@ def move_all(system, start, h, end, work):
     return True
 
 
-@kernel
-def _error_of_move(system, start, end, work):
-    """Bias all joints by minus their error at the end, in axes of the start; return the largest.
-
-    Directions of most joints turn with the parent, so errors are turned back with it.
-    """
-    error = largest_position_error(system, end, work)
-    for j in range(system.joints.shape[0]):
-        joint, bias = system.joints[j], work.joint[j].bias
-        if joint.kind == KNIFE_EDGE:
-            error = max(
-                error, blade_error(joint, start, end, bias) / system.bodies[joint.child].extent
-            )
-        elif joint.parent >= 0:
-            turn_back(start[joint.parent].Q, end[joint.parent].Q, bias[:3])
-            if joint.kind in SLIDING:
-                turn_back(start[joint.parent].Q, end[joint.parent].Q, bias[3:])
-    return error
-
-
-@kernel
-def turn_back(p, q, a):
-    """Turn the vector a with the body from attitude q to attitude p."""
-    bx, by, bz = rotate_back(q[0], q[1], q[2], q[3], a[0], a[1], a[2])
-    a[0], a[1], a[2] = rotate(p[0], p[1], p[2], p[3], bx, by, bz)
-
-
-@kernel
-def blade_error(joint, start, end, bias):
-    """Bias a blade by minus the sideways part of its way, against the mean of both directions."""
-    x0, y0, z0 = anchor_gap(joint, start)
-    x1, y1, z1 = anchor_gap(joint, end)
-    ex, ey, ez = axis(start, joint.child, joint.child_frame, 1)
-    fx, fy, fz = axis(end, joint.child, joint.child_frame, 1)
-    s = 0.5 * ((ex + fx) * (x1 - x0) + (ey + fy) * (y1 - y0) + (ez + fz) * (z1 - z0))
-    bias[3], bias[4], bias[5] = -s * ex, -s * ey, -s * ez
-    return abs(s)
-
-
 @inlined
 def _solve(system, state, work):
     """Solve with biased joints."""
@@ -226,6 +191,23 @@ def _solve(system, state, work):
 def _solve_factored(system, state, work):
     """Do the same with the factor that is there."""
     solve_factored(system, state, True, work)
+    keep_multipliers(system, state, work)
+
+
+@kernel
+def _keep_multipliers(system, state, work):
+    """Keep the multipliers of what is no joint: what is prescribed does work."""
+    for j in range(system.joints.shape[0]):
+        if system.joints[j].kind >= RELATION:
+            joint_wrench(system.joints[j], state, system.solver.rows[j].rhs, work.joint[j].reaction)
+
+
+@kernel
+def _none_kept(system, state, work):
+    """Joints do none."""
+
+
+keep_multipliers = only_with_relations(_keep_multipliers, _none_kept)
 
 
 #: solve_again(system, state, work): solve with biased joints in the position of the last solve
@@ -246,15 +228,8 @@ def _correct(system, start, h, work):
 
 
 @kernel
-def _no_error(system, start, end, work):
-    """Without joints there is no error of position."""
-    return 0.0
-
-
-@kernel
 def _nothing(system, start, h, work):
     """Nothing is to be corrected."""
 
 
-error_of_move = only_with_joints(_error_of_move, _no_error)
 correct = only_with_joints(_correct, _nothing)

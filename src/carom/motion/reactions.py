@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from carom.dispatch import by_solver
 from carom.jit import entry, kernel
+from carom.motion.elements import (
+    acceleration_bias,
+    build_rows,
+    position_error,
+    prescribed_speeds,
+    row_target,
+    velocity_error,
+)
 from carom.motion.forces import applied_wrenches
-from carom.motion.joints import acceleration_bias, position_error, velocity_error
 from carom.motion.loops import add_reactions, factor, free_motion, substitute, subtract_rows
-from carom.motion.rows import row_target
 from carom.motion.solve import joint_wrench, solve
 from carom.system.arrays import FreeSolver, LoopSolver, TreeSolver
 
@@ -34,7 +42,7 @@ def least_norm(system, augment, state, work):
         add_reactions(system, work)
         for j in range(system.joints.shape[0]):
             rhs = system.solver.rows[j].rhs
-            row_target(system.joints[j], state, work.joint[j].bias, rhs)
+            row_target(system, j, state, work.joint[j].bias, rhs)
         subtract_rows(system, work)
         substitute(system)
         for j in range(system.joints.shape[0]):
@@ -72,17 +80,17 @@ def add_touch(touch, work):
 
 
 @entry
-def reactions(system, augment, states, touch, work, out):
+def reactions(system, augment, times, states, touch, work, out):
     """Write the wrench (T, J, 6) of each joint on its child at saved states."""
     h = 0
     for k in range(states.shape[0]):
-        state = states[k]
+        state, work.result[0].time = states[k], times[k]
         applied_wrenches(system, state, True, work)
         while h < touch.shape[0] and touch[h].saved == k:
             add_touch(touch[h], work)
             h += 1
         for j in range(system.joints.shape[0]):
-            acceleration_bias(system.joints[j], state, work.joint[j].bias)
+            acceleration_bias(system, j, state, work)
         solve(system, state, True, work)
         share(system, augment, state, work)
         for j in range(system.joints.shape[0]):
@@ -91,26 +99,49 @@ def reactions(system, augment, states, touch, work, out):
 
 
 @entry
-def row_errors(system, states, work, out):
+def row_errors(system, times, states, work, out):
     """Write the largest error of position and of velocity over all rows, (T, 2)."""
     for k in range(states.shape[0]):
         position, velocity = 0.0, 0.0
+        work.result[0].time = times[k]
         for j in range(system.joints.shape[0]):
             joint, record = system.joints[j], work.joint[j]
-            position_error(joint, states[k], record.bias)
-            row_target(joint, states[k], record.bias, record.target)
+            position_error(system, j, states[k], work)
+            row_target(system, j, states[k], record.bias, record.target)
             for r in range(joint.rows):
                 position = max(position, abs(record.target[r]))
-            velocity_error(joint, states[k], record.bias)
-            row_target(joint, states[k], record.bias, record.target)
+            velocity_error(system, j, states[k], work)
+            row_target(system, j, states[k], record.bias, record.target)
             for r in range(joint.rows):
                 velocity = max(velocity, abs(record.target[r]))
         out[k, 0], out[k, 1] = position, velocity
 
 
 @entry
-def velocity_rows(system, state, work, out):
-    """Write the velocity of each row of each joint, (J, 6)."""
+def start_errors(system, state, work, position, velocity):
+    """Write the errors of position and velocity of each row of each element, (J, 6) each."""
     for j in range(system.joints.shape[0]):
-        velocity_error(system.joints[j], state, work.joint[j].bias)
-        row_target(system.joints[j], state, work.joint[j].bias, out[j])
+        position_error(system, j, state, work)
+        row_target(system, j, state, work.joint[j].bias, position[j])
+        velocity_error(system, j, state, work)
+        row_target(system, j, state, work.joint[j].bias, velocity[j])
+
+
+@entry
+def write_speeds(system, state, work, out):
+    """Write the speeds that each element prescribes, (J, 6)."""
+    for j in range(system.joints.shape[0]):
+        prescribed_speeds(system, j, state, work, out[j])
+
+
+def start_speeds(system, state, work) -> np.ndarray:
+    """Return the speeds that the elements prescribe, (J, 6)."""
+    out = np.zeros((len(system.joints), 6))
+    write_speeds(system, state, work, out)
+    return out
+
+
+@entry
+def write_rows(system, state, work):
+    """Write the rows of all elements into the solver's sides."""
+    build_rows(system, state, work)

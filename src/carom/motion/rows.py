@@ -10,7 +10,7 @@ import math
 
 from carom.geometry.rotation import cross, matrix, spin_tensor
 from carom.jit import kernel
-from carom.motion.joints import anchor_gap, arm, axis, parent_arm
+from carom.motion.joints import anchor_gap, axis, child_arm, parent_arm
 from carom.system.arrays import (
     ALONG,
     DISTANCE,
@@ -93,41 +93,36 @@ def times_inverse_mass(mass, i, f0, f1, f2, t0, t1, t2):
 
 
 @kernel
-def build_rows(system, state, work):
-    """Write A and A M^-1 of all joints into the solver's arrays."""
-    bodies = system.bodies
-    inverse_inertias(system, state, work)
-    for j in range(system.joints.shape[0]):
-        joint, row = system.joints[j], system.solver.rows[j]
-        c, p = joint.child, joint.parent
-        cx, cy, cz = arm(state, c, joint.child_anchor)
-        px, py, pz = parent_arm(joint, state)
-        for r in range(joint.rows):
-            ax, ay, az, lx, ly, lz = direction(joint, r, state)
-            tx, ty, tz = cross(cx, cy, cz, lx, ly, lz)
-            inverse = work.body[c].inverse
-            write_row(row, bodies[c].mass, inverse, 0, r, lx, ly, lz, tx + ax, ty + ay, tz + az)
-            if p >= 0:
-                tx, ty, tz = cross(px, py, pz, lx, ly, lz)
-                inverse = work.body[p].inverse
-                write_row(
-                    row, bodies[p].mass, inverse, 1, r, -lx, -ly, -lz, -tx - ax, -ty - ay, -tz - az
-                )
+def joint_rows(system, j, state, work):
+    """Write A and A M^-1 of a joint into the solver's arrays."""
+    bodies, joint, first = system.bodies, system.joints[j], system.solver.rows[j].first
+    c, p = joint.child, joint.parent
+    cx, cy, cz = child_arm(joint, state)
+    px, py, pz = parent_arm(joint, state)
+    for r in range(joint.rows):
+        ax, ay, az, lx, ly, lz = direction(joint, r, state)
+        tx, ty, tz = cross(cx, cy, cz, lx, ly, lz)
+        inverse, side = work.body[c].inverse, system.solver.sides[first]
+        write_row(side, bodies[c].mass, inverse, r, lx, ly, lz, tx + ax, ty + ay, tz + az)
+        if p >= 0:
+            tx, ty, tz = cross(px, py, pz, lx, ly, lz)
+            inverse, side = work.body[p].inverse, system.solver.sides[first + 1]
+            write_row(side, bodies[p].mass, inverse, r, -lx, -ly, -lz, -tx - ax, -ty - ay, -tz - az)
 
 
 @kernel
-def write_row(row, mass, inverse, side, r, f0, f1, f2, t0, t1, t2):
+def write_row(side, mass, inverse, r, f0, f1, f2, t0, t1, t2):
     """Store one row for one body, and the row times M^-1."""
-    A, Y = row.A, row.Y
-    A[side, r, 0], A[side, r, 1], A[side, r, 2] = f0, f1, f2
-    A[side, r, 3], A[side, r, 4], A[side, r, 5] = t0, t1, t2
+    A, Y = side.A, side.Y
+    A[r, 0], A[r, 1], A[r, 2] = f0, f1, f2
+    A[r, 3], A[r, 4], A[r, 5] = t0, t1, t2
     y = times_inverse_mass(mass, inverse, f0, f1, f2, t0, t1, t2)
     for k in range(6):
-        Y[side, r, k] = y[k]
+        Y[r, k] = y[k]
 
 
 @kernel
-def row_target(joint, state, relative, out):
+def joint_target(joint, state, relative, out):
     """Write out[r] = t_r . relative (angular, linear): what each row says of a relative motion."""
     for r in range(joint.rows):
         d = direction(joint, r, state)

@@ -56,6 +56,9 @@ def inverse_masses(system, k, points, state, work, W):
         for j in range(i):
             m = 0.5 * (W[i, j] + W[j, i])
             W[i, j], W[j, i] = m, m
+    for i in range(k):
+        if points[i].turns >= 3:  # without tangents: what these are given does not matter
+            W[3 * i + 1, 3 * i + 1] = W[3 * i + 2, 3 * i + 2] = W[3 * i, 3 * i]
 
 
 @kernel

@@ -8,7 +8,7 @@ from carom.jit import address, inlined, kernel, unit
 from carom.motion.loops import factor, solve_factored
 from carom.motion.rows import direction
 from carom.motion.tree import solve_tree
-from carom.system.arrays import FreeSolver, LoopSolver, TreeSolver
+from carom.system.arrays import RELATION, FreeSolver, LoopSolver, TreeSolver
 
 
 @unit
@@ -40,9 +40,14 @@ def solve_loops(system, state, biased, work):
 
 @kernel
 def joint_wrench(joint, state, multiplier, reaction):
-    """Write the wrench on the child at its anchor: sum of multiplier times direction."""
+    """Write the wrench on the child at its anchor: sum of multiplier times direction.
+
+    Of what is no joint, the multipliers themselves.
+    """
     for k in range(6):
-        reaction[k] = 0.0
+        reaction[k] = multiplier[k] if joint.kind >= RELATION and k < joint.rows else 0.0
+    if joint.kind >= RELATION:
+        return
     for r in range(joint.rows):
         d = direction(joint, r, state)
         for k in range(3):

@@ -33,16 +33,23 @@ import numpy as np
 from carom.dispatch import by_solver
 from carom.geometry.rotation import exp, multiply, normalize, rotate, rotate_back
 from carom.jit import kernel
+from carom.motion.elements import (
+    position_error,
+    prescribed_speeds,
+    push_other,
+    row_target,
+    velocity_error,
+)
 from carom.motion.explicit import constrained, fly, keep, mark_held
 from carom.motion.forces import applied_wrenches
 from carom.motion.free import invariants
-from carom.motion.joints import arm, parent_arm, position_error, velocity_error
+from carom.motion.joints import child_arm, parent_arm
 from carom.motion.loops import factor, substitute, subtract_rows
 from carom.motion.project import project_position
-from carom.motion.rows import direction, row_target
+from carom.motion.rows import direction
 from carom.motion.solve import free_body
 from carom.motion.wrench import add_force
-from carom.system.arrays import RESTS, FreeSolver, LoopSolver
+from carom.system.arrays import RELATION, RESTS, FreeSolver, LoopSolver
 
 NO_CONVERGENCE = 1
 
@@ -77,16 +84,17 @@ def three_field_step(method, system, held, start, h, end, work):
     change, applied = math.inf, 0.0
     for _ in range(method.most):
         middle_of_arc(start, h, end, work.middle)
+        work.result[0].time = work.result[0].start + 0.5 * h
         applied = h * applied_wrenches(system, work.middle, False, work)
         momenta(system, start, h, work)
-        previous = change
+        previous, work.result[0].time = change, work.result[0].start + h
         change = velocity_block(system, method, h, end, work)
         change = max(change, position_block(system, method, start, h, end, work))
         if change <= method.tolerance or (
             change <= 1e6 * method.tolerance and change >= 0.5 * previous
         ):
             leave_for_later(system, start, h, end, work)
-            return applied, 0.0, 0
+            return applied + driven_work(system, start, h, end, work), 0.0, 0
     return applied, 0.0, NO_CONVERGENCE
 
 
@@ -160,14 +168,18 @@ def momenta(system, start, h, work):
             speed = max(speed, max(abs(wrench[k]) / body.mass, spin))
         bound[0] = speed
     for j in range(system.joints.shape[0]):
-        add_row_impulses(system.joints[j], work.middle, work.joint[j].multiplier, work)
+        add_row_impulses(system, j, work.middle, work.joint[j].multiplier, work)
 
 
 @kernel
-def add_row_impulses(joint, state, multiplier, work):
-    """Add A^T multiplier of a joint to the wrenches, rows taken at `state`."""
+def add_row_impulses(system, j, state, multiplier, work):
+    """Add A^T multiplier of an element to the wrenches, rows taken at `state`."""
+    joint = system.joints[j]
     c, p = joint.child, joint.parent
-    cx, cy, cz = arm(state, c, joint.child_anchor)
+    if joint.kind >= RELATION:
+        push_other(system, j, state, multiplier, work)
+        return
+    cx, cy, cz = child_arm(joint, state)
     px, py, pz = parent_arm(joint, state)
     for r in range(joint.rows):
         d = direction(joint, r, state)
@@ -211,18 +223,31 @@ def velocity_block_loops(system, method, h, end, work):
     change = set_velocities(system, end, work)
     for j in range(system.joints.shape[0]):
         joint, rhs = system.joints[j], system.solver.rows[j].rhs
-        for r in range(joint.rows):
-            rhs[r] = 0.0
+        prescribed_speeds(system, j, end, work, rhs)
         if method.ode == 1:
-            wanted_rate(joint, method, h, end, work.joint[j], rhs)
+            wanted_rate(system, j, method, h, end, work, rhs)
     subtract_rows(system, work)
     substitute(system)
     for j in range(system.joints.shape[0]):
         joint, rhs = system.joints[j], system.solver.rows[j].rhs
         for r in range(joint.rows):
             work.joint[j].multiplier[r] += rhs[r]
-        add_row_impulses(joint, work.middle, rhs, work)
+        add_row_impulses(system, j, work.middle, rhs, work)
     return max(change, set_velocities(system, end, work))
+
+
+@kernel
+def driven_work(system, start, h, end, work):
+    """Return the work of what is prescribed: impulse of each row times its mean speed."""
+    total, result = 0.0, work.result[0]
+    for j in range(system.joints.shape[0]):
+        record = work.joint[j]
+        for side in range(2):
+            result.time = result.start + (h if side == 1 else 0.0)
+            prescribed_speeds(system, j, end if side == 1 else start, work, record.reaction)
+            for r in range(system.joints[j].rows):
+                total += 0.5 * record.multiplier[r] * record.reaction[r]
+    return total
 
 
 velocity_block = by_solver({FreeSolver: velocity_block_free, LoopSolver: velocity_block_loops})
@@ -233,18 +258,20 @@ def start_rates(system, start, work):
     """Keep phi' of all rows at the start of the step."""
     for j in range(system.joints.shape[0]):
         record = work.joint[j]
-        velocity_error(system.joints[j], start, record.bias)
-        row_target(system.joints[j], start, record.bias, record.target)
+        velocity_error(system, j, start, work)
+        row_target(system, j, start, record.bias, record.target)
 
 
 @kernel
-def wanted_rate(joint, method, h, end, record, rhs):
-    """Write r = (phi'_0 - (beta^2/h) phi)/(1 + 2 zeta beta) of the rows of a joint."""
-    position_error(joint, end, record.bias)
-    row_target(joint, end, record.bias, rhs)
+def wanted_rate(system, j, method, h, end, work, rhs):
+    """Add r = (phi'_0 - (beta^2/h) phi)/(1 + 2 zeta beta) of the rows of an element to rhs."""
+    record = work.joint[j]
+    position_error(system, j, end, work)
+    row_target(system, j, end, record.bias, record.reaction)
     divisor = 1.0 + 2.0 * method.zeta * method.beta
-    for r in range(joint.rows):
-        rhs[r] = (record.target[r] - method.beta * method.beta / h * rhs[r]) / divisor
+    first, phi = record.target, record.reaction
+    for r in range(system.joints[j].rows):
+        rhs[r] += (first[r] - method.beta * method.beta / h * phi[r]) / divisor
 
 
 @kernel

@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from carom.geometry.rotation import cross, matrix, spin_tensor
 from carom.jit import kernel, unit
-from carom.motion.joints import arm, axis, parent_arm
+from carom.motion.joints import axis, child_arm, parent_arm
 from carom.system.arrays import ALONG, BALL, SCREW, TURNING, UNIVERSAL, WITHIN
 
 FIRST = 39  # start of the freedoms in a row of scratch
@@ -201,7 +201,7 @@ def solve_tree(system, state, biased, work):
         if j < 0:
             continue
         joint = joints[j]
-        rx, ry, rz = arm(state, b, joint.child_anchor)
+        rx, ry, rz = child_arm(joint, state)
         row[27], row[28], row[29] = rx, ry, rz
         px, py, pz = parent_arm(joint, state)
         row[30], row[31], row[32] = px - rx, py - ry, pz - rz

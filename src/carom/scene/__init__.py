@@ -1,7 +1,8 @@
 """What the user states: shapes, bodies, contacts, joints, forces. NumPy only, no motion."""
 
-from carom.scene import forces, joints
+from carom.scene import constraints, forces, joints
 from carom.scene.bodies import GROUND, Body, Ground, HalfSpace
+from carom.scene.constraints import Constraint
 from carom.scene.contacts import Contact
 from carom.scene.forces import AppliedForce
 from carom.scene.joints import Joint
@@ -27,6 +28,7 @@ __all__ = [
     "Box",
     "Capsule",
     "Compound",
+    "Constraint",
     "Contact",
     "ContactLaw",
     "Convex",
@@ -41,6 +43,7 @@ __all__ = [
     "Scene",
     "Shape",
     "Sphere",
+    "constraints",
     "forces",
     "joints",
 ]

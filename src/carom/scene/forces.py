@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from carom import check
 from carom.scene.bodies import Body, Ground
+from carom.scene.more_forces import CurveSpring, JointForce, JointSpring, UserForce
 from carom.scene.values import keep, optional_point, point
 
 
@@ -164,8 +165,10 @@ def _along_across(name: str, value: ArrayLike, unit: str) -> np.ndarray:
     return np.array([pair[0], pair[1], pair[1]])
 
 
-ForceDefinition = Spring | Torque | Force | Bushing
-FORCES = (Spring, Torque, Force, Bushing)
+ForceDefinition = (
+    Spring | Torque | Force | Bushing | JointSpring | JointForce | CurveSpring | UserForce
+)
+FORCES = (Spring, Torque, Force, Bushing, JointSpring, JointForce, CurveSpring, UserForce)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -177,7 +180,7 @@ class AppliedForce:
     index : int
         Place in `Scene.forces`.
     name : str
-    definition : Spring, Torque, Force or Bushing
+    definition : Spring, Torque, Force, ... (one of `carom.forces`)
     parent : Body or carom.GROUND
     child : Body
     """
@@ -196,6 +199,13 @@ class AppliedForce:
     def __repr__(self) -> str:
         pair = f"{self.parent.name!r} -> {self.child.name!r}"
         return f"AppliedForce({self.name!r}, {self.kind}, {pair})"
+
+
+def force_on(definition) -> tuple | None:
+    """Return the joint or the bodies that a definition names itself; None if it names none."""
+    if isinstance(definition, (JointSpring, JointForce)):
+        return (definition.joint,)
+    return definition.bodies if isinstance(definition, UserForce) else None
 
 
 def make_force(index, name, definition, parent, child) -> AppliedForce:

@@ -225,13 +225,76 @@ class KnifeEdge:
         keep(self, lateral=unit_vector("lateral", across))
 
 
+@dataclass(frozen=True, init=False, eq=False)
+class RollingSphere:
+    """A ball that rolls on a plane of the parent without slip, and does not leave it (nonholonomic).
+
+    Parameters
+    ----------
+    radius : float
+        [m], above 0. The centre of the ball is the mass centre of the child.
+    normal : (3,), default (0, 0, 1)
+        Of the plane, towards the ball; turns with the parent. The plane touches the ball at the start.
+    """
+
+    radius: float
+    normal: np.ndarray
+
+    def __init__(self, radius: float, normal: ArrayLike = (0, 0, 1)):
+        radius = number("radius", radius, above=0.0, unit="m")
+        keep(self, radius=radius, normal=unit_vector("normal", normal))
+
+    def contact(self, centre: np.ndarray) -> np.ndarray:
+        """Return the point (3,) where it touches, with the centre at `centre`."""
+        return centre - self.radius * self.normal
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class RollingDisc:
+    """A thin disc or wheel that rolls on a plane of the parent without slip (nonholonomic).
+
+    Its lowest point has no velocity against the plane; it may lean, turn and roll. A wheel of a vehicle is
+    this, with a `Revolute` to the frame.
+
+    Parameters
+    ----------
+    radius : float
+        [m], above 0. The centre of the disc is the mass centre of the child.
+    axis : (3,)
+        Of the disc, in the world at the start; turns with the child. Not parallel to `normal`.
+    normal : (3,), default (0, 0, 1)
+        Of the plane, towards the disc; turns with the parent. The plane touches the disc at the start.
+    """
+
+    radius: float
+    axis: np.ndarray
+    normal: np.ndarray
+
+    def __init__(self, radius: float, axis: ArrayLike, normal: ArrayLike = (0, 0, 1)):
+        radius = number("radius", radius, above=0.0, unit="m")
+        along, up = unit_vector("axis", axis), unit_vector("normal", normal)
+        if not np.linalg.norm(np.cross(along, up)) > PARALLEL:
+            raise ValueError(
+                f"axis must not be parallel to normal (a disc that lies flat has no lowest point), got "
+                f"{axis!r} and {normal!r}"
+            )
+        keep(self, radius=radius, axis=along, normal=up)
+
+    def contact(self, centre: np.ndarray) -> np.ndarray:
+        """Return the point (3,) where it touches, with the centre at `centre`."""
+        down = self.normal - (self.normal @ self.axis) * self.axis
+        return centre - self.radius * down / np.linalg.norm(down)
+
+
 JointDefinition = (
     Revolute | Spherical | Fixed | Prismatic | Distance | KnifeEdge
     | Cylindrical | Universal | Planar | PointOnLine | PointOnPlane | Screw
+    | RollingSphere | RollingDisc
 )  # fmt: skip
 JOINTS = (
     Revolute, Spherical, Fixed, Prismatic, Distance, KnifeEdge,
     Cylindrical, Universal, Planar, PointOnLine, PointOnPlane, Screw,
+    RollingSphere, RollingDisc,
 )  # fmt: skip
 
 

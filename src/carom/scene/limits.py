@@ -6,9 +6,13 @@ from carom.scene.bodies import Body
 
 
 def check_location(scene, impact_location: str) -> None:
-    """Refuse contacts between bodies, and of curved ones, where impacts are not located."""
+    """Refuse contacts between bodies, of curved ones, and stops, where impacts are not located."""
     if impact_location == "locate":
         return
+    if scene.stops:
+        raise ValueError(
+            f'impact_location must be "locate" where joints have stops, got {impact_location!r}'
+        )
     between = any(isinstance(c.other, Body) for c in scene.contacts)
     touching = [c.body for c in scene.contacts]
     if scene.contact_default is not None:

@@ -6,13 +6,15 @@ from numpy.typing import ArrayLike
 
 from carom import check
 from carom.scene.bodies import GROUND, Body, Ground, HalfSpace, make_body, make_half_space
+from carom.scene.constraints import CONSTRAINTS, Constraint, ConstraintDefinition
 from carom.scene.contacts import check_gap
-from carom.scene.forces import FORCES, AppliedForce, ForceDefinition, make_force
+from carom.scene.forces import FORCES, AppliedForce, ForceDefinition, force_on, make_force
 from carom.scene.joints import JOINTS, Joint, JointDefinition, make_joint
 from carom.scene.materials import Material
 from carom.scene.pairs import Pairs
 from carom.scene.registry import Registry
 from carom.scene.shapes import Shape
+from carom.scene.stops import Stop, make_stop
 from carom.scene.summary import counts, summary
 from carom.scene.touching import TouchingPairs
 
@@ -155,7 +157,8 @@ class Scene(TouchingPairs):
         """Add a force on `child`, or between `parent` and `child`.
 
         Both ``add_force(definition, child)``, where the ground is the parent, and
-        ``add_force(definition, parent, child)`` are allowed.
+        ``add_force(definition, parent, child)`` are allowed; and ``add_force(definition)`` of one that names
+        its joint or its bodies itself (`JointSpring`, `JointForce`, `UserForce`).
 
         Parameters
         ----------
@@ -169,11 +172,84 @@ class Scene(TouchingPairs):
             Default ``"force1"``, ``"force2"``, ...
         """
         check.instance("definition", definition, FORCES)
+        named = force_on(definition)
+        if named is not None:
+            if child is not None or parent is not GROUND:
+                raise ValueError(
+                    f"parent and child must be left out with {type(definition).__name__}, which names "
+                    f"its own, got {parent!r} and {child!r}"
+                )
+            for part in named:
+                self._parts.member("definition", part, (Joint, Body))
+            first = named[0]
+            parent, child = (
+                (first.parent, first.child) if isinstance(first, Joint) else (GROUND, first)
+            )
         if child is None and isinstance(parent, Body):
             parent, child = GROUND, parent
         self._parts.pair(parent, child)
         index, name = self._parts.new(AppliedForce, name, "force")
         return self._parts.add(make_force(index, name, definition, parent, child))
+
+    def add_constraint(
+        self, definition: ConstraintDefinition, *, name: str | None = None
+    ) -> Constraint:
+        """Add a constraint beyond joints: a gear, a motor, rows of your own.
+
+        Parameters
+        ----------
+        definition
+            Of `carom.constraints`. Joints and bodies that it speaks of must belong to this scene.
+        name
+            Default ``"constraint1"``, ``"constraint2"``, ...
+        """
+        check.instance("definition", definition, CONSTRAINTS)
+        index, name = self._parts.new(Constraint, name, "constraint")
+        constraint = Constraint(index, name, definition)
+        for part in constraint.parts:
+            self._parts.member("definition", part, (Joint, Body))
+        return self._parts.add(constraint)
+
+    def add_stop(
+        self,
+        joint: Joint,
+        *,
+        lower: float | None = None,
+        upper: float | None = None,
+        restitution: float = 0.0,
+        impact_law: str = "newton",
+        coordinate: int = 0,
+        name: str | None = None,
+    ) -> Stop:
+        """Add an end to the way of a joint, where it strikes with restitution.
+
+        A unilateral constraint on a coordinate of the joint, through the same boundary layer as the contacts
+        of bodies; impulses reach every joint of the mechanism. In `Solution.impacts` its `contact` is the
+        number of contacts of bodies plus its own index; the impulse has a normal component alone, of an angle
+        in [N m s], speeds in [rad/s].
+
+        Parameters
+        ----------
+        joint
+            A joint of the scene with coordinates of its own.
+        lower, upper
+            One of the two: the least or the greatest value of the coordinate [rad or m], which is 0 as the
+            joint stands at the start. For two ends add two stops.
+        restitution
+            From 0 (default) to 1.
+        impact_law
+            ``"newton"`` (default), ``"poisson"`` or ``"stronge"``: without friction they agree where it strikes
+            alone.
+        coordinate
+            Which coordinate of the joint. Default 0.
+        name
+            Default ``"stop1"``, ``"stop2"``, ...
+        """
+        self._parts.member("joint", joint, (Joint,))
+        index, name = self._parts.new(Stop, name, "stop")
+        return self._parts.add(
+            make_stop(index, name, joint, lower, upper, restitution, impact_law, coordinate)
+        )
 
     @property
     def gravity(self):
@@ -199,6 +275,16 @@ class Scene(TouchingPairs):
     def forces(self) -> tuple[AppliedForce, ...]:
         """The forces, in the order added."""
         return self._parts.parts(AppliedForce)
+
+    @property
+    def constraints(self) -> tuple[Constraint, ...]:
+        """The constraints beyond joints, in the order added."""
+        return self._parts.parts(Constraint)
+
+    @property
+    def stops(self) -> tuple[Stop, ...]:
+        """The stops of joints, in the order added."""
+        return self._parts.parts(Stop)
 
     def __getitem__(self, name: str):
         """Return the part called `name`; a `KeyError` suggests the nearest one."""

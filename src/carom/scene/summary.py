@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-KINDS = ("bodies", "half_spaces", "contacts", "joints", "forces")
+KINDS = ("bodies", "half_spaces", "contacts", "joints", "constraints", "stops", "forces")
 ONE = {"bodies": "body", "half_spaces": "half-space"}
 
 
 def counts(scene) -> str:
     """Return how many there are of each kind, in a line."""
-    return ", ".join(_count(kind, len(getattr(scene, kind))) for kind in KINDS)
+    rare = ("constraints", "stops")
+    shown = [kind for kind in KINDS if kind not in rare or getattr(scene, kind)]
+    return ", ".join(_count(kind, len(getattr(scene, kind))) for kind in shown)
 
 
 def summary(scene) -> str:

@@ -19,17 +19,22 @@ from carom.contact.pairs.layout import Hulls, NoHulls, PairWork
 #: kinds of joints in kernels
 SPHERICAL, REVOLUTE, FIXED, PRISMATIC, DISTANCE, KNIFE_EDGE = range(6)
 CYLINDRICAL, UNIVERSAL, PLANAR, POINT_ON_LINE, POINT_ON_PLANE, SCREW = range(6, 12)
-#: numbers of constraint rows, by kind
-ROWS = (3, 5, 6, 5, 1, 1, 4, 4, 3, 2, 1, 5)
+ROLLING_SPHERE, ROLLING_DISC = range(12, 14)
+#: what is no joint but stands among them: a relation of coordinates of joints, rows of the user's own
+RELATION, USER_ROWS = range(14, 16)
+#: numbers of constraint rows of joints, by kind
+ROWS = (3, 5, 6, 5, 1, 1, 4, 4, 3, 2, 1, 5, 3, 3)
 #: the child's anchor moves along the first direction of the parent's frame
 ALONG = (PRISMATIC, CYLINDRICAL, POINT_ON_LINE, SCREW)
 #: it moves in the plane across it
 WITHIN = (PLANAR, POINT_ON_PLANE)
 SLIDING = ALONG + WITHIN
+#: the child rolls on a plane of the parent
+ROLLING = (ROLLING_SPHERE, ROLLING_DISC)
 #: the child turns about the first direction alone
 TURNING = (REVOLUTE, CYLINDRICAL, PLANAR, SCREW)
 #: it turns freely
-BALL = (SPHERICAL, POINT_ON_LINE, POINT_ON_PLANE)
+BALL = (SPHERICAL, POINT_ON_LINE, POINT_ON_PLANE, ROLLING_SPHERE, ROLLING_DISC)
 #: it does not turn
 RIGID = (FIXED, PRISMATIC)
 
@@ -45,6 +50,7 @@ BODY = [
     ("ballistic", "i8"),  # 1 where no joint and no force but gravity acts
     ("component", "i8"),  # its own number, or N for all that have joints
     ("number", "i8"),  # among all bodies of the scene
+    ("axes", "f8", 4),  # quaternion from the principal axes to those of the scene
     ("ball", "f8"),  # radius of the ball around its centre that holds its shapes
 ]
 
@@ -57,8 +63,65 @@ JOINT = [
     ("child_anchor", "f8", 3),
     ("parent_frame", "f8", (3, 3)),  # columns: axis, second, third direction, in the parent's axes
     ("child_frame", "f8", (3, 3)),
-    ("length", "f8"),  # of a distance; way of a screw, a radian
+    ("length", "f8"),  # of a distance; way of a screw, a radian; radius of what rolls
+    ("number", "i8"),  # of a relation, or of rows of the user's, in `Relations`
+    (
+        "reference",
+        "f8",
+    ),  # of a coordinate: the angle at the start of the step, with its whole turns
 ]
+
+#: a coordinate of a joint: an angle about (kind REVOLUTE), or a way along (PRISMATIC), the first axis of the
+#: parent's frame; either side may be the ground
+COORDINATE = JOINT
+
+#: a relation: sum of factor times coordinate = f(t)
+RELATION_ROW = [
+    ("first", "i8"),  # range of its terms
+    ("last", "i8"),
+    ("constant", "f8"),  # f = constant + rate t
+    ("rate", "f8"),
+    ("address", "i8"),  # or of a function of the user's: t -> (f, f', f'')
+    ("piece", "i8"),  # or the range of pieces of a polynomial
+    ("last_piece", "i8"),
+    ("scale", "f8"),  # by which its error is judged: 1 for angles, a length for ways
+]
+
+TERM = [
+    ("coordinate", "i8"),
+    ("factor", "f8"),
+    ("child_side", "i8"),  # sides of the solver, -1 for the ground
+    ("parent_side", "i8"),
+]
+
+#: rows of the user's: a(q, t) v = b(q, t), as a function (t, poses) -> (rows, 6 bodies + 1)
+USER_ROW = [
+    ("address", "i8"),
+    ("position_address", "i8"),  # of phi(q, t) = 0, 0 where the rows are nonholonomic
+    ("first", "i8"),  # range of its sides, one a body
+    ("last", "i8"),
+]
+
+#: a spring, damper and force along a coordinate of a joint
+PUSH = [
+    ("coordinate", "i8"),
+    ("stiffness", "f8"),
+    ("damping", "f8"),
+    ("rest", "f8"),
+    ("force", "f8"),  # constant
+    ("address", "i8"),  # of a function of the user's: t, (q, q') -> force; 0 for none
+]
+
+#: forces by a function of the user's: t, (bodies, 13) -> (bodies, 6)
+USER_FORCE = [
+    ("address", "i8"),
+    ("energy_address", "i8"),  # of their potential, 0 where they have none
+    ("first", "i8"),  # range of its bodies in `Relations.named`
+    ("last", "i8"),
+]
+
+#: a piece of a polynomial in (t - start)
+PIECE = [("start", "f8"), ("end", "f8"), ("c", "f8", 6)]  # c: from the constant up
 
 SPRING = [
     ("parent", "i8"),
@@ -68,6 +131,11 @@ SPRING = [
     ("stiffness", "f8"),
     ("damping", "f8"),
     ("rest_length", "f8"),
+    (
+        "piece",
+        "i8",
+    ),  # tension over length, where it is a curve: a range of pieces, empty where it is not
+    ("last_piece", "i8"),
 ]
 
 #: a force and torque on a point of a body, constant in the axes of a body or of the world
@@ -101,17 +169,21 @@ CONTACT = [
     (
         "touches",
         "i8",
-    ),  # 1 where the kernels of pairs find the points, 0 where they are the vertices
+    ),  # 1 where the kernels of pairs find the points, 0 where they are the vertices; 2 of a stop in a joint
     ("part", "i8"),  # 1 where a body has several pieces
     ("first", "i8"),  # range of the vertices of the body
     ("last", "i8"),
     ("other_first", "i8"),  # of the other body
     ("other_last", "i8"),
-    ("solid", "i8"),  # where the kernels of pairs find the points: the two solids
+    (
+        "solid",
+        "i8",
+    ),  # where the kernels of pairs find the points: the two solids; of a stop its coordinate
     ("other_solid", "i8"),
     ("law", "i8"),  # 0 newton, 1 poisson, 2 stronge
     ("axes", "f8", (3, 3)),  # of a half-space: rows n, t1, t2
-    ("offset", "f8"),  # n . point of the plane
+    ("offset", "f8"),  # n . point of the plane; of a stop side times where it is
+    ("side", "f8"),  # of a stop: gap = side q - offset, 1 for a lower, -1 for an upper one
     ("radius", "f8"),  # of both, where they are two solids
     ("friction", "f8"),
     ("friction_held", "f8"),
@@ -137,11 +209,19 @@ LINK = [
 
 #: what the solve for closed loops writes, for each joint
 ROW = [
-    ("A", "f8", (2, 6, 6)),  # rows, sides child and parent
-    ("Y", "f8", (2, 6, 6)),  # rows times M^-1
+    ("first", "i8"),  # range of its sides; of a joint the child, and the parent if it is a body
+    ("last", "i8"),
     ("pivot", "f8", 6),  # reciprocal pivots, 0 = dropped
     ("weight", "f8", 6),  # diagonal of A M^-1 A^T before elimination
     ("rhs", "f8", 6),  # right-hand side, then multipliers
+]
+
+#: the rows of one element of the solve for closed loops, for one body
+SIDE = [
+    ("element", "i8"),
+    ("body", "i8"),
+    ("A", "f8", (6, 6)),
+    ("Y", "f8", (6, 6)),  # A M^-1
 ]
 
 #: a contact between looks
@@ -194,7 +274,9 @@ POINT = [
     ),  # from the mass centre of a: the part of the arm that turns with it; 0 if it rolls on
     ("axes", "f8", (3, 3)),  # rows n, t1, t2
     ("gap", "f8"),
-    ("turns", "i8"),  # 0; or its rows are of relative rotation: 1 rolling (t1, t2), 2 pivoting (t1)
+    # 0; rows of relative rotation: 1 rolling (t1, t2), 2 pivoting (t1), 3 a stop that ends a turn (n);
+    # 4: the normal row alone, of a stop that ends a slide
+    ("turns", "i8"),
     ("length", "f8"),  # that makes a speed of an angular velocity
 ]
 
@@ -236,6 +318,8 @@ RESULT = [
     ("drag", "f8"),
     ("residual", "f8"),  # greatest of the groups held at several points
     ("fallen", "i8"),  # steps of a symplectic method that the explicit one has taken
+    ("start", "f8"),  # time at which the step on trial starts
+    ("time", "f8"),  # of the state that is looked at: what is prescribed depends on it
 ]
 
 #: search for an event inside a step
@@ -304,10 +388,32 @@ class LoopSolver(NamedTuple):
     row: np.ndarray  # (B,) joint of each block below the diagonal
     update: np.ndarray  # (J+1,) ranges of the update triples
     triple: np.ndarray  # (U, 3) blocks i, j of a column and the target they change
-    term: np.ndarray  # (P, 5) assembly: target block, joint i, side i, joint j, side j
+    term: np.ndarray  # (P, 3) assembly: target block, sides i and j of two elements
     rows: np.recarray  # (J,) ROW
+    sides: np.recarray  # (S,) SIDE
     block: np.ndarray  # (J+B, 6, 6) diagonal blocks, then the others
     drop: float  # pivots below this part of the row's diagonal are dropped
+
+
+class NoRelations(NamedTuple):
+    """Of a scene in which nothing is said of coordinates of joints, and no rows are the user's own."""
+
+    none: int
+
+
+class Relations(NamedTuple):
+    """Coordinates of joints, relations between them, and rows of the user's own."""
+
+    coordinates: np.recarray  # COORDINATE
+    relations: np.recarray  # RELATION_ROW
+    terms: np.recarray  # TERM
+    user: np.recarray  # USER_ROW
+    pieces: np.recarray  # PIECE
+    pushes: np.recarray  # PUSH
+    forces: np.recarray  # USER_FORCE
+    named: np.ndarray  # bodies that functions of the user's speak of
+    read: np.ndarray  # what functions of the user's read and write
+    write: np.ndarray
 
 
 class System(NamedTuple):
@@ -315,7 +421,10 @@ class System(NamedTuple):
 
     bodies: np.recarray  # (N,) BODY
     gravity: np.ndarray  # (3,)
-    joints: np.recarray  # (J,) JOINT
+    joints: (
+        np.recarray
+    )  # (J,) JOINT; relations and rows of the user's come after the joints of the scene
+    relations: Relations | NoRelations
     springs: np.recarray  # SPRING
     loads: np.recarray  # LOAD
     bushings: np.recarray  # BUSHING

@@ -6,16 +6,21 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom.functions import Functions
 from carom.geometry import quaternion
 from carom.options import Options
 from carom.scene import joints as definitions
-from carom.scene.forces import Bushing, Force, Spring, Torque
-from carom.scene.joints import Distance, KnifeEdge, Universal
+from carom.scene.forces import Bushing, CurveSpring, Force, Spring, Torque
+from carom.scene.joints import Distance, KnifeEdge, RollingDisc, RollingSphere, Universal
 from carom.scene.scene import Scene
 from carom.system import arrays, graph, solvers
 from carom.system.arrays import BODY, BUSHING, JOINT, LOAD, SPRING, STATE, System, table
 from carom.system.contacts import compile_contacts
 from carom.system.frames import triad
+from carom.system.more_forces import MoreForces, Pieces
+from carom.system.placement import Placement
+from carom.system.relations import Coordinates, Elements
+from carom.system.stops import with_stops
 
 KIND = {
     definitions.Spherical: arrays.SPHERICAL,
@@ -30,6 +35,8 @@ KIND = {
     definitions.PointOnLine: arrays.POINT_ON_LINE,
     definitions.PointOnPlane: arrays.POINT_ON_PLANE,
     definitions.Screw: arrays.SCREW,
+    definitions.RollingSphere: arrays.ROLLING_SPHERE,
+    definitions.RollingDisc: arrays.ROLLING_DISC,
 }
 
 
@@ -40,22 +47,31 @@ class Compiled(NamedTuple):
     start: np.recarray  # (N,) STATE
     to_principal: np.ndarray  # (N, 4) principal axes -> the scene's body axes
     flipped: np.ndarray  # (J,) joints whose parent and child were exchanged
+    functions: Functions  # of the user's
 
 
 def compile_scene(scene: Scene, options: Options, loops: bool = False) -> Compiled:
     """Return the arrays of `scene`; with `loops` the block-sparse back end even for a forest."""
     start, to_principal, moments = _start(scene)
-    frames = _Frames(start)
-    joints, flipped, solver = _joints(scene, frames, options, loops)
-    springs, loads = _springs(scene, frames), _loads(scene, frames)
-    bushings = _bushings(scene, frames)
-    bodies = _bodies(scene, moments, joints, springs, loads, bushings)
+    placement, functions = Placement(start, to_principal), Functions()
+    coordinates = Coordinates(placement)
+    pieces = Pieces()
+    elements = Elements(scene, coordinates, functions, pieces, start_sizes(scene))
+    more = MoreForces(scene, coordinates, functions, pieces)
+    joints, flipped, solver = _joints(scene, placement, elements, options, loops)
     contacts, vertices, solids, hulls = compile_contacts(scene, to_principal, options)
+    contacts = with_stops(scene, contacts, coordinates, start_sizes(scene), options)
+    relations = elements.arrays(solver, more)
+    springs, loads = _springs(scene, placement, more), _loads(scene, placement)
+    bushings = _bushings(scene, placement)
+    bodies = _bodies(scene, moments, joints, elements, springs, loads, bushings, more)
+    bodies.axes = to_principal
     gravity = np.array(scene.gravity)
     system = System(
         bodies,
         gravity,
         joints,
+        relations,
         springs,
         loads,
         bushings,
@@ -68,7 +84,7 @@ def compile_scene(scene: Scene, options: Options, loops: bool = False) -> Compil
         0,
         solver,
     )
-    return Compiled(system, start, to_principal, flipped)
+    return Compiled(system, start, to_principal, flipped, functions)
 
 
 def principal(inertia: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -101,30 +117,16 @@ def _start(scene):
     return start, to_principal, moments
 
 
-class _Frames:
-    """World points and directions as seen from a body (or the ground) at the start."""
-
-    def __init__(self, start: np.recarray):
-        self.start = start
-
-    def point(self, body, point) -> np.ndarray:
-        if body.index < 0:
-            return np.array(point, dtype=float)
-        q, x = self.start.Q[body.index], self.start.x[body.index]
-        return quaternion.rotate_back(q, np.asarray(point) - x)
-
-    def axes(self, body, world: np.ndarray) -> np.ndarray:
-        """Columns of `world` (3, 3) in the body's axes."""
-        if body.index < 0:
-            return np.array(world, dtype=float)
-        return quaternion.rotate_back(self.start.Q[body.index], world.T).T
-
-
 def _anchors(joint, flipped):
     """World anchors of the scene's parent and child, and the joint's frame, of a definition."""
     d = joint.definition
     if isinstance(d, Distance):
         return d.anchor_parent, d.anchor_child, np.eye(3)
+    if isinstance(d, RollingDisc):  # columns: the normal of the plane, the axis of the disc
+        frame = np.stack([d.normal, d.axis, np.cross(d.normal, d.axis)], axis=1)
+        return d.contact(joint.child.position), joint.child.position, frame
+    if isinstance(d, RollingSphere):
+        return d.contact(joint.child.position), joint.child.position, triad(d.normal)
     anchor = joint.child.position if d.anchor is None else d.anchor
     if isinstance(d, KnifeEdge):
         along = np.cross(d.lateral, d.normal)
@@ -140,14 +142,14 @@ def _anchors(joint, flipped):
     return anchor, anchor, np.eye(3)
 
 
-def _joints(scene, frames, options, loops):
+def _joints(scene, placement, elements, options, loops):
     defined = scene.joints
     count, number = len(scene.bodies), len(defined)
     kind = np.array([KIND[type(j.definition)] for j in defined], dtype=np.int64)
     parent = np.array([j.parent.index for j in defined], dtype=np.int64)
     child = np.array([j.child.index for j in defined], dtype=np.int64)
     flipped = np.zeros(number, dtype=bool)
-    forest = not loops and graph.is_forest(count, kind, parent, child)
+    forest = not loops and not elements.kinds and graph.is_forest(count, kind, parent, child)
     order, carrier = np.arange(count), np.full(count, -1)
     if forest:
         order, carrier, turned = graph.forest_order(count, parent, child)
@@ -155,40 +157,52 @@ def _joints(scene, frames, options, loops):
     if forest:
         flipped = turned
         parent, child = np.where(flipped, child, parent), np.where(flipped, parent, child)
-    joints = table(JOINT, number)
-    joints.kind, joints.parent, joints.child = kind, parent, child
-    joints.rows = [arrays.ROWS[k] for k in kind]
+    joints = table(JOINT, number + len(elements.kinds))
+    joints.parent[:number], joints.child[:number] = parent, child
+    joints.kind = [*kind, *elements.kinds]
+    joints.rows = [*(arrays.ROWS[k] for k in kind), *elements.rows]
     for j, joint in enumerate(defined):
         first, second, world = _anchors(joint, flipped[j])
-        sides = [(joint.parent, first), (joint.child, second)]
-        (a, p), (b, q) = sides[::-1] if flipped[j] else sides
-        joints.parent_anchor[j], joints.child_anchor[j] = frames.point(a, p), frames.point(b, q)
-        joints.parent_frame[j], joints.child_frame[j] = frames.axes(a, world), frames.axes(b, world)
+        sides = [(placement.side(joint, 0), first), (placement.side(joint, 1), second)]
+        (p, a), (c, b) = sides[::-1] if flipped[j] else sides
+        joints.parent_anchor[j], joints.child_anchor[j] = p.point(a), c.point(b)
+        joints.parent_frame[j], joints.child_frame[j] = p.axes(world), c.axes(world)
         joints.length[j] = _length(joint.definition)
-    if number == 0:
+    touching = [[b for b in (c, p) if b >= 0] for p, c in zip(parent.tolist(), child.tolist())]
+    for j, bodies in enumerate(elements.touching, start=number):
+        joints.number[j] = elements.numbers[j - number]
+        joints.child[j], joints.parent[j] = bodies[0], -1
+    touching += elements.touching
+    if not touching:
         solver = arrays.FreeSolver(0)
     elif forest:
         solver = solvers.tree_solver(joints, order, carrier)
     else:
-        solver = solvers.loop_solver(joints, options.drop_tolerance)
+        solver = solvers.loop_solver(touching, options.drop_tolerance)
     return joints, flipped, solver
 
 
 def _length(definition):
     if isinstance(definition, definitions.Screw):
         return definition.pitch / (2.0 * np.pi)
+    if isinstance(definition, (RollingSphere, RollingDisc)):
+        return definition.radius
     return getattr(definition, "length", 0.0)
 
 
-def _springs(scene, frames):
-    chosen = [f for f in scene.forces if isinstance(f.definition, Spring)]
+def _springs(scene, frames, more):
+    chosen = [f for f in scene.forces if isinstance(f.definition, (Spring, CurveSpring))]
     springs = table(SPRING, len(chosen))
     for s, f in zip(springs, chosen):
         d = f.definition
         s.parent, s.child = f.parent.index, f.child.index
         s.parent_anchor[:] = frames.point(f.parent, d.anchor_parent)
         s.child_anchor[:] = frames.point(f.child, d.anchor_child)
-        s.stiffness, s.damping, s.rest_length = d.stiffness, d.damping, d.rest_length
+        s.damping = d.damping
+        if isinstance(d, Spring):
+            s.stiffness, s.rest_length = d.stiffness, d.rest_length
+        else:
+            s.piece, s.last_piece = more.curves[f.index]
     return springs
 
 
@@ -230,7 +244,12 @@ def _bushings(scene, frames):
     return bushings
 
 
-def _bodies(scene, moments, joints, springs, loads, bushings):
+def start_sizes(scene) -> np.ndarray:
+    """Return the size (N,) of the shape of each body, 1 m where it has none."""
+    return np.array([1.0 if b.shape is None else b.shape.size for b in scene.bodies])
+
+
+def _bodies(scene, moments, joints, elements, springs, loads, bushings, more):
     bodies = table(BODY, len(scene.bodies))
     size = np.array([0.0 if b.shape is None else b.shape.size for b in scene.bodies])
     isolated = np.ones(len(scene.bodies), dtype=np.int64)
@@ -241,12 +260,15 @@ def _bodies(scene, moments, joints, springs, loads, bushings):
         inside = sides >= 0
         isolated[sides[inside]] = 0
         np.maximum.at(size, sides[inside], np.linalg.norm(anchors[inside], axis=1))
+    for touched in elements.touching:
+        isolated[touched] = 0
     size[size == 0.0] = 1.0
     ballistic = isolated.copy()
     for loaded in (
         springs.parent, springs.child, loads.body, bushings.parent, bushings.child
     ):  # fmt: skip
         ballistic[loaded[loaded >= 0]] = 0
+    ballistic[more.named] = 0
     bodies.mass = [b.mass for b in scene.bodies]
     bodies.inertia, bodies.extent = moments, size
     bodies.isotropic = np.ptp(moments, axis=1) == 0.0

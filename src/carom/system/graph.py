@@ -7,7 +7,14 @@ from collections import deque
 
 import numpy as np
 
-from carom.system.arrays import DISTANCE, KNIFE_EDGE, POINT_ON_LINE, POINT_ON_PLANE
+from carom.system.arrays import (
+    DISTANCE,
+    KNIFE_EDGE,
+    POINT_ON_LINE,
+    POINT_ON_PLANE,
+    ROLLING_DISC,
+    ROLLING_SPHERE,
+)
 
 
 def is_forest(count: int, kind, parent, child) -> bool:
@@ -32,7 +39,7 @@ def is_forest(count: int, kind, parent, child) -> bool:
 
 def cannot_flip(kind) -> np.ndarray:
     """Return (J,) which joints carry a tree from parent to child only: a line or plane of one body."""
-    return np.isin(kind, (POINT_ON_LINE, POINT_ON_PLANE))
+    return np.isin(kind, (POINT_ON_LINE, POINT_ON_PLANE, ROLLING_SPHERE, ROLLING_DISC))
 
 
 def forest_order(count: int, parent, child) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -72,15 +79,15 @@ def forest_order(count: int, parent, child) -> tuple[np.ndarray, np.ndarray, np.
     return np.array(order, dtype=np.int64), joint, flipped
 
 
-def elimination(parent, child) -> tuple[list[int], list[list[int]]]:
-    """Order the joints by least degree and return the fill: neighbours of each that come later.
+def elimination(touching: list[list[int]]) -> tuple[list[int], list[list[int]]]:
+    """Order the elements by least degree and return the fill: neighbours of each that come later.
 
-    Two joints are neighbours when they share a movable body, as in A M^-1 A^T.
+    Two are neighbours when they share a movable body, as in A M^-1 A^T; `touching` has the bodies of each.
     """
-    count = len(child)
+    count = len(touching)
     by_body: dict[int, list[int]] = {}
-    for j in range(count):
-        for b in {int(parent[j]), int(child[j])} - {-1}:
+    for j, bodies in enumerate(touching):
+        for b in bodies:
             by_body.setdefault(b, []).append(j)
     near = [set() for _ in range(count)]
     for joints in by_body.values():

@@ -8,6 +8,7 @@ import numpy as np
 
 from carom.geometry import quaternion
 from carom.options import Options
+from carom.system.arrays import RELATION
 
 DEPENDENT = 1e-8  # of the largest singular value of rows of length 1
 TAKES_PART = 1e-6  # of a vector of length 1
@@ -27,7 +28,7 @@ class Mobility:
     degrees_of_freedom : int
         6 bodies - rows + redundant: independent velocities.
     nonholonomic : int
-        Of the independent rows, those that restrict velocities only (`KnifeEdge`): with them there are
+        Of the independent rows, those that restrict velocities only (blades, rolling): with them there are
         `degrees_of_freedom` + `nonholonomic` independent displacements.
     redundant_joints : tuple of str
         Names of the joints that have a part in a redundancy: any one of it could be given up.
@@ -64,29 +65,33 @@ class Mobility:
 
 def mobility(scene) -> Mobility:
     """Return the degrees of freedom of a scene and which rows are redundant."""
-    from carom.motion.multipliers import constraint_rows, mass_matrix
+    from carom.motion.multipliers import mass_matrix
+    from carom.motion.reactions import start_errors
     from carom.system.compile import compile_scene
+    from carom.system.records import new_work
 
-    n, joints = len(scene.bodies), scene.joints
+    n, joints = len(scene.bodies), (*scene.joints, *scene.constraints)
     if not joints:
         return Mobility(n, 0, 0, 6 * n, 0, (), {})
     compiled = compile_scene(scene, Options(), loops=True)  # no joint is flipped
     system, start = compiled.system, compiled.start
-    state = [np.array(a)[None] for a in (start.x, start.Q, start.v, start.w)]
-    A, _, owner = constraint_rows(system, *state)
-    A = A[0]
-    spin = quaternion.rotate_back(start.Q, start.w)
-    speeds = np.einsum("knc,nc->k", A, np.concatenate([start.v, spin], axis=1))
+    work = new_work(system, 1)
+    A, owner = dense_rows(system, start, work)
+    errors = np.zeros((2, len(joints), 6))
+    start_errors(system, start, work, *errors)
+    if compiled.functions.failed is not None:
+        raise compiled.functions.failed
+    speeds = np.concatenate([errors[1, j, : system.joints.rows[j]] for j in range(len(joints))])
     turning = ~np.any(A[..., :3], axis=(1, 2))
     speeds[turning] *= system.bodies.extent[system.joints.child[owner[turning]]]
     dependent, involved = _dependent(A / np.sqrt(mass_matrix(system)), owner, system)
-    blades = np.array([joint.kind == "KnifeEdge" for joint in joints])[owner]
+    rolling = sum(_nonholonomic(joint) for joint in joints)
     return Mobility(
         bodies=n,
         rows=len(A),
         redundant=dependent,
         degrees_of_freedom=6 * n - len(A) + dependent,
-        nonholonomic=int(np.sum(blades)),
+        nonholonomic=rolling,
         redundant_joints=tuple(joints[j].name for j in np.flatnonzero(involved)),
         velocity_errors={
             joint.name: float(np.max(np.abs(speeds[owner == j]))) for j, joint in enumerate(joints)
@@ -94,19 +99,43 @@ def mobility(scene) -> Mobility:
     )
 
 
+def dense_rows(system, start, work) -> tuple[np.ndarray, np.ndarray]:
+    """Return all rows (K, N, 6), linear in world axes and angular in principal ones, and whose they are."""
+    from carom.motion.reactions import write_rows
+
+    write_rows(system, start, work)
+    count = system.joints.rows
+    first = np.cumsum(count) - count
+    A = np.zeros((int(count.sum()), len(system.bodies), 6))
+    for side in system.solver.sides:
+        j, b = int(side.element), int(side.body)
+        rows = side.A[: count[j]].copy()
+        rows[:, 3:] = quaternion.rotate_back(start.Q[b], rows[:, 3:])
+        A[first[j] : first[j] + count[j], b] = rows
+    return A, np.repeat(np.arange(len(count)), count)
+
+
+def _nonholonomic(element) -> int:
+    """Return how many rows of an element restrict velocities only."""
+    if element.kind == "Rows":
+        return element.rows if element.definition.position is None else 0
+    return {"KnifeEdge": 1, "RollingSphere": 2, "RollingDisc": 2}.get(element.kind, 0)
+
+
 def _dependent(A, owner, system) -> tuple[int, np.ndarray]:
     """Return how many rows (K, N, 6) depend on others, and (J,) which joints have a part in that.
 
-    Only joints in loops can; a joint with a side that nothing else holds is none, and leaves others so.
+    Only elements in loops can; a joint with a side that nothing else holds is in none, and leaves others so.
     """
     kept = np.ones(len(system.joints), dtype=bool)
     parent, child = system.joints.parent, system.joints.child
+    joint = system.joints.kind < RELATION
     while True:
         degree = np.zeros(len(system.bodies) + 1, dtype=np.int64)
-        np.add.at(degree, parent[kept], 1)
-        np.add.at(degree, child[kept], 1)
+        sides = system.solver.sides[kept[system.solver.sides.element]]
+        np.add.at(degree, sides.body, 1)
         degree[-1] = 2  # the ground holds by itself
-        loose = kept & ((degree[parent] == 1) | (degree[child] == 1))
+        loose = kept & joint & ((degree[parent] == 1) | (degree[child] == 1))
         if not loose.any():
             break
         kept &= ~loose

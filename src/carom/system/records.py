@@ -157,7 +157,9 @@ def new_held(system: System) -> Held:
     grounded = int(np.sum((contacts.touches == 1) & (contacts.other < 0)))
     between = max(len(system.bodies), len(system.solids))  # bodies, or pieces of them
     held = Held(
-        points=table(HELD, len(system.vertices) + 24 * between + 8 * grounded),
+        points=table(
+            HELD, len(system.vertices) + 24 * between + 8 * grounded + len(system.contacts)
+        ),
         brinks=table(BRINK, system.contacts.size),
         carries=np.zeros(len(system.vertices), dtype=np.int64),
         count=np.zeros(1, dtype=np.int64),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom.system.arrays import LINK, ROW, ROWS, LoopSolver, TreeSolver, table
+from carom.system.arrays import LINK, ROW, ROWS, SIDE, LoopSolver, TreeSolver, table
 from carom.system.graph import elimination
 
 SCRATCH = 124  # 39 + 6 * 14 + 1: see carom.motion.tree
@@ -24,10 +24,13 @@ def tree_solver(joints: np.recarray, order: np.ndarray, joint: np.ndarray) -> Tr
     return TreeSolver(0, links, np.zeros((order.size, SCRATCH)))
 
 
-def loop_solver(joints: np.recarray, drop: float) -> LoopSolver:
-    """Return the solver of a scene with closed loops: the symbolic factor of A M^-1 A^T."""
-    number = len(joints)
-    order, later = elimination(joints.parent, joints.child)
+def loop_solver(touching: list[list[int]], drop: float) -> LoopSolver:
+    """Return the solver of a scene with closed loops: the symbolic factor of A M^-1 A^T.
+
+    `touching` has the bodies of each element, joints first: the child, then the parent if it is a body.
+    """
+    number = len(touching)
+    order, later = elimination(touching)
     place = np.empty(number, dtype=np.int64)
     place[order] = np.arange(number)
     column, row, slot = [0], [], {(j, j): j for j in range(number)}
@@ -44,17 +47,22 @@ def loop_solver(joints: np.recarray, drop: float) -> LoopSolver:
                 if place[row[s]] >= place[row[t]]:
                     triple.append((s, t, slot[row[s], row[t]]))
         update.append(len(triple))
-    sides: dict[int, list[tuple[int, int]]] = {}
-    for j in range(number):
-        sides.setdefault(int(joints.child[j]), []).append((j, 0))
-        if joints.parent[j] >= 0:
-            sides.setdefault(int(joints.parent[j]), []).append((j, 1))
+    rows = table(ROW, number)
+    rows.last = np.cumsum([len(bodies) for bodies in touching])
+    rows.first = rows.last - [len(bodies) for bodies in touching]
+    sides = table(SIDE, int(rows.last[-1]))
+    sides.element = np.repeat(np.arange(number), rows.last - rows.first)
+    sides.body = [b for bodies in touching for b in bodies]
+    by_body: dict[int, list[int]] = {}
+    for s, b in enumerate(sides.body):
+        by_body.setdefault(int(b), []).append(s)
+    element = sides.element
     term = [
-        (slot[i, j], i, si, j, sj)
-        for touching in sides.values()
-        for i, si in touching
-        for j, sj in touching
-        if place[i] >= place[j]
+        (slot[element[s], element[t]], s, t)
+        for near in by_body.values()
+        for s in near
+        for t in near
+        if place[element[s]] >= place[element[t]]
     ]
     return LoopSolver(
         address=0,
@@ -63,8 +71,9 @@ def loop_solver(joints: np.recarray, drop: float) -> LoopSolver:
         row=np.array(row, dtype=np.int64),
         update=np.array(update, dtype=np.int64),
         triple=np.array(triple, dtype=np.int64).reshape(-1, 3),
-        term=np.array(term, dtype=np.int64).reshape(-1, 5),
-        rows=table(ROW, number),
+        term=np.array(term, dtype=np.int64).reshape(-1, 3),
+        rows=rows,
+        sides=sides,
         block=np.zeros((number + len(row), 6, 6)),
         drop=drop,
     )

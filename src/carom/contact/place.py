@@ -1,0 +1,27 @@
+"""The point of any contact in a state: a vertex, what the kernels of pairs find, a stop."""
+
+from __future__ import annotations
+
+from carom.contact.pair_point import drift, place_pair
+from carom.contact.stop import STOP, place_stop, stop_drift
+from carom.jit import kernel
+from carom.motion.contact_point import place
+
+
+@kernel
+def place_any(system, contact, feature, p, state, point, work):
+    """Write the point that touches with a feature: a core point p, or one that the kernels of pairs find."""
+    if contact.touches == 0:
+        place(contact, p, state, point)
+    elif contact.touches == STOP:
+        place_stop(system, contact, state, point)
+    else:
+        place_pair(system, contact, feature, p, state, point, work)
+
+
+@kernel
+def drift_of(system, contact, feature, p, point, state, work):
+    """Return (d/dt G) v, contact axes, of two bodies that touch and of a stop."""
+    if contact.touches == STOP:
+        return stop_drift(system, contact, state, work), 0.0, 0.0
+    return drift(system, contact, feature, p, point, state, work)

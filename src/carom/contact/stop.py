@@ -1,0 +1,142 @@
+"""Stops in joints: unilateral constraints on a coordinate, gap = side q - offset, without tangents.
+
+They strike through the same boundary layer as any contact and may be held like one. The normal row is the
+coordinate's own, its impulse a torque in time [N m s] where that is an angle.
+"""
+
+from __future__ import annotations
+
+from carom.contact.exclude import BELOW, CLEAR, MISSED, UNSURE, cubic_clears
+from carom.contact.gap import round_off, slow
+from carom.contact.pair_point import tangents
+from carom.dispatch import only_with_coordinates
+from carom.jit import entry, kernel
+from carom.loop_codes import HOLD, NOTHING, STRIKE
+from carom.motion.contact_point import contact_velocity
+from carom.motion.coordinate import drift, value
+from carom.motion.joints import arm, axis, parent_arm
+from carom.system.arrays import PRISMATIC
+
+STOP = 2  # of `touches`
+
+
+@kernel
+def _place_stop(system, contact, state, point):
+    """Write the point, axes and gap of a stop."""
+    c = system.relations.coordinates[contact.solid]
+    nx, ny, nz = axis(state, c.parent, c.parent_frame, 0)
+    # the row is that of the child against the parent; where that is the ground the other way round
+    s = contact.side if contact.body == c.child else -contact.side
+    point.a, point.b = contact.body, contact.other
+    tangents(s * nx, s * ny, s * nz, point.axes)
+    for k in range(3):
+        point.core[k], point.arm_a[k], point.arm_b[k] = 0.0, 0.0, 0.0
+    if c.child >= 0:
+        r = arm(state, c.child, c.child_anchor)
+        point.arm_a[0], point.arm_a[1], point.arm_a[2] = r
+        if c.kind == PRISMATIC:
+            r = parent_arm(c, state)
+            point.arm_b[0], point.arm_b[1], point.arm_b[2] = r
+    point.gap = contact.side * value(c, state) - contact.offset
+    point.turns, point.length = 4 if c.kind == PRISMATIC else 3, 1.0
+
+
+@kernel
+def _no_place(system, contact, state, point):
+    """There are none."""
+
+
+place_stop = only_with_coordinates(_place_stop, _no_place)
+
+
+@kernel
+def _stop_gap(system, contact, state, work):
+    """Return the gap of a stop and its rate."""
+    _place_stop(system, contact, state, work.point[0])
+    return work.point[0].gap, contact_velocity(work.point[0], state)[0]
+
+
+@kernel
+def _no_gap(system, contact, state, work):
+    """There are none."""
+    return 1.0, 0.0
+
+
+stop_gap = only_with_coordinates(_stop_gap, _no_gap)
+
+
+@kernel
+def _stop_drift(system, contact, state, work):
+    """Return (d/dt G) v of the row of a stop."""
+    c = system.relations.coordinates[contact.solid]
+    return contact.side * drift(c, state, work.joint[0].target)
+
+
+@kernel
+def _no_drift(system, contact, state, work):
+    """There are none."""
+    return 0.0
+
+
+stop_drift = only_with_coordinates(_stop_drift, _no_drift)
+
+
+@kernel
+def is_held_stop(held, c):
+    """Return whether the stop with the number c is held."""
+    for i in range(held.count[0]):
+        if held.points[i].contact == c:
+            return True
+    return False
+
+
+@kernel
+def look_at_stop(system, controls, held, contact, c, now, work):
+    """Return whether a closed stop is to be struck or held."""
+    z, rate = stop_gap(system, contact, now, work)
+    still = slow(contact, now)
+    if z > controls.tie * contact.extent or rate > still:
+        return NOTHING
+    if rate < -still:
+        return STRIKE
+    return NOTHING if is_held_stop(held, c) else HOLD
+
+
+@kernel
+def passage_stop(system, contact, c, held, leaving, start, end, h, work, tolerance):
+    """Return CLEAR, BELOW or UNSURE, and a time before any contact; the path is the cubic of its ends."""
+    if is_held_stop(held, c):
+        return CLEAR, h
+    z0, rate0 = stop_gap(system, contact, start, work)
+    z1, rate1 = stop_gap(system, contact, end, work)
+    tiny = max(tolerance * contact.extent, round_off(contact, end))
+    if not (z1 >= -tiny):
+        slightly = z1 >= -MISSED * contact.extent
+        if z0 <= tiny and (slightly or (z0 < -tiny and z1 >= z0)):
+            return CLEAR, 0.0
+        return BELOW, 2.0 * safe_time(z0, rate0, z1, rate1, h, tiny)
+    if leaving == 0 and not cubic_clears(z0, rate0, z1, rate1, h, tiny):
+        return UNSURE, 0.0
+    return CLEAR, h
+
+
+@kernel
+def safe_time(z0, rate0, z1, rate1, h, tiny):
+    """Return a time before which the cubic has left the stop, and has not come back."""
+    s = 0.5
+    for _ in range(40):
+        a, b = 1.0 - s, s
+        z = a * a * (1.0 + 2.0 * s) * z0 + b * b * (3.0 - 2.0 * s) * z1
+        z += h * (s * a * a * rate0 - b * b * a * rate1)
+        if z > tiny:
+            return s * h
+        s *= 0.5
+    return 0.0
+
+
+@entry
+def write_stop_gaps(system, state, work, out):
+    """Write gap and rate of each stop, (C, 2)."""
+    for c in range(system.contacts.shape[0]):
+        if system.contacts[c].touches == STOP:
+            out[c, 0], out[c, 1] = stop_gap(system, system.contacts[c], state, work)

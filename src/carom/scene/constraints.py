@@ -1,0 +1,235 @@
+"""Constraints beyond joints: relations of joint coordinates, motors, and rows of the user's own.
+
+Give a definition to `Scene.add_constraint`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from carom import check
+from carom.scene import joints as kinds
+from carom.scene.bodies import Body
+from carom.scene.joints import Joint
+from carom.scene.values import keep
+
+#: coordinates of each joint that has some: "turn" [rad] or "slide" [m]
+COORDINATES = {
+    kinds.Revolute: ("turn",),
+    kinds.Prismatic: ("slide",),
+    kinds.Cylindrical: ("turn", "slide"),
+    kinds.Screw: ("turn", "slide"),
+    kinds.Universal: ("turn", "turn"),
+    kinds.Planar: ("slide", "slide", "turn"),
+    kinds.PointOnLine: ("slide",),
+    kinds.PointOnPlane: ("slide", "slide"),
+}
+
+
+def coordinate_kind(joint: Joint, coordinate: int) -> str:
+    """Return "turn" or "slide"; refuse a coordinate that the joint does not have."""
+    check.instance("joint", joint, (Joint,))
+    own = COORDINATES.get(type(joint.definition), ())
+    if not own:
+        raise ValueError(
+            f"joint must have coordinates of its own (Revolute, Prismatic, ...), got {joint!r}"
+        )
+    check.integer("coordinate", coordinate, least=0)
+    if coordinate >= len(own):
+        raise ValueError(
+            f"coordinate must be below {len(own)}, the number of coordinates of {joint!r}, got {coordinate}"
+        )
+    return own[coordinate]
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class Coupling:
+    """A linear relation of joint coordinates that stays as it is at the start: gears, racks, differentials.
+
+    ``sum of factor_k (q_k - q_k(0)) = 0``, q in radians or metres.
+
+    Parameters
+    ----------
+    factors : mapping
+        From joints, or pairs (joint, number of the coordinate), to factors other than 0.
+    """
+
+    terms: tuple[tuple[Joint, int, float], ...]
+
+    def __init__(self, factors: Mapping[Joint | tuple[Joint, int], float]):
+        if not isinstance(factors, Mapping) or not factors:
+            raise ValueError(f"factors must be a mapping from joints to numbers, got {factors!r}")
+        terms = []
+        for key, factor in factors.items():
+            joint, coordinate = key if isinstance(key, tuple) else (key, 0)
+            coordinate_kind(joint, coordinate)
+            factor = check.number("factor", factor)
+            if factor == 0.0:
+                raise ValueError(f"factor of {joint!r} must not be 0, got {factor!r}")
+            terms.append((joint, coordinate, factor))
+        keep(self, terms=tuple(terms))
+
+
+class Gear(Coupling):
+    """Two joints that turn (or slide) together: ``q_second - q_second(0) = ratio (q_first - q_first(0))``.
+
+    Parameters
+    ----------
+    first, second : Joint
+        With one coordinate, or the first of several.
+    ratio : float
+        Of the rates, second by first, other than 0; negative for spur gears about parallel axes. With a joint
+        that turns and one that slides: metres a radian (a rack).
+    """
+
+    def __init__(self, first: Joint, second: Joint, ratio: float):
+        ratio = check.number("ratio", ratio)
+        if ratio == 0.0:
+            raise ValueError(f"ratio must not be 0, got {ratio!r}")
+        super().__init__({first: ratio, second: -1.0})
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class Driver:
+    """A motor without slip: a joint coordinate is a given function of time (rheonomic).
+
+    Give one of `rate` and `motion`. What it takes from the motor is in the energy ledger
+    (`Solution.ledger.loads`), the motor's force or torque in `Solution.constraint_forces`.
+
+    Parameters
+    ----------
+    joint : Joint
+    rate : float, optional
+        ``q = q(0) + rate t`` [rad/s or m/s].
+    motion : callable or scipy.interpolate.PPoly, optional
+        A function ``t -> (q, q', q'')`` of the coordinate and its first two derivatives, plain or compiled with
+        Numba; or a polynomial in pieces of degree 5 at most (`CubicSpline`, `PchipInterpolator`, ...). q is
+        measured from where the joint stands at the start, so that q(0) must be 0.
+    coordinate : int, default 0
+        Which coordinate of the joint.
+    """
+
+    joint: Joint
+    coordinate: int
+    rate: float | None
+    motion: Callable | None
+
+    def __init__(
+        self,
+        joint: Joint,
+        rate: float | None = None,
+        motion: Callable | None = None,
+        coordinate: int = 0,
+    ):
+        coordinate_kind(joint, coordinate)
+        if (rate is None) == (motion is None):
+            raise ValueError(
+                f"rate or motion must be given, and not both, got {rate!r} and {motion!r}"
+            )
+        if rate is not None:
+            rate = check.number("rate", rate)
+        elif not callable(motion):
+            raise TypeError(f"motion must be a function or a PPoly, got {motion!r}")
+        keep(self, joint=joint, coordinate=int(coordinate), rate=rate, motion=motion)
+
+
+@dataclass(frozen=True, init=False, eq=False)
+class Rows:
+    """Constraint rows of your own, ``a(q, t) v = b(q, t)``, up to 6, nonholonomic or holonomic.
+
+    Parameters
+    ----------
+    bodies : sequence of Body
+        The bodies that they speak of, n of them, each once.
+    function : callable
+        ``function(t, poses) -> (rows, 6 n + 1)``: `poses` (n, 7) has position and orientation (quaternion,
+        scalar first, body to world) of each body, world axes. A row of the result has six numbers a body, the
+        factors of its velocity and then of its angular velocity (world axes), and b last. Plain Python, or
+        compiled with Numba, which is some 200 times faster. It must be smooth in t and the poses: its change
+        along the motion is taken by central differences.
+    rows : int
+        How many, 1 to 6.
+    position : callable, optional
+        ``position(t, poses) -> (rows,)``, of which the rows are the derivative: what is to be 0. Where it is
+        given the rows are holonomic, and positions are returned to it.
+    """
+
+    bodies: tuple[Body, ...]
+    function: Callable
+    rows: int
+    position: Callable | None
+
+    def __init__(
+        self,
+        bodies: Sequence[Body],
+        function: Callable,
+        rows: int,
+        position: Callable | None = None,
+    ):
+        bodies = tuple([bodies] if isinstance(bodies, Body) else bodies)
+        if not bodies or len(set(map(id, bodies))) != len(bodies):
+            raise ValueError(f"bodies must be at least one body, each once, got {bodies!r}")
+        for body in bodies:
+            check.instance("bodies", body, (Body,))
+        check.integer("rows", rows, least=1, most=6)
+        for name, given in (("function", function), ("position", position)):
+            if not callable(given) and not (name == "position" and given is None):
+                raise TypeError(f"{name} must be a function, got {given!r}")
+        keep(self, bodies=bodies, function=function, rows=int(rows), position=position)
+
+
+ConstraintDefinition = Coupling | Driver | Rows
+CONSTRAINTS = (Coupling, Driver, Rows)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Constraint:
+    """A constraint of a scene. Made by `Scene.add_constraint`.
+
+    Attributes
+    ----------
+    index : int
+        Place in `Scene.constraints`.
+    name : str
+    definition : Coupling, Gear, Driver or Rows (of `carom.constraints`)
+    """
+
+    index: int
+    name: str
+    definition: ConstraintDefinition
+
+    @property
+    def kind(self) -> str:
+        """The class name of the definition, such as ``"Gear"``."""
+        return type(self.definition).__name__
+
+    @property
+    def rows(self) -> int:
+        """How many rows it has."""
+        return self.definition.rows if isinstance(self.definition, Rows) else 1
+
+    @property
+    def parts(self) -> tuple[Joint | Body, ...]:
+        """The joints or bodies that it speaks of."""
+        d = self.definition
+        if isinstance(d, Coupling):
+            return tuple(joint for joint, _, _ in d.terms)
+        return (d.joint,) if isinstance(d, Driver) else d.bodies
+
+    def __repr__(self) -> str:
+        return (
+            f"Constraint({self.name!r}, {self.kind}, {', '.join(repr(p.name) for p in self.parts)})"
+        )
+
+
+def sample(function: Callable, t: float, poses: np.ndarray, shape: tuple[int, ...], name: str):
+    """Call a function of the user's once, and refuse a result of another shape or not finite."""
+    try:
+        return check.finite_array(f"{name} at the start", function(t, poses), shape)
+    except ValueError:
+        raise
+    except Exception as error:
+        raise ValueError(f"{name} must be callable as (t, poses), got {error!r}") from error

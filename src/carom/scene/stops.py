@@ -1,0 +1,68 @@
+"""Stops: ends of the way of a joint, which strike with restitution."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from carom import check
+from carom.scene.constraints import coordinate_kind
+from carom.scene.joints import Joint
+from carom.scene.materials import IMPACT_LAWS
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Stop:
+    """An end of the way of a joint: a unilateral constraint on its coordinate. Made by `Scene.add_stop`.
+
+    Attributes
+    ----------
+    index : int
+        Place in `Scene.stops`.
+    name : str
+    joint : Joint
+    coordinate : int
+        Which coordinate of the joint.
+    lower, upper : float or None
+        Where it ends [rad or m], one of the two; the coordinate is 0 as the joint stands at the start.
+    restitution : float
+    impact_law : str
+    """
+
+    index: int
+    name: str
+    joint: Joint
+    coordinate: int
+    lower: float | None
+    upper: float | None
+    restitution: float
+    impact_law: str
+
+    @property
+    def side(self) -> float:
+        """1 for a lower end, -1 for an upper one: gap = side (q - end)."""
+        return 1.0 if self.upper is None else -1.0
+
+    @property
+    def end(self) -> float:
+        """Where the way ends [rad or m]."""
+        return self.lower if self.upper is None else self.upper  # pyright: ignore[reportReturnType]
+
+    def __repr__(self) -> str:
+        which = "upper" if self.lower is None else "lower"
+        where = f"{which}={self.end:g}, restitution={self.restitution:g}"
+        return f"Stop({self.name!r}, {self.joint.name!r}, {where})"
+
+
+def make_stop(index, name, joint, lower, upper, restitution, impact_law, coordinate) -> Stop:
+    """Return a checked `Stop`; the arguments are those of `Scene.add_stop`."""
+    coordinate_kind(joint, coordinate)
+    if (lower is None) == (upper is None):
+        raise ValueError(
+            f"lower or upper must be given, and not both (add two stops for two ends), got {lower!r} "
+            f"and {upper!r}"
+        )
+    lower = None if lower is None else check.number("lower", lower)
+    upper = None if upper is None else check.number("upper", upper)
+    restitution = check.number("restitution", restitution, least=0.0, most=1.0)
+    law = check.choice("impact_law", impact_law, IMPACT_LAWS)
+    return Stop(index, name, joint, int(coordinate), lower, upper, restitution, law)
