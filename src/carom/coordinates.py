@@ -54,7 +54,7 @@ def _columns(sides, joint):
         return []
     if isinstance(d, j.Revolute):
         return [sides.turn(d.axis)]
-    anchor = joint.child.position if d.anchor is None else d.anchor
+    anchor = joint.anchor()
     if isinstance(d, (j.Planar, j.PointOnPlane)):
         slides = [sides.slide(anchor, e) for e in triad(d.normal).T[1:]]
         return [*slides, sides.turn(d.normal)] if isinstance(d, j.Planar) else slides
@@ -76,27 +76,64 @@ def _of_scene(scene, joint) -> Joint:
     return joint
 
 
-class _Sides:
-    """Both bodies of a joint over the run, by what they did since the start: world axes."""
+class _Side(NamedTuple):
+    """A body as the definition of a joint sees it, at T times: a point p of it is at x + R p + offset."""
 
-    def __init__(self, solution, joint):
-        self.t = solution.t
-        self.parent, self.child = (_motion(solution, b) for b in (joint.parent, joint.child))
-        turned = [side[0] for side in (self.parent, self.child)]
-        self.relative = quaternion.multiply(quaternion.conjugate(turned[0]), turned[1])
-        self.spin = self.child[4] - self.parent[4]
+    turn: np.ndarray  # (T, 4) R, from the axes of the definition to the world
+    offset: np.ndarray  # (T, 3)
+    position: np.ndarray  # (T, 3) x, of the mass centre
+    velocity: np.ndarray
+    spin: np.ndarray
+
+    def arm(self, point) -> np.ndarray:
+        """Return the arm (T, 3) from the centre to a point of the definition."""
+        return quaternion.rotate(self.turn, point) + self.offset
+
+
+def _side(motion, body, frame) -> _Side:
+    """Return a side of a joint: defined in the world at the start, or in a frame of the body."""
+    k, zero = body.index, np.zeros((len(motion.t), 3))
+    same = np.tile([1.0, 0.0, 0.0, 0.0], (len(zero), 1))
+    Q = same if k < 0 else motion.orientation[:, k]
+    x, v, w = (
+        zero if k < 0 else a[:, k]
+        for a in (motion.position, motion.velocity, motion.angular_velocity)
+    )
+    if frame is not None:
+        position, orientation = frame
+        return _Side(
+            quaternion.multiply(Q, np.broadcast_to(orientation, Q.shape)),
+            quaternion.rotate(Q, position), x, v, w,
+        )  # fmt: skip
+    if k < 0:
+        return _Side(Q, zero, x, v, w)
+    turn = quaternion.multiply(Q, quaternion.conjugate(body.orientation))
+    return _Side(turn, -quaternion.rotate(turn, body.position), x, v, w)
+
+
+class _Sides:
+    """Both sides of a joint over the run, and their relative turn: world axes."""
+
+    def __init__(self, motion, joint):
+        self.t = motion.t
+        frames = (None, None) if joint.frames is None else joint.frames
+        self.parent = _side(motion, joint.parent, frames[0])
+        self.child = _side(motion, joint.child, frames[1])
+        self.relative = quaternion.multiply(quaternion.conjugate(self.parent.turn), self.child.turn)
+        self.spin = self.child.spin - self.parent.spin
 
     def across(self, start, end):
-        """From a point of the parent to one of the child, given at the start: (T, 3) and its velocity."""
-        (_, xp, _, vp, wp), (_, xc, _, vc, wc) = self.parent, self.child
-        rp, rc = _arm(self.parent, start), _arm(self.child, end)
-        return xc + rc - xp - rp, vc + np.cross(wc, rc) - vp - np.cross(wp, rp)
+        """From a point of the parent to one of the child, as defined: (T, 3) and its velocity."""
+        p, c = self.parent, self.child
+        rp, rc = p.arm(start), c.arm(end)
+        gap = c.position + rc - p.position - rp
+        return gap, c.velocity + np.cross(c.spin, rc) - p.velocity - np.cross(p.spin, rp)
 
     def slide(self, anchor, direction):
-        e = quaternion.rotate(self.parent[0], direction)
+        e = quaternion.rotate(self.parent.turn, direction)
         gap, speed = self.across(anchor, anchor)
         # as seen from the parent, which turns: without w_p x gap
-        speed = speed - np.cross(self.parent[4], gap)
+        speed = speed - np.cross(self.parent.spin, gap)
         return np.sum(e * gap, axis=1), np.sum(e * speed, axis=1)
 
     def length(self, start, end):
@@ -105,7 +142,7 @@ class _Sides:
         return length, np.sum(gap * speed, axis=1) / length
 
     def turn(self, axis):
-        q, e = self.relative, quaternion.rotate(self.parent[0], axis)
+        q, e = self.relative, quaternion.rotate(self.parent.turn, axis)
         rate = np.sum(e * self.spin, axis=1)
         return unwrapped(2.0 * np.arctan2(q[:, 1:] @ axis, q[:, 0]), rate, self.t), rate
 
@@ -114,28 +151,16 @@ class _Sides:
         frame = np.stack([first, second, np.cross(first, second)], axis=1)
         C = frame.T @ quaternion.matrix(self.relative) @ frame
         angles = np.arctan2(C[:, 2, 1], C[:, 1, 1]), np.arctan2(C[:, 0, 2], C[:, 0, 0])
-        axes = quaternion.rotate(self.parent[0], first), quaternion.rotate(self.child[0], second)
+        axes = (
+            quaternion.rotate(self.parent.turn, first),
+            quaternion.rotate(self.child.turn, second),
+        )
         rates = [np.sum(e * self.spin, axis=1) for e in axes]
         return [(unwrapped(a, r, self.t), r) for a, r in zip(angles, rates)]
 
     def ball(self):
-        rate = quaternion.rotate_back(self.parent[0], self.spin)
+        rate = quaternion.rotate_back(self.parent.turn, self.spin)
         return quaternion.log(self.relative), rate
-
-
-def _motion(solution, body):
-    """Turn since the start (T, 4), centre, centre at the start, velocity, angular velocity of a body."""
-    k, zero = body.index, np.zeros((len(solution.t), 3))
-    if k < 0:
-        return np.tile([1.0, 0.0, 0.0, 0.0], (len(zero), 1)), zero, zero[0], zero, zero
-    turned = quaternion.multiply(solution.orientation[:, k], quaternion.conjugate(body.orientation))
-    x, v, w = solution.position, solution.velocity, solution.angular_velocity
-    return turned, x[:, k], body.position, v[:, k], w[:, k]
-
-
-def _arm(side, point):
-    """Arm (T, 3) from the centre to a point of the body that was at `point` at the start."""
-    return quaternion.rotate(side[0], point - side[2])
 
 
 def unwrapped(angle: np.ndarray, rate: np.ndarray, t: np.ndarray) -> np.ndarray:

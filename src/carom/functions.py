@@ -16,7 +16,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numba import carray, cfunc
+from numba import carray, cfunc  # pyright: ignore[reportPrivateImportUsage]
 from numba.core import types
 from numba.core.dispatcher import Dispatcher
 from numba.extending import intrinsic, overload
@@ -35,7 +35,7 @@ class Functions:
         self._kept: list[Any] = []
         self.failed: BaseException | None = None
 
-    def address(self, function: Callable, inside: tuple[int, ...], outside: tuple[int, ...]) -> int:
+    def address(self, function: Callable, inside: tuple[int, ...], outside: tuple[int, ...]):
         """Return the address of ``function(t, x) -> y``, x and y arrays of the given shapes."""
         if isinstance(function, Dispatcher):
             made = _compiled(function, inside, outside)
@@ -43,9 +43,7 @@ class Functions:
             return made.address
         made = _FORM(self._plain(function, inside, outside))
         self._kept.append(made)
-        address = ctypes.cast(made, ctypes.c_void_p).value
-        assert address is not None
-        return address
+        return ctypes.cast(made, ctypes.c_void_p).value
 
     def _plain(self, function, inside, outside):
         def call(t, read, write):
@@ -82,7 +80,8 @@ _options: Any = OPTIONS
 
 @overload(call_function, **_options)
 def _call_function(address, t, x, out):
-    return lambda address, t, x, out: _call(address, t, x, out)
+    call: Any = _call
+    return lambda address, t, x, out: call(address, t, x, out)
 
 
 @intrinsic

@@ -28,6 +28,7 @@ from carom.hold.events import (
     slides_on,
 )
 from carom.hold.jam import note_jam, presses
+from carom.hold.joint_events import STOPS, review_joints, turn_joint
 from carom.hold.lifecycle import hold_contact, settle
 from carom.hold.margins import meet_due, note_due
 from carom.hold.press import press
@@ -174,7 +175,7 @@ def advance(
                     dt *= 0.5
                     continue
                 begin_search(search, kind, other, low, dt, d1, d2)
-                if kind != GAP:
+                if kind != GAP and kind < STOPS:
                     note_due(held, search, work)
                 if kind == GAP and controls.location != LOCATE:
                     found = True
@@ -191,7 +192,8 @@ def advance(
                 return r.STRAYED
             if dt == remaining:
                 clock.spent = length
-            met = found and search.kind != GAP and meet_due(held, search)
+            of_contact = found and search.kind != GAP and search.kind < STOPS
+            met = of_contact and meet_due(held, search)
             if held.count[0] > 0:
                 turn_modes(system, controls, held, now, work, clock, records)
             if not found:
@@ -200,6 +202,11 @@ def advance(
             c = search.contact
             horizon = max(horizon - dt, 0.0) if exact else horizon
             action = NOTHING if met else STRIKE
+            if search.kind >= STOPS:
+                turn_joint(system, search.kind, c, held, now, work)
+                clock.in_step += 1
+                clock.at_once += 1
+                continue
             if search.kind != GAP and not met:
                 action = change_mode(system, held, c, search.kind, now, work, clock, records)
         closed = 0
@@ -214,6 +221,7 @@ def advance(
             if work.hit[0].code != 0:
                 search.pending, search.contact, search.horizon = STRIKE, c, horizon
                 return work.hit[0].code
+            review_joints(system, held, now, work)
             if controls.layer_time == 1 and clock.struck > struck:
                 clock.spent += records.impact[struck].duration  # the position stays
         if action == STRIKE and not (

@@ -9,6 +9,7 @@ from carom.contact.stop import write_stop_gaps
 from carom.coulomb.newton import newton_unit
 from carom.heap.layout import new_heap, roomier_heap
 from carom.heap.step import heap_unit
+from carom.hold.joint_events import first_modes
 from carom.hold.lifecycle import hold_unit, settle_unit
 from carom.hold.press import press_unit
 from carom.impact.corner.layout import MULTIPLE, CornerSettings
@@ -24,6 +25,7 @@ from carom.motion.rattle import Rattle, rattle_unit
 from carom.motion.reactions import start_errors, start_speeds
 from carom.motion.solve import with_address
 from carom.options import Options
+from carom.scene.joints import Joint
 from carom.scene.scene import Scene
 from carom.solution import Solution
 from carom.status import Status
@@ -96,7 +98,12 @@ class Run:
         system = with_address(system, self.now, self.work)
         self.compiled = self.compiled._replace(system=system)
         if options.project_start and len(system.joints):
-            project_start(system, self.now, self.work)
+            error = project_start(system, self.now, self.work)
+            if not error <= options.constraint_tolerance:
+                raise ValueError(
+                    "the start must be one that the joints can be brought to, got one from which Newton's "
+                    f"method leaves an error of {error:.3g}; begin nearer to it"
+                )
         check_start(scene, self.compiled, self.now, self.work, options)
         check_stops(scene, self.compiled, self.now, self.work, options)
         if system.contacts.size:
@@ -115,6 +122,7 @@ class Run:
             self.find_strike()
         if not np.all(system.bodies.ballistic):
             self.find_constrained_step()
+            first_modes(self.compiled.system, self.held, self.now, self.work)
         self.save_now()
 
     def save_now(self) -> None:
@@ -250,7 +258,9 @@ class Run:
     def solution(self, status: Status) -> Solution:
         """Return what was computed; after a failure up to the last state, between saved steps or not."""
         clock = self.clock[0]
-        if status is not Status.SUCCESS and clock.now > self.records.series.t[clock.saved - 1]:
+        further = clock.now > self.records.series.t[clock.saved - 1]
+        whole = all(np.all(np.isfinite(self.now[name])) for name in ("x", "Q", "v", "w"))
+        if status is not Status.SUCCESS and further and whole:
             self.records = r.room_for_one(self.records, clock.saved)
             self.save_now()
         return Solution.from_run(self, status)
@@ -296,7 +306,7 @@ def check_start(scene: Scene, compiled, start, work, options: Options) -> None:
             raise ValueError(f"position breaks {what}: its error must be 0, got {off:.6g}; {fits}")
         if rate * weight <= options.constraint_tolerance * speed + 1e-300:
             continue
-        if j < len(scene.joints):
+        if isinstance(element, Joint):
             raise ValueError(
                 f"velocity of {element.child.name!r} breaks joint {what}: the "
                 f"joint's own velocity must be 0, got {rate:.6g}; give velocity "

@@ -14,6 +14,7 @@ from carom.contact.gap import lowest, round_off
 from carom.contact.pair_point import smaller
 from carom.contact.stop import STOP, passage_stop, stop_gap
 from carom.hold.events import GAP, find_held_event, held_value, turned
+from carom.hold.joint_events import STOPS, find_joint_event, joint_event_value
 from carom.hold.margins import LEAST, NEAR
 from carom.jit import inlined, kernel
 
@@ -49,6 +50,9 @@ def examine(system, controls, held, now, dt, work):
     kind, i, d1, d2 = find_held_event(system, held, work.trial, work)
     if i >= 0:
         return BELOW, kind, i, 0.0, d1, d2
+    kind, i = find_joint_event(system, held, work.trial, work)
+    if i >= 0:
+        return BELOW, kind, i, 0.0, 0.0, 0.0
     far = turned(system, held, work.trial, dt, work)
     if far == 2:
         return AGAIN, GAP, -1, 0.0, 0.0, 0.0
@@ -69,6 +73,8 @@ def event_value(system, controls, held, search, state, work):
             return stop_gap(system, contact, state, work)
         search.tolerance = 4.0 * max(search.tolerance, round_off_of_both(contact, state))
         return lowest_pair(system, contact, search.contact, held, state, work)
+    if search.kind >= STOPS:
+        return joint_event_value(system, search.kind, search.contact, held, state, work), 0.0
     hold = held.points[search.contact]
     if hold.several == 1:
         search.tolerance = NEAR

@@ -13,6 +13,7 @@ from carom.dispatch import by_address, by_method
 from carom.impact import layout
 from carom.impact.alike import as_one
 from carom.impact.collapse import what_is_left
+from carom.impact.driven import driven_work
 from carom.impact.layer import traverse
 from carom.impact.resolve import resolve
 from carom.impact.strike_several import strike_several
@@ -95,6 +96,7 @@ def strike_unit(method, system, controls, held, c, state, cluster, corner, work,
             hit.code = NEEDS_CORNER
             return
         begin_event(system, c, cluster.seats[0].feature, state, clock, records)
+        first = clock.struck
         if single:
             hit.friction = contact.friction
             if approach == 0.0:
@@ -109,6 +111,7 @@ def strike_unit(method, system, controls, held, c, state, cluster, corner, work,
             return
         if system.joints.shape[0] > 0:
             project_velocity(system, state, work)
+        clock.loads += driven_work(system, state, first, clock, records)
         end_event(system, JAMS if jams else IMPACT, state, clock, records)
         forget_jams(held, k, cluster)
         for i in range(held.brinks.shape[0]):

@@ -23,6 +23,7 @@ from carom.motion.contact_point import (
 from carom.motion.elements import acceleration_bias, driven_power
 from carom.motion.forces import applied_wrenches
 from carom.motion.friction import slip_force, stick_force
+from carom.motion.joint_friction import joint_friction
 from carom.motion.solve import solve
 
 OPEN, SLIP, STICK = range(3)
@@ -48,13 +49,13 @@ def acceleration_unit(system, state, held, work, stage):
     """Write the accelerations into `rate` of `stage`, the powers of loads and of friction to work.result."""
     applied = applied_wrenches(system, state, True, work)
     bias_joints(system, state, work)
+    friction = joint_friction(system, state, work)
     solve(system, state, True, work)
     applied += driven_power(system, state, work)
     for b in range(system.bodies.shape[0]):
         motion, rate = work.body[b].motion, stage[b].rate
         for k in range(6):
             rate[k] = motion[k]
-    friction = 0.0
     for i in range(held.count[0]):
         hold = held.points[i]
         if hold.mode != OPEN and hold.several == 0 and hold.rest == 0:

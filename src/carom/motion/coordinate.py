@@ -110,3 +110,39 @@ def add_rows(c, state, factor, child, parent):
         A[0, 3] += s * tx
         A[0, 4] += s * ty
         A[0, 5] += s * tz
+
+
+@kernel
+def motion_along(c, state, work):
+    """Return what the motions that the last solve wrote do to q'."""
+    ax, ay, az = axis(state, c.parent, c.parent_frame, 0)
+    total = 0.0
+    for side in range(2):
+        b, s = (c.child, 1.0) if side == 0 else (c.parent, -1.0)
+        if b < 0:
+            continue
+        m = work.body[b].motion
+        if c.kind == PRISMATIC:
+            rx, ry, rz = arm(state, b, c.child_anchor)
+            if side == 1:
+                rx, ry, rz = parent_arm(c, state)
+            ux, uy, uz = cross(m[3], m[4], m[5], rx, ry, rz)
+            ux, uy, uz = ux + m[0], uy + m[1], uz + m[2]
+        else:
+            ux, uy, uz = m[3], m[4], m[5]
+        total += s * (ax * ux + ay * uy + az * uz)
+    return total
+
+
+@kernel
+def speeds_of(system, c, state):
+    """Return a bound of the speeds that q' is the difference of."""
+    total = 0.0
+    for side in range(2):
+        b = c.child if side == 0 else c.parent
+        if b >= 0:
+            v, w, size = state[b].v, state[b].w, system.bodies[b].extent
+            speed = math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
+            spin = math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
+            total += speed + size * spin if c.kind == PRISMATIC else spin + speed / size
+    return total

@@ -18,6 +18,7 @@ from carom.jit import inlined, kernel, unit
 from carom.motion.acceleration import acceleration, aim
 from carom.motion.adapt import forget_misses, note_misses
 from carom.motion.free import free_flight
+from carom.motion.joint_friction import stay_stuck
 from carom.motion.loops import dropped_rows
 from carom.motion.project import project_position, project_velocity
 from carom.motion.stay import return_held, stay_held
@@ -203,6 +204,7 @@ def constrained_step(system, A, weight, E, held, start, t0, h, end, work):
     return_held(system, held, end, work)
     if system.joints.shape[0] > 0:
         project_velocity(system, end, work)
+    stay_stuck(system, end, work)
     stay_held(system, held, end, work)
     if most == least:
         return applied, friction, 0, EVEN

@@ -75,9 +75,14 @@ def _project_velocity(system, state, work):
 
 @entry
 def project_start(system, state, work):
-    """Bring an initial state to the joints: what `Options.project_start` asks for."""
-    _project_position(system, state, work, 1e-14)
+    """Bring an initial state to the joints: what `Options.project_start` asks for. Return what is left."""
+    error = 1.0
+    for _ in range(20):
+        error = _project_position(system, state, work, 1e-14)
+        if error <= 1e-13:
+            break
     _project_velocity(system, state, work)
+    return error
 
 
 @kernel

@@ -13,7 +13,13 @@ from numpy.typing import ArrayLike
 
 from carom import check
 from carom.scene.bodies import Body, Ground
-from carom.scene.more_forces import CurveSpring, JointForce, JointSpring, UserForce
+from carom.scene.more_forces import (
+    CurveSpring,
+    JointForce,
+    JointFriction,
+    JointSpring,
+    UserForce,
+)
 from carom.scene.values import keep, optional_point, point
 
 
@@ -166,9 +172,19 @@ def _along_across(name: str, value: ArrayLike, unit: str) -> np.ndarray:
 
 
 ForceDefinition = (
-    Spring | Torque | Force | Bushing | JointSpring | JointForce | CurveSpring | UserForce
+    Spring
+    | Torque
+    | Force
+    | Bushing
+    | JointSpring
+    | JointForce
+    | JointFriction
+    | CurveSpring
+    | UserForce
 )
-FORCES = (Spring, Torque, Force, Bushing, JointSpring, JointForce, CurveSpring, UserForce)
+FORCES = (
+    Spring, Torque, Force, Bushing, JointSpring, JointForce, JointFriction, CurveSpring, UserForce,
+)  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -203,7 +219,7 @@ class AppliedForce:
 
 def force_on(definition) -> tuple | None:
     """Return the joint or the bodies that a definition names itself; None if it names none."""
-    if isinstance(definition, (JointSpring, JointForce)):
+    if isinstance(definition, (JointSpring, JointForce, JointFriction)):
         return (definition.joint,)
     return definition.bodies if isinstance(definition, UserForce) else None
 

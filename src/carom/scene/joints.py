@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom.check import number, unit_vector
+from carom.check import number, unit_quaternion, unit_vector
 from carom.scene.bodies import Body, Ground
 from carom.scene.values import keep, optional_point, point
 
@@ -310,6 +310,9 @@ class Joint:
     definition : Revolute, Spherical, ... (one of `carom.joints`)
     parent : Body or carom.GROUND
     child : Body
+    frames : None, or two pairs of arrays ((3,), (4,))
+        Position and orientation of the joint's frame in the parent and in the child, in their body axes; None
+        where the definition is in the world as the system stands at the start.
     """
 
     index: int
@@ -317,6 +320,14 @@ class Joint:
     definition: JointDefinition
     parent: Body | Ground
     child: Body
+    frames: tuple[tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]] | None = None
+
+    def anchor(self) -> np.ndarray:
+        """Return the anchor (3,) of the definition; where it has none that of the child, or of the frame."""
+        own = getattr(self.definition, "anchor", None)
+        if own is not None:
+            return own
+        return self.child.position if self.frames is None else np.zeros(3)
 
     @property
     def kind(self) -> str:
@@ -327,8 +338,35 @@ class Joint:
         return f"Joint({self.name!r}, {self.kind}, {self.parent.name!r} -> {self.child.name!r})"
 
 
-def make_joint(index, name, definition, parent, child) -> Joint:
+def make_joint(index, name, definition, parent, child, parent_frame, child_frame) -> Joint:
     """Return a checked `Joint`; the arguments are those of `Scene.add_joint`."""
     if isinstance(definition, KnifeEdge) and not isinstance(parent, Ground):
         raise ValueError(f"parent of a KnifeEdge must be carom.GROUND, got {parent!r}")
-    return Joint(index, name, definition, parent, child)
+    if (parent_frame is None) != (child_frame is None):
+        raise ValueError(
+            f"parent_frame and child_frame must be given together, got {parent_frame!r} and {child_frame!r}"
+        )
+    if parent_frame is None:
+        return Joint(index, name, definition, parent, child)
+    if isinstance(definition, (RollingSphere, RollingDisc)):
+        raise ValueError(
+            f"parent_frame must be left out of a {type(definition).__name__}, which is placed in the world, "
+            f"got {parent_frame!r}"
+        )
+    frames = (frame("parent_frame", parent_frame), frame("child_frame", child_frame))
+    return Joint(index, name, definition, parent, child, frames)
+
+
+def frame(name: str, value) -> tuple[np.ndarray, np.ndarray]:
+    """Return a frame of a body: position (3,) and unit quaternion (4,)."""
+    try:
+        position, orientation = value
+    except (TypeError, ValueError):
+        raise ValueError(
+            f"{name} must be a pair (position (3,), orientation (4,)), got {value!r}"
+        ) from None
+    position = point(f"{name} position", position)
+    orientation = unit_quaternion(f"{name} orientation", orientation)
+    for array in (position, orientation):
+        array.setflags(write=False)
+    return position, orientation

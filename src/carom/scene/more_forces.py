@@ -82,6 +82,33 @@ class JointForce:
 
 
 @dataclass(frozen=True, init=False, eq=False)
+class JointFriction:
+    """Dry (Coulomb) friction along a coordinate of a joint: up to `bound`, against the motion.
+
+    Where there is no motion it is what keeps it so, as long as that is within the bound: the joint sticks,
+    exactly. Slip that stops and stick that breaks are located within the step. Its work goes to
+    `ledger.friction`.
+
+    Parameters
+    ----------
+    joint : Joint
+    bound : float
+        [N] of a slide, [N m] of a turn, at least 0.
+    coordinate : int
+        Which coordinate of the joint. Default 0.
+    """
+
+    joint: Joint
+    bound: float
+    coordinate: int
+
+    def __init__(self, joint: Joint, bound: float, coordinate: int = 0):
+        coordinate_kind(joint, coordinate)
+        bound = check.number("bound", bound, least=0.0)
+        keep(self, joint=joint, bound=bound, coordinate=int(coordinate))
+
+
+@dataclass(frozen=True, init=False, eq=False)
 class CurveSpring:
     """A spring on the line between a point of the parent and one of the child, with a curve of your own.
 

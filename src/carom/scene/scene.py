@@ -125,6 +125,8 @@ class Scene(TouchingPairs):
         parent: Body | Ground,
         child: Body,
         *,
+        parent_frame: tuple[ArrayLike, ArrayLike] | None = None,
+        child_frame: tuple[ArrayLike, ArrayLike] | None = None,
         name: str | None = None,
     ) -> Joint:
         """Join two bodies, or a body and the ground.
@@ -132,11 +134,18 @@ class Scene(TouchingPairs):
         Parameters
         ----------
         definition
-            Of `carom.joints`: what is held, placed in the world at the start.
+            Of `carom.joints`: what is held, placed in the world at the start; or, with frames, in a frame that
+            both bodies carry.
         parent
             A body, or `carom.GROUND`.
         child
             Another body.
+        parent_frame, child_frame
+            Where that frame is in the parent (in the world, of the ground) and in the child: a pair (position
+            (3,), unit quaternion (4,)) in body axes, from the mass centre. Coordinates of the joint are 0 where
+            the two agree. The bodies need not be placed so that they fit: `Options(project_start=True)` brings
+            them together, else a start that does not fit is refused. Default None: the definition is in the
+            world.
         name
             Default ``"joint1"``, ``"joint2"``, ...
         """
@@ -144,7 +153,9 @@ class Scene(TouchingPairs):
         self._parts.pair(parent, child)
         index, name = self._parts.new(Joint, name, "joint")
         self._pairs.join(parent, child)
-        return self._parts.add(make_joint(index, name, definition, parent, child))
+        return self._parts.add(
+            make_joint(index, name, definition, parent, child, parent_frame, child_frame)
+        )
 
     def add_force(
         self,

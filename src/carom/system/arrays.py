@@ -112,6 +112,14 @@ PUSH = [
     ("address", "i8"),  # of a function of the user's: t, (q, q') -> force; 0 for none
 ]
 
+#: dry friction along a coordinate of a joint: |force| <= bound
+FRICTION = [
+    ("coordinate", "i8"),
+    ("bound", "f8"),
+    ("mode", "i8"),  # 1 or -1: slips in this direction; 0 sticks
+    ("force", "f8"),  # of the last solve
+]
+
 #: forces by a function of the user's: t, (bodies, 13) -> (bodies, 6)
 USER_FORCE = [
     ("address", "i8"),
@@ -411,6 +419,9 @@ class Relations(NamedTuple):
     pieces: np.recarray  # PIECE
     pushes: np.recarray  # PUSH
     forces: np.recarray  # USER_FORCE
+    frictions: np.recarray  # (F,) FRICTION
+    friction_matrix: np.ndarray  # (F, F) scratch
+    friction_vector: np.ndarray  # (F,) scratch
     named: np.ndarray  # bodies that functions of the user's speak of
     read: np.ndarray  # what functions of the user's read and write
     write: np.ndarray

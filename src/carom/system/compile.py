@@ -127,7 +127,7 @@ def _anchors(joint, flipped):
         return d.contact(joint.child.position), joint.child.position, frame
     if isinstance(d, RollingSphere):
         return d.contact(joint.child.position), joint.child.position, triad(d.normal)
-    anchor = joint.child.position if d.anchor is None else d.anchor
+    anchor = joint.anchor()
     if isinstance(d, KnifeEdge):
         along = np.cross(d.lateral, d.normal)
         return anchor, anchor, np.stack([along, d.lateral, d.normal], axis=1)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from carom.functions import Functions
-from carom.scene.more_forces import CurveSpring, JointForce, JointSpring, UserForce
-from carom.system.arrays import PIECE, PUSH, USER_FORCE, table
+from carom.scene.more_forces import CurveSpring, JointForce, JointFriction, JointSpring, UserForce
+from carom.system.arrays import FRICTION, PIECE, PUSH, USER_FORCE, table
 
 DEGREE = 5
 
@@ -37,7 +37,7 @@ class MoreForces:
     """What the scene's forces say beyond springs, loads and mounts."""
 
     def __init__(self, scene, coordinates, functions: Functions, pieces: Pieces):
-        self.pushes, self.forces, self.named = [], [], []
+        self.pushes, self.forces, self.frictions, self.named = [], [], [], []
         self.width = 0
         self.curves: dict[int, tuple[int, int]] = {}  # by the index of the force
         for force in scene.forces:
@@ -46,6 +46,8 @@ class MoreForces:
                 self.curves[force.index] = pieces.add(d.tension)
             elif isinstance(d, (JointSpring, JointForce)):
                 self.pushes.append(_push(d, coordinates, functions))
+            elif isinstance(d, JointFriction):
+                self.frictions.append(_friction(d, coordinates))
             elif isinstance(d, UserForce):
                 self.forces.append(self._of_user(d, functions))
 
@@ -63,7 +65,7 @@ class MoreForces:
     @property
     def any(self) -> bool:
         """Whether there are some."""
-        return bool(self.pushes or self.forces or self.curves)
+        return bool(self.pushes or self.forces or self.frictions or self.curves)
 
 
 def _push(d, coordinates, functions):
@@ -75,6 +77,12 @@ def _push(d, coordinates, functions):
         made.address = functions.address(_of_coordinate(d.force), (2,), (1,))
     else:
         made.force = d.force
+    return made
+
+
+def _friction(d, coordinates):
+    made = table(FRICTION, 1)
+    made.coordinate, made.bound = coordinates.number(d.joint, d.coordinate), d.bound
     return made
 
 

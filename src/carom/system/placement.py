@@ -35,7 +35,8 @@ class Placement:
 
     def side(self, joint, which: int) -> Side:
         """Return side 0 (parent) or 1 (child) of a joint of the scene."""
-        return Side(self, (joint.parent, joint.child)[which], None)
+        frame = None if joint.frames is None else joint.frames[which]
+        return Side(self, (joint.parent, joint.child)[which], frame)
 
 
 class Side:

@@ -9,6 +9,7 @@ from carom.scene.constraints import Coupling, Rows, coordinate_kind
 from carom.scene.joints import Joint, Planar, PointOnLine, PointOnPlane, Universal
 from carom.system.arrays import (
     COORDINATE,
+    FRICTION,
     PRISMATIC,
     PUSH,
     RELATION,
@@ -60,7 +61,7 @@ class Coordinates:
         frame = _frame(d, coordinate)
         if isinstance(d, Universal) and coordinate == 1:  # seen from the child
             first, second = second, first
-        anchor = joint.child.position if d.anchor is None else d.anchor
+        anchor = joint.anchor()
         row.kind = REVOLUTE if turns else PRISMATIC
         row.parent, row.child = first.body.index, second.body.index
         row.parent_anchor[:], row.child_anchor[:] = first.point(anchor), second.point(anchor)
@@ -172,6 +173,9 @@ class Elements:
             self.pieces.rows,
             _joined(PUSH, more.pushes),
             _joined(USER_FORCE, more.forces),
+            _joined(FRICTION, more.frictions),
+            np.zeros((len(more.frictions), len(more.frictions))),
+            np.zeros(len(more.frictions)),
             np.array(more.named, dtype=np.int64),
             np.zeros(max(self.width, more.width)),
             np.zeros(max(self.width, more.width)),

@@ -48,10 +48,11 @@ def loop_solver(touching: list[list[int]], drop: float) -> LoopSolver:
                     triple.append((s, t, slot[row[s], row[t]]))
         update.append(len(triple))
     rows = table(ROW, number)
-    rows.last = np.cumsum([len(bodies) for bodies in touching])
-    rows.first = rows.last - [len(bodies) for bodies in touching]
+    count = np.array([len(bodies) for bodies in touching], dtype=np.int64)
+    rows.last = np.cumsum(count)
+    rows.first = rows.last - count
     sides = table(SIDE, int(rows.last[-1]))
-    sides.element = np.repeat(np.arange(number), rows.last - rows.first)
+    sides.element = np.repeat(np.arange(number), count)
     sides.body = [b for bodies in touching for b in bodies]
     by_body: dict[int, list[int]] = {}
     for s, b in enumerate(sides.body):

@@ -1,0 +1,39 @@
+"""What motors give in an impact.
+
+Where rows prescribe a speed, a v = b, their impulses Lambda do work, Lambda . b with b = a v before the impact:
+
+    M (v+ - v-) = G^T Pi + a^T Lambda,     Lambda . b = v- . M (v+ - v-) - u- . Pi.
+"""
+
+from __future__ import annotations
+
+from carom.dispatch import only_with_relations
+from carom.geometry.rotation import rotate_back
+from carom.jit import kernel
+
+
+@kernel
+def _driven_work(system, state, first, clock, records):
+    """Return the work of motors in the impact whose rows begin at `first` and whose event is being written."""
+    work = 0.0
+    for b in range(state.shape[0]):
+        before, body, q = records.snapshot[clock.snapped + b], system.bodies[b], state[b].Q
+        v0, w0, v, w = before.v0, before.w0, state[b].v, state[b].w
+        s = rotate_back(q[0], q[1], q[2], q[3], w0[0], w0[1], w0[2])
+        d = rotate_back(q[0], q[1], q[2], q[3], w[0] - w0[0], w[1] - w0[1], w[2] - w0[2])
+        for k in range(3):
+            work += body.mass * v0[k] * (v[k] - v0[k]) + body.inertia[k] * s[k] * d[k]
+    for i in range(first, clock.struck):
+        row = records.impact[i]
+        for k in range(3):
+            work -= row.before[k] * row.impulse[k]
+    return work
+
+
+@kernel
+def _none(system, state, first, clock, records):
+    """Joints take no energy and give none."""
+    return 0.0
+
+
+driven_work = only_with_relations(_driven_work, _none)
