@@ -8,7 +8,7 @@ import numpy as np
 
 from carom import check
 from carom.options import Options
-from carom.scene.limits import check_location
+from carom.scene.limits import check_location, check_method
 from carom.scene.scene import Scene
 from carom.solution import Solution
 from carom.status import SimulationError, Status
@@ -113,6 +113,7 @@ def simulate(
         raise ValueError(f"{name} must be above duration / 1e12 = {duration / 1e12:g} s, got {h!r}")
     scene.validate()
     check_location(scene, impact_location)
+    check_method(scene, method)
 
     from carom.run import Run
 

@@ -5,7 +5,7 @@ import pytest
 from mechanism_scenes import about, orders, run
 
 import carom
-from carom import GROUND, Scene, constraints, joints
+from carom import GROUND, Scene, constraints, forces, joints
 
 METHODS = {"rattle": 2.0, "rattle4": 4.0, "rattle6": 6.0}
 STEPS = {"rattle": (1e-2, 5e-3), "rattle4": (2e-2, 1e-2), "rattle6": (4e-2, 2e-2)}
@@ -110,3 +110,14 @@ def test_steps_of_varying_length(make):
     known = run(make(), 0.6, 1e-3, method="rk8").position[-1]
     s = carom.simulate(make(), 0.6, step="auto", rtol=1e-8)
     assert np.max(np.abs(s.position[-1] - known)) < 1e-8
+
+
+@pytest.mark.plain
+@pytest.mark.parametrize("method", [*METHODS, "paper", "paper-ode"])
+def test_dry_friction_is_refused(method):
+    scene, first, _ = two_rods(True)
+    scene.add_force(forces.JointFriction(first, 1.0))
+    with pytest.raises(
+        ValueError, match=r"method must be .* where joints have dry friction, got '"
+    ):
+        carom.simulate(scene, 1.0, step=0.01, method=method)
