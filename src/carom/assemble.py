@@ -45,10 +45,11 @@ def assemble(run, status: Status) -> dict:
         "ledger": ledger,
         "status": status,
         "stats": {
-            "steps": int(clock.step), "trial_steps": int(clock.trials), "cuts": int(clock.cuts),
+            "steps": int(clock.step), "trial_steps": int(clock.trials),
+            "rejected": int(clock.rejected), "cuts": int(clock.cuts),
             "located": int(clock.located), "impacts": int(clock.struck), "holds": int(clock.holds),
             "held_steps": int(clock.pressed), "held_rounds": int(clock.rounds),
-            "whole_steps": int(clock.whole),
+            "whole_steps": int(clock.whole), "explicit_steps": int(run.work.result[0].fallen),
         },
         "scene": run.scene,
         "settings": dict(run.settings),

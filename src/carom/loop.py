@@ -38,6 +38,7 @@ from carom.impact.strike import strike
 from carom.jit import inlined, kernel
 from carom.loop_codes import HOLD, NOTHING, SETTLE, STRIKE
 from carom.motion.acceleration import OPEN, SLIP, STICK
+from carom.motion.adapt import NOTHING_LEFT, plan_next, shorter, step_error
 from carom.motion.contact_point import contact_velocity
 from carom.motion.explicit import keep
 from carom.motion.step import step
@@ -48,7 +49,7 @@ from carom.system.notes import begin_event, end_event
 
 LOCATE, PROJECT, WORK = range(3)
 STEP_CUT, TOO_MANY, NOT_FINITE = 2, 3, 4
-NO_CONVERGENCE = 1
+NO_CONVERGENCE, STEP_TOO_SMALL = 1, 12
 # where a step is given up: trial steps, work for held contacts, their residual as a part of what gravity gives
 TRIES, EFFORT, UNSOLVED = 3000, 2e7, 0.01
 
@@ -60,7 +61,7 @@ class Controls(NamedTuple):
     duration: float
     location: int  # LOCATE, PROJECT or WORK
     save_every: int
-    last: int  # number of the last step
+    last: int  # number of the last step; 0 where steps vary
     gap: float  # tolerance of a located gap, relative to the body
     tie: float  # vertices this near the lowest strike together, relative to the body
     hold: int
@@ -77,6 +78,10 @@ class Controls(NamedTuple):
     heap_at: int
     heap: int  # an island of so many bodies takes its steps whole
     retry: int  # 1: a step that does not get on is given up, to be taken whole
+    order: int  # of the error of a step whose length is chosen; 0: all steps are `step`
+    rtol: float
+    atol: float
+    longest: float
 
 
 @inlined
@@ -91,7 +96,8 @@ def advance(
         if clock.in_step > controls.max_impacts or clock.at_once > 1000:
             return TOO_MANY
         remaining = length - clock.spent
-        horizon = remaining if controls.location == LOCATE else controls.step
+        exact = controls.location == LOCATE and controls.order == 0
+        horizon = remaining if exact else controls.step
         action, c = search.pending, search.contact
         if action != NOTHING:  # what was put off until its unit was compiled
             horizon = search.horizon
@@ -100,7 +106,7 @@ def advance(
             action, c = look_near(system, controls, held, now, work)
         if action == NOTHING:
             # a trial step, cut until nothing can lie inside it, or shortened to its first event
-            dt, cuts, found = remaining, 0, False
+            dt, cuts, found, again = remaining, 0, False, False
             if held.count[0] > 0:
                 dt = until_stop(controls, held, dt, clock)
             search.active, search.eager = 0, 1 if clock.in_step < 20 else 0
@@ -111,9 +117,9 @@ def advance(
                 clock.tries += 1
                 if controls.retry == 1 and (clock.tries > TRIES or clock.effort > EFFORT):
                     return TOO_MANY
-                if code != 0:
+                if code != 0 and controls.order == 0:
                     return code
-                if held.count[0] > 0:
+                if held.count[0] > 0 and code == 0:
                     end_forces(system, held, trial, work)
                     press(
                         controls.press_at, system, controls, held, now, dt, trial, cluster,
@@ -123,6 +129,21 @@ def advance(
                         return work.result[0].code
                     applied += work.result[0].applied
                     friction += work.result[0].friction
+                if controls.order > 0 and search.active == 0:
+                    error = math.inf
+                    if code == 0:
+                        error = step_error(
+                            system, controls.rtol, controls.atol, now, dt, trial, work
+                        )
+                    if not error <= 1.0:
+                        if not dt > NOTHING_LEFT * controls.duration:
+                            return code if code != 0 else STEP_TOO_SMALL
+                        dt, again = shorter(dt, error, controls, clock), True
+                        remaining, length = dt, clock.length
+                        continue
+                    plan_next(dt, error, again, controls, clock)
+                elif code != 0:
+                    return code
                 if search.active == 1:
                     f, rate = event_value(system, controls, held, search, trial, work)
                     state = narrow(search, dt, f, rate)
@@ -179,7 +200,7 @@ def advance(
                 continue
             clock.located += 1
             c = search.contact
-            horizon = horizon if controls.location != LOCATE else max(horizon - dt, 0.0)
+            horizon = max(horizon - dt, 0.0) if exact else horizon
             action = NOTHING if met else STRIKE
             if search.kind >= STOPS:
                 turn_joint(system, search.kind, c, held, now, work)

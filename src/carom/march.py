@@ -8,6 +8,7 @@ from carom.islands import parts
 from carom.islands.layout import Islands, NoIslands
 from carom.jit import entry, inlined, kernel
 from carom.loop import NOT_FINITE, advance, strayed
+from carom.motion.adapt import begin_step
 from carom.motion.more_forces import note_turns
 from carom.save import finite, save
 from carom.system import records as r
@@ -18,11 +19,20 @@ def run(
     system, method, controls, held, now, work, islands, cluster, corner, heap, clocks, records,
     until,
 ):  # fmt: skip
-    """Go on from `now` to step number `until`. Returns 0, what the caller is to do, or a `Status`."""
+    """Go on from `now` to step number `until`, or to that time if the length of steps is chosen.
+
+    Returns 0, what the caller is to do, or a `Status`.
+    """
     clock = clocks[0]
-    while clock.step < until:
-        begin = clock.step * controls.step
-        length = min(controls.step, controls.duration - begin)
+    while (clock.now if controls.order > 0 else clock.step) < until:
+        if controls.order > 0:
+            if clock.saved >= records.series.shape[0]:
+                return r.NEEDS_ROWS
+            begin_step(controls, clock)
+            begin, length = clock.begin, clock.length
+        else:
+            begin = clock.step * controls.step
+            length = min(controls.step, controls.duration - begin)
         if not start(islands, system, held, now, length, clocks, work):
             return r.NEEDS_ROOM
         code = 0
@@ -33,6 +43,8 @@ def run(
                 islands, part, method, controls, own, here, begin, length, cluster, corner, heap,
                 scratch, clocks, records,
             )  # fmt: skip
+            if controls.order > 0:
+                length = clock.length
             if code == 0:
                 leave(islands, own)
         if code != 0:
@@ -47,9 +59,12 @@ def run(
         clock.in_step = 0
         clock.now = begin + length
         note_turns(system, now)
+        last = clock.step == controls.last
+        if controls.order > 0 and length == controls.duration - begin:
+            clock.now, last = controls.duration, True
         if not finite(now):
             return NOT_FINITE
-        if clock.step % controls.save_every == 0 or clock.step == controls.last:
+        if clock.step % controls.save_every == 0 or last:
             save(system, held, now, clock, work, records)
     return 0
 

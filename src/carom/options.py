@@ -73,6 +73,8 @@ class Options:
         instant stop it too.)
     max_cuts : int
         Most halvings of one step while an impact cannot be excluded. Default 40.
+    max_step : float or None
+        Longest step of ``step="auto"`` [s]. Default None: duration / 50.
     """
 
     layer_width: float | None = None
@@ -97,10 +99,13 @@ class Options:
     max_iterations: int = 100
     max_impacts_per_step: int = 1000
     max_cuts: int = 40
+    max_step: float | None = None
 
     def __post_init__(self):
         if self.layer_width is not None:
             check.number("layer_width", self.layer_width, above=0.0, unit="m")
+        if self.max_step is not None:
+            check.number("max_step", self.max_step, above=0.0, unit="s")
         check.number("penetration", self.penetration, above=0.0, below=1.0)
         for name in ("gap_tolerance", "tie_tolerance", "constraint_tolerance", "drop_tolerance"):
             check.number(name, getattr(self, name), above=0.0, below=1.0)

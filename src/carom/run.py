@@ -17,12 +17,13 @@ from carom.impact.strike import strike_unit
 from carom.impact.strike_several import corner_unit
 from carom.islands.layout import Islands, NoIslands, new_islands, roomier
 from carom.jit import address
+from carom.methods import FIRST, ORDERS, make_method, time_of_bounces
 from carom.motion.acceleration import acceleration_unit
-from carom.motion.explicit import EXPLICIT, constrained_unit, tableau
+from carom.motion.explicit import constrained_unit
 from carom.motion.project import project_start
+from carom.motion.rattle import Rattle, rattle_unit
 from carom.motion.reactions import start_errors, start_speeds
 from carom.motion.solve import with_address
-from carom.motion.three_field import ThreeField
 from carom.options import Options
 from carom.scene.joints import Joint
 from carom.scene.scene import Scene
@@ -33,21 +34,6 @@ from carom.system.cluster import new_cluster, new_corner
 from carom.system.compile import compile_scene
 
 LOCATIONS = {"locate": loop.LOCATE, "project": loop.PROJECT, "work": loop.WORK}
-
-
-def make_method(name: str, options: Options):
-    """Return the settings of a method by its name."""
-    if name in EXPLICIT:
-        return tableau(name)
-    return ThreeField(
-        int(name == "paper-ode"),
-        options.natural_frequency,
-        options.damping_ratio,
-        options.augmentation,
-        options.residual_tolerance,
-        options.max_iterations,
-        *tableau("rk4"),
-    )
 
 
 def corner_settings(options: Options) -> CornerSettings:
@@ -62,23 +48,28 @@ class Run:
     """A run that can be continued step by step; `solution` may be taken at any time."""
 
     def __init__(
-        self, scene: Scene, duration, step, steps, method, impact_location, save_every, options
-    ):
+        self, scene: Scene, duration, step, steps, method, impact_location, save_every, options,
+        tolerances: tuple[float, float] | None = None,
+    ):  # fmt: skip
         self.scene, self.options = scene, options
         self.settings = {
             "duration": duration, "step": step, "method": method,
             "impact_location": impact_location, "save_every": save_every,
         }  # fmt: skip
-        paper = method not in EXPLICIT
+        paper = method.startswith("paper")
         self.compiled = compile_scene(scene, options, loops=paper)
         system, self.now = self.compiled.system, self.compiled.start
-        self.method = make_method(method, options)
+        self.method = make_method(method, options, tolerances is not None)
+        longest = step
+        if tolerances is not None:
+            self.settings.update(step="auto", rtol=tolerances[0], atol=tolerances[1])
+            longest, step = step, time_of_bounces(system, tolerances, step)
         self.controls = loop.Controls(
             step=step,
             duration=duration,
             location=LOCATIONS[impact_location],
             save_every=save_every,
-            last=steps,
+            last=steps if tolerances is None else 0,
             gap=options.gap_tolerance,
             tie=options.tie_tolerance,
             hold=int(options.hold),
@@ -95,6 +86,10 @@ class Run:
             heap_at=0,
             heap=options.heap,
             retry=0,
+            order=0 if tolerances is None else ORDERS[method],
+            rtol=tolerances[0] if tolerances else 0.0,
+            atol=tolerances[1] if tolerances else 0.0,
+            longest=longest,
         )
         self.held = r.new_held(system)
         self.work = r.new_work(system, self.method.b.size)
@@ -113,14 +108,16 @@ class Run:
         check_stops(scene, self.compiled, self.now, self.work, options)
         if system.contacts.size:
             self.work.body.group = system.bodies.component
-        apart = method in EXPLICIT and impact_location == "locate"
+        apart = not paper and impact_location == "locate" and tolerances is None
         self.islands = new_islands(system, self.held) if apart else NoIslands(0)
         self.controls = self.controls._replace(retry=int(isinstance(self.islands, Islands)))
         self.cluster = new_cluster(system)
         self.heap = new_heap(1, 1, 1)  # made when there is one
         self.corner = new_corner(system, corner_settings(options))
         self.clock = r.new_clock()
-        self.records = r.new_records(system, -(-steps // save_every) + 1, 512)
+        self.clock.ahead = FIRST * longest
+        rows = 256 if tolerances else -(-steps // save_every) + 1
+        self.records = r.new_records(system, rows, 512)
         if system.contacts.size:
             self.find_strike()
         if not np.all(system.bodies.ballistic):
@@ -167,7 +164,7 @@ class Run:
 
     def find_constrained_step(self) -> None:
         """Compile the step of bodies that are joined, loaded or held."""
-        system, coefficients = self.compiled.system, (self.method.A, self.method.b)
+        system, coefficients = self.compiled.system, (self.method.A, self.method.b, self.method.E)
         found = address(
             acceleration_unit, system, self.now, self.held, self.work, self.work.stages[0]
         )
@@ -177,6 +174,11 @@ class Run:
             self.work,
         )  # fmt: skip
         self.method = self.method._replace(address=found)
+        if isinstance(self.method, Rattle) and self.method.at == 0:
+            found = address(
+                rattle_unit, self.method.parts, system, self.now, 0.0, self.now, self.work
+            )
+            self.method = self.method._replace(at=found)
 
     def find_hold(self) -> None:
         """Compile what a held contact needs: only when the first one is to be held."""
@@ -224,15 +226,23 @@ class Run:
         """What a function of the user's has raised."""
         return self.compiled.functions.failed
 
-    def go_on(self, until: int) -> Status:
-        """Go on to step number `until`, or to a failure."""
+    @property
+    def reached(self) -> float:
+        """Time that the run has come to."""
+        return float(self.clock[0].now)
+
+    def go_on(self, until: float) -> Status:
+        """Go on to step number `until`, or to that time if steps vary, or to a failure."""
         while True:
             code = march.run(
                 self.compiled.system, self.method, self.controls, self.held, self.now, self.work,
-                self.islands, self.cluster, self.corner, self.heap, self.clock, self.records, until,
+                self.islands, self.cluster, self.corner, self.heap, self.clock, self.records,
+                float(until),
             )  # fmt: skip
             if code == r.FULL:
                 self.records = r.longer(self.records)
+            elif code == r.NEEDS_ROWS:
+                self.records = r.more_rows(self.records)
             elif code == r.NEEDS_HOLD:
                 self.find_constrained_step()
                 self.find_hold()
@@ -245,7 +255,10 @@ class Run:
             elif code == r.NEEDS_ROOM:
                 assert isinstance(self.islands, Islands)
                 self.islands = roomier(self.islands)
-            elif self.compiled.functions.failed is not None:
+            elif isinstance(self.failure, KeyboardInterrupt):  # while a plain function ran
+                self.compiled.functions.failed = None
+                return Status.INTERRUPTED
+            elif self.failure is not None:
                 return Status.FUNCTION_FAILED
             else:
                 return Status(code)

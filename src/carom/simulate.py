@@ -11,28 +11,31 @@ from carom import check
 from carom.generalized.solution import GeneralizedSolution
 from carom.generalized.system import GeneralizedSystem
 from carom.options import Options
-from carom.scene.limits import check_location
+from carom.scene.limits import check_location, check_method
 from carom.scene.scene import Scene
 from carom.solution import Solution
 from carom.status import SimulationError, Status
 
-METHODS = ("rk4", "rk5", "rk8", "paper", "paper-ode")
+METHODS = ("rk4", "rk5", "rk8", "rattle", "rattle4", "rattle6", "paper", "paper-ode")
+ADAPTIVE = ("rk5", "rk8")  # methods with an estimate of their error
 LOCATIONS = ("locate", "project", "work")
 CHUNKS = 100  # calls of the compiled loop in one run, for progress and for Ctrl-C
 
 
 @overload
 def simulate(
-    scene: Scene, duration: float, *, step: float, method: str = ..., impact_location: str = ...,
-    save_every: int = ..., progress: bool | Callable[[int, int], None] | None = ...,
+    scene: Scene, duration: float, *, step: float | str, method: str | None = ...,
+    rtol: float | None = ..., atol: float | None = ..., impact_location: str = ...,
+    save_every: int = ..., progress: bool | Callable[[float, float], None] | None = ...,
     options: Options | None = ..., throw: bool = ...,
 ) -> Solution: ...  # fmt: skip
 
 
 @overload
 def simulate(
-    scene: GeneralizedSystem, duration: float, *, step: float, method: str = ..., impact_location: str = ...,
-    save_every: int = ..., progress: bool | Callable[[int, int], None] | None = ...,
+    scene: GeneralizedSystem, duration: float, *, step: float | str, method: str | None = ...,
+    rtol: float | None = ..., atol: float | None = ..., impact_location: str = ...,
+    save_every: int = ..., progress: bool | Callable[[float, float], None] | None = ...,
     options: Options | None = ..., throw: bool = ...,
 ) -> GeneralizedSolution: ...  # fmt: skip
 
@@ -41,11 +44,13 @@ def simulate(
     scene: Scene | GeneralizedSystem,
     duration: float,
     *,
-    step: float,
-    method: str = "rk4",
+    step: float | str,
+    method: str | None = None,
+    rtol: float | None = None,
+    atol: float | None = None,
     impact_location: str = "locate",
     save_every: int = 1,
-    progress: bool | Callable[[int, int], None] | None = None,
+    progress: bool | Callable[[float, float], None] | None = None,
     options: Options | None = None,
     throw: bool = True,
 ) -> Solution | GeneralizedSolution:
@@ -57,24 +62,34 @@ def simulate(
         What moves. It is not changed. A system in coordinates takes the explicit methods, and "locate".
     duration : float
         Time to simulate [s].
-    step : float
-        Time step h [s]. The last step is shorter where `duration` is not a multiple of it.
-    method : {"rk4", "rk5", "rk8", "paper", "paper-ode"}
+    step : float or "auto"
+        Time step h [s]. The last step is shorter where `duration` is not a multiple of it. ``"auto"``: steps as
+        long as `rtol` and `atol` allow, for ``"rk5"`` and ``"rk8"``.
+    method : {"rk4", "rk5", "rk8", "rattle", "rattle4", "rattle6", "paper", "paper-ode"}
         How free motion is stepped. ``"rk4"`` (default): explicit, order 4, constraints exact, free bodies
-        exact in energy and momentum, impacts solved to round-off. ``"rk5"``, ``"rk8"``: the same with order
-        5 (6 stages) and 8 (12 stages), for joints, loads and contact held at one point; bodies of unequal
-        moments fly with order 4 all the same. ``"paper"``: the paper's chain,
+        exact in energy and momentum, impacts solved to round-off. ``"rk5"`` (default of ``step="auto"``),
+        ``"rk8"``: the same with order 5 (6 stages) and 8 (12 stages), for joints, loads and contact held at
+        one point; bodies of unequal moments fly with order 4 all the same. ``"rattle"``, ``"rattle4"``,
+        ``"rattle6"``: symplectic, of order 2, 4 and 6, for joints and loads over long times: no trend in
+        energy, momenta of floating systems kept; held contacts go by ``"rk4"`` (``"rattle6"``: ``"rk8"``),
+        and so do steps across a singular position. ``"paper"``: the paper's chain,
         three fields of order 2 with exact constraints, impacts through the boundary layer by
         cubic splines. ``"paper-ode"``: the same with the paper's second-order equations of the multipliers
         instead of exact constraints.
+    rtol, atol : float, optional
+        Only for ``step="auto"``: no body misses in a step by more than ``atol + rtol * max(size, way)`` [m].
+        `size` is the body's, `way` what it goes in the step; errors of angles count at the distance
+        `size`, those of velocities as what they do while the body goes its size. Defaults 1e-6 and
+        1e-9 m. (Mathematics page, II.3.)
     impact_location : {"locate", "project", "work"}
         ``"locate"`` (default): the time of an impact is found inside the step, the return map is its last
         polish. ``"project"``: the paper literally, the step is kept and the return map brings the system back
         to the boundary. ``"work"``: as ``"project"``, with the energy of the return made good.
     save_every : int
-        Save each `save_every`-th step (the first and the last always). Default 1.
+        Save each `save_every`-th step (the first and the last always), of whatever length. Default 1.
     progress : bool or callable, optional
-        True shows a progress bar (needs tqdm); a function is called with (steps done, steps in all).
+        True shows a progress bar (needs tqdm); a function is called with (steps done, steps in all), or
+        for ``step="auto"`` with (time reached, duration).
     options : Options, optional
         Tolerances, boundary layer, limits.
     throw : bool
@@ -101,42 +116,53 @@ def simulate(
             f"scene must be a carom.Scene or a carom.GeneralizedSystem, got {type(scene).__name__}"
         )
     duration = check.number("duration", duration, above=0.0, unit="s")
-    step = check.number("step", step, above=0.0, unit="s")
+    adapts = isinstance(step, str) and step == "auto"
+    if not adapts:
+        if isinstance(step, str):
+            raise ValueError(f'step must be a number [s] or "auto", got {step!r}')
+        step = check.number("step", step, above=0.0, unit="s")
+    method = ("rk5" if adapts else "rk4") if method is None else method
     check.choice("method", method, METHODS)
     check.choice("impact_location", impact_location, LOCATIONS)
+    tolerances = check_tolerances(adapts, method, impact_location, rtol, atol)
     check.integer("save_every", save_every, least=1)
     if not isinstance(throw, bool):
         raise TypeError(f"throw must be True or False, got {throw!r}")
     options = Options() if options is None else options
     if not isinstance(options, Options):
         raise TypeError(f"options must be carom.Options, got {type(options).__name__}")
-    if not duration / step < 1e12:
-        raise ValueError(
-            f"step must be above duration / 1e12 = {duration / 1e12:g} s, got {step!r}"
-        )
-    steps = max(1, int(np.ceil(duration / step * (1.0 - 1e-12))))
+    h = min(duration, options.max_step or duration / 50.0) if adapts else float(step)
+    if not duration / h < 1e12:
+        name = "Options.max_step" if adapts else "step"
+        raise ValueError(f"{name} must be above duration / 1e12 = {duration / 1e12:g} s, got {h!r}")
+    steps = max(1, int(np.ceil(duration / h * (1.0 - 1e-12))))
     if isinstance(scene, GeneralizedSystem):
+        if adapts:
+            raise ValueError('step of a system in coordinates must be a number [s], got "auto"')
         check.choice("method of a system in coordinates", method, METHODS[:3])
         check.choice("impact_location of a system in coordinates", impact_location, LOCATIONS[:1])
 
         from carom.generalized.run import GeneralizedRun
 
-        run = GeneralizedRun(scene, duration, step, steps, method, save_every, options)
+        run = GeneralizedRun(scene, duration, h, steps, method, save_every, options)
     else:
         scene.validate()
         check_location(scene, impact_location)
+        check_method(scene, method)
 
         from carom.run import Run
 
-        run = Run(scene, duration, step, steps, method, impact_location, save_every, options)
+        run = Run(
+            scene, duration, h, steps, method, impact_location, save_every, options, tolerances
+        )
     status = Status.SUCCESS
-    report = _reporter(progress, steps)
-    chunk = max(1, -(-steps // CHUNKS)) if report is not None else steps
+    total = duration if adapts else steps
+    report = _reporter(progress, total, "s" if adapts else "step")
     try:
-        for until in (*range(chunk, steps, chunk), steps):
+        for until in goals(total, 1 if report is None else CHUNKS):
             status = run.go_on(until)
             if report is not None:
-                report(int(run.steps_done), steps)
+                report(run.reached if adapts else run.steps_done, total)
             if status is not Status.SUCCESS:
                 break
     except KeyboardInterrupt:
@@ -151,26 +177,54 @@ def simulate(
     return solution
 
 
+def check_tolerances(adapts: bool, method: str, location: str, rtol, atol):
+    """Return the tolerances (rtol, atol) of steps of varying length, or None for steps of one length."""
+    if not adapts:
+        for name, value in (("rtol", rtol), ("atol", atol)):
+            if value is not None:
+                raise ValueError(f'{name} is for step="auto", got {value!r} with a given step')
+        return None
+    if method not in ADAPTIVE:
+        raise ValueError(
+            f'method must be {" or ".join(map(repr, ADAPTIVE))} for step="auto" (they estimate their error), '
+            f"got {method!r}"
+        )
+    if location != "locate":
+        raise ValueError(f"impact_location must be 'locate' for step=\"auto\", got {location!r}")
+    return (
+        check.number("rtol", 1e-6 if rtol is None else rtol, least=1e-13, most=0.1),
+        check.number("atol", 1e-9 if atol is None else atol, least=0.0, unit="m"),
+    )
+
+
+def goals(total: float, parts: int) -> list[float]:
+    """Return where a run of `total` steps, or seconds, stops on its way to report."""
+    if isinstance(total, int):
+        chunk = max(1, -(-total // parts))
+        return [*range(chunk, total, chunk), total]
+    return [total * k / parts for k in range(1, parts)] + [total]
+
+
 class _Bar:
     """A tqdm bar as a progress function."""
 
-    def __init__(self, total: int):
+    def __init__(self, total: float, unit: str):
         from tqdm import tqdm
 
-        self.bar = tqdm(total=total, unit="step")
+        self.bar = tqdm(total=total, unit=unit)
 
-    def __call__(self, done: int, total: int) -> None:
+    def __call__(self, done: float, total: float) -> None:
         self.bar.update(done - self.bar.n)
 
     def close(self) -> None:
         self.bar.close()
 
 
-def _reporter(progress, steps: int):
+def _reporter(progress, total: float, unit: str):
     if progress is None or progress is False:
         return None
     if progress is True:
-        return _Bar(steps)
+        return _Bar(total, unit)
     if callable(progress):
         return progress
     raise TypeError(f"progress must be True, False or a function, got {progress!r}")

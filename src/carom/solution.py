@@ -51,9 +51,10 @@ class Solution:
     status : Status
         How the run ended; `success` and `message` say it shorter and longer.
     stats : dict
-        Counts: steps, trial steps, cuts, located events, impacts, holds; steps of held points and their
-        rounds (of a heap: sweeps); and `whole_steps`, how often bodies that could not go from event to event
-        took steps as a heap.
+        Counts: steps, trial steps, rejected ones (``step="auto"``), cuts, located events, impacts, holds;
+        steps of held points and their rounds (of a heap: sweeps); `explicit_steps`, those that a symplectic
+        method left to the explicit one in singular positions; and `whole_steps`, how often bodies that could
+        not go from event to event took steps as a heap.
     """
 
     t: np.ndarray

@@ -20,6 +20,7 @@ class Status(IntEnum):
     INTERRUPTED = 9
     TOO_MANY_POINTS = 10
     SINGULAR_METRIC = 11
+    STEP_TOO_SMALL = 12
 
     @property
     def message(self) -> str:
@@ -67,6 +68,10 @@ _MESSAGES = {
     Status.SINGULAR_METRIC: (
         "The metric is not positive definite at a position on the way: the coordinates are singular there. "
         "Take others, or a smaller step."
+    ),
+    Status.STEP_TOO_SMALL: (
+        "The step that the tolerances ask for has become too small: a force jumps or grows without "
+        "bound, or rtol and atol are below round-off. Raise them, or give a step."
     ),
     Status.INTERRUPTED: "The run was interrupted; the solution holds what was computed until then.",
 }

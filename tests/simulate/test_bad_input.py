@@ -27,7 +27,11 @@ NAN, INF = math.nan, math.inf
         ({"step": 1e-13}, ValueError, r"step must be above duration / 1e12 = 1e-12 s, got 1e-13"),
         ({"method": "rk45"}, ValueError, r"method must be one of .* got 'rk45'; did you mean 'rk5'"),
         ({"method": "papr"}, ValueError, r"got 'papr'; did you mean 'paper'"),
-        ({"method": 4}, ValueError, r"method must be one of 'paper', 'paper-ode', 'rk4', 'rk5', 'rk8', got 4"),
+        (
+            {"method": 4}, ValueError,
+            r"method must be one of 'paper', 'paper-ode', 'rattle', 'rattle4', 'rattle6', 'rk4', 'rk5', "
+            r"'rk8', got 4",
+        ),
         ({"method": ["rk4"]}, ValueError, r"method must be one of .* got \['rk4'\]"),
         (
             {"impact_location": "localte"}, ValueError,

@@ -90,16 +90,21 @@ class GeneralizedRun:
         """Number of finished steps."""
         return int(self.clock[0].step)
 
+    @property
+    def reached(self) -> float:
+        """Time that the run has come to."""
+        return float(self.clock[0].now)
+
     def save_now(self) -> None:
         """Write the present state into the records."""
         save_now(self.x, self.clock, self.series, self.states)
 
-    def go_on(self, until: int) -> Status:
+    def go_on(self, until: float) -> Status:
         """Go on to step number `until`, or to a failure."""
         code = self.start_code
         while code == 0:
             code = march(
-                self.system, self.method, self.held, self.x, self.plan, until, self.work,
+                self.system, self.method, self.held, self.x, self.plan, int(until), self.work,
                 self.clock, self.series, self.states,
             )  # fmt: skip
             if code != EVENT:

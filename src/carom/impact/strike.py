@@ -23,6 +23,7 @@ from carom.motion.contact_point import add_velocity, contact_velocity, spread
 from carom.motion.explicit import Explicit
 from carom.motion.forces import potential_energy
 from carom.motion.project import project_velocity
+from carom.motion.rattle import Rattle
 from carom.motion.three_field import ThreeField
 from carom.system.notes import begin_event, end_event
 from carom.system.records import IMPACT, JAMS, NEEDS_CORNER
@@ -173,4 +174,4 @@ def by_layer(method, controls, contact, hit, history):
 
 
 #: collide(method, controls, contact, hit, history): resolve the impact in work.hit the way the method does it
-collide = by_method({Explicit: by_impulse, ThreeField: by_layer})
+collide = by_method({Explicit: by_impulse, Rattle: by_impulse, ThreeField: by_layer})

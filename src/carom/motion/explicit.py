@@ -16,6 +16,7 @@ from carom.dispatch import by_address
 from carom.geometry.rotation import multiply, normalize
 from carom.jit import inlined, kernel, unit
 from carom.motion.acceleration import acceleration, aim
+from carom.motion.adapt import forget_misses, note_misses
 from carom.motion.free import free_flight
 from carom.motion.joint_friction import stay_stuck
 from carom.motion.loops import dropped_rows
@@ -28,10 +29,11 @@ EVEN, FIRST, LAST, MIDDLE = range(4)  # which stages leave out more rows than ot
 
 
 class Explicit(NamedTuple):
-    """A Runge-Kutta method: strictly lower triangular A, weights b."""
+    """A Runge-Kutta method: strictly lower triangular A, weights b, and those of its errors."""
 
     A: np.ndarray  # (S, S)
     b: np.ndarray  # (S,)
+    E: np.ndarray  # (0, S) none; (1, S); (2, S) of orders 5 and 3
     address: int  # of the step for bodies that are joined, loaded or held; 0 while none is
 
 
@@ -48,19 +50,33 @@ def tableau(name: str) -> Explicit:
         A = np.zeros((4, 4))
         A[1, 0] = A[2, 1] = 0.5
         A[3, 2] = 1.0
-        return Explicit(A, np.array([1.0, 2.0, 2.0, 1.0]) / 6.0, 0)
+        return Explicit(A, np.array([1.0, 2.0, 2.0, 1.0]) / 6.0, np.zeros((0, 4)), 0)
     from scipy.integrate import DOP853, RK45
 
     chosen = {"rk5": RK45, "rk8": DOP853}[name]
     stages = len(chosen.B)
     A = np.zeros((stages, stages))
     A[:, : chosen.A.shape[1]] = chosen.A[:stages]
-    return Explicit(A, np.array(chosen.B), 0)
+    return Explicit(A, np.array(chosen.B), np.zeros((0, stages)), 0)
+
+
+def with_error(name: str) -> Explicit:
+    """Return `"rk5"` (with a seventh stage, at the end) or `"rk8"`, and the weights of its error."""
+    from scipy.integrate import DOP853, RK45
+
+    method = tableau(name)
+    if name == "rk8":
+        return method._replace(E=np.array([DOP853.E5[:-1], DOP853.E3[:-1]]))
+    A = np.zeros((7, 7))
+    A[:6, :6], A[6, :6] = method.A, method.b
+    return method._replace(A=A, b=np.append(method.b, 0.0), E=np.array([RK45.E]))
 
 
 @inlined
 def explicit_step(method, system, held, start, h, end, work):
     """Write the state a time h after `start` into `end`; return work of loads, of friction, a status."""
+    if method.E.shape[0] > 0:
+        forget_misses(work)
     if not fly(system, held, start, h, end, work):
         return 0.0, 0.0, 0
     return constrained(method, system, held, start, h, end, work)
@@ -69,13 +85,13 @@ def explicit_step(method, system, held, start, h, end, work):
 @inlined
 def constrained(method, system, held, start, h, end, work):
     """Step the bodies that are joined, loaded or held; as `explicit_step` gives back."""
-    whole_or_parts(method.address, method.A, method.b, system, held, start, h, end, work)
+    whole_or_parts(method.address, method.A, method.b, method.E, system, held, start, h, end, work)
     result = work.result[0]
     return result.applied, result.friction, result.code
 
 
 @unit
-def constrained_unit(A, weight, system, held, start, h, end, work):
+def constrained_unit(A, weight, E, system, held, start, h, end, work):
     """Step at once; or in two unequal parts, if some stages fell into a singular position.
 
     There rows depend on each other that do not elsewhere, and are left out: the acceleration of that
@@ -85,6 +101,9 @@ def constrained_unit(A, weight, system, held, start, h, end, work):
     share = 1.0
     applied, friction, code = 0.0, 0.0, 0
     for part in range(3):
+        if part == 1:  # what the whole step gave is void
+            forget_misses(work)
+            applied, friction = 0.0, 0.0
         first, last, dt, t0 = start, end, h, work.result[0].start
         if part == 1:
             for b in range(start.shape[0]):
@@ -92,9 +111,7 @@ def constrained_unit(A, weight, system, held, start, h, end, work):
             last, dt = work.middle, share * h
         elif part == 2:
             first, dt, t0 = work.middle, (1.0 - share) * h, t0 + share * h
-        p, f, code, where = constrained_step(system, A, weight, held, first, t0, dt, last, work)
-        if part == 1:  # what the whole step gave is void
-            applied, friction = 0.0, 0.0
+        p, f, code, where = constrained_step(system, A, weight, E, held, first, t0, dt, last, work)
         applied, friction = applied + p, friction + f
         if code != 0 or (part == 0 and where == EVEN):
             break
@@ -104,7 +121,7 @@ def constrained_unit(A, weight, system, held, start, h, end, work):
     result.applied, result.friction, result.code = applied, friction, code
 
 
-#: whole_or_parts(address, A, weight, system, held, start, h, end, work)
+#: whole_or_parts(address, A, weight, E, system, held, start, h, end, work)
 whole_or_parts = by_address(constrained_unit)
 
 
@@ -147,7 +164,7 @@ def mark_held(system, held, work):
 
 
 @kernel
-def constrained_step(system, A, weight, held, start, t0, h, end, work):
+def constrained_step(system, A, weight, E, held, start, t0, h, end, work):
     """Step the bodies that are joined, loaded or held, from the time t0; the others are in `end` already.
 
     Returns work of loads, of friction, a status, and which stages left out more rows than others.
@@ -174,6 +191,8 @@ def constrained_step(system, A, weight, held, start, t0, h, end, work):
     combine(weight, stages, h, start, work.stages, stage)
     work.result[0].time = t0 + h
     bound_accelerations(work, stages)
+    if E.shape[0] > 0:
+        note_misses(system, E, h, work)
     for b in range(stage.shape[0]):
         status = work.body[b].status
         if status == ONE or (status != RESTS and system.bodies[b].ballistic == 0):

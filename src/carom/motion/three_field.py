@@ -65,6 +65,7 @@ class ThreeField(NamedTuple):
     most: int  # iterations
     A: np.ndarray
     b: np.ndarray
+    E: np.ndarray
     address: int
 
 

@@ -292,6 +292,7 @@ BODY_WORK = [
     ("wrench", "f8", 6),  # what a solve takes: force and torque, or impulse
     ("motion", "f8", 6),  # what a solve gives: linear, angular
     ("bound", "f8", 3),  # greatest linear, angular acceleration and spin of the last step
+    ("miss", "f8", 3),  # two estimates of the error of a step [m], and what they are measured by
     ("inverse", "f8", 6),  # inverse inertia, world axes
     ("group", "i8"),  # bodies with the same number move each other: joined, or held to each other
     ("holds", "i8"),  # of the body that its group is named after: held points of the group
@@ -324,6 +325,7 @@ RESULT = [
     ("power", "f8"),  # of loads, and of friction, with the last accelerations
     ("drag", "f8"),
     ("residual", "f8"),  # greatest of the groups held at several points
+    ("fallen", "i8"),  # steps of a symplectic method that the explicit one has taken
     ("start", "f8"),  # time at which the step on trial starts
     ("time", "f8"),  # of the state that is looked at: what is prescribed depends on it
 ]

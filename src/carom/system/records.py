@@ -35,6 +35,12 @@ LEDGER = [("loads", "f8"), ("impacts", "f8"), ("friction", "f8"), ("bounces", "f
 CLOCK = [
     ("now", "f8"),
     ("spent", "f8"),  # of the present step
+    (
+        "begin",
+        "f8",
+    ),  # start and length of the present step, and length of the next, where it varies
+    ("length", "f8"),
+    ("ahead", "f8"),
     *LEDGER,
     ("step", "i8"),  # finished steps
     ("saved", "i8"),
@@ -48,6 +54,7 @@ CLOCK = [
     ("at_once", "i8"),  # impacts and events since time last went on
     ("cuts", "i8"),
     ("trials", "i8"),
+    ("rejected", "i8"),  # trial steps of too great an error
     ("tries", "i8"),  # trial steps of the present step of an island
     ("effort", "f8"),  # iterations of its contact problems, times the squares of their sizes
     ("located", "i8"),
@@ -124,6 +131,7 @@ NEEDS_HOLD = 101  # a contact is to be held: the caller compiles what that needs
 NEEDS_ROOM = 103  # more pairs are near each other than there is room for: the same
 NEEDS_HEAP = 104  # an island is a heap: the caller compiles its step and goes on
 NEEDS_SPOTS = 105  # more points may touch in a heap than there is room for: the caller makes more
+NEEDS_ROWS = 107  # more steps are to be saved than there is room for: the same
 STRAYED = 106  # a body has left the ball that its island gave it
 
 
@@ -203,6 +211,17 @@ def longer(records: Records) -> Records:
         **{
             name: np.concatenate([a, np.zeros_like(a)]).view(np.recarray)
             for name in ("touch", "impact", "event", "snapshot")
+            for a in [getattr(records, name)]
+        }
+    )
+
+
+def more_rows(records: Records) -> Records:
+    """Return the records with room for twice as many saved steps."""
+    return records._replace(
+        **{
+            name: np.concatenate([a, np.zeros_like(a)]).view(np.recarray)
+            for name in ("series", "state")
             for a in [getattr(records, name)]
         }
     )
