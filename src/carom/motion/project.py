@@ -9,12 +9,17 @@ from __future__ import annotations
 
 import math
 
-from carom.dispatch import only_with_joints
+from carom.dispatch import by_solver, only_with_joints
 from carom.geometry.rotation import exp, multiply, normalize
 from carom.jit import entry, kernel
 from carom.motion.contact_point import clear_wrenches
 from carom.motion.elements import position_error, velocity_error
 from carom.motion.solve import solve
+from carom.motion.tree import solve_again
+from carom.system.arrays import FreeSolver, LoopSolver, TreeSolver
+
+LOST = 1e-9  # of a body: an error of position that cannot be returned from
+SMALL = 1e-7  # one whose square is round-off
 
 
 @kernel
@@ -63,18 +68,64 @@ def _project_position(system, state, work, tolerance):
 @kernel
 def _project_velocity(system, state, work):
     """Take from the velocities what the joints forbid."""
+    bias_velocities(system, state, work)
+    clear_wrenches(work)
+    solve(system, state, True, work)
+    gain_all(state, work)
+
+
+@kernel
+def bias_velocities(system, state, work):
+    """Bias all joints by minus their error of velocity."""
     for j in range(system.joints.shape[0]):
         bias = work.joint[j].bias
         velocity_error(system, j, state, work)
         for k in range(6):
             bias[k] = -bias[k]
-    clear_wrenches(work)
-    solve(system, state, True, work)
+
+
+@kernel
+def gain_all(state, work):
+    """Add the motions of the last solve to the velocities."""
     for b in range(state.shape[0]):
         v, w, motion = state[b].v, state[b].w, work.body[b].motion
         for k in range(3):
             v[k] += motion[k]
             w[k] += motion[3 + k]
+
+
+@kernel
+def _finish_step(system, state, work):
+    """Return to the joints, positions and velocities; return the relative error of position that is left."""
+    error = _project_position(system, state, work, 1e-14)
+    if error <= LOST:
+        _project_velocity(system, state, work)
+    return error
+
+
+@kernel
+def _finish_tree(system, state, work):
+    """The same of a forest: the velocities with the inertias that the positions were returned with."""
+    error = largest_position_error(system, state, work)
+    clear_wrenches(work)
+    solve(system, state, True, work)
+    for b in range(state.shape[0]):
+        shift(work.body[b].motion, state[b])
+    if not (error <= SMALL):
+        error = _project_position(system, state, work, 1e-14)
+        if error <= LOST:
+            _project_velocity(system, state, work)
+        return error
+    bias_velocities(system, state, work)
+    solve_again(system, work)
+    gain_all(state, work)
+    return error * error
+
+
+@kernel
+def _finish_free(system, state, work):
+    """Without joints there is nothing to return to."""
+    return 0.0
 
 
 @entry
@@ -102,3 +153,7 @@ def _velocity_is_free(system, state, work):
 
 project_position = only_with_joints(_project_position, _position_is_free)
 project_velocity = only_with_joints(_project_velocity, _velocity_is_free)
+#: finish_step(system, state, work): positions and velocities, at the end of a step; returns the error left
+finish_step = by_solver(
+    {FreeSolver: _finish_free, TreeSolver: _finish_tree, LoopSolver: _finish_step}
+)

@@ -20,10 +20,16 @@ from __future__ import annotations
 from carom.geometry.rotation import cross, matrix, spin_tensor
 from carom.jit import kernel, unit
 from carom.motion.joints import axis, child_arm, parent_arm
-from carom.system.arrays import ALONG, BALL, SCREW, TURNING, UNIVERSAL, WITHIN
-
-FIRST = 39  # start of the freedoms in a row of scratch
-WIDTH = 14  # numbers a freedom
+from carom.system.arrays import (
+    ALONG,
+    BALL,
+    FIRST,
+    SCREW,
+    TURNING,
+    UNIVERSAL,
+    WIDTH,
+    WITHIN,
+)
 
 
 @kernel
@@ -284,6 +290,82 @@ def solve_floating(row, has_child, out):
         eliminate(row, k)
     for i in range(6):
         out[i] = 0.0
+    unfold(row, out)
+
+
+@kernel
+def solve_again(system, work):
+    """Solve once more with the inertias of the last solve, for the biases of the joints and no wrench.
+
+    The state may have moved since by as little as a projection moves it: the answer, itself of that order, is
+    wrong by the product of both.
+    """
+    links, scratch = system.solver.links, system.solver.scratch
+    for i in range(links.shape[0]):
+        b = links[i].order
+        row = scratch[b]
+        for k in range(21, 27):
+            row[k] = 0.0
+        j = links[b].joint
+        if j < 0:
+            continue
+        bias = work.joint[j].bias
+        tx, ty, tz = cross(row[27], row[28], row[29], bias[0], bias[1], bias[2])
+        row[33], row[34], row[35] = bias[3] + tx, bias[4] + ty, bias[5] + tz
+        row[36], row[37], row[38] = bias[0], bias[1], bias[2]
+    for i in range(links.shape[0] - 1, -1, -1):
+        b = links[i].order
+        link, row = links[b], scratch[b]
+        if link.joint < 0:
+            continue
+        for k in range(link.freedoms):
+            reduce_force(row, k)
+        if link.parent >= 0:
+            pass_force(row, scratch[link.parent])
+    for i in range(links.shape[0]):
+        b = links[i].order
+        link, row = links[b], scratch[b]
+        if link.joint >= 0:
+            outward(link, row, b, work)
+            continue
+        out = work.body[b].motion
+        for k in range(6):
+            out[k] = 0.0
+        if link.has_child == 1:
+            for k in range(6):
+                reduce_force(row, k)
+            unfold(row, out)
+
+
+@kernel
+def reduce_force(row, k):
+    """Eliminate freedom k from the force alone: u = -S.p, p += U u/D."""
+    f = FIRST + WIDTH * k
+    u = -(row[f] * row[21] + row[f + 1] * row[22] + row[f + 2] * row[23])
+    u -= row[f + 3] * row[24] + row[f + 4] * row[25] + row[f + 5] * row[26]
+    row[f + 13] = u
+    g = u * row[f + 12]
+    for i in range(6):
+        row[21 + i] += g * row[f + 6 + i]
+
+
+@kernel
+def pass_force(row, above):
+    """Add what is left of the force of a child to its parent's."""
+    c0, c1, c2, c3, c4, c5 = times(row, row[33], row[34], row[35], row[36], row[37], row[38])
+    fx, fy, fz = row[21] + c0, row[22] + c1, row[23] + c2
+    tx, ty, tz = cross(row[30], row[31], row[32], fx, fy, fz)
+    above[21] += fx
+    above[22] += fy
+    above[23] += fz
+    above[24] += row[24] + c3 + tx
+    above[25] += row[25] + c4 + ty
+    above[26] += row[26] + c5 + tz
+
+
+@kernel
+def unfold(row, out):
+    """Find the motion of a floating body from its six freedoms, in reverse order."""
     for k in range(5, -1, -1):
         f = FIRST + WIDTH * k
         dot = 0.0

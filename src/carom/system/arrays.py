@@ -373,6 +373,10 @@ def table(fields: list, *shape: int) -> np.recarray:
     return np.zeros(shape, dtype=np.dtype(fields, align=True)).view(np.recarray)
 
 
+#: of a row of the scratch of a forest: where the freedoms begin, and numbers for each (`carom.motion.tree`)
+FIRST, WIDTH = 39, 14
+
+
 class FreeSolver(NamedTuple):
     """No joints: every body answers for itself."""
 
@@ -384,7 +388,7 @@ class TreeSolver(NamedTuple):
 
     address: int
     links: np.recarray  # (N,) LINK
-    scratch: np.ndarray  # (N, 124) written by each solve
+    scratch: np.ndarray  # (N, FIRST + WIDTH times the most freedoms) written by each solve
 
 
 class LoopSolver(NamedTuple):

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom.system.arrays import LINK, ROW, ROWS, SIDE, LoopSolver, TreeSolver, table
+from carom.system.arrays import FIRST, LINK, ROW, ROWS, SIDE, WIDTH, LoopSolver, TreeSolver, table
 from carom.system.graph import elimination
-
-SCRATCH = 124  # 39 + 6 * 14 + 1: see carom.motion.tree
 
 
 def tree_solver(joints: np.recarray, order: np.ndarray, joint: np.ndarray) -> TreeSolver:
@@ -21,7 +19,11 @@ def tree_solver(joints: np.recarray, order: np.ndarray, joint: np.ndarray) -> Tr
             links.freedoms[b] = 6 - ROWS[int(joints.kind[j])]
             if p >= 0:
                 links.has_child[p] = 1
-    return TreeSolver(0, links, np.zeros((order.size, SCRATCH)))
+    # no wider than it must be: memory is what a solve of 1000 links waits for
+    most = max(
+        1, int(np.max(links.freedoms[(links.joint >= 0) | (links.has_child == 1)], initial=0))
+    )
+    return TreeSolver(0, links, np.zeros((order.size, FIRST + WIDTH * most)))
 
 
 def loop_solver(touching: list[list[int]], drop: float) -> LoopSolver:
