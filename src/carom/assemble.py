@@ -13,6 +13,7 @@ from carom.motion.mounts import mounted
 from carom.scene.more_forces import JointSpring, UserForce
 from carom.status import Status
 from carom.system import records as r
+from carom.system.arrays import Relations
 from carom.tables import LAWS, EventTable, ImpactTable, contact_table
 
 
@@ -82,6 +83,15 @@ def energies(system, state) -> tuple[np.ndarray, np.ndarray]:
             continue
         stretch = length - s.rest_length
         potential += 0.5 * s.stiffness * stretch**2
+    stiff = system.relations.stiff if isinstance(system.relations, Relations) else ()
+    for s in stiff:
+        if s.coordinate < 0:
+            ends = [
+                anchor if b < 0 else x[:, b] + quaternion.rotate(Q[:, b], anchor)
+                for b, anchor in ((s.parent, s.parent_anchor), (s.child, s.child_anchor))
+            ]
+            length = np.linalg.norm(ends[1] - ends[0], axis=-1)
+            potential += 0.5 * s.stiffness * (length - s.rest) ** 2
     for s in system.bushings:
         d, turn, *_ = mounted(s, x, Q)
         potential += 0.5 * (d**2 @ s.stiffness + turn**2 @ s.turn_stiffness)

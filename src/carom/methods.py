@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from carom.motion.explicit import EXPLICIT, Explicit, tableau, with_error
+from carom.motion.implicit import Implicit
 from carom.motion.rattle import SYMPLECTIC, Rattle, composition
 from carom.motion.three_field import ThreeField
 from carom.options import Options
@@ -15,7 +16,7 @@ FIRST = 1e-3  # of the longest step: the first
 
 def make_method(
     name: str, options: Options, adapts: bool = False
-) -> Explicit | Rattle | ThreeField:
+) -> Explicit | Rattle | ThreeField | Implicit:
     """Return the settings of a method by its name."""
     if adapts:
         return with_error(name)
@@ -23,6 +24,8 @@ def make_method(
         return tableau(name)
     if name in SYMPLECTIC:
         return Rattle(composition(name), 0, *tableau("rk8" if name == "rattle6" else "rk4"))
+    if name == "implicit":
+        return Implicit(0, *tableau("rk4"))
     return ThreeField(
         int(name == "paper-ode"),
         options.natural_frequency,

@@ -20,6 +20,7 @@ from carom.jit import address
 from carom.methods import FIRST, ORDERS, make_method, time_of_bounces
 from carom.motion.acceleration import acceleration_unit
 from carom.motion.explicit import constrained_unit
+from carom.motion.implicit import Implicit, implicit_unit
 from carom.motion.project import project_start
 from carom.motion.rattle import Rattle, rattle_unit
 from carom.motion.reactions import start_errors, start_speeds
@@ -57,7 +58,7 @@ class Run:
             "impact_location": impact_location, "save_every": save_every,
         }  # fmt: skip
         paper = method.startswith("paper")
-        self.compiled = compile_scene(scene, options, loops=paper)
+        self.compiled = compile_scene(scene, options, paper, implicit=method == "implicit")
         system, self.now = self.compiled.system, self.compiled.start
         self.method = make_method(method, options, tolerances is not None)
         longest = step
@@ -179,6 +180,9 @@ class Run:
                 rattle_unit, self.method.parts, system, self.now, 0.0, self.now, self.work
             )
             self.method = self.method._replace(at=found)
+        elif isinstance(self.method, Implicit) and self.method.at == 0:
+            found = address(implicit_unit, system, self.held, self.now, 0.0, self.now, self.work)
+            self.method = self.method._replace(at=found)
 
     def find_hold(self) -> None:
         """Compile what a held contact needs: only when the first one is to be held."""
@@ -296,7 +300,7 @@ def check_start(scene: Scene, compiled, start, work, options: Options) -> None:
     system, elements = compiled.system, (*scene.joints, *scene.constraints)
     if not elements:
         return
-    errors = np.zeros((2, len(elements), 6))
+    errors = np.zeros((2, len(system.joints), 6))
     work.result[0].time = 0.0
     start_errors(system, start, work, *errors)
     if compiled.functions.failed is not None:

@@ -16,7 +16,9 @@ from carom.scene.scene import Scene
 from carom.solution import Solution
 from carom.status import SimulationError, Status
 
-METHODS = ("rk4", "rk5", "rk8", "rattle", "rattle4", "rattle6", "paper", "paper-ode")
+METHODS = (
+    "rk4", "rk5", "rk8", "rattle", "rattle4", "rattle6", "implicit", "paper", "paper-ode",
+)  # fmt: skip
 ADAPTIVE = ("rk5", "rk8")  # methods with an estimate of their error
 LOCATIONS = ("locate", "project", "work")
 CHUNKS = 100  # calls of the compiled loop in one run, for progress and for Ctrl-C
@@ -65,14 +67,15 @@ def simulate(
     step : float or "auto"
         Time step h [s]. The last step is shorter where `duration` is not a multiple of it. ``"auto"``: steps as
         long as `rtol` and `atol` allow, for ``"rk5"`` and ``"rk8"``.
-    method : {"rk4", "rk5", "rk8", "rattle", "rattle4", "rattle6", "paper", "paper-ode"}
+    method : {"rk4", "rk5", "rk8", "rattle", "rattle4", "rattle6", "implicit", "paper", "paper-ode"}
         How free motion is stepped. ``"rk4"`` (default): explicit, order 4, constraints exact, free bodies
         exact in energy and momentum, impacts solved to round-off. ``"rk5"`` (default of ``step="auto"``),
         ``"rk8"``: the same with order 5 (6 stages) and 8 (12 stages), for joints, loads and contact held at
         one point; bodies of unequal moments fly with order 4 all the same. ``"rattle"``, ``"rattle4"``,
         ``"rattle6"``: symplectic, of order 2, 4 and 6, for joints and loads over long times: no trend in
         energy, momenta of floating systems kept; held contacts go by ``"rk4"`` (``"rattle6"``: ``"rk8"``),
-        and so do steps across a singular position. ``"paper"``: the paper's chain,
+        and so do steps across a singular position. ``"implicit"``: of order 2 and L-stable for springs and
+        dampers of any stiffness, which are rows of the solve. ``"paper"``: the paper's chain,
         three fields of order 2 with exact constraints, impacts through the boundary layer by
         cubic splines. ``"paper-ode"``: the same with the paper's second-order equations of the multipliers
         instead of exact constraints.

@@ -22,6 +22,7 @@ from carom.jit import kernel, unit
 from carom.motion.contact_point import add_velocity, contact_velocity, spread
 from carom.motion.explicit import Explicit
 from carom.motion.forces import potential_energy
+from carom.motion.implicit import Implicit
 from carom.motion.project import project_velocity
 from carom.motion.rattle import Rattle
 from carom.motion.three_field import ThreeField
@@ -174,4 +175,6 @@ def by_layer(method, controls, contact, hit, history):
 
 
 #: collide(method, controls, contact, hit, history): resolve the impact in work.hit the way the method does it
-collide = by_method({Explicit: by_impulse, Rattle: by_impulse, ThreeField: by_layer})
+collide = by_method(
+    {Explicit: by_impulse, Rattle: by_impulse, Implicit: by_impulse, ThreeField: by_layer}
+)

@@ -25,6 +25,7 @@ from carom.motion.forces import applied_wrenches
 from carom.motion.friction import slip_force, stick_force
 from carom.motion.joint_friction import joint_friction
 from carom.motion.solve import solve
+from carom.motion.stiff import add_stiff
 
 OPEN, SLIP, STICK = range(3)
 
@@ -48,6 +49,7 @@ bias_joints = only_with_joints(_bias_joints, _no_joints)
 def acceleration_unit(system, state, held, work, stage):
     """Write the accelerations into `rate` of `stage`, the powers of loads and of friction to work.result."""
     applied = applied_wrenches(system, state, True, work)
+    applied += add_stiff(system, state, work)
     bias_joints(system, state, work)
     friction = joint_friction(system, state, work)
     solve(system, state, True, work)

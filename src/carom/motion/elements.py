@@ -18,6 +18,7 @@ from carom.motion.relations import (
     relation_speed,
 )
 from carom.motion.rows import inverse_inertias, joint_rows, joint_target
+from carom.motion.stiff import stiff_rows
 from carom.motion.user_rows import (
     push_user_rows,
     user_bias,
@@ -26,7 +27,7 @@ from carom.motion.user_rows import (
     user_speeds,
     write_speeds,
 )
-from carom.system.arrays import RELATION, USER_ROWS
+from carom.system.arrays import RELATION, STIFF, USER_ROWS
 
 
 @kernel
@@ -46,6 +47,8 @@ def _position(system, j, state, work):
     else:
         for k in range(6):
             bias[k] = 0.0
+        if joint.kind == STIFF:
+            return
         bias[0] = relation_error(system, system.relations.relations[joint.number], state, t)
 
 
@@ -66,7 +69,7 @@ def _velocity(system, j, state, work):
         bias[k] = 0.0
     if joint.kind == USER_ROWS:
         write_speeds(system, j, state, t, 0.0, bias)
-    else:
+    elif joint.kind == RELATION:
         bias[0] = relation_speed(system, system.relations.relations[joint.number], state, t)
 
 
@@ -84,6 +87,8 @@ def _acceleration(system, j, state, work):
         joints.acceleration_bias(joint, state, record.bias)
     elif joint.kind == USER_ROWS:
         user_bias(system, j, state, t, record.bias, record.target)
+    elif joint.kind == STIFF:
+        record.bias[0] = 0.0
     else:
         relation = system.relations.relations[joint.number]
         record.bias[0] = relation_bias(system, relation, state, t, record.target)
@@ -123,6 +128,8 @@ def _build_all(system, state, work):
             joint_rows(system, j, state, work)
         elif kind == USER_ROWS:
             user_rows(system, j, state, work.result[0].time, work)
+        elif kind == STIFF:
+            stiff_rows(system, j, state, work)
         else:
             relation_rows(system, j, state, work)
 

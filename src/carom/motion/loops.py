@@ -39,12 +39,15 @@ def factor(system, state, augment, work):
         for r in range(joints[j].rows):
             d = block[j, r, r]
             solver.rows[j].weight[r] = d
-            block[j, r, r] = d * (1.0 + augment)
+            block[j, r, r] = d * (1.0 + augment) + solver.rows[j].compliance[r]
     drop = solver.drop if augment == 0.0 else 0.0
     for place in range(count):
         k = solver.order[place]
         n, pivot = joints[k].rows, solver.rows[k].pivot
         factor_diagonal(block[k], pivot, solver.rows[k].weight, n, drop)
+        if solver.rows[k].off == 1:
+            for r in range(n):
+                pivot[r] = 0.0
         for s in range(solver.column[place], solver.column[place + 1]):
             divide(block[count + s], block[k], pivot, joints[solver.row[s]].rows, n)
         for t in range(solver.update[place], solver.update[place + 1]):

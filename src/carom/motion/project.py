@@ -19,7 +19,6 @@ from carom.motion.tree import solve_again
 from carom.system.arrays import FreeSolver, LoopSolver, TreeSolver
 
 LOST = 1e-9  # of a body: an error of position that cannot be returned from
-SMALL = 1e-7  # one whose square is round-off
 
 
 @kernel
@@ -95,37 +94,26 @@ def gain_all(state, work):
 
 
 @kernel
-def _finish_step(system, state, work):
-    """Return to the joints, positions and velocities; return the relative error of position that is left."""
-    error = _project_position(system, state, work, 1e-14)
-    if error <= LOST:
-        _project_velocity(system, state, work)
-    return error
-
-
-@kernel
-def _finish_tree(system, state, work):
-    """The same of a forest: the velocities with the inertias that the positions were returned with."""
-    error = largest_position_error(system, state, work)
-    clear_wrenches(work)
-    solve(system, state, True, work)
-    for b in range(state.shape[0]):
-        shift(work.body[b].motion, state[b])
-    if not (error <= SMALL):
-        error = _project_position(system, state, work, 1e-14)
-        if error <= LOST:
-            _project_velocity(system, state, work)
-        return error
+def _finish_tree(system, state, work, again):
+    """Project the velocities of a forest; `again`: with the inertias of the last solve."""
     bias_velocities(system, state, work)
-    solve_again(system, work)
+    if again:
+        solve_again(system, work)
+    else:
+        clear_wrenches(work)
+        solve(system, state, True, work)
     gain_all(state, work)
-    return error * error
 
 
 @kernel
-def _finish_free(system, state, work):
-    """Without joints there is nothing to return to."""
-    return 0.0
+def _finish_loops(system, state, work, again):
+    """Project the velocities."""
+    _project_velocity(system, state, work)
+
+
+@kernel
+def _finish_free(system, state, work, again):
+    """Without joints nothing is forbidden."""
 
 
 @entry
@@ -153,7 +141,8 @@ def _velocity_is_free(system, state, work):
 
 project_position = only_with_joints(_project_position, _position_is_free)
 project_velocity = only_with_joints(_project_velocity, _velocity_is_free)
-#: finish_step(system, state, work): positions and velocities, at the end of a step; returns the error left
-finish_step = by_solver(
-    {FreeSolver: _finish_free, TreeSolver: _finish_tree, LoopSolver: _finish_step}
+#: finish_velocity(system, state, work, again): project the velocities at the end of a step; `again` where
+#: nothing was solved since the positions were returned (or the last stage, which is as near)
+finish_velocity = by_solver(
+    {FreeSolver: _finish_free, TreeSolver: _finish_tree, LoopSolver: _finish_loops}
 )

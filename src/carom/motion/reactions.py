@@ -17,6 +17,7 @@ from carom.motion.elements import (
 from carom.motion.forces import applied_wrenches
 from carom.motion.loops import add_reactions, factor, free_motion, substitute, subtract_rows
 from carom.motion.solve import joint_wrench, solve
+from carom.motion.stiff import add_stiff
 from carom.system.arrays import FreeSolver, LoopSolver, TreeSolver
 
 
@@ -86,6 +87,7 @@ def reactions(system, augment, times, states, touch, work, out):
     for k in range(states.shape[0]):
         state, work.result[0].time = states[k], times[k]
         applied_wrenches(system, state, True, work)
+        add_stiff(system, state, work)
         while h < touch.shape[0] and touch[h].saved == k:
             add_touch(touch[h], work)
             h += 1

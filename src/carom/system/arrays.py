@@ -22,6 +22,8 @@ CYLINDRICAL, UNIVERSAL, PLANAR, POINT_ON_LINE, POINT_ON_PLANE, SCREW = range(6, 
 ROLLING_SPHERE, ROLLING_DISC = range(12, 14)
 #: what is no joint but stands among them: a relation of coordinates of joints, rows of the user's own
 RELATION, USER_ROWS = range(14, 16)
+#: a spring and damper as a row, for the implicit step
+STIFF = 16
 #: numbers of constraint rows of joints, by kind
 ROWS = (3, 5, 6, 5, 1, 1, 4, 4, 3, 2, 1, 5, 3, 3)
 #: the child's anchor moves along the first direction of the parent's frame
@@ -110,6 +112,22 @@ PUSH = [
     ("rest", "f8"),
     ("force", "f8"),  # constant
     ("address", "i8"),  # of a function of the user's: t, (q, q') -> force; 0 for none
+]
+
+#: a spring and damper that the implicit step takes as a row: along a coordinate, or between two points
+STIFF_SPRING = [
+    ("coordinate", "i8"),  # -1: between two points
+    ("parent", "i8"),
+    ("child", "i8"),
+    ("parent_anchor", "f8", 3),
+    ("child_anchor", "f8", 3),
+    ("stiffness", "f8"),
+    ("damping", "f8"),
+    ("rest", "f8"),
+    ("child_side", "i8"),
+    ("parent_side", "i8"),
+    ("speed", "f8"),  # of the last stage, and what it does to it
+    ("gain", "f8"),
 ]
 
 #: dry friction along a coordinate of a joint: |force| <= bound
@@ -219,6 +237,8 @@ LINK = [
 ROW = [
     ("first", "i8"),  # range of its sides; of a joint the child, and the parent if it is a body
     ("last", "i8"),
+    ("off", "i8"),  # 1 where its rows do not count
+    ("compliance", "f8", 6),  # added to the diagonal of A M^-1 A^T
     ("pivot", "f8", 6),  # reciprocal pivots, 0 = dropped
     ("weight", "f8", 6),  # diagonal of A M^-1 A^T before elimination
     ("rhs", "f8", 6),  # right-hand side, then multipliers
@@ -423,6 +443,7 @@ class Relations(NamedTuple):
     pieces: np.recarray  # PIECE
     pushes: np.recarray  # PUSH
     forces: np.recarray  # USER_FORCE
+    stiff: np.recarray  # STIFF_SPRING
     frictions: np.recarray  # (F,) FRICTION
     friction_matrix: np.ndarray  # (F, F) scratch
     friction_vector: np.ndarray  # (F,) scratch

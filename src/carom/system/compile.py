@@ -50,19 +50,26 @@ class Compiled(NamedTuple):
     functions: Functions  # of the user's
 
 
-def compile_scene(scene: Scene, options: Options, loops: bool = False) -> Compiled:
-    """Return the arrays of `scene`; with `loops` the block-sparse back end even for a forest."""
+def compile_scene(
+    scene: Scene, options: Options, loops: bool = False, implicit: bool = False
+) -> Compiled:
+    """Return the arrays of `scene`; with `loops` the block-sparse back end even for a forest.
+
+    With `implicit` springs are rows of the solve, not forces.
+    """
     start, to_principal, moments = _start(scene)
     placement, functions = Placement(start, to_principal), Functions()
     coordinates = Coordinates(placement)
     pieces = Pieces()
     elements = Elements(scene, coordinates, functions, pieces, start_sizes(scene))
-    more = MoreForces(scene, coordinates, functions, pieces)
+    if implicit:
+        elements.add_springs(scene, placement)
+    more = MoreForces(scene, coordinates, functions, pieces, implicit)
     joints, flipped, solver = _joints(scene, placement, elements, options, loops)
     contacts, vertices, solids, hulls = compile_contacts(scene, to_principal, options)
     contacts = with_stops(scene, contacts, coordinates, start_sizes(scene), options)
     relations = elements.arrays(solver, more)
-    springs, loads = _springs(scene, placement, more), _loads(scene, placement)
+    springs, loads = _springs(scene, placement, more, implicit), _loads(scene, placement)
     bushings = _bushings(scene, placement)
     bodies = _bodies(scene, moments, joints, elements, springs, loads, bushings, more)
     bodies.axes = to_principal
@@ -190,8 +197,9 @@ def _length(definition):
     return getattr(definition, "length", 0.0)
 
 
-def _springs(scene, frames, more):
-    chosen = [f for f in scene.forces if isinstance(f.definition, (Spring, CurveSpring))]
+def _springs(scene, frames, more, implicit):
+    kinds = CurveSpring if implicit else (Spring, CurveSpring)
+    chosen = [f for f in scene.forces if isinstance(f.definition, kinds)]
     springs = table(SPRING, len(chosen))
     for s, f in zip(springs, chosen):
         d = f.definition

@@ -36,7 +36,7 @@ class Pieces:
 class MoreForces:
     """What the scene's forces say beyond springs, loads and mounts."""
 
-    def __init__(self, scene, coordinates, functions: Functions, pieces: Pieces):
+    def __init__(self, scene, coordinates, functions: Functions, pieces: Pieces, implicit: bool):
         self.pushes, self.forces, self.frictions, self.named = [], [], [], []
         self.width = 0
         self.curves: dict[int, tuple[int, int]] = {}  # by the index of the force
@@ -44,7 +44,7 @@ class MoreForces:
             d = force.definition
             if isinstance(d, CurveSpring):
                 self.curves[force.index] = pieces.add(d.tension)
-            elif isinstance(d, (JointSpring, JointForce)):
+            elif isinstance(d, JointForce) or (isinstance(d, JointSpring) and not implicit):
                 self.pushes.append(_push(d, coordinates, functions))
             elif isinstance(d, JointFriction):
                 self.frictions.append(_friction(d, coordinates))

@@ -6,7 +6,9 @@ import numpy as np
 
 from carom.functions import Functions
 from carom.scene.constraints import Coupling, Rows, coordinate_kind
+from carom.scene.forces import Spring
 from carom.scene.joints import Joint, Planar, PointOnLine, PointOnPlane, Universal
+from carom.scene.more_forces import JointSpring
 from carom.system.arrays import (
     COORDINATE,
     FRICTION,
@@ -15,6 +17,8 @@ from carom.system.arrays import (
     RELATION,
     RELATION_ROW,
     REVOLUTE,
+    STIFF,
+    STIFF_SPRING,
     TERM,
     USER_FORCE,
     USER_ROW,
@@ -87,7 +91,7 @@ class Elements:
     def __init__(self, scene, coordinates, functions: Functions, pieces: Pieces, sizes: np.ndarray):
         self.coordinates = coordinates
         self.kinds, self.rows, self.numbers, self.touching = [], [], [], []
-        self.relations, self.user = [], []
+        self.relations, self.user, self.stiff = [], [], []
         self.terms: list[list[tuple[int, float]]] = []
         self.pieces = pieces
         self.width = 8
@@ -103,6 +107,27 @@ class Elements:
         self.rows.append(rows)
         self.numbers.append(number)
         self.touching.append(bodies)
+
+    def add_springs(self, scene, placement) -> None:
+        """Add the springs of a scene, between points and along coordinates, as rows for the implicit step."""
+        for force in scene.forces:
+            d = force.definition
+            if not isinstance(d, (Spring, JointSpring)) or not (d.stiffness + d.damping > 0.0):
+                continue
+            made = table(STIFF_SPRING, 1)
+            made.stiffness, made.damping = d.stiffness, d.damping
+            if isinstance(d, JointSpring):
+                made.coordinate, made.rest = self.coordinates.number(d.joint, d.coordinate), d.rest
+                row = self.coordinates.rows[int(made.coordinate[0])]
+                made.child, made.parent = row.child, row.parent
+            else:
+                made.coordinate, made.rest = -1, d.rest_length
+                made.parent, made.child = force.parent.index, force.child.index
+                made.parent_anchor[0] = placement.point(force.parent, d.anchor_parent)
+                made.child_anchor[0] = placement.point(force.child, d.anchor_child)
+            bodies = sorted({int(made.child[0]), int(made.parent[0])} - {-1})
+            self._add(STIFF, 1, len(self.stiff), bodies)
+            self.stiff.append(made)
 
     def _user(self, d, functions):
         n, rows = len(d.bodies), d.rows
@@ -153,6 +178,12 @@ class Elements:
             if kind == USER_ROWS:
                 self.user[number].first, self.user[number].last = first, first + len(bodies)
                 continue
+            if kind == STIFF:
+                made = self.stiff[number]
+                for name, b in (("child_side", made.child[0]), ("parent_side", made.parent[0])):
+                    made[name] = first + bodies.index(b) if b >= 0 else -1
+                solver.rows.off[solver.rows.first == first] = 1
+                continue
             k = next(relation)
             self.relations[k].first = len(terms)
             for coordinate, factor in self.terms[k]:
@@ -173,6 +204,7 @@ class Elements:
             self.pieces.rows,
             _joined(PUSH, more.pushes),
             _joined(USER_FORCE, more.forces),
+            _joined(STIFF_SPRING, self.stiff),
             _joined(FRICTION, more.frictions),
             np.zeros((len(more.frictions), len(more.frictions))),
             np.zeros(len(more.frictions)),

@@ -1,0 +1,168 @@
+"""Springs and dampers implicitly, all else explicitly: a linearly implicit step of order 2, L-stable.
+
+ROS2 of Verwer, Spee, Blom and Hundsdorfer (1999) in q and v, with g = 1 - 1/sqrt(2),
+
+    (1 - g h J) k1 = F(u0),    (1 - g h J) k2 = F(u0 + h k1) - 2 k1,    u1 = u0 + h (3 k1 + k2)/2,
+
+is of order 2 whatever J. Here J knows the stiffness k and damping c of the springs along their rows, so that
+the step is bounded by what is left to the explicit part. Each stage is one constrained solve in which a spring
+is a row with a compliance: with d = g h c + (g h)^2 k its force mu in the stage obeys
+
+    J a + mu/d = -(k s + c s' + g h k J r)/d,     a the accelerations, r the rates that the stage starts from.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from carom.dispatch import by_address, only_with_relations
+from carom.geometry.rotation import exp, multiply, normalize
+from carom.jit import inlined, kernel, unit
+from carom.motion.acceleration import bias_joints
+from carom.motion.elements import driven_power
+from carom.motion.explicit import bound_accelerations, constrained, fly, keep
+from carom.motion.forces import applied_wrenches
+from carom.motion.project import LOST, finish_velocity, project_position
+from carom.motion.solve import solve
+from carom.motion.stiff import along_row, stretch
+from carom.system.arrays import STIFF
+
+GAMMA = 1.0 - math.sqrt(0.5)
+CONSTRAINTS_LOST = 7
+
+
+class Implicit(NamedTuple):
+    """The implicit step, and the explicit method for held contacts."""
+
+    at: int  # address of the step; 0 while none is needed
+    A: np.ndarray
+    b: np.ndarray
+    E: np.ndarray
+    address: int
+
+
+@inlined
+def implicit_step(method, system, held, start, h, end, work):
+    """Write the state a time h after `start` into `end`; return work of loads, of friction, a status.
+
+    While contacts are held all goes by the explicit method.
+    """
+    if not fly(system, held, start, h, end, work):
+        return 0.0, 0.0, 0
+    for i in range(held.count[0]):
+        if held.points[i].rest == 0:
+            return constrained(method, system, held, start, h, end, work)
+    whole_step(method.at, system, held, start, h, end, work)
+    return work.result[0].applied, 0.0, work.result[0].code
+
+
+@unit
+def implicit_unit(system, held, start, h, end, work):
+    """Make the two stages, and return to the joints."""
+    result, stage = work.result[0], work.stage
+    result.code = 0
+    result.time = result.start
+    power = accelerate(system, start, h, 0, work)
+    for b in range(start.shape[0]):
+        first = work.stages[0, b]
+        for k in range(3):
+            first.speed[k] = start[b].v[k] + GAMMA * h * first.rate[k]
+            first.speed[3 + k] = start[b].w[k] + GAMMA * h * first.rate[3 + k]
+        move(start[b], h, first.speed, first.rate, stage[b])
+    result.time = result.start + h
+    power += accelerate(system, stage, h, 1, work)
+    for b in range(start.shape[0]):
+        if system.bodies[b].ballistic == 1:
+            continue
+        first, second = work.stages[0, b], work.stages[1, b]
+        # k2 from y = k2 + 2 k1, and the mean of the step into the second
+        for k in range(6):
+            second.rate[k] -= 2.0 * first.rate[k]
+            speed = stage[b].v[k] if k < 3 else stage[b].w[k - 3]
+            second.speed[k] = speed - 2.0 * first.speed[k] + GAMMA * h * second.rate[k]
+            second.speed[k] = 1.5 * first.speed[k] + 0.5 * second.speed[k]
+            second.rate[k] = 1.5 * first.rate[k] + 0.5 * second.rate[k]
+        move(start[b], h, second.speed, second.rate, end[b])
+    bound_accelerations(work, 2)
+    result.applied = 0.5 * h * power
+    if not (project_position(system, end, work, 1e-14) <= LOST):
+        result.code = CONSTRAINTS_LOST
+    finish_velocity(system, end, work, False)
+
+
+#: whole_step(address, system, held, start, h, end, work)
+whole_step = by_address(implicit_unit)
+
+
+@kernel
+def move(start, h, speed, rate, out):
+    """Move a body for a time h."""
+    keep(start, out)
+    Q = out.Q
+    for k in range(3):
+        out.x[k] += h * speed[k]
+        out.v[k] += h * rate[k]
+        out.w[k] += h * rate[3 + k]
+    r = exp(h * speed[3], h * speed[4], h * speed[5])
+    q = multiply(r[0], r[1], r[2], r[3], Q[0], Q[1], Q[2], Q[3])
+    Q[0], Q[1], Q[2], Q[3] = normalize(q[0], q[1], q[2], q[3])
+
+
+@kernel
+def accelerate(system, state, h, s, work):
+    """Write the accelerations of stage s; return the power of loads, dampers and motors."""
+    power = applied_wrenches(system, state, True, work)
+    bias_joints(system, state, work)
+    power += bias_springs(system, state, h, s, work)
+    solve(system, state, True, work)
+    power += driven_power(system, state, work)
+    for b in range(state.shape[0]):
+        motion, rate = work.body[b].motion, work.stages[s, b].rate
+        for k in range(6):
+            rate[k] = motion[k]
+    release_springs(system, state, h, s, work)
+    return power
+
+
+@kernel
+def _bias_springs(system, state, h, s, work):
+    """Put the springs in as rows; return the power of their dampers."""
+    power, g = 0.0, GAMMA * h
+    for j in range(system.joints.shape[0]):
+        if system.joints[j].kind != STIFF:
+            continue
+        one, row = system.relations.stiff[system.joints[j].number], system.solver.rows[j]
+        length, speed = stretch(system, one, state)
+        d = g * one.damping + g * g * one.stiffness
+        power -= one.damping * speed * speed
+        start, more = speed, 0.0
+        if s == 1:  # velocities and accelerations of the first stage, twice
+            start, more = speed - 2.0 * (one.speed + g * one.gain), 2.0 * one.gain
+        one.speed = speed
+        force = one.stiffness * length + one.damping * speed + g * one.stiffness * start
+        work.joint[j].bias[0] = more - force / d
+        row.off, row.compliance[0] = 0, 1.0 / d
+    return power
+
+
+@kernel
+def _release_springs(system, state, h, s, work):
+    """Take the springs out again, and note what the stage does along them."""
+    for j in range(system.joints.shape[0]):
+        if system.joints[j].kind == STIFF:
+            one, row = system.relations.stiff[system.joints[j].number], system.solver.rows[j]
+            one.gain = along_row(system, one, state, work)
+            row.off, row.compliance[0] = 1, 0.0
+
+
+@kernel
+def _no_springs(system, state, h, s, work):
+    """There are none."""
+    return 0.0
+
+
+bias_springs = only_with_relations(_bias_springs, _no_springs)
+release_springs = only_with_relations(_release_springs, _no_springs)
