@@ -20,7 +20,7 @@ from carom.motion.adapt import forget_misses, note_misses
 from carom.motion.free import free_flight
 from carom.motion.joint_friction import stay_stuck
 from carom.motion.loops import dropped_rows
-from carom.motion.project import LOST, finish_velocity, project_position
+from carom.motion.project import LOST, project_position, project_velocity
 from carom.motion.stay import return_held, stay_held
 from carom.system.arrays import FREE, ONE, RESTS, SEVERAL
 
@@ -200,7 +200,7 @@ def constrained_step(system, A, weight, E, held, start, t0, h, end, work):
     if not (project_position(system, end, work, 1e-14) <= LOST):
         return applied, friction, CONSTRAINTS_LOST, EVEN
     return_held(system, held, end, work)
-    finish_velocity(system, end, work, held.count[0] == 0)
+    project_velocity(system, end, work)
     stay_stuck(system, end, work)
     stay_held(system, held, end, work)
     if most == least:

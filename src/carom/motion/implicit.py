@@ -25,7 +25,7 @@ from carom.motion.acceleration import bias_joints
 from carom.motion.elements import driven_power
 from carom.motion.explicit import bound_accelerations, constrained, fly, keep
 from carom.motion.forces import applied_wrenches
-from carom.motion.project import LOST, finish_velocity, project_position
+from carom.motion.project import LOST, project_position, project_velocity
 from carom.motion.solve import solve
 from carom.motion.stiff import along_row, stretch
 from carom.system.arrays import STIFF
@@ -90,7 +90,7 @@ def implicit_unit(system, held, start, h, end, work):
     result.applied = 0.5 * h * power
     if not (project_position(system, end, work, 1e-14) <= LOST):
         result.code = CONSTRAINTS_LOST
-    finish_velocity(system, end, work, False)
+    project_velocity(system, end, work)
 
 
 #: whole_step(address, system, held, start, h, end, work)

@@ -9,14 +9,12 @@ from __future__ import annotations
 
 import math
 
-from carom.dispatch import by_solver, only_with_joints
+from carom.dispatch import only_with_joints
 from carom.geometry.rotation import exp, multiply, normalize
 from carom.jit import entry, kernel
 from carom.motion.contact_point import clear_wrenches
 from carom.motion.elements import position_error, velocity_error
 from carom.motion.solve import solve
-from carom.motion.tree import solve_again
-from carom.system.arrays import FreeSolver, LoopSolver, TreeSolver
 
 LOST = 1e-9  # of a body: an error of position that cannot be returned from
 
@@ -67,53 +65,18 @@ def _project_position(system, state, work, tolerance):
 @kernel
 def _project_velocity(system, state, work):
     """Take from the velocities what the joints forbid."""
-    bias_velocities(system, state, work)
-    clear_wrenches(work)
-    solve(system, state, True, work)
-    gain_all(state, work)
-
-
-@kernel
-def bias_velocities(system, state, work):
-    """Bias all joints by minus their error of velocity."""
     for j in range(system.joints.shape[0]):
         bias = work.joint[j].bias
         velocity_error(system, j, state, work)
         for k in range(6):
             bias[k] = -bias[k]
-
-
-@kernel
-def gain_all(state, work):
-    """Add the motions of the last solve to the velocities."""
+    clear_wrenches(work)
+    solve(system, state, True, work)
     for b in range(state.shape[0]):
         v, w, motion = state[b].v, state[b].w, work.body[b].motion
         for k in range(3):
             v[k] += motion[k]
             w[k] += motion[3 + k]
-
-
-@kernel
-def _finish_tree(system, state, work, again):
-    """Project the velocities of a forest; `again`: with the inertias of the last solve."""
-    bias_velocities(system, state, work)
-    if again:
-        solve_again(system, work)
-    else:
-        clear_wrenches(work)
-        solve(system, state, True, work)
-    gain_all(state, work)
-
-
-@kernel
-def _finish_loops(system, state, work, again):
-    """Project the velocities."""
-    _project_velocity(system, state, work)
-
-
-@kernel
-def _finish_free(system, state, work, again):
-    """Without joints nothing is forbidden."""
 
 
 @entry
@@ -141,8 +104,3 @@ def _velocity_is_free(system, state, work):
 
 project_position = only_with_joints(_project_position, _position_is_free)
 project_velocity = only_with_joints(_project_velocity, _velocity_is_free)
-#: finish_velocity(system, state, work, again): project the velocities at the end of a step; `again` where
-#: nothing was solved since the positions were returned (or the last stage, which is as near)
-finish_velocity = by_solver(
-    {FreeSolver: _finish_free, TreeSolver: _finish_tree, LoopSolver: _finish_loops}
-)
