@@ -13,7 +13,7 @@ from carom.contact.closed import apart, closed_within
 from carom.contact.exclude import AGAIN, CLEAR, FLAT_RIM, UNSURE, greatest_acceleration
 from carom.contact.gap import gap_and_rate, plane_in_body, slow
 from carom.contact.pair_point import REACH, find_touches, smaller, touch_rate
-from carom.contact.stop import STOP, look_at_stop
+from carom.contact.stop import look_at_stop
 from carom.dispatch import only_with_pairs
 from carom.geometry.rotation import norm
 from carom.hold.events import (
@@ -44,7 +44,7 @@ from carom.motion.explicit import keep
 from carom.motion.step import step
 from carom.save import save_contacts
 from carom.system import records as r
-from carom.system.arrays import FREE
+from carom.system.arrays import FREE, STOP
 from carom.system.notes import begin_event, end_event
 
 LOCATE, PROJECT, WORK = range(3)

@@ -13,10 +13,11 @@ from carom.contact.pair_point import (
 )
 from carom.contact.place import place_any
 from carom.contact.rim import OTHER_SIDE, closed_rim, way_round
-from carom.contact.stop import STOP, is_held_stop, place_stop
+from carom.contact.stop import is_held_stop, place_stop
 from carom.dispatch import only_with_pairs
 from carom.jit import kernel
 from carom.motion.contact_point import place
+from carom.system.arrays import STOP
 
 #: part of the step in which a rim that turns flat is flat, as far as the step can tell
 RIM_TIME = 1.0 / 64.0

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from carom.contact.pair_point import drift, place_pair
-from carom.contact.stop import STOP, place_stop, stop_drift
+from carom.contact.stop import place_stop, stop_drift
 from carom.jit import kernel
 from carom.motion.contact_point import place
+from carom.system.arrays import STOP
 
 
 @kernel

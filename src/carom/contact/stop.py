@@ -15,9 +15,7 @@ from carom.loop_codes import HOLD, NOTHING, STRIKE
 from carom.motion.contact_point import contact_velocity
 from carom.motion.coordinate import drift, value
 from carom.motion.joints import arm, axis, parent_arm
-from carom.system.arrays import PRISMATIC
-
-STOP = 2  # of `touches`
+from carom.system.arrays import PRISMATIC, STOP
 
 
 @kernel

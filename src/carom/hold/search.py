@@ -12,11 +12,12 @@ from carom.contact.exclude import AGAIN, BELOW, CLEAR, FLAT_RIM, UNSURE, passage
 from carom.contact.exclude_pair import lowest_pair, passage_pair
 from carom.contact.gap import lowest, round_off
 from carom.contact.pair_point import smaller
-from carom.contact.stop import STOP, passage_stop, stop_gap
+from carom.contact.stop import passage_stop, stop_gap
 from carom.hold.events import GAP, find_held_event, held_value, turned
 from carom.hold.joint_events import STOPS, find_joint_event, joint_event_value
 from carom.hold.margins import LEAST, NEAR
 from carom.jit import inlined, kernel
+from carom.system.arrays import STOP
 
 
 @inlined

@@ -8,8 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from carom import check
 from carom.scene import joints as kinds
 from carom.scene.bodies import Body
@@ -43,6 +41,23 @@ def coordinate_kind(joint: Joint, coordinate: int) -> str:
             f"coordinate must be below {len(own)}, the number of coordinates of {joint!r}, got {coordinate}"
         )
     return own[coordinate]
+
+
+def distinct_bodies(bodies: Body | Sequence[Body]) -> tuple[Body, ...]:
+    """Return at least one body, each once."""
+    listed = tuple([bodies] if isinstance(bodies, Body) else bodies)
+    if not listed or len(set(map(id, listed))) != len(listed):
+        raise ValueError(f"bodies must be at least one body, each once, got {bodies!r}")
+    for body in listed:
+        check.instance("bodies", body, (Body,))
+    return listed
+
+
+def check_functions(function, **optional) -> None:
+    """Refuse what cannot be called; None is allowed for those that are `optional`."""
+    for name, given in {"function": function, **optional}.items():
+        if not callable(given) and not (name in optional and given is None):
+            raise TypeError(f"{name} must be a function, got {given!r}")
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -169,15 +184,9 @@ class Rows:
         rows: int,
         position: Callable | None = None,
     ):
-        bodies = tuple([bodies] if isinstance(bodies, Body) else bodies)
-        if not bodies or len(set(map(id, bodies))) != len(bodies):
-            raise ValueError(f"bodies must be at least one body, each once, got {bodies!r}")
-        for body in bodies:
-            check.instance("bodies", body, (Body,))
+        bodies = distinct_bodies(bodies)
         check.integer("rows", rows, least=1, most=6)
-        for name, given in (("function", function), ("position", position)):
-            if not callable(given) and not (name == "position" and given is None):
-                raise TypeError(f"{name} must be a function, got {given!r}")
+        check_functions(function, position=position)
         keep(self, bodies=bodies, function=function, rows=int(rows), position=position)
 
 
@@ -223,13 +232,3 @@ class Constraint:
         return (
             f"Constraint({self.name!r}, {self.kind}, {', '.join(repr(p.name) for p in self.parts)})"
         )
-
-
-def sample(function: Callable, t: float, poses: np.ndarray, shape: tuple[int, ...], name: str):
-    """Call a function of the user's once, and refuse a result of another shape or not finite."""
-    try:
-        return check.finite_array(f"{name} at the start", function(t, poses), shape)
-    except ValueError:
-        raise
-    except Exception as error:
-        raise ValueError(f"{name} must be callable as (t, poses), got {error!r}") from error

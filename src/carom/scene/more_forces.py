@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from carom import check
 from carom.scene.bodies import Body
-from carom.scene.constraints import coordinate_kind
+from carom.scene.constraints import check_functions, coordinate_kind, distinct_bodies
 from carom.scene.joints import Joint
 from carom.scene.values import keep, point
 
@@ -191,12 +191,6 @@ class UserForce:
         function: Callable,
         potential: Callable | None = None,
     ):
-        bodies = tuple([bodies] if isinstance(bodies, Body) else bodies)
-        if not bodies or len(set(map(id, bodies))) != len(bodies):
-            raise ValueError(f"bodies must be at least one body, each once, got {bodies!r}")
-        for body in bodies:
-            check.instance("bodies", body, (Body,))
-        for name, given in (("function", function), ("potential", potential)):
-            if not callable(given) and not (name == "potential" and given is None):
-                raise TypeError(f"{name} must be a function, got {given!r}")
+        bodies = distinct_bodies(bodies)
+        check_functions(function, potential=potential)
         keep(self, bodies=bodies, function=function, potential=potential)

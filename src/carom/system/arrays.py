@@ -372,6 +372,9 @@ SEARCH = [
     ("horizon", "f8"),
 ]
 
+#: of `touches`: a stop in a joint
+STOP = 2
+
 #: what a body does: FREE flight, held at ONE point, RESTS, held at SEVERAL points
 FREE, ONE, RESTS, SEVERAL = range(4)
 

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom.contact.stop import STOP
 from carom.scene.constraints import coordinate_kind
 from carom.scene.materials import IMPACT_LAWS
-from carom.system.arrays import CONTACT, table
+from carom.system.arrays import CONTACT, STOP, table
 
 
 def with_stops(scene, contacts: np.recarray, coordinates, sizes, options) -> np.recarray:
