@@ -29,8 +29,8 @@ NAN, INF = math.nan, math.inf
         ({"method": "papr"}, ValueError, r"got 'papr'; did you mean 'paper'"),
         (
             {"method": 4}, ValueError,
-            r"method must be one of 'paper', 'paper-ode', 'rattle', 'rattle4', 'rattle6', 'rk4', 'rk5', "
-            r"'rk8', got 4",
+            r"method must be one of 'implicit', 'paper', 'paper-ode', 'rattle', 'rattle4', 'rattle6', "
+            r"'rk4', 'rk5', 'rk8', got 4",
         ),
         ({"method": ["rk4"]}, ValueError, r"method must be one of .* got \['rk4'\]"),
         (
