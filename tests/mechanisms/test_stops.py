@@ -172,22 +172,38 @@ def test_the_second_angle_of_a_universal_joint_stops():
     assert abs(q[-1, 1]) < 1e-9
 
 
-def test_a_stop_and_a_floor_strike_together():
-    # a hinged rod meets the floor and its stop in the same instant: as both alone, the rod stays
-    results = []
-    for with_stop in (True, False):
-        scene = carom.Scene()
-        floor = scene.add_half_space((0, 0, -0.5 * np.sqrt(2)), (0, 0, 1))
-        corners = [[x, y, z] for x in (-0.5, 0.5) for y in (-0.1, 0.1) for z in (-1e-3, 1e-3)]
-        rod = scene.add_body(carom.Convex(corners), mass=1, position=(0.5, 0, 0))
-        hinge = scene.add_joint(joints.Revolute((0, 0, 0), (0, 1, 0)), GROUND, rod)
-        scene.add_contact(rod, floor, restitution=0.5, friction=0.0)
-        if with_stop:
-            scene.add_stop(hinge, upper=1.4, restitution=0.5)  # beyond the floor: never reached
-        results.append(carom.simulate(scene, 0.8, step=0.01))
-    one, two = results
-    np.testing.assert_allclose(one.impacts.time, two.impacts.time, rtol=1e-12)
-    np.testing.assert_allclose(one.position, two.position, atol=1e-12)
+def rod_over_a_floor(stop, friction=0.0):
+    """A hinged rod whose lower corners meet the floor when it has turned by `level`; a stop near there."""
+    # sin a + 1e-3 cos a = sqrt(1/2), the corners 1 m along and 1 mm below the hinge
+    level = np.arcsin(np.sqrt(0.5) / np.hypot(1.0, 1e-3)) - np.arctan(1e-3)
+    scene = carom.Scene()
+    floor = scene.add_half_space((0, 0, -np.sqrt(0.5)), (0, 0, 1))
+    corners = [[x, y, z] for x in (-0.5, 0.5) for y in (-0.1, 0.1) for z in (-1e-3, 1e-3)]
+    rod = scene.add_body(carom.Convex(corners), mass=1, position=(0.5, 0, 0))
+    hinge = scene.add_joint(joints.Revolute((0, 0, 0), (0, 1, 0)), GROUND, rod)
+    scene.add_contact(rod, floor, restitution=0.5, friction=friction)
+    if stop is not None:
+        scene.add_stop(hinge, upper=level + stop, restitution=0.5)
+    return carom.simulate(scene, 0.6, step=0.01)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+def test_a_stop_and_a_floor_strike_together(friction):
+    # two corners and the stop close at once: with the same e the rod goes back with half its speed
+    solution = rod_over_a_floor(0.0, friction)
+    impacts = solution.impacts
+    assert sorted(impacts.contact[:3]) == [0, 0, 1]
+    assert np.all(impacts.together[:3] == 3)
+    t = impacts.time[0]
+    before, after = solution.evaluate(t, side="left")[3][0, 1], solution.evaluate(t)[3][0, 1]
+    assert after == pytest.approx(-0.5 * before, rel=1e-9)
+    assert np.max(np.abs(solution.ledger.residual)) < 1e-6  # of the steps, order 4
+
+
+def test_a_stop_that_is_not_reached_changes_nothing():
+    with_stop, without = rod_over_a_floor(0.5), rod_over_a_floor(None)
+    np.testing.assert_allclose(with_stop.impacts.time, without.impacts.time, rtol=1e-12)
+    np.testing.assert_allclose(with_stop.position, without.position, atol=1e-12)
 
 
 def test_stops_look_the_same_from_another_frame():
