@@ -42,7 +42,7 @@ def return_map(system, contact, state, work, tie, tolerance):
             return -1
         if joined:
             carry(system, point, -rho / w_nn, state, state, work)
-            if not (project_position(system, state, work, 1e-14) <= 1e-9):
+            if not (project_position(system, state, False, 1e-14, work) <= 1e-9):
                 return -1
         else:
             kappa -= rho / w_nn

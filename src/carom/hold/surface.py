@@ -72,7 +72,7 @@ def onto_surfaces(system, held, k, count, state, cluster, work):
         for m in range(count):
             shift(work.body[cluster.member[m]].motion, state[cluster.member[m]])
         if system.joints.shape[0] > 0:
-            project_position(system, state, work, 1e-14)
+            project_position(system, state, False, 1e-14, work)
 
 
 @kernel

@@ -197,7 +197,7 @@ def constrained_step(system, A, weight, E, held, start, t0, h, end, work):
         status = work.body[b].status
         if status == ONE or (status != RESTS and system.bodies[b].ballistic == 0):
             keep(stage[b], end[b])
-    if not (project_position(system, end, work, 1e-14) <= LOST):
+    if not (project_position(system, end, True, 1e-14, work) <= LOST):
         return applied, friction, CONSTRAINTS_LOST, EVEN
     return_held(system, held, end, work)
     project_velocity(system, end, work)
@@ -238,7 +238,7 @@ def combine(weight, count, h, start, stages, out):
                 d = multiply(0.0, f * u[3], f * u[4], f * u[5], p[0], p[1], p[2], p[3])
                 q0, q1, q2, q3 = q0 + d[0], q1 + d[1], q2 + d[2], q3 + d[3]
         Q = out[b].Q
-        Q[0], Q[1], Q[2], Q[3] = normalize(q0, q1, q2, q3)
+        Q[0], Q[1], Q[2], Q[3] = normalize(q0, q1, q2, q3) if count > 0 else (q0, q1, q2, q3)
 
 
 @kernel

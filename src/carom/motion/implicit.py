@@ -88,7 +88,7 @@ def implicit_unit(system, held, start, h, end, work):
         move(start[b], h, second.speed, second.rate, end[b])
     bound_accelerations(work, 2)
     result.applied = 0.5 * h * power
-    if not (project_position(system, end, work, 1e-14) <= LOST):
+    if not (project_position(system, end, False, 1e-14, work) <= LOST):
         result.code = CONSTRAINTS_LOST
     project_velocity(system, end, work)
 

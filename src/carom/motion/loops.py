@@ -11,6 +11,8 @@ minimal norm).
 
 from __future__ import annotations
 
+import math
+
 from carom.dispatch import by_solver
 from carom.jit import kernel
 from carom.motion.elements import build_rows, row_target
@@ -22,6 +24,8 @@ from carom.system.arrays import FreeSolver, LoopSolver, TreeSolver
 def factor(system, state, augment, work):
     """Factor A M^-1 A^T + augment * diag in the position of `state`."""
     solver, joints, block = system.solver, system.joints, system.solver.block
+    for b in range(solver.pose.shape[0]):
+        solver.pose[b, 0] = math.nan  # the caller may say of which pose it is
     build_rows(system, state, work)
     for k in range(block.shape[0]):
         clear(block[k])

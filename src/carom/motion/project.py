@@ -14,8 +14,9 @@ from carom.geometry.rotation import exp, multiply, normalize
 from carom.jit import entry, kernel
 from carom.motion.contact_point import clear_wrenches
 from carom.motion.elements import position_error, velocity_error
-from carom.motion.solve import solve
+from carom.motion.solve import solve, solve_near
 
+ROUND_OFF = 4.4e-16  # two units in the last place
 LOST = 1e-9  # of a body: an error of position that cannot be returned from
 
 
@@ -32,13 +33,18 @@ def shift(xi, body):
 
 @kernel
 def largest_position_error(system, state, work):
-    """Bias all joints by minus their error of position; return the largest, relative to its body."""
+    """Bias all joints by minus their error of position; return the largest, relative to its body.
+
+    Of lengths the round-off of the coordinates is taken off: far from the origin nothing is nearer.
+    """
     largest = 0.0
     for j in range(system.joints.shape[0]):
-        bias, size = work.joint[j].bias, system.bodies[system.joints[j].child].extent
+        bias, child = work.joint[j].bias, system.joints[j].child
+        size, x = 1.0 / system.bodies[child].extent, state[child].x
+        near = ROUND_OFF * (abs(x[0]) + abs(x[1]) + abs(x[2]))
         position_error(system, j, state, work)
         for k in range(6):
-            e = abs(bias[k]) / (1.0 if k < 3 else size)
+            e = abs(bias[k]) if k < 3 else (abs(bias[k]) - near) * size
             if not (e <= largest):
                 largest = e
             bias[k] = -bias[k]
@@ -46,8 +52,11 @@ def largest_position_error(system, state, work):
 
 
 @kernel
-def _project_position(system, state, work, tolerance):
-    """Bring the positions back to the joints; return the relative error that is left."""
+def _project_position(system, state, near, tolerance, work):
+    """Bring the positions back to the joints; return the relative error that is left.
+
+    With `near` the last solve was in a position nearby, and serves for the first correction.
+    """
     error, before = 0.0, math.inf
     for _ in range(8):
         error = largest_position_error(system, state, work)
@@ -56,7 +65,11 @@ def _project_position(system, state, work, tolerance):
             break
         before = error
         clear_wrenches(work)
-        solve(system, state, True, work)
+        if near:
+            solve_near(system, state, work)
+            near, before = False, math.inf  # what falls too slowly gets another chance
+        else:
+            solve(system, state, True, work)
         for b in range(state.shape[0]):
             shift(work.body[b].motion, state[b])
     return error
@@ -84,7 +97,7 @@ def project_start(system, state, work):
     """Bring an initial state to the joints: what `Options.project_start` asks for. Return what is left."""
     error = 1.0
     for _ in range(20):
-        error = _project_position(system, state, work, 1e-14)
+        error = _project_position(system, state, False, 1e-14, work)
         if error <= 1e-13:
             break
     _project_velocity(system, state, work)
@@ -92,7 +105,7 @@ def project_start(system, state, work):
 
 
 @kernel
-def _position_is_free(system, state, work, tolerance):
+def _position_is_free(system, state, near, tolerance, work):
     """Without joints there is no error of position."""
     return 0.0
 

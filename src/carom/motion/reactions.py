@@ -18,12 +18,19 @@ from carom.motion.forces import applied_wrenches
 from carom.motion.loops import add_reactions, factor, free_motion, substitute, subtract_rows
 from carom.motion.solve import joint_wrench, solve
 from carom.motion.stiff import add_stiff
+from carom.motion.tree import joint_wrenches
 from carom.system.arrays import FreeSolver, LoopSolver, TreeSolver
 
 
 @kernel
-def keep_shares(system, augment, state, work):
+def no_shares(system, augment, state, work):
+    """Without joints there are none."""
+
+
+@kernel
+def of_forest(system, augment, state, work):
     """Reactions of a forest are unique."""
+    joint_wrenches(system, work)
 
 
 @kernel
@@ -63,7 +70,7 @@ def swap(system, work):
 
 
 #: share reactions that are not unique with least norm; wrenches and bias must be in place
-share = by_solver({FreeSolver: keep_shares, TreeSolver: keep_shares, LoopSolver: least_norm})
+share = by_solver({FreeSolver: no_shares, TreeSolver: of_forest, LoopSolver: least_norm})
 
 
 @kernel

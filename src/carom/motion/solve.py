@@ -6,13 +6,14 @@ from carom.dispatch import by_address
 from carom.geometry.rotation import rotate, rotate_back
 from carom.jit import address, inlined, kernel, unit
 from carom.motion.loops import factor, solve_factored
+from carom.motion.pose import keep_pose, same_pose
 from carom.motion.rows import direction
 from carom.motion.tree import solve_tree
 from carom.system.arrays import RELATION, FreeSolver, LoopSolver, TreeSolver
 
 
 @unit
-def solve_free(system, state, biased, work):
+def solve_free(system, state, biased, near, work):
     """Without joints: motion = M^-1 wrench."""
     for b in range(system.bodies.shape[0]):
         free_body(system.bodies[b], state[b].Q, work.body[b])
@@ -30,9 +31,13 @@ def free_body(body, q, work):
 
 
 @unit
-def solve_loops(system, state, biased, work):
-    """With closed loops: factor in this position and solve; the wrench of each joint from its rows."""
-    factor(system, state, 0.0, work)
+def solve_loops(system, state, biased, near, work):
+    """With closed loops: factor in this position, and solve; the wrench of each joint from its rows."""
+    poses = system.solver.pose
+    if not near and not same_pose(poses, state):
+        factor(system, state, 0.0, work)
+        for b in range(poses.shape[0]):
+            keep_pose(state[b], poses[b])
     solve_factored(system, state, biased, work)
     for j in range(system.joints.shape[0]):
         joint_wrench(system.joints[j], state, system.solver.rows[j].rhs, work.joint[j].reaction)
@@ -66,10 +71,16 @@ def solve(system, state, biased, work):
     With `biased` the joints move relative to each other as `work.joint` says, else not. See
     `carom.motion.tree` for the meaning.
     """
-    _solve_at(system.solver.address, system, state, biased, work)
+    _solve_at(system.solver.address, system, state, biased, False, work)
+
+
+@inlined
+def solve_near(system, state, work):
+    """Do the same, biased, with what was worked out for the last position: a correction from nearby."""
+    _solve_at(system.solver.address, system, state, True, True, work)
 
 
 def with_address(system, state, work):
     """Return the system with the address of its back end for arrays like these."""
-    found = address(BACK_ENDS[type(system.solver)], system, state, True, work)
+    found = address(BACK_ENDS[type(system.solver)], system, state, True, False, work)
     return system._replace(solver=system.solver._replace(address=found))

@@ -283,7 +283,7 @@ def position_block(system, method, start, h, end, work):
         if work.body[b].status != RESTS:
             move_along(start[b], last[b], h, end[b])
     if method.ode == 0 and system.joints.shape[0] > 0:
-        project_position(system, end, work, 1e-15)
+        project_position(system, end, False, 1e-15, work)
     for b in range(start.shape[0]):
         size = system.bodies[b].extent
         for k in range(3):

@@ -397,7 +397,7 @@ def table(fields: list, *shape: int) -> np.recarray:
 
 
 #: of a row of the scratch of a forest: where the freedoms begin, and numbers for each (`carom.motion.tree`)
-FIRST, WIDTH = 39, 14
+FIRST, WIDTH = 52, 14
 
 
 class FreeSolver(NamedTuple):
@@ -428,6 +428,7 @@ class LoopSolver(NamedTuple):
     sides: np.recarray  # (S,) SIDE
     block: np.ndarray  # (J+B, 6, 6) diagonal blocks, then the others
     drop: float  # pivots below this part of the row's diagonal are dropped
+    pose: np.ndarray  # (N, 7) that was factored, or (0, 7): rows depend on more than the pose
 
 
 class NoRelations(NamedTuple):

@@ -185,7 +185,9 @@ def _joints(scene, placement, elements, options, loops):
     elif forest:
         solver = solvers.tree_solver(joints, order, carrier)
     else:
-        solver = solvers.loop_solver(touching, options.drop_tolerance)
+        solver = solvers.loop_solver(
+            touching, options.drop_tolerance, 0 if elements.touching else len(scene.bodies)
+        )
     return joints, flipped, solver
 
 

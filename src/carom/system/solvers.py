@@ -23,13 +23,14 @@ def tree_solver(joints: np.recarray, order: np.ndarray, joint: np.ndarray) -> Tr
     most = max(
         1, int(np.max(links.freedoms[(links.joint >= 0) | (links.has_child == 1)], initial=0))
     )
-    return TreeSolver(0, links, np.zeros((order.size, FIRST + WIDTH * most)))
+    return TreeSolver(0, links, np.full((order.size, FIRST + WIDTH * most), np.nan))
 
 
-def loop_solver(touching: list[list[int]], drop: float) -> LoopSolver:
+def loop_solver(touching: list[list[int]], drop: float, poses: int) -> LoopSolver:
     """Return the solver of a scene with closed loops: the symbolic factor of A M^-1 A^T.
 
-    `touching` has the bodies of each element, joints first: the child, then the parent if it is a body.
+    `touching` has the bodies of each element, joints first: the child, then the parent if it is a body. `poses`
+    is the number of bodies if the rows depend on nothing but their poses, else 0.
     """
     number = len(touching)
     order, later = elimination(touching)
@@ -79,4 +80,5 @@ def loop_solver(touching: list[list[int]], drop: float) -> LoopSolver:
         sides=sides,
         block=np.zeros((number + len(row), 6, 6)),
         drop=drop,
+        pose=np.full((poses, 7), np.nan),
     )
