@@ -24,7 +24,7 @@ from carom.motion.elements import acceleration_bias, driven_power
 from carom.motion.forces import applied_wrenches
 from carom.motion.friction import slip_force, stick_force
 from carom.motion.joint_friction import joint_friction
-from carom.motion.solve import solve
+from carom.motion.solve import solve_directly
 from carom.motion.stiff import add_stiff
 
 OPEN, SLIP, STICK = range(3)
@@ -48,11 +48,17 @@ bias_joints = only_with_joints(_bias_joints, _no_joints)
 @unit
 def acceleration_unit(system, state, held, work, stage):
     """Write the accelerations into `rate` of `stage`, the powers of loads and of friction to work.result."""
+    accelerations(system, state, held, work, stage)
+
+
+@kernel
+def accelerations(system, state, held, work, stage):
+    """Do so as part of the caller."""
     applied = applied_wrenches(system, state, True, work)
     applied += add_stiff(system, state, work)
     bias_joints(system, state, work)
     friction = joint_friction(system, state, work)
-    solve(system, state, True, work)
+    solve_directly(system, state, work)
     applied += driven_power(system, state, work)
     for b in range(system.bodies.shape[0]):
         motion, rate = work.body[b].motion, stage[b].rate

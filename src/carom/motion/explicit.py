@@ -15,7 +15,7 @@ import numpy as np
 from carom.dispatch import by_address
 from carom.geometry.rotation import multiply, normalize
 from carom.jit import inlined, kernel, unit
-from carom.motion.acceleration import acceleration, aim
+from carom.motion.acceleration import accelerations, aim
 from carom.motion.adapt import forget_misses, note_misses
 from carom.motion.free import free_flight
 from carom.motion.joint_friction import stay_stuck
@@ -182,15 +182,16 @@ def constrained_step(system, A, weight, E, held, start, t0, h, end, work):
                 speed[k], speed[3 + k] = stage[b].v[k], stage[b].w[k]
             for k in range(4):
                 attitude[k] = stage[b].Q[k]
-        p, f = acceleration(system, stage, held, work, work.stages[s])
-        applied += h * weight[s] * p
-        friction += h * weight[s] * f
+        accelerations(system, stage, held, work, work.stages[s])
+        applied += h * weight[s] * work.result[0].power
+        friction += h * weight[s] * work.result[0].drag
         at_last = dropped_rows(system)
         at_first = at_last if s == 0 else at_first
         least, most = min(least, at_last), max(most, at_last)
     combine(weight, stages, h, start, work.stages, stage)
     work.result[0].time = t0 + h
-    bound_accelerations(work, stages)
+    if system.contacts.shape[0] > 0:
+        bound_accelerations(work, stages)
     if E.shape[0] > 0:
         note_misses(system, E, h, work)
     for b in range(stage.shape[0]):

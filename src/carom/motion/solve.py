@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from carom.dispatch import by_address
+from carom.dispatch import by_address, by_solver
 from carom.geometry.rotation import rotate, rotate_back
 from carom.jit import address, inlined, kernel, unit
 from carom.motion.loops import factor, solve_factored
 from carom.motion.pose import keep_pose, same_pose
 from carom.motion.rows import direction
-from carom.motion.tree import solve_tree
+from carom.motion.tree import solve_tree, walk_tree
 from carom.system.arrays import RELATION, FreeSolver, LoopSolver, TreeSolver
 
 
@@ -72,6 +72,29 @@ def solve(system, state, biased, work):
     `carom.motion.tree` for the meaning.
     """
     _solve_at(system.solver.address, system, state, biased, False, work)
+
+
+@inlined
+def _solve_at_once(system, state, work):
+    """Solve with biased joints, as part of the caller."""
+    walk_tree(system, state, True, False, work)
+
+
+@inlined
+def _solve_by_address(system, state, work):
+    """Solve with biased joints."""
+    solve(system, state, True, work)
+
+
+#: solve_directly(system, state, work): solve with biased joints where a run spends its time. A call by address
+#: hands on some 300 numbers, as much as four links of a tree; what is called directly is compiled again.
+solve_directly = by_solver(
+    {
+        FreeSolver: _solve_by_address,
+        TreeSolver: _solve_at_once,
+        LoopSolver: _solve_by_address,
+    }
+)
 
 
 @inlined

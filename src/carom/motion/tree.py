@@ -307,6 +307,12 @@ def unjoined(mass, row, out):
 @unit
 def solve_tree(system, state, biased, near, work):
     """Write the motion of all bodies; articulate the pose unless it is, or may be, the last that was."""
+    walk_tree(system, state, biased, near, work)
+
+
+@kernel
+def walk_tree(system, state, biased, near, work):
+    """Do so as part of the caller."""
     if not near and not same_pose(system.solver.scratch, state):
         articulate(system, state)
     respond(system, biased, work)
