@@ -190,7 +190,7 @@ def constrained_step(system, A, weight, E, held, start, t0, h, end, work):
         least, most = min(least, at_last), max(most, at_last)
     combine(weight, stages, h, start, work.stages, stage)
     work.result[0].time = t0 + h
-    if system.contacts.shape[0] > 0:
+    if system.contacts.shape[0] > 0 or E.shape[0] > 0:
         bound_accelerations(work, stages)
     if E.shape[0] > 0:
         note_misses(system, E, h, work)
