@@ -35,6 +35,7 @@ from carom.status import SimulationError, Status
 if TYPE_CHECKING:
     from carom import baselines, identify
     from carom.coulomb import ContactSolution, solve_contacts
+    from carom.ensembles import Ensemble, UniformOrientation, ensemble
     from carom.impact import Impact, LayerHistory, impact_layer, resolve_impact
     from carom.impact.corner.api import CornerImpact, resolve_impacts
 
@@ -51,6 +52,7 @@ __all__ = [
     "Cylinder",
     "Disc",
     "Ellipsoid",
+    "Ensemble",
     "GeneralizedSystem",
     "Impact",
     "LayerHistory",
@@ -62,8 +64,10 @@ __all__ = [
     "Solution",
     "Sphere",
     "Status",
+    "UniformOrientation",
     "baselines",
     "constraints",
+    "ensemble",
     "forces",
     "identify",
     "impact_layer",
@@ -77,8 +81,11 @@ __all__ = [
 _LAZY = {
     "ContactSolution": "carom.coulomb",
     "CornerImpact": "carom.impact.corner.api",
+    "Ensemble": "carom.ensembles",
     "Impact": "carom.impact",
     "LayerHistory": "carom.impact",
+    "UniformOrientation": "carom.ensembles",
+    "ensemble": "carom.ensembles",
     "impact_layer": "carom.impact",
     "resolve_impact": "carom.impact",
     "resolve_impacts": "carom.impact.corner.api",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 from carom.dispatch import by_method
 from carom.heap.step import step_heap
 from carom.islands import parts
@@ -10,7 +12,7 @@ from carom.jit import entry, inlined, kernel
 from carom.loop import NOT_FINITE, advance, strayed
 from carom.motion.adapt import begin_step
 from carom.motion.more_forces import note_turns
-from carom.save import finite, save
+from carom.save import finite, save, still
 from carom.system import records as r
 
 
@@ -58,6 +60,7 @@ def run(
         clock.step += 1
         clock.in_step = 0
         clock.now = begin + length
+        clock.still = min(clock.still, clock.now) if still(now) else math.inf
         note_turns(system, now)
         last = clock.step == controls.last
         if controls.order > 0 and length == controls.duration - begin:

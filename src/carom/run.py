@@ -59,7 +59,7 @@ class Run:
         }  # fmt: skip
         paper = method.startswith("paper")
         self.compiled = compile_scene(scene, options, paper, implicit=method == "implicit")
-        system, self.now = self.compiled.system, self.compiled.start
+        system = self.compiled.system
         self.method = make_method(method, options, tolerances is not None)
         longest = step
         if tolerances is not None:
@@ -92,6 +92,14 @@ class Run:
             atol=tolerances[1] if tolerances else 0.0,
             longest=longest,
         )
+        self.tolerances = tolerances
+        self.begin()
+
+    def begin(self) -> None:
+        """Check the start, and make all that a run writes to; find the compiled parts that it needs at once."""
+        scene, options, system = self.scene, self.options, self.compiled.system
+        tolerances, method = self.tolerances, self.settings["method"]
+        self.now = self.compiled.start
         self.held = r.new_held(system)
         self.work = r.new_work(system, self.method.b.size)
         if np.any(system.contacts.touches == 1):
@@ -109,22 +117,42 @@ class Run:
         check_stops(scene, self.compiled, self.now, self.work, options)
         if system.contacts.size:
             self.work.body.group = system.bodies.component
-        apart = not paper and impact_location == "locate" and tolerances is None
+        located = self.settings["impact_location"] == "locate"
+        apart = located and tolerances is None and not method.startswith("paper")
         self.islands = new_islands(system, self.held) if apart else NoIslands(0)
         self.controls = self.controls._replace(retry=int(isinstance(self.islands, Islands)))
         self.cluster = new_cluster(system)
         self.heap = new_heap(1, 1, 1)  # made when there is one
         self.corner = new_corner(system, corner_settings(options))
         self.clock = r.new_clock()
-        self.clock.ahead = FIRST * longest
-        rows = 256 if tolerances else -(-steps // save_every) + 1
+        self.clock.ahead = FIRST * self.controls.longest
+        rows = 256 if tolerances else -(-self.controls.last // self.controls.save_every) + 1
         self.records = r.new_records(system, rows, 512)
         if system.contacts.size:
             self.find_strike()
         if not np.all(system.bodies.ballistic):
             self.find_constrained_step()
-            first_modes(self.compiled.system, self.held, self.now, self.work)
+        self.note_modes()
         self.save_now()
+
+    def note_modes(self) -> None:
+        """Note which joints with friction stick at the start."""
+        if not np.all(self.compiled.system.bodies.ballistic):
+            first_modes(self.compiled.system, self.held, self.now, self.work)
+
+    def renew(self) -> None:
+        """Make anew all that a run writes to, and find what was compiled while it ran; nothing is saved."""
+        controls = self.controls
+        self.begin()
+        if controls.hold_at:
+            self.find_constrained_step()
+            self.find_hold()
+        if controls.corner_at:
+            self.find_corner()
+        if controls.heap_at:
+            self.find_heap()
+        self.clock[:] = r.new_clock()
+        self.clock.ahead = FIRST * self.controls.longest
 
     def save_now(self) -> None:
         """Write the present state into the records."""

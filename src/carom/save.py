@@ -21,6 +21,16 @@ def finite(state):
     return math.isfinite(s)
 
 
+@inlined
+def still(state):
+    """Return whether nothing moves at all."""
+    for b in range(state.shape[0]):
+        for k in range(3):
+            if state[b].v[k] != 0.0 or state[b].w[k] != 0.0:
+                return False
+    return True
+
+
 @entry
 def save_now(system, held, now, clocks, work, records):
     """Write the present state: at the start, and after a failure."""

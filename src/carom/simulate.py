@@ -118,27 +118,13 @@ def simulate(
         raise TypeError(
             f"scene must be a carom.Scene or a carom.GeneralizedSystem, got {type(scene).__name__}"
         )
-    duration = check.number("duration", duration, above=0.0, unit="s")
-    adapts = isinstance(step, str) and step == "auto"
-    if not adapts:
-        if isinstance(step, str):
-            raise ValueError(f'step must be a number [s] or "auto", got {step!r}')
-        step = check.number("step", step, above=0.0, unit="s")
-    method = ("rk5" if adapts else "rk4") if method is None else method
-    check.choice("method", method, METHODS)
-    check.choice("impact_location", impact_location, LOCATIONS)
-    tolerances = check_tolerances(adapts, method, impact_location, rtol, atol)
-    check.integer("save_every", save_every, least=1)
     if not isinstance(throw, bool):
         raise TypeError(f"throw must be True or False, got {throw!r}")
-    options = Options() if options is None else options
-    if not isinstance(options, Options):
-        raise TypeError(f"options must be carom.Options, got {type(options).__name__}")
-    h = min(duration, options.max_step or duration / 50.0) if adapts else float(step)
-    if not duration / h < 1e12:
-        name = "Options.max_step" if adapts else "step"
-        raise ValueError(f"{name} must be above duration / 1e12 = {duration / 1e12:g} s, got {h!r}")
-    steps = max(1, int(np.ceil(duration / h * (1.0 - 1e-12))))
+    settings = checked_settings(
+        duration, step, method, impact_location, rtol, atol, save_every, options
+    )
+    duration, h, steps, method, impact_location, save_every, options, tolerances = settings
+    adapts = tolerances is not None
     if isinstance(scene, GeneralizedSystem):
         if adapts:
             raise ValueError('step of a system in coordinates must be a number [s], got "auto"')
@@ -149,18 +135,14 @@ def simulate(
 
         run = GeneralizedRun(scene, duration, h, steps, method, save_every, options)
     else:
-        scene.validate()
-        check_location(scene, impact_location)
-        check_method(scene, method)
+        check_scene(scene, method, impact_location)
 
         from carom.run import Run
 
-        run = Run(
-            scene, duration, h, steps, method, impact_location, save_every, options, tolerances
-        )
+        run = Run(scene, *settings)
     status = Status.SUCCESS
     total = duration if adapts else steps
-    report = _reporter(progress, total, "s" if adapts else "step")
+    report = reporter(progress, total, "s" if adapts else "step")
     try:
         for until in goals(total, 1 if report is None else CHUNKS):
             status = run.go_on(until)
@@ -178,6 +160,39 @@ def simulate(
     if throw and not solution.success:
         raise SimulationError(solution.message, solution) from run.failure
     return solution
+
+
+def checked_settings(
+    duration, step, method, impact_location, rtol, atol, save_every, options
+) -> tuple:
+    """Return the settings of a `carom.run.Run`, checked: those of `simulate`, and what follows from them."""
+    duration = check.number("duration", duration, above=0.0, unit="s")
+    adapts = isinstance(step, str) and step == "auto"
+    if not adapts:
+        if isinstance(step, str):
+            raise ValueError(f'step must be a number [s] or "auto", got {step!r}')
+        step = check.number("step", step, above=0.0, unit="s")
+    method = ("rk5" if adapts else "rk4") if method is None else method
+    check.choice("method", method, METHODS)
+    check.choice("impact_location", impact_location, LOCATIONS)
+    tolerances = check_tolerances(adapts, method, impact_location, rtol, atol)
+    check.integer("save_every", save_every, least=1)
+    options = Options() if options is None else options
+    if not isinstance(options, Options):
+        raise TypeError(f"options must be carom.Options, got {type(options).__name__}")
+    h = min(duration, options.max_step or duration / 50.0) if adapts else float(step)
+    if not duration / h < 1e12:
+        name = "Options.max_step" if adapts else "step"
+        raise ValueError(f"{name} must be above duration / 1e12 = {duration / 1e12:g} s, got {h!r}")
+    steps = max(1, int(np.ceil(duration / h * (1.0 - 1e-12))))
+    return duration, h, steps, method, impact_location, save_every, options, tolerances
+
+
+def check_scene(scene: Scene, method: str, location: str) -> None:
+    """Refuse a scene that cannot start, or not by this method."""
+    scene.validate()
+    check_location(scene, location)
+    check_method(scene, method)
 
 
 def check_tolerances(adapts: bool, method: str, location: str, rtol, atol):
@@ -223,7 +238,8 @@ class _Bar:
         self.bar.close()
 
 
-def _reporter(progress, total: float, unit: str):
+def reporter(progress, total: float, unit: str):
+    """Return what is called with (done, total), or None: a bar for True, or a function of the caller's."""
     if progress is None or progress is False:
         return None
     if progress is True:

@@ -115,13 +115,18 @@ def _start(scene):
     pairs = [principal(b.inertia) for b in bodies]
     moments = np.array([m for m, _ in pairs])
     to_principal = np.array([q for _, q in pairs])
-    Q = quaternion.multiply(np.array([b.orientation for b in bodies]), to_principal)
     start = table(STATE, len(bodies))
-    start.Q = Q / np.linalg.norm(Q, axis=1, keepdims=True)
+    start.Q = attitudes(np.array([b.orientation for b in bodies]), to_principal)
     start.x = [b.position for b in bodies]
     start.v = [b.velocity for b in bodies]
     start.w = [b.angular_velocity for b in bodies]
     return start, to_principal, moments
+
+
+def attitudes(orientation: np.ndarray, to_principal: np.ndarray) -> np.ndarray:
+    """Return the quaternions (N, 4) from principal axes to the world of bodies with these orientations."""
+    Q = quaternion.multiply(orientation, to_principal)
+    return Q / np.linalg.norm(Q, axis=1, keepdims=True)
 
 
 def _anchors(joint, flipped):

@@ -66,6 +66,10 @@ CLOCK = [
         "i8",
     ),  # steps whose islands were taken as heaps, as one could not go from event to event
     ("residual", "f8"),  # greatest of held contacts since the last saved row
+    (
+        "still",
+        "f8",
+    ),  # end of the first step from which on nothing has moved; infinite while something does
 ]
 
 SERIES = [("t", "f8"), *LEDGER, ("residual", "f8")]
@@ -148,7 +152,9 @@ class Records(NamedTuple):
 
 def new_clock() -> np.recarray:
     """Return the clock of a run that has not begun, (1,)."""
-    return table(CLOCK, 1)
+    clock = table(CLOCK, 1)
+    clock.still = np.inf
+    return clock
 
 
 def new_held(system: System) -> Held:
