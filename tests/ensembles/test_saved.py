@@ -1,0 +1,106 @@
+"""Ensembles on disk: streamed, interrupted, gone on with; what is no such thing is refused."""
+
+import numpy as np
+import pytest
+
+import carom
+from ensembles.ensemble_scenes import die
+from ensembles.test_ensemble import THROWN, observed, same
+
+zarr = pytest.importorskip("zarr")
+
+
+def throw(save=None, **more):
+    given = {"step": 2e-3, "vary": THROWN, "runs": 20, "chunk": 4, "observe": observed, **more}
+    return carom.ensemble(die(), 0.3, save=save, **given)
+
+
+class StopAfter:
+    """A progress function that interrupts once so many runs are made."""
+
+    def __init__(self, runs):
+        self.runs = runs
+        self.seen = []
+
+    def __call__(self, done, total):
+        self.seen.append((done, total))
+        if done >= self.runs:
+            raise KeyboardInterrupt
+
+
+def test_streamed_and_read_again(tmp_path):
+    e, plain = throw(tmp_path / "e.zarr"), throw()
+    again = carom.Ensemble.load(tmp_path / "e.zarr")
+    for one in (e, again):
+        assert same(one, plain)
+        assert all(np.array_equal(one.inputs[name], plain.inputs[name]) for name in THROWN)
+        assert np.array_equal(one.observed["top"], plain.observed["top"])
+    with pytest.raises(ValueError, match="needs the scene"):
+        again.solution(0)
+    assert np.array_equal(e.solution(3).position[-1], again.position[3])
+
+
+def test_interrupted_and_gone_on_with(tmp_path):
+    """No run is lost, none is made twice, and the result is that of one go."""
+    stop = StopAfter(8)
+    with pytest.warns(RuntimeWarning, match="interrupted after 8 of 20 runs; call again"):
+        part = throw(tmp_path / "e.zarr", progress=stop, executor="serial")
+    assert part.counts() == {"pending": 12, "success": 8}
+    assert not part.complete
+    assert np.all(np.isnan(part.position[8:]))
+    seen = []
+    whole = throw(tmp_path / "e.zarr", progress=lambda done, total: seen.append((done, total)))
+    assert seen[0] == (8, 20)
+    assert len(seen) == 4
+    assert same(whole, throw())
+    throw(tmp_path / "e.zarr", progress=lambda done, total: seen.append(done))
+    assert seen[4:] == [20]  # nothing was left to do
+
+
+def test_interrupted_in_memory():
+    with pytest.warns(RuntimeWarning, match="interrupted after 8 of 20 runs$"):
+        part = throw(progress=StopAfter(8), executor="serial")
+    assert part.done.sum() == 8
+
+
+def test_a_part_without_its_status_is_done_again(tmp_path):
+    """What a killed process leaves: numbers of a part, but not its status, which is written last."""
+    throw(tmp_path / "e.zarr")
+    group = zarr.open_group(str(tmp_path / "e.zarr"))
+    group["outcomes/status"][4:8] = -1
+    group["outcomes/position"][4:8] = 3.0
+    assert not carom.Ensemble.load(tmp_path / "e.zarr").complete
+    assert same(throw(tmp_path / "e.zarr"), throw())
+
+
+def test_failures_are_kept(tmp_path):
+    at = np.array([[0, 0, 0.1], [0, 0, 0.005], [0, 0, 0.2]])
+    vary = {"die.position": at}
+    carom.ensemble(die(), 0.1, step=2e-3, vary=vary, save=tmp_path / "e.zarr", chunk=1)
+    e = carom.Ensemble.load(tmp_path / "e.zarr")
+    assert e.counts() == {"refused": 1, "success": 2}
+    assert "deep into" in e.failures[1]
+
+
+def test_what_is_no_such_ensemble_is_refused(tmp_path):
+    throw(tmp_path / "e.zarr")
+    for change in ({"seed": 1}, {"step": 1e-3}, {"runs": 12}):
+        with pytest.raises(ValueError, match="holds another ensemble"):
+            throw(tmp_path / "e.zarr", **change)
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "notes.txt").write_text("keep me")
+    with pytest.raises(ValueError, match="must be an ensemble of carom"):
+        throw(tmp_path / "mine")
+    with pytest.raises(FileNotFoundError, match=r"nothing\.zarr"):
+        carom.Ensemble.load(tmp_path / "nothing.zarr")
+    assert (tmp_path / "mine" / "notes.txt").read_text() == "keep me"
+
+
+def test_labelled(tmp_path):
+    pytest.importorskip("xarray")
+    e = throw()
+    data = e.to_xarray()
+    assert data.position.dims == ("run", "body", "axis")
+    assert data.position.units == "m"
+    assert np.array_equal(data["input:die-ground.friction"], e.inputs["die-ground.friction"])
+    assert data.sizes["run"] == 20
