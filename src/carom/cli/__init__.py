@@ -12,6 +12,7 @@ _ABOUT = """\
 Motion of multibody systems with frictional impacts.
 
   carom paper       reproduce the paper: figures and tables under out/paper
+  carom throw       throw a die many times: how often each face, is it fair
   carom warmup      compile everything once, so that later runs start at once
   carom doctor      check this installation
 """
@@ -28,7 +29,7 @@ class _Parser(argparse.ArgumentParser):
 def parser() -> argparse.ArgumentParser:
     """Return the parser of the command with all its sub-commands."""
     from carom import __version__
-    from carom.cli import doctor, paper, warmup
+    from carom.cli import doctor, paper, throw, warmup
 
     main = _Parser(
         prog="carom",
@@ -38,7 +39,7 @@ def parser() -> argparse.ArgumentParser:
     )
     main.add_argument("--version", action="version", version=f"carom {__version__}")
     commands = main.add_subparsers(metavar="COMMAND", dest="command")
-    for module in (paper, warmup, doctor):
+    for module in (paper, throw, warmup, doctor):
         module.add(commands)
     return main
 

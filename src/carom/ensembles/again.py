@@ -40,7 +40,9 @@ class Again:
         if self.run is None:
             return Run(changed(self.scene, self.targets, values), *self.settings)
         run = self.run
-        if self.addresses() != self.known:  # something has grown, or was made while it ran
+        if any(
+            a is not b for a, b in zip(self.parts(), self.known)
+        ):  # something has grown, or was made while it ran
             run.compiled.start[:] = self.first
             run.renew()
             self.remember()
@@ -88,7 +90,7 @@ class Again:
     def remember(self) -> None:
         """Keep what all arrays hold before the first step."""
         self.kept = [(array, array.copy()) for array in arrays_of(self.parts())]
-        self.known = self.addresses()
+        self.known = self.parts()
 
     def parts(self) -> tuple:
         """Return all that a run writes to, but its records, which are written anew from the top."""
@@ -97,10 +99,6 @@ class Again:
             run.now, run.held, run.work, run.islands, run.cluster, run.corner, run.heap, run.clock,
             run.compiled.system, run.method,
         )  # fmt: skip
-
-    def addresses(self) -> list[int]:
-        """Return where those arrays are."""
-        return [array.__array_interface__["data"][0] for array in arrays_of(self.parts())]
 
 
 def arrays_of(value) -> Iterator[np.ndarray]:
