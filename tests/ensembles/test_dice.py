@@ -1,6 +1,7 @@
 """Which face is up, how fair a die is, and the command that throws one."""
 
 import json
+from math import erfc
 
 import numpy as np
 import pytest
@@ -26,7 +27,7 @@ def test_faces_of_known_orientations():
 
 
 def test_fairness_in_numbers():
-    """chi^2 = sum (n - 100)^2/100 = 5.92; Wilson at z = 1.96 for 120 of 600: .1700 to .2339."""
+    """chi^2 = sum (n - 100)^2/100 = 8.72; Wilson at z = 1.96 for 120 of 600: .1700 to .2339."""
     counts = [120, 90, 110, 96, 84, 100]
     found = fairness(np.repeat(np.arange(1, 7), counts))
     assert found.counts.tolist() == counts
@@ -35,7 +36,10 @@ def test_fairness_in_numbers():
     middle, half = p + z * z / (2 * n), z * np.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
     np.testing.assert_allclose(found.low[0], (middle - half) / (1 + z * z / n), rtol=1e-12)
     np.testing.assert_allclose(found.high[0], (middle + half) / (1 + z * z / n), rtol=1e-12)
-    assert 0.2 < found.p_value < 0.5
+    # five degrees: P(> x) = erfc(sqrt(x/2)) + sqrt(2 x/pi) e^(-x/2) (1 + x/3)
+    x = found.chi_square
+    tail = erfc(np.sqrt(x / 2)) + np.sqrt(2 * x / np.pi) * np.exp(-x / 2) * (1 + x / 3)
+    assert found.p_value == pytest.approx(tail, rel=1e-10)
     with pytest.raises(ValueError, match="at least one"):
         fairness([0, 0])
 
