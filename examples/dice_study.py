@@ -1,11 +1,10 @@
 """How random is a die? The face that comes up against how it was held, and from which height.
 
-Left: held at two angles and let go with a little speed and spin. Right: how often the face that was up
-comes up again, for random speeds and spins, with 95 % confidence intervals.
-`--basins 120 --throws 2000` draws what the pages show.
+Left: held at two angles, let go with a little speed and spin. Right: how often the face that was up comes
+up again, for random speeds and spins. The pages show `python examples/dice_study.py 120 2000`.
 """
 
-import argparse
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -24,24 +23,19 @@ HEIGHTS = np.array([0.005, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32, 0.64])
 def die(height):
     scene = carom.Scene(gravity=(0, 0, -9.81))
     table = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1), name="table")
-    cube = scene.add_body(
-        carom.Box(0.02, 0.02, 0.02), mass=0.016, position=(0, 0, height + 0.02),
-        velocity=(0.2, 0, 0), angular_velocity=(0, 5, 0), name="die",
-    )  # fmt: skip
+    box = carom.Box(0.02, 0.02, 0.02)
+    start = {"velocity": (0.2, 0, 0), "angular_velocity": (0, 5, 0)}
+    cube = scene.add_body(box, mass=0.016, position=(0, 0, height + 0.02), name="die", **start)
     scene.add_contact(cube, table, restitution=0.5, friction=0.2)
     return scene
 
 
 def main(out="out/examples", basins=12, throws=40):
-    angles = np.linspace(-45.0, 45.0, basins)
-    pairs = np.stack(np.meshgrid(angles, angles), axis=-1).reshape(-1, 2)
-    held = Rotation.from_euler("yx", pairs, degrees=True).as_quat(scalar_first=True)
+    tilt = np.stack(np.meshgrid(*2 * [np.linspace(-45, 45, basins)]), axis=-1).reshape(-1, 2)
+    held = Rotation.from_euler("yx", tilt, degrees=True).as_quat(scalar_first=True)
     ends = carom.ensemble(die(0.1), 3.0, step=2e-3, vary={"die.orientation": held})
-    image = face_up(ends.orientation[:, 0]).reshape(basins, basins)
-    vary = {
-        "die.angular_velocity": 3 * [norm(0, 3)],
-        "die.velocity": 2 * [uniform(-0.2, 0.4)] + [0],
-    }
+    turn, speed = 3 * [norm(0, 3)], 2 * [uniform(-0.2, 0.4)] + [0]
+    vary = {"die.angular_velocity": turn, "die.velocity": speed}
     again = []
     for height in HEIGHTS:
         e = carom.ensemble(die(height), 4.0, step=2e-3, vary=vary, runs=throws, sampling="sobol")
@@ -49,26 +43,23 @@ def main(out="out/examples", basins=12, throws=40):
         again.append(binomtest(int(np.sum(face_up(e.orientation[:, 0]) == 6)), throws))
     share = np.array([test.statistic for test in again])
     bars = np.abs(np.array([test.proportion_ci() for test in again]).T - share)
-    print("height / m", HEIGHTS, "\nagain     ", share)
+    print(HEIGHTS, share)
     with style.style():
         figure, (left, right) = style.new(style.PAGE, 2.9, columns=2)
         colours = {"cmap": ListedColormap(COLOURS), "vmin": 0.5, "vmax": 6.5}
+        image = face_up(ends.orientation[:, 0]).reshape(basins, basins)
         left.imshow(image, origin="lower", extent=(-45, 45, -45, 45), **colours)
         left.set(xlabel="tilt about y / degrees", ylabel="tilt about x / degrees")
-        for face, colour in enumerate(COLOURS, start=1):
-            left.plot([], [], "s", color=colour, label=str(face))
+        for face in range(1, 7):
+            left.plot([], [], "s", color=COLOURS[face - 1], label=str(face))
         left.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), title="face up")
         right.errorbar(100 * HEIGHTS, share, bars, fmt="o-", color=style.BLUE, capsize=2)
         right.axhline(1 / 6, color=style.GREY, ls="--", label="fair: 1/6")
-        right.set(xscale="log", xlabel="height of the lower face / cm")
-        right.set(ylabel="share: face that was up is up", ylim=(0, 1.05))
-        right.legend(loc="upper right")
-        Path(out).mkdir(parents=True, exist_ok=True)
-        figure.savefig(Path(out) / "dice_study.png", dpi=style.DPI)
+        right.set(xscale="log", xlabel="height / cm", ylabel="share: same face up", ylim=(0, 1))
+        right.legend()
+    Path(out).mkdir(parents=True, exist_ok=True)
+    figure.savefig(Path(out) / "dice_study.png", dpi=style.DPI)
 
 
 if __name__ == "__main__":
-    parser = argparse.ArgumentParser()
-    parser.add_argument("--basins", type=int, default=12)
-    parser.add_argument("--throws", type=int, default=40)
-    main(**vars(parser.parse_args()))
+    main("out/examples", *map(int, sys.argv[1:]))

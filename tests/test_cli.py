@@ -3,6 +3,7 @@
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 
 import carom
@@ -61,6 +62,16 @@ def test_doctor(capsys):
     assert "numba" in out.out
     assert "bouncing sphere: error" in out.out
     assert code == (OK if "all well" in out.out else FAILED)
+
+
+def test_warmup_knows_contact_that_stays():
+    """Bodies come to rest in each, and one is a heap."""
+    from carom.cli.warmup import contact_scenes
+
+    for kind, (scene, duration) in contact_scenes().items():
+        solution = carom.simulate(scene, duration, step=5e-3)
+        assert solution.stats["holds"] > 0 or kind == "heap"
+        assert np.max(np.abs(solution.velocity[-1])) < 1e-3
 
 
 def test_warmup_scenes_run():

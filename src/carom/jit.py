@@ -37,6 +37,14 @@ class _StampedCache(FunctionCache):
         self._kept = py_func
         del self._cache_file  # made when it is first asked for: what is called may be defined later
 
+    def load_overload(self, sig, target_context):
+        """Load a compiled function; a file that is broken is as good as none, and is written anew."""
+        try:
+            return super().load_overload(sig, target_context)
+        except Exception:  # cut short by a crash or a full disk: whatever unpickling makes of it
+            self.flush()
+            return None
+
     @cached_property
     def _cache_file(self):
         return IndexDataCacheFile(

@@ -5,8 +5,9 @@ from __future__ import annotations
 import time
 
 _ABOUT = """\
-Compile the library for every kind of system (free bodies, trees of joints, loops of joints) and
-every method. Compiled code is kept on disk: later processes load it in a fraction of a second."""
+Compile the library for every kind of system (free bodies, trees of joints, loops of joints) and every method,
+and for what the default method does with bodies that come to rest, touch each other, or lie in heaps. Compiled
+code is kept on disk: later processes load it in a fraction of a second."""
 
 
 def add(commands) -> None:
@@ -22,16 +23,22 @@ def scenes() -> dict:
     return {"free": _free(), "tree": _linked(False), "loops": _linked(True)}
 
 
+def contact_scenes() -> dict:
+    """Return scenes of contact that stays, and how long each is to run [s]."""
+    return {"rest": (_free(), 0.4), "stack": (_pile(2), 0.2), "heap": (_pile(9), 0.2)}
+
+
 def run(given) -> int:
     """Run each scene by each method, and say how long the first run took."""
     import carom
     from carom.simulate import METHODS
 
-    for kind, scene in scenes().items():
-        for method in METHODS:
-            start = time.perf_counter()
-            carom.simulate(scene, 0.05, step=5e-3, method=method)
-            print(f"{kind:6} {method:10} {time.perf_counter() - start:7.2f} s", flush=True)
+    work = [(kind, s, 0.05, method) for kind, s in scenes().items() for method in METHODS]
+    work += [(kind, s, duration, "rk4") for kind, (s, duration) in contact_scenes().items()]
+    for kind, scene, duration, method in work:
+        start = time.perf_counter()
+        carom.simulate(scene, duration, step=5e-3, method=method)
+        print(f"{kind:6} {method:10} {time.perf_counter() - start:7.2f} s", flush=True)
     start = time.perf_counter()
     carom.impact_layer(
         [[1, 0, 0], [0, 3.5, 0], [0, 0, 3.5]], (-1, 0.5, 0.1), 0.3, 0.5, penetration=0.2, width=1e-6
@@ -54,6 +61,19 @@ def _free():
         velocity=(0.5, 0, -0.5), angular_velocity=(10, 10, 0),
     )  # fmt: skip
     scene.add_contact(die, ground, restitution=0.5, friction=0.2)
+    return scene
+
+
+def _pile(count: int):
+    """Return boxes above a floor, a little apart."""
+    import carom
+
+    scene = carom.Scene()
+    scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1))
+    for k in range(count):
+        place = (0.03 * (k % 2), 0.0, 0.011 + 0.021 * (k // 2 if count > 2 else k))
+        scene.add_body(carom.Box(0.02, 0.02, 0.02), mass=0.02, position=place)
+    scene.set_contact_default(restitution=0.3, friction=0.5)
     return scene
 
 

@@ -1,0 +1,66 @@
+"""Compiled code on disk: two processes that fill one cache at once; no place that can be written."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import carom
+
+CODE = """
+import sys, time
+from carom.geometry.rotation import exp
+print(repr(exp(0.1, 0.2, 0.3)), sum(exp.stats.cache_hits.values()))
+"""
+
+
+def start(cache, **more):
+    return subprocess.Popen(
+        [sys.executable, "-c", CODE], env={**os.environ, "NUMBA_CACHE_DIR": str(cache), **more},
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+
+
+def result(process):
+    out, err = process.communicate(timeout=120)
+    assert process.returncode == 0, err
+    return out.rsplit(maxsplit=1)
+
+
+def test_two_processes_at_once(tmp_path):
+    """Both compile, or one finds what the other has written; a third only loads."""
+    both = [start(tmp_path) for _ in range(2)]
+    values = {result(process)[0] for process in both}
+    assert len(values) == 1
+    value, hits = result(start(tmp_path))
+    assert value in values
+    assert int(hits) == 1
+
+
+def test_a_broken_cache_file_is_compiled_again(tmp_path):
+    """As after a crash while it was written: the index names a file that is cut short."""
+    value, _ = result(start(tmp_path))
+    data = list(tmp_path.rglob("*.nbc"))
+    assert data
+    for file in data:
+        file.write_bytes(file.read_bytes()[:100])
+    again = start(tmp_path)
+    out, err = again.communicate(timeout=120)
+    assert again.returncode == 0, err
+    assert out.rsplit(maxsplit=1)[0] == value
+
+
+def test_no_place_that_can_be_written(tmp_path):
+    """Files where folders should be, beside the source and in the user's place: compiled in each process."""
+    package = Path(carom.__file__).parent
+    shutil.copytree(package, tmp_path / "carom", ignore=shutil.ignore_patterns("__pycache__"))
+    for folder in [tmp_path / "carom", *(tmp_path / "carom").rglob("*/")]:
+        (folder / "__pycache__").write_text("no folder")
+    blocked = tmp_path / "blocked"
+    blocked.write_text("no folder")
+    places = {"HOME": str(blocked), "XDG_CACHE_HOME": str(blocked), "PYTHONPATH": str(tmp_path)}
+    for _ in range(2):
+        value, hits = result(start(blocked / "cache", **places))
+        assert value.startswith("(")
+        assert int(hits) == 0
