@@ -55,7 +55,7 @@ def main(out="out/examples", basins=12, throws=40):
         left.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), title="face up")
         right.errorbar(100 * HEIGHTS, share, bars, fmt="o-", color=style.BLUE, capsize=2)
         right.axhline(1 / 6, color=style.GREY, ls="--", label="fair: 1/6")
-        right.set(xscale="log", xlabel="height / cm", ylabel="share: same face up", ylim=(0, 1))
+        right.set(xscale="log", xlabel="height / cm", ylabel="share: same face up", ylim=(0, 1.05))
         right.legend()
     Path(out).mkdir(parents=True, exist_ok=True)
     figure.savefig(Path(out) / "dice_study.png", dpi=style.DPI)
