@@ -35,6 +35,7 @@ from carom.status import SimulationError, Status
 if TYPE_CHECKING:
     from carom import baselines, identify
     from carom.coulomb import ContactSolution, solve_contacts
+    from carom.gradient import Sensitivities, contact_sequence, sensitivities
     from carom.impact import Impact, LayerHistory, impact_layer, resolve_impact
     from carom.impact.corner.api import CornerImpact, resolve_impacts
 
@@ -58,18 +59,21 @@ __all__ = [
     "Mesh",
     "Options",
     "Scene",
+    "Sensitivities",
     "SimulationError",
     "Solution",
     "Sphere",
     "Status",
     "baselines",
     "constraints",
+    "contact_sequence",
     "forces",
     "identify",
     "impact_layer",
     "joints",
     "resolve_impact",
     "resolve_impacts",
+    "sensitivities",
     "simulate",
     "solve_contacts",
 ]
@@ -79,9 +83,12 @@ _LAZY = {
     "CornerImpact": "carom.impact.corner.api",
     "Impact": "carom.impact",
     "LayerHistory": "carom.impact",
+    "Sensitivities": "carom.gradient",
+    "contact_sequence": "carom.gradient",
     "impact_layer": "carom.impact",
     "resolve_impact": "carom.impact",
     "resolve_impacts": "carom.impact.corner.api",
+    "sensitivities": "carom.gradient",
     "solve_contacts": "carom.coulomb",
 }
 
@@ -89,6 +96,6 @@ _LAZY = {
 def __getattr__(name: str):
     if name in _LAZY:
         return getattr(importlib.import_module(_LAZY[name]), name)
-    if name in ("baselines", "geometry", "identify"):
+    if name in ("baselines", "geometry", "gradient", "identify"):
         return importlib.import_module(f"carom.{name}")
     raise AttributeError(f"module 'carom' has no attribute {name!r}")
