@@ -97,6 +97,13 @@ def _stick_ratio(W, inputs):
     return ratio, -np.linalg.solve(B, inputs[1:3] + np.einsum("ijp,j->ip", dB, ratio))
 
 
+def of_end(k: int, d_time: np.ndarray, time: float, end: float) -> list[Margin]:
+    """Return how near the last impact is to the end of the run, beyond which it would not happen."""
+    left = end - time
+    what = "time from the last impact to the end of the run"
+    return [Margin(time, k, what, left, "s", left / end, -d_time)]
+
+
 def of_flight(system, solution, b: int, body: Moving, until: float) -> list[Margin]:
     """Return the margin of the nearest miss of a flight: the least gap within it, or at the end of the run."""
     rows = [c for c in system.contacts if c.body == b and c.touches == 0]

@@ -55,6 +55,8 @@ class Walk:
         for b, body in enumerate(self.bodies):
             if self.free[b]:
                 self.look_between(b, body, end)
+        if K:
+            self.margins += near.of_end(K - 1, self.times[-1], float(solution.impacts.time[-1]), end)
 
     def start(self) -> list[Moving]:
         """Return all bodies at the start."""
