@@ -5,6 +5,8 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from carom import resolve_impact
+from carom.gradient import impact_derivative
 from carom.gradient.blow import UPPER, blow
 
 coordinate = st.floats(-1.0, 1.0)
@@ -41,7 +43,13 @@ def test_slip_that_keeps_its_direction_is_that_of_routh():
     bottom = W[0, 0] - mu * W[0, 1]
     p = (1 + e) / bottom
     expected = np.zeros((2, 11))
-    expected[0, [0, 1, 6, 9, 10]] = [-p / bottom, p * mu / bottom, -p, p * W[0, 1] / bottom, 1 / bottom]
+    expected[0, [0, 1, 6, 9, 10]] = [
+        -p / bottom,
+        p * mu / bottom,
+        -p,
+        p * W[0, 1] / bottom,
+        1 / bottom,
+    ]
     expected[1] = -mu * expected[0]
     expected[1, 9] -= p
     np.testing.assert_allclose(found.d[:2], expected, rtol=0, atol=1e-10)
@@ -81,3 +89,38 @@ def test_slip_that_stops_as_compression_ends_is_a_change_of_course(law):
         np.testing.assert_allclose(found.d[0, 6], -1.5, atol=1e-9)
     # Newton's law does not look at the end of compression
     assert not blow(W, np.array([-1.0, 0.4, 0.0]), 0.2, 0.5, 0).kink
+
+
+@given(
+    st.tuples(coordinate, coordinate, coordinate), st.tuples(coordinate, coordinate),
+    st.floats(0.05, 1.0), st.floats(0.05, 0.95), st.sampled_from(["newton", "poisson", "stronge"]),
+)  # fmt: skip
+@settings(max_examples=30, deadline=None)
+def test_the_public_derivative_predicts_a_neighbour(arm, slip, mu, e, law):
+    W, u = inverse_mass(arm, (0.3, 0.5, 0.4)), np.array([-1.0, *slip])
+    try:
+        d = impact_derivative(W, u, mu, e, law)
+    except ValueError:
+        return
+    dW = np.array([[0.3, 0.1, -0.2], [0.1, -0.4, 0.2], [-0.2, 0.2, 0.5]])
+    du, dmu, de = np.array([0.2, -0.3, 0.4]), 0.5, -0.6
+    h = 2e-4 * min(1.0, np.hypot(*slip))  # changes of slip are measured by slip
+    ends = [resolve_impact(W + s * h * dW, u + s * h * du, mu + s * h * dmu, e + s * h * de, law)
+            for s in (-1, 1)]  # fmt: skip
+    assume(ends[0].phases == ends[1].phases)
+    for name in ("impulse", "velocity_after"):
+        by = getattr(d, name)
+        slope = np.einsum("ijk,jk", by.inverse_mass, dW) + by.velocity @ du
+        slope = slope + by.friction * dmu + by.restitution * de
+        quotient = (getattr(ends[1], name) - getattr(ends[0], name)) / (2 * h)
+        # of order 2: (h / slip)^2, and what that is multiplied by near a change of course
+        bound = 1e-4 * (1 + np.linalg.norm(slope) + np.linalg.norm(ends[0].impulse))
+        assert np.linalg.norm(quotient - slope) < bound
+
+
+def test_an_impact_without_derivative_is_refused():
+    W = inverse_mass((0.6, 0.2, 0.5), (0.3, 0.5, 0.4))
+    with pytest.raises(ValueError, match="without slip"):
+        impact_derivative(W, [-1.0, 0.0, 0.0], 0.05, 0.5)
+    with pytest.raises(ValueError, match="friction"):
+        impact_derivative(W, [-1.0, 0.0, 0.0], -1.0, 0.5)

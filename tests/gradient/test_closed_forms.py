@@ -22,7 +22,9 @@ def test_a_ball_that_is_dropped():
     # t_1 = sqrt(2 h / g), t_2 = t_1 (1 + 2 e), u_k = -e^(k-1) sqrt(2 g h);
     # at t > t_2: z = e^2 v (t - t_2) - g (t - t_2)^2 / 2, v = sqrt(2 g h)
     h, e, run = 0.4, 0.7, ball(duration=0.8)
-    found = carom.sensitivities(run, ("ball.position", "ball-floor.restitution", "gravity", "ball.mass"))
+    found = carom.sensitivities(
+        run, ("ball.position", "ball-floor.restitution", "gravity", "ball.mass")
+    )
     z, E, G, M = 2, found.columns["ball-floor.restitution"], 6, found.columns["ball.mass"]
     t1, v = np.sqrt(2 * h / g), np.sqrt(2 * g * h)
     assert len(run.impacts) == 2
@@ -39,7 +41,9 @@ def test_a_ball_that_is_dropped():
     t2, s = t1 * (1 + 2 * e), 0.8 - t1 * (1 + 2 * e)
     up = e**2 * v - g * s
     np.testing.assert_allclose(found.final.velocity[0, 2, E], 2 * e * v + g * 2 * t1, rtol=1e-10)
-    np.testing.assert_allclose(found.final.position[0, 2, E], 2 * e * v * s - up * 2 * t1, rtol=1e-10)
+    np.testing.assert_allclose(
+        found.final.position[0, 2, E], 2 * e * v * s - up * 2 * t1, rtol=1e-10
+    )
     slope = e**2 * g / v * s - up * t2 / (2 * h)
     np.testing.assert_allclose(found.final.position[0, 2, z], slope, rtol=1e-10)
     np.testing.assert_allclose(found.final.position[0, 2, [0, 1, M]], 0.0, atol=1e-12)

@@ -1,7 +1,7 @@
 """Derivatives of whole throws against differences of whole throws.
 
-Differences of order 6 with two steps, a factor 4 apart: the nearer one is taken. Their own error is what the location of
-impacts leaves (1e-13 of the size) over the step, amplified by the throw as its derivative is.
+Differences of order 6 with two steps, a factor 4 apart: the nearer one is taken. Their own error is what the
+location of impacts leaves (1e-13 of the size) over the step, amplified by the throw as its derivative is.
 """
 
 import numpy as np

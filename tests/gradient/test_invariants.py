@@ -29,7 +29,9 @@ def form(run, k, X):
     dp, dL, L = momentum(run, k, X)
     half = X[:3].T @ dp + X[3:6].T @ dL
     turn = X[3:6]
-    return half - half.T - np.einsum("k,kab->ab", L, np.cross(turn[:, :, None], turn[:, None], axis=0))
+    return (
+        half - half.T - np.einsum("k,kab->ab", L, np.cross(turn[:, :, None], turn[:, None], axis=0))
+    )
 
 
 @pytest.mark.parametrize("duration", [0.08, 0.2])
@@ -55,7 +57,12 @@ def test_energy_of_elastic_motion_is_kept_by_all_neighbours():
         R = quaternion.matrix(run.orientation[k, 0])
         w = run.angular_velocity[k, 0]
         # dE = v . m dv + w . (dL - dtheta x L) + m g dz
-        return run.velocity[k, 0] @ dp + w @ (dL - np.cross(X[3:6].T, L).T) + 0.016 * 9.81 * X[2] + 0 * R[0, 0]
+        return (
+            run.velocity[k, 0] @ dp
+            + w @ (dL - np.cross(X[3:6].T, L).T)
+            + 0.016 * 9.81 * X[2]
+            + 0 * R[0, 0]
+        )
 
     start = slope(0, np.eye(12))
     np.testing.assert_allclose(slope(-1, X), start, rtol=0, atol=1e-9 * np.max(np.abs(start)))
@@ -74,7 +81,9 @@ def test_the_vertical_is_an_axis_of_symmetry(mu):
         return np.concatenate([x, z, v, w])
 
     size = np.linalg.norm(X, axis=1)
-    assert np.all(np.abs(X @ generator(0) - generator(-1)) <= 1e-9 * size * np.linalg.norm(generator(0)))
+    assert np.all(
+        np.abs(X @ generator(0) - generator(-1)) <= 1e-9 * size * np.linalg.norm(generator(0))
+    )
     np.testing.assert_allclose(X[:, :2], np.eye(12)[:, :2], atol=1e-9)
 
 

@@ -19,7 +19,15 @@ FORWARD = ((0, -49 / 20), (1, 6), (2, -15 / 2), (3, 20 / 3), (4, -15 / 4), (5, 6
 
 
 def throw(
-    z=None, *, inertia=EQUAL, spin=(3, 10, -2), e=0.5, mu=0.2, law="newton", duration=0.2, step=2.5e-4
+    z=None,
+    *,
+    inertia=EQUAL,
+    spin=(3, 10, -2),
+    e=0.5,
+    mu=0.2,
+    law="newton",
+    duration=0.2,
+    step=2.5e-4,
 ):
     """Run the throw with `z` (24,) added to its numbers, in the order of NAMES."""
     z = np.zeros(24) if z is None else z

@@ -19,13 +19,17 @@ def sensitivities(solution: Solution, with_respect_to, *, throw: bool = True) ->
     solution : Solution
         Of a scene without joints and forces, by any method but the paper's, with located impacts.
     with_respect_to : str or sequence of str
-        ``"body.position"``, ``"body.velocity"``, ``"body.angular_velocity"`` (three columns each, world axes);
-        ``"body.orientation"`` (three: a rotation vector in world axes that the body is turned by, with velocities as
-        they are); ``"body.mass"`` (the inertia as it is); ``"body.inertia"`` (six: xx, yy, zz, xy, xz, yz in the
-        body's axes); ``"contact.restitution"``, ``"contact.friction"``; ``"gravity"`` (three), and ``"restitution"``
-        and ``"friction"`` of all contacts together.
+        With the names of bodies and contacts of the scene before the dot:
+
+        - ``"body.position"``, ``"body.velocity"``, ``"body.angular_velocity"``: three columns each, world axes;
+        - ``"body.orientation"``: three, a rotation vector in world axes by which the body is turned, with
+          velocities as they are;
+        - ``"body.mass"``, with the inertia as it is; ``"body.inertia"``: six, xx, yy, zz, xy, xz, yz in the
+          axes of the body;
+        - ``"contact.restitution"``, ``"contact.friction"`` (in impacts);
+        - ``"gravity"``: three; ``"restitution"`` and ``"friction"`` of all contacts together.
     throw : bool
-        True (default): if the run, or a part of it, has no derivative by one of the parameters, a ValueError says
+        True (default): if a part of the run has no derivative by one of the parameters, a ValueError says
         why. False: NaN there, and the reasons in `notes`.
 
     Returns
@@ -38,13 +42,13 @@ def sensitivities(solution: Solution, with_respect_to, *, throw: bool = True) ->
         If `solution` is no `Solution`.
     ValueError
         For names that the scene does not know; for scenes and methods that are not as above; and if `throw`
-        where there is no derivative: several points strike at once (except by parameters that keep them together),
-        a contact is held, the approach just grazes, slip starts from rest or is about to stop.
+        where there is no derivative: several points strike at once (except by parameters that keep them
+        together), a contact is held, slip starts from rest, an impact is about to take another course.
 
     Notes
     -----
     Mathematics page, part VIII. The derivative belongs to the sequence of contact of this run; `margins` and
-    `reach` say how far it is from another one. ``orientation`` of the result is a rotation vector too.
+    `reach` say how far it is from another one.
     """
     check.instance("solution", solution, (Solution,))
     check.flag("throw", throw)

@@ -1,7 +1,7 @@
 """Derivatives of one frictional impact: of its impulse, with respect to W, u, mu and e.
 
-The resolver is exact to 1e-14, so differences of order 6 of it are to 1e-11 (mathematics page, VIII.2). Steps are
-halved until all points of the stencil pass the same phases, and until halving them no longer helps.
+The resolver is exact to 1e-14, so differences of order 6 of it are to 1e-11 (mathematics page, VIII.2).
+Steps are halved until all points of the stencil pass the same phases, and until halving no longer helps.
 """
 
 from __future__ import annotations
@@ -108,6 +108,8 @@ def _same_course(found, base, z, law) -> bool:
     """Return whether two impacts pass the same phases, in compression and in restitution."""
     if z[9] == 0.0:  # without friction there is no course
         return True
+    if not int(base[5]) & o.SLIP:  # it sticks from the start: others slip a little before they do
+        return bool(int(found[5]) & ~o.SLIP == int(base[5]))
     same = found[5] == base[5] and (found[3] >= 0.0) == (base[3] >= 0.0)
     if z[10] == 0.0 or law == 0:  # what e = 0 ends with compression, Newton's law does not look at
         return bool(same)

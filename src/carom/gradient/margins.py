@@ -1,6 +1,6 @@
 """How far a run is from another sequence of contact: at each impact, and between impacts.
 
-A margin is a number that is zero at the change, with its derivative by the parameters (mathematics page, VIII.3).
+A margin is a number that is zero at the change, with its derivative (mathematics page, VIII.3).
 """
 
 from __future__ import annotations
@@ -22,7 +22,10 @@ def vertex_gaps(system, row, body: Moving) -> np.ndarray:
     """Return the gaps of all vertices of a row of contacts to its half-space."""
     n = row.axes[0]
     return (
-        n @ body.x - row.offset - row.radius + system.vertices[row.first : row.last] @ (body.R.T @ n)
+        n @ body.x
+        - row.offset
+        - row.radius
+        + system.vertices[row.first : row.last] @ (body.R.T @ n)
     )
 
 
@@ -59,7 +62,9 @@ def of_impact(system, row, place, tied, bodies, done: Strike, hit: Blow, u, W, k
             if np.isfinite(gaps[i]):
                 gradient = gap_gradient(other.axes[0], body.R @ cores[i], pose)
                 what = f"vertex {i}, which is about to strike at the same time"
-                found.append(Margin(t, k, what, float(gaps[i]), "m", float(gaps[i]) / size, gradient))
+                found.append(
+                    Margin(t, k, what, float(gaps[i]), "m", float(gaps[i]) / size, gradient)
+                )
     return found
 
 

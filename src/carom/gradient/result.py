@@ -13,7 +13,7 @@ NEAR = 0.05  # margins below this part of their scale are shown as near
 
 
 class Derivative(NamedTuple):
-    """Derivatives of the state of N bodies by P parameters, world axes; at several times with a first axis more."""
+    """Derivatives of the state of N bodies by P parameters, world axes; of several times with one axis more."""
 
     position: np.ndarray  #: (N, 3, P)
     rotation: np.ndarray  #: (N, 3, P) rotation vector: the attitude R goes to exp(d) R
@@ -85,10 +85,11 @@ class Sensitivities:
     notes : tuple of str
         What has no derivative, and why.
     margins : tuple of Margin
-        How far the sequence of contact is from a change, the nearest (in `relative`) first.
+        How far the sequence of contact is from a change, the nearest (in `relative`) first. Between impacts
+        vertices over half-spaces are looked at, not two bodies that pass each other, nor curved ones.
     defect : float
-        Greatest distance between the stepped motion and the exact free flight that is differentiated, as a part of
-        the size of a body: the error of the time integration.
+        Greatest distance between the stepped motion and the exact free flight that is differentiated, as a
+        part of the size of a body: the error of the time integration.
     """
 
     labels: tuple[str, ...]

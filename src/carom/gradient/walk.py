@@ -56,7 +56,9 @@ class Walk:
             if self.free[b]:
                 self.look_between(b, body, end)
         if K:
-            self.margins += near.of_end(K - 1, self.times[-1], float(solution.impacts.time[-1]), end)
+            self.margins += near.of_end(
+                K - 1, self.times[-1], float(solution.impacts.time[-1]), end
+            )
 
     def start(self) -> list[Moving]:
         """Return all bodies at the start."""
@@ -194,7 +196,7 @@ class Walk:
         return candidates[0] if len(candidates) == 1 else None
 
     def parted(self, row, tied: np.ndarray, body: Moving, done: Strike) -> np.ndarray:
-        """Return which parameters (P,) part points that strike as one: by gap, or by velocity before or after."""
+        """Return which parameters (P,) part points that strike as one, by gap or velocity before or after."""
         P = done.time.size
         apart = np.zeros(P, dtype=bool)
         turn, after = done.poses[3:6], done.bodies[0]
