@@ -9,8 +9,9 @@ from carom.geometry import quaternion
 from .thrown import SIX, derivative, outcome
 
 NAMES = (
-    "a.position", "a.orientation", "a.velocity", "a.angular_velocity", "b.position", "b.orientation", "b.velocity",
-    "b.angular_velocity", "a-b.restitution", "a-b.friction", "b-floor.restitution", "b-floor.friction",
+    "a.position", "a.orientation", "a.velocity", "a.angular_velocity",
+    "b.position", "b.orientation", "b.velocity", "b.angular_velocity",
+    "a-b.restitution", "a-b.friction", "b-floor.restitution", "b-floor.friction",
 )  # fmt: skip
 SHAPES = {
     "spheres": (carom.Sphere(0.05), carom.Sphere(0.07)),
