@@ -49,7 +49,7 @@ def main(out="out/examples"):
         run = throw(v, 0.5, 0.2, 0.258)
         miss = target - run.position[-1, 0]
         print(f"throw {k}: v = {v.round(4)} m/s, misses by {np.linalg.norm(miss):.1e} m")
-        right.plot(*run.position[:, 0, [0, 2]].T, label=f"throw {k}" if k < 3 else None)
+        right.plot(*run.position[:, 0, [0, 2]].T, zorder=-k, label=f"throw {k}" if k < 3 else None)
         v = v + np.linalg.solve(carom.sensitivities(run, "die.velocity").final.position[0], miss)
     right.plot(*target[[0, 2]], "k+", ms=12, label="target")
     for axes in (left, right):

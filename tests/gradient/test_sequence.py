@@ -114,7 +114,7 @@ def test_margins_are_differentiated():
             kinds.add(m.what.split()[0])
             scale = max(abs(m.gradient[k]), 1e-3 * m.value / m.relative)
             assert abs(change / h - m.gradient[k]) < 2e-3 * scale + 1e-2 * (m.impact < 0), m.what
-    assert {"vertex", "slip", "the", "time"} <= kinds
+    assert {"gap", "slip", "speed", "time"} <= kinds
 
 
 def test_what_sticks_says_how_much_friction_is_left():

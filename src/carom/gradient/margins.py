@@ -16,6 +16,7 @@ from carom.impact import layout as o
 
 FEWEST = 24  # looks at a flight, and looks a turn
 A_TURN = 12
+MISSES = 6  # of a flight
 
 
 def vertex_gaps(system, row, body: Moving) -> np.ndarray:
@@ -38,7 +39,7 @@ def of_impact(system, row, place, tied, bodies, done: Strike, hit: Blow, u, W, k
     """Return the margins of an impact: approach, course of slip, other vertices, time since the last one."""
     t, speed = bodies[0].t, float(np.linalg.norm(u))
     found = [
-        Margin(t, k, "the approach of the impact, which would graze or miss", float(-u[0]), "m/s",
+        Margin(t, k, "speed of approach, without which it would graze or miss", float(-u[0]), "m/s",
                float(-u[0]) / speed, -done.before[0])
     ]  # fmt: skip
     found += _course(done, hit, u, W, k, t, speed, float(row.friction), d_mu)
@@ -61,7 +62,7 @@ def of_impact(system, row, place, tied, bodies, done: Strike, hit: Blow, u, W, k
             i = int(np.argmin(gaps))
             if np.isfinite(gaps[i]):
                 gradient = gap_gradient(other.axes[0], body.R @ cores[i], pose)
-                what = f"vertex {i}, which is about to strike at the same time"
+                what = f"gap of vertex {i}, which approaches as well"
                 found.append(
                     Margin(t, k, what, float(gaps[i]), "m", float(gaps[i]) / size, gradient)
                 )
@@ -110,7 +111,7 @@ def of_end(k: int, d_time: np.ndarray, time: float, end: float) -> list[Margin]:
 
 
 def of_flight(system, solution, b: int, body: Moving, until: float) -> list[Margin]:
-    """Return the margin of the nearest miss of a flight: the least gap within it, or at the end of the run."""
+    """Return the margins of the near misses of a flight: least gaps within it, and at the end of the run."""
     rows = [c for c in system.contacts if c.body == b and c.touches == 0]
     if not rows or not until > body.t:
         return []
@@ -118,35 +119,43 @@ def of_flight(system, solution, b: int, body: Moving, until: float) -> list[Marg
     times = np.linspace(body.t, until, int(FEWEST + A_TURN * turns) + 1)
     x, Q, _, _ = solution.evaluate(times)
     R = quaternion.matrix(quaternion.multiply(Q[:, b], solution._run.compiled.to_principal[b]))
-    best, last = None, float(solution.t[-1])
-    size = float(system.bodies.extent[b])
+    at_end, size = until == float(solution.t[-1]), float(system.bodies.extent[b])
+    near = []
     for row in rows:
-        n = row.axes[0]
         cores = system.vertices[row.first : row.last]
-        heights = x[:, b] @ n - row.offset - row.radius
-        gaps = heights[:, None] + np.einsum("i,tik,vk->tv", n, R, cores)
+        heights = x[:, b] @ row.axes[0] - row.offset - row.radius
+        gaps = heights[:, None] + np.einsum("i,tik,vk->tv", row.axes[0], R, cores)
         # within the flight where it is least there, and at the end of the run while it falls
         inner = (gaps[1:-1] < gaps[:-2]) & (gaps[1:-1] <= gaps[2:])
         look = np.full(gaps.shape, np.inf)
         look[1:-1][inner] = gaps[1:-1][inner]
-        if until == last:
+        if at_end:
             falls = gaps[-1] < gaps[-2]
             look[-1, falls] = gaps[-1, falls]
-        i, v = np.unravel_index(int(np.argmin(look)), look.shape)
-        if np.isfinite(look[i, v]) and (best is None or look[i, v] < best[0]):
-            best = (float(look[i, v]), int(i), int(v), row, gaps[:, v])
-    if best is None:
-        return []
-    _, i, v, row, gaps = best
-    n, core, at_end = row.axes[0], system.vertices[row.first + v], i == len(times) - 1
-    time = times[i]
-    if not at_end:
+        least = np.argmin(look, axis=0)
+        for v, i in enumerate(least):
+            if look[i, v] < size:
+                near.append((look[i, v], times, int(i), v, row, gaps[:, v]))
+    near.sort(key=lambda miss: miss[0])
+    return [_miss(system, body, size, *miss[1:]) for miss in near[:MISSES]]
+
+
+def _miss(system, body: Moving, size: float, times, i: int, v: int, row, gaps) -> Margin:
+    """Return the margin of a vertex that is nearest at the sample i, within the flight or at its end."""
+    n, core, time, how = (
+        row.axes[0],
+        system.vertices[row.first + v],
+        times[i],
+        "comes near and leaves",
+    )
+    if i == len(times) - 1:
+        how = "falls as the run ends"
+    else:  # the least of the parabola through three samples; an error of the time does not count
         bend = gaps[i + 1] - 2.0 * gaps[i] + gaps[i - 1]
         time -= 0.5 * (gaps[i + 1] - gaps[i - 1]) / bend * (times[1] - times[0])
     there = fly(body, float(time))
     arm = there.R @ core
     gap = float(n @ (there.x + arm) - row.offset - row.radius)
-    place = "at the end of the run" if at_end else "in passing"
-    what = f"vertex {v}, which has not struck {place}"
     gradient = gap_gradient(n, arm, there.X[:6])
-    return [Margin(float(time), -1, what, gap, "m", abs(gap) / size, gradient)]
+    what = f"gap of vertex {v}, which {how}"
+    return Margin(float(time), -1, what, gap, "m", abs(gap) / size, gradient)
