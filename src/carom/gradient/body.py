@@ -106,6 +106,25 @@ def fly(body: Moving, until: float) -> Moving:
     )  # fmt: skip
 
 
+def path(body: Moving, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return position (n, 3) and attitude (n, 3, 3) of a free flight at `times`, the attitude to 1e-8."""
+    h = (times - body.t)[:, None]
+    x = body.x + h * (body.v + 0.5 * h * body.gravity)
+    if np.ptp(body.inertia) == 0.0:
+        return x, quaternion.matrix(quaternion.exp(h * body.w)) @ body.R
+    L, i = body.momentum, 1.0 / body.inertia
+
+    def rate(_, Q):
+        W = i * (quaternion.matrix(Q).T @ L)
+        return 0.5 * quaternion.multiply(Q, np.append(0.0, W))
+
+    done = solve_ivp(
+        rate, (0.0, float(h[-1, 0])), quaternion.from_matrix(body.R), method="DOP853",
+        rtol=1e-8, atol=1e-8, t_eval=h[:, 0],
+    )  # fmt: skip
+    return x, quaternion.matrix(quaternion.normalize(done.y.T))
+
+
 def _turn_closed(body: Moving, h: float):
     """Return attitude, angular velocity and their tangents where the moments are equal."""
     turn = h * body.w

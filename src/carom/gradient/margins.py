@@ -7,9 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom.geometry import quaternion
 from carom.gradient.blow import AT_REST, Blow
-from carom.gradient.body import Moving, cross, fly
+from carom.gradient.body import Moving, cross, fly, path
 from carom.gradient.result import Margin
 from carom.gradient.saltation import Strike
 from carom.impact import layout as o
@@ -17,6 +16,12 @@ from carom.impact import layout as o
 FEWEST = 24  # looks at a flight, and looks a turn
 A_TURN = 12
 MISSES = 6  # of a flight
+
+
+def half_space_rows(system, b: int):
+    """Return the contacts of vertices of a body with half-spaces."""
+    contacts = system.contacts
+    return contacts[(contacts.body == b) & (contacts.touches == 0)]
 
 
 def vertex_gaps(system, row, body: Moving) -> np.ndarray:
@@ -47,9 +52,7 @@ def of_impact(system, row, place, tied, bodies, done: Strike, hit: Blow, u, W, k
         number = int(row.body) if b == 0 else int(row.other)
         pose = done.poses[6 * b : 6 * b + 6]
         size = float(system.bodies.extent[number])
-        for other in system.contacts:
-            if other.body != number or other.touches != 0:
-                continue
+        for other in half_space_rows(system, number):
             cores = system.vertices[other.first : other.last]
             gaps = vertex_gaps(system, other, body)
             rates = other.axes[0] @ body.v + np.cross(body.w, cores @ body.R.T) @ other.axes[0]
@@ -110,20 +113,19 @@ def of_end(k: int, d_time: np.ndarray, time: float, end: float) -> list[Margin]:
     return [Margin(time, k, what, left, "s", left / end, -d_time)]
 
 
-def of_flight(system, solution, b: int, body: Moving, until: float) -> list[Margin]:
+def of_flight(system, b: int, body: Moving, until: float, at_end: bool) -> list[Margin]:
     """Return the margins of the near misses of a flight: least gaps within it, and at the end of the run."""
-    rows = [c for c in system.contacts if c.body == b and c.touches == 0]
-    if not rows or not until > body.t:
+    rows = half_space_rows(system, b)
+    if not len(rows) or not until > body.t:
         return []
     turns = float(np.linalg.norm(body.w)) * (until - body.t) / (2 * np.pi)
     times = np.linspace(body.t, until, int(FEWEST + A_TURN * turns) + 1)
-    x, Q, _, _ = solution.evaluate(times)
-    R = quaternion.matrix(quaternion.multiply(Q[:, b], solution._run.compiled.to_principal[b]))
-    at_end, size = until == float(solution.t[-1]), float(system.bodies.extent[b])
+    x, R = path(body, times)
+    size = float(system.bodies.extent[b])
     near = []
     for row in rows:
         cores = system.vertices[row.first : row.last]
-        heights = x[:, b] @ row.axes[0] - row.offset - row.radius
+        heights = x @ row.axes[0] - row.offset - row.radius
         gaps = heights[:, None] + np.einsum("i,tik,vk->tv", row.axes[0], R, cores)
         # within the flight where it is least there, and at the end of the run while it falls
         inner = (gaps[1:-1] < gaps[:-2]) & (gaps[1:-1] <= gaps[2:])

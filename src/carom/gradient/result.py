@@ -151,7 +151,7 @@ class Sensitivities:
             last = np.searchsorted([k.t for k in knots], times, side="right") - 1
             for i in np.argsort(times, kind="stable"):
                 k = last[i]
-                X[i, b] = fly(knots[k], times[i]).X if free[k] else knots[k].X
+                X[i, b] = fly(knots[k], float(times[i])).X if free[k] else knots[k].X
         X = X[0] if np.ndim(t) == 0 else X
         return Derivative(*(X[..., 3 * k : 3 * k + 3, :] for k in range(4)))
 

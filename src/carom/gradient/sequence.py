@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -24,11 +24,11 @@ class ImpactKind(NamedTuple):
 class Step(NamedTuple):
     """An event of a run and what was written about it."""
 
-    event: np.record
+    event: Any
     kind: str
     shots: np.recarray  # of the bodies that it concerns
     impact: int  # row in `Solution.impacts`, -1 where there is none
-    row: np.record | None  # of that impact
+    row: Any  # of that impact
 
 
 def steps_of(solution: Solution) -> list[Step]:
@@ -39,7 +39,7 @@ def steps_of(solution: Solution) -> list[Step]:
     used = np.zeros(len(impacts), dtype=bool)
     steps = []
     for number in np.argsort(rec.event.time, kind="stable"):
-        event = rec.event[number]
+        event: Any = rec.event[number]
         kind, k = r.EVENTS[event.kind], -1
         if kind in ("impact", "jams"):
             k = _impact_of(event, impacts, used)

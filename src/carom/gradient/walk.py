@@ -76,13 +76,18 @@ class Walk:
     def result(self) -> Sensitivities:
         """Return all that was found."""
         margins = sorted(self.margins, key=lambda m: m.relative)
+        point, before, after, impulse = self.vectors
         return Sensitivities(
-            self.parameters.labels, self.parameters.columns, self.times, *self.vectors,
-            self.errors, tuple(self.notes), tuple(margins), self.defect, self.knots, self.flies,
-            float(self.solution.t[-1]),
+            labels=self.parameters.labels, columns=self.parameters.columns,
+            impact_time=self.times, impact_point=point, velocity_before=before,
+            velocity_after=after, impulse=impulse, impact_error=self.errors,
+            notes=tuple(self.notes), margins=tuple(margins), defect=self.defect,
+            _knots=self.knots, _free=self.flies, _end=float(self.solution.t[-1]),
         )  # fmt: skip
 
-    def lose(self, b: int, time: float, why: str, columns=True, stays_free=True) -> None:
+    def lose(
+        self, b: int, time: float, why: str, columns: np.ndarray | bool = True, stays_free=True
+    ) -> None:
         """Note that the motion of a body has no derivative from now on, by those parameters that it knows."""
         body, rows = self.bodies[b], self.system.contacts
         own = np.unique(rows.number[(rows.body == b) | (rows.other == b)])
@@ -175,7 +180,8 @@ class Walk:
 
     def place_of(self, step: Step):
         """Return (row, place, tied vertices) of the point that struck; None if it is not one."""
-        rows = [c for c in self.system.contacts if c.number == step.event.contact]
+        contacts = self.system.contacts
+        rows = contacts[contacts.number == step.event.contact]
         candidates = []
         for row in rows:
             body = self.bodies[int(row.body)]
@@ -205,6 +211,8 @@ class Walk:
             arm = body.R @ core
             shift = cross(turn, arm)
             length = float(np.linalg.norm(arm))
+            if not length > 0.0:
+                continue  # two pieces that share the vertex
             size = np.linalg.norm(turn, axis=0) + np.linalg.norm(done.poses[:3], axis=0) / length
             apart |= ~(np.abs(row.axes[0] @ shift) <= TIED * length * size)
             for w, dw in ((body.w, done.velocities[0][3:]), (after.w, spin)):
@@ -216,7 +224,9 @@ class Walk:
 
     def look_between(self, b: int, body: Moving, until: float) -> None:
         """Find out how near a body comes to half-spaces without striking."""
-        self.margins += near.of_flight(self.system, self.solution, b, body, until)
+        self.margins += near.of_flight(
+            self.system, b, body, until, until == float(self.solution.t[-1])
+        )
 
 
 def _same(impulse: np.ndarray, written: np.ndarray) -> bool:
