@@ -35,6 +35,7 @@ def test_the_impulse_is_homogeneous(arm, slip, mu, e, law):
     np.testing.assert_allclose(found.d[:3, :6] @ packed, -found.impulse, rtol=0, atol=1e-8 * size)
 
 
+@pytest.mark.plain
 def test_slip_that_keeps_its_direction_is_that_of_routh():
     # P_n = (1 + e) |u_n| / (W_nn - mu W_n1), P_1 = -mu P_n while u_1 > 0
     W = np.array([[1.5, 0.4, 0.0], [0.4, 2.0, 0.0], [0.0, 0.0, 1.8]])

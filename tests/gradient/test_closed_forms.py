@@ -1,6 +1,7 @@
 """Derivatives of motions with closed forms."""
 
 import numpy as np
+import pytest
 
 import carom
 
@@ -18,6 +19,7 @@ def ball(height=0.4, e=0.7, mu=0.0, velocity=(0, 0, 0), spin=(0, 0, 0), mass=2.0
     return carom.simulate(scene, duration, step=1e-2)
 
 
+@pytest.mark.plain
 def test_a_ball_that_is_dropped():
     # t_1 = sqrt(2 h / g), t_2 = t_1 (1 + 2 e), u_k = -e^(k-1) sqrt(2 g h);
     # at t > t_2: z = e^2 v (t - t_2) - g (t - t_2)^2 / 2, v = sqrt(2 g h)

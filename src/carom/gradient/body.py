@@ -89,8 +89,8 @@ class Moving:
         )
 
 
-def fly(body: Moving, until: float) -> Moving:
-    """Return the body at the time `until`, in free flight, with its tangents."""
+def fly(body: Moving, until: float, accuracy: float = ACCURACY) -> Moving:
+    """Return the body at the time `until`, in free flight, with its tangents to a relative `accuracy`."""
     h = until - body.t
     if h == 0.0:
         return body
@@ -99,7 +99,7 @@ def fly(body: Moving, until: float) -> Moving:
     X[:3] = d[:3] + h * d[6:9] + 0.5 * h * h * body.dg
     X[6:9] = d[6:9] + h * body.dg
     closed = np.ptp(body.inertia) == 0.0 and not np.any(body.dJ)
-    R, w, X[3:6], X[9:] = (_turn_closed if closed else _turn)(body, h)
+    R, w, X[3:6], X[9:] = _turn_closed(body, h) if closed else _turn(body, h, accuracy)
     return replace(
         body, t=until, x=body.x + h * (body.v + 0.5 * h * body.gravity), R=R,
         v=body.v + h * body.gravity, w=w, X=X,
@@ -142,8 +142,8 @@ def _left(a: np.ndarray) -> np.ndarray:
     return np.eye(3) + one * A + two * A @ A
 
 
-def _turn(body: Moving, h: float):
-    """Return the same for any moments: Euler's equations and their variation, integrated to round-off."""
+def _turn(body: Moving, h: float, accuracy: float):
+    """Return the same for any moments: Euler's equations and their variation, integrated."""
     i, L, dL = 1.0 / body.inertia, body.momentum, body.d_momentum
     unit = np.einsum("i,kij,j->kij", i, UNITS, i)  # J^-1 dJ J^-1
 
@@ -163,8 +163,8 @@ def _turn(body: Moving, h: float):
     size = np.concatenate(
         [np.ones(3), h * i.max() * np.ones(3), h * i.max() * np.linalg.norm(i * L) * np.ones(6)]
     )
-    atol = ACCURACY * np.append(np.ones(4), np.tile(size + 1e-300, 3))
-    done = solve_ivp(rate, (0.0, h), y0, method="DOP853", rtol=ACCURACY, atol=np.abs(atol))
+    atol = accuracy * np.append(np.ones(4), np.tile(size + 1e-300, 3))
+    done = solve_ivp(rate, (0.0, h), y0, method="DOP853", rtol=accuracy, atol=np.abs(atol))
     y = done.y[:, -1]
     R = quaternion.matrix(y[:4] / np.linalg.norm(y[:4]))
     moments = np.array([body.dJ[a, b] for a, b in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))])

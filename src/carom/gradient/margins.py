@@ -16,6 +16,7 @@ from carom.impact import layout as o
 FEWEST = 24  # looks at a flight, and looks a turn
 A_TURN = 12
 MISSES = 6  # of a flight
+ROUGHLY = 1e-8  # accuracy of what is only a warning
 
 
 def half_space_rows(system, b: int):
@@ -155,7 +156,7 @@ def _miss(system, body: Moving, size: float, times, i: int, v: int, row, gaps) -
     else:  # the least of the parabola through three samples; an error of the time does not count
         bend = gaps[i + 1] - 2.0 * gaps[i] + gaps[i - 1]
         time -= 0.5 * (gaps[i + 1] - gaps[i - 1]) / bend * (times[1] - times[0])
-    there = fly(body, float(time))
+    there = fly(body, float(time), ROUGHLY)
     arm = there.R @ core
     gap = float(n @ (there.x + arm) - row.offset - row.radius)
     gradient = gap_gradient(n, arm, there.X[:6])
