@@ -170,3 +170,13 @@ def test_derivatives_between_impacts():
     # a run that ends there has the same
     short = carom.sensitivities(throw(duration=0.5 * (t1 + t2)), NAMES)
     np.testing.assert_allclose(many.velocity[1], short.final.velocity, rtol=1e-9, atol=1e-7)
+
+
+def test_sequences_tell_slip_from_stick_and_not_from_none():
+    phases = [
+        carom.contact_sequence(throw(mu=mu, duration=0.0908))[0].phases for mu in (0, 0.2, 1.2)
+    ]
+    assert phases[:2] == [(), ()]
+    assert phases[2][-1] == "stick"
+    event = carom.contact_sequence(throw(duration=0.0908))[0]
+    assert event == ("impact", 0, 0, (), 1)

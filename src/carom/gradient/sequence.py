@@ -17,7 +17,7 @@ class ImpactKind(NamedTuple):
     event: str  #: "impact", "held", "slips", "sticks", "opens" or "jams"
     contact: int  #: index of the contact
     feature: int  #: what touches: of a half-space the number of the vertex
-    phases: tuple[str, ...]  #: of an impact: "slip", "jam", "reversal", "stick", as in `Impact`
+    phases: tuple[str, ...]  #: as of `Impact`, without "slip": all that does not stick slips
     together: int  #: points that were resolved together; 0 where it is no impact
 
 
@@ -75,6 +75,8 @@ def contact_sequence(solution: Solution) -> tuple[ImpactKind, ...]:
     for step in steps_of(solution):
         row, event = step.row, step.event
         phases = () if row is None else phase_names(int(row.phases))
+        # slip goes over to no slip, before it sticks or without friction, with no change of sequence
+        phases = tuple(name for name in phases if name != "slip")
         together = 0 if row is None else int(row.together)
         found.append(
             ImpactKind(step.kind, int(event.contact), int(event.feature), phases, together)
