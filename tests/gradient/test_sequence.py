@@ -179,4 +179,4 @@ def test_sequences_tell_slip_from_stick_and_not_from_none():
     assert phases[:2] == [(), ()]
     assert phases[2][-1] == "stick"
     event = carom.contact_sequence(throw(duration=0.0908))[0]
-    assert event == ("impact", 0, 0, (), 1)
+    assert (event.event, event.contact, event.phases, event.together) == ("impact", 0, (), 1)
