@@ -73,7 +73,7 @@ class Sensitivities:
     final : Derivative
         Of the final state.
     impact_time : (K, P)
-        Of the times of the impacts of the run [s/...].
+        Of the times of the impacts of the run [s].
     impact_point : (K, 3, P)
         Of the points where they are, each at its own time, in the world.
     velocity_before, velocity_after : (K, 3, P)
