@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from carom import baselines, identify
     from carom.coulomb import ContactSolution, solve_contacts
     from carom.ensembles import Ensemble, UniformOrientation, ensemble
+    from carom.gradient import Sensitivities, contact_sequence, sensitivities
     from carom.impact import Impact, LayerHistory, impact_layer, resolve_impact
     from carom.impact.corner.api import CornerImpact, resolve_impacts
 
@@ -60,6 +61,7 @@ __all__ = [
     "Mesh",
     "Options",
     "Scene",
+    "Sensitivities",
     "SimulationError",
     "Solution",
     "Sphere",
@@ -67,6 +69,7 @@ __all__ = [
     "UniformOrientation",
     "baselines",
     "constraints",
+    "contact_sequence",
     "ensemble",
     "forces",
     "identify",
@@ -74,6 +77,7 @@ __all__ = [
     "joints",
     "resolve_impact",
     "resolve_impacts",
+    "sensitivities",
     "simulate",
     "solve_contacts",
 ]
@@ -86,9 +90,12 @@ _LAZY = {
     "LayerHistory": "carom.impact",
     "UniformOrientation": "carom.ensembles",
     "ensemble": "carom.ensembles",
+    "Sensitivities": "carom.gradient",
+    "contact_sequence": "carom.gradient",
     "impact_layer": "carom.impact",
     "resolve_impact": "carom.impact",
     "resolve_impacts": "carom.impact.corner.api",
+    "sensitivities": "carom.gradient",
     "solve_contacts": "carom.coulomb",
 }
 
@@ -96,6 +103,6 @@ _LAZY = {
 def __getattr__(name: str):
     if name in _LAZY:
         return getattr(importlib.import_module(_LAZY[name]), name)
-    if name in ("baselines", "geometry", "identify"):
+    if name in ("baselines", "geometry", "gradient", "identify"):
         return importlib.import_module(f"carom.{name}")
     raise AttributeError(f"module 'carom' has no attribute {name!r}")

@@ -1,0 +1,85 @@
+"""Derivatives of a run: `sensitivities`."""
+
+from __future__ import annotations
+
+from carom import check
+from carom.gradient.parameters import make_parameters
+from carom.gradient.result import Sensitivities
+from carom.solution import Solution
+
+
+def sensitivities(solution: Solution, with_respect_to, *, throw: bool = True) -> Sensitivities:
+    """Differentiate a run: its final state and its impacts, by its start and by numbers of its scene.
+
+    For bodies that fly freely between impacts of one point each. Free flight is differentiated along the exact
+    motion, each impact by its saltation matrix, with the time at which it happens.
+
+    Parameters
+    ----------
+    solution : Solution
+        Of a scene without joints and forces, by any method but the paper's, with located impacts.
+    with_respect_to : str or sequence of str
+        With the names of bodies and contacts of the scene before the dot:
+
+        - ``"body.position"``, ``"body.velocity"``, ``"body.angular_velocity"``: three columns each, world axes;
+        - ``"body.orientation"``: three, a rotation vector in world axes by which the body is turned, with
+          velocities as they are;
+        - ``"body.mass"``, with the inertia as it is; ``"body.inertia"``: six, xx, yy, zz, xy, xz, yz in the
+          axes of the body;
+        - ``"contact.restitution"``, ``"contact.friction"`` (in impacts);
+        - ``"gravity"``: three; ``"restitution"`` and ``"friction"`` of all contacts together.
+    throw : bool
+        True (default): if a part of the run has no derivative by one of the parameters, a ValueError says
+        why. False: NaN there, and the reasons in `notes`.
+
+    Returns
+    -------
+    Sensitivities
+
+    Raises
+    ------
+    TypeError
+        If `solution` is no `Solution`.
+    ValueError
+        For names that the scene does not know; for scenes and methods that are not as above; and if `throw`
+        where there is no derivative: several points strike at once (except by parameters that keep them
+        together), a contact is held, slip starts from rest, an impact is about to take another course.
+
+    Notes
+    -----
+    Mathematics page, part VIII. The derivative belongs to the sequence of contact of this run; `margins` and
+    `reach` say how far it is from another one.
+    """
+    check.instance("solution", solution, (Solution,))
+    check.flag("throw", throw)
+    scene = solution.scene
+    for what, parts in (
+        ("joints", scene.joints), ("constraints", scene.constraints), ("forces", scene.forces),
+    ):  # fmt: skip
+        if parts:
+            raise ValueError(
+                f"solution must be of a scene of free bodies, got one with {what}: {parts[0]!r}"
+            )
+    settings, run = solution.settings, solution._run
+    if settings["method"].startswith("paper") or settings["impact_location"] != "locate":
+        raise ValueError(
+            "solution must be of a run with located impacts and not by the paper's methods, got "
+            f"method={settings['method']!r}, impact_location={settings['impact_location']!r}"
+        )
+    if run.options.add_layer_time:
+        raise ValueError("solution must be of a run with Options(add_layer_time=False), got True")
+
+    from carom.gradient.walk import Walk
+
+    system = run.compiled.system
+    number = 1 + int(max(system.contacts.number, default=-1))
+    parameters = make_parameters(scene, with_respect_to, number, run.compiled.to_principal)
+    walk = Walk(solution, parameters)
+    result = walk.result()
+    if throw and result.notes:
+        raise ValueError(
+            "solution must be differentiable, got a run where "
+            + "; ".join(result.notes)
+            + "; give throw=False to have NaN there, or a shorter duration"
+        )
+    return result

@@ -1,0 +1,128 @@
+"""Derivatives of one frictional impact: of its impulse, with respect to W, u, mu and e.
+
+The resolver is exact to 1e-14, so differences of order 6 of it are to 1e-11 (mathematics page, VIII.2).
+Steps are halved until all points of the stencil pass the same phases, and until halving no longer helps.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from carom.impact import layout as o
+
+UPPER = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
+INPUTS = 11  # the six of W, u, mu, e
+CENTRAL = ((-3, -1 / 60), (-2, 3 / 20), (-1, -3 / 4), (1, 3 / 4), (2, -3 / 20), (3, 1 / 60))
+FORWARD = ((0, -49 / 20), (1, 6), (2, -15 / 2), (3, 20 / 3), (4, -15 / 4), (5, 6 / 5), (6, -1 / 6))
+FIRST = 2.0**-6  # step, as a part of what an input is measured by
+HALVINGS = 14
+ROUND_OFF = 1e-13
+ENOUGH = 1e-11
+AT_REST = 1e-9  # slip below this part of the speed of impact is none
+
+
+class Blow(NamedTuple):
+    """What an impact gave, and the derivatives of it."""
+
+    impulse: np.ndarray  # (3,)
+    slip_end: float  # normal impulse at which slip stops, -1 where it does not
+    slip_end_rate: float  # normal velocity there
+    phases: int
+    d: np.ndarray  # (4, 11) of the impulse and of slip_end
+    error: float  # of d, relative to its largest entry, each in the units of its input
+    kink: str  # why there is no derivative, or ""
+
+
+def blow(W: np.ndarray, u: np.ndarray, mu: float, e: float, law: int) -> Blow | None:
+    """Return the derivatives of an impact; None if it is not resolved."""
+    base = _resolve(W, u, mu, e, law)
+    if base is None:
+        return None
+    z = np.array([*(W[i, k] for i, k in UPPER), *u, mu, e])
+    impulse, end, rate, phases = base[:3], float(base[3]), float(base[4]), int(base[5])
+    slips = np.hypot(u[1], u[2]) > AT_REST * np.linalg.norm(u)
+    kink = ""
+    if not slips and phases & o.SLIP and mu > 0.0:
+        kink = "it starts without slip and slips: which way depends on the direction of any change"
+    unit = _units(W, u, slips)
+    d, error = np.zeros((4, INPUTS)), 0.0
+    size = float(np.linalg.norm(impulse))
+    for k in range(INPUTS):
+        column, miss = _column(z, k, unit[k], law, base, size)
+        if column is None:
+            kink = kink or "its course (slip, stick, reversal) is about to change"
+            continue
+        d[:, k], error = column, max(error, miss)
+    return Blow(impulse, end, rate, phases, d, error, kink)
+
+
+def _units(W, u, slips) -> np.ndarray:
+    """Return what each input is measured by: changes of this size change much."""
+    least = float(np.linalg.eigvalsh(W)[0])
+    weight = max(least, 1e-6 * W[0, 0])
+    tangential = float(np.hypot(u[1], u[2])) if slips else -u[0]
+    return np.array([*[weight] * 6, -u[0], tangential, tangential, 1.0, 1.0])
+
+
+def _column(z, k, unit, law, base, size):
+    """Return the derivative by input k, times nothing, and an estimate of its error in units; or None."""
+    bound = k >= 9  # mu and e do not go below 0
+    best, least, before, step = None, np.inf, None, FIRST * unit
+    for _ in range(HALVINGS):
+        one_sided = bound and z[k] < 3.0 * step
+        values = _stencil(z, k, step, law, base, FORWARD if one_sided else CENTRAL)
+        if values is not None:
+            if before is not None:
+                miss = float(np.max(np.abs(values - before)[:3])) * unit / size
+                miss += ROUND_OFF * unit / step
+                if miss < least:
+                    best, least = values, miss
+                if least < ENOUGH or miss > 30.0 * least:
+                    break
+            before = values
+        step *= 0.5
+    return best, least
+
+
+def _stencil(z, k, step, law, base, weights):
+    """Return the difference quotient (4,), or None where not all points take the same course."""
+    total = np.zeros(4)
+    for at, weight in weights:
+        here = z.copy()
+        here[k] += at * step
+        W = np.empty((3, 3))
+        for value, (i, j) in zip(here, UPPER):
+            W[i, j] = W[j, i] = value
+        found = base if at == 0 else _resolve(W, here[6:9], here[9], here[10], law)
+        if found is None:
+            return None
+        if at != 0 and not _same_course(found, base, z, law):
+            return None
+        total += weight / step * found[:4]
+    return total
+
+
+def _same_course(found, base, z, law) -> bool:
+    """Return whether two impacts pass the same phases, in compression and in restitution."""
+    if z[9] == 0.0:  # without friction there is no course
+        return True
+    if not int(base[5]) & o.SLIP:  # it sticks from the start: others slip a little before they do
+        return bool(int(found[5]) & ~o.SLIP == int(base[5]))
+    same = found[5] == base[5] and (found[3] >= 0.0) == (base[3] >= 0.0)
+    if z[10] == 0.0 or law == 0:  # what e = 0 ends with compression, Newton's law does not look at
+        return bool(same)
+    return bool(same and (found[4] < 0.0) == (base[4] < 0.0))
+
+
+def _resolve(W, u, mu, e, law):
+    """Return impulse (3), where slip ends (impulse, velocity) and phases; None if it is not resolved."""
+    from carom.impact.resolve import resolve
+
+    out = np.zeros(o.SIZE)
+    if resolve(W, u, mu, e, law, out) != o.OK:
+        return None
+    return np.append(
+        out[o.IMPULSE : o.IMPULSE + 3], [out[o.SLIP_END_P], out[o.SLIP_END_UN], out[o.PHASES]]
+    )
