@@ -164,7 +164,7 @@ def simulate(
 
 def checked_settings(
     duration, step, method, impact_location, rtol, atol, save_every, options
-) -> tuple:
+) -> tuple[float, float, int, str, str, int, Options, tuple[float, float] | None]:
     """Return the settings of a `carom.run.Run`, checked: those of `simulate`, and what follows from them."""
     duration = check.number("duration", duration, above=0.0, unit="s")
     adapts = isinstance(step, str) and step == "auto"

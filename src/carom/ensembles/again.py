@@ -23,8 +23,8 @@ class Again:
     def __init__(self, scene: Scene, settings: tuple, targets: list[Target]):
         self.scene, self.settings, self.targets = scene, settings, targets
         self.light = all(target.light for target in targets)
-        self.run = Run(scene, *settings) if self.light else None
-        if self.run is not None:
+        if self.light:
+            self.run = Run(scene, *settings)
             start = self.run.compiled.start.copy()
             self.first = start.view(np.recarray)  # `Run.now` is written to
             self.remember()
@@ -37,7 +37,7 @@ class Again:
         ValueError
             If bodies start inside each other, or the start breaks a joint.
         """
-        if self.run is None:
+        if not self.light:
             return Run(changed(self.scene, self.targets, values), *self.settings)
         run = self.run
         if any(

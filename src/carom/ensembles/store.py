@@ -131,7 +131,7 @@ class Store:
         return dict(sorted(found.items()))
 
 
-def _array(group, key: str, shape, kind, chunk: int, fill=0):
+def _array(group, key: str, shape, kind, chunk: int, fill: float = 0):
     return group.create_array(
         key, shape=shape, dtype=kind, chunks=(min(chunk, shape[0]), *shape[1:]), fill_value=fill
     )

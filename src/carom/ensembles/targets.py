@@ -81,7 +81,7 @@ def _light(scene: Scene, field: str) -> bool:
 
 def _known(scene: Scene) -> dict:
     fields = (*STATE_FIELDS, *BODY_FIELDS)
-    found = {f"{body.name}.{field}": (body, field) for body in scene.bodies for field in fields}
+    found: dict = {f"{b.name}.{field}": (b, field) for b in scene.bodies for field in fields}
     if scene.contact_default is None:
         for contact in scene.contacts:
             found.update({f"{contact.name}.{field}": (contact, field) for field in LAW_FIELDS})

@@ -7,10 +7,13 @@ With equal moments w is constant and the rotation is exp(h w). Otherwise the att
 
 by the classical Runge-Kutta method; L is then exact, and a last small turn restores T: along a body turn th,
 dT = th . (W x l) with l = R^T L, so th = -(T - T0) (W x l)/|W x l|^2. Both invariants hold to round-off
-for any number of steps.
+for any number of steps. A turn beyond what the method can have missed, (|W| h)^5 |W x l|/2T, would come from
+round-off of T, divided by next to nothing where moments are nearly equal or the axis is nearly principal.
 """
 
 from __future__ import annotations
+
+import math
 
 from carom.geometry.rotation import (
     cross,
@@ -100,6 +103,10 @@ def tumble(J, h, q0, w0, memory):
         size = d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
         # near a principal axis T is at an extremum and cannot drift: nothing to restore
         if not (abs(excess) > 5e-16 * energy and size > 1e-14 * energy * energy):
+            break
+        turned = h * h * (W[0] * W[0] + W[1] * W[1] + W[2] * W[2])
+        missed = turned * turned * math.sqrt(turned * size) / energy + 1e-15
+        if not 0.5 * abs(excess) <= missed * math.sqrt(size):
             break
         f = -0.5 * excess / size
         r = exp(f * d[0], f * d[1], f * d[2])
