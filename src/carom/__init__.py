@@ -35,6 +35,7 @@ from carom.status import SimulationError, Status
 if TYPE_CHECKING:
     from carom import baselines, identify
     from carom.coulomb import ContactSolution, solve_contacts
+    from carom.files.resume import resume
     from carom.impact import Impact, LayerHistory, impact_layer, resolve_impact
     from carom.impact.corner.api import CornerImpact, resolve_impacts
 
@@ -70,6 +71,7 @@ __all__ = [
     "joints",
     "resolve_impact",
     "resolve_impacts",
+    "resume",
     "simulate",
     "solve_contacts",
 ]
@@ -82,6 +84,7 @@ _LAZY = {
     "impact_layer": "carom.impact",
     "resolve_impact": "carom.impact",
     "resolve_impacts": "carom.impact.corner.api",
+    "resume": "carom.files.resume",
     "solve_contacts": "carom.coulomb",
 }
 
