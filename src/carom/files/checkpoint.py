@@ -1,7 +1,7 @@
 """Where a run stands between two steps: all arrays that the loop goes on from.
 
-What a step writes before it reads it (the scratch of impacts, of groups and of heaps) is not kept, only how large
-it was. Addresses of compiled units are those of one process, and found again.
+What a step writes before it reads it (the scratch of impacts, of groups and of heaps) is not kept, only how
+large it was. Addresses of compiled units are those of one process, and found again.
 """
 
 from __future__ import annotations

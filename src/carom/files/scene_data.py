@@ -96,6 +96,8 @@ class Encoder:
             return {"polynomial": _array(value.c), "breaks": _array(value.x)}
         if callable(value):
             self.functions.append(where)
+            if isinstance(value, MissingFunction):
+                return {"function": where, "was": value.was}
             module, name = (getattr(value, k, "") for k in ("__module__", "__qualname__"))
             return {"function": where, "was": f"{module}.{name or type(value).__name__}"}
         raise TypeError(f"{where or 'a value'} cannot be written to a file, got {value!r}")
