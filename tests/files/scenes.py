@@ -8,7 +8,9 @@ from carom import constraints, forces, joints
 
 TETRAHEDRON = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
 FACES = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
-SKEW = np.array([0.3, -0.7, 0.61])  # a direction whose unit vector changes when it is normalised again
+SKEW = np.array(
+    [0.3, -0.7, 0.61]
+)  # a direction whose unit vector changes when it is normalised again
 
 
 def shapes():

@@ -85,7 +85,14 @@ def test_many_contacts_have_rows_only(tmp_path):
     scene.set_contact_default(restitution=0.5)
     data = carom.simulate(scene, 0.01, step=0.01).to_xarray()
     assert "contact_force" not in data
-    names = ["ball0-floor", "ball1-floor", "ball2-floor", "ball0-ball1", "ball0-ball2", "ball1-ball2"]
+    names = [
+        "ball0-floor",
+        "ball1-floor",
+        "ball2-floor",
+        "ball0-ball1",
+        "ball0-ball2",
+        "ball1-ball2",
+    ]
     assert list(data.contact.values) == names
 
 

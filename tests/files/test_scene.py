@@ -62,14 +62,18 @@ def test_arrays_stay_read_only():
 def test_functions_are_named_and_missed():
     scene, missing = scene_from_text(scene_to_text(everything()))
     assert missing == ["motor.force", "wind.function"]
-    with pytest.raises(RuntimeError, match=r"'motor\.force' \(files\.scenes\.push\) is not in the file"):
+    with pytest.raises(
+        RuntimeError, match=r"'motor\.force' \(files\.scenes\.push\) is not in the file"
+    ):
         scene["motor"].definition.force(0.0, 0.0, 0.0)
     text = scene_to_text(everything())
     assert "placeholders" in json.loads(text)["note"]
     scene, missing = scene_from_text(text, {"motor.force": push})
     assert scene["motor"].definition.force is push
     assert missing == ["wind.function"]
-    with pytest.raises(ValueError, match=r"names of the file \('motor\.force', 'wind\.function'\), got 'x'"):
+    with pytest.raises(
+        ValueError, match=r"names of the file \('motor\.force', 'wind\.function'\), got 'x'"
+    ):
         scene_from_text(text, {"x": push})
 
 
@@ -77,7 +81,15 @@ def test_functions_are_named_and_missed():
 def test_any_number(one, several):
     # a number as JSON has 17 digits, which are enough; nan and infinities have a name
     encoder = Encoder()
-    values = (one, np.array(several), np.array([several]), np.arange(3), np.zeros((0, 3)), "a", None)
+    values = (
+        one,
+        np.array(several),
+        np.array([several]),
+        np.arange(3),
+        np.zeros((0, 3)),
+        "a",
+        None,
+    )
     data = json.loads(json.dumps(encoder.value(values), allow_nan=False))
     back = Decoder([]).value(data)
     assert same_bits(np.float64(one), np.float64(back[0]))
