@@ -64,7 +64,7 @@ def goals(done, total: float, reports: bool, keeper: Keeper | None):
         begin = perf_counter()
         yield min(total, done() + part)
         if keeper is not None:
-            took, wish = perf_counter() - begin, keeper.seconds / LOOKS
+            took, wish = perf_counter() - begin, keeper.interval / LOOKS
             part = min(most, 2 * part) if took < 0.5 * wish else part
             part = (
                 max(least, part // 2 if isinstance(total, int) else part / 2)

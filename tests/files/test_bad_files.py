@@ -81,7 +81,7 @@ def test_broken_scene(text, path):
 def test_broken_options(path):
     with h5py.File(path, "a") as file:
         file.attrs["options"] = '{"heaps": 3}'
-    with pytest.raises(ValueError, match="missing or broken .*heaps"):
+    with pytest.raises(ValueError, match=r"missing or broken .*heaps"):
         carom.Solution.load(path)
 
 

@@ -126,7 +126,7 @@ def test_stopped_twice(tmp_path):
     interrupted(die(mu=0.3), 0.5, 0.3, path, step=1e-3)
     with pytest.raises(carom.SimulationError, match="interrupted"):
         carom.resume(path, progress=stopped_at(0.7))
-    assert carom.Solution.load(path).t[-1] == pytest.approx(0.35)
+    assert 0.35 <= carom.Solution.load(path).t[-1] < 0.36  # at the next report
     whole = carom.simulate(die(mu=0.3), 0.5, step=1e-3)
     assert differences(carom.resume(path), whole) == []
     assert differences(carom.resume(path), whole) == []  # at its end: as it is

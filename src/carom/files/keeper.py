@@ -25,10 +25,15 @@ class Keeper:
         self.checkpoint: Checkpoint | None = None
         self.written, self.took = perf_counter(), 0.0
 
+    @property
+    def interval(self) -> float:
+        """Time between two savings [s]."""
+        return max(self.seconds, SHARE * self.took)
+
     def look(self) -> None:
         """Write the run between two steps, if it is time."""
         begin = perf_counter()
-        if begin - self.written < max(self.seconds, SHARE * self.took):
+        if begin - self.written < self.interval:
             return
         self.checkpoint = capture(self.run)
         so_far = Solution.from_run(self.run, Status.INTERRUPTED)

@@ -24,6 +24,11 @@ from carom.system import records as r
 from carom.tables import LAWS, ContactTable, EventTable, ImpactTable
 
 ALLOWED = "allowed is a file that Solution.save or simulate(save=...) has written"
+#: what HDF5, h5netcdf and JSON raise where a file has been damaged
+BROKEN = (
+    KeyError, TypeError, IndexError, AttributeError, OSError, RuntimeError, MemoryError,
+    UnicodeDecodeError, json.JSONDecodeError,
+)  # fmt: skip
 #: types of columns of words
 MODES = ("open", "slipping", "sticking")
 WORDS = {"impact_law": LAWS, "event_kind": r.EVENTS, "interval_mode": MODES}
@@ -80,17 +85,16 @@ def opened(path: Path) -> Iterator[Any]:
         raise ValueError(_refusal(path, f"it is {what}"))
     try:
         file = h5netcdf.File(path, "r")
-    except (OSError, KeyError, ValueError, RuntimeError) as error:
+        version, made = (file.attrs.get(name) for name in ("carom_format", "source"))
+    except (*BROKEN, ValueError) as error:
         raise ValueError(_refusal(path, f"it is broken ({error})")) from error
     with file:
-        version = file.attrs.get("carom_format")
-        if version is None:
+        if not isinstance(version, (int, np.integer)):
             raise ValueError(_refusal(path, "it is HDF5, but not from carom (no carom_format)"))
         if not 1 <= version <= FORMAT:
-            made = file.attrs.get("source", "another program")
             raise ValueError(
                 f"path must be a file in format {FORMAT} or older, got {str(path)!r} in format {version}, "
-                f"written by {made}; update carom to read it"
+                f"written by {made or 'another program'}; update carom to read it"
             )
         yield file
 

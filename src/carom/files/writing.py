@@ -16,7 +16,9 @@ from carom.files.needs import need
 from carom.files.variables import attributes, labelled
 from carom.system import records as r
 
-SMALL = 4096  # bytes below which an array of a checkpoint is not compressed
+SMALL = (
+    4096  # bytes up to which an array is stored as it is: without a checksum, and not compressed
+)
 
 
 def write(path: Path, solution, checkpoint: Checkpoint | None = None, whole: bool = True) -> None:
@@ -52,7 +54,7 @@ def _write_all(file, solution, checkpoint, whole) -> None:
 
 
 def _create(group, name: str, dims: tuple[str, ...], data: np.ndarray):
-    """Create a variable, and the dimensions that are new."""
+    """Create a variable, and the dimensions that are new; many numbers with a checksum (Fletcher's)."""
     for dim, size in zip(dims, data.shape):
         if dim not in group.dimensions and dim not in getattr(group.parent, "dimensions", {}):
             group.dimensions[dim] = size
@@ -66,7 +68,8 @@ def _create(group, name: str, dims: tuple[str, ...], data: np.ndarray):
         return group.create_variable(
             name, dims, dtype=kind, chunks=tuple(max(1, n) for n in data.shape)
         )
-    return group.create_variable(name, dims, dtype=kind, data=data)
+    checked = {"fletcher32": True} if data.nbytes > SMALL and data.dtype.kind != "O" else {}
+    return group.create_variable(name, dims, dtype=kind, data=data, **checked)
 
 
 def _write_checkpoint(group, checkpoint: Checkpoint) -> None:
@@ -82,7 +85,9 @@ def _write_checkpoint(group, checkpoint: Checkpoint) -> None:
         dim = f"words_{words.size}"
         if dim not in group.dimensions:
             group.dimensions[dim] = words.size
-        packed = {"compression": "gzip", "compression_opts": 1} if words.nbytes > SMALL else {}
-        group.create_variable(name, (dim,), dtype=words.dtype, data=words, **packed)
+        packed = {"compression": "gzip", "compression_opts": 1, "fletcher32": True}
+        group.create_variable(
+            name, (dim,), dtype=words.dtype, data=words, **(packed if words.nbytes > SMALL else {})
+        )
     note = {"found": checkpoint.found, "arrays": layout}
     _create(group, "note", (), np.array(json.dumps(note), dtype=object))
