@@ -32,6 +32,8 @@ def write(path: Path, solution, checkpoint: Checkpoint | None = None, whole: boo
     try:
         with h5netcdf.File(part, "w") as file:
             _write_all(file, solution, checkpoint, whole)
+        with part.open("r+b") as file:
+            os.fsync(file.fileno())  # on the disk before it takes the place of the old one
         os.replace(part, path)
     finally:
         with contextlib.suppress(FileNotFoundError):
