@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom.islands.layout import Islands, roomier
 from carom.system import records as r
 from carom.system.arrays import Relations
 
@@ -33,6 +32,8 @@ class Checkpoint(NamedTuple):
 
 def capture(run) -> Checkpoint | None:
     """Return where a run stands; None in the middle of a step."""
+    from carom.islands.layout import Islands  # with kernels: not needed to read a file
+
     clock, search = run.clock[0], run.work.search[0]
     islands = run.islands if isinstance(run.islands, Islands) else None
     inside = clock.spent != 0.0 or search.pending != 0
@@ -56,6 +57,9 @@ def restore(run, checkpoint: Checkpoint, records: r.Records) -> None:
     ValueError
         If the arrays are not those of this version of carom.
     """
+    from carom.heap.layout import roomier_heap
+    from carom.islands.layout import Islands, roomier
+
     found = checkpoint.found
     if found["hold"]:
         run.find_constrained_step()
@@ -64,8 +68,6 @@ def restore(run, checkpoint: Checkpoint, records: r.Records) -> None:
         run.find_corner()
     if found["heap"]:
         run.find_heap()
-        from carom.heap.layout import roomier_heap
-
         while len(run.heap.spots) < found["spots"]:
             run.heap = roomier_heap(run.heap)
     while isinstance(run.islands, Islands) and len(run.islands.which) < found["room"]:

@@ -74,7 +74,7 @@ class Encoder:
         """Return a named part of a scene, with all its fields."""
         return self._record(part, part.name)
 
-    def value(self, value, where: str = "") -> Any:
+    def value(self, value: Any, where: str = "") -> Any:
         """Return a value; `where` is what a function there is called."""
         if value is None or isinstance(value, (bool, str)):
             return value
@@ -93,7 +93,8 @@ class Encoder:
         if is_dataclass(value) and type(value).__name__ in TYPES:
             return self._record(value, where)
         if _is_polynomial(value):
-            return {"polynomial": _array(value.c), "breaks": _array(value.x)}
+            curve: Any = value
+            return {"polynomial": _array(curve.c), "breaks": _array(curve.x)}
         if callable(value):
             self.functions.append(where)
             if isinstance(value, MissingFunction):
