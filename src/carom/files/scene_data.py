@@ -186,9 +186,8 @@ def _array(array: np.ndarray) -> Any:
     """Return a list where that says all, else type, shape and elements."""
     if array.dtype == np.float64 and array.size and array.ndim and np.all(np.isfinite(array)):
         return array.tolist()
-    return {
-        "dtype": array.dtype.str, "of": list(array.shape), "array": array.ravel().tolist(),
-    }  # fmt: skip
+    elements = [repr(x) if x != x or abs(x) == math.inf else x for x in array.ravel().tolist()]
+    return {"dtype": array.dtype.str, "of": list(array.shape), "array": elements}
 
 
 def _frozen(array: np.ndarray) -> np.ndarray:
