@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from time import perf_counter
 from typing import TYPE_CHECKING
 
@@ -38,8 +39,12 @@ def finish(run, progress, keeper: Keeper | None, throw: bool):
     if keeper is not None:
         keeper.stop()
     solution = run.solution(status)
-    if keeper is not None:
-        keeper.finish(solution)
+    lost = None if keeper is None else keeper.finish(solution)
+    if lost is not None:
+        what = f"The run ended and could not be saved: {lost}"
+        if throw and solution.success:
+            raise SimulationError(what, solution) from lost
+        warnings.warn(what, RuntimeWarning, stacklevel=3)
     if throw and not solution.success:
         raise SimulationError(solution.message, solution) from run.failure
     return solution

@@ -123,7 +123,7 @@ def simulate(
     ImportError
         For `save` without its packages.
     SimulationError
-        If the run fails part-way and `throw` is True.
+        If the run fails part-way, or cannot be saved at its end, and `throw` is True.
     """
     if not isinstance(scene, (Scene, GeneralizedSystem)):
         raise TypeError(

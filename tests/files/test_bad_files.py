@@ -102,13 +102,15 @@ def test_nowhere_to_save(save, thrown, tmp_path, monkeypatch):
         carom.simulate(die(), 0.1, step=0.01, save="run.nc", save_seconds=-1)
 
 
+def full(*arguments):
+    """In the place of what writes to the disk."""
+    raise OSError("no space left on device")
+
+
 def test_saving_that_fails_leaves_the_old_file(thrown, path, monkeypatch):
     before = path.read_bytes()
 
-    def fails(group, checkpoint):
-        raise OSError("no space left on device")
-
-    monkeypatch.setattr(writing, "_write_all", lambda *rest: fails(*rest[:2]))
+    monkeypatch.setattr(writing, "_write_all", full)
     with pytest.raises(OSError, match="no space left"):
         thrown.save(path)
     assert path.read_bytes() == before
@@ -134,3 +136,17 @@ def test_without_its_packages(package, use, thrown, path, monkeypatch):
 def test_a_copy_is_the_same(thrown, path, tmp_path):
     shutil.copy(path, tmp_path / "copy.nc")
     assert differences(carom.Solution.load(str(tmp_path / "copy.nc")), thrown) == []
+
+
+def test_a_full_disk_does_not_end_a_run(thrown, path, monkeypatch):
+    monkeypatch.setattr(writing, "_write_all", full)
+    with (
+        pytest.warns(RuntimeWarning, match="could not be saved to .* and goes on: no space left"),
+        pytest.raises(carom.SimulationError, match="ended and could not be saved") as lost,
+    ):
+        carom.simulate(die(), 0.25, step=5e-3, save=path, save_seconds=0.0)
+    assert differences(lost.value.solution, thrown) == []
+    with pytest.warns(RuntimeWarning, match="ended and could not be saved"):
+        kept = carom.simulate(die(), 0.25, step=5e-3, save=path, throw=False)
+    assert kept.success
+    assert differences(carom.Solution.load(path), thrown) == []  # what was there before

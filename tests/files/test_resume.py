@@ -80,6 +80,7 @@ def test_killed_process(name, late, tmp_path):
     assert differences(again, whole) == []
     assert derived_differences(again, whole) == []
     assert differences(carom.Solution.load(path), whole) == []
+    assert list(tmp_path.iterdir()) == [path]  # whatever the killed process had begun to write
 
 
 @pytest.mark.parametrize("fraction", [0.2, 0.8])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from pathlib import Path
 from time import perf_counter
 
@@ -37,7 +38,14 @@ class Keeper:
             return
         self.checkpoint = capture(self.run)
         so_far = Solution.from_run(self.run, Status.INTERRUPTED)
-        write(self.path, so_far, self.checkpoint, whole=False)
+        try:
+            write(self.path, so_far, self.checkpoint, whole=False)
+        except OSError as error:  # a full disk is no reason to lose the run
+            warnings.warn(
+                f"the run could not be saved to {str(self.path)!r} and goes on: {error}",
+                RuntimeWarning,
+                stacklevel=2,
+            )
         self.written = perf_counter()
         self.took = self.written - begin
 
@@ -45,10 +53,14 @@ class Keeper:
         """Keep where the run stands, before its end is written down, if that is between two steps."""
         self.checkpoint = capture(self.run) or self.checkpoint
 
-    def finish(self, solution: Solution) -> None:
-        """Write the end: with a checkpoint only if it was interrupted."""
+    def finish(self, solution: Solution) -> OSError | None:
+        """Write the end, with a checkpoint only if it was interrupted; return what went wrong."""
         going_on = solution.status is Status.INTERRUPTED
-        write(self.path, solution, self.checkpoint if going_on else None)
+        try:
+            write(self.path, solution, self.checkpoint if going_on else None)
+        except OSError as error:
+            return error
+        return None
 
 
 def checked_path(path: str | os.PathLike, name: str = "save") -> Path:

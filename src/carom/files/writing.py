@@ -28,7 +28,9 @@ def write(path: Path, solution, checkpoint: Checkpoint | None = None, whole: boo
     leaves what was there before. Without `whole` the reactions of joints are left out.
     """
     h5netcdf = need("h5netcdf", "saving a run")
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
+    part = path.with_name(
+        f".{path.name}.part"
+    )  # what a killed process leaves, the next saving writes over
     try:
         with h5netcdf.File(part, "w") as file:
             _write_all(file, solution, checkpoint, whole)
