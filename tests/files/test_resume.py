@@ -1,5 +1,6 @@
 """A run that was stopped goes on from its file and ends as if it had not been: bit for bit."""
 
+import json
 import os
 import signal
 import subprocess
@@ -7,10 +8,15 @@ import sys
 import time
 from pathlib import Path
 
+import h5py
+import numpy as np
 import pytest
 
 import carom
 from carom import forces, joints
+from carom.files.checkpoint import capture, restore
+from carom.files.kept import run_again
+from carom.system import records as r
 from files.compare import derived_differences, differences
 from files.scenes import pendulum, pile, push, slider
 from simulate.scenes import die
@@ -154,6 +160,12 @@ def test_functions_are_given_again(tmp_path):
     interrupted(pushed(), 0.2, 0.5, path, step=0.01)
     with pytest.raises(ValueError, match=r"functions must be given for 'motor\.force'"):
         carom.resume(path)
+    part = carom.Solution.load(path)
+    assert "joint_force" in part.to_xarray()  # worked out when it was interrupted
+    del vars(part)["joint_reactions"]
+    assert "joint_force" not in part.to_xarray()
+    with pytest.raises(ValueError, match=r"given to Solution\.load .* none for 'motor\.force'"):
+        _ = part.joint_reactions
     again = carom.resume(path, functions={"motor.force": push})
     assert differences(again, whole) == []
     bare = carom.Solution.load(
@@ -179,4 +191,49 @@ def test_a_run_that_failed_does_not_go_on(tmp_path):
         carom.simulate(ball(), 4.0, step=0.05, options=options, save=path)
     assert carom.Solution.load(path).status is carom.Status.TOO_MANY_IMPACTS
     with pytest.raises(ValueError, match="it ended by itself: More impacts"):
+        carom.resume(path)
+
+
+def filled_with_nothing(value):
+    """Write nan, or a number that is no place of anything, into all arrays of some scratch."""
+    if isinstance(value, np.ndarray):
+        for column in [value[n] for n in value.dtype.names] if value.dtype.names else [value]:
+            column[...] = np.nan if column.dtype.kind == "f" else -7
+    elif isinstance(value, tuple):
+        for one in value:
+            filled_with_nothing(one)
+
+
+@pytest.mark.parametrize("scene", [slider(), pile()], ids=["slider", "pile"])
+def test_scratch_is_no_state(scene):
+    # What a checkpoint leaves out is written in each step before it is read: with nan in it at the
+    # checkpoint the run ends with the same records.
+    settings = {
+        "duration": 0.4, "step": 5e-3, "method": "rk4", "impact_location": "locate",
+        "save_every": 1,
+    }  # fmt: skip
+    whole, part, again = (run_again(scene, settings, carom.Options()) for _ in range(3))
+    assert whole.go_on(80) is carom.Status.SUCCESS
+    part.go_on(60)
+    checkpoint = capture(part)
+    assert checkpoint is not None
+    restore(again, checkpoint, r.trimmed(part.records, part.clock))
+    filled_with_nothing((again.cluster, again.corner, again.heap))
+    assert again.go_on(80) is carom.Status.SUCCESS
+    one, two = (r.trimmed(run.records, run.clock) for run in (whole, again))
+    assert [name for name, a, b in zip(one._fields, one, two) if a.tobytes() != b.tobytes()] == []
+    assert whole.clock.tobytes() == again.clock.tobytes()
+
+
+def test_checkpoint_of_another_version(tmp_path):
+    path = tmp_path / "run.nc"
+    interrupted(die(), 0.2, 0.5, path, step=5e-3)
+    with h5py.File(path, "a") as file:
+        note = json.loads(file["checkpoint/note"][()])
+        note["arrays"]["clock"]["dtype"][0][0] = "then"
+        file["checkpoint/note"][()] = json.dumps(note)
+    assert carom.Solution.load(path).t[-1] > 0.0  # what it has computed is read all the same
+    with pytest.raises(
+        ValueError, match=r"run\.nc': the checkpoint was written by another version"
+    ):
         carom.resume(path)

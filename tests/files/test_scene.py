@@ -14,6 +14,7 @@ from carom.system.compile import compile_scene
 from files.compare import same_bits
 from files.scenes import everything, pile, pull, push
 
+pytestmark = pytest.mark.plain
 GIVEN = {"motor.force": push, "wind.function": pull}
 
 

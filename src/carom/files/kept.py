@@ -52,14 +52,26 @@ class KeptRun:
     def _run(self):
         return self.revived()
 
-    @property
+    @cached_property
     def compiled(self):
-        """The compiled scene."""
-        return self._run.compiled
+        """The compiled scene; with functions missing it cannot stand where the run did."""
+        if not self.missing:
+            return self._run.compiled
+        from carom.system.compile import compile_scene
+
+        method = self.settings["method"]
+        return compile_scene(
+            self.scene, self.options, method.startswith("paper"), method == "implicit"
+        )
 
     @property
     def method(self):
-        """Settings of the method."""
+        """Settings of the method, for which the run is made again."""
+        if self.missing:
+            names = ", ".join(map(repr, self.missing))
+            raise ValueError(
+                f"functions must be given to Solution.load to work this out, got none for {names}"
+            )
         return self._run.method
 
     @cached_property

@@ -46,7 +46,8 @@ def labelled(solution, reactions: bool = True) -> list[Variable]:
     out += table_variables("interval", "interval", INTERVAL, solution.contacts)
     out += table_variables("held", "held", HELD, solution.forces)
     out += _contacts(solution)
-    if reactions:
+    missing = getattr(solution._run, "missing", ())  # functions that a file could not hold
+    if reactions and not (missing and "joint_reactions" not in vars(solution)):
         out += _joints(solution) + _constraints(solution)
     text = np.array(scene_to_text(scene), dtype=object)
     out.append(Variable("scene", (), text, None, "the scene that was simulated, as JSON"))
