@@ -172,12 +172,18 @@ def _checkpoint(file) -> Checkpoint | None:
 
 
 def _cached(file) -> dict[str, Any]:
-    out = {}
+    """Return what the file of a finished run holds of reactions, empty where there are none of a kind."""
+    if "position_error" not in file.variables:
+        return {}
+    saved = file.dimensions["time"].size
+    out: dict[str, Any] = {
+        "joint_reactions": np.zeros((saved, 0, 6)),
+        "constraint_forces": np.zeros((saved, 0)),
+        "constraint_errors": (_array(file, "position_error"), _array(file, "velocity_error")),
+    }
     if "joint_force" in file.variables:
         pair = [_array(file, name) for name in ("joint_force", "joint_torque")]
         out["joint_reactions"] = np.concatenate(pair, axis=2)
     if "constraint_force" in file.variables:
         out["constraint_forces"] = _array(file, "constraint_force")
-    if "position_error" in file.variables:
-        out["constraint_errors"] = (_array(file, "position_error"), _array(file, "velocity_error"))
     return out
