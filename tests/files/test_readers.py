@@ -10,6 +10,7 @@ import pytest
 import xarray as xr
 
 import carom
+from files.compare import derived_differences, differences
 
 READER = """
 import sys, h5py
@@ -126,3 +127,27 @@ def test_pandas(slid, swung):
     assert set(rest.body) == {"block"}
     assert set(rest.other) == {""}
     assert list(swung.to_pandas().bodies.columns.unique("body")) == ["rod0", "rod1"]
+
+
+def test_constraints_have_rows(tmp_path):
+    # two wheels on the ground, geared 1 : -2, the first one driven at 3 rad/s
+    scene = carom.Scene(gravity=(0, 0, 0))
+    hinges = []
+    for k, rate in enumerate((3.0, -6.0)):
+        wheel = scene.add_body(
+            carom.Cylinder(0.1, 0.02), mass=1.0, position=(k, 0, 0), angular_velocity=(0, 0, rate)
+        )
+        hinge = carom.joints.Revolute((k, 0, 0), (0, 0, 1))
+        hinges.append(scene.add_joint(hinge, carom.GROUND, wheel))
+    scene.add_constraint(carom.constraints.Gear(*hinges, -2.0), name="gear")
+    scene.add_constraint(carom.constraints.Driver(hinges[0], rate=3.0), name="motor")
+    run = carom.simulate(scene, 0.1, step=0.01)
+    run.save(tmp_path / "run.nc")
+    assert differences(carom.Solution.load(tmp_path / "run.nc"), run) == []
+    assert derived_differences(carom.Solution.load(tmp_path / "run.nc"), run) == []
+    data = run.to_xarray()
+    assert list(data.row.values) == ["gear", "motor"]
+    np.testing.assert_array_equal(data.constraint_force, run.constraint_forces)
+    # q = rate t, to round-off
+    np.testing.assert_allclose(data.joint_coordinate[:, 1], -6.0 * data.time, rtol=0, atol=1e-14)
+    assert float(data.velocity_error.max()) < 1e-13
