@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     from carom import baselines, identify
     from carom.coulomb import ContactSolution, solve_contacts
     from carom.ensembles import Ensemble, UniformOrientation, ensemble
+    from carom.files.resume import resume
     from carom.gradient import Sensitivities, contact_sequence, sensitivities
     from carom.impact import Impact, LayerHistory, impact_layer, resolve_impact
     from carom.impact.corner.api import CornerImpact, resolve_impacts
@@ -77,6 +78,7 @@ __all__ = [
     "joints",
     "resolve_impact",
     "resolve_impacts",
+    "resume",
     "sensitivities",
     "simulate",
     "solve_contacts",
@@ -96,6 +98,7 @@ _LAZY = {
     "resolve_impact": "carom.impact",
     "resolve_impacts": "carom.impact.corner.api",
     "sensitivities": "carom.gradient",
+    "resume": "carom.files.resume",
     "solve_contacts": "carom.coulomb",
 }
 

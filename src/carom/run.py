@@ -52,7 +52,7 @@ class Run:
         self, scene: Scene, duration, step, steps, method, impact_location, save_every, options,
         tolerances: tuple[float, float] | None = None,
     ):  # fmt: skip
-        self.scene, self.options = scene, options
+        self.scene, self.options, self.steps = scene, options, steps
         self.settings = {
             "duration": duration, "step": step, "method": method,
             "impact_location": impact_location, "save_every": save_every,
@@ -252,6 +252,16 @@ class Run:
     def steps_done(self) -> int:
         """Number of finished steps."""
         return int(self.clock[0].step)
+
+    @property
+    def to_principal(self) -> np.ndarray:
+        """Quaternions (N, 4) from principal axes to the scene's body axes."""
+        return self.compiled.to_principal
+
+    @property
+    def contact_count(self) -> int:
+        """Number of contacts and stops."""
+        return int(self.compiled.system.contacts.number.max(initial=-1)) + 1
 
     @property
     def failure(self) -> BaseException | None:

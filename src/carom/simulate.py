@@ -2,26 +2,26 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable
 from typing import overload
 
 import numpy as np
 
 from carom import check
+from carom.drive import finish
 from carom.generalized.solution import GeneralizedSolution
 from carom.generalized.system import GeneralizedSystem
 from carom.options import Options
 from carom.scene.limits import check_location, check_method
 from carom.scene.scene import Scene
 from carom.solution import Solution
-from carom.status import SimulationError, Status
 
 METHODS = (
     "rk4", "rk5", "rk8", "rattle", "rattle4", "rattle6", "implicit", "paper", "paper-ode",
 )  # fmt: skip
 ADAPTIVE = ("rk5", "rk8")  # methods with an estimate of their error
 LOCATIONS = ("locate", "project", "work")
-CHUNKS = 100  # calls of the compiled loop in one run, for progress and for Ctrl-C
 
 
 @overload
@@ -29,7 +29,8 @@ def simulate(
     scene: Scene, duration: float, *, step: float | str, method: str | None = ...,
     rtol: float | None = ..., atol: float | None = ..., impact_location: str = ...,
     save_every: int = ..., progress: bool | Callable[[float, float], None] | None = ...,
-    options: Options | None = ..., throw: bool = ...,
+    options: Options | None = ..., throw: bool = ..., save: str | os.PathLike | None = ...,
+    save_seconds: float = ...,
 ) -> Solution: ...  # fmt: skip
 
 
@@ -38,7 +39,8 @@ def simulate(
     scene: GeneralizedSystem, duration: float, *, step: float | str, method: str | None = ...,
     rtol: float | None = ..., atol: float | None = ..., impact_location: str = ...,
     save_every: int = ..., progress: bool | Callable[[float, float], None] | None = ...,
-    options: Options | None = ..., throw: bool = ...,
+    options: Options | None = ..., throw: bool = ..., save: str | os.PathLike | None = ...,
+    save_seconds: float = ...,
 ) -> GeneralizedSolution: ...  # fmt: skip
 
 
@@ -55,6 +57,8 @@ def simulate(
     progress: bool | Callable[[float, float], None] | None = None,
     options: Options | None = None,
     throw: bool = True,
+    save: str | os.PathLike | None = None,
+    save_seconds: float = 60.0,
 ) -> Solution | GeneralizedSolution:
     """Simulate the motion of a scene with its impacts.
 
@@ -98,6 +102,11 @@ def simulate(
     throw : bool
         True (default): a run that fails raises `SimulationError`, whose `solution` holds all up to
         there. False: the solution is returned, with its `status` and `message`.
+    save : str or path, optional
+        File that the run is saved to at its end and as it goes (needs ``carom[files]``): whoever kills the run
+        finds in it what was computed until then, and where `resume` goes on. Not for a system in coordinates.
+    save_seconds : float
+        How often it is saved [s of real time]. Default 60; at least ten times what one saving takes.
 
     Returns
     -------
@@ -111,8 +120,10 @@ def simulate(
     ValueError
         For an argument outside its range, a body inside a half-space at the start, or an initial
         velocity that breaks a joint. Nothing has run then.
+    ImportError
+        For `save` without its packages.
     SimulationError
-        If the run fails part-way and `throw` is True.
+        If the run fails part-way, or cannot be saved at its end, and `throw` is True.
     """
     if not isinstance(scene, (Scene, GeneralizedSystem)):
         raise TypeError(
@@ -128,6 +139,8 @@ def simulate(
     if isinstance(scene, GeneralizedSystem):
         if adapts:
             raise ValueError('step of a system in coordinates must be a number [s], got "auto"')
+        if save is not None:
+            raise ValueError(f"save must be left out with a system in coordinates, got {save!r}")
         check.choice("method of a system in coordinates", method, METHODS[:3])
         check.choice("impact_location of a system in coordinates", impact_location, LOCATIONS[:1])
 
@@ -140,26 +153,22 @@ def simulate(
         from carom.run import Run
 
         run = Run(scene, *settings)
-    status = Status.SUCCESS
-    total = duration if adapts else steps
-    report = reporter(progress, total, "s" if adapts else "step")
-    try:
-        for until in goals(total, 1 if report is None else CHUNKS):
-            status = run.go_on(until)
-            if report is not None:
-                report(run.reached if adapts else run.steps_done, total)
-            if status is not Status.SUCCESS:
-                break
-    except KeyboardInterrupt:
-        status = Status.INTERRUPTED
-    finally:
-        close = getattr(report, "close", None)
-        if close is not None:
-            close()
-    solution = run.solution(status)
-    if throw and not solution.success:
-        raise SimulationError(solution.message, solution) from run.failure
-    return solution
+    keeper = None
+    if save is not None:
+        from carom.files.keeper import Keeper
+
+        keeper = Keeper(run, save, save_seconds)
+    return finish(run, progress, keeper, throw)
+
+
+def spacing(duration: float, step: float | str, options: Options) -> tuple[float, int]:
+    """Return the step, or the longest one where steps vary, and the number of steps."""
+    adapts = step == "auto"
+    h = min(duration, options.max_step or duration / 50.0) if adapts else float(step)
+    if not duration / h < 1e12:
+        name = "Options.max_step" if adapts else "step"
+        raise ValueError(f"{name} must be above duration / 1e12 = {duration / 1e12:g} s, got {h!r}")
+    return h, max(1, int(np.ceil(duration / h * (1.0 - 1e-12))))
 
 
 def checked_settings(
@@ -180,11 +189,7 @@ def checked_settings(
     options = Options() if options is None else options
     if not isinstance(options, Options):
         raise TypeError(f"options must be carom.Options, got {type(options).__name__}")
-    h = min(duration, options.max_step or duration / 50.0) if adapts else float(step)
-    if not duration / h < 1e12:
-        name = "Options.max_step" if adapts else "step"
-        raise ValueError(f"{name} must be above duration / 1e12 = {duration / 1e12:g} s, got {h!r}")
-    steps = max(1, int(np.ceil(duration / h * (1.0 - 1e-12))))
+    h, steps = spacing(duration, step, options)
     return duration, h, steps, method, impact_location, save_every, options, tolerances
 
 
@@ -213,37 +218,3 @@ def check_tolerances(adapts: bool, method: str, location: str, rtol, atol):
         check.number("rtol", 1e-6 if rtol is None else rtol, least=1e-13, most=0.1),
         check.number("atol", 1e-9 if atol is None else atol, least=0.0, unit="m"),
     )
-
-
-def goals(total: float, parts: int) -> list[float]:
-    """Return where a run of `total` steps, or seconds, stops on its way to report."""
-    if isinstance(total, int):
-        chunk = max(1, -(-total // parts))
-        return [*range(chunk, total, chunk), total]
-    return [total * k / parts for k in range(1, parts)] + [total]
-
-
-class _Bar:
-    """A tqdm bar as a progress function."""
-
-    def __init__(self, total: float, unit: str):
-        from tqdm import tqdm
-
-        self.bar = tqdm(total=total, unit=unit)
-
-    def __call__(self, done: float, total: float) -> None:
-        self.bar.update(done - self.bar.n)
-
-    def close(self) -> None:
-        self.bar.close()
-
-
-def reporter(progress, total: float, unit: str):
-    """Return what is called with (done, total), or None: a bar for True, or a function of the caller's."""
-    if progress is None or progress is False:
-        return None
-    if progress is True:
-        return _Bar(total, unit)
-    if callable(progress):
-        return progress
-    raise TypeError(f"progress must be True, False or a function, got {progress!r}")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from carom.files.portable import Portable
 from carom.geometry import quaternion, spline
 from carom.ledger import Ledger
 from carom.status import Status
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Solution:
+class Solution(Portable):
     """The motion of N bodies at T saved times, with K impacts.
 
     Attributes
@@ -208,7 +209,7 @@ class Solution:
             raise ValueError(f"t must be within [{self.t[0]:g}, {self.t[-1]:g}] s, got {t!r}")
         bodies = [_between(node, times, side) for node in self._nodes]
         x, Q, v, w = (np.stack(column, axis=1) for column in zip(*bodies))
-        Q = quaternion.multiply(Q, quaternion.conjugate(self._run.compiled.to_principal))
+        Q = quaternion.multiply(Q, quaternion.conjugate(self._run.to_principal))
         result = (x, Q, v, w)
         return tuple(a[0] for a in result) if np.ndim(t) == 0 else result
 
@@ -235,8 +236,7 @@ class Solution:
     def _contact_sums(self) -> tuple[np.ndarray, np.ndarray]:
         from carom.assemble import contact_sums
 
-        number = self._run.compiled.system.contacts.number
-        return contact_sums(self._touch, len(self.t), int(number.max(initial=-1)) + 1)
+        return contact_sums(self._touch, len(self.t), self._run.contact_count)
 
     @cached_property
     def _nodes(self):

@@ -164,3 +164,10 @@ def test_interrupted_and_progress():
     run = carom.simulate(build(), 1.0, step=0.01, progress=stop, throw=False)
     assert run.status is carom.Status.INTERRUPTED
     assert run.t[-1] == pytest.approx(0.5)
+
+
+def test_is_not_saved():
+    with pytest.raises(
+        ValueError, match=r"save must be left out with a system in coordinates, got 'a\.nc'"
+    ):
+        carom.simulate(build(), 0.1, step=0.01, save="a.nc")

@@ -9,11 +9,12 @@ from pathlib import Path
 import numpy as np
 
 from carom import check
+from carom.drive import reporter
 from carom.ensembles.result import Ensemble
 from carom.ensembles.sampling import draw
 from carom.options import Options
 from carom.scene.scene import Scene
-from carom.simulate import check_scene, checked_settings, reporter
+from carom.simulate import check_scene, checked_settings
 
 CHUNK = 64  # runs in a part
 

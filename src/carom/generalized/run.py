@@ -29,7 +29,7 @@ class GeneralizedRun:
         self, system: GeneralizedSystem, duration: float, step: float, steps: int, method: str,
         save_every: int, options: Options,
     ):  # fmt: skip
-        self.user, self.options = system, options
+        self.user, self.options, self.steps = system, options, steps
         self.plan = Plan(duration, step, steps, save_every)
         self.settings = {
             "duration": duration, "step": step, "method": method, "save_every": save_every,

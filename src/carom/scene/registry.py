@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from difflib import get_close_matches
 
 from carom import check
@@ -44,6 +45,10 @@ class Registry:
     def parts(self, kind: type) -> tuple:
         """Return all parts of a `kind`, in the order added."""
         return tuple(self._kinds.get(kind, ()))
+
+    def __iter__(self) -> Iterator:
+        """Go through all parts, in the order added."""
+        return iter(self._parts.values())
 
     def count(self, kind: type) -> int:
         """Return how many parts there are of a `kind`."""

@@ -1,0 +1,113 @@
+"""What a file of a run looks like: dimensions, labels, units, attributes, and its version.
+
+Units are written as UDUNITS has them (``m s-1``), as the CF conventions ask.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+#: version of the layout; a reader takes its own and older ones
+FORMAT = 1
+CONVENTIONS = "CF-1.11"
+DOI = "10.1007/978-3-030-81166-2_44"
+CITATION = (
+    "S. Natsiavas, P. Passas, E. Paraskevopoulos: A Novel Time-Stepping Method for Multibody Systems with "
+    f"Frictional Impacts, doi:{DOI}"
+)
+
+#: dimensions that every file has, with their labels
+AXIS = ("x", "y", "z")
+QUATERNION = ("w", "x", "y", "z")
+CONTACT_AXIS = ("normal", "tangent1", "tangent2")
+LABELS = {
+    "axis": (AXIS, "axes of the world"),
+    "quaternion": (QUATERNION, "components of a unit quaternion, scalar first"),
+    "contact_axis": (CONTACT_AXIS, "axes of a contact"),
+    "contact_axis_2": (CONTACT_AXIS, "axes of a contact, once more"),
+}
+
+#: columns of the table of impacts: dimensions beyond the first, units, meaning
+IMPACT = {
+    "time": ((), "s", "time of the impact"),
+    "contact": ((), "1", "place of the contact among all contacts, from 0"),
+    "point": (("axis",), "m", "where, world axes"),
+    "normal": (("axis",), "1", "unit normal from the other into the body, world axes"),
+    "relative_velocity_before": (
+        ("contact_axis",), "m s-1", "relative velocity before, approach negative",
+    ),
+    "relative_velocity_after": (("contact_axis",), "m s-1", "relative velocity after"),
+    "impulse": (("contact_axis",), "N s", "impulse on the body"),
+    "energy_change": ((), "J", "change of the energy of the whole system"),
+    "penetration": ((), "m", "greatest penetration of the boundary layer"),
+    "duration": ((), "s", "duration in the boundary layer"),
+    "law": ((), None, "law of restitution"),
+    "inverse_mass": (("contact_axis", "contact_axis_2"), "kg-1", "inverse mass W of the contact"),
+    "restitution": ((), "1", "coefficient of restitution e"),
+    "friction": ((), "1", "coefficient of friction mu"),
+    "compression_work": ((), "J", "work of the normal force in compression"),
+    "restitution_work": ((), "J", "work of the normal force in restitution"),
+    "friction_loss": ((), "J", "energy lost to friction"),
+    "together": ((), "1", "points that were resolved together, each with a row of its own"),
+}  # fmt: skip
+
+EVENT = {
+    "time": ((), "s", "time of the event"),
+    "kind": ((), None, "impact, held, slips, sticks, opens or jams"),
+    "contact": ((), "1", "place of the contact among all contacts, from 0"),
+}
+
+#: intervals of contact that stays
+INTERVAL = {
+    "contact": ((), "1", "place of the contact among all contacts, from 0"),
+    "feature": ((), "1", "what touches: of a half-space the number of the vertex in the shape"),
+    "start": ((), "s", "start of the interval"),
+    "end": ((), "s", "end of the interval"),
+    "mode": ((), None, "slipping or sticking (or rolling, or at rest)"),
+}
+
+#: one row a held point and saved time
+HELD = {
+    "saved": ((), "1", "place of the saved time along time, from 0"),
+    "contact": ((), "1", "place of the contact among all contacts, from 0"),
+    "body": ((), "1", "place of its body among all bodies, from 0"),
+    "other": ((), "1", "place of the other body, -1 for a half-space"),
+    "mode": ((), None, "slipping or sticking (or rolling, or at rest)"),
+    "point": (("axis",), "m", "where, world axes"),
+    "force": (("contact_axis",), "N", "force on the body, contact axes"),
+    "vector": (("axis",), "N", "force on the body, world axes"),
+}
+
+LEDGER = {
+    "loads": "work of loads, dampers and motors since the start",
+    "impacts": "change by impacts since the start",
+    "friction": "work of friction in held contacts since the start",
+    "bounces": "energy of bounces that were not resolved, since the start",
+    "residual": "energy that no entry explains: the error of the integration",
+}
+
+
+class Variable(NamedTuple):
+    """An array with its dimensions and what it means."""
+
+    name: str
+    dims: tuple[str, ...]
+    data: np.ndarray
+    units: str | None
+    long_name: str
+
+    @property
+    def attrs(self) -> dict[str, str]:
+        """Attributes in the file."""
+        units = {} if self.units is None else {"units": self.units}
+        return {"long_name": self.long_name, **units}
+
+
+def table_variables(prefix: str, dim: str, columns: dict, table) -> list[Variable]:
+    """Return the columns of a table as variables named ``prefix_column``."""
+    return [
+        Variable(f"{prefix}_{name}", (dim, *dims), getattr(table, name), units, meaning)
+        for name, (dims, units, meaning) in columns.items()
+    ]

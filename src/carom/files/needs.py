@@ -1,0 +1,24 @@
+"""Packages that only files need: imported where they are used."""
+
+from __future__ import annotations
+
+import importlib
+from typing import Any
+
+EXTRA = 'pip install "carom[files]"'
+
+
+def need(package: str, what: str) -> Any:
+    """Return an optional package, or say how to install it.
+
+    Raises
+    ------
+    ImportError
+        If it is not installed; `what` is what needs it.
+    """
+    try:
+        return importlib.import_module(package)
+    except ImportError as error:
+        if error.name is not None and error.name.split(".")[0] != package:
+            raise  # it is there, and lacks something itself
+        raise ImportError(f"{what} needs the package {package}: {EXTRA}") from None

@@ -1,0 +1,31 @@
+"""Runs that the tests of files share."""
+
+import pytest
+
+import carom
+from files.scenes import pendulum, slider
+from simulate.scenes import die
+
+
+@pytest.fixture(scope="session")
+def thrown():
+    """A die that has struck the plane twice."""
+    return carom.simulate(die(), 0.25, step=5e-3)
+
+
+@pytest.fixture(scope="session")
+def slid():
+    """A block that slides and stops."""
+    return carom.simulate(slider(), 0.3, step=5e-3)
+
+
+@pytest.fixture(scope="session")
+def swung():
+    """A chain that strikes its stop."""
+    return carom.simulate(pendulum(), 1.0, step=2e-2)
+
+
+@pytest.fixture(params=["thrown", "slid", "swung"])
+def run(request):
+    """Each of them."""
+    return request.getfixturevalue(request.param)
