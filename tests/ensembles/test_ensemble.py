@@ -79,6 +79,22 @@ def test_several_bodies_that_strike_each_other():
     assert e.outcomes.tobytes() == back.outcomes[::-1].tobytes()
 
 
+@pytest.mark.plain
+def test_drops_of_a_ball():
+    """First impact at sqrt(2 (z - r)/g); also without the compiler, where the arrays are the same ones."""
+    z = np.array([0.11, 0.12, 0.115])
+    at = np.stack([np.zeros(3), np.zeros(3), z], axis=1)
+    scene = carom.Scene(gravity=(0, 0, -9.81))
+    floor = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1))
+    ball = scene.add_body(carom.Sphere(0.1), mass=1.0, position=(0, 0, 0.2), name="ball")
+    scene.add_contact(ball, floor, restitution=0.5, friction=0.0)
+    e = carom.ensemble(
+        scene, 0.08, step=5e-3, vary={"ball.position": at}, executor="serial", chunk=2
+    )
+    np.testing.assert_allclose(e.first_impact, np.sqrt(2 * (z - 0.1) / 9.81), rtol=1e-12)
+    assert all(agrees(e, k) for k in range(3))
+
+
 def test_whole_scenes():
     e = carom.ensemble(
         two_balls, 0.4, step=2e-3, vary={"gap": uniform(0.0, 0.03), "friction": uniform(0.1, 0.4)}, runs=4

@@ -26,16 +26,13 @@ def engine(executor, workers: int | None):
         if executor == "serial":
             yield _at_once, 1
             return
-        kind = futures.ThreadPoolExecutor
-        if executor == "processes":
+        if executor == "threads":
+            pool = futures.ThreadPoolExecutor(count)
+        else:
             import multiprocessing
 
-            with futures.ProcessPoolExecutor(
-                count, mp_context=multiprocessing.get_context("spawn")
-            ) as pool:
-                yield pool.submit, 2 * count
-            return
-        pool = kind(count)
+            spawn = multiprocessing.get_context("spawn")
+            pool = futures.ProcessPoolExecutor(count, mp_context=spawn)
         try:
             yield pool.submit, 2 * count
         finally:
