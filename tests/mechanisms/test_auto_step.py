@@ -132,9 +132,9 @@ def test_progress_is_in_seconds():
     calls = []
     s = carom.simulate(pendulum(), 2.0, step="auto", progress=lambda *done: calls.append(done))
     times = [t for t, _ in calls]
-    assert len(calls) == 100
+    assert 10 < len(calls) <= 100  # once a step, where steps are longer than a hundredth
     assert {total for _, total in calls} == {2.0}
-    assert times == sorted(times)
+    assert times == sorted(set(times))
     assert times[-1] == 2.0
     without = carom.simulate(pendulum(), 2.0, step="auto")
     assert np.array_equal(s.t, without.t)  # reports cut no step
