@@ -14,8 +14,8 @@ def die(friction=0.2):
     return scene
 
 
-def pendulum():
-    """Two rods with a ball that strikes a wall; friction in the first hinge."""
+def pendulum(friction=0.0):
+    """Two rods with a ball that strikes a wall; friction in the first hinge [N m]."""
     scene = carom.Scene(gravity=(0, 0, -9.81))
     wall = scene.add_half_space(point=(-0.1, 0, 0), normal=(1, 0, 0), name="wall")
     first = scene.add_body(
@@ -31,7 +31,8 @@ def pendulum():
     hinge = carom.joints.Revolute((0, 0, 0), (0, 1, 0))
     upper = scene.add_joint(hinge, carom.GROUND, first)
     scene.add_joint(carom.joints.Revolute((0.5, 0, 0), (0, 1, 0)), first, second)
-    scene.add_force(carom.forces.JointFriction(upper, 0.05))
+    if friction > 0.0:
+        scene.add_force(carom.forces.JointFriction(upper, friction))
     scene.add_contact(second, wall, restitution=0.6, friction=0.1)
     return scene
 

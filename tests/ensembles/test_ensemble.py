@@ -1,5 +1,6 @@
 """carom.ensemble: runs are those of simulate, bit for bit, whoever makes them; failures; what may be varied."""
 
+import numba
 import numpy as np
 import pytest
 from scipy.stats import norm, uniform
@@ -64,6 +65,21 @@ def test_a_mechanism_that_strikes(vary):
     assert all(agrees(e, k) for k in range(3))
     if "angular" not in next(iter(vary)):
         assert len({e.position[k].tobytes() for k in range(3)}) == 3
+
+
+@pytest.mark.plain
+@pytest.mark.skipif(
+    not numba.config.DISABLE_JIT, reason="a minute of compiling for the same arrays"
+)
+def test_friction_in_a_hinge_begins_anew():
+    """Whether a hinge sticks is found at each start, whatever the last run left."""
+    spin = [[0, 0, 0], [0, 1.0, 0], [0, 0, 0]]
+    e = carom.ensemble(
+        pendulum(20.0), 0.03, step=5e-3, vary={"first.angular_velocity": spin},
+        executor="serial", options=carom.Options(project_start=True),
+    )  # fmt: skip
+    assert np.array_equal(e.position[0], e.position[2])
+    assert agrees(e, 0)
 
 
 def test_several_bodies_that_strike_each_other():
