@@ -79,7 +79,30 @@ def test_friction_in_a_hinge_begins_anew():
         executor="serial", options=carom.Options(project_start=True),
     )  # fmt: skip
     assert np.array_equal(e.position[0], e.position[2])
-    assert agrees(e, 0)
+    assert all(agrees(e, k) for k in range(3))  # each start is brought to the joints
+
+
+@pytest.mark.plain
+@pytest.mark.skipif(
+    not numba.config.DISABLE_JIT, reason="a minute of compiling for the same arrays"
+)
+def test_a_function_that_raises_fails_its_own_run_alone():
+    def push(t, q, rate):
+        if t > 0.006 and rate > 5.0:
+            raise ValueError("too fast")
+        return 0.0
+
+    scene = pendulum()
+    scene.add_force(carom.forces.JointForce(scene.joints[0], push))
+    turn, fall = np.outer([0, 9.0, 0], [0, 1, 0]), np.outer([0, -9.0, 0], [0, 0, 1])
+    vary = {  # all as one about the first hinge
+        "first.angular_velocity": turn, "second.angular_velocity": turn,
+        "first.velocity": 0.25 * fall, "second.velocity": 0.75 * fall,
+    }  # fmt: skip
+    e = carom.ensemble(scene, 0.02, step=5e-3, vary=vary, executor="serial")
+    assert (e.status == 0).tolist() == [True, False, True]
+    assert list(e.failures) == [1]
+    assert np.array_equal(e.position[0], e.position[2])
 
 
 def test_several_bodies_that_strike_each_other():

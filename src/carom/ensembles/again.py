@@ -22,7 +22,10 @@ class Again:
 
     def __init__(self, scene: Scene, settings: tuple, targets: list[Target]):
         self.scene, self.settings, self.targets = scene, settings, targets
-        self.light = all(target.light for target in targets)
+        projected = (
+            settings[6].project_start and len(scene.joints) > 0
+        )  # a start of its own each time
+        self.light = all(target.light for target in targets) and not projected
         if self.light:
             self.run = Run(scene, *settings)
             start = self.run.compiled.start.copy()
@@ -40,9 +43,8 @@ class Again:
         if not self.light:
             return Run(changed(self.scene, self.targets, values), *self.settings)
         run = self.run
-        if any(
-            a is not b for a, b in zip(self.parts(), self.known)
-        ):  # something has grown, or was made while it ran
+        # something may have grown, or been made, while it ran
+        if any(a is not b for a, b in zip(self.parts(), self.known)):
             run.compiled.start[:] = self.first
             run.renew()
             self.remember()
@@ -50,6 +52,7 @@ class Again:
             for array, kept in self.kept:
                 array[...] = kept
         run.clock.saved = 0
+        run.compiled.functions.failed = None  # what a function of the user's raised in the last run
         self.write(values)
         check_start(run.scene, run.compiled, run.now, run.work, run.options)
         check_stops(run.scene, run.compiled, run.now, run.work, run.options)
