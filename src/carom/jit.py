@@ -94,6 +94,7 @@ def address(function, *arguments) -> int:
 
 
 _ADDRESSES: dict[tuple, int] = {}
+_flags, _dtype, _ndim = (getattr(np.ndarray, name).__get__ for name in ("flags", "dtype", "ndim"))
 
 
 def _alike(value):
@@ -104,9 +105,9 @@ def _alike(value):
     if isinstance(value, tuple):
         return (type(value), *map(_alike, value))
     if isinstance(value, np.ndarray):
-        flags = value.flags
+        flags = _flags(value)  # the attributes of record arrays are looked up in Python
         layout = flags.c_contiguous, flags.f_contiguous, flags.writeable, flags.aligned
-        return value.dtype, value.ndim, layout
+        return _dtype(value), _ndim(value), layout
     return value.dtype if isinstance(value, np.void) else type(value)
 
 

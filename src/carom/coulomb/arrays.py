@@ -66,7 +66,7 @@ class IslandWork(NamedTuple):
     link: np.recarray  # (k,) LINK
     vector: np.ndarray  # (VECTORS, 3k)
     count: np.ndarray  # (4,) int64
-    mismatch: np.ndarray  # (1,) what Newton reached
+    mismatch: np.ndarray  # (2,) |f| that Newton reached, and one that is ENOUGH
     body: np.recarray  # (N,) ISLAND_BODY
     place: np.recarray  # (N,) PLACE
     later: np.ndarray
@@ -90,7 +90,7 @@ def new_island_work(graph: IslandGraph, body: np.ndarray) -> IslandWork:
             link,
             np.zeros((VECTORS, 3 * k)),
             np.zeros(4, dtype=np.int64),
-            np.zeros(1),
+            np.zeros(2),
             table(ISLAND_BODY, bodies),
             graph.place,
             graph.later,

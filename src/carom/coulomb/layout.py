@@ -54,6 +54,8 @@ ROWS = 1  # of the factors at hand, -1 where there are none
 LIMIT = 3  # most steps of one call of Newton, 0: what is usual
 NEAR = 2  # 1: of several solutions the one near the start is wanted, not that of least norm
 
+ENOUGH = 1  # place in `mismatch`: an |f|, and a residual as a part of c, at which a search may end; 0: round-off
+
 
 class ConeWork(NamedTuple):
     """Work arrays of `carom.coulomb.solve.solve_cones` for up to K contacts."""
@@ -63,7 +65,7 @@ class ConeWork(NamedTuple):
     contact: np.recarray  # (K,) CONTACT
     vector: np.ndarray  # (VECTORS, 3K)
     count: np.ndarray  # (4,) int64
-    mismatch: np.ndarray  # (1,) what Newton reached
+    mismatch: np.ndarray  # (2,) |f| that Newton reached, and one that is ENOUGH
     W: np.ndarray  # (3K, 3K) scaled inverse mass: each diagonal block has trace 3
     matrix: np.ndarray  # (3K, 3K) of a linear system, and its factors
     pivot: np.ndarray  # (3K,) int64, rows exchanged
@@ -87,7 +89,7 @@ def cone_arrays(capacity: int) -> ConeWork:
         table(CONTACT, contacts),
         np.zeros((VECTORS, n)),
         np.zeros(4, dtype=np.int64),
-        np.zeros(1),
+        np.zeros(2),
         np.zeros((n, n)),
         np.zeros((n, n)),
         np.zeros(n, dtype=np.int64),

@@ -32,7 +32,7 @@ def newton_unit(work, k, eps, patient):
     count, limit = 0, work.count[o.LIMIT] if work.count[o.LIMIT] > 0 else _LIMIT
     size = _arrive(work, k, eps)
     before1, before2, before3 = 0.0, 0.0, 0.0
-    while count < limit and size > 0.0:
+    while count < limit and size > work.mismatch[o.ENOUGH]:
         count += 1
         chord = work.count[o.ROWS] >= 0
         if not chord:

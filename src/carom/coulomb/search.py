@@ -171,4 +171,5 @@ def residual(work, k):
             worst = r
         largest = max(largest, max(abs(c[n]), abs(c[n + 1]), abs(c[n + 2])) / t.scale)
     size = magnitude(work, k)
-    return worst, 1e-14 * largest + 0.08 * ROUND_OFF * size, RELATIVE * largest + ROUND_OFF * size
+    goal = max(1e-14 * largest + 0.08 * ROUND_OFF * size, work.mismatch[o.ENOUGH] * largest)
+    return worst, goal, RELATIVE * largest + ROUND_OFF * size

@@ -58,8 +58,17 @@ def normalize(q: ArrayLike) -> Array:
 def rotate(q: ArrayLike, a: ArrayLike) -> Array:
     """Return R a, shape (..., 3): body components a (..., 3) to world components."""
     q, a = shaped("q", q, 4), shaped("a", a, 3)
-    t = 2.0 * np.cross(q[..., 1:], a)
-    return a + q[..., :1] * t + np.cross(q[..., 1:], t)
+    t = 2.0 * _cross(q[..., 1:], a)
+    return a + q[..., :1] * t + _cross(q[..., 1:], t)
+
+
+def _cross(a: Array, b: Array) -> Array:
+    """Return a x b, a quarter of the time of `numpy.cross` for few vectors."""
+    out = np.empty(np.broadcast_shapes(a.shape, b.shape))
+    out[..., 0] = a[..., 1] * b[..., 2] - a[..., 2] * b[..., 1]
+    out[..., 1] = a[..., 2] * b[..., 0] - a[..., 0] * b[..., 2]
+    out[..., 2] = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+    return out
 
 
 def rotate_back(q: ArrayLike, a: ArrayLike) -> Array:

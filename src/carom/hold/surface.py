@@ -3,7 +3,8 @@
     xi = -P G^T lam,   W lam = phi,    phi: the gap of each point that presses, and for a vertex that sticks the
                                        tangential way from its anchor too,
 
-with the rows of the middle of the step, repeated to round-off. Redundant rows are left out of the factor.
+with the rows of the middle of the step, repeated to round-off. Redundant rows are left out of the factor. A
+step is found in rounds: each begins with what lam came to in the last.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from carom.motion.acceleration import STICK
 from carom.motion.contact_point import in_axes
 from carom.motion.project import project_position, shift
 from carom.motion.several import factor, spread_all, substitute
-from carom.system.cluster import P, U
+from carom.system.cluster import BACK, P, U
 
 DROP = 1e-10  # of a pivot, relative to its row: what is left of a redundant one is round-off
 
@@ -61,13 +62,21 @@ def onto_surfaces(system, held, k, count, state, cluster, work):
             both = row and j % 3 < cluster.seats[j // 3].rows
             L[i, j] = cluster.m[0][i, j] if both else 1.0 if i == j else 0.0
     factor(n, DROP, L)
-    x = cluster.v[U]
-    for _ in range(10):
-        if errors(system, held, k, state, cluster, x, work):
-            break
-        substitute(n, L, x)
+    x, way = cluster.v[U], cluster.v[BACK]
+    known = False
+    for i in range(n):
+        x[i] = way[i] if i % 3 < cluster.seats[i // 3].rows else 0.0
+        way[i], known = 0.0, known or x[i] != 0.0
+    for _ in range(11):
+        if not known:
+            if errors(system, held, k, state, cluster, x, work):
+                break
+            substitute(n, L, x)
+            for i in range(n):
+                x[i] = -x[i] if i % 3 < cluster.seats[i // 3].rows else 0.0
+        known = False
         for i in range(n):
-            x[i] = -x[i] if i % 3 < cluster.seats[i // 3].rows else 0.0
+            way[i] += x[i]
         spread_all(system, k, cluster.points[0], x, count, cluster.member, work.stage, work)
         for m in range(count):
             shift(work.body[cluster.member[m]].motion, state[cluster.member[m]])

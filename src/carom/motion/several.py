@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.jit import kernel
 from carom.motion.contact_point import (
     add_impulse,
@@ -9,6 +10,7 @@ from carom.motion.contact_point import (
     contact_acceleration,
     contact_motion,
     contact_velocity,
+    in_axes,
     spread,
 )
 from carom.motion.solve import free_body, solve
@@ -38,6 +40,9 @@ def still(motion):
 @kernel
 def inverse_masses(system, k, points, state, work, W):
     """Write W (3k, 3k) = G P G^T. Columns are answers to unit impulses, then made symmetric."""
+    if of_one_body(system, k, points):
+        inverse_masses_of_one(system.bodies[points[0].a], k, points, state, W)
+        return
     for i in range(k):
         still(work.body[points[i].a].motion)
         if points[i].b >= 0:
@@ -59,6 +64,37 @@ def inverse_masses(system, k, points, state, work, W):
     for i in range(k):
         if points[i].turns >= 3:  # without tangents: what these are given does not matter
             W[3 * i + 1, 3 * i + 1] = W[3 * i + 2, 3 * i + 2] = W[3 * i, 3 * i]
+
+
+@kernel
+def of_one_body(system, k, points):
+    """Return whether all points are of one body without joints, on half-spaces, and none turns only."""
+    for i in range(k):
+        if points[i].a != points[0].a or points[i].b >= 0 or points[i].turns != 0:
+            return False
+    return system.bodies[points[0].a].isolated == 1
+
+
+@kernel
+def inverse_masses_of_one(body, k, points, state, W):
+    """Write W of points of one body: e.(d/m + (J^-1 (r x d)) x s) of directions d, e at arms r, s."""
+    q, J = state[points[0].a].Q, body.inertia
+    for j in range(k):
+        r, E = points[j].arm_a, points[j].axes
+        for a in range(3):
+            d = (E[a, 0], E[a, 1], E[a, 2])
+            t = cross(r[0], r[1], r[2], d[0], d[1], d[2])
+            t = rotate_back(q[0], q[1], q[2], q[3], t[0], t[1], t[2])
+            w = rotate(q[0], q[1], q[2], q[3], t[0] / J[0], t[1] / J[1], t[2] / J[2])
+            n = 3 * j + a
+            for i in range(j + 1):
+                s = points[i].arm_a
+                v = cross(w[0], w[1], w[2], s[0], s[1], s[2])
+                v = in_axes(
+                    points[i], v[0] + d[0] / body.mass, v[1] + d[1] / body.mass, v[2] + d[2] / body.mass
+                )
+                for b in range(3):
+                    W[3 * i + b, n] = W[n, 3 * i + b] = v[b]
 
 
 @kernel

@@ -33,9 +33,9 @@ SEAT = [
     ("parent", "i8"),  # of rolling and pivoting: the seat whose normal force bounds the torque
 ]
 
-#: rows of `v`: velocities; velocities or accelerations without the unknown impulses; impulses or forces; and
-#: those of the last round
-U, C, P, OLD = range(4)
+#: rows of `v`: velocities; velocities or accelerations without the unknown impulses; impulses or forces; those
+#: of the last round; multipliers of the way back to the surfaces, as of the last round
+U, C, P, OLD, BACK = range(5)
 
 
 class Cluster(NamedTuple):
@@ -48,7 +48,7 @@ class Cluster(NamedTuple):
     points: (
         np.recarray
     )  # (2, K) POINT: in the state at hand, or in the middle of a step; at its end
-    v: np.ndarray  # (4, 3K) vectors
+    v: np.ndarray  # (5, 3K) vectors
     m: np.ndarray  # (2, 3K, 3K) inverse mass W, and a factor
     mu: np.ndarray  # (K,)
     kind: np.ndarray  # (K,) of `carom.coulomb`
@@ -89,7 +89,7 @@ def new_cluster(system: System) -> Cluster:
     return Cluster(
         seats=table(SEAT, k),
         points=table(POINT, 2, k),
-        v=np.zeros((4, 3 * k)),
+        v=np.zeros((5, 3 * k)),
         m=np.zeros((2, 3 * k, 3 * k)),
         mu=np.zeros(k),
         kind=np.zeros(k, dtype=np.int64),
