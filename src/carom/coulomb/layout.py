@@ -54,7 +54,8 @@ ROWS = 1  # of the factors at hand, -1 where there are none
 LIMIT = 3  # most steps of one call of Newton, 0: what is usual
 NEAR = 2  # 1: of several solutions the one near the start is wanted, not that of least norm
 
-ENOUGH = 1  # place in `mismatch`: an |f|, and a residual as a part of c, at which a search may end; 0: round-off
+# Place in `mismatch`: an |f|, and a residual as a part of c, at which a search may end; 0: at round-off.
+ENOUGH = 1
 
 
 class ConeWork(NamedTuple):

@@ -159,7 +159,7 @@ def _plan(scene, settings: tuple, inputs: dict[str, np.ndarray], observe):
 
 def _store(save, plan, inputs, chunk):
     from carom import __version__
-    from carom.ensembles.plan import digest
+    from carom.ensembles.mark import digest
     from carom.ensembles.store import Store
 
     mark = digest(plan, inputs)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import threading
 import uuid
 from collections.abc import Callable
@@ -95,24 +94,3 @@ def begin(plan: Plan, values: dict[str, np.ndarray]) -> Run:
 
 def _plain(value):
     return float(value) if np.ndim(value) == 0 else np.array(value)
-
-
-def digest(plan: Plan, inputs: dict[str, np.ndarray]) -> str:
-    """Return a text that differs for ensembles that differ: inputs, settings and compiled scene."""
-    found = hashlib.sha256()
-    found.update(repr(plan.settings).encode())
-    for name, values in sorted(inputs.items()):
-        found.update(name.encode() + np.ascontiguousarray(values).tobytes())
-    if isinstance(plan.scene, Scene):
-        from carom.system.compile import compile_scene
-
-        compiled = compile_scene(plan.scene, plan.settings[6])
-        system = compiled.system
-        for array in (
-            compiled.start, system.bodies, system.gravity, system.joints, system.springs,
-            system.loads, system.bushings, system.contacts, system.vertices, system.solids,
-        ):  # fmt: skip
-            found.update(np.ascontiguousarray(array).tobytes())
-    else:
-        found.update(getattr(plan.scene, "__qualname__", repr(type(plan.scene))).encode())
-    return found.hexdigest()

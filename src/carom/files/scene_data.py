@@ -97,11 +97,15 @@ class Encoder:
             return {"polynomial": _array(curve.c), "breaks": _array(curve.x)}
         if callable(value):
             self.functions.append(where)
-            if isinstance(value, MissingFunction):
-                return {"function": where, "was": value.was}
-            module, name = (getattr(value, k, "") for k in ("__module__", "__qualname__"))
-            return {"function": where, "was": f"{module}.{name or type(value).__name__}"}
+            return self.function(value, where)
         raise TypeError(f"{where or 'a value'} cannot be written to a file, got {value!r}")
+
+    def function(self, value: Any, where: str) -> dict:
+        """Return what stands for a function of the user's."""
+        if isinstance(value, MissingFunction):
+            return {"function": where, "was": value.was}
+        module, name = (getattr(value, k, "") for k in ("__module__", "__qualname__"))
+        return {"function": where, "was": f"{module}.{name or type(value).__name__}"}
 
     def _record(self, record, where: str) -> dict:
         values = {}

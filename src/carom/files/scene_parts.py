@@ -17,9 +17,9 @@ NOTE = (
 )
 
 
-def scene_to_text(scene: Scene) -> str:
+def scene_to_text(scene: Scene, encoder: Encoder | None = None) -> str:
     """Return a scene as JSON: its parts in the order added, and which pairs touch."""
-    encoder, pairs = Encoder(), scene._pairs
+    encoder, pairs = encoder or Encoder(), scene._pairs
     parts = [encoder.part(part) for part in scene._parts]
     data = {
         "gravity": scene.gravity.tolist(),

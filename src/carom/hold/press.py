@@ -40,8 +40,8 @@ from carom.system.cluster import BACK, OLD, C, P, U
 
 ROUNDS = 50
 SETTLED = 1e-14  # relative change of velocities by a round that is the last
-# while rounds change them by more than FAR, they need no forces better than ROUGH, but W anew; after that W stays:
-# the fixed point does not depend on it
+# while rounds change them by more than FAR they need no forces better than ROUGH, but W anew; then W stays: the
+# fixed point does not depend on it
 FAR, ROUGH = 1e-4, 1e-8
 
 

@@ -91,7 +91,10 @@ def inverse_masses_of_one(body, k, points, state, W):
                 s = points[i].arm_a
                 v = cross(w[0], w[1], w[2], s[0], s[1], s[2])
                 v = in_axes(
-                    points[i], v[0] + d[0] / body.mass, v[1] + d[1] / body.mass, v[2] + d[2] / body.mass
+                    points[i],
+                    v[0] + d[0] / body.mass,
+                    v[1] + d[1] / body.mass,
+                    v[2] + d[2] / body.mass,
                 )
                 for b in range(3):
                     W[3 * i + b, n] = W[n, 3 * i + b] = v[b]
