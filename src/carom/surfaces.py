@@ -77,12 +77,14 @@ def _swollen_box(half: np.ndarray, radius: float, n: int) -> tuple[np.ndarray, n
     """
     if not radius:
         n = 1
-    steps = [(i, j, n - i - j) for i in range(n + 1) for j in range(n + 1 - i)]
-    number = {step: k for k, step in enumerate(steps)}
+    steps: list[tuple[int, ...]] = [
+        (i, j, n - i - j) for i in range(n + 1) for j in range(n + 1 - i)
+    ]
+    number: dict[tuple[int, ...], int] = {step: k for k, step in enumerate(steps)}
     corner = np.sin(0.5 * math.pi / n * np.array(steps))
     corner /= np.linalg.norm(corner, axis=1)[:, None]
     signs = np.array([(a, b, c) for a in (1, -1) for b in (1, -1) for c in (1, -1)])
-    places = {tuple(s): k * len(steps) for k, s in enumerate(signs)}
+    places: dict[tuple[int, ...], int] = {tuple(s): k * len(steps) for k, s in enumerate(signs)}
     if radius:
         points = np.concatenate([s * (radius * corner + half) for s in signs])
     else:
