@@ -11,6 +11,7 @@ import numpy as np
 from carom.files.portable import Portable
 from carom.geometry import quaternion, spline
 from carom.ledger import Ledger
+from carom.plots.drawn import Drawn
 from carom.status import Status
 from carom.tables import ContactTable, EventTable, ForceTable, ImpactTable, force_table
 
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Solution(Portable):
+class Solution(Portable, Drawn):
     """The motion of N bodies at T saved times, with K impacts.
 
     Attributes
