@@ -75,9 +75,9 @@ def impact_inside(solution, k: int = 0, *, steps: int = KNOTS, ax=None):
 
 
 def _jump(force, history, last: int) -> np.ndarray:
-    """Return forces at the knots, and before them at the end of compression, where they jump, the one left of it.
+    """Return forces at the knots, and twice where compression ends, at which they jump.
 
-    A knot has the force right of it; what is left is carried on from the two knots before.
+    A knot has the force right of it; what is left of it is carried on from the two knots before.
     """
     if last < 2:
         return np.insert(force, last, force[last - 1])
