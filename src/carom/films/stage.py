@@ -76,8 +76,7 @@ class Stage:
         made = models(self.solution.scene, self.length)
         counts = [len(model.corners) for model in made]
         self.owner = np.repeat(np.arange(len(made)), counts)
-        empty = Model(*(np.zeros((0, 3, 3)),) * 2, np.zeros((0, 3)), np.zeros((0, 3), np.int8))
-        self.all = Model(*(np.concatenate(columns) for columns in zip(*(made or [empty]))))
+        self.all = Model(*(np.concatenate(columns) for columns in zip(*made)))
         scene = self.solution.scene
         held = [j for j in scene.joints if isinstance(j.definition, Distance)]
         self.links = anchors([*held, *(f for f in scene.forces if f.kind == "Spring")])
@@ -239,7 +238,8 @@ def _rod(a, b, radius: float, ring) -> Model:
     """Return a thin rod from one point to another."""
     length = float(np.linalg.norm(b - a))
     if not length > 0.0:
-        return Model(*(np.zeros((0, 3, 3)),) * 2, np.zeros((0, 3)), np.zeros((0, 3), np.int8))
+        none = np.zeros((0, 3, 3))
+        return Model(none, none, np.zeros((0, 3)), np.zeros((0, 3), np.int8))
     out = ring @ turned_to((b - a) / length).T
     low, high = a + radius * out, b + radius * out
     after = np.roll(np.arange(len(ring)), -1)
@@ -259,7 +259,8 @@ def _rod(a, b, radius: float, ring) -> Model:
 
 def _steps(apart, directions, spacing: float) -> np.ndarray:
     """Return the whole steps of a grid that are nearest to a way."""
-    return sum(spacing * np.round(apart @ e / spacing) * e for e in directions)
+    way = [spacing * np.round(apart @ e / spacing) * e for e in directions]
+    return np.sum(way, axis=0)
 
 
 def _round(length: float) -> float:

@@ -48,7 +48,13 @@ def energy(solution, *, ax=None):
             if np.max(np.abs(getattr(ledger, name))) > NOTHING * greatest:
                 above.plot(t, getattr(ledger, name), ":", color=colour, lw=1.5, label=label)
         above.set(ylabel="energy [J]", xlim=(t[0], t[-1]))
-        above.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, columnspacing=0.8)
+        above.legend(
+            loc="lower left",
+            bbox_to_anchor=(0.0, 1.0),
+            ncols=3,
+            columnspacing=0.7,
+            handlelength=1.3,
+        )
         error = np.abs(ledger.residual)
         below.plot(t, np.where(error > 0.0, error, np.nan), color=style.BLACK, lw=0.8)
         below.set(xlabel="time [s]", ylabel="error of the\nsum [J]", xlim=(t[0], t[-1]))

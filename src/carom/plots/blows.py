@@ -14,8 +14,8 @@ def impacts(solution, *, contacts=None, ax=None):
 
     Four axes. Normal velocity and speed of slip: open marks before, full ones after the impact, a line
     between them. Normal impulse (full) and tangential impulse (open). Energy lost; what has been gained
-    (Newton's law can) is a cross. Impulses and energies on logarithmic axes, where zeros do not
-    show.
+    (Newton's law can) is a cross. Impulses and energies on logarithmic axes, where nothing shows that is
+    below 1e-12 of the greatest.
 
     Parameters
     ----------
@@ -50,10 +50,11 @@ def impacts(solution, *, contacts=None, ax=None):
             _one(axes, table, table.contact == c, colour, "o" if many else _MARKS[k], label)
         normal, slip, impulse, lost = axes
         normal.axhline(0.0, color=style.BLACK, lw=0.4)
-        normal.set(ylabel="normal velocity [m/s]")
-        slip.set(ylabel="slip [m/s]")
+        speed, push = _units(solution, struck)
+        normal.set(ylabel=f"normal velocity [{speed}]")
+        slip.set(ylabel=f"slip [{speed}]")
         slip.set_ylim(bottom=0.0)
-        impulse.set(ylabel="impulse [N s]", yscale="log", xlabel="time [s]")
+        impulse.set(ylabel=f"impulse [{push}]", yscale="log", xlabel="time [s]")
         lost.set(ylabel="energy lost [J]", yscale="log", xlabel="time [s]")
         for one, words in ((normal, ("before", "after")), (impulse, ("tangential", "normal"))):
             one.plot([], [], "o", mfc="white", mec=style.BLACK, label=words[0])
@@ -79,14 +80,27 @@ def _one(axes, table, rows, colour, mark, label) -> None:
         one.plot(t, first, **hollow)
         one.plot(t, last, **full)
     P = table.impulse[rows]
-    impulse.plot(t, _positive(np.hypot(P[:, 1], P[:, 2])), **hollow)
-    impulse.plot(t, _positive(P[:, 0]), **full)
-    lost.plot(t, _positive(-table.energy_change[rows]), **full, label=label)
-    gained = _positive(table.energy_change[rows])
+    greatest = np.max(np.abs(table.energy_change), initial=0.0)
+    most = np.max(np.abs(table.impulse), initial=0.0)
+    impulse.plot(t, _above(np.hypot(P[:, 1], P[:, 2]), most), **hollow)
+    impulse.plot(t, _above(P[:, 0], most), **full)
+    lost.plot(t, _above(-table.energy_change[rows], greatest), **full, label=label)
+    gained = _above(table.energy_change[rows], greatest)
     if np.any(gained > 0.0):
         lost.plot(t, gained, ls="", marker="x", color=colour, label="gained")
 
 
-def _positive(values) -> np.ndarray:
-    """Return values with nothing in the place of those that a logarithm has no place for."""
-    return np.where(values > 0.0, values, np.nan)
+def _above(values, greatest: float) -> np.ndarray:
+    """Return values with nothing in the place of those too small for a logarithmic axis."""
+    return np.where(values > 1e-12 * greatest, values, np.nan)
+
+
+def _units(solution, struck) -> tuple[str, str]:
+    """Return the units of velocities and impulses of contacts."""
+    if not figure.is_bodies(solution):
+        return "gap/s", "N s, by gap"  # the user's own unit
+    scene = solution.scene
+    stops = len(figure.contact_names(solution)) - len(scene.stops)
+    if max(struck) < stops:
+        return "m/s", "N s"
+    return "m/s or rad/s", "N s or N m s"

@@ -40,7 +40,7 @@ def constraint_errors(solution, *, ax=None):
         for (name, error, colour, line), unit in zip(lines, units):
             shown = np.where(error > 0.0, error, np.nan)
             axes.plot(solution.t, shown, line, color=colour, lw=0.9, label=f"of {name}{unit}")
-        axes.set(xlabel="time [s]", ylabel="error of constraints", xlim=solution.t[[0, -1]])
+        axes.set(xlabel="time [s]", ylabel="error", xlim=solution.t[[0, -1]])
         if np.any(position > 0.0) or np.any(velocity > 0.0):
             axes.set_yscale("log")
         axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2)

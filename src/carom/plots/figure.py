@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from contextlib import contextmanager
 from difflib import get_close_matches
 from itertools import cycle
+from typing import Any
 
 import numpy as np
 
@@ -16,7 +18,9 @@ AXES = "xyz"
 
 
 @contextmanager
-def drawing(ax, count: int = 1, size=(style.COLUMN, 2.3), compressed=False, **layout):
+def drawing(
+    ax, count: int = 1, size=(style.COLUMN, 2.3), compressed=False, **layout
+) -> Iterator[Any]:
     """Within this context matplotlib draws in the style of the plots; the axes to draw into.
 
     Parameters
@@ -43,7 +47,7 @@ def drawing(ax, count: int = 1, size=(style.COLUMN, 2.3), compressed=False, **la
 
 
 @contextmanager
-def drawing_mosaic(rows, size, heights):
+def drawing_mosaic(rows, size, heights) -> Iterator[Any]:
     """Within this context matplotlib draws in the style of the plots; the axes of a new figure by name."""
     plt = pyplot()
     with style.style():
@@ -51,7 +55,7 @@ def drawing_mosaic(rows, size, heights):
         yield figure.subplot_mosaic(rows, height_ratios=heights)
 
 
-def pyplot():
+def pyplot() -> Any:
     """Return matplotlib.pyplot, or say how to get it."""
     try:
         import matplotlib.pyplot as plt

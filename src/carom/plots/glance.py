@@ -8,7 +8,9 @@ from carom.plots import figure, style
 from carom.plots.balance import energy
 from carom.plots.errors import constraint_errors
 from carom.plots.paths import trajectory
-from carom.plots.timeline import contacts
+from carom.plots.timeline import contacts, touching
+
+ROWS = 8  # contacts to draw
 
 
 def overview(solution) -> dict:
@@ -31,12 +33,12 @@ def overview(solution) -> dict:
     touched = len(solution.impacts) > 0 or len(solution.events.time) > 0
     kept = bool(held.joints or held.constraints) if held else np.any(solution.constraint_errors)
     rows = [["motion", "energy"], ["motion", "error"]]
-    heights = [2.2, 1.0]
+    heights = [2.3, 1.1]  # [in]
     below = [name for name, there in (("contacts", touched), ("constraints", kept)) if there]
     if below:
         rows.append([below[0], below[-1]])
-        heights.append(1.1)
-    with figure.drawing_mosaic(rows, (style.PAGE, 3.4 + 1.2 * bool(below)), heights) as axes:
+        heights.append(1.2 if not touched else 0.8 + 0.16 * min(ROWS, touching(solution)))
+    with figure.drawing_mosaic(rows, (style.PAGE, sum(heights)), heights) as axes:
         if whole:
             trajectory(solution, ax=axes["motion"])
         else:
@@ -44,7 +46,7 @@ def overview(solution) -> dict:
         energy(solution, ax=[axes["energy"], axes["error"]])
         axes["energy"].tick_params(labelbottom=False)
         if "contacts" in axes:
-            contacts(solution, most=12, ax=axes["contacts"])
+            contacts(solution, most=ROWS, ax=axes["contacts"])
         if "constraints" in axes:
             constraint_errors(solution, ax=axes["constraints"])
     return axes

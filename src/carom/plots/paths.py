@@ -55,9 +55,9 @@ def trajectory(
         for body, (colour, line) in zip(chosen, figure.colours()):
             path = x[:, body.index][:, seen]
             drawn.plot(*path.T, line, color=colour, lw=0.6 if many else 1.2, label=body.name)
-            drawn.plot(*path[0], "s", color=colour, ms=3.5)
+            drawn.plot(*path[0], "s", color=colour, ms=2 if many else 3.5)
             struck = np.isin(t, _blows(solution, body))
-            drawn.plot(*path[struck].T, "o", color=colour, ms=2.5)
+            drawn.plot(*path[struck].T, "o", color=colour, ms=1.5 if many else 2.5)
             if body.shape is not None:
                 _outlines(drawn, solution, body, _times(outlines, solution), seen, colour)
         drawn.set(xlabel=f"${'xyz'[axes[0]]}$ [m]", ylabel=f"${'xyz'[axes[1]]}$ [m]")
@@ -98,7 +98,9 @@ def _times(outlines, solution) -> np.ndarray:
     if outlines is None:
         return np.zeros(0)
     if np.ndim(outlines) == 0:
-        return np.linspace(*solution.t[[0, -1]], check.integer("outlines", outlines, least=1))
+        return np.linspace(
+            solution.t[0], solution.t[-1], check.integer("outlines", outlines, least=1)
+        )
     return check.finite_array("outlines", outlines, (None,), "s")
 
 

@@ -38,8 +38,8 @@ def contacts(solution, *, contacts=None, most: int = 40, ax=None):
     chosen = figure.named("contacts", contacts, names)
     held = intervals(solution)
     struck = solution.impacts
-    busy = np.bincount(struck.contact, minlength=len(names))
-    busy = busy + np.bincount([row[0] for row in held], minlength=len(names))
+    busy = np.bincount(struck.contact.astype(int), minlength=len(names))
+    busy = busy + np.bincount(np.array([row[0] for row in held], dtype=int), minlength=len(names))
     if contacts is None:
         chosen = [c for c in chosen if busy[c]]
         chosen = sorted(sorted(chosen, key=lambda c: -busy[c])[:most])
@@ -51,7 +51,8 @@ def contacts(solution, *, contacts=None, most: int = 40, ax=None):
                 bars = [(a, b - a) for contact, a, b, what in held if contact == c and what == mode]
                 if bars:
                     axes.broken_barh(bars, (row - width / 2, width), color=colour, lw=0)
-            axes.barh([0], [0], color=colour, label=mode)
+            if any(row[0] in chosen and row[3] == mode for row in held):
+                axes.barh([0], [0], color=colour, label=mode)
         for row, c in enumerate(chosen):
             t = struck.time[struck.contact == c]
             axes.vlines(t, row - 0.4, row + 0.4, color=style.BLACK, lw=0.6)
@@ -66,6 +67,11 @@ def contacts(solution, *, contacts=None, most: int = 40, ax=None):
         axes.tick_params(axis="y", length=0)
         axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3)
     return axes
+
+
+def touching(solution) -> int:
+    """Return how many contacts ever touch."""
+    return len({*solution.impacts.contact.tolist(), *(row[0] for row in intervals(solution))})
 
 
 def intervals(solution) -> list[tuple[int, float, float, str]]:
