@@ -26,6 +26,12 @@ def thrown():
 
 
 @pytest.fixture(scope="session")
+def flown():
+    """A die that has not yet reached the plane."""
+    return carom.simulate(die(), 0.05, step=5e-3)
+
+
+@pytest.fixture(scope="session")
 def slid():
     """A block that slides and stops."""
     return carom.simulate(slider(), 0.3, step=5e-3)

@@ -21,7 +21,7 @@ def words(ax):
 
 def test_trajectory_passes_the_saved_places_and_those_of_impacts(thrown):
     ax = plots.trajectory(thrown, plane="xz")
-    x, z = line(ax, "die")
+    x, z = line(ax, "body1")
     t = np.union1d(thrown.t, thrown.impacts.time)
     assert len(x) == len(t) == len(thrown.t) + len(thrown.impacts)
     saved = np.isin(t, thrown.t)
@@ -58,7 +58,7 @@ def test_energy_draws_the_ledger(slid):
     assert np.array_equal(line(above, "kinetic"), [slid.t, slid.kinetic_energy])
     assert np.array_equal(line(above, "sum"), [slid.t, slid.total_energy])
     assert np.array_equal(line(above, "friction"), [slid.t, slid.ledger.friction])
-    assert "impacts" not in words(above)  # there are none
+    assert "work of forces" not in words(above)  # there are none
     residual = np.abs(slid.ledger.residual)
     shown = below.lines[0].get_ydata()
     assert np.array_equal(shown[residual > 0], residual[residual > 0])
@@ -137,7 +137,7 @@ def test_constraint_errors(swung):
 
 
 def test_phase_of_a_body_steps_at_impacts(thrown):
-    ax = plots.phase(thrown, "die", axis="z")
+    ax = plots.phase(thrown, "body1", axis="z")
     z, v = ax.lines[0].get_data()
     assert len(z) == len(thrown.t) + 2 * len(thrown.impacts)
     k = int(np.argmax(np.diff(v)))  # the first impact
@@ -196,7 +196,7 @@ def test_a_run_from_a_file_looks_the_same(thrown, tmp_path):
     thrown.save(tmp_path / "run.nc")
     again = carom.Solution.load(tmp_path / "run.nc")
     assert np.array_equal(
-        line(plots.trajectory(again), "die"), line(plots.trajectory(thrown), "die")
+        line(plots.trajectory(again), "body1"), line(plots.trajectory(thrown), "body1")
     )
     for kind in ("impact_inside", "hodograph"):
         one, two = (
@@ -225,8 +225,8 @@ def test_axes_that_are_given_are_drawn_into(thrown):
     ("draw", "message"),
     [
         (
-            lambda s: plots.trajectory(s, "dye"),
-            "bodies must be among 'die', got 'dye'; did you mean 'die'",
+            lambda s: plots.trajectory(s, "body2"),
+            "bodies must be among 'body1', got 'body2'; did you mean 'body1'",
         ),
         (lambda s: plots.trajectory(s, plane="xx"), "plane"),
         (lambda s: plots.impact_inside(s, 99), "k, number of the impact, must be .* at most"),
@@ -234,8 +234,8 @@ def test_axes_that_are_given_are_drawn_into(thrown):
         (lambda s: plots.impacts(s, contacts="wall"), "contacts must be among"),
         (lambda s: plots.constraint_errors(s), "joint"),
         (lambda s: plots.energy(s, ax=[]), "ax must be 2"),
-        (lambda s: plots.phase(s, "dye"), "of must be among"),
-        (lambda s: plots.phase(s, "die", axis="w"), "axis"),
+        (lambda s: plots.phase(s, "body2"), "of must be among"),
+        (lambda s: plots.phase(s, "body1", axis="w"), "axis"),
         (lambda s: s.plot("energies"), "kind must be one of .* did you mean 'energy'"),
     ],
 )
@@ -244,10 +244,13 @@ def test_bad_input_is_named(thrown, draw, message):
         draw(thrown)
 
 
-def test_nothing_to_draw_is_said(slid, bounced):
+def test_nothing_to_draw_is_said(flown, bounced):
     for draw in (plots.impacts, plots.impact_inside, plots.hodograph):
-        with pytest.raises(ValueError, match="impact"):
-            draw(slid)
+        with pytest.raises(ValueError, match="there must be an impact to draw"):
+            draw(flown)
+    with pytest.raises(ValueError, match="there must be a contact that touches"):
+        plots.contacts(flown)
+    assert set(flown.plot()) == {"motion", "energy", "error"}
     for draw in (plots.trajectory, plots.impact_inside):
         with pytest.raises(ValueError, match="scene of bodies"):
             draw(bounced)

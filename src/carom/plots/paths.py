@@ -119,7 +119,8 @@ def _outlines(axes, solution, body, times, seen, colour) -> None:
     for place, turn in zip(x[:, body.index], Q[:, body.index]):
         flat = (place + quaternion.rotate(turn, vertices))[:, seen]
         a, b, c = (flat[triangles[:, k]] for k in range(3))
-        towards = np.cross(b - a, c - a) > 0.0
+        (p, q), (r, s) = (b - a).T, (c - a).T
+        towards = p * s - q * r > 0.0
         edge = pairs[towards[pairs[:, 2]] != towards[pairs[:, 3]], :2]
         axes.add_collection(
             LineCollection(list(flat[edge]), colors=colour, linewidths=0.6, capstyle="round")
