@@ -11,7 +11,8 @@ from carom import check
 
 VIEWS = {"oblique": (-65.0, 18.0), "front": (-90.0, 8.0), "side": (0.0, 8.0), "top": (-90.0, 90.0)}
 OPENING = math.tan(math.radians(13.0))  # half the height of the picture by its distance
-MARGIN = 1.12  # of the picture around what moves
+MARGIN = 1.14  # of the picture around what moves
+NEAR = 1.3  # least distance of the camera, by that of the nearest point from the middle
 
 
 class Axes(NamedTuple):
@@ -79,13 +80,23 @@ def fitted(axes: Axes, places, radii, size: tuple[int, int]) -> Camera:
     """Return a camera that sees balls of `radii` (P,) at `places` (P, 3)."""
     width, height = size
     across = np.array(axes) @ places.T  # (3, P)
-    low, high = (across - radii).min(axis=1), (across + radii).max(axis=1)
-    middle = 0.5 * (low + high)
-    x, y, z = across - middle[:, None]
-    least = min(width, height)
-    needed = [
-        (np.abs(part) + radii) * MARGIN * least / (OPENING * side) + z
-        for part, side in ((x, width), (y, height))
-    ]
-    distance = max(float(np.max(needed)), 1.5 * float(np.max(radii)), 1e-9)
-    return Camera(axes, middle @ np.array(axes), distance, width, height)
+    middle = 0.5 * ((across - radii).min(axis=1) + (across + radii).max(axis=1))
+    far = np.linalg.norm(across - middle[:, None], axis=0) + radii
+    camera = Camera(axes, middle @ np.array(axes), float(np.max(far)) / OPENING, width, height)
+    for _ in range(
+        8
+    ):  # what is near is larger: middle and size of the picture follow from each other
+        seen = camera.project(places)
+        reach = radii[:, None] * camera.focal * seen[:, 2:]
+        low, high = (seen[:, :2] - reach).min(axis=0), (seen[:, :2] + reach).max(axis=0)
+        x, y = (0.5 * (low + high) - (0.5 * width, 0.5 * height)) * camera.distance / camera.focal
+        size = float(np.max((high - low) / (width, height)))
+        away = max(MARGIN * size * camera.distance, NEAR * float(np.max(radii)))
+        camera = camera._replace(centre=camera.centre + x * axes.right - y * axes.up, distance=away)
+        camera = camera._replace(distance=max(away, _before(camera, places, radii)))
+    return camera
+
+
+def _before(camera: Camera, places, radii) -> float:
+    """Return the distance from which all balls are well before the camera."""
+    return NEAR * float(np.max((places - camera.centre) @ camera.axes.towards + radii))

@@ -12,6 +12,7 @@ LINGER = 0.15  # how long an arrow is seen [s of the film]
 LONGEST = 0.20  # of the arrow of the greatest impulse, by the height of what is seen
 LEAST = 0.03  # impulse, by the greatest, below which none is drawn
 HEAD = 0.35  # of an arrow
+GRAZE = 0.004  # of the distance, by which a point may lie below a surface and be seen
 
 
 class Marks:
@@ -35,7 +36,7 @@ class Marks:
         self.arrow = np.where((size > LEAST * greatest)[:, None], push * scale[:, None], 0.0)
         self.saved, self.held = solution.forces.saved, solution.forces.point
 
-    def draw(self, pen, camera, t: float) -> None:
+    def draw(self, pen, camera, depth, t: float) -> None:
         """Draw what is to be seen at a time."""
         unit = camera.height / 720.0
         k = int(np.clip(np.searchsorted(self.solution.t, t, side="right") - 1, 0, None))
@@ -43,12 +44,20 @@ class Marks:
         dot = 2.6 * unit
         if high - low <= 60:  # in a heap they would hide what they belong to
             for x, y, near in camera.project(self.held[low:high]):
-                if near > 0.0:
+                if _visible(x, y, near, depth):
                     pen.ellipse((x - dot, y - dot, x + dot, y + dot), fill="#202020")
         for row in np.flatnonzero((self.time <= t) & (self.time > t - self.linger)):
             ends = camera.project(np.array([self.point[row], self.point[row] + self.arrow[row]]))
             if np.all(ends[:, 2] > 0.0):
                 _arrow(pen, ends[0, :2], ends[1, :2], unit)
+
+
+def _visible(x: float, y: float, near: float, depth) -> bool:
+    """Return whether nothing is before a point; it may be hidden by the surface that it lies on."""
+    height, width = depth.shape
+    if not (near > 0.0 and 0.0 <= x < width and 0.0 <= y < height):
+        return False
+    return near >= (1.0 - GRAZE) * depth[int(y), int(x)]
 
 
 def pair_axes(normal: np.ndarray) -> np.ndarray:

@@ -22,6 +22,7 @@ PLANE, GRID, LINK = rgb("#ededed"), rgb("#cfcfcf"), rgb("#6b6b6b")
 SHADOW = 0.80  # brightness in it
 FINER = 2  # pixels of the buffer by those of the picture, in each direction
 LINE = 0.0022  # width of an edge by the height of the picture
+RECENT = 0.01  # part of the run over which an impulse is seen in a single picture
 SAMPLES = 400  # times at which a camera looks where the bodies will be
 
 
@@ -127,7 +128,7 @@ class Stage:
         half_line = max(0.5, 0.5 * LINE * camera.height)
         paint(camera.project(world.corners), world.normals, world.colours, world.edges, self.light,
               axes.towards, half_line, image, depth)  # fmt: skip
-        return self._finished(image, camera, t, clock)
+        return self._finished(image, depth, camera, t, clock)
 
     def _empty(self, camera):
         """Return picture, depth and marks of the planes alone; made once if the camera stands still."""
@@ -162,14 +163,14 @@ class Stage:
             parts.append(_rod(np.asarray(a), np.asarray(b), 0.004 * self.length, self.ring))
         return Model(*(np.ascontiguousarray(np.concatenate(column)) for column in zip(*parts)))
 
-    def _finished(self, image, camera, t: float, clock: bool) -> np.ndarray:
+    def _finished(self, image, depth, camera, t: float, clock: bool) -> np.ndarray:
         """Return the picture with arrows and clock, in its own size."""
         Image, ImageDraw, ImageFont = pillow()
         large = Image.fromarray(image)
         pen = ImageDraw.Draw(large)
-        self.marks.draw(pen, camera, t)
+        self.marks.draw(pen, camera, depth, t)
         if clock:
-            height = max(12, camera.height // 26)
+            height = max(12, camera.height // 20)
             font = ImageFont.load_default(height)
             words = f"{t:.{self.digits}f} s"
             pen.text((0.7 * height, 0.55 * height), words, fill="#404040", font=font)
@@ -192,7 +193,7 @@ def still(
     zoom=1.0,
     clock=True,
 ) -> np.ndarray:
-    """Draw one picture of a motion, as a film would show it.
+    """Draw one picture of a motion, as a film would show it; with impulses of the last hundredth of the run.
 
     Parameters
     ----------
@@ -211,7 +212,9 @@ def still(
     need_bodies(solution, "still")
     last = float(solution.t[-1])
     t = last if t is None else check.number("t", t, least=float(solution.t[0]), most=last, unit="s")
-    return Stage(solution, size, view, follow, zoom=zoom).draw(t, clock)
+    stage = Stage(solution, size, view, follow, zoom=zoom)
+    stage.marks.linger = RECENT * (last - float(solution.t[0]))
+    return stage.draw(t, clock)
 
 
 def checked_size(size) -> tuple[int, int]:

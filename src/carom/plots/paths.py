@@ -50,7 +50,9 @@ def trajectory(
     x = solution.evaluate(t)[0]
     axes = _plane(plane, solution, x[:, [b.index for b in chosen]])
     seen = list(axes)
-    with figure.drawing(ax, 1, (style.COLUMN, 2.6)) as drawn:
+    wide, high = np.ptp(x[:, [b.index for b in chosen]][..., seen].reshape(-1, 2), axis=0)
+    inches = np.clip(2.8 * high / max(wide, 1e-300), 1.0, 3.4) + 0.6  # nearly as the axes are to be
+    with figure.drawing(ax, 1, (style.COLUMN, inches)) as drawn:
         many = len(chosen) > 12
         for body, (colour, line) in zip(chosen, figure.colours()):
             path = x[:, body.index][:, seen]

@@ -32,11 +32,19 @@ def work_precision(series: Mapping, *, error: str = "error", ax=None):
     if not isinstance(series, Mapping) or not series:
         raise ValueError(f"series must be a mapping of names to (times, errors), got {series!r}")
     checked = {name: _checked(name, pair) for name, pair in series.items()}
+    figure.pyplot()
+    from matplotlib.ticker import LogFormatterSciNotation, LogLocator
+
     with figure.drawing(ax, 1, (style.COLUMN, 2.6)) as axes:
         for k, (name, (times, errors)) in enumerate(checked.items()):
             colour, mark = figure.COLOURS[k % 7], _MARKS[k % 8]
             axes.plot(times, errors, marker=mark, color=colour, lw=1.0, label=str(name))
         axes.set(xscale="log", yscale="log", xlabel="wall time [s]", ylabel=error)
+        if (
+            axes.get_xlim()[1] < 100.0 * axes.get_xlim()[0]
+        ):  # hardly a decade has its label in there
+            axes.xaxis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
+            axes.xaxis.set_minor_formatter(LogFormatterSciNotation(minor_thresholds=(9.0, 9.0)))
         axes.grid(which="major", color="#dddddd", lw=0.5)
         axes.set_axisbelow(True)
         figure.legend(axes, least=1)

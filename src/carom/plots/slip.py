@@ -13,11 +13,11 @@ FLOW = 0.7  # density of the lines of the flow
 def hodograph(solution, k: int = 0, *, flow: bool = True, ax=None):
     """Draw the slip velocity during one impact, and the friction that goes with it.
 
-    Left: the path of the slip velocity from before the impact (square) to after it (dot), and the directions
-    that slip keeps, from `invariant_directions`: dashed where slip grows along them, dotted where it dies;
-    grey lines: how slip of any start moves while it lasts, along ``W_tn - mu W_tt e`` with e its direction
-    (mathematics page, II.9). Right: friction force by normal force; on the circle of radius mu while the
-    contact slips, inside while it sticks.
+    Left: the path of the slip velocity from before the impact (square) to after it (dot), and the rays that slip
+    does not leave (`invariant_directions`): outgoing ones, along which it grows, and incoming ones, along which
+    it dies. Grey lines: how slip of any start moves while it lasts, along ``W_tn - mu W_tt e`` with e its
+    direction (mathematics page, II.9). Right: friction force by normal force; on the circle of radius mu
+    while the contact slips, inside while it sticks.
 
     Parameters
     ----------
@@ -84,13 +84,13 @@ def _slip(axes, path, W, mu, flow: bool) -> None:
             *(m + grid for m in middle), *rate, density=FLOW, color="#c8c8c8", linewidth=0.6,
             arrowsize=0.6, zorder=0,
         )  # fmt: skip
+    axes.plot(*path.T, color=style.RED, lw=1.8, zorder=3, label="slip")
     rays = invariant_directions(W, mu)
-    drawn = {True: "it grows along", False: "it dies along"}
+    drawn = {True: "outgoing ray", False: "incoming ray"}
     for angle, grows in zip(rays.angle, rays.outgoing):
         end = 4.0 * half * np.array([np.cos(angle), np.sin(angle)])
         axes.plot([0.0, end[0]], [0.0, end[1]], "--" if grows else ":", color=style.BLACK, lw=0.9,
                   label=drawn.pop(bool(grows), None))  # fmt: skip
-    axes.plot(*path.T, color=style.RED, lw=1.8, zorder=3, label="slip")
     axes.plot(*path[0], "s", color=style.RED, ms=4.5, zorder=4)
     axes.plot(*path[-1], "o", color=style.RED, ms=4.5, zorder=4)
     axes.plot(0.0, 0.0, "+", color=style.BLACK, ms=6, zorder=4)
