@@ -99,6 +99,7 @@ def test_the_ball_is_painted_at_its_place_and_as_large_as_it_is(ball):
         assert 0.5 * (rows.max() + rows.min()) + 0.5 == pytest.approx(y / 2, abs=1.0)
 
 
+@pytest.mark.plain
 @pytest.mark.parametrize("order", [[0, 1], [1, 0]])
 def test_what_is_near_hides_what_is_far(order):
     # A red triangle before a blue one that is larger; in whatever order they come.

@@ -1,6 +1,7 @@
 """What the plots draw is what the solution says."""
 
 import matplotlib as mpl
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
@@ -229,6 +230,9 @@ def test_axes_that_are_given_are_drawn_into(thrown):
             "bodies must be among 'body1', got 'body2'; did you mean 'body1'",
         ),
         (lambda s: plots.trajectory(s, plane="xx"), "plane"),
+        (lambda s: plots.trajectory(s, []), "bodies must be at least one"),
+        (lambda s: plots.trajectory(s, 0), "bodies must be among 'body1', got 0"),
+        (lambda s: plots.trajectory(s, outlines=[9.0]), "outlines must be times within"),
         (lambda s: plots.impact_inside(s, 99), "k, number of the impact, must be .* at most"),
         (lambda s: plots.hodograph(s, 0.5), "k, number of the impact"),
         (lambda s: plots.impacts(s, contacts="wall"), "contacts must be among"),
@@ -242,6 +246,7 @@ def test_axes_that_are_given_are_drawn_into(thrown):
 def test_bad_input_is_named(thrown, draw, message):
     with pytest.raises(ValueError, match=message):
         draw(thrown)
+    assert not plt.get_fignums()  # no empty figure is left
 
 
 def test_nothing_to_draw_is_said(flown, bounced):

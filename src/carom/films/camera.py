@@ -90,8 +90,8 @@ def fitted(axes: Axes, places, radii, size: tuple[int, int]) -> Camera:
         reach = radii[:, None] * camera.focal * seen[:, 2:]
         low, high = (seen[:, :2] - reach).min(axis=0), (seen[:, :2] + reach).max(axis=0)
         x, y = (0.5 * (low + high) - (0.5 * width, 0.5 * height)) * camera.distance / camera.focal
-        size = float(np.max((high - low) / (width, height)))
-        away = max(MARGIN * size * camera.distance, NEAR * float(np.max(radii)))
+        part = float(np.max((high - low) / (width, height)))  # of the picture
+        away = max(MARGIN * part * camera.distance, NEAR * float(np.max(radii)))
         camera = camera._replace(centre=camera.centre + x * axes.right - y * axes.up, distance=away)
         camera = camera._replace(distance=max(away, _before(camera, places, radii)))
     return camera

@@ -11,6 +11,7 @@ import numpy as np
 from carom import check
 from carom.films.marks import LINGER
 from carom.films.stage import Stage, pillow
+from carom.plots.figure import need_bodies
 
 SUFFIXES = (".gif", ".mp4")
 
@@ -63,6 +64,7 @@ def film(
     ValueError
         If an argument is not as above.
     """
+    need_bodies(solution, "film")
     path = Path(path)
     if path.suffix.lower() not in SUFFIXES:
         raise ValueError(f"path must end in {' or '.join(SUFFIXES)}, got {str(path)!r}")
@@ -71,10 +73,7 @@ def film(
     gif = path.suffix.lower() == ".gif"
     fps = check.number("fps", fps, above=0.0, most=50.0 if gif else None)
     speed = check.number("speed", speed, above=0.0)
-    if hasattr(solution, "t"):
-        first, last = float(solution.t[0]), float(solution.t[-1])
-    else:
-        first, last = 0.0, 0.0  # refused by Stage
+    first, last = float(solution.t[0]), float(solution.t[-1])
     begin = (
         first if start is None else check.number("start", start, least=first, most=last, unit="s")
     )

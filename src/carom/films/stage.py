@@ -20,6 +20,7 @@ from carom.surfaces import surface
 BACKGROUND = rgb("#ffffff")
 PLANE, GRID, LINK = rgb("#ededed"), rgb("#cfcfcf"), rgb("#6b6b6b")
 SHADOW = 0.80  # brightness in it
+DIM = 0.85  # brightness of a plane that turns away from the light
 FINER = 2  # pixels of the buffer by those of the picture, in each direction
 LINE = 0.0022  # width of an edge by the height of the picture
 RECENT = 0.01  # part of the run over which an impulse is seen in a single picture
@@ -139,11 +140,13 @@ class Stage:
         shape = camera.height, camera.width
         image = np.full((*shape, 3), 255, np.uint8)
         depth, seen = np.zeros(shape, np.float32), np.zeros(shape, np.uint8)
-        axes, colours = camera.axes, np.array([PLANE, GRID, BACKGROUND])
+        axes = camera.axes
         for number, (plane, grid) in enumerate(self.planes, 1):
             if self.followed is not None:
                 plane = plane.copy()
                 plane[0] += _steps(camera.centre - plane[0], plane[2:], grid[0])
+            bright = DIM + (1.0 - DIM) * max(0.0, float(plane[1] @ self.light))
+            colours = np.array([bright * PLANE, bright * GRID, BACKGROUND])
             ground(camera.eye, axes.right, axes.up, -axes.towards, camera.focal, plane, grid, colours,
                    image, depth, seen, number)  # fmt: skip
         self._kept = image, depth, seen

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from difflib import get_close_matches
 from itertools import cycle
@@ -14,7 +14,6 @@ from carom.plots import style
 
 #: of lines that are told apart, in their order
 COLOURS = (style.BLUE, style.RED, style.GREEN, style.ORANGE, style.PURPLE, style.SKY, style.BLACK)
-AXES = "xyz"
 
 
 @contextmanager
@@ -32,6 +31,7 @@ def drawing(
     plt = pyplot()
     from matplotlib.axes import Axes
 
+    figure = None
     with style.style():
         if ax is None:
             figure = plt.figure(figsize=size, layout="compressed" if compressed else "constrained")
@@ -43,7 +43,13 @@ def drawing(
             parts = np.array([ax], dtype=object) if isinstance(ax, Axes) else np.ravel(ax)
             if len(parts) != count or not all(isinstance(one, Axes) for one in parts):
                 raise ValueError(f"ax must be {count} matplotlib Axes or None, got {ax!r}")
-        yield parts[0] if count == 1 else parts
+        try:
+            yield parts[0] if count == 1 else parts
+        except Exception:
+            plt.close(
+                figure
+            )  # nothing half drawn is left to be shown; of the caller's axes: no figure
+            raise
 
 
 @contextmanager
@@ -87,7 +93,7 @@ def named(argument: str, wanted, parts: list[str]) -> list[int]:
     """Return the indices of `wanted`, names or handles with a name or one of them; None is all."""
     if wanted is None:
         return list(range(len(parts)))
-    if isinstance(wanted, str) or hasattr(wanted, "name"):
+    if isinstance(wanted, str) or not isinstance(wanted, Iterable):
         wanted = [wanted]
     found = []
     for one in wanted:
@@ -98,6 +104,8 @@ def named(argument: str, wanted, parts: list[str]) -> list[int]:
             shown = ", ".join(map(repr, parts[:12])) + (", ..." if len(parts) > 12 else "")
             raise ValueError(f"{argument} must be among {shown or 'none'}, got {name!r}{hint}")
         found.append(parts.index(name))
+    if not found:
+        raise ValueError(f"{argument} must be at least one of {len(parts)}, got none")
     return found
 
 

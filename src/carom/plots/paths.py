@@ -49,7 +49,7 @@ def trajectory(
     t = figure.with_impacts(solution)
     x = solution.evaluate(t)[0]
     axes = _plane(plane, solution, x[:, [b.index for b in chosen]])
-    seen = list(axes)
+    seen, times = list(axes), _times(outlines, solution)
     wide, high = np.ptp(x[:, [b.index for b in chosen]][..., seen].reshape(-1, 2), axis=0)
     inches = np.clip(2.8 * high / max(wide, 1e-300), 1.0, 3.4) + 0.6  # nearly as the axes are to be
     with figure.drawing(ax, 1, (style.COLUMN, inches)) as drawn:
@@ -61,7 +61,7 @@ def trajectory(
             struck = np.isin(t, _blows(solution, body))
             drawn.plot(*path[struck].T, "o", color=colour, ms=1.5 if many else 2.5)
             if body.shape is not None:
-                _outlines(drawn, solution, body, _times(outlines, solution), seen, colour)
+                _outlines(drawn, solution, body, times, seen, colour)
         drawn.set(xlabel=f"${'xyz'[axes[0]]}$ [m]", ylabel=f"${'xyz'[axes[1]]}$ [m]")
         drawn.set_aspect("equal", adjustable="datalim")
         drawn.margins(0.08)
@@ -103,7 +103,13 @@ def _times(outlines, solution) -> np.ndarray:
         return np.linspace(
             solution.t[0], solution.t[-1], check.integer("outlines", outlines, least=1)
         )
-    return check.finite_array("outlines", outlines, (None,), "s")
+    times, (first, last) = (
+        check.finite_array("outlines", outlines, (None,), "s"),
+        solution.t[[0, -1]],
+    )
+    if not np.all((times >= first) & (times <= last)):
+        raise ValueError(f"outlines must be times within [{first:g}, {last:g}] s, got {outlines!r}")
+    return times
 
 
 def _outlines(axes, solution, body, times, seen, colour) -> None:

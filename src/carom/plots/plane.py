@@ -52,16 +52,16 @@ def phase(solution, of=None, *, axis: str = "z", number: int = 0, ax=None):
 
 def _of_scene(solution, of, axis: str, number: int):
     """Return coordinate, rate and their labels, of a joint or a body."""
-    from carom.files.variables import _coordinate_units
+    from carom.files.variables import coordinate_units
 
     scene = solution.scene
-    joints = {joint.name: joint for joint in scene.joints if _coordinate_units(joint)}
+    joints = {joint.name: joint for joint in scene.joints if coordinate_units(joint)}
     every = [body.name for body in scene.bodies]
     name = getattr(of, "name", of)
     if name is None:
         name = next(iter(joints), every[0])
     if name in joints:
-        units = _coordinate_units(joints[name])
+        units = coordinate_units(joints[name])
         k = check.integer("number", number, least=0, most=len(units) - 1)
         q, rate = solution.joint_coordinates(name)
         words = f"coordinate of {name} [{units[k]}]", f"rate of {name} [{units[k]}/s]"
