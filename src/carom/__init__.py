@@ -33,10 +33,11 @@ from carom.solution import Solution
 from carom.status import SimulationError, Status
 
 if TYPE_CHECKING:
-    from carom import baselines, identify
+    from carom import baselines, identify, plots
     from carom.coulomb import ContactSolution, solve_contacts
     from carom.ensembles import Ensemble, UniformOrientation, ensemble
     from carom.files.resume import resume
+    from carom.films import film
     from carom.gradient import Sensitivities, contact_sequence, sensitivities
     from carom.impact import Impact, LayerHistory, impact_layer, resolve_impact
     from carom.impact.corner.api import CornerImpact, resolve_impacts
@@ -72,10 +73,12 @@ __all__ = [
     "constraints",
     "contact_sequence",
     "ensemble",
+    "film",
     "forces",
     "identify",
     "impact_layer",
     "joints",
+    "plots",
     "resolve_impact",
     "resolve_impacts",
     "resume",
@@ -94,6 +97,7 @@ _LAZY = {
     "ensemble": "carom.ensembles",
     "Sensitivities": "carom.gradient",
     "contact_sequence": "carom.gradient",
+    "film": "carom.films",
     "impact_layer": "carom.impact",
     "resolve_impact": "carom.impact",
     "resolve_impacts": "carom.impact.corner.api",
@@ -106,6 +110,6 @@ _LAZY = {
 def __getattr__(name: str):
     if name in _LAZY:
         return getattr(importlib.import_module(_LAZY[name]), name)
-    if name in ("baselines", "geometry", "gradient", "identify"):
+    if name in ("baselines", "films", "geometry", "gradient", "identify", "plots"):
         return importlib.import_module(f"carom.{name}")
     raise AttributeError(f"module 'carom' has no attribute {name!r}")
