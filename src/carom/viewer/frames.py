@@ -53,10 +53,14 @@ def _moments_of_impacts(impacts, most: int) -> np.ndarray:
     return impacts.time[strongest[:most]]
 
 
-def place_of(solution, frames: Frames, sizes: np.ndarray) -> Place:
-    """Return where the motion takes place; `sizes` (N,) are radii of the bodies [m]."""
+def place_of(solution, frames: Frames, sizes: np.ndarray, fixed: list[np.ndarray]) -> Place:
+    """Return where the motion takes place.
+
+    `sizes` (N,) are radii of the bodies [m]; `fixed` are points (3,) of the ground that are to be seen too.
+    """
     least = np.min(frames.position - sizes[:, None], axis=(0, 1))
     greatest = np.max(frames.position + sizes[:, None], axis=(0, 1))
+    least, greatest = np.min([least, *fixed], axis=0), np.max([greatest, *fixed], axis=0)
     radius = max(0.5 * float(np.linalg.norm(greatest - least)), 1e-9)
     gravity = solution.scene.gravity
     pull = float(np.linalg.norm(gravity))

@@ -142,6 +142,7 @@ def _impacts(show: Show, packer: Packer) -> dict:
         "after": packer.add(impacts.relative_velocity_after[k]),
         "impulse": packer.add(impacts.impulse[k]),
         "energy": packer.add(impacts.energy_change[k]),
+        "turning": strikes.turning.tolist(),
         "together": impacts.together[k].tolist(),
         "inside": {
             str(number): {

@@ -43,7 +43,9 @@ class Show(NamedTuple):
         if len(self.strikes.number) < impacts:
             words.append(f"the {len(self.strikes.number)} strongest of {impacts} impacts")
         if len(self.held.point) < len(solution.forces.point):
-            words.append(f"{len(self.held.point)} of {len(solution.forces.point)} forces of held contacts")
+            words.append(
+                f"{len(self.held.point)} of {len(solution.forces.point)} forces of held contacts"
+            )
         return words
 
 
@@ -55,12 +57,14 @@ def show_of(what, title: str | None = None, most: int = frames.MOST) -> Show:
     scene = solution.scene
     sizes = np.array([solids.size_of(scene, body) for body in scene.bodies])
     moments = frames.frames_of(solution, check.integer("frames", most, least=2))
-    place = frames.place_of(solution, moments, sizes)
+    links = solids.links_of(scene)
+    ground = [a for k in links for a in solids.ends_on_ground(k)]
+    place = frames.place_of(solution, moments, sizes, ground)
     return Show(
         title, solution, moments, place, sizes,
         solids.parts_of(scene, place.radius),
         solids.planes_of(scene, place, moments.position),
-        solids.links_of(scene),
+        links,
         strikes.strikes_of(solution),
         strikes.held_of(solution, moments.time),
     )  # fmt: skip

@@ -8,7 +8,7 @@ import numpy as np
 
 from carom import surfaces
 from carom.geometry import quaternion
-from carom.scene.bodies import Body, HalfSpace
+from carom.scene.bodies import Body
 from carom.scene.forces import Spring
 from carom.scene.joints import Distance, Joint, RollingDisc, RollingSphere
 from carom.scene.more_forces import CurveSpring
@@ -17,6 +17,8 @@ from carom.scene.shapes import Box, Ellipsoid, Sphere
 
 ROUND = (Sphere, Capsule, Cylinder, Disc, Ellipsoid)  # a pattern shows that they turn
 ROD = 0.012  # radius of rods of bodies without a shape, by that of the whole place
+TOP = 0.15  # how far walls go above the motion, by the radius of the place
+LEVEL = 0.9  # cosine of the slope from which a half-space is a wall
 WIDE = 1.5  # half a side of the part of a half-space that is drawn, by the radius of the place
 
 
@@ -137,13 +139,20 @@ def links_of(scene) -> list[Link]:
     return out
 
 
+def ends_on_ground(link: Link) -> list[np.ndarray]:
+    """Return the ends (3,) of a link that are fixed in the world."""
+    ends = (link.parent, link.parent_anchor), (link.child, link.child_anchor)
+    return [anchor for body, anchor in ends if body < 0]
+
+
 def planes_of(scene, place, position: np.ndarray) -> list[Plane]:
     """Return half-spaces as squares around the motion, cut off at walls that no body passes.
 
-    `position` (F, N, 3) are the mass centres.
+    Walls end a little above the motion. `position` (F, N, 3) are the mass centres.
     """
     points = position.reshape(-1, 3)
     walls = [h for h in scene.half_spaces if np.all((points - h.point) @ h.normal >= 0.0)]
+    top = points[np.argmax(points @ place.up)] + TOP * place.radius * place.up
     out = []
     for h in scene.half_spaces:
         middle = place.centre - ((place.centre - h.point) @ h.normal) * h.normal
@@ -155,19 +164,22 @@ def planes_of(scene, place, position: np.ndarray) -> list[Plane]:
         corners = middle + np.array([a + b, b - a, -a - b, a - b])
         for wall in walls:
             if wall is not h:
-                corners = _cut(corners, wall)
+                corners = _cut(corners, wall.point, wall.normal)
+        if abs(h.normal @ place.up) < LEVEL:
+            corners = _cut(corners, top, -place.up)
         if len(corners) > 2:
             out.append(Plane(corners, h.normal, h.name))
     return out
 
 
-def _cut(corners: np.ndarray, wall: HalfSpace) -> np.ndarray:
-    """Return the part of a convex polygon (P, 3) in front of a wall."""
-    gap = (corners - wall.point) @ wall.normal
+def _cut(corners: np.ndarray, point: np.ndarray, normal: np.ndarray) -> np.ndarray:
+    """Return the part of a convex polygon (P, 3) in front of a plane."""
+    gap = (corners - point) @ normal
     kept = []
     for k in range(len(corners)):
         if gap[k - 1] * gap[k] < 0.0:
-            kept.append(corners[k - 1] + gap[k - 1] / (gap[k - 1] - gap[k]) * (corners[k] - corners[k - 1]))
+            part = gap[k - 1] / (gap[k - 1] - gap[k])
+            kept.append(corners[k - 1] + part * (corners[k] - corners[k - 1]))
         if gap[k] >= 0.0:
             kept.append(corners[k])
     return np.array(kept).reshape(-1, 3)

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom.scene.constraints import coordinate_kind
 from carom.system.contact_rows import touching_pairs
 from carom.system.frames import contact_axes
 
@@ -21,6 +22,7 @@ class Strikes(NamedTuple):
     number: np.ndarray  #: (K',) which of `Solution.impacts`
     arrow: np.ndarray  #: (K', 3) impulse on the body, world axes [N s]; 0 of stops
     contact: list[str]  #: (K',) names
+    turning: np.ndarray  #: (K',) whether it is the stop of an angle: [rad/s], [N m s]
 
 
 class Held(NamedTuple):
@@ -46,15 +48,16 @@ def strikes_of(solution, listed: int = LISTED) -> Strikes:
     impacts, scene = solution.impacts, solution.scene
     chosen = np.sort(_strongest(impacts)[:listed])
     pairs = touching_pairs(scene)
-    stops, planes = len(pairs.body), np.append(pairs.plane, np.full(len(scene.stops), -1))
+    stops = len(pairs.body)  # they come after contacts
     arrow = np.zeros((len(chosen), 3))
     for row, k in enumerate(chosen):
         c = impacts.contact[k]
         if c < stops:
-            axes = _axes(impacts.normal[k], planes[c] >= 0)
+            axes = _axes(impacts.normal[k], pairs.plane[c] >= 0)
             arrow[row] = impacts.impulse[k] @ axes
     names = [_name(scene, pairs, impacts.contact[k]) for k in chosen]
-    return Strikes(chosen, arrow, names)
+    turning = [c >= stops and _turns(scene.stops[c - stops]) for c in impacts.contact[chosen]]
+    return Strikes(chosen, arrow, names, np.array(turning, dtype=bool))
 
 
 def held_of(solution, times: np.ndarray, rows: int = ROWS) -> Held:
@@ -97,6 +100,10 @@ def _axes(normal: np.ndarray, of_plane: bool) -> np.ndarray:
     first = east - (east @ normal) * normal
     first /= np.linalg.norm(first)
     return np.stack([normal, first, np.cross(normal, first)])
+
+
+def _turns(stop) -> bool:
+    return coordinate_kind(stop.joint, stop.coordinate) == "turn"
 
 
 def _name(scene, pairs, contact: int) -> str:

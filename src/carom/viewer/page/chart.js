@@ -12,7 +12,7 @@ function svg(name, attributes = {}, text = "") {
 /** About `n` round numbers from `low` to `high`. */
 function rounds(low, high, n = 4) {
   const rough = (high - low) / n || 1, power = 10 ** Math.floor(Math.log10(rough)), m = rough / power;
-  const step = (m > 7 ? 10 : m > 3.5 ? 5 : m > 1.4 ? 2 : 1) * power, out = [];
+  const step = (m > 7.07 ? 10 : m > 3.16 ? 5 : m > 1.41 ? 2 : 1) * power, out = [];
   for (let k = Math.ceil(low / step - 1e-9); k * step <= high + 1e-9 * step; k++) out.push(k * step);
   return out;
 }

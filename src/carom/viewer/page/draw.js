@@ -72,8 +72,8 @@ class Canvas {
     this.gl.drawArrays(mode, first, count);
   }
 
-  /** One picture: solids, planes with a grid, lines, and arrows that shine through what is before them. */
-  draw({ eye, light, up, view, sun, solids, planes, lines, arrows }) {
+  /** One picture: solids with shadows, planes with a grid, marks and lines, and arrows in front of all. */
+  draw({ eye, light, up, view, sun, solids, planes, marks, lines, arrows }) {
     const { gl } = this;
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.buffer);
     gl.viewport(0, 0, MAP, MAP);
@@ -103,6 +103,7 @@ class Canvas {
       this.use("plane", { ...common, ...plane });
       this.show(plane.mesh, gl.TRIANGLE_FAN);
     }
+    this.surfaces(marks, { ...common, glow: 1 });
     gl.depthMask(false);
     at = this.use("line", { view });
     for (const line of lines) {
@@ -110,7 +111,7 @@ class Canvas {
       this.show(line.mesh, gl.LINE_STRIP, line.first, line.count);
     }
     gl.depthMask(true);
-    gl.clear(gl.DEPTH_BUFFER_BIT); // arrows are in front of all, and before each other
+    gl.clear(gl.DEPTH_BUFFER_BIT); // else most arrows would be hidden in the body they push
     this.surfaces(arrows, { ...common, glow: 1 });
     gl.disable(gl.BLEND);
   }

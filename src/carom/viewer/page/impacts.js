@@ -44,34 +44,38 @@ function showInside(run, k) {
     return;
   }
   const count = inside.time.length, column = (array, i) => Array.from({ length: count }, (_, j) => array[3 * j + i]);
-  const across = ["time", "s"], x = inside.time, slip = [1, 2].map((i) => column(inside.velocity, i));
+  const turns = impacts.turning[k], across = ["time", "s"], x = inside.time, slip = [1, 2].map((i) => column(inside.velocity, i));
   const friction = Array.from({ length: count }, (_, j) => Math.hypot(inside.force[3 * j + 1], inside.force[3 * j + 2]));
+  const slips = slip.some((one) => one.some((u) => u !== 0));
   const small = document.createElement("small");
-  small.textContent = `${inside.phases.join(", ")}; ${withUnit(x[count - 1], "s")} in its layer`;
+  small.textContent = `${[...inside.phases, withUnit(x[count - 1], "s")].join(", ")} in its layer`;
   title.append(small);
   words.remove();
   const pair = document.createElement("div");
   pair.className = "pair";
   const half = { width: 184, height: 140 };
   place.append(chart({
-    across, up: ["velocity", "m/s"], height: 140,
+    across, up: ["velocity", turns ? "rad/s" : "m/s"], height: 140,
     curves: [
       { x, y: column(inside.velocity, 0), colour: INK, name: "normal" },
-      { x, y: slip[0], colour: BLUE, name: "slip 1" },
-      { x, y: slip[1], colour: ORANGE, name: "slip 2", dash: "5 3" },
+      ...(slips ? [
+        { x, y: slip[0], colour: BLUE, name: "slip 1" },
+        { x, y: slip[1], colour: ORANGE, name: "slip 2", dash: "5 3" },
+      ] : []),
     ],
   }).element, pair);
   pair.append(
     chart({
-      ...half, across, up: ["force", "N"],
+      ...half, across, up: turns ? ["torque", "N m"] : ["force", "N"],
       curves: [
         { x, y: column(inside.force, 0), colour: INK },
-        { x, y: friction, colour: GREEN, name: "friction", dash: "5 3" },
+        ...(slips ? [{ x, y: friction, colour: GREEN, name: "friction", dash: "5 3" }] : []),
       ],
     }).element,
-    chart({
+  );
+  if (slips)
+    pair.append(chart({
       ...half, across: ["slip 1", "m/s"], up: ["slip 2", "m/s"], equal: true,
       curves: [{ x: slip[0], y: slip[1], colour: BLUE }, { x: [slip[0][0]], y: [slip[1][0]], colour: INK }],
-    }).element,
-  );
+    }).element);
 }

@@ -79,20 +79,25 @@ class Painter {
     return { mesh: this.furniture.ball, colour, model: frame([size, 0, 0], [0, size, 0], [0, 0, size], at) };
   }
 
-  /** Impacts as they fade during `fading` [s], marks where others were, forces of contacts that stay. */
+  /** Marks where impacts are and will be; of many, some. */
+  marks(t) {
+    const { time, point } = this.run.impacts, every = Math.max(1, Math.ceil(time.length / DOTS)), out = [];
+    for (let k = 0; k < time.length; k += every)
+      out.push(this.ball(row(point, k), 0.008 * this.run.place.radius, rgba(time[k] <= t ? "#5b6873" : "#b8c2ca")));
+    return out;
+  }
+
+  /** Impulses, which fade during `fading` [s], and forces of contacts that stay. */
   arrows(t, fading, chosen, length) {
     const { impacts, held, colours, place } = this.run, out = [], longest = 0.45 * place.radius * length;
-    const size = 0.009 * place.radius;
     const impact = (k, alpha) => {
       const point = row(impacts.point, k), way = times(longest / (this.strongest || 1), row(impacts.arrow, k));
-      out.push(this.ball(point, 1.6 * size, rgba(colours.impulse, alpha)), ...this.arrow(point, way, rgba(colours.impulse, alpha)));
+      out.push(this.ball(point, 0.014 * place.radius, rgba(colours.impulse, alpha)), ...this.arrow(point, way, rgba(colours.impulse, alpha)));
     };
-    const every = Math.max(1, Math.ceil(impacts.time.length / DOTS));
     for (let k = 0; k < impacts.time.length; k++) {
       const age = t - impacts.time[k];
       if (k === chosen) impact(k, 1);
       else if (age >= -1e-12 && age < fading) impact(k, 1 - age / fading);
-      else if (k % every === 0) out.push(this.ball(row(impacts.point, k), size, rgba(age > 0 ? "#5b6873" : "#b8c2ca", 0.8)));
     }
     const s = lastBefore(held.time, t);
     for (let k = held.first[s]; k < held.first[s + 1]; k++) {
@@ -124,6 +129,7 @@ class Painter {
       view, sun, eye: camera.eye, light: this.light, up,
       solids: this.solids(poses), planes: this.planes,
       lines: state.ways ? this.lines(state.time, state.follow) : [],
+      marks: state.arrows ? this.marks(state.time) : [],
       arrows: state.arrows ? this.arrows(state.time, state.fading, state.chosen, state.length) : [],
     });
     return view;

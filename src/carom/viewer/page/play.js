@@ -32,6 +32,7 @@ const energy = chart({
   ],
 });
 find("energy").append(energy.element);
+if (run.impacts.turning.some(Boolean)) find("units").textContent = "[m/s, rad/s]";
 const rows = listImpacts(run, (k) => choose(k));
 
 function seek(t) {

@@ -45,7 +45,7 @@ out vec4 result;
 void main() {
   vec3 m = normalize(n), c = linear(colour.rgb);
   if (pattern > 0.5) {
-    vec3 s = own / fwidth(own);
+    vec3 s = own / max(fwidth(own), vec3(1e-5 * length(own)));
     float side = clamp(s.x, -1.0, 1.0) * clamp(s.y, -1.0, 1.0) * clamp(s.z, -1.0, 1.0);
     c = mix(c, mix(c, vec3(1.0), 0.62), 0.5 + 0.5 * side);
   }
