@@ -82,3 +82,21 @@ def _side(position: np.ndarray, up: np.ndarray) -> np.ndarray:
         front = -north + 0.01 * east  # of the two sides the one from which x goes to the right
         return across if across @ front > 0.0 else -across
     return 0.6 * east - 0.8 * north
+
+
+def poses_at(frames: Frames, t: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return positions (N, 3) and orientations (N, 4) at a time: straight lines and steady turns."""
+    time = frames.time
+    k = int(np.clip(np.searchsorted(time, t, side="right") - 1, 0, max(len(time) - 2, 0)))
+    n = min(k + 1, len(time) - 1)
+    s = float(np.clip((t - time[k]) / (time[n] - time[k]), 0.0, 1.0)) if n > k else 0.0
+    p, q = frames.orientation[k], frames.orientation[n]
+    cosine = np.sum(p * q, axis=1, keepdims=True)
+    q = np.where(cosine < 0.0, -q, q)  # the same attitude, by the shorter way
+    angle = np.arccos(np.clip(np.abs(cosine), 0.0, 1.0))
+    sine = np.where(angle > 1e-4, np.sin(angle), 1.0)
+    first = np.where(angle > 1e-4, np.sin((1.0 - s) * angle) / sine, 1.0 - s)
+    second = np.where(angle > 1e-4, np.sin(s * angle) / sine, s)
+    turned = first * p + second * q
+    x = (1.0 - s) * frames.position[k] + s * frames.position[n]
+    return x, turned / np.linalg.norm(turned, axis=1, keepdims=True)
