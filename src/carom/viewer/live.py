@@ -83,7 +83,7 @@ class LiveView:
         with self._change, self.server.atomic():
             before = self._place_followed()
             self.time = min(max(float(t), self.start), self.end)
-            self.stage.move(self.time, FADE * self.speed, self.chosen)
+            self.stage.move(self.time, FADE * self.speed)
             if not self.playing or time.monotonic() - self._marked > SAID:
                 self._marked = time.monotonic()
                 self.panel.show_time(self.time)
@@ -95,6 +95,8 @@ class LiveView:
             if on and self.time >= self.end:
                 self.seek(self.start)
             self.playing = bool(on)
+            if on:
+                self.stage.see_through(self.panel.through.value)
             self.panel.play.label = "Pause" if on else "Play"
             self.panel.show_time(self.time)
 
@@ -106,7 +108,7 @@ class LiveView:
             self.stage.see_through(k >= 0 or self.panel.through.value)
             if k >= 0:
                 self.play(False)
-                self.seek(self.show.solution.impacts.time[self.show.strikes.number[k]])
+                self.seek(float(self.show.solution.impacts.time[self.show.strikes.number[k]]))
             else:
                 self.seek(self.time)
 

@@ -53,8 +53,8 @@ class LiveScene:
         self.impulses = self._arrows("/impulses", IMPULSE)
         self.forces = self._arrows("/forces", FORCE)
 
-    def move(self, t: float, fading: float, chosen: int) -> None:
-        """Bring all to a time; impulses are seen for `fading` [s], that of the impact `chosen` always."""
+    def move(self, t: float, fading: float) -> None:
+        """Bring all to a time; impulses are seen for `fading` [s]."""
         x, Q = poses_at(self.show.frames, t)
         for part, handle in zip(self.show.parts, self.bodies):
             handle.batched_positions = x[part.bodies].astype(np.float32)
@@ -63,7 +63,7 @@ class LiveScene:
             self.links.points = self._link_ends(x, Q)
         number, time = self.show.strikes.number, self.show.solution.impacts.time
         age = t - time[number]
-        seen = ((age >= 0.0) & (age < fading)) | (np.arange(len(number)) == chosen)
+        seen = (age >= 0.0) & (age < fading)
         longest = 0.45 * self.radius * self.length
         point = self.show.solution.impacts.point[number[seen]]
         self._point(self.impulses, point, self.show.strikes.arrow[seen], longest, self.strongest)
@@ -118,7 +118,7 @@ class LiveScene:
     def _arrows(self, name: str, colour: str):
         return self.stage.add_arrows(
             name, np.zeros((1, 2, 3)), _rgb(colour), shaft_radius=0.009 * self.radius,
-            head_radius=0.024 * self.radius, head_length=0.06 * self.radius, visible=False,
+            head_radius=0.02 * self.radius, head_length=0.045 * self.radius, visible=False,
         )  # fmt: skip
 
     def _point(self, handle, start, vectors, longest: float, greatest: float) -> None:
@@ -154,6 +154,6 @@ FACES = np.array(
 
 
 def _rgb(colour: str) -> tuple[int, int, int]:
-    """Return red, green and blue of ``"#rrggbb"``, linear in light: so viser takes them for batches and arrows."""
+    """Return red, green and blue of ``"#rrggbb"``, linear in light: so viser takes them for batches."""
     red, green, blue = (round(255 * (part / 255) ** 2.2) for part in bytes.fromhex(colour[1:]))
     return red, green, blue

@@ -89,7 +89,7 @@ def _without_shape(scene, body: Body, thick: float) -> list[tuple[np.ndarray, np
     anchors = _anchors(scene, body)
     if not anchors:  # the ellipsoid of even density with this mass and inertia
         moments, axes = np.linalg.eigh(body.inertia)
-        squares = 2.5 / body.mass * (0.5 * np.sum(moments) - moments)
+        squares = 5.0 / body.mass * (0.5 * np.sum(moments) - moments)
         vertices, triangles = surfaces.surface(Sphere(1.0))
         lengths = np.sqrt(np.maximum(squares, 1e-4 * np.max(squares)))
         axes = axes * [1.0, 1.0, np.linalg.det(axes)]
@@ -103,7 +103,8 @@ def _without_shape(scene, body: Body, thick: float) -> list[tuple[np.ndarray, np
             out.append((turned + 0.5 * anchor, triangles, "solid"))
         vertices, triangles = surfaces.surface(Sphere(thick), 16)
         out.append((vertices + anchor, triangles, "joint"))
-    cube = surfaces.surface(Box(*(2.4 * thick,) * 3, radius=0.5 * thick), 16)
+    edge = 2.4 * thick
+    cube = surfaces.surface(Box(edge, edge, edge, radius=0.5 * thick), 16)
     return [*out, (*cube, "solid")]
 
 
@@ -133,9 +134,9 @@ def links_of(scene) -> list[Link]:
         d = one.definition
         if isinstance(d, (Spring, CurveSpring, Distance)):
             pair = (one.parent, d.anchor_parent), (one.child, d.anchor_child)
-            ends = [_in_body(part, a) if isinstance(part, Body) else a for part, a in pair]
+            start, end = (_in_body(part, a) if isinstance(part, Body) else a for part, a in pair)
             kind = "rod" if isinstance(d, Distance) else "spring"
-            out.append(Link(one.parent.index, one.child.index, *ends, kind))
+            out.append(Link(one.parent.index, one.child.index, start, end, kind))
     return out
 
 

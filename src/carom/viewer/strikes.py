@@ -53,7 +53,7 @@ def strikes_of(solution, listed: int = LISTED) -> Strikes:
     for row, k in enumerate(chosen):
         c = impacts.contact[k]
         if c < stops:
-            axes = _axes(impacts.normal[k], pairs.plane[c] >= 0)
+            axes = _axes(impacts.normal[k], bool(pairs.plane[c] >= 0))
             arrow[row] = impacts.impulse[k] @ axes
     names = [_name(scene, pairs, impacts.contact[k]) for k in chosen]
     turning = [c >= stops and _turns(scene.stops[c - stops]) for c in impacts.contact[chosen]]

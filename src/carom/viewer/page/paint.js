@@ -88,7 +88,7 @@ class Painter {
   }
 
   /** Impulses, which fade during `fading` [s], and forces of contacts that stay. */
-  arrows(t, fading, chosen, length) {
+  arrows(t, fading, length) {
     const { impacts, held, colours, place } = this.run, out = [], longest = 0.45 * place.radius * length;
     const impact = (k, alpha) => {
       const point = row(impacts.point, k), way = times(longest / (this.strongest || 1), row(impacts.arrow, k));
@@ -96,8 +96,7 @@ class Painter {
     };
     for (let k = 0; k < impacts.time.length; k++) {
       const age = t - impacts.time[k];
-      if (k === chosen) impact(k, 1);
-      else if (age >= -1e-12 && age < fading) impact(k, 1 - age / fading);
+      if (age >= -1e-12 && age < fading) impact(k, 1 - age / fading);
     }
     const s = lastBefore(held.time, t);
     for (let k = held.first[s]; k < held.first[s + 1]; k++) {
@@ -130,7 +129,7 @@ class Painter {
       solids: this.solids(poses), planes: this.planes,
       lines: state.ways ? this.lines(state.time, state.follow) : [],
       marks: state.arrows ? this.marks(state.time) : [],
-      arrows: state.arrows ? this.arrows(state.time, state.fading, state.chosen, state.length) : [],
+      arrows: state.arrows ? this.arrows(state.time, state.fading, state.length) : [],
     });
     return view;
   }
