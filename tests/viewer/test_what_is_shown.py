@@ -18,7 +18,7 @@ def test_frames_hold_saved_times_and_impacts(thrown):
     shown = frames.frames_of(thrown)
     assert np.all(np.isin(thrown.t, shown.time))
     assert np.all(np.isin(thrown.impacts.time, shown.time))
-    assert len(shown.time) >= frames.SMOOTH
+    assert frames.SMOOTH <= 2 * len(shown.time) <= 2.1 * frames.SMOOTH
     assert show_of(thrown).left_out == []
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 MOST = 5000  # frames, if nothing else is asked for
 VALUES = 3_000_000  # numbers of all poses together: 12 MB before packing
-SMOOTH = 600  # frames that a short run has at least, so that nothing jerks
+SMOOTH = 600  # about as many frames has a run with fewer saved times, so that nothing jerks
 
 
 class Frames(NamedTuple):
@@ -38,13 +38,21 @@ def frames_of(solution, most: int = MOST) -> Frames:
     times, saved = solution.t, len(solution.t)
     if saved > most:
         times = times[np.unique(np.linspace(0, saved - 1, most).round().astype(int))]
-    elif 1 < saved < min(SMOOTH, most):
-        between = -(-min(SMOOTH, most) // saved)
+    elif saved > 1 and (between := min(SMOOTH, most) // saved) > 1:
         places = np.arange((saved - 1) * between + 1) / between
         times = np.interp(places, np.arange(saved), times)
     times = np.union1d(times, _moments_of_impacts(solution.impacts, most // 2))
-    x, Q, *_ = solution.evaluate(times)
-    return Frames(times, x, Q)
+    return Frames(times, *_poses(solution, times))
+
+
+def _poses(solution, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return positions (F, N, 3) and orientations (F, N, 4): saved ones, others between them."""
+    row = np.searchsorted(solution.t, times)
+    new = solution.t[row] != times
+    x, Q = solution.position[row], solution.orientation[row]
+    if np.any(new):
+        x[new], Q[new] = solution.evaluate(times[new])[:2]
+    return x, Q
 
 
 def _moments_of_impacts(impacts, most: int) -> np.ndarray:

@@ -28,7 +28,7 @@ class Packer:
 
     def block(self) -> str:
         """Return all arrays, deflated, in base64."""
-        return base64.b64encode(zlib.compress(b"".join(self._bytes), 9)).decode("ascii")
+        return base64.b64encode(zlib.compress(b"".join(self._bytes), 6)).decode("ascii")
 
 
 def header_text(header: dict) -> str:

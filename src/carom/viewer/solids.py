@@ -52,16 +52,17 @@ class Link(NamedTuple):
 def parts_of(scene, radius: float) -> list[Part]:
     """Return the surfaces of all bodies; equal ones once. `radius` is that of the whole place [m]."""
     parts: dict[tuple, Part] = {}
-    known: dict[int, tuple] = {}  # one shape may be that of many bodies
+    known: dict = {}  # one shape may be that of many bodies
     fineness = 32 if len(scene.bodies) < 100 else 16
     for body in scene.bodies:
         shape = body.shape
         if shape is None:
             pieces = _without_shape(scene, body, ROD * radius)
         else:
-            if id(shape) not in known:
-                known[id(shape)] = surfaces.surface(shape, fineness)
-            pieces = [(*known[id(shape)], "round" if isinstance(shape, ROUND) else "solid")]
+            key = shape if isinstance(shape, (*ROUND, Box)) else id(shape)
+            if key not in known:
+                known[key] = surfaces.surface(shape, fineness)
+            pieces = [(*known[key], "round" if isinstance(shape, ROUND) else "solid")]
         for vertices, triangles, look in pieces:
             key = (vertices.tobytes(), triangles.tobytes(), look)
             parts.setdefault(key, Part(vertices, triangles, [], look)).bodies.append(body.index)

@@ -58,13 +58,17 @@ function coil(turns = 9, thick = 0.16, n = 8) {
   return shaded(new Float32Array(vertices), triangles);
 }
 
+/** A ball of radius 1 with `rings` from pole to pole. */
+const ball = (rings, n) => turned(Array.from({ length: rings + 1 }, (_, k) => {
+  const angle = Math.PI * (k / rings - 0.5);
+  return [k % rings ? Math.cos(angle) : 0, Math.sin(angle)];
+}), n);
+
 /** What is drawn beside bodies: all with height or radius 1. */
 const furniture = () => ({
   shaft: turned([[0, 0], [1, 0], [1, 1], [0, 1]]),
   head: turned([[0, 0], [1, 0], [0, 1]]),
-  ball: turned(Array.from({ length: 13 }, (_, k) => {
-    const angle = (Math.PI * (k - 6)) / 12;
-    return [k % 12 ? Math.cos(angle) : 0, Math.sin(angle)];
-  })),
+  ball: ball(12, 20),
+  mark: ball(4, 8),
   coil: coil(),
 });

@@ -75,15 +75,15 @@ class Painter {
     ];
   }
 
-  ball(at, size, colour) {
-    return { mesh: this.furniture.ball, colour, model: frame([size, 0, 0], [0, size, 0], [0, 0, size], at) };
+  ball(at, size, colour, mesh = this.furniture.ball) {
+    return { mesh, colour, model: frame([size, 0, 0], [0, size, 0], [0, 0, size], at) };
   }
 
   /** Marks where impacts are and will be; of many, some. */
   marks(t) {
     const { time, point } = this.run.impacts, every = Math.max(1, Math.ceil(time.length / DOTS)), out = [];
     for (let k = 0; k < time.length; k += every)
-      out.push(this.ball(row(point, k), 0.008 * this.run.place.radius, rgba(time[k] <= t ? "#5b6873" : "#b8c2ca")));
+      out.push(this.ball(row(point, k), 0.008 * this.run.place.radius, rgba(time[k] <= t ? "#5b6873" : "#b8c2ca"), this.furniture.mark));
     return out;
   }
 
