@@ -64,7 +64,7 @@ class LiveScene:
         number, time = self.show.strikes.number, self.show.solution.impacts.time
         age = t - time[number]
         seen = (age >= 0.0) & (age < fading)
-        longest = 0.45 * self.radius * self.length
+        longest = self.show.longest * self.length
         point = self.show.solution.impacts.point[number[seen]]
         self._point(self.impulses, point, self.show.strikes.arrow[seen], longest, self.strongest)
         held = self.show.held
@@ -117,8 +117,8 @@ class LiveScene:
 
     def _arrows(self, name: str, colour: str):
         return self.stage.add_arrows(
-            name, np.zeros((1, 2, 3)), _rgb(colour), shaft_radius=0.009 * self.radius,
-            head_radius=0.02 * self.radius, head_length=0.045 * self.radius, visible=False,
+            name, np.zeros((1, 2, 3)), _rgb(colour), shaft_radius=0.02 * self.show.longest,
+            head_radius=0.045 * self.show.longest, head_length=0.1 * self.show.longest, visible=False,
         )  # fmt: skip
 
     def _point(self, handle, start, vectors, longest: float, greatest: float) -> None:

@@ -14,7 +14,7 @@ import numpy as np
 import carom
 from carom.viewer.pack import Packer, header_text
 from carom.viewer.show import COLOURS, FORCE, IMPULSE, Show, body_number, playing_speed
-from carom.viewer.strikes import insides_of
+from carom.viewer.strikes import Inside, insides_of
 
 SCRIPTS = (
     "space", "data", "motion", "meshes", "shaders", "draw", "camera", "paint", "chart", "impacts", "play",
@@ -72,6 +72,7 @@ def header(show: Show, packer: Packer) -> dict:
     return {
         "title": show.title,
         "note": "; ".join(show.left_out),
+        "longest": show.longest,
         "status": "" if solution.success else solution.message,
         "colours": {"bodies": COLOURS, "impulse": IMPULSE, "force": FORCE},
         "bodies": [body.name for body in solution.scene.bodies],
@@ -144,13 +145,18 @@ def _impacts(show: Show, packer: Packer) -> dict:
         "energy": packer.add(impacts.energy_change[k]),
         "turning": strikes.turning.tolist(),
         "together": impacts.together[k].tolist(),
-        "inside": {
-            str(number): {
-                "time": packer.add(inside.time),
-                "velocity": packer.add(inside.velocity),
-                "force": packer.add(inside.force),
-                "phases": inside.phases,
-            }
-            for number, inside in insides.items()
-        },
+        "inside": _insides(insides, packer),
+    }
+
+
+def _insides(insides: dict[int, Inside], packer: Packer) -> dict:
+    """Return all insides one after the other: that of `number[i]` from `first[i]` to `first[i + 1]`."""
+    them = list(insides.values())
+    rows = np.cumsum([0, *(len(inside.time) for inside in them)])
+    columns = {name: [getattr(one, name) for one in them] for name in ("time", "velocity", "force")}
+    return {
+        "number": list(insides),
+        "phases": [inside.phases for inside in them],
+        "first": rows.tolist(),
+        **{name: packer.add(np.concatenate(c) if c else []) for name, c in columns.items()},
     }

@@ -33,6 +33,12 @@ class Show(NamedTuple):
     held: strikes.Held
 
     @property
+    def longest(self) -> float:
+        """Length of the longest arrow [m]: some bodies long, and not lost in the place."""
+        radius = self.place.radius
+        return min(0.45 * radius, max(0.1 * radius, 8.0 * float(np.median(self.sizes))))
+
+    @property
     def left_out(self) -> list[str]:
         """What is not shown, in words."""
         solution, words = self.solution, []

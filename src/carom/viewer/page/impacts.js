@@ -36,19 +36,21 @@ function showInside(run, k) {
   const title = document.createElement("h2"), words = document.createElement("p");
   title.textContent = `Inside impact ${impacts.number[k] + 1} `;
   place.append(title, words);
-  const inside = impacts.inside[impacts.number[k]];
-  if (!inside) {
+  const { inside } = impacts, i = inside.number.indexOf(impacts.number[k]);
+  if (i < 0) {
     words.textContent = impacts.together[k] > 1
       ? `Resolved together with others, ${impacts.together[k]} points in all: it has no course of its own.`
       : "One of the weaker impacts: its course is not in this file.";
     return;
   }
-  const count = inside.time.length, column = (array, i) => Array.from({ length: count }, (_, j) => array[3 * j + i]);
-  const turns = impacts.turning[k], across = ["time", "s"], x = inside.time, slip = [1, 2].map((i) => column(inside.velocity, i));
-  const friction = Array.from({ length: count }, (_, j) => Math.hypot(inside.force[3 * j + 1], inside.force[3 * j + 2]));
+  const first = inside.first[i], count = inside.first[i + 1] - first;
+  const column = (array, axis) => Array.from({ length: count }, (_, j) => array[3 * (first + j) + axis]);
+  const turns = impacts.turning[k], across = ["time", "s"], x = inside.time.subarray(first, first + count);
+  const slip = [1, 2].map((axis) => column(inside.velocity, axis)), force = [0, 1, 2].map((axis) => column(inside.force, axis));
+  const friction = force[1].map((f, j) => Math.hypot(f, force[2][j]));
   const slips = slip.some((one) => one.some((u) => u !== 0));
   const small = document.createElement("small");
-  small.textContent = `${[...inside.phases, withUnit(x[count - 1], "s")].join(", ")} in its layer`;
+  small.textContent = `${[...inside.phases[i], withUnit(x[count - 1], "s")].join(", ")} in its layer`;
   title.append(small);
   words.remove();
   const pair = document.createElement("div");
@@ -68,7 +70,7 @@ function showInside(run, k) {
     chart({
       ...half, across, up: turns ? ["torque", "N m"] : ["force", "N"],
       curves: [
-        { x, y: column(inside.force, 0), colour: INK },
+        { x, y: force[0], colour: INK },
         ...(slips ? [{ x, y: friction, colour: GREEN, name: "friction", dash: "5 3" }] : []),
       ],
     }).element,

@@ -67,7 +67,7 @@ class Painter {
   arrow(from, way, colour) {
     const length = norm(way);
     if (!(length > 1e-3 * this.run.place.radius)) return [];
-    const thick = Math.min(0.011 * this.run.place.radius, 0.07 * length), head = Math.min(7 * thick, 0.6 * length);
+    const thick = Math.min(0.025 * this.run.longest, 0.07 * length), head = Math.min(7 * thick, 0.6 * length);
     const along = unit(way), [a, b] = across(along), neck = add(from, times(length - head, along));
     return [
       { mesh: this.furniture.shaft, colour, model: frame(times(thick, a), times(thick, b), times(length - head, along), from) },
@@ -89,10 +89,10 @@ class Painter {
 
   /** Impulses, which fade during `fading` [s], and forces of contacts that stay. */
   arrows(t, fading, length) {
-    const { impacts, held, colours, place } = this.run, out = [], longest = 0.45 * place.radius * length;
+    const { impacts, held, colours } = this.run, out = [], longest = this.run.longest * length;
     const impact = (k, alpha) => {
       const point = row(impacts.point, k), way = times(longest / (this.strongest || 1), row(impacts.arrow, k));
-      out.push(this.ball(point, 0.014 * place.radius, rgba(colours.impulse, alpha)), ...this.arrow(point, way, rgba(colours.impulse, alpha)));
+      out.push(this.ball(point, 0.03 * this.run.longest, rgba(colours.impulse, alpha)), ...this.arrow(point, way, rgba(colours.impulse, alpha)));
     };
     for (let k = 0; k < impacts.time.length; k++) {
       const age = t - impacts.time[k];
