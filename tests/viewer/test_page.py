@@ -103,6 +103,27 @@ def test_an_impact_shows_its_inside(opened, thrown):
 
 
 @needs_browser
+def test_a_click_on_a_mark_chooses_its_impact(opened):
+    opened.run("reset.click()")  # all of the motion is in view
+    assert drawn(opened)
+    for k, (dx, dy) in ((1, (2, 3)), (0, (-3, 1)), (-1, (200, -200))):
+        x, y = opened.run(f"carom.markOf({max(k, 0)})")
+        for kind in ("mousePressed", "mouseReleased"):
+            where = {"x": x + dx, "y": y + dy, "button": "left", "clickCount": 1}
+            opened.call("Input.dispatchMouseEvent", type=kind, **where)
+        assert opened.run("carom.state.chosen") == k
+
+
+@needs_browser
+def test_an_address_may_name_a_moment(page, browser, thrown):
+    for end, time in (("#t=0.125", 0.125), ("#impact=2", thrown.impacts.time[1])):
+        browser.open("about:blank")
+        browser.open(page.as_uri() + end)
+        browser.wait_for("window.carom !== undefined")
+        assert browser.run("carom.state.time") == time
+
+
+@needs_browser
 def test_keys_play_and_step(opened):
     def press(key):
         opened.run(f"document.dispatchEvent(new KeyboardEvent('keydown', {{key: '{key}'}}))")

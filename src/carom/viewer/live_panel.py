@@ -32,6 +32,7 @@ class LivePanel:
         self.follow = gui.add_dropdown("follow", [NOBODY, *self._names()], initial_value=NOBODY)
         with gui.add_folder("Shown", expand_by_default=False):
             self.arrows = gui.add_checkbox("arrows", initial_value=True)
+            self.paths = gui.add_checkbox("paths", initial_value=True)
             self.length = gui.add_slider("arrow length", 0.1, 10.0, 0.1, initial_value=1.0)
             self.through = gui.add_checkbox("see through bodies", initial_value=False)
         with gui.add_folder("Energy"):
@@ -100,6 +101,7 @@ class LivePanel:
         heard(self.speed, lambda s: setattr(view, "speed", max(s, 1e-9)))
         heard(self.follow, lambda name: view.follow(None if name == NOBODY else name))
         heard(self.arrows, lambda on: view.show_arrows(on))
+        heard(self.paths, lambda on: view.stage.show_paths(on))
         heard(self.length, lambda factor: view.show_arrows(self.arrows.value, factor))
         heard(self.through, lambda on: view.stage.see_through(on))
         heard(self.impact, lambda label: view.choose(self.impact.options.index(label) - 1))

@@ -9,6 +9,7 @@ from carom.viewer.frames import poses_at
 from carom.viewer.grids import grid_lines, round_length
 from carom.viewer.show import COLOURS, FORCE, IMPULSE, Show
 
+PATHS = 20  # bodies whose paths are drawn
 SHADE = (236, 240, 243)
 DARK, FAINT = "#5b6873", (184, 194, 202)
 
@@ -43,6 +44,7 @@ class LiveScene:
         self.bodies = [self._part(k, part, x, Q) for k, part in enumerate(show.parts)]
         for plane in show.planes:
             self._plane(plane)
+        self.paths = self._paths()
         self.links = None
         if show.links:
             self.links = stage.add_line_segments(
@@ -92,6 +94,26 @@ class LiveScene:
             Q[part.bodies], x[part.bodies], batched_colors=np.array(colours, dtype=np.uint8),
             flat_shading=part.look == "solid", lod="off",
         )  # fmt: skip
+
+    def _paths(self) -> list:
+        """Draw the ways of the mass centres, unless there are too many."""
+        position = self.show.frames.position
+        if position.shape[1] > PATHS:
+            return []
+        ways = [
+            np.stack([position[:-1, b], position[1:, b]], axis=1) for b in range(position.shape[1])
+        ]
+        return [
+            self.stage.add_line_segments(
+                f"/paths/{b}", way.astype(np.float32), FAINT, thickness=2e-3 * self.radius
+            )
+            for b, way in enumerate(ways)
+        ]
+
+    def show_paths(self, on: bool) -> None:
+        """Show or hide the paths."""
+        for path in self.paths:
+            path.visible = on
 
     def _plane(self, plane) -> None:
         fan = np.array([(0, k, k + 1) for k in range(1, len(plane.corners) - 1)])

@@ -17,7 +17,8 @@ from carom.viewer.show import COLOURS, FORCE, IMPULSE, Show, body_number, playin
 from carom.viewer.strikes import Inside, insides_of
 
 SCRIPTS = (
-    "space", "data", "motion", "meshes", "shaders", "draw", "camera", "paint", "chart", "impacts", "play",
+    "space", "data", "motion", "meshes", "shaders", "draw", "camera", "paint", "chart", "impacts",
+    "play", "controls",
 )  # fmt: skip
 POINTS = 1500  # of the curves of energy
 

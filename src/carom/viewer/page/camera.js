@@ -48,7 +48,7 @@ class Camera {
     this.distance = clamp(this.distance * factor, 1e-3 * this.place.radius, 20 * this.place.radius);
   }
 
-  /** One finger or the left button turns; the right button, Shift or two fingers move; wheel or two fingers zoom. */
+  /** Left button or a finger: turn. Right button, Shift or two fingers: move. Wheel or two fingers: zoom. */
   listen() {
     const { element } = this, fingers = new Map();
     const spread = () => {
@@ -57,6 +57,7 @@ class Camera {
     };
     element.addEventListener("pointerdown", (event) => {
       element.setPointerCapture(event.pointerId);
+      element.focus();
       fingers.set(event.pointerId, { x: event.clientX, y: event.clientY });
     });
     element.addEventListener("pointermove", (event) => {
@@ -75,7 +76,9 @@ class Camera {
     for (const end of ["pointerup", "pointercancel"])
       element.addEventListener(end, (event) => fingers.delete(event.pointerId));
     element.addEventListener("contextmenu", (event) => event.preventDefault());
+    const framed = window.self !== window.top; // there the wheel belongs to the page around, until a click
     element.addEventListener("wheel", (event) => {
+      if (framed && document.activeElement !== element) return;
       event.preventDefault();
       this.zoom(Math.exp(0.0015 * clamp(event.deltaY, -200, 200)));
       this.changed();

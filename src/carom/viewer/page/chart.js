@@ -24,7 +24,8 @@ function rounds(low, high, n = 4) {
 function chart({ curves, across, up, width = 372, height = 150, equal = false, seek = null }) {
   const range = (key) => {
     let low = Infinity, high = -Infinity;
-    for (const curve of curves) for (const v of curve[key]) (low = Math.min(low, v)), (high = Math.max(high, v));
+    for (const curve of curves)
+      for (const v of curve[key]) [low, high] = [Math.min(low, v), Math.max(high, v)];
     if (!(high > low)) [low, high] = [low - 0.5 * (Math.abs(low) || 1), high + 0.5 * (Math.abs(high) || 1)];
     return [low, high];
   };
@@ -54,7 +55,8 @@ function chart({ curves, across, up, width = 372, height = 150, equal = false, s
     element.append(svg("text", { x: px(x * xFactor), y: bottom + 15, "text-anchor": "middle" }, label(x)));
   }
   element.append(svg("text", { class: "title", x: 0, y: 11 }, `${up[0]} [${yLetter}${up[1]}]`));
-  element.append(svg("text", { class: "title", x: right, y: height - 3, "text-anchor": "end" }, `${across[0]} [${xLetter}${across[1]}]`));
+  const below = { class: "title", x: right, y: height - 3, "text-anchor": "end" };
+  element.append(svg("text", below, `${across[0]} [${xLetter}${across[1]}]`));
   let at = right;
   for (const { name, colour } of [...curves].reverse()) {
     if (!name) continue;

@@ -35,7 +35,9 @@ function lastBefore(times, t) {
   return low;
 }
 
-const PREFIXES = [["G", 1e9], ["M", 1e6], ["k", 1e3], ["", 1], ["m", 1e-3], ["µ", 1e-6], ["n", 1e-9], ["p", 1e-12]];
+const PREFIXES = [
+  ["G", 1e9], ["M", 1e6], ["k", 1e3], ["", 1], ["m", 1e-3], ["µ", 1e-6], ["n", 1e-9], ["p", 1e-12],
+];
 
 /** A prefix [letter, factor] with which numbers of the size of `x` are short. */
 const prefix = (x) => PREFIXES.find(([, factor]) => Math.abs(x) >= factor) ?? ["", 1];

@@ -46,7 +46,8 @@ function showInside(run, k) {
   const first = inside.first[i], count = inside.first[i + 1] - first;
   const column = (array, axis) => Array.from({ length: count }, (_, j) => array[3 * (first + j) + axis]);
   const turns = impacts.turning[k], across = ["time", "s"], x = inside.time.subarray(first, first + count);
-  const slip = [1, 2].map((axis) => column(inside.velocity, axis)), force = [0, 1, 2].map((axis) => column(inside.force, axis));
+  const slip = [1, 2].map((axis) => column(inside.velocity, axis));
+  const force = [0, 1, 2].map((axis) => column(inside.force, axis));
   const friction = force[1].map((f, j) => Math.hypot(f, force[2][j]));
   const slips = slip.some((one) => one.some((u) => u !== 0));
   const small = document.createElement("small");

@@ -9,7 +9,8 @@ class Painter {
   constructor(run, motion, element) {
     Object.assign(this, { run, motion });
     this.canvas = new Canvas(element);
-    this.parts = run.parts.map((part) => ({ ...part, mesh: this.canvas.mesh(shaded(part.vertices, part.triangles)) }));
+    this.parts = run.parts.map(({ vertices, triangles, bodies, look }) => (
+      { bodies, look, mesh: this.canvas.mesh(shaded(vertices, triangles)) }));
     this.furniture = Object.fromEntries(
       Object.entries(furniture()).map(([name, numbers]) => [name, this.canvas.mesh(numbers)]));
     this.cell = this.round(run.place.radius / 9);
@@ -19,7 +20,8 @@ class Painter {
     this.strongest = Math.max(...lengths(run.impacts.arrow), 0);
     const forces = lengths(run.held.force).sort((a, b) => a - b);
     this.pressed = forces.length ? forces[Math.floor(0.99 * (forces.length - 1))] : 0;
-    this.light = unit(add(times(0.85, run.place.up), add(times(0.45, run.place.side), times(0.35, cross(run.place.up, run.place.side)))));
+    const { up, side } = run.place; // light comes from above, behind the eye to the right
+    this.light = unit(add(times(0.85, up), add(times(0.45, side), times(0.35, cross(up, side)))));
   }
 
   /** 1, 2 or 5 times a power of ten, not above x. */
@@ -55,7 +57,7 @@ class Painter {
       }
     const thick = 0.02 * this.run.place.radius;
     for (const { bodies, anchors, kind } of this.run.links) {
-      const [from, to] = anchors.map((anchor, k) => (bodies[k] < 0 ? anchor : carried(poses[bodies[k]], anchor)));
+      const [from, to] = anchors.map((a, k) => (bodies[k] < 0 ? a : carried(poses[bodies[k]], a)));
       const way = sub(to, from), [a, b] = across(unit(way)), wide = kind === "rod" ? 0.35 * thick : thick;
       const mesh = kind === "rod" ? this.furniture.shaft : this.furniture.coil;
       out.push({ mesh, colour: rgba("#5b6873"), model: frame(times(wide, a), times(wide, b), way, from) });
@@ -69,9 +71,10 @@ class Painter {
     if (!(length > 1e-3 * this.run.place.radius)) return [];
     const thick = Math.min(0.025 * this.run.longest, 0.07 * length), head = Math.min(7 * thick, 0.6 * length);
     const along = unit(way), [a, b] = across(along), neck = add(from, times(length - head, along));
+    const stretched = (wide, long, at) => frame(times(wide, a), times(wide, b), times(long, along), at);
     return [
-      { mesh: this.furniture.shaft, colour, model: frame(times(thick, a), times(thick, b), times(length - head, along), from) },
-      { mesh: this.furniture.head, colour, model: frame(times(2.6 * thick, a), times(2.6 * thick, b), times(head, along), neck) },
+      { mesh: this.furniture.shaft, colour, model: stretched(thick, length - head, from) },
+      { mesh: this.furniture.head, colour, model: stretched(2.6 * thick, head, neck) },
     ];
   }
 
@@ -82,8 +85,11 @@ class Painter {
   /** Marks where impacts are and will be; of many, some. */
   marks(t) {
     const { time, point } = this.run.impacts, every = Math.max(1, Math.ceil(time.length / DOTS)), out = [];
-    for (let k = 0; k < time.length; k += every)
-      out.push(this.ball(row(point, k), 0.008 * this.run.place.radius, rgba(time[k] <= t ? "#5b6873" : "#b8c2ca"), this.furniture.mark));
+    const size = 0.008 * this.run.place.radius;
+    for (let k = 0; k < time.length; k += every) {
+      const colour = rgba(time[k] <= t ? "#5b6873" : "#b8c2ca");
+      out.push(this.ball(row(point, k), size, colour, this.furniture.mark));
+    }
     return out;
   }
 
@@ -91,8 +97,9 @@ class Painter {
   arrows(t, fading, length) {
     const { impacts, held, colours } = this.run, out = [], longest = this.run.longest * length;
     const impact = (k, alpha) => {
-      const point = row(impacts.point, k), way = times(longest / (this.strongest || 1), row(impacts.arrow, k));
-      out.push(this.ball(point, 0.03 * this.run.longest, rgba(colours.impulse, alpha)), ...this.arrow(point, way, rgba(colours.impulse, alpha)));
+      const point = row(impacts.point, k), colour = rgba(colours.impulse, alpha);
+      const way = times(longest / (this.strongest || 1), row(impacts.arrow, k));
+      out.push(this.ball(point, 0.03 * this.run.longest, colour), ...this.arrow(point, way, colour));
     };
     for (let k = 0; k < impacts.time.length; k++) {
       const age = t - impacts.time[k];
@@ -123,7 +130,8 @@ class Painter {
     const aspect = this.canvas.fit(), view = camera.matrix(aspect), { radius, up } = this.run.place;
     const size = Math.min(1.4 * radius, 1.1 * camera.distance), far = 4 * radius + size;
     const from = add(camera.target, times(far / 2, this.light));
-    const sun = product(parallel(size, -far / 2, 1.5 * far), looking(from, camera.target, across(this.light)[0]));
+    const along = looking(from, camera.target, across(this.light)[0]);
+    const sun = product(parallel(size, -far / 2, 1.5 * far), along);
     this.canvas.draw({
       view, sun, eye: camera.eye, light: this.light, up,
       solids: this.solids(poses), planes: this.planes,

@@ -1,4 +1,4 @@
-// ---- The page: what is shown now, and all that can be pressed, drawn or typed ----
+// ---- The page: what is shown now, and how it changes ----
 
 const find = (id) => document.getElementById(id);
 const FADE = 0.35; // an impact is seen that long [s of the clock on the wall]
@@ -85,6 +85,12 @@ function nextImpact(sign) {
   if (near >= 0 && near < time.length) choose(near);
 }
 
+/** Show something more, less or larger. */
+function change(name, value) {
+  state[name] = value;
+  stale = true;
+}
+
 /** Names beside the bodies. */
 function nameBodies(view, poses) {
   const box = find("names"), wanted = state.labels ? run.bodies.map((_, b) => b) : [];
@@ -127,93 +133,3 @@ function frameOfPage(now) {
   }
   requestAnimationFrame(frameOfPage);
 }
-
-// What is said about the run.
-find("about").textContent = [
-  `${run.bodies.length} ${run.bodies.length === 1 ? "body" : "bodies"}, ${withUnit(run.span, "s")}`, run.status, run.note && `shown: ${run.note}`,
-].filter(Boolean).join(" · ");
-find("struck").textContent = run.impacts.time.length
-  ? "click one, or its mark, to see inside" : "none";
-const legend = (colour, text) => {
-  const item = document.createElement("li"), line = document.createElement("i");
-  line.style.background = colour;
-  item.append(line, text);
-  find("legend").append(item);
-};
-if (painter?.strongest > 0) legend(run.colours.impulse, `impulse, greatest ${withUnit(painter.strongest, "N s")}`);
-if (painter?.pressed > 0) legend(run.colours.force, `force of held contact, greatest ${withUnit(painter.pressed, "N")}`);
-if (painter && run.planes.length) legend("#b9c3cb", `grid ${withUnit(painter.cell, "m")}`);
-
-// Controls.
-const speeds = [...new Set([run.speed, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10])];
-for (const s of speeds.sort((a, b) => a - b)) find("speed").append(new Option(`${s} ×`, s));
-find("speed").value = run.speed;
-find("follow").append(new Option("nothing", -1), ...run.bodies.map((name, b) => new Option(name, b)));
-find("play").addEventListener("click", () => play());
-find("slider").addEventListener("input", (event) => {
-  play(false);
-  seek(motion.start + run.span * Number(event.target.value));
-});
-find("speed").addEventListener("change", (event) => (state.speed = Number(event.target.value)));
-find("follow").addEventListener("change", (event) => follow(Number(event.target.value)));
-for (const name of ["arrows", "ways", "labels"])
-  find(name).addEventListener("change", (event) => ((state[name] = event.target.checked), (stale = true)));
-find("length").addEventListener("input", (event) => ((state.length = 10 ** Number(event.target.value)), (stale = true)));
-const resetView = () => (follow(-1), camera.reset(), (stale = true));
-find("reset").addEventListener("click", resetView);
-const fold = () => (find("panel").hidden = !find("panel").hidden);
-find("fold").addEventListener("click", fold);
-new ResizeObserver(() => (stale = true)).observe(find("stage"));
-
-find("ticks").setAttribute("viewBox", "0 0 1000 7");
-find("ticks").setAttribute("preserveAspectRatio", "none");
-run.impacts.time.forEach((t) => {
-  const x = (1000 * (t - motion.start)) / run.span;
-  find("ticks").append(svg("rect", { x: x - 1.2, y: 0, width: 2.4, height: 7, fill: run.colours.impulse, opacity: 0.75 }));
-});
-
-// A click, not a turn, on the mark of an impact chooses it; on nothing, none.
-let pressed = null;
-find("space").addEventListener("pointerdown", (event) => (pressed = [event.clientX, event.clientY]));
-find("space").addEventListener("pointerup", (event) => {
-  if (!pressed || !view || Math.hypot(event.clientX - pressed[0], event.clientY - pressed[1]) > 4) return;
-  const box = find("space").getBoundingClientRect();
-  let nearest = -1, least = 14;
-  run.impacts.time.forEach((_, k) => {
-    const at = projected(view, row(run.impacts.point, k));
-    if (!at) return;
-    const x = box.left + (0.5 + 0.5 * at[0]) * box.width, y = box.top + (0.5 - 0.5 * at[1]) * box.height;
-    const away = Math.hypot(event.clientX - x, event.clientY - y);
-    if (away < least) (least = away), (nearest = k);
-  });
-  choose(nearest);
-});
-
-const KEYS = {
-  " ": () => play(), ArrowRight: (e) => step(e.shiftKey ? 10 : 1), ArrowLeft: (e) => step(e.shiftKey ? -10 : -1),
-  ArrowDown: () => nextImpact(1), ArrowUp: () => nextImpact(-1), Home: () => seek(motion.start),
-  End: () => seek(motion.end), r: resetView, p: fold, Escape: () => choose(-1),
-};
-document.addEventListener("keydown", (event) => {
-  const action = KEYS[event.key.length === 1 ? event.key.toLowerCase() : event.key];
-  if (!action || event.ctrlKey || event.metaKey || event.altKey || event.target.tagName === "SELECT") return;
-  event.preventDefault();
-  action(event);
-});
-
-if (run.follow >= 0) follow(run.follow);
-// run.html#t=0.25 begins at that time, run.html#impact=3 at that impact.
-const begin = new URLSearchParams(location.hash.slice(1));
-if (begin.has("t")) seek(Number(begin.get("t")) || motion.start);
-if (begin.has("impact")) choose(run.impacts.number.indexOf(Number(begin.get("impact")) - 1));
-if (window.innerWidth < 820) find("panel").hidden = true;
-requestAnimationFrame(frameOfPage);
-
-// For scripts and tests: poses in the world as they are shown.
-window.carom = {
-  run, state, seek, play, choose, follow,
-  pose: (b) => {
-    const { x, Q } = motion.at(state.time)[b];
-    return { position: add(x, run.place.centre), orientation: Q };
-  },
-};
