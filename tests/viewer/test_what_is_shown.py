@@ -45,10 +45,14 @@ def test_a_motion_in_a_plane_is_seen_from_across_it():
     up, place = np.array([0, 0, 1.0]), np.random.default_rng(1).normal(size=(40, 1, 3))
     way = np.array([0.6, 0.8, 0.0])
     flat = place[..., :1] * way + place[..., 2:] * up
-    side = frames._side(flat, up)
+    side, lift = frames._view(flat, up)
     assert abs(side @ way) < 1e-12
     assert np.cross(up, side)[0] > 0.5  # x goes to the right
-    assert abs(frames._side(place, up) @ up) < 1e-12
+    assert abs(frames._view(place, up)[0] @ up) < 1e-12
+    level = place - place[..., 2:] * up
+    assert frames._view(level, up)[1] > 0.8 > lift  # as on a table, from above
+    assert np.allclose(frames._up(np.zeros(3), level), (0, 1, 0))  # without gravity it stands up
+    assert np.allclose(frames._up(np.array([0, -G, 0]), level), (0, 1, 0))
 
 
 def test_a_body_without_a_shape_is_the_ellipsoid_of_its_inertia():
@@ -79,7 +83,16 @@ def test_rods_reach_from_the_mass_centre_to_the_hinges():
     for b, anchor in ((0, (-1, 0, 0)), (0, (0, 1, 0)), (1, (-1, 0, 0))):
         away = np.linalg.norm(reach[b] - anchor, axis=1)
         assert np.sum(away < thick * 1.001) > 20  # the ball of the joint
-    assert solids.size_of(scene, rod) == 1.0
+    assert solids.size_of(solids.outline_of(scene, rod)) == 1.0
+
+
+def test_the_place_is_the_box_of_all_that_is_reached(swung):
+    """A rod that falls by 1.2 rad and has its hinge and its mass centre, 0.5 m away, as outline."""
+    place = show_of(swung).place
+    low, high = np.array([0, 0, -0.5 * np.sin(1.2)]), np.array([0.5, 0, 0])
+    assert np.allclose(place.centre, (low + high) / 2, atol=1e-6)
+    assert place.radius == pytest.approx(np.linalg.norm(high - low) / 2, abs=1e-6)
+    assert np.allclose(np.abs(place.side), (0, 1, 0), atol=1e-6)
 
 
 def test_springs_and_rods_join_their_anchors():
@@ -107,7 +120,7 @@ def test_half_spaces_end_at_walls():
     """Of a corner of three half-spaces nothing is drawn behind the others."""
     scene = pile(3)
     position = np.array([body.position for body in scene.bodies])[None]
-    place = frames.Place(position[0, 1], 1.0, np.array([0, 0, 1.0]), np.array([0.6, -0.8, 0]))
+    place = frames.Place(position[0, 1], 1.0, np.array([0, 0, 1.0]), np.array([0.6, -0.8, 0]), 0.3)
     planes = solids.planes_of(scene, place, position)
     assert len(planes) == 3
     for plane in planes:

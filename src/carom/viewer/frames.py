@@ -6,8 +6,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom.geometry import quaternion
+
 MOST = 5000  # frames, if nothing else is asked for
 VALUES = 3_000_000  # numbers of all poses together: 12 MB before packing
+FLAT = 1e-4  # part of the square of the displacements that leaves a plane, up to which it is one
 SMOOTH = 600  # about as many frames has a run with fewer saved times, so that nothing jerks
 
 
@@ -25,7 +28,15 @@ class Place(NamedTuple):
     centre: np.ndarray  #: (3,) of the box around all bodies at all moments [m]
     radius: float  #: of a ball around that box [m]
     up: np.ndarray  #: (3,) unit vector against gravity
-    side: np.ndarray  #: (3,) unit vector, horizontal: from the centre to the eye
+    side: np.ndarray  #: (3,) unit vector, level: from the centre to the eye
+    lift: float  #: angle of the eye above the level [rad]
+
+
+class Outline(NamedTuple):
+    """How far a body reaches: a ball of radius `size` [m] about each of its `points` (3,), body axes."""
+
+    points: list[np.ndarray]
+    size: float
 
 
 def frames_of(solution, most: int = MOST) -> Frames:
@@ -61,35 +72,57 @@ def _moments_of_impacts(impacts, most: int) -> np.ndarray:
     return impacts.time[strongest[:most]]
 
 
-def place_of(solution, frames: Frames, sizes: np.ndarray, fixed: list[np.ndarray]) -> Place:
+def place_of(solution, frames: Frames, outlines: list[Outline], fixed: list[np.ndarray]) -> Place:
     """Return where the motion takes place.
 
-    `sizes` (N,) are radii of the bodies [m]; `fixed` are points (3,) of the ground that are to be seen too.
+    Parameters
+    ----------
+    outlines : (N,)
+        Of the bodies.
+    fixed
+        Points (3,) of the ground that are to be seen too.
     """
-    least = np.min(frames.position - sizes[:, None], axis=(0, 1))
-    greatest = np.max(frames.position + sizes[:, None], axis=(0, 1))
-    least, greatest = np.min([least, *fixed], axis=0), np.max([greatest, *fixed], axis=0)
-    radius = max(0.5 * float(np.linalg.norm(greatest - least)), 1e-9)
-    gravity = solution.scene.gravity
+    least, greatest = [*fixed], [*fixed]
+    for b, (points, size) in enumerate(outlines):
+        for point in points:
+            way = frames.position[:, b] + quaternion.rotate(frames.orientation[:, b], point)
+            least.append(np.min(way, axis=0) - size)
+            greatest.append(np.max(way, axis=0) + size)
+    low, high = np.min(least, axis=0), np.max(greatest, axis=0)
+    radius = max(0.5 * float(np.linalg.norm(high - low)), 1e-9)
+    up = _up(solution.scene.gravity, frames.position)
+    return Place(0.5 * (low + high), radius, up, *_view(frames.position, up))
+
+
+def _up(gravity: np.ndarray, position: np.ndarray) -> np.ndarray:
+    """Return the direction against gravity; without it one in the plane of the motion, or z."""
     pull = float(np.linalg.norm(gravity))
-    up = -gravity / pull if pull > 0.0 else np.array([0.0, 0.0, 1.0])
-    return Place(0.5 * (least + greatest), radius, up, _side(frames.position, up))
+    if pull > 0.0:
+        return -gravity / pull
+    ways = (position - position[0]).reshape(-1, 3)
+    turns, axes = np.linalg.eigh(ways.T @ ways)
+    flat = turns[1] > 0.0 and turns[0] < FLAT * turns[1]
+    normal = axes[:, 0] if flat else np.array([1.0, 0.0, 0.0])
+    up = np.array([0.0, 1.0, 0.0] if abs(normal[2]) > 0.7 else [0.0, 0.0, 1.0])
+    up -= (up @ normal) * normal
+    return up / np.linalg.norm(up)
 
 
-def _side(position: np.ndarray, up: np.ndarray) -> np.ndarray:
-    """Return from where to look: across a motion that stays in an upright plane, else from a corner."""
+def _view(position: np.ndarray, up: np.ndarray) -> tuple[np.ndarray, float]:
+    """Return from where to look, and how steeply: across an upright plane, down on a level one, or from a corner."""
     east = np.eye(3)[np.argmin(np.abs(up))]
     east -= (east @ up) * up
     east /= np.linalg.norm(east)
     north = np.cross(up, east)
     ways = (position - position[0]).reshape(-1, 3)
-    flat = np.stack([ways @ east, ways @ north])
-    turns, axes = np.linalg.eigh(flat @ flat.T)
-    if turns[1] > 0.0 and turns[0] < 1e-4 * turns[1]:
+    level = np.stack([ways @ east, ways @ north])
+    turns, axes = np.linalg.eigh(level @ level.T)
+    if turns[1] > 0.0 and turns[0] < FLAT * turns[1]:
         across = axes[0, 0] * east + axes[1, 0] * north
         front = -north + 0.01 * east  # of the two sides the one from which x goes to the right
-        return across if across @ front > 0.0 else -across
-    return 0.6 * east - 0.8 * north
+        return (across if across @ front > 0.0 else -across), 0.3
+    down = np.sum((ways @ up) ** 2) < 0.01 * np.sum(turns)
+    return 0.6 * east - 0.8 * north, 0.9 if down else 0.3
 
 
 def poses_at(frames: Frames, t: float) -> tuple[np.ndarray, np.ndarray]:

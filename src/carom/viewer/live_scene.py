@@ -34,8 +34,9 @@ class LiveScene:
         )
         stage.add_light_ambient("/sky", intensity=1.1)
         stage.set_up_direction(tuple(show.place.up))
-        eye = show.place.side + 0.35 * show.place.up
-        server.initial_camera.position = centre + 3.4 * self.radius * eye / np.linalg.norm(eye)
+        lift = show.place.lift
+        eye = np.cos(lift) * show.place.side + np.sin(lift) * show.place.up
+        server.initial_camera.position = centre + 3.4 * self.radius * eye
         server.initial_camera.look_at = centre
         server.initial_camera.fov = 0.62
         server.initial_camera.near = 1e-3 * self.radius

@@ -80,7 +80,7 @@ def header(show: Show, packer: Packer) -> dict:
         "sizes": [float(size) for size in show.sizes],
         "place": {
             "centre": place.centre.tolist(), "radius": place.radius,
-            "up": place.up.tolist(), "side": place.side.tolist(),
+            "up": place.up.tolist(), "side": place.side.tolist(), "lift": place.lift,
         },
         "time": packer.add(frames.time, "f8"),
         # from the centre: single precision is enough near it

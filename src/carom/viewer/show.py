@@ -61,11 +61,12 @@ def show_of(what, title: str | None = None, most: int = frames.MOST) -> Show:
     if title is None:
         title = Path(what).stem if isinstance(what, (str, os.PathLike)) else "carom"
     scene = solution.scene
-    sizes = np.array([solids.size_of(scene, body) for body in scene.bodies])
+    outlines = [solids.outline_of(scene, body) for body in scene.bodies]
+    sizes = np.array([solids.size_of(outline) for outline in outlines])
     moments = frames.frames_of(solution, check.integer("frames", most, least=2))
     links = solids.links_of(scene)
     ground = [a for k in links for a in solids.ends_on_ground(k)]
-    place = frames.place_of(solution, moments, sizes, ground)
+    place = frames.place_of(solution, moments, outlines, ground)
     return Show(
         title, solution, moments, place, sizes,
         solids.parts_of(scene, place.radius),

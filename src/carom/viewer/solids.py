@@ -14,6 +14,7 @@ from carom.scene.joints import Distance, Joint, RollingDisc, RollingSphere
 from carom.scene.more_forces import CurveSpring
 from carom.scene.revolved import Capsule, Cylinder, Disc
 from carom.scene.shapes import Box, Ellipsoid, Sphere
+from carom.viewer.frames import Outline
 
 ROUND = (Sphere, Capsule, Cylinder, Disc, Ellipsoid)  # a pattern shows that they turn
 ROD = 0.012  # radius of rods of bodies without a shape, by that of the whole place
@@ -69,12 +70,19 @@ def parts_of(scene, radius: float) -> list[Part]:
     return list(parts.values())
 
 
-def size_of(scene, body: Body) -> float:
-    """Return the radius of a body [m]: of one without a shape the distance of its farthest anchor."""
+def outline_of(scene, body: Body) -> Outline:
+    """Return how far a body reaches: one without a shape to its joints and springs."""
     if body.shape is not None:
-        return body.shape.size
+        return Outline([np.zeros(3)], body.shape.size)
     anchors = _anchors(scene, body)
-    return max((float(np.linalg.norm(a)) for a in anchors), default=0.0) or _gyration(body)
+    if not any(np.any(anchor) for anchor in anchors):
+        return Outline([np.zeros(3)], _gyration(body))
+    return Outline([np.zeros(3), *anchors], 0.0)
+
+
+def size_of(outline: Outline) -> float:
+    """Return the radius of a body [m] about its mass centre."""
+    return max(float(np.linalg.norm(point)) for point in outline.points) + outline.size
 
 
 def _without_shape(scene, body: Body, thick: float) -> list[tuple[np.ndarray, np.ndarray, str]]:

@@ -14,7 +14,7 @@ class Camera {
 
   reset() {
     this.turn = 0;
-    this.lift = 0.3;
+    this.lift = this.place.lift;
     const narrow = Math.min(1, this.element.clientWidth / Math.max(this.element.clientHeight, 1));
     this.distance = (1.04 * this.place.radius) / Math.sin(ANGLE / 2) / narrow;
     this.target = [0, 0, 0];
