@@ -109,7 +109,7 @@ def _up(gravity: np.ndarray, position: np.ndarray) -> np.ndarray:
 
 
 def _view(position: np.ndarray, up: np.ndarray) -> tuple[np.ndarray, float]:
-    """Return from where to look, and how steeply: across an upright plane, down on a level one, or from a corner."""
+    """Return from where to look, and how steeply: across an upright plane, or down on a level one."""
     east = np.eye(3)[np.argmin(np.abs(up))]
     east -= (east @ up) * up
     east /= np.linalg.norm(east)
