@@ -1,7 +1,12 @@
 """The live viewer: its server, what is moved by the slider, and that nothing is left of it."""
 
+import re
+import signal
+import subprocess
+import sys
 import threading
 import time
+import urllib.request
 
 import numpy as np
 import pytest
@@ -109,6 +114,22 @@ def test_page_of_the_server(live, browser, thrown):
         time.sleep(0.05)
     assert all(url.startswith((live.url, "data:", "blob:")) for url in browser.loaded)
     browser.open("about:blank")
+
+
+def test_it_waits_for_ctrl_c(thrown, tmp_path):
+    """From a process of its own: it says where it is, answers there, and ends in good order."""
+    thrown.save(tmp_path / "die.nc")
+    code = "import carom; carom.view('die.nc', open=False); print('on we go')"
+    with subprocess.Popen(
+        [sys.executable, "-c", code], cwd=tmp_path, stdout=subprocess.PIPE, text=True
+    ) as process:
+        said = process.stdout.readline()
+        address = re.fullmatch(r"die: (http://localhost:\d+) \(Ctrl-C ends it\)\n", said)[1]
+        with urllib.request.urlopen(address) as page:
+            assert "<title>" in page.read().decode()
+        process.send_signal(signal.SIGINT)
+        assert process.communicate(timeout=20)[0] == "on we go\n"
+    assert process.returncode == 0
 
 
 def test_server_is_for_this_machine_alone(live):

@@ -12,7 +12,8 @@ from typing import Self
 
 import numpy as np
 
-from carom.viewer.show import Show, playing_speed
+from carom.viewer.frames import poses_at
+from carom.viewer.show import Show, body_number, playing_speed
 
 RATE = 30.0  # pictures a second
 SAID = 0.1  # slider and energies follow so often while it plays [s]
@@ -124,8 +125,6 @@ class LiveView:
 
     def follow(self, name: str | None) -> None:
         """Let the eye go with the body called `name`; None: with none."""
-        from carom.viewer.show import body_number
-
         self._followed = body_number(self.show, name)
         place = self._place_followed()
         if place is not None:
@@ -184,11 +183,10 @@ class LiveView:
             last = now
 
     def _place_followed(self) -> np.ndarray | None:
-        from carom.viewer.frames import poses_at
-
-        return (
-            None if self._followed < 0 else poses_at(self.show.frames, self.time)[0][self._followed]
-        )
+        """Return where the followed body is (3,) [m]; None if there is none."""
+        if self._followed < 0:
+            return None
+        return poses_at(self.show.frames, self.time)[0][self._followed]
 
     def _move_eyes(self, before: np.ndarray | None) -> None:
         """Move the eyes of all who look on as the followed body has moved."""
