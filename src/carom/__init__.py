@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from carom.gradient import Sensitivities, contact_sequence, sensitivities
     from carom.impact import Impact, LayerHistory, impact_layer, resolve_impact
     from carom.impact.corner.api import CornerImpact, resolve_impacts
+    from carom.viewer.api import view
 
 __version__ = "0.1.0"
 
@@ -85,6 +86,7 @@ __all__ = [
     "sensitivities",
     "simulate",
     "solve_contacts",
+    "view",
 ]
 
 _LAZY = {
@@ -104,6 +106,7 @@ _LAZY = {
     "sensitivities": "carom.gradient",
     "resume": "carom.files.resume",
     "solve_contacts": "carom.coulomb",
+    "view": "carom.viewer.api",
 }
 
 
