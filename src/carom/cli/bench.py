@@ -1,0 +1,6 @@
+"""stub"""
+
+
+def run() -> int:
+    """Stub"""
+    return 0
