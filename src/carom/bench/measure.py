@@ -56,9 +56,7 @@ def seconds(
     return times
 
 
-def per_step(
-    run: Callable[[int], Any], few: int, many: int, rounds: int = ROUNDS
-) -> list[float]:
+def per_step(run: Callable[[int], Any], few: int, many: int, rounds: int = ROUNDS) -> list[float]:
     """Return the time [s] of one more step: ``run(many)`` against ``run(few)``, each round anew.
 
     What a call costs besides its steps (setting up, handing back) cancels.
@@ -120,6 +118,4 @@ def machine_line() -> str:
     told = machine()
     versions = ", ".join(f"{name} {version}" for name, version in told["versions"].items())
     load = "" if told["load"] is None else f", load {told['load']:.1f}"
-    return (
-        f"{told['date']}; {told['processor']}, {told['cores']} cores{load}; {told['system']}; {versions}"
-    )
+    return f"{told['date']}; {told['processor']}, {told['cores']} cores{load}; {told['system']}; {versions}"

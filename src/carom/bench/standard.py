@@ -6,9 +6,16 @@ from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 from carom.bench import measure
-from carom.bench.measure import Spread, per_step, seconds, spread
+from carom.bench.measure import Spread, clock, per_step, seconds, spread
 from carom.bench.problems import (
-    chain, corner_impact, four_bar, free_step, planar_die, spatial_die, sphere, stack,
+    chain,
+    corner_impact,
+    four_bar,
+    free_step,
+    planar_die,
+    spatial_die,
+    sphere,
+    stack,
 )  # fmt: skip
 from carom.bench.problems.task import Task
 
@@ -76,11 +83,13 @@ def _rate(of: Callable[[int], float], rounds: int) -> Spread:
 
 def _throws() -> Problem:
     def ours(rounds: int) -> Side:
-        rate = _rate(lambda seed: spatial_die.rate(1e-3, 40, seed), rounds)
+        rate = _rate(lambda seed: spatial_die.rate(1e-3, 40, seed, timer=clock), rounds)
         return Side(rate, spatial_die.ours(1e-3).error())
 
     def theirs(module, rounds: int) -> Side:
-        rate = _rate(lambda seed: spatial_die.mujoco_rate(module, 1e-3, 20, seed), rounds)
+        rate = _rate(
+            lambda seed: spatial_die.mujoco_rate(module, 1e-3, 20, seed, timer=clock), rounds
+        )
         return Side(rate, spatial_die.mujoco(module, 1e-3).error())
 
     what = "spatial die to rest (2 s), h = 1 ms, one thread"

@@ -1,6 +1,6 @@
 """A chain of rods (1 m, 1 kg) with hinges along y, released horizontal.
 
-Long chains are chaotic, so that energy is compared, in a time in which the errors are still those of the method.
+Long chains are chaotic, so that energy is compared, in a time in which errors are still those of the method.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Two four-bars in a row (IFToMM A02): closed loops, rows that are redundant, and in line once in each half turn.
+"""Two four-bars in a row (IFToMM A02): closed loops, redundant rows, all bars in line once in each half turn.
 
 All bars have 1 m and 1 kg. One freedom, the lean theta of the N + 1 upright bars:
 theta'' = g sin(theta) ((N + 1)/2 + N) / ((N + 1)/3 + N).
@@ -51,7 +51,7 @@ def ours(step: float, method: str = "rk4") -> Task:
 
 
 def mujoco(module, step: float) -> Task:
-    """Return the work of MuJoCo: hinges, and loops closed by equalities as stiff as it recommends for the step."""
+    """Return the work of MuJoCo: hinges, and loops closed by equalities as stiff as it says for the step."""
     bar = '<inertial pos="{} {} 0" mass="1" diaginertia=".0833333 .0833333 .0833333"/>'
     bodies = []
     for k in range(N + 1):
@@ -61,10 +61,12 @@ def mujoco(module, step: float) -> Task:
             else ""
         )
         bodies.append(
-            f'<body name="u{k}" pos="{k} 0 0"><joint name="j{k}" axis="0 0 1"/>{bar.format(0, 0.5)}{across}</body>'
+            f'<body name="u{k}" pos="{k} 0 0"><joint name="j{k}" axis="0 0 1"/>{bar.format(0, 0.5)}'
+            f"{across}</body>"
         )
     ties = "".join(
-        f'<connect body1="a{k}" body2="u{k + 1}" anchor="1 0 0" solref="{2 * step} 1"/>' for k in range(N)
+        f'<connect body1="a{k}" body2="u{k + 1}" anchor="1 0 0" solref="{2 * step} 1"/>'
+        for k in range(N)
     )
     made = module.MjModel.from_xml_string(f"""
     <mujoco><option timestep="{step}" integrator="implicitfast" gravity="0 {-GRAVITY} 0"/>

@@ -12,7 +12,10 @@ METHODS, STEPS, PEER_STEPS = ("rk4",), (1e-2, 1e-3, 1e-4), (1e-3, 1e-4, 1e-5)
 MASS, EDGE, GRAVITY, DURATION = 0.016, 0.02, 9.81, 0.6
 END = 0.3  # s, after the first impact, before the second
 FIRST = 0.196210991904  # s
-AFTER = (-0.104880400901, 0.599572173967)  # m/s, (v_x, v_z) after it: Routh's impulse in closed form
+AFTER = (
+    -0.104880400901,
+    0.599572173967,
+)  # m/s, (v_x, v_z) after it: Routh's impulse in closed form
 
 
 def scene(
@@ -71,7 +74,7 @@ def model(module, step: float, frequency: float):
 
 
 def stiffness(step: float) -> float:
-    """Return a frequency [rad/s] that the step resolves: the best of those tried, else as with the smallest step."""
+    """Return a frequency of the contact [rad/s] that the step resolves, the best of those tried."""
     return {1e-3: 500.0, 1e-4: 3000.0}.get(step, 0.2 / step)
 
 
@@ -92,6 +95,4 @@ def mujoco(module, step: float, duration: float = DURATION) -> Task:
         x = throw(module, made, data, round(END / step))
         return wrong(x[0], x[2])
 
-    return Task(
-        "MuJoCo", step, lambda: throw(module, made, data, round(duration / step)), error
-    )
+    return Task("MuJoCo", step, lambda: throw(module, made, data, round(duration / step)), error)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from time import perf_counter
 
 import numpy as np
 
@@ -22,7 +23,7 @@ def scene():
 
 @cache
 def centre() -> np.ndarray:
-    """Return where the centre is at END, after the first impact: a cube flies exactly, impacts are to round-off."""
+    """Return where the centre is at END: a cube flies exactly, and its impact is to round-off."""
     import carom
 
     return carom.simulate(scene(), END, step=1e-4).position[-1, 0]
@@ -53,30 +54,31 @@ def mujoco(module, step: float, duration: float = DURATION) -> Task:
     return Task("MuJoCo", step, run, lambda: float(np.linalg.norm(run(END) - centre())))
 
 
-def rate(step: float, runs: int, seed: int = 0, workers: int = 1) -> float:
-    """Return throws a second of wall time of carom, in random orientation."""
-    import time
-
+def throws(step: float, runs: int, seed: int = 0, workers: int = 1):
+    """Return an ensemble of throws in random orientation."""
     import carom
 
     made = planar_die.scene()
     vary = {f"{made.bodies[0].name}.orientation": carom.UniformOrientation()}
-    begin = time.perf_counter()
-    carom.ensemble(
+    return carom.ensemble(
         made, DURATION, step=step, vary=vary, runs=runs, seed=seed, workers=workers,
         chunk=max(1, min(25, runs // (4 * workers))),
     )  # fmt: skip
-    return runs / (time.perf_counter() - begin)
 
 
-def mujoco_rate(module, step: float, runs: int, seed: int = 0) -> float:
+def rate(step: float, runs: int, seed: int = 0, workers: int = 1, timer=perf_counter) -> float:
+    """Return throws of carom a second, of wall time if not otherwise."""
+    begin = timer()
+    throws(step, runs, seed, workers)
+    return runs / (timer() - begin)
+
+
+def mujoco_rate(module, step: float, runs: int, seed: int = 0, timer=perf_counter) -> float:
     """Return the same of MuJoCo on one thread, contact of 500 rad/s."""
-    import time
-
     made, data = planar_die.model(module, step, 500.0)
     turns = np.random.default_rng(seed).normal(size=(runs, 4))
     turns /= np.linalg.norm(turns, axis=1, keepdims=True)
-    begin = time.perf_counter()
+    begin = timer()
     for turn in turns:
         planar_die.throw(module, made, data, round(DURATION / step), turn=turn)
-    return runs / (time.perf_counter() - begin)
+    return runs / (timer() - begin)

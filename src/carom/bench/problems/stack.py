@@ -1,7 +1,7 @@
 """A stack of 20 boxes that slides as one and is slowed by friction: 80 points of contact that stay.
 
-Between boxes friction is 0.5, below 0.02: nothing slips but the lowest one, and x = v t - mu g t^2/2 for all. (It
-stands: mu times the height of its centre, 1 m, is less than half an edge.)
+Between boxes friction is 0.5, below 0.02: nothing slips but the lowest one, and x = v t - mu g t^2/2 for all.
+(It stands: mu times the height of its centre, 1 m, is less than half an edge.)
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ def ours(step: float, method: str = "rk4", boxes: int = BOXES) -> Task:
 
 
 def mujoco(module, step: float, boxes: int = BOXES) -> Task:
-    """Return the work of MuJoCo, contact as stiff as it recommends for the step (friction of the floor first)."""
+    """Return the work of MuJoCo, contact as stiff as it says for the step; the floor has its own friction."""
     half = EDGE / 2
     text = "".join(
         f'<body pos="0 0 {(k + 0.5) * EDGE}"><freejoint/><geom type="box" size="{half} {half} {half}" mass="1" '
@@ -60,7 +60,8 @@ def mujoco(module, step: float, boxes: int = BOXES) -> Task:
     )
     made = module.MjModel.from_xml_string(f"""
     <mujoco><option timestep="{step}" integrator="implicitfast" cone="elliptic" impratio="10"
-    gravity="0 0 {-GRAVITY}"/><default><geom solref="{2 * step} 1"/></default><worldbody><geom type="plane" size="0 0 1" friction="{MU} 0 0" priority="1"/>
+    gravity="0 0 {-GRAVITY}"/><default><geom solref="{2 * step} 1"/></default>
+    <worldbody><geom type="plane" size="0 0 1" friction="{MU} 0 0" priority="1"/>
     {text}</worldbody></mujoco>""")
     data = module.MjData(made)
 

@@ -11,8 +11,8 @@ from carom.bench.measure import ROUNDS, per_step, seconds
 class Task(NamedTuple):
     """A problem by a tool with a step.
 
-    ``run()`` is the whole work; where setting up is not to count there is ``steps(n)``, which makes n steps, and
-    `count`, how many the work has.
+    ``run()`` is the whole work. Where setting up is not to count there is ``steps(n)``, which makes n steps,
+    and `count`, how many the work has.
     """
 
     tool: str
