@@ -11,8 +11,8 @@ from carom.bench.problems.chain import scene as pendulum_scene
 from carom.bench.problems.planar_die import scene as die_scene
 
 __all__ = [
-    "FEW", "OUT", "ROUNDS", "clock", "die_scene", "machine_line", "peer", "pendulum_scene", "per_step",
-    "report", "seconds", "spread", "stepper",
+    "FEW", "OUT", "ROUNDS", "clock", "decades", "die_scene", "machine_line", "peer", "pendulum_scene",
+    "per_step", "report", "seconds", "spread", "stepper",
 ]  # fmt: skip
 
 OUT = Path(os.environ.get("CAROM_BENCH_OUT", Path("out") / "benchmarks"))
@@ -32,6 +32,18 @@ def peer(name: str):
 def spread(values: list[float], unit: float = 1.0, digits: int = 3) -> str:
     """Return ``median (quartile to quartile)``."""
     return measure.spread(values).text(unit, digits)
+
+
+def decades(ax) -> None:
+    """Let a logarithmic x axis have two decades at least, and labels at powers of ten alone."""
+    from matplotlib.ticker import NullFormatter
+
+    low, high = ax.get_xlim()
+    if high < 100.0 * low:
+        middle = (low * high) ** 0.5
+        ax.set_xlim(middle / 10.0, middle * 10.0)
+    ax.xaxis.set_minor_formatter(NullFormatter())
+    ax.yaxis.set_minor_formatter(NullFormatter())
 
 
 def machine() -> str:

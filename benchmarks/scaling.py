@@ -10,7 +10,7 @@ import carom
 from carom.bench import measure
 from carom.bench.measure import Spread, per_step, seconds, spread, stepper
 from carom.bench.problems import chain, spatial_die, stack
-from common import FEW, OUT, ROUNDS, die_scene, peer, report
+from common import FEW, OUT, ROUNDS, decades, die_scene, peer, report
 from contacts import blocks
 from heaps import poured
 from memory import peak
@@ -52,7 +52,7 @@ def bodies(mujoco) -> dict[str, Curve]:
     links = some(1, 3, 10, 30, 100, 300, 1000)
     found = {
         "chain": step_of(lambda n: stepper(chain.scene(n), 2e-4), links, 20000),
-        "dice in flight": step_of(lambda n: stepper(dice(n), 1e-3), some(1, 10, 100, 1000), 20000),
+        "dice in flight": step_of(lambda n: stepper(dice(n), 1e-3), some(1, 10, 100, 1000), 400000),
     }
     if mujoco:
 
@@ -141,10 +141,10 @@ def draw(results: dict[str, dict[str, Curve]]) -> None:
                 colour = look.RED if "MuJoCo" in label else next(ours)
                 size, time = (np.array(v, dtype=float) for v in zip(*((n, t[0]) for n, t in curve)))
                 ax.loglog(size, np.maximum(time, 1e-2), "o-", color=colour, label=label, lw=1)
-            edge = np.array(ax.get_xlim())
-            top = max(c[-1][1].median / c[-1][0] for c in results[name].values())
-            ax.autoscale(False)
-            ax.loglog(edge, 3.0 * top * edge, ":", color=look.GREY, lw=0.8)
+            decades(ax)
+            size, time = next(iter(results[name].values()))[-1]
+            guide = size * np.array([1e-1, 1.0])
+            ax.loglog(guide, 0.4 * max(time.median, 1e-2) * guide / size, ":", color=look.GREY)
             ax.set(xlabel=across, ylabel=up, title=f"{name}")
             ax.legend(fontsize=5.5)
             ax.grid(alpha=0.25, lw=0.4)

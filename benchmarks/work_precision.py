@@ -9,7 +9,7 @@ import numpy as np
 
 from carom.bench import measure
 from carom.bench.problems import ALL, Task
-from common import FEW, OUT, ROUNDS, peer, report
+from common import FEW, OUT, ROUNDS, decades, peer, report
 
 FLOOR = 1e-16  # errors of zero are drawn here
 
@@ -60,14 +60,18 @@ def draw(results: dict[str, dict[str, list[dict]]]) -> None:
                     time, error, xerr=np.maximum(spans, 0.0), fmt="o-", color=colours[name],
                     label=name, lw=1,
                 )  # fmt: skip
-            ax.set(xscale="log", yscale="log", title=problem.TITLE, ylabel=problem.ERROR)
-            ax.set_ylim(FLOOR / 3, 10.0)
+            ax.set(xscale="log", yscale="log", ylim=(FLOOR / 3, 10.0))
+            ax.set_title(f"{problem.TITLE}\n{problem.ERROR}", fontsize=7)
+            decades(ax)
             ax.grid(alpha=0.25, lw=0.4)
         for ax in axes[1]:
             ax.set_xlabel("processor time [s]")
+        for ax in axes[:, 0]:
+            ax.set_ylabel("error")
         handles = {}
         for ax in axes.flat:
             handles.update(dict(zip(*reversed(ax.get_legend_handles_labels()))))
+        handles = {name: handles[name] for name in colours if name in handles}
         figure.legend(
             handles.values(), handles.keys(), loc="outside upper center", ncols=len(handles)
         )
