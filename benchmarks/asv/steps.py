@@ -86,5 +86,5 @@ class Startup:
     def timeraw_import(self):
         return "import carom"
 
-    def timeraw_help(self):
-        return "from carom.cli import main; main(['--help'])"
+    def timeraw_command(self):
+        return "from carom.cli.app import command; command()"
