@@ -299,3 +299,32 @@ def test_narrow_and_wide_windows(columns):
     )  # fmt: skip
     assert done.returncode == OK, done.stderr
     assert "carom info die.h5 --scene > die.json" in done.stdout
+
+
+def test_pictures_and_models_are_given_what_the_command_is(made, capsys, monkeypatch):
+    """What draws and what reads models is told apart from the command: it only hands on."""
+    calls = []
+
+    def stand_in(name, result=None):
+        def called(*args, **kwargs):
+            calls.append((name, args, kwargs))
+            return result
+
+        monkeypatch.setattr(carom, name, called, raising=False)
+
+    run, page = made / "die.h5", made / "page.html"
+    stand_in("view")
+    assert main(["view", str(run), "--export", str(page)]) == OK
+    assert main(["view", str(run), "--no-open", "--port", "8080"]) == OK
+    assert calls[0] == ("view", (run,), {"port": None, "open": False, "export": page})
+    assert calls[1] == ("view", (run,), {"port": 8080, "open": False, "export": None})
+    stand_in("film")
+    assert main(["film", str(run), "-o", str(made / "a.mp4"), "--speed", "0.5"]) == OK
+    _, (solution, path), how = calls[2]
+    assert (len(solution.t), path, how["fps"], how["speed"]) == (51, made / "a.mp4", 30.0, 0.5)
+    stand_in("load_model", scenes.load(made / "die.py").scene)
+    (made / "robot.xml").write_text("<mujoco/>")
+    more = ["--restitution", "0.3", "--keyframe", "1", "-d", "0.002"]
+    assert main(["simulate", str(made / "robot.xml"), *more]) == OK
+    assert calls[3] == ("load_model", (made / "robot.xml",), {"restitution": 0.3, "keyframe": 1})
+    assert str(page) in capsys.readouterr().out

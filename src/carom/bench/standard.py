@@ -47,7 +47,7 @@ class Row(NamedTuple):
 
     def as_dict(self) -> dict[str, Any]:
         """Return it as plain values."""
-        told = {
+        told: dict[str, Any] = {
             "name": self.problem.name, "what": self.problem.what, "unit": self.problem.unit,
             "error_is": self.problem.error,
         }  # fmt: skip

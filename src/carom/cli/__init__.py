@@ -14,12 +14,16 @@ OK, FAILED, USAGE, INTERRUPTED = 0, 1, 2, 130
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; return its exit code."""
+    from typing import Any
+
     import typer
 
     from carom.cli.app import command
 
-    _, usage_error, any_error = typer.BadParameter.__mro__[:3]  # Click's, wherever typer has them
-    whole = command()
+    # BadParameter is a UsageError, which is a ClickException: those classes are Click's own, or copies in typer
+    usage_error: Any = typer.BadParameter.__mro__[1]
+    any_error: Any = typer.BadParameter.__mro__[2]
+    whole: Any = command()
     try:
         code = whole.main(
             None if arguments is None else list(arguments), prog_name="carom", standalone_mode=False

@@ -55,7 +55,7 @@ def missing(error: ImportError, extra: str = "") -> str:
 
     if "pip install" in str(error) or not error.name:
         return str(error)
-    if error.name.startswith("carom."):
+    if error.name.split(".")[0] == "carom":
         return f"this is not in carom {_version()} ({error})"
     return f"{error}; try: {pip_line(error.name, extra)}"
 

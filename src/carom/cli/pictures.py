@@ -40,7 +40,7 @@ def plot(
 
     matplotlib.use("agg")
     import carom
-    import carom.plots  # pyright: ignore[reportMissingImports]
+    import carom.plots  # pyright: ignore
 
     solution = carom.Solution.load(file)
     drawn = solution.plot() if kind is None else solution.plot(kind)  # pyright: ignore
@@ -68,7 +68,7 @@ def film(
       carom film die.h5 -o slow.mp4 --speed 0.1 --follow die
     """
     import carom
-    from carom.film import film as make  # pyright: ignore[reportMissingImports]
+    from carom import film as make  # pyright: ignore
 
     with show.progress("film") as bar:
         make(carom.Solution.load(file), out, fps=fps, speed=speed, follow=follow, progress=bar)

@@ -75,9 +75,12 @@ def functions(scene) -> dict[str, Callable]:
 
 
 def _model(path: Path, given: dict[str, Any]):
-    """Read MJCF or URDF: the one place that knows `carom.models`."""
-    from carom.models import load_model  # pyright: ignore[reportMissingImports]
+    """Read MJCF or URDF: the one place that knows `carom.load_model`."""
+    from carom import load_model  # pyright: ignore
 
+    key = given.get("keyframe")
+    if key is not None and key.isdigit():
+        given["keyframe"] = int(key)
     made = load_model(path, **given)
     return getattr(made, "scene", made)
 

@@ -37,9 +37,9 @@ def run(
       carom view die.h5 --export die.html
       carom view die.h5 --no-open --port 8080
     """
-    from carom.view import view  # pyright: ignore[reportMissingImports]
+    from carom import view as look  # pyright: ignore
 
-    view(file, port=port, open=open and export is None, export=export)
+    look(file, port=port, open=open and export is None, export=export)  # pyright: ignore
     if export is not None:
         print(export)
     return 0
