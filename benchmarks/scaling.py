@@ -15,6 +15,7 @@ from contacts import blocks
 from heaps import poured
 from memory import peak
 
+FLOOR = 0.5  # MiB: less is drawn there
 Curve = list[tuple[float, Spread]]
 
 
@@ -29,7 +30,7 @@ def dice(count: int) -> carom.Scene:
     table = made.add_half_space((0, 0, 0), (0, 0, 1))
     for k in range(count):
         die = made.add_body(
-            carom.Box(0.02, 0.02, 0.02), mass=0.016, position=(k % 30, k // 30, 1e5),
+            carom.Box(0.02, 0.02, 0.02), mass=0.016, position=(k % 30, k // 30, 1e9),
             angular_velocity=(1, 2, 3),
         )  # fmt: skip
         made.add_contact(die, table, restitution=0.5, friction=0.2)
@@ -40,7 +41,7 @@ def step_of(make: Callable[[int], Callable[[int], object]], sizes, work: int) ->
     """Return the time of a step [us] for each size; `work` steps for size 1, fewer for larger ones."""
     found = []
     for size in sizes:
-        many = max(20, work // size)
+        many = max(100, work // size)
         found.append(
             (size, spread([1e6 * t for t in per_step(make(size), max(2, many // 10), many)]))
         )
@@ -67,7 +68,7 @@ def contacts(mujoco) -> dict[str, Curve]:
     """Return the time of a step against the number of points that are held; they slide all the time."""
     counts = some(1, 4, 16, 64)
     apart = step_of(lambda n: stepper(blocks(n, stacked=False, speed=5.0), 1e-3), counts, 400)
-    piled = step_of(lambda n: stack.ours(1e-3, boxes=n).steps, some(8, 16, 32, 64), 3000)
+    piled = step_of(lambda n: stack.ours(1e-3, boxes=n).steps, some(8, 16, 32, 45), 3000)
     found = {"blocks side by side": apart, "a stack": piled}
     landing = [
         (n, spread([1e6 * t for t in per_step(stepper(poured(n, 0.0), 1e-3), 150, 170)]))
@@ -76,7 +77,7 @@ def contacts(mujoco) -> dict[str, Curve]:
     found = {name: [(4 * n, t) for n, t in curve] for name, curve in found.items()}
     found["spheres that land (spheres)"] = landing
     if mujoco:
-        theirs = step_of(lambda n: stack.mujoco(mujoco, 1e-3, n).steps, some(8, 16, 32, 64), 1600)
+        theirs = step_of(lambda n: stack.mujoco(mujoco, 1e-3, n).steps, some(8, 16, 32, 45), 1600)
         found["a stack, MuJoCo"] = [(4 * n, t) for n, t in theirs]
     return found
 
@@ -123,7 +124,7 @@ def memory() -> dict[str, Curve]:
 PANELS = (
     ("bodies", "bodies", "a step [us]"), ("contacts", "points of contact", "a step [us]"),
     ("steps", "steps", "the run [ms]"), ("runs", "runs", "the ensemble, wall time [ms]"),
-    ("memory", "see each line", "more memory [MiB]"),
+    ("memory", "see each line", "more memory [MiB] (0 as 0.5)"),
 )  # fmt: skip
 
 
@@ -136,16 +137,17 @@ def draw(results: dict[str, dict[str, Curve]]) -> None:
         figure, axes = look.new(look.PAGE, 4.4, 2, 3)
         axes[1, 2].axis("off")
         for ax, (name, across, up) in zip(axes.flat, PANELS):
-            ours = iter(colours)
+            ours, floor = iter(colours), FLOOR if name == "memory" else 0.0
             for label, curve in results[name].items():
                 colour = look.RED if "MuJoCo" in label else next(ours)
                 size, time = (np.array(v, dtype=float) for v in zip(*((n, t[0]) for n, t in curve)))
-                ax.loglog(size, np.maximum(time, 1e-2), "o-", color=colour, label=label, lw=1)
-            decades(ax)
+                ax.loglog(size, np.maximum(time, floor), "o-", color=colour, label=label, lw=1)
             size, time = next(iter(results[name].values()))[-1]
             guide = size * np.array([1e-1, 1.0])
-            ax.loglog(guide, 0.4 * max(time.median, 1e-2) * guide / size, ":", color=look.GREY)
+            ax.loglog(guide, 0.4 * max(time.median, floor) * guide / size, ":", color=look.GREY)
             ax.set(xlabel=across, ylabel=up, title=f"{name}")
+            ax.set_ylim(top=10.0 * ax.get_ylim()[1])  # for the legend
+            decades(ax)
             ax.legend(fontsize=5.5)
             ax.grid(alpha=0.25, lw=0.4)
         axes[1, 2].text(

@@ -71,6 +71,7 @@ def film(
     from carom import film as make  # pyright: ignore
 
     with show.progress("film") as bar:
-        make(carom.Solution.load(file), out, fps=fps, speed=speed, follow=follow, progress=bar)
+        solution = carom.Solution.load(file)
+        make(solution, out, fps=fps, speed=speed, follow=follow, progress=bar)  # pyright: ignore
     print(out)
     return 0

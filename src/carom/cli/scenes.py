@@ -81,7 +81,7 @@ def _model(path: Path, given: dict[str, Any]):
     key = given.get("keyframe")
     if key is not None and key.isdigit():
         given["keyframe"] = int(key)
-    made = load_model(path, **given)
+    made = load_model(path, **given)  # pyright: ignore
     return getattr(made, "scene", made)
 
 
