@@ -301,30 +301,31 @@ def test_narrow_and_wide_windows(columns):
     assert "carom info die.h5 --scene > die.json" in done.stdout
 
 
-def test_pictures_and_models_are_given_what_the_command_is(made, capsys, monkeypatch):
-    """What draws and what reads models is told apart from the command: it only hands on."""
-    calls = []
-
-    def stand_in(name, result=None):
-        def called(*args, **kwargs):
-            calls.append((name, args, kwargs))
-            return result
-
-        monkeypatch.setattr(carom, name, called, raising=False)
-
-    run, page = made / "die.h5", made / "page.html"
-    stand_in("view")
+def test_a_result_is_shown_drawn_and_filmed(made, capsys, monkeypatch):
+    run, page, film = made / "die.h5", made / "page.html", made / "die.gif"
     assert main(["view", str(run), "--export", str(page)]) == OK
+    assert page.stat().st_size > 20_000
+    assert str(page) in capsys.readouterr().out
+    for kind in ((), ("energy",), ("contacts",)):  # several axes by name, two, one
+        picture = made / f"{len(kind)}.png"
+        assert main(["plot", str(run), *kind, "-o", str(picture)]) == OK
+        assert picture.read_bytes()[:4] == b"\x89PNG"
+    assert main(["film", str(run), "-o", str(film), "--fps", "50", "--speed", "0.5"]) == OK
+    assert film.read_bytes()[:3] == b"GIF"
+    assert main(["plot", str(run), "nonsense"]) == USAGE
+    assert "overview" in capsys.readouterr().err
+    calls = []
+    monkeypatch.setattr(carom, "view", lambda *a, **k: calls.append((a, k)), raising=False)
     assert main(["view", str(run), "--no-open", "--port", "8080"]) == OK
-    assert calls[0] == ("view", (run,), {"port": None, "open": False, "export": page})
-    assert calls[1] == ("view", (run,), {"port": 8080, "open": False, "export": None})
-    stand_in("film")
-    assert main(["film", str(run), "-o", str(made / "a.mp4"), "--speed", "0.5"]) == OK
-    _, (solution, path), how = calls[2]
-    assert (len(solution.t), path, how["fps"], how["speed"]) == (51, made / "a.mp4", 30.0, 0.5)
-    stand_in("load_model", scenes.load(made / "die.py").scene)
+    assert calls == [((run,), {"port": 8080, "open": False, "export": None})]
+
+
+def test_a_model_is_read_with_what_the_command_says(made, monkeypatch):
+    calls, scene = [], scenes.load(made / "die.py").scene
+    monkeypatch.setattr(
+        carom, "load_model", lambda *a, **k: calls.append((a, k)) or scene, raising=False
+    )
     (made / "robot.xml").write_text("<mujoco/>")
     more = ["--restitution", "0.3", "--keyframe", "1", "-d", "0.002"]
     assert main(["simulate", str(made / "robot.xml"), *more]) == OK
-    assert calls[3] == ("load_model", (made / "robot.xml",), {"restitution": 0.3, "keyframe": 1})
-    assert str(page) in capsys.readouterr().out
+    assert calls == [((made / "robot.xml",), {"restitution": 0.3, "keyframe": 1})]

@@ -36,12 +36,7 @@ def run(
     from carom.cli import warmup
 
     if warm:
-        with show.progress("compile") as bar:
-            parts = warmup.work()
-            for k, (kind, method, do) in enumerate(parts):
-                bar(k, len(parts))
-                bar.tell(f"compile {kind} {method}".rstrip())
-                do()
+        warmup.compile_all()
     found = examine()
     if json:
         show.as_json(found)

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from carom.cli import show
+from carom.plots.drawn import KINDS
 
 _File = Annotated[
     Path,
@@ -22,7 +23,8 @@ def plot(
     kind: Annotated[
         str | None,
         typer.Argument(
-            metavar="KIND", help="What to draw, as in Solution.plot.", show_default="an overview"
+            metavar="KIND", show_default="overview",
+            help=f"What to draw: {', '.join(KINDS)} (as Solution.plot).",
         ),
     ] = None,
     out: Annotated[
@@ -35,19 +37,24 @@ def plot(
     For example:
       carom plot die.h5 -o die.png
       carom plot die.h5 energy -o energy.pdf
+      carom plot die.h5 impact_inside     the first impact
     """
     import matplotlib
 
     matplotlib.use("agg")
     import carom
-    import carom.plots  # pyright: ignore
 
-    solution = carom.Solution.load(file)
-    drawn = solution.plot() if kind is None else solution.plot(kind)  # pyright: ignore
-    figure = getattr(drawn, "figure", drawn)
-    figure.savefig(out, dpi=dpi)
+    drawn = carom.Solution.load(file).plot(kind or KINDS[0])
+    _figure(drawn).savefig(out, dpi=dpi)
     print(out)
     return 0
+
+
+def _figure(drawn):
+    """Return the figure of what a plot returned: axes, several of them, or some by name."""
+    while not hasattr(drawn, "figure"):
+        drawn = next(iter(drawn.values() if isinstance(drawn, dict) else drawn))
+    return drawn.figure
 
 
 def film(
@@ -68,10 +75,10 @@ def film(
       carom film die.h5 -o slow.mp4 --speed 0.1 --follow die
     """
     import carom
-    from carom import film as make  # pyright: ignore
+    from carom import film as make
 
     with show.progress("film") as bar:
         solution = carom.Solution.load(file)
-        make(solution, out, fps=fps, speed=speed, follow=follow, progress=bar)  # pyright: ignore
+        make(solution, out, fps=fps, speed=speed, follow=follow, progress=bar)
     print(out)
     return 0

@@ -37,9 +37,9 @@ def run(
       carom view die.h5 --export die.html
       carom view die.h5 --no-open --port 8080
     """
-    from carom import view as look  # pyright: ignore
+    from carom import view as look
 
-    look(file, port=port, open=open and export is None, export=export)  # pyright: ignore
+    written = look(file, port=port, open=open and export is None, export=export)
     if export is not None:
-        print(export)
+        print(written)
     return 0

@@ -10,8 +10,21 @@ import typer
 
 from carom.cli import show
 
+#: kinds of work that share compiled code: done by one process
+TOGETHER = (
+    ("free", "rest", "layer", "impact", "many contacts"),
+    ("stack", "heap"),
+    ("loops",),
+    ("tree",),
+)
 
-def run(json: Annotated[bool, typer.Option("--json", help="Print times as JSON.")] = False) -> int:
+
+def run(
+    workers: Annotated[
+        int | None, typer.Option(min=1, metavar="N", show_default="all processors", help="Processes.")
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print times as JSON.")] = False,
+) -> int:  # fmt: skip
     """Compile everything once, so that later runs start at once.
 
     The library is compiled for every kind of system (free bodies, trees of joints, loops of joints)
@@ -23,15 +36,7 @@ def run(json: Annotated[bool, typer.Option("--json", help="Print times as JSON."
       carom warmup
       NUMBA_CACHE_DIR=/scratch/numba carom warmup      keep compiled code there
     """
-    rows = []
-    parts = work()
-    with show.progress("compile", len(parts)) as bar:
-        for k, (kind, method, do) in enumerate(parts):
-            bar(k, len(parts))
-            bar.tell(f"compile {kind} {method}".rstrip())
-            begin = time.perf_counter()
-            do()
-            rows.append({"kind": kind, "method": method, "seconds": time.perf_counter() - begin})
+    rows = compile_all(workers)
     if json:
         show.as_json(rows)
     else:
@@ -40,6 +45,40 @@ def run(json: Annotated[bool, typer.Option("--json", help="Print times as JSON."
             [(row["kind"], row["method"], f"{row['seconds']:.2f}") for row in rows], left=2,
         )  # fmt: skip
     return 0
+
+
+def compile_all(workers: int | None = None) -> list[dict]:
+    """Compile everything in some processes; return kind, method and seconds of each part."""
+    import multiprocessing
+    import os
+    from concurrent.futures import ProcessPoolExecutor, as_completed
+
+    workers = min(workers or os.cpu_count() or 1, len(TOGETHER))
+    total, rows = len(work()), []
+    with show.progress("compile", total) as bar:
+        if workers == 1:
+            for kinds in TOGETHER:
+                rows += compile_kinds(kinds)
+                bar(len(rows), total)
+            return rows
+        context = multiprocessing.get_context("spawn")
+        with ProcessPoolExecutor(workers, mp_context=context) as pool:
+            for done in as_completed([pool.submit(compile_kinds, kinds) for kinds in TOGETHER]):
+                rows += done.result()
+                bar(len(rows), total)
+    order = {kind: k for k, kind in enumerate(kind for kinds in TOGETHER for kind in kinds)}
+    return sorted(rows, key=lambda row: order[row["kind"]])
+
+
+def compile_kinds(kinds: tuple[str, ...]) -> list[dict]:
+    """Compile some kinds of work in this process."""
+    rows = []
+    for kind, method, do in work():
+        if kind in kinds:
+            begin = time.perf_counter()
+            do()
+            rows.append({"kind": kind, "method": method, "seconds": time.perf_counter() - begin})
+    return rows
 
 
 def work() -> list[tuple[str, str, Callable[[], object]]]:
