@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from carom.gradient import Sensitivities, contact_sequence, sensitivities
     from carom.impact import Impact, LayerHistory, impact_layer, resolve_impact
     from carom.impact.corner.api import CornerImpact, resolve_impacts
+    from carom.models import Model, load_model
 
 __version__ = "0.1.0"
 
@@ -60,6 +61,7 @@ __all__ = [
     "LayerHistory",
     "Material",
     "Mesh",
+    "Model",
     "Options",
     "Scene",
     "Sensitivities",
@@ -76,6 +78,7 @@ __all__ = [
     "identify",
     "impact_layer",
     "joints",
+    "load_model",
     "resolve_impact",
     "resolve_impacts",
     "resume",
@@ -90,6 +93,8 @@ _LAZY = {
     "Ensemble": "carom.ensembles",
     "Impact": "carom.impact",
     "LayerHistory": "carom.impact",
+    "Model": "carom.models",
+    "load_model": "carom.models",
     "UniformOrientation": "carom.ensembles",
     "ensemble": "carom.ensembles",
     "Sensitivities": "carom.gradient",
