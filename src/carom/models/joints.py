@@ -109,8 +109,10 @@ def _light_link(build: Build, link: Link, last: int, later: list[int]) -> Body:
     """Add a link between two joints of a body, where it stands and moves after the joint `last`."""
     model, data = build.model, build.data
     joint = name_of(model.joint(last), "joint")
-    mass = build.light * link.mass
-    moment = build.light * np.trace(link.inertia) / 3.0
+    first, count = int(model.body_dofadr[link.body]), int(model.body_dofnum[link.body])
+    armature = float(np.max(model.dof_armature[first : first + count]))
+    mass = build.light * (link.mass + armature)
+    moment = build.light * (np.trace(link.inertia) / 3.0 + armature)
     centre = data.xanchor[last]
     dofs = [d for d in range(model.nv) if model.dof_jntid[d] in later]
     motion = point_velocity(model, data, link.body, centre, without=dofs)

@@ -66,18 +66,20 @@ def _link(model, body: int, members: list[int]) -> Link:
     return Link(body, name, members, float(mass.sum()), centre, 0.5 * (inertia + inertia.T))
 
 
-def possible_inertia(inertia: np.ndarray) -> tuple[np.ndarray, float]:
+def possible_inertia(
+    inertia: np.ndarray, floor: float = 0.0, margin: float = 0.0
+) -> tuple[np.ndarray, float]:
     """Return the inertia nearest to one that a body can have, and by what part of it that was changed.
 
     MuJoCo takes moments of 0 and, by rounding, some that break the triangle inequality a <= b + c; a scene takes
-    neither. Small moments are raised.
+    neither. Small moments are raised: to `floor` [kg m^2] at least, and in a triangle that is broken to
+    ``b + c = (1 + margin) a``.
     """
     moments, axes = np.linalg.eigh(inertia)
-    possible = np.maximum(moments, 1e-10 * moments[2])
-    lack = possible[2] * (1.0 - TRIANGLE / 2) - possible[0] - possible[1]
-    if lack > 0.0:
-        possible[:2] += 0.5 * lack
-    change = float(np.max(np.abs(possible - moments)) / moments[2])
+    possible = np.maximum(moments, max(1e-10 * np.max(np.abs(moments)), floor))
+    if possible[2] * (1.0 - TRIANGLE / 2) > possible[0] + possible[1]:
+        possible[:2] += 0.5 * (possible[2] * (1.0 + margin) - possible[0] - possible[1])
+    change = float(np.max(np.abs(possible - moments)) / max(np.max(np.abs(moments)), floor))
     if change == 0.0:
         return inertia, 0.0
     better = axes @ np.diag(possible) @ axes.T

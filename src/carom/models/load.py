@@ -30,7 +30,9 @@ from carom.scene.materials import IMPACT_LAWS
 from carom.scene.scene import Scene
 
 RESTITUTION = 0.0  # where neither the caller nor the model has one: MuJoCo's own contacts hardly bounce
-LIGHT = 1e-12  # mass of a link between two joints of one body, as a part of the body's
+# masses and moments of links between two joints of one body, as a part of the body's: nothing to the solver of
+# trees; that of loops would take rows between lighter ones for redundant (Options.drop_tolerance)
+LIGHT, LIGHT_IN_LOOPS = 1e-12, 1e-6
 
 
 def load_model(
@@ -112,7 +114,9 @@ def load_model(
         check.flag(name, value)
     report = Report()
     model = compiled_model(source, free_root, package_dirs, report)
-    build, links = _new_build(model, starting_data(model, keyframe, qpos, qvel), report)
+    loops = bool(np.any(model.eq_active0)) or (armature and bool(np.any(model.dof_armature)))
+    data, light = starting_data(model, keyframe, qpos, qvel), LIGHT_IN_LOOPS if loops else LIGHT
+    build, links = _new_build(model, data, report, light)
     restitution = _restitution(model, restitution, report)
     rules = Filter(model)
     standing = add_standing(build, rules) if contacts else []
@@ -134,7 +138,7 @@ def load_model(
     return _finished(build, links, covers, restitution)
 
 
-def _new_build(model, data, report: Report) -> tuple[Build, list[Link]]:
+def _new_build(model, data, report: Report, light: float) -> tuple[Build, list[Link]]:
     """Return what is at hand, and what moves."""
     links = moving_links(model)
     if not links:
@@ -144,7 +148,7 @@ def _new_build(model, data, report: Report) -> tuple[Build, list[Link]]:
     )
     scene = Scene(gravity=np.zeros(3) if weightless else model.opt.gravity)
     names = Names(link.name for link in links)
-    return Build(model, data, scene, report, names, LIGHT), links
+    return Build(model, data, scene, report, names, light), links
 
 
 def _restitution(model, given: float | None, report: Report) -> float:

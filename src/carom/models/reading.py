@@ -30,9 +30,9 @@ def compiled_model(source, free_root: bool, package_dirs, report: Report) -> Any
         _no_root(free_root, "an MjModel, which is compiled")
         return source
     if isinstance(source, mujoco.MjSpec):
-        spec, what = source, "the MjSpec"
+        spec, what, mimics = source, "the MjSpec", []
     elif isinstance(source, (str, os.PathLike)):
-        spec, what = _specification(mujoco, source, package_dirs, report)
+        spec, what, mimics = _specification(mujoco, source, package_dirs, report)
     else:
         raise TypeError(
             "source must be a path, an XML text, a mujoco.MjSpec or a mujoco.MjModel, got "
@@ -48,11 +48,15 @@ def compiled_model(source, free_root: bool, package_dirs, report: Report) -> Any
         raise ValueError(f"{what} does not compile: {_line(error)}") from None
     for warning in said:
         report.add("MuJoCo", f"says: {_line(warning.message)}", "this is how it compiled the model")
+    coupled = {model.joint(int(j)).name for j in model.eq_obj1id[: model.neq]} if model.njnt else set()
+    for name in mimics:
+        if name not in coupled:
+            report.add(f"joint {name!r}", "MuJoCo does not read how it follows another", "moves freely")
     return model
 
 
-def _specification(mujoco, source, package_dirs, report: Report) -> tuple[Any, str]:
-    """Return the specification in a file or a text, and what it is called in messages."""
+def _specification(mujoco, source, package_dirs, report: Report) -> tuple[Any, str, list[str]]:
+    """Return the specification in a file or a text, what it is called, and the joints of a URDF that follow others."""
     if isinstance(source, str) and source.lstrip().startswith("<"):
         text, folder, what = source, None, "the model"
     else:
@@ -70,10 +74,12 @@ def _specification(mujoco, source, package_dirs, report: Report) -> tuple[Any, s
         )
     try:
         if root.tag == "robot":
-            return mujoco.MjSpec.from_string(prepared(root, folder, package_dirs, report)), what
+            mimics = [j.get("name", "") for j in root.iter("joint") if j.find("mimic") is not None]
+            text = prepared(root, folder, package_dirs, report)
+            return mujoco.MjSpec.from_string(text), what, mimics
         if folder is None:
-            return mujoco.MjSpec.from_string(text), what
-        return mujoco.MjSpec.from_file(str(source)), what
+            return mujoco.MjSpec.from_string(text), what, []
+        return mujoco.MjSpec.from_file(str(source)), what, []
     except ValueError as error:
         raise ValueError(f"{what} cannot be read: {_line(error)}") from None
 

@@ -11,6 +11,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from carom.models.report import Report
+from carom.models.urdf_inertia import mend_inertias
 
 READ = (".stl", ".obj", ".msh")
 
@@ -27,7 +28,7 @@ def prepared(root: ET.Element, folder: Path | None, package_dirs: Iterable, repo
     package_dirs
         Folders that hold packages, or are ones.
     report
-        Gets what had to be left out.
+        Gets what had to be left out or changed.
     """
     for link in root.iter("link"):
         for visual in link.findall("visual"):
@@ -38,12 +39,13 @@ def prepared(root: ET.Element, folder: Path | None, package_dirs: Iterable, repo
                 continue
             name = mesh.get("filename", "")
             found = located(name, folder, package_dirs)
-            if found is not None and found.suffix.lower() in READ:
+            why = "was not found" if found is None else unreadable(found)
+            if found is not None and why is None:
                 mesh.set("filename", str(found))
                 continue
-            why = "was not found" if found is None else f"is none of {', '.join(READ)}"
             report.add(f"link {link.get('name')!r}", f"its mesh {name!r} {why}", "left out")
             link.remove(collision)
+    mend_inertias(root, report)
     options = root.find("mujoco")
     if options is None:
         options = ET.SubElement(root, "mujoco")
@@ -53,6 +55,19 @@ def prepared(root: ET.Element, folder: Path | None, package_dirs: Iterable, repo
     compiler.attrib.update(strippath="false", fusestatic="false")
     compiler.attrib.pop("meshdir", None)  # meshes have their full paths now
     return ET.tostring(root, encoding="unicode")
+
+
+def unreadable(path: Path) -> str | None:
+    """Return why MuJoCo cannot read a mesh; None if it can."""
+    if path.suffix.lower() not in READ:
+        return f"is none of {', '.join(READ)}"
+    if path.suffix.lower() == ".stl":
+        size = path.stat().st_size
+        with path.open("rb") as file:
+            head = file.read(84)
+        if len(head) < 84 or size < 84 + 50 * int.from_bytes(head[80:84], "little"):
+            return "is no binary STL"
+    return None
 
 
 def located(name: str, folder: Path | None, package_dirs: Iterable) -> Path | None:
