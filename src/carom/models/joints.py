@@ -61,6 +61,8 @@ def _one(build: Build, j: int) -> Group:
         return Group(joints.Spherical(anchor), [(j, 0, 1.0)])
     if build.model.jnt_type[j] == kinds.mjJNT_HINGE:
         return Group(joints.Revolute(anchor, axis), [(j, 0, 1.0)])
+    child = build.bodies[int(build.model.jnt_bodyid[j])]
+    anchor = child.position  # pyright: ignore[reportAttributeAccessIssue]
     return Group(joints.Prismatic(axis, anchor), [(j, 0, 1.0)])
 
 
@@ -111,9 +113,12 @@ def _light_link(build: Build, link: Link, last: int, later: list[int]) -> Body:
     joint = name_of(model.joint(last), "joint")
     first, count = int(model.body_dofadr[link.body]), int(model.body_dofnum[link.body])
     armature = float(np.max(model.dof_armature[first : first + count]))
+    body = build.bodies[link.body].position  # pyright: ignore[reportAttributeAccessIssue]
+    slides = model.jnt_type[last] == need_mujoco().mjtJoint.mjJNT_SLIDE
+    centre = body if slides else data.xanchor[last]
+    arm2 = float(np.sum((body - centre) ** 2))
     mass = build.light * (link.mass + armature)
-    moment = build.light * (np.trace(link.inertia) / 3.0 + armature)
-    centre = data.xanchor[last]
+    moment = build.light * (np.trace(link.inertia) / 3.0 + link.mass * arm2 + armature)
     dofs = [d for d in range(model.nv) if model.dof_jntid[d] in later]
     motion = point_velocity(model, data, link.body, centre, without=dofs)
     build.report.add(

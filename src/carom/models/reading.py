@@ -48,7 +48,8 @@ def compiled_model(source, free_root: bool, package_dirs, report: Report) -> Any
         raise ValueError(f"{what} does not compile: {_line(error)}") from None
     for warning in said:
         report.add("MuJoCo", f"says: {_line(warning.message)}", "this is how it compiled the model")
-    coupled = {model.joint(int(j)).name for j in model.eq_obj1id[: model.neq]} if model.njnt else set()
+    pairs = zip(model.eq_type, model.eq_obj1id)
+    coupled = {model.joint(j).name for kind, j in pairs if kind == mujoco.mjtEq.mjEQ_JOINT}
     for name in mimics:
         if name not in coupled:
             report.add(f"joint {name!r}", "MuJoCo does not read how it follows another", "moves freely")
