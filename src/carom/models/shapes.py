@@ -47,8 +47,13 @@ def placed_shape(model, geom: int, report: Report) -> Placed | None:
         offset = shape.centroid
     else:
         if kind != kinds.mjGEOM_PLANE:
-            what = {kinds.mjGEOM_HFIELD: "a height field", kinds.mjGEOM_SDF: "a distance field"}
-            report.add(_called(model, geom), what.get(kind, "of a kind without equivalent"), "left out")
+            what = {
+                int(kinds.mjGEOM_HFIELD): "a height field",
+                int(kinds.mjGEOM_SDF): "a distance field",
+            }
+            report.add(
+                _called(model, geom), what.get(int(kind), "of a kind without equivalent"), "left out"
+            )
         return None
     on_body, turn = pose_on_link(model, int(model.geom_bodyid[geom]))
     position = model.geom_pos[geom] + quaternion.rotate(model.geom_quat[geom], offset)
