@@ -1,6 +1,6 @@
 """A scene made from a model beside MuJoCo itself: both in the coordinates of the model.
 
-With J the derivative of the velocities of all bodies of the scene by those of the model, from MuJoCo's own Jacobians,
+With J the derivative of the velocities of all bodies of the scene by those of the model, MuJoCo's own,
 
     M = J^T diag(m, R I R^T) J,    gravity = J^T (m g, 0),    a = J q'' + J' q'.
 """
@@ -14,7 +14,9 @@ import carom
 from carom.geometry import quaternion
 
 DATA = Path(__file__).parents[1] / "data" / "models"
-MODELS = sorted(p for p in DATA.rglob("*") if p.suffix in (".xml", ".urdf") and p.parent.name != "common")
+MODELS = sorted(
+    p for p in DATA.rglob("*") if p.suffix in (".xml", ".urdf") and p.parent.name != "common"
+)
 OFF = mujoco.mjtDisableBit
 
 

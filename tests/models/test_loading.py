@@ -16,7 +16,8 @@ URDF = """
 <robot name="r">
   <link name="base"><inertial><mass value="2"/><inertia ixx=".1" iyy=".1" izz=".1" ixy="0" ixz="0" iyz="0"/>
   </inertial></link>
-  <link name="arm"><inertial><mass value="1"/><inertia ixx=".1" iyy=".1" izz=".3" ixy="0" ixz="0" iyz="0"/></inertial>
+  <link name="arm"><inertial><mass value="1"/><inertia ixx=".1" iyy=".1" izz=".3" ixy="0" ixz="0" iyz="0"/>
+  </inertial>
     <collision><geometry><mesh filename="package://r/arm.stl"/></geometry></collision>
     <collision><geometry><sphere radius=".1"/></geometry></collision></link>
   <link name="virtual"/>
@@ -36,7 +37,9 @@ def test_sources(tmp_path):
     path.write_text(BALL)
     spec = mujoco.MjSpec.from_string(BALL)
     for source in (path, str(path), BALL, spec, spec.compile()):
-        assert carom.load_model(source).scene["ball"].mass == pytest.approx(4 / 3 * np.pi, rel=1e-12)
+        assert carom.load_model(source).scene["ball"].mass == pytest.approx(
+            4 / 3 * np.pi, rel=1e-12
+        )
 
 
 @pytest.mark.parametrize(
@@ -46,7 +49,11 @@ def test_sources(tmp_path):
         ("<mujoco><worldbody>", ValueError, "no XML that can be read"),
         ("<sdf/>", ValueError, "root <sdf>"),
         ("<mujoco colour='red'/>", ValueError, "unrecognized attribute: 'colour'"),
-        ("<mujoco><worldbody><body><joint/></body></worldbody></mujoco>", ValueError, "mass and inertia"),
+        (
+            "<mujoco><worldbody><body><joint/></body></worldbody></mujoco>",
+            ValueError,
+            "mass and inertia",
+        ),
         ("<mujoco/>", ValueError, "something that moves"),
         (3, TypeError, "source must be a path"),
     ],
@@ -113,7 +120,9 @@ def test_shapes_weigh_what_mujoco_says():
         "sphere": ".2", "capsule": ".1 .3", "cylinder": ".1 .3", "ellipsoid": ".1 .2 .3", "box": ".1 .2 .3",
     }  # fmt: skip
     for kind, size in kinds.items():
-        xml = BALL.replace('size=".1"', f'type="{kind}" size="{size}" pos=".3 .2 .1" euler="20 30 40"')
+        xml = BALL.replace(
+            'size=".1"', f'type="{kind}" size="{size}" pos=".3 .2 .1" euler="20 30 40"'
+        )
         body = carom.load_model(xml).scene["ball"]
         parts = getattr(body.shape, "parts", [(body.shape, np.zeros(3), np.array([1.0, 0, 0, 0]))])
         shape, place, turn = parts[0]

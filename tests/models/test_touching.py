@@ -54,7 +54,9 @@ def test_pairs_and_friction_are_those_that_mujoco_finds():
             found[frozenset((a, b))] = tuple(friction)
     assert found.keys() == expected.keys()
     for pair, values in expected.items():
-        np.testing.assert_allclose(found[pair], values, rtol=1e-12, atol=1e-5)  # MuJoCo's least is 1e-5
+        np.testing.assert_allclose(
+            found[pair], values, rtol=1e-12, atol=1e-5
+        )  # MuJoCo's least is 1e-5
 
 
 def apart():

@@ -69,6 +69,12 @@ class Build:
     balls: dict[int, Joint] = field(default_factory=dict)  # of ball joints
     geoms: dict[int, Body | HalfSpace] = field(default_factory=dict)
 
+    def moving(self, body: int) -> Body:
+        """Return the body of the scene for one of the model that has joints."""
+        part = self.bodies[body]
+        assert isinstance(part, Body)
+        return part
+
     def carrier(self, body: int) -> Body | Ground:
         """Return the body of the scene that a body of the model is a part of."""
         return self.bodies[int(self.model.body_weldid[body])]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from itertools import combinations
+from typing import Any
 
 from carom.models.build import Build
 from carom.models.overlaps import near
@@ -46,7 +47,7 @@ def add_contacts(
     _ignore_what_is_seen(build, solids)
 
 
-def _values(friction: Friction) -> dict[str, float]:
+def _values(friction: Friction) -> dict[str, Any]:
     return {
         "friction": friction.sliding,
         "pivoting_friction": friction.pivoting,
@@ -93,7 +94,7 @@ def without_overlaps(build: Build, pairs: dict[Pair, Friction], strict: bool) ->
         text = f"{body.name!r} starts {depth:.3g} m inside {other.name!r}"
         if strict:
             raise ValueError(
-                f"{text}; start elsewhere (keyframe, qpos), or let overlaps=\"repair\" take such contacts out"
+                f'{text}; start elsewhere (keyframe, qpos), or let overlaps="repair" take such contacts out'
             )
         build.report.add(f"pair {body.name!r}, {other.name!r}", text, "the two do not touch")
     return kept

@@ -76,7 +76,7 @@ def _stops(build: Build, j: int, c: Coordinate, restitution: float, law: str) ->
 
 
 def _armature(build: Build, j: int, c: Coordinate, represent: bool) -> None:
-    """Add a flywheel on the ground that turns by q as the joint moves by q: its energy is a q'^2 / 2, exactly."""
+    """Add a flywheel on the ground that turns by q as the joint moves by q: a q'^2 / 2, exactly."""
     inertia = float(build.model.dof_armature[build.model.jnt_dofadr[j]])
     if inertia == 0.0:
         return
@@ -134,12 +134,8 @@ def _mount(build: Build, j: int, link: Link, parent, child, moves: bool) -> None
         k, d = (stiffness, stiffness), (damping, damping)
         none = (0.0, 0.0)
         anchor = data.xpos[link.body] if moves else data.xanchor[j]
-        mount = forces.Bushing(
-            k if moves else none, k, d if moves else none, d, anchor=anchor
-        )
-        build.scene.add_force(
-            mount, parent, child, name=build.names.new(f"{name}:spring", "force")
-        )
+        mount = forces.Bushing(k if moves else none, k, d if moves else none, d, anchor=anchor)
+        build.scene.add_force(mount, parent, child, name=build.names.new(f"{name}:spring", "force"))
     dofs = slice(dof, dof + (6 if moves else 3))
     if np.any(model.dof_armature[dofs]):
         build.report.add(called, "armature of a joint with several freedoms", "left out")

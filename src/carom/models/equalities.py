@@ -1,4 +1,4 @@
-"""Equality constraints of a model: points that are connected, bodies that are welded, joints that are coupled."""
+"""Equality constraints of a model: points connected, bodies welded, joints coupled."""
 
 from __future__ import annotations
 
@@ -61,7 +61,9 @@ def _connected(build: Build, e: int) -> tuple[int, int, Frame, Frame]:
 def _welded(build: Build, e: int) -> tuple[int, int, Frame, Frame]:
     """Return both bodies and the frames of the world that are to be one."""
     first, second, frames = _sides(build, e)
-    if frames is None:  # the second stands at the first times `turn`; points: of the second, the first
+    if (
+        frames is None
+    ):  # the second stands at the first times `turn`; points: of the second, the first
         given = build.model.eq_data[e]
         turn = quaternion.normalize(given[6:10])
         frames = [
@@ -90,7 +92,7 @@ def _tie(build: Build, e: int, called: str, definition, first: int, second: int,
             "run with Options(project_start=True), which brings the parts together",
         )
     if isinstance(child, Ground):
-        parent, child, one, two = child, parent, two, one
+        parent, child, one, two = child, build.moving(int(build.model.body_weldid[first])), two, one
     name = build.names.new(name_of(build.model.equality(e), "equality"), "equality")
     build.scene.add_joint(
         definition, parent, child,
@@ -121,5 +123,3 @@ def _couple(build: Build, e: int, called: str) -> None:
         )
     name = build.names.new(name_of(model.equality(e), "equality"), "equality")
     build.scene.add_constraint(constraints.Coupling(factors), name=name)
-
-

@@ -1,9 +1,9 @@
-"""Joints of a model: one for each, or for two or three that have an equivalent together, else with links between.
+"""Joints of a model: one for each, or for two or three together that have an equivalent.
 
-In a model several joints of a body follow each other, each in the frame that those before it have moved. Two hinges
-with perpendicular axes through one point are a `Universal` joint, a hinge and a slide along one line a
-`Cylindrical`, two slides and a hinge across them a `Planar`. What is left stands between links that are so light that they
-do not count.
+In a model several joints of a body follow each other, each in the frame that those before it have moved. Two
+hinges with perpendicular axes through one point are a `Universal` joint, a hinge and a slide along one line a
+`Cylindrical`, two slides and a hinge across them a `Planar`. Between other joints stand links that are so light
+that they do not count.
 """
 
 from __future__ import annotations
@@ -29,7 +29,9 @@ class Group(NamedTuple):
 
     definition: JointDefinition
     members: list[tuple[int, int, float]]  # joint of the model, which coordinate, sign
-    frame: tuple[np.ndarray, np.ndarray] | None = None  # in the world; None: the definition is there
+    frame: tuple[np.ndarray, np.ndarray] | None = (
+        None  # in the world; None: the definition is there
+    )
 
 
 def join(build: Build, link: Link) -> None:
@@ -40,7 +42,7 @@ def join(build: Build, link: Link) -> None:
     if model.jnt_type[numbers[0]] == kinds.mjJNT_FREE:
         return
     parent = build.carrier(int(model.body_parentid[link.body]))
-    child = build.bodies[link.body]
+    child = build.moving(link.body)
     while numbers:
         group = next_group(build, numbers)
         done, numbers = numbers[: len(group.members)], numbers[len(group.members) :]
@@ -61,8 +63,7 @@ def _one(build: Build, j: int) -> Group:
         return Group(joints.Spherical(anchor), [(j, 0, 1.0)])
     if build.model.jnt_type[j] == kinds.mjJNT_HINGE:
         return Group(joints.Revolute(anchor, axis), [(j, 0, 1.0)])
-    child = build.bodies[int(build.model.jnt_bodyid[j])]
-    anchor = child.position  # pyright: ignore[reportAttributeAccessIssue]
+    anchor = build.moving(int(build.model.jnt_bodyid[j])).position
     return Group(joints.Prismatic(axis, anchor), [(j, 0, 1.0)])
 
 
@@ -113,7 +114,7 @@ def _light_link(build: Build, link: Link, last: int, later: list[int]) -> Body:
     joint = name_of(model.joint(last), "joint")
     first, count = int(model.body_dofadr[link.body]), int(model.body_dofnum[link.body])
     armature = float(np.max(model.dof_armature[first : first + count]))
-    body = build.bodies[link.body].position  # pyright: ignore[reportAttributeAccessIssue]
+    body = build.moving(link.body).position
     slides = model.jnt_type[last] == need_mujoco().mjtJoint.mjJNT_SLIDE
     centre = body if slides else data.xanchor[last]
     arm2 = float(np.sum((body - centre) ** 2))

@@ -42,12 +42,18 @@ def report_leftovers(model, report: Report) -> None:
             report.add(_called(model, kind, int(k)), what, instead)
     for b in range(model.nbody):
         if model.body_mocapid[b] >= 0:
-            report.add(f"body {name_of(model.body(b), 'body')!r}", "is moved by others (mocap)", "it stands still")
+            report.add(
+                f"body {name_of(model.body(b), 'body')!r}",
+                "is moved by others (mocap)",
+                "it stands still",
+            )
     for p in range(model.npair):
         five = model.pair_friction[p]
         if five[0] != five[1] or five[3] != five[4]:
             what = "friction that depends on direction"
-            report.add(f"pair {name_of(model.pair(p), 'pair')!r}", what, "the first number is that of all")
+            report.add(
+                f"pair {name_of(model.pair(p), 'pair')!r}", what, "the first number is that of all"
+            )
     _report_whole(model, report)
 
 

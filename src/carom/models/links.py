@@ -71,8 +71,8 @@ def possible_inertia(
 ) -> tuple[np.ndarray, float]:
     """Return the inertia nearest to one that a body can have, and by what part of it that was changed.
 
-    MuJoCo takes moments of 0 and, by rounding, some that break the triangle inequality a <= b + c; a scene takes
-    neither. Small moments are raised: to `floor` [kg m^2] at least, and in a triangle that is broken to
+    MuJoCo takes moments of 0 and, by rounding, some that break the triangle inequality a <= b + c; a scene
+    takes neither. Small moments are raised: to `floor` [kg m^2] at least, and in a triangle that is broken to
     ``b + c = (1 + margin) a``.
     """
     moments, axes = np.linalg.eigh(inertia)

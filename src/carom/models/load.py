@@ -29,7 +29,9 @@ from carom.scene import forces
 from carom.scene.materials import IMPACT_LAWS
 from carom.scene.scene import Scene
 
-RESTITUTION = 0.0  # where neither the caller nor the model has one: MuJoCo's own contacts hardly bounce
+RESTITUTION = (
+    0.0  # where neither the caller nor the model has one: MuJoCo's own contacts hardly bounce
+)
 # masses and moments of links between two joints of one body, as a part of the body's: nothing to the solver of
 # trees; that of loops would take rows between lighter ones for redundant (Options.drop_tolerance)
 LIGHT, LIGHT_IN_LOOPS = 1e-12, 1e-6
@@ -83,8 +85,8 @@ def load_model(
         True (default): the inertia of motors in joints is that of flywheels, one a joint, which makes the scene
         slower. False: leave it out.
     overlaps : {"repair", "refuse"}
-        What starts inside another. ``"repair"`` (default): parts with a free joint are moved out of what stands;
-        other pairs do not touch at all. ``"refuse"``: an error.
+        What starts inside another. ``"repair"`` (default): parts with a free joint are moved out of what
+        stands; other pairs do not touch at all. ``"refuse"``: an error.
     package_dirs : sequence of path
         Where ``package://`` of a URDF is looked for, besides the folders above the file.
 
@@ -131,7 +133,7 @@ def load_model(
     add_mounts(build, links)
     add_equalities(build)
     if contacts:
-        moving = [Solid(build.bodies[one.body], covers[one.body][1], True) for one in links]
+        moving = [Solid(build.moving(one.body), covers[one.body][1], True) for one in links]
         solids = [*moving, *standing]
         add_contacts(build, solids, rules, restitution, friction, impact_law, overlaps == "refuse")
     report_leftovers(model, report)
@@ -143,9 +145,7 @@ def _new_build(model, data, report: Report, light: float) -> tuple[Build, list[L
     links = moving_links(model)
     if not links:
         raise ValueError("the model must have something that moves, got no body with a joint")
-    weightless = bool(
-        int(model.opt.disableflags) & int(need_mujoco().mjtDisableBit.mjDSBL_GRAVITY)
-    )
+    weightless = bool(int(model.opt.disableflags) & int(need_mujoco().mjtDisableBit.mjDSBL_GRAVITY))
     scene = Scene(gravity=np.zeros(3) if weightless else model.opt.gravity)
     names = Names(link.name for link in links)
     return Build(model, data, scene, report, names, light), links
@@ -201,7 +201,7 @@ def _finished(build: Build, links, covers, restitution: float) -> Model:
     m = build.model
     for link in links:
         for g in covers[link.body][1]:
-            build.geoms[g] = build.bodies[link.body]
+            build.geoms[g] = build.moving(link.body)
     return Model(
         scene=build.scene,
         report=build.report,

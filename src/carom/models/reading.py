@@ -52,12 +52,14 @@ def compiled_model(source, free_root: bool, package_dirs, report: Report) -> Any
     coupled = {model.joint(j).name for kind, j in pairs if kind == mujoco.mjtEq.mjEQ_JOINT}
     for name in mimics:
         if name not in coupled:
-            report.add(f"joint {name!r}", "MuJoCo does not read how it follows another", "moves freely")
+            report.add(
+                f"joint {name!r}", "MuJoCo does not read how it follows another", "moves freely"
+            )
     return model
 
 
 def _specification(mujoco, source, package_dirs, report: Report) -> tuple[Any, str, list[str]]:
-    """Return the specification in a file or a text, what it is called, and the joints of a URDF that follow others."""
+    """Return the specification in a file or a text, its name, and the joints of a URDF that follow others."""
     if isinstance(source, str) and source.lstrip().startswith("<"):
         text, folder, what = source, None, "the model"
     else:

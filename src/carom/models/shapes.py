@@ -52,7 +52,9 @@ def placed_shape(model, geom: int, report: Report) -> Placed | None:
                 int(kinds.mjGEOM_SDF): "a distance field",
             }
             report.add(
-                _called(model, geom), what.get(int(kind), "of a kind without equivalent"), "left out"
+                _called(model, geom),
+                what.get(int(kind), "of a kind without equivalent"),
+                "left out",
             )
         return None
     on_body, turn = pose_on_link(model, int(model.geom_bodyid[geom]))

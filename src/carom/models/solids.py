@@ -1,4 +1,4 @@
-"""What can touch: the moving bodies, and the geoms that stand, as half-spaces and as bodies fixed to the ground."""
+"""What can touch: moving bodies, and geoms that stand, as half-spaces and bodies fixed to the ground."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """URDF before MuJoCo reads it: where its meshes are, and no link lost.
 
-MuJoCo knows no ``package://`` and reads STL, OBJ and MSH. Meshes of ``<visual>`` are not needed at all. Links without
-joints are kept, so that their names are (`carom.models.links` joins them to what carries them).
+MuJoCo knows no ``package://`` and reads STL, OBJ and MSH. Meshes of ``<visual>`` are not needed at all. Links
+without joints are kept, so that their names are (`carom.models.links` joins them to what carries them).
 """
 
 from __future__ import annotations
@@ -84,9 +84,7 @@ def located(name: str, folder: Path | None, package_dirs: Iterable) -> Path | No
         rest = Path(name.split("://", 1)[1])
         inside = Path(*rest.parts[1:])
         tries = [place / rest for place in (*given, *above)]
-        tries += [
-            place / inside for place in (*given, *above) if place.name == rest.parts[0]
-        ]
+        tries += [place / inside for place in (*given, *above) if place.name == rest.parts[0]]
     else:
         tries = [place / name for place in (*above[:1], *given)]
     return next((path for path in tries if path.is_file()), None)

@@ -12,7 +12,7 @@ from carom.models.report import Report
 GIVEN = 1e-9  # mass of a link that moves and has none, as a part of the robot's
 ARM2 = 1e-2  # inertia by mass of what has none [m^2]
 FLOOR = 1e-12  # of moments [kg m^2]: MuJoCo takes none below 1e-15
-SIX = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
+SIX: tuple[str, ...] = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 
 
 def mend_inertias(root: ET.Element, report: Report) -> None:
@@ -42,9 +42,11 @@ def mend_inertias(root: ET.Element, report: Report) -> None:
         mass = GIVEN * total
         inertial = ET.SubElement(link, "inertial")
         ET.SubElement(inertial, "mass", value=repr(mass))
-        moments = dict.fromkeys(SIX[:3], repr(ARM2 * mass)) | dict.fromkeys(SIX[3:], "0")
-        ET.SubElement(inertial, "inertia", moments)
-        report.add(f"link {link.get('name')!r}", "moves and has no mass", f"it is given {mass:.1e} kg")
+        moments = [*[repr(ARM2 * mass)] * 3, *["0"] * 3]
+        ET.SubElement(inertial, "inertia", dict(zip(SIX, moments)))
+        report.add(
+            f"link {link.get('name')!r}", "moves and has no mass", f"it is given {mass:.1e} kg"
+        )
 
 
 def _mass(link: ET.Element) -> float:

@@ -52,7 +52,9 @@ class Compound(Touching):
     volume: float
     size: float
     _pieces: tuple[Piece, ...]
-    _spread: np.ndarray | None  # inertia by mass [m^2]; None where the mass is not that of the parts
+    _spread: (
+        np.ndarray | None
+    )  # inertia by mass [m^2]; None where the mass is not that of the parts
 
     def __init__(
         self,
