@@ -33,7 +33,7 @@ from carom.solution import Solution
 from carom.status import SimulationError, Status
 
 if TYPE_CHECKING:
-    from carom import baselines, identify
+    from carom import baselines, identify, models
     from carom.coulomb import ContactSolution, solve_contacts
     from carom.ensembles import Ensemble, UniformOrientation, ensemble
     from carom.files.resume import resume
@@ -79,6 +79,7 @@ __all__ = [
     "impact_layer",
     "joints",
     "load_model",
+    "models",
     "resolve_impact",
     "resolve_impacts",
     "resume",
@@ -111,6 +112,6 @@ _LAZY = {
 def __getattr__(name: str):
     if name in _LAZY:
         return getattr(importlib.import_module(_LAZY[name]), name)
-    if name in ("baselines", "geometry", "gradient", "identify"):
+    if name in ("baselines", "geometry", "gradient", "identify", "models"):
         return importlib.import_module(f"carom.{name}")
     raise AttributeError(f"module 'carom' has no attribute {name!r}")

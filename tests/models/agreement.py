@@ -100,6 +100,14 @@ def mujoco_data(m, q, v):
     return d
 
 
+def full_mass(m, d):
+    """Return M (nv, nv), column by column: `mj_fullM` has other arguments in each version."""
+    columns = np.zeros((m.nv, m.nv))
+    for column, unit in zip(columns, np.eye(m.nv)):
+        mujoco.mj_mulM(m, d, column, unit)
+    return columns.T
+
+
 def first_accelerations(scene):
     """Return the accelerations (N, 6) with which a run begins: the first stage of its first step."""
     solution = carom.simulate(scene, 1e-9, step=1e-9)
