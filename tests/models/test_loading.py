@@ -165,3 +165,13 @@ def test_inertias_are_mended_as_little_as_possible():
     assert change == pytest.approx(1 / 6)
     better, _ = possible_inertia(np.diag([0.0, 2.0, 2.0]))
     assert np.linalg.eigvalsh(better)[0] > 0.0
+
+
+def test_flags_of_the_model():
+    off = '<option><flag contact="disable" gravity="disable" limit="disable"/></option><worldbody>'
+    floor = '<geom type="plane" size="1 1 1"/>'
+    model = carom.load_model(BALL.replace("<worldbody>", off + floor))
+    assert not np.any(model.scene.gravity)
+    assert model.scene.contact_default is None
+    assert not model.scene.half_spaces
+    assert "switches off limits of joints; they are there" in str(model.report)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from carom.models.links import name_of
+from carom.models.needs import need_mujoco
 from carom.models.report import Report
 
 #: what is listed by name: accessor of the model, count, what it is, what happens
@@ -27,6 +28,17 @@ NOT_ZERO = (
     ("pair", "pair_margin", "a margin of contact", "surfaces touch where they are"),
     ("pair", "pair_adhesion", "adhesion", "left out"),
 )
+
+
+#: flags by which a model switches off what the scene has all the same (contact and gravity are off there too)
+SWITCHES = {
+    "mjDSBL_EQUALITY": "equality constraints",
+    "mjDSBL_LIMIT": "limits of joints",
+    "mjDSBL_FRICTIONLOSS": "dry friction in joints",
+    "mjDSBL_PASSIVE": "springs and dampers",
+    "mjDSBL_SPRING": "springs",
+    "mjDSBL_DAMPER": "dampers",
+}
 
 
 def report_leftovers(model, report: Report) -> None:
@@ -65,7 +77,11 @@ def _called(model, kind: str, k: int) -> str:
 
 def _report_whole(model, report: Report) -> None:
     """Add what concerns the whole model."""
-    opt = model.opt
+    opt, bits = model.opt, need_mujoco().mjtDisableBit
+    for flag, what in SWITCHES.items():
+        bit = getattr(bits, flag, None)  # not all versions have all
+        if bit is not None and int(opt.disableflags) & int(bit):
+            report.add(f"flag {flag}", f"switches off {what}", "they are there")
     if model.nflex:
         report.add("deformable bodies", "are not represented", f"{model.nflex} left out")
     if opt.density != 0.0 or opt.viscosity != 0.0 or np.any(opt.wind):

@@ -120,7 +120,7 @@ def load_model(
     data, light = starting_data(model, keyframe, qpos, qvel), LIGHT_IN_LOOPS if loops else LIGHT
     build, links = _new_build(model, data, report, light)
     restitution = _restitution(model, restitution, report)
-    rules = Filter(model)
+    rules, contacts = Filter(model), contacts and not _disabled(model, "mjDSBL_CONTACT")
     standing = add_standing(build, rules) if contacts else []
     covers = {link.body: covering(build, link, rules) for link in links}
     if overlaps == "repair":
@@ -149,6 +149,12 @@ def _new_build(model, data, report: Report, light: float) -> tuple[Build, list[L
     scene = Scene(gravity=np.zeros(3) if weightless else model.opt.gravity)
     names = Names(link.name for link in links)
     return Build(model, data, scene, report, names, light), links
+
+
+def _disabled(model, flag: str) -> bool:
+    """Return whether a flag of the model switches something off."""
+    bit = int(getattr(need_mujoco().mjtDisableBit, flag))
+    return bool(int(model.opt.disableflags) & bit)
 
 
 def _restitution(model, given: float | None, report: Report) -> float:
