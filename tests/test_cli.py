@@ -320,12 +320,29 @@ def test_a_result_is_shown_drawn_and_filmed(made, capsys, monkeypatch):
     assert calls == [((run,), {"port": 8080, "open": False, "export": None})]
 
 
-def test_a_model_is_read_with_what_the_command_says(made, monkeypatch):
-    calls, scene = [], scenes.load(made / "die.py").scene
-    monkeypatch.setattr(
-        carom, "load_model", lambda *a, **k: calls.append((a, k)) or scene, raising=False
+def test_a_model_is_read_and_its_report_shown(made, capsys):
+    # a ball of .1 m falls .2 m: e = .5 leaves half the speed sqrt(2 g .2)
+    (made / "ball.xml").write_text(
+        "<mujoco><worldbody><geom type='plane' size='1 1 1'/><body name='ball' pos='0 0 .3'><freejoint/>"
+        "<geom size='.1' mass='1'/></body></worldbody><actuator><general site='top' gear='1 0 0 0 0 0'/>"
+        "</actuator></mujoco>".replace("<geom size", "<site name='top'/><geom size")
     )
-    (made / "robot.xml").write_text("<mujoco/>")
-    more = ["--restitution", "0.3", "--keyframe", "1", "-d", "0.002"]
-    assert main(["simulate", str(made / "robot.xml"), *more]) == OK
-    assert calls == [((made / "robot.xml",), {"restitution": 0.3, "keyframe": 1})]
+    out = made / "ball.h5"
+    more = [
+        "--restitution",
+        "0.5",
+        "--friction",
+        "0.1",
+        "-d",
+        "0.25",
+        "--step",
+        "0.001",
+        "-o",
+        str(out),
+    ]
+    assert main(["simulate", str(made / "ball.xml"), *more]) == OK
+    assert "actuator" in capsys.readouterr().err
+    impacts = carom.Solution.load(out).impacts
+    speed = np.sqrt(2 * 9.81 * 0.2)
+    np.testing.assert_allclose(impacts.relative_velocity_before[0, 0], -speed, rtol=1e-9)
+    np.testing.assert_allclose(impacts.relative_velocity_after[0, 0], 0.5 * speed, rtol=1e-9)

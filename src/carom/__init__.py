@@ -33,7 +33,7 @@ from carom.solution import Solution
 from carom.status import SimulationError, Status
 
 if TYPE_CHECKING:
-    from carom import baselines, identify, plots
+    from carom import baselines, identify, models, plots
     from carom.coulomb import ContactSolution, solve_contacts
     from carom.ensembles import Ensemble, UniformOrientation, ensemble
     from carom.files.resume import resume
@@ -41,6 +41,7 @@ if TYPE_CHECKING:
     from carom.gradient import Sensitivities, contact_sequence, sensitivities
     from carom.impact import Impact, LayerHistory, impact_layer, resolve_impact
     from carom.impact.corner.api import CornerImpact, resolve_impacts
+    from carom.models import Model, load_model
     from carom.viewer.api import view
 
 __version__ = "0.1.0"
@@ -62,6 +63,7 @@ __all__ = [
     "LayerHistory",
     "Material",
     "Mesh",
+    "Model",
     "Options",
     "Scene",
     "Sensitivities",
@@ -79,6 +81,8 @@ __all__ = [
     "identify",
     "impact_layer",
     "joints",
+    "load_model",
+    "models",
     "plots",
     "resolve_impact",
     "resolve_impacts",
@@ -95,6 +99,8 @@ _LAZY = {
     "Ensemble": "carom.ensembles",
     "Impact": "carom.impact",
     "LayerHistory": "carom.impact",
+    "Model": "carom.models",
+    "load_model": "carom.models",
     "UniformOrientation": "carom.ensembles",
     "ensemble": "carom.ensembles",
     "Sensitivities": "carom.gradient",
@@ -113,6 +119,6 @@ _LAZY = {
 def __getattr__(name: str):
     if name in _LAZY:
         return getattr(importlib.import_module(_LAZY[name]), name)
-    if name in ("baselines", "films", "geometry", "gradient", "identify", "plots"):
+    if name in ("baselines", "films", "geometry", "gradient", "identify", "models", "plots"):
         return importlib.import_module(f"carom.{name}")
     raise AttributeError(f"module 'carom' has no attribute {name!r}")

@@ -75,14 +75,16 @@ def functions(scene) -> dict[str, Callable]:
 
 
 def _model(path: Path, given: dict[str, Any]):
-    """Read MJCF or URDF: the one place that knows `carom.load_model`."""
-    from carom import load_model  # pyright: ignore
+    """Read MJCF or URDF; what is not represented, or otherwise, goes to stderr."""
+    from carom import load_model
 
     key = given.get("keyframe")
     if key is not None and key.isdigit():
         given["keyframe"] = int(key)
-    made = load_model(path, **given)  # pyright: ignore
-    return getattr(made, "scene", made)
+    made = load_model(path, **given)
+    if len(made.report):
+        print(made.report, file=sys.stderr)
+    return made.scene
 
 
 def _json(path: Path):
