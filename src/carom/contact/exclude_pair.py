@@ -32,6 +32,8 @@ from carom.jit import kernel
 from carom.motion.wrench import point_velocity
 from carom.system.arrays import FREE, RESTS
 
+SHORT = 0.25  # way past each other, as a part of the smaller body, in which no body gets through another
+
 
 @kernel
 def spin_bound(body, extent, w, memory):
@@ -262,12 +264,27 @@ def _passage_pair(system, contact, c, held, leaving, start, end, h, work, tolera
     sag = 0.125 * most * h * h
     rate0 = touch_rate(contact, nearest, start)
     alike = feature == nearest.feature  # the same points are nearest at both ends
-    smooth = not flies or sag <= MISSED * smaller(contact)
-    if alike and smooth and cubic_clears(nearest.gap, rate0, least, rate, h, tiny):
+    short = way_past(contact, start, end, h) <= SHORT * smaller(contact)
+    smooth = short and (not flies or sag <= MISSED * smaller(contact))
+    follows = alike and smooth  # the gap, as a function of time, does what its ends and rates say
+    if follows and cubic_clears(nearest.gap, rate0, least, rate, h, tiny):
         return CLEAR, first
-    if first + last < h * (1.0 - 1e-12) and sag > tiny and leaving == 0:
+    bends = sag > tiny or follows or not short
+    if first + last < h * (1.0 - 1e-12) and bends and leaving == 0:
         return UNSURE, first
     return CLEAR, first
+
+
+@kernel
+def way_past(contact, start, end, h):
+    """Return how far two bodies may pass each other in a step, by the velocities of their centres."""
+    a, b, most = contact.body, contact.other, 0.0
+    if b < 0:
+        return 0.0
+    for state in (start, end):
+        v, w = state[a].v, state[b].v
+        most = max(most, (v[0] - w[0]) ** 2 + (v[1] - w[1]) ** 2 + (v[2] - w[2]) ** 2)
+    return h * math.sqrt(most)
 
 
 @kernel
