@@ -17,8 +17,11 @@ import numba
 import numpy as np
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 
+from carom import flags
 from carom.parts import PartCompiler
 from carom.stamp import stamp
+
+flags.install()
 
 _RULES: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
 _INSIDE: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
