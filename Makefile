@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 
-.PHONY: paper test lint docs clean
+.PHONY: paper test lint docs release-check clean
 
 $(VENV)/installed-%: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -27,6 +27,10 @@ lint: $(VENV)/installed-test
 
 docs: $(VENV)/installed-docs
 	$(BIN)/sphinx-build -W -b html docs out/docs
+
+release-check: $(VENV)/installed-test ## build wheel and sdist, look inside, install the wheel in an empty environment, run it
+	$(BIN)/python -m pip install --quiet build
+	$(BIN)/python tools/check_release.py
 
 clean:
 	rm -rf $(VENV) out
