@@ -175,4 +175,6 @@ def test_all_examples_are_run():
 
 def test_every_status_is_explained():
     page = (ROOT / "docs/howto/failure.md").read_text(encoding="utf-8")
-    assert not [s.name for s in carom.Status if s.name != "SUCCESS" and f"| `{s.name}` |" not in page]
+    assert not [
+        s.name for s in carom.Status if s.name != "SUCCESS" and f"| `{s.name}` |" not in page
+    ]

@@ -1,9 +1,13 @@
-"""The wheel has the whole package, its data and licences, and nothing else."""
+"""The wheel has the whole package, its data and licences, and nothing else; one version everywhere."""
 
+import re
 import runpy
+import tomllib
 from pathlib import Path
 
 from hatchling.builders.wheel import WheelBuilder
+
+import carom
 
 ROOT = Path(__file__).parents[1]
 RELEASE = runpy.run_path(str(ROOT / "tools" / "check_release.py"))
@@ -31,3 +35,13 @@ def test_faults_are_found():
         assert any(extra in fault for fault in faults(whole | {extra}, package))
     for name in whole:
         assert faults(whole - {name}, package)
+
+
+def test_one_version_everywhere():
+    version = carom.__version__
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert project["version"] == version
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    assert re.search(r"^version: (.*)$", citation, re.M)[1] == version
+    assert f"\n## {version}\n" in (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
+    assert f"version {version}." in (ROOT / "docs/cite.md").read_text(encoding="utf-8")

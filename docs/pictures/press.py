@@ -54,14 +54,20 @@ def main() -> None:
     left.plot(0.1 * np.sin(angle), 0.5 + 0.1 * np.cos(angle), ":", color="0.6", lw=1)
     draw(left, solution, 0.0, "0.65", 3)
     draw(left, solution, blow.time, "#0072B2", 5)
-    left.set(aspect="equal", xlabel="$x$ [m]", ylabel="$z$ [m]", xlim=(-0.16, 0.16), ylim=(0.04, 0.63))
+    left.set(
+        aspect="equal", xlabel="$x$ [m]", ylabel="$z$ [m]", xlim=(-0.16, 0.16), ylim=(0.04, 0.63)
+    )
     times = np.linspace(0, 0.7, 3000)
     height = solution.evaluate(times)[0][:, 2, 2] - 0.12
     right.axhspan(-0.012, 0, color="0.88", lw=0)
     right.axhline(0, color="0.3", lw=1.2)
     right.plot(times, height, color="#0072B2", lw=1.6)
-    right.plot(solution.impacts.time, 0 * solution.impacts.time, "o", color="#D55E00", ms=5, label="blows")
-    right.set(xlabel="time [s]", ylabel="height of the ram above the anvil [m]", ylim=(-0.012, None))
+    right.plot(
+        solution.impacts.time, 0 * solution.impacts.time, "o", color="#D55E00", ms=5, label="blows"
+    )
+    right.set(
+        xlabel="time [s]", ylabel="height of the ram above the anvil [m]", ylim=(-0.012, None)
+    )
     right.legend(frameon=False)
     figure.savefig(OUT, dpi=160)
     print(OUT)

@@ -46,7 +46,9 @@ def draw_table(ax, thrown: carom.Ensemble, count: int) -> None:
         outlines.append(100 * (centre[:2] + top[order]))
     faces = face_up(thrown.orientation[:count, 0])
     ax.add_collection(
-        PolyCollection(outlines, facecolors=COLOURS[faces - 1], edgecolors="white", lw=0.5, alpha=0.85)
+        PolyCollection(
+            outlines, facecolors=COLOURS[faces - 1], edgecolors="white", lw=0.5, alpha=0.85
+        )
     )
     ax.plot(0, 0, "+", color="0.1", ms=11, mew=1.6)
     for face in range(1, 7):
@@ -60,7 +62,9 @@ def draw_shares(ax, thrown: carom.Ensemble, shift: float, label: str, **style) -
     """Draw how often each face came up, with 95 % intervals."""
     found = fairness(face_up(thrown.orientation[:, 0]))
     bars = np.abs(np.array([found.low, found.high]) - found.share)
-    ax.errorbar(np.arange(1, 7) + shift, found.share, bars, fmt="o", capsize=3, label=label, **style)
+    ax.errorbar(
+        np.arange(1, 7) + shift, found.share, bars, fmt="o", capsize=3, label=label, **style
+    )
     print(label, found.counts, f"p = {found.p_value:.3g}")
 
 
