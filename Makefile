@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 
-.PHONY: paper test lint docs release-check clean
+.PHONY: paper test lint docs bench history release-check clean
 
 $(VENV)/installed-%: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -24,6 +24,13 @@ test: $(VENV)/installed-test ## all checks: style, types, tests, a part of them 
 lint: $(VENV)/installed-test
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
+
+bench: $(VENV)/installed-bench ## measure everything; tables and figures into the documentation
+	$(BIN)/carom warmup
+	$(BIN)/python benchmarks/all.py --docs
+
+history: $(VENV)/installed-bench ## measure this commit for benchmarks/history (asv)
+	cd benchmarks && ../$(BIN)/asv machine --yes && ../$(BIN)/asv run 'HEAD^!'
 
 docs: $(VENV)/installed-docs
 	$(BIN)/sphinx-build -W -b html docs out/docs

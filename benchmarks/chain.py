@@ -8,74 +8,24 @@ from __future__ import annotations
 
 import numpy as np
 
-import carom
-from common import peer, pendulum_scene, per_step, report, spread
+from carom.bench.problems import chain
+from carom.bench.problems.chain import METHODS, STEPS, WATCHED
+from common import FEW, peer, pendulum_scene, per_step, report, spread, stepper
 
-STEPS = (8e-3, 4e-3, 2e-3, 1e-3, 5e-4, 2.5e-4)
 US = 1e-6
-COUNTS = (1, 10, 40, 100)
-METHODS = ("rk4", "rk5", "rk8")
+COUNTS = (1, 10) if FEW else (1, 10, 40, 100)
 BOUNDS = (1e-6, 1e-8, 1e-10)
-WATCHED = 2.0  # [s]
 
 
-def scale(links: int) -> float:
-    """Return m g N L/2, the energy that errors are compared with."""
-    return 9.81 * links / 2.0
+def curve(make) -> list[tuple[float, float]]:
+    """Return (seconds of work a simulated second, error in energy) for each step; setting up not counted.
 
-
-def carom_curve(links: int, method: str) -> list[tuple[float, float]]:
-    """Return (seconds of work a simulated second, error in energy) for each step."""
-    scene, curve = pendulum_scene(links), []
-
-    def run(steps):
-        carom.simulate(
-            scene, duration=steps * 1e-3, step=1e-3, method=method, save_every=max(steps, 1)
-        )
-
-    cost = float(np.median(per_step(run, 50, 50 + 20000 // links)))
-    for step in STEPS:
-        solution = carom.simulate(
-            scene, duration=WATCHED, step=step, method=method,
-            save_every=max(1, round(WATCHED / 100 / step)),
-        )  # fmt: skip
-        energy = solution.total_energy
-        curve.append((cost / step, float(np.abs(energy - energy[0]).max()) / scale(links)))
-    return curve
-
-
-def mujoco_curve(mujoco, links: int) -> list[tuple[float, float]]:
-    """Return the same of MuJoCo's RK4."""
-    text, end = "", ""
-    for k in range(links):
-        text += f"""<body pos="{0 if k == 0 else 1} 0 0"><joint type="hinge" axis="0 1 0"/>
-          <inertial pos=".5 0 0" mass="1" diaginertia="1e-4 {1 / 12} {1 / 12}"/>"""
-        end += "</body>"
-    model = mujoco.MjModel.from_xml_string(f"""
-    <mujoco><option timestep="1e-3" integrator="RK4"><flag energy="enable"/></option>
-    <worldbody>{text}{end}</worldbody></mujoco>""")
-    data = mujoco.MjData(model)
-
-    def run(steps):
-        mujoco.mj_resetData(model, data)
-        mujoco.mj_step(model, data, nstep=steps)
-
-    model.opt.enableflags = 0
-    cost = float(np.median(per_step(run, 50, 50 + 20000 // links)))
-    model.opt.enableflags = int(mujoco.mjtEnableBit.mjENBL_ENERGY)
-    curve = []
-    for step in STEPS:
-        model.opt.timestep = step
-        mujoco.mj_resetData(model, data)
-        each = max(1, round(WATCHED / 100 / step))
-        energies = []
-        for _ in range(round(WATCHED / step / each) + 1):
-            mujoco.mj_forward(model, data)
-            energies.append(data.energy.sum())
-            mujoco.mj_step(model, data, nstep=each)
-        error = np.abs(np.array(energies) - energies[0]).max() / scale(links)
-        curve.append((cost / step, float(error)))
-    return curve
+    A step costs the same whatever its length, so that it is timed once.
+    """
+    middle = make(1e-3)
+    few, many = max(1, middle.count // 20), middle.count
+    cost = float(np.median(per_step(middle.steps, few, many)))
+    return [(cost / step, make(step).error()) for step in STEPS]
 
 
 def cost_at(curve: list[tuple[float, float]], bound: float) -> float:
@@ -99,11 +49,7 @@ def size() -> None:
     """Report the time of a step against the number of links."""
     rows = []
     for links in (*COUNTS, 1000):
-        scene = pendulum_scene(links)
-
-        def run(steps, scene=scene):
-            carom.simulate(scene, duration=steps * 2e-4, step=2e-4, save_every=max(steps, 1))
-
+        run = stepper(pendulum_scene(links), 2e-4)
         times = per_step(run, 50, 50 + 40000 // links)
         mid = float(np.median(times)) / US
         rows.append([str(links), spread(times, US), f"{mid / links:.2f}"])
@@ -118,11 +64,14 @@ def precision() -> None:
     mujoco = peer("mujoco")
     rows, ratios = [], []
     for links in COUNTS:
-        curves = {f"carom {name}": carom_curve(links, name) for name in METHODS}
+        curves = {
+            f"carom {name}": curve(lambda h, n=links, m=name: chain.ours(h, m, n))
+            for name in METHODS
+        }
         if mujoco:
-            curves["MuJoCo RK4"] = mujoco_curve(mujoco, links)
-        for name, curve in curves.items():
-            rows.append([str(links), name, *(f"{c:.2g} s, {e:.0e}" for c, e in curve)])
+            curves["MuJoCo RK4"] = curve(lambda h, n=links: chain.mujoco(mujoco, h, n))
+        for name, found in curves.items():
+            rows.append([str(links), name, *(f"{c:.2g} s, {e:.0e}" for c, e in found)])
         if mujoco:
             for bound in BOUNDS:
                 theirs = curves["MuJoCo RK4"]

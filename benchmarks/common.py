@@ -1,106 +1,59 @@
-"""What all benchmarks share: timing, what the machine is, tables."""
+"""What the scripts share besides `carom.bench`: where tables go, and how they look."""
 
 from __future__ import annotations
 
-import datetime
-import importlib
 import os
-import platform
-import statistics
-import time
-from importlib import metadata
 from pathlib import Path
 
-import numpy as np
+from carom.bench import measure
+from carom.bench.measure import clock, machine_line, per_step, seconds, stepper
+from carom.bench.problems.chain import scene as pendulum_scene
+from carom.bench.problems.planar_die import scene as die_scene
 
-import carom
+__all__ = [
+    "FEW", "OUT", "ROUNDS", "clock", "decades", "die_scene", "machine_line", "peer", "pendulum_scene",
+    "per_step", "report", "seconds", "spread", "stepper",
+]  # fmt: skip
 
-OUT = Path("out") / "benchmarks"
-ROUNDS = 5
-
-#: Processor time: what is measured runs in one thread, and others use the machine too.
-clock = time.process_time
+OUT = Path(os.environ.get("CAROM_BENCH_OUT", Path("out") / "benchmarks"))
+ROUNDS = measure.ROUNDS
+#: to try the scripts out: fewer and smaller cases (`python benchmarks/all.py --few`)
+FEW = os.environ.get("CAROM_BENCH_FEW", "") not in ("", "0")
 
 
 def peer(name: str):
     """Return the module of another tool, or None (and say so) where it cannot be imported."""
-    try:
-        return importlib.import_module(name)
-    except ImportError:
+    module = measure.peer(name)
+    if module is None:
         print(f"({name} is not installed in this interpreter: its rows are left out)")
-        return None
-
-
-def seconds(function, rounds: int = ROUNDS) -> list[float]:
-    """Return the times of `rounds` calls, after one that is not counted."""
-    function()
-    times = []
-    for _ in range(rounds):
-        begin = clock()
-        function()
-        times.append(clock() - begin)
-    return times
-
-
-def stepper(scene, step: float):
-    """Return ``run(steps)`` of a scene, nothing saved but both ends."""
-
-    def run(steps):
-        carom.simulate(scene, duration=steps * step, step=step, save_every=steps)
-
-    return run
-
-
-def per_step(run, few: int, many: int, rounds: int = ROUNDS) -> list[float]:
-    """Return the time [s] of one more step: ``run(many)`` against ``run(few)``, each round anew.
-
-    What a call costs besides its steps (setting up, handing back) cancels.
-    """
-    run(few)
-    slopes = []
-    for _ in range(rounds):
-        times = []
-        for steps in (few, many):
-            begin = clock()
-            run(steps)
-            times.append(clock() - begin)
-        slopes.append((times[1] - times[0]) / (many - few))
-    return slopes
+    return module
 
 
 def spread(values: list[float], unit: float = 1.0, digits: int = 3) -> str:
-    """Return ``median (least to greatest)``."""
-    low, mid, high = (f(values) / unit for f in (min, statistics.median, max))
-    return f"{mid:.{digits}g} ({low:.{digits}g} to {high:.{digits}g})"
+    """Return ``median (quartile to quartile)``."""
+    return measure.spread(values).text(unit, digits)
+
+
+def decades(ax) -> None:
+    """Let a logarithmic x axis have two decades at least, and labels at powers of ten alone."""
+    from matplotlib.ticker import NullFormatter
+
+    low, high = ax.get_xlim()
+    if high < 100.0 * low:
+        middle = (low * high) ** 0.5
+        ax.set_xlim(middle / 10.0, middle * 10.0)
+    ax.xaxis.set_minor_formatter(NullFormatter())
+    ax.yaxis.set_minor_formatter(NullFormatter())
 
 
 def machine() -> str:
-    """Return one line: processor, cores, system, versions, date."""
-    model = platform.processor() or platform.machine()
-    info = Path("/proc/cpuinfo")
-    if info.exists():
-        for line in info.read_text().splitlines():
-            if line.startswith("model name"):
-                model = line.split(":")[1].strip()
-                break
-    names = ("numpy", "numba", "scipy", "mujoco", "pybullet")
-    versions = [f"carom {carom.__version__}", f"Python {platform.python_version()}"]
-    for name in names:
-        try:
-            versions.append(f"{name} {metadata.version(name)}")
-        except metadata.PackageNotFoundError:
-            continue
-    load = os.getloadavg()[0]
-    return (
-        f"{datetime.date.today()}; {model}, {os.cpu_count()} cores, load {load:.1f} at the end; "
-        f"{platform.system()}; {', '.join(versions)}; "
-        f"processor time, medians of {ROUNDS} rounds (least to greatest)"
-    )
+    """Return one line: machine, versions, and how times are taken."""
+    return f"{machine_line()}; processor time, medians of {ROUNDS} rounds (quartiles)"
 
 
 def report(name: str, title: str, head: list[str], rows: list[list[str]], notes: str = "") -> None:
     """Print a Markdown table and write it to ``out/benchmarks/<name>.md``."""
-    lines = [f"## {title}", "", machine(), ""]
+    lines = [f"## {title}", "", f"{machine()}.", ""]
     lines += ["| " + " | ".join(head) + " |", "| " + " | ".join("---" for _ in head) + " |"]
     lines += ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows]
     lines += ["", notes.strip(), ""] if notes else [""]
@@ -108,30 +61,3 @@ def report(name: str, title: str, head: list[str], rows: list[list[str]], notes:
     print(text)
     OUT.mkdir(parents=True, exist_ok=True)
     (OUT / f"{name}.md").write_text(text, encoding="utf-8")
-
-
-def die_scene(
-    height: float = 0.3, velocity=(0.5, 0, -0.5), spin=(0, 10, 0), *, friction=0.2,
-    restitution=0.5, inertia=None, gravity=9.81, law="newton",
-) -> carom.Scene:  # fmt: skip
-    """Return the die of the paper above a table."""
-    scene = carom.Scene(gravity=(0, 0, -gravity))
-    ground = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1))
-    die = scene.add_body(
-        carom.Box(0.02, 0.02, 0.02), mass=0.016, inertia=inertia, position=(0, 0, height),
-        velocity=velocity, angular_velocity=spin,
-    )  # fmt: skip
-    scene.add_contact(die, ground, restitution=restitution, friction=friction, impact_law=law)
-    return scene
-
-
-def pendulum_scene(links: int = 1) -> carom.Scene:
-    """Return a chain of rods (1 m, 1 kg) with hinges along y, horizontal and at rest."""
-    scene = carom.Scene(gravity=(0, 0, -9.81))
-    above = carom.GROUND
-    inertia = np.array([1e-4, 1.0 / 12.0, 1.0 / 12.0])
-    for k in range(links):
-        rod = scene.add_body(mass=1.0, inertia=inertia, position=(k + 0.5, 0, 0))
-        scene.add_joint(carom.joints.Revolute((k, 0, 0), (0, 1, 0)), above, rod)
-        above = rod
-    return scene

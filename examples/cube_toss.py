@@ -10,7 +10,8 @@ from pathlib import Path
 
 import numpy as np
 
-from carom.paper import style, tosses, tosses_figure
+from carom.paper import tosses, tosses_figure
+from carom.plots import style
 
 
 def main(out="out/examples", data=None, start="B", parameters=5, fit=False, most=24, halve=False):

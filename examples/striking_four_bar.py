@@ -44,14 +44,12 @@ def main(out="out/examples"):
     print(f"{len(hit)} impacts; first at {-hit.relative_velocity_before[0, 0]:.9f} rad/s, error {error:.0e}; "
           f"ledger closes to {closed:.0e} J, joints to {kept:.0e}")  # fmt: skip
 
-    figure = Figure(figsize=(6.5, 4), layout="constrained")
-    angle, energy = figure.subplots(2, 1, sharex=True)
+    figure = Figure(figsize=(6.5, 5.5), layout="constrained")
+    angle, *energy = figure.subplots(3, 1, sharex=True, height_ratios=(2, 2, 1))
     angle.plot(s.t, -s.joint_coordinates("foot")[0], lw=1.2)
     angle.axhspan(END, 1.35, color="0.85")
     angle.set(ylabel="angle of the bars [rad]", ylim=(0, 1.35))
-    energy.plot(s.t, s.total_energy - s.total_energy[0], lw=1.2, label="energy since the start")
-    energy.plot(s.t, ledger.impacts, "k:", lw=1.2, label="taken by impacts")
-    energy.set(xlabel="time [s]", ylabel="[J]"), energy.legend(frameon=False)
+    carom.plots.energy(s, ax=energy)
     Path(out).mkdir(parents=True, exist_ok=True)
     figure.savefig(Path(out) / "striking_four_bar.png", dpi=150)
     assert max(error, closed, kept) < 1e-9

@@ -1,13 +1,43 @@
-"""The command: help, version, errors as one line, and the paper's figures."""
+"""The command: help, version, exit codes, errors as one line, and each command as a user calls it."""
 
+import json
+import os
+import signal
 import subprocess
 import sys
+import tomllib
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import carom
-from carom.cli import FAILED, OK, USAGE, main, warmup
+from carom.cli import FAILED, INTERRUPTED, OK, USAGE, app, extras, main, scenes, show, warmup
+
+DIE = """
+import carom
+scene = carom.Scene()
+ground = scene.add_half_space((0, 0, 0), (0, 0, 1))
+die = scene.add_body(carom.Box(0.02, 0.02, 0.02), mass=0.016, position=(0, 0, 0.03), name="die",
+                     velocity=(0.5, 0, -0.5), angular_velocity=(10, 10, 0))
+scene.add_contact(die, ground, restitution=0.5, friction=0.2)
+"""
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A folder with a scene in Python, and its result."""
+    folder = tmp_path_factory.mktemp("cli")
+    (folder / "die.py").write_text(DIE)
+    out = folder / "die.h5"
+    assert main(["simulate", str(folder / "die.py"), "-o", str(out), "-d", "0.05"]) == OK
+    return folder
+
+
+def one_line(capsys) -> str:
+    shown = capsys.readouterr().err
+    assert shown.count("\n") == 1, shown
+    return shown
 
 
 def test_version(capsys):
@@ -15,45 +45,194 @@ def test_version(capsys):
     assert capsys.readouterr().out.strip() == f"carom {carom.__version__}"
 
 
-@pytest.mark.parametrize("arguments", [["--help"], ["paper", "--help"], ["doctor", "--help"]])
-def test_help(arguments, capsys):
-    assert main(arguments) == OK
+@pytest.mark.parametrize("name", [name for name, _, _ in app.COMMANDS])
+def test_help_teaches(name, capsys):
+    """Each command has at least one example that is a call of it."""
+    assert main([name, "--help"]) == OK
     out = capsys.readouterr().out
-    assert "usage: carom" in out
-    assert "paper" in out or "doctor" in out
+    assert out.startswith(f"Usage: carom {name}")
+    assert f"  carom {name}" in out.split("For example:")[1]
 
 
 def test_no_command_shows_the_help(capsys):
     assert main([]) == USAGE
-    assert "carom paper" in capsys.readouterr().out
+    out = capsys.readouterr().out
+    assert all(f"\n  {name} " in out for name, _, _ in app.COMMANDS)
+    assert "130 interrupted" in out
 
 
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["paper", "--figure", "fig9"], ("fig9", "fig3a")),
+        (["paper", "--figure", "fig9"], ("fig9", "fig3a", "--figure")),
+        (["paper", "--figure", "fig3a,fig9"], ("fig9", "fig3a")),
         (["nonsense"], ("nonsense", "paper")),
         (["doctor", "--much"], ("--much",)),
+        (["simulate"], ("SCENE", "--resume")),
+        (["simulate", "none.py", "-d", "1"], ("SCENE", "none.py")),
+        (["simulate", __file__, "-d", "1"], ("'scene'", "none")),
+        (["info", __file__], ("not HDF5",)),
+        (["throw", "--load", "1.5"], ("--load must be",)),
+        (["throw", "--count", "x"], ("--count",)),
     ],
 )
 def test_wrong_arguments_are_one_line_and_code_2(arguments, words, capsys):
     assert main(arguments) == USAGE
-    shown = capsys.readouterr().err
-    assert shown.count("\n") == 1
+    shown = one_line(capsys)
+    assert shown.startswith("carom")
     assert all(word in shown for word in words)
 
 
-def test_a_figure(tmp_path, capsys):
-    assert main(["paper", "--out", str(tmp_path / "x"), "--figure", "fig3a"]) == OK
-    assert sorted(path.name for path in (tmp_path / "x").iterdir()) == ["fig3a.pdf", "fig3a.png"]
-    assert "2 files" in capsys.readouterr().out
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["-d", "-1"], ("duration", "-1")),
+        (["-d", "1", "--step", "soon"], ("--step", "soon")),
+        (["-d", "1", "--method", "rk3"], ("rk3", "rk8")),
+        (["-d", "1", "--friction", "0.2"], ("--friction", ".xml")),
+        ([], ("--duration",)),
+    ],
+)
+def test_simulate_refuses(arguments, words, made, capsys):
+    assert main(["simulate", str(made / "die.py"), *arguments]) == USAGE
+    shown = one_line(capsys)
+    assert all(word in shown for word in words)
+
+
+def test_simulate_keeps_what_simulate_gives(made):
+    kept = carom.Solution.load(made / "die.h5")
+    again = carom.simulate(kept.scene, 0.05, step=1e-3)
+    np.testing.assert_array_equal(kept.position, again.position)
+    assert len(kept.impacts) == len(again.impacts) >= 1
+
+
+def test_simulate_does_not_write_over_a_result(made, capsys):
+    before = (made / "die.h5").read_bytes()
+    command = ["simulate", str(made / "die.py"), "-o", str(made / "die.h5"), "-d", "0.01"]
+    assert main(command) == USAGE
+    assert "--force" in one_line(capsys)
+    assert (made / "die.h5").read_bytes() == before
+
+
+def test_a_result_and_its_json_are_scenes_too(made, capsys):
+    """Settings are those of the result but for what is given."""
+    assert main(["info", str(made / "die.h5"), "--scene"]) == OK
+    (made / "scene.json").write_text(capsys.readouterr().out)
+    found = []
+    for name, more in (("die.h5", []), ("scene.json", ["-d", "0.05"])):
+        assert main(["simulate", str(made / name), "--step", "2e-3", "--json", *more]) == OK
+        found.append(json.loads(capsys.readouterr().out))
+    for one in found:
+        assert (one["status"], one["reached"], one["saved_steps"]) == ("SUCCESS", 0.05, 26)
+    assert found[0]["impacts"] == found[1]["impacts"]
+    (made / "other.json").write_text('{"gravity": [0, 0, 0]}')
+    assert main(["simulate", str(made / "other.json"), "-d", "1"]) == USAGE
+    assert "carom info" in one_line(capsys)
+
+
+def test_a_script_that_fails_is_named_with_its_line(tmp_path, capsys):
+    (tmp_path / "bad.py").write_text("import carom\n\nscene = carom.Scene(gravity=1 / 0)\n")
+    assert main(["simulate", str(tmp_path / "bad.py"), "-d", "1"]) == FAILED
+    assert "bad.py, line 3: ZeroDivisionError" in one_line(capsys)
+    (tmp_path / "worse.py").write_text("import carom\nscene = (\n")
+    assert main(["simulate", str(tmp_path / "worse.py"), "-d", "1"]) == FAILED
+    assert "worse.py, line 2" in one_line(capsys)
+
+
+def test_a_run_that_fails_is_kept_and_code_1(made, capsys):
+    """With steps of a second the paper's return map cannot work: the die is deep inside the ground."""
+    coarse = ["-d", "2", "--step", "1", "--impact-location", "project"]
+    command = ["simulate", str(made / "die.py"), *coarse]
+    assert main([*command, "-o", str(made / "failed.h5")]) == FAILED
+    assert "smaller step" in one_line(capsys)
+    assert not carom.Solution.load(made / "failed.h5").success
+
+
+def test_interrupted_simulate_keeps_the_run_and_resumes(made, capsys, monkeypatch):
+    """The progress function stands for Ctrl-C: half-way, as a signal to this process."""
+    out, straight = made / "long.h5", made / "straight.h5"
+
+    def stop(self, done, total):
+        if 2 * done >= total:
+            os.kill(os.getpid(), signal.SIGTERM)  # taken as Ctrl-C
+
+    command = ["simulate", str(made / "die.py"), "-d", "0.2"]
+    with monkeypatch.context() as patch:
+        patch.setattr(show.Progress, "__call__", stop)
+        assert main([*command, "-o", str(out)]) == INTERRUPTED
+    said = one_line(capsys)
+    assert f"carom simulate --resume {out}" in said
+    assert carom.Solution.load(out).t[-1] < 0.15
+    assert main(["simulate", "--resume", str(out), "--step", "1"]) == USAGE
+    assert "--step" in one_line(capsys)
+    assert main(["simulate", "--resume", str(out)]) == OK
+    assert main([*command, "-o", str(straight)]) == OK
+    runs = [carom.Solution.load(path) for path in (out, straight)]
+    np.testing.assert_array_equal(runs[0].position, runs[1].position)
+
+
+def test_functions_of_a_scene_by_their_names_in_files():
+    scene = carom.Scene()
+    body = scene.add_body(carom.Sphere(0.1), mass=1.0, position=(0, 0, 1))
+
+    def wind(t, states):
+        return np.zeros((1, 6))
+
+    scene.add_force(carom.forces.UserForce(body, wind), name="wind")
+    assert scenes.functions(scene) == {"wind.function": wind}
+
+
+def test_info_is_what_the_solution_says(made, capsys):
+    solution = carom.Solution.load(made / "die.h5")
+    assert main(["info", str(made / "die.h5"), "--json"]) == OK
+    found = json.loads(capsys.readouterr().out)
+    assert found["impacts"]["count"] == len(solution.impacts)
+    assert found["impacts"]["energy"] == pytest.approx(solution.impacts.energy_change.sum())
+    assert found["energy"]["start"] == solution.total_energy[0]
+    assert found["bodies"][0]["name"] == "die"
+    assert found["source"] == f"carom {carom.__version__}"
+    assert "10.1007" in found["citation"]
+    assert main(["info", str(made / "die.h5")]) == OK
+    out = capsys.readouterr().out
+    assert all(word in out for word in ("SUCCESS", "Box(lx=0.02", "greatest residual", "10.1007"))
+    assert "\x1b" not in out  # no colours where nobody looks
+
+
+def test_what_is_not_there_is_one_line(made, capsys, monkeypatch):
+    """A missing package is named with the line that installs it."""
+    monkeypatch.setitem(sys.modules, "h5netcdf", None)
+    assert main(["info", str(made / "die.h5")]) == FAILED
+    assert 'pip install "carom[files]"' in one_line(capsys)
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    assert main(["paper", "fig3a", "--out", str(made / "paper")]) == FAILED
+    assert 'pip install "carom[paper]"' in one_line(capsys)
+
+
+def test_extras_are_those_of_the_project():
+    text = (Path(__file__).parents[1] / "pyproject.toml").read_text(encoding="utf-8")
+    told = tomllib.loads(text)["project"]["optional-dependencies"]
+    found = extras.requirements()
+    assert set(found) == {"", *told} - set(extras.OWN)
+    assert "typer" in found[""]
+    assert found["files"] == ("h5netcdf", "h5py", "xarray", "pandas")
+    assert extras.pip_line("xarray.core") == 'pip install "carom[files]"'
+    assert extras.pip_line("xarray", "ensemble") == 'pip install "carom[ensemble]"'
+    assert extras.pip_line("nonsense") == "pip install nonsense"
+
+
+@pytest.mark.parametrize("figures", [["--figure", "fig3a", "fig2a"], ["--figure", "fig2a,fig3a"]])
+def test_figures(figures, tmp_path, capsys):
+    """The first is the form that older versions had."""
+    assert main(["paper", "--out", str(tmp_path / "x"), *figures]) == OK
+    names = [f"{name}.{end}" for name in ("fig2a", "fig3a") for end in ("pdf", "png")]
+    assert sorted(path.name for path in (tmp_path / "x").iterdir()) == names
+    assert "4 files" in capsys.readouterr().out
 
 
 def test_a_folder_that_cannot_be_made_is_one_line_and_code_1(tmp_path, capsys):
     (tmp_path / "file").write_text("")
-    assert main(["paper", "--out", str(tmp_path / "file" / "x"), "--figure", "fig3a"]) == FAILED
-    shown = capsys.readouterr().err.strip().splitlines()[-1]
-    assert shown.startswith("carom paper: ")
+    assert main(["paper", "--out", str(tmp_path / "file" / "x"), "fig3a"]) == FAILED
+    assert one_line(capsys).startswith("carom paper: ")
 
 
 def test_doctor(capsys):
@@ -62,30 +241,108 @@ def test_doctor(capsys):
     assert "numba" in out.out
     assert "bouncing sphere: error" in out.out
     assert code == (OK if "all well" in out.out else FAILED)
+    assert main(["doctor", "--json"]) == code
+    found = json.loads(capsys.readouterr().out)
+    assert found["packages"]["numpy"] == np.__version__
+    assert found["extras"]["files"]["install"] == 'pip install "carom[files]"'
+    assert found["sphere"]["error"] < 1e-10
+
+
+def test_json_has_no_nan(capsys):
+    show.as_json({"a": float("nan"), "b": np.arange(2), "c": (np.float64(1.5), Path("x"))})
+    assert json.loads(capsys.readouterr().out) == {"a": None, "b": [0, 1], "c": [1.5, "x"]}
 
 
 def test_warmup_knows_contact_that_stays():
     """Bodies come to rest in each, and one is a heap."""
-    from carom.cli.warmup import contact_scenes
-
-    for kind, (scene, duration) in contact_scenes().items():
+    for kind, (scene, duration) in warmup.contact_scenes().items():
         solution = carom.simulate(scene, duration, step=5e-3)
         assert solution.stats["holds"] > 0 or kind == "heap"
         assert np.max(np.abs(solution.velocity[-1])) < 1e-3
 
 
 def test_warmup_scenes_run():
-    """Each kind of scene has an impact, so that all of it is compiled."""
+    """Each kind of scene has an impact, so that all of it is compiled; by each method."""
     for name, scene in warmup.scenes().items():
         run = carom.simulate(scene, 0.05, step=5e-3)
         assert len(run.impacts) >= 1, name
+    kinds = {kind for kind, _, _ in warmup.work()}
+    assert {*warmup.scenes(), *warmup.contact_scenes(), "layer", "impact"} <= kinds
 
 
 def test_help_is_quick_and_needs_no_numba():
-    """What a shell does: neither numba nor matplotlib is loaded to show the help."""
+    """Neither numba nor matplotlib is loaded to show the help; nor typer by `import carom`."""
     code = (
-        "import sys; from carom.cli import main; main(['paper', '--help']); "
-        "assert not {'numba', 'matplotlib', 'scipy'} & set(sys.modules)"
+        "import sys, carom; assert 'typer' not in sys.modules; "
+        "from carom.cli import main; main(['simulate', '--help']); "
+        "assert not {'numba', 'matplotlib', 'scipy', 'rich'} & set(sys.modules)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+
+
+def test_completion(tmp_path):
+    """What bash asks for when TAB is pressed after 'carom si'."""
+    asked = {"COMP_WORDS": "carom si", "COMP_CWORD": "1", "_CAROM_COMPLETE": "complete_bash"}
+    done = subprocess.run(
+        [sys.executable, "-m", "carom.cli"], env={**os.environ, **asked},
+        capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.stdout.split() == ["simulate"]
+
+
+@pytest.mark.parametrize("columns", ["30", "200"])
+def test_narrow_and_wide_windows(columns):
+    done = subprocess.run(
+        [sys.executable, "-m", "carom.cli", "info", "--help"], capture_output=True, text=True,
+        env={**os.environ, "COLUMNS": columns, "TERMINAL_WIDTH": columns}, check=False,
+    )  # fmt: skip
+    assert done.returncode == OK, done.stderr
+    assert "carom info die.h5 --scene > die.json" in done.stdout
+
+
+def test_a_result_is_shown_drawn_and_filmed(made, capsys, monkeypatch):
+    run, page, film = made / "die.h5", made / "page.html", made / "die.gif"
+    assert main(["view", str(run), "--export", str(page)]) == OK
+    assert page.stat().st_size > 20_000
+    assert str(page) in capsys.readouterr().out
+    for kind in ((), ("energy",), ("contacts",)):  # several axes by name, two, one
+        picture = made / f"{len(kind)}.png"
+        assert main(["plot", str(run), *kind, "-o", str(picture)]) == OK
+        assert picture.read_bytes()[:4] == b"\x89PNG"
+    assert main(["film", str(run), "-o", str(film), "--fps", "50", "--speed", "0.5"]) == OK
+    assert film.read_bytes()[:3] == b"GIF"
+    assert main(["plot", str(run), "nonsense"]) == USAGE
+    assert "overview" in capsys.readouterr().err
+    calls = []
+    monkeypatch.setattr(carom, "view", lambda *a, **k: calls.append((a, k)), raising=False)
+    assert main(["view", str(run), "--no-open", "--port", "8080"]) == OK
+    assert calls == [((run,), {"port": 8080, "open": False, "export": None})]
+
+
+def test_a_model_is_read_and_its_report_shown(made, capsys):
+    # a ball of .1 m falls .2 m: e = .5 leaves half the speed sqrt(2 g .2)
+    (made / "ball.xml").write_text(
+        "<mujoco><worldbody><geom type='plane' size='1 1 1'/><body name='ball' pos='0 0 .3'><freejoint/>"
+        "<geom size='.1' mass='1'/></body></worldbody><actuator><general site='top' gear='1 0 0 0 0 0'/>"
+        "</actuator></mujoco>".replace("<geom size", "<site name='top'/><geom size")
+    )
+    out = made / "ball.h5"
+    more = [
+        "--restitution",
+        "0.5",
+        "--friction",
+        "0.1",
+        "-d",
+        "0.25",
+        "--step",
+        "0.001",
+        "-o",
+        str(out),
+    ]
+    assert main(["simulate", str(made / "ball.xml"), *more]) == OK
+    assert "actuator" in capsys.readouterr().err
+    impacts = carom.Solution.load(out).impacts
+    speed = np.sqrt(2 * 9.81 * 0.2)
+    np.testing.assert_allclose(impacts.relative_velocity_before[0, 0], -speed, rtol=1e-9)
+    np.testing.assert_allclose(impacts.relative_velocity_after[0, 0], 0.5 * speed, rtol=1e-9)

@@ -11,6 +11,7 @@ import numpy as np
 from carom.files.portable import Portable
 from carom.geometry import quaternion, spline
 from carom.ledger import Ledger
+from carom.plots.drawn import Drawn
 from carom.status import Status
 from carom.tables import ContactTable, EventTable, ForceTable, ImpactTable, force_table
 
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Solution(Portable):
+class Solution(Portable, Drawn):
     """The motion of N bodies at T saved times, with K impacts.
 
     Attributes
@@ -44,9 +45,9 @@ class Solution(Portable):
     held_residual : (T,)
         How far velocities and impulses of held contacts are from their law [m/s]: the greatest of all steps
         since the saved time before. Worked out from the velocities of the bodies and the impulses that were
-        applied, whoever found them: ``|p - P_K(p - rho (w + mu |w_t| n))| / rho`` of each point, with P_K
-        the projection on the friction cone and rho its mass; of a point held alone, the velocity that
-        it must not have. 0 where nothing is held.
+        applied, whoever found them: ``|p - P_K(p - rho (w + mu |w_t| n))| / rho`` of each point, with P_K the
+        projection on the friction cone and rho its mass; of a point held alone, the velocity that it must not
+        have. 0 where nothing is held.
     ledger : Ledger
         Where the energy went.
     status : Status
@@ -109,9 +110,8 @@ class Solution(Portable):
     @property
     def message(self) -> str:
         """How the run ended, in a sentence; if it failed, with the time it reached."""
-        if self.success:
-            return self.status.message
-        return f"{self.status.message} (reached t = {self.t[-1]:.9g} s)"
+        reached = "" if self.success else f" (reached t = {self.t[-1]:.9g} s)"
+        return self.status.message + reached
 
     @property
     def total_energy(self) -> np.ndarray:

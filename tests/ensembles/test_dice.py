@@ -86,7 +86,7 @@ def test_saved_and_said_in_words(capsys, tmp_path):
 
 
 def test_wrong_arguments(capsys):
-    assert main(["throw", "--load", "1.5"]) == 1
+    assert main(["throw", "--load", "1.5"]) == 2
     assert "--load must be" in capsys.readouterr().err
-    assert main(["throw", "--count", "0"]) == 1
+    assert main(["throw", "--count", "0"]) == 2
     assert "runs must be" in capsys.readouterr().err

@@ -3,7 +3,8 @@
 import matplotlib as mpl
 import pytest
 
-from carom.paper import book, style
+from carom.paper import book
+from carom.plots import style
 
 
 @pytest.fixture(scope="module")

@@ -112,3 +112,17 @@ def test_all_pairs_of_a_scene_with_all_kinds_of_shapes():
     assert s.contact_mode.shape == (len(s.t), 6)
     assert np.all(s.impacts.contact < 6)
     assert np.max(np.abs(s.ledger.residual)) < 1e-5 * s.total_energy[0]
+
+
+def test_a_compound_about_a_given_mass_centre():
+    parts = [(Sphere(0.1), (0, 0, 0)), (Box(0.2, 0.2, 0.2), (0.5, 0, 0))]
+    shape = Compound(parts, centroid=(0, 0.3, 0))
+    assert shape.support((0, -1, 0))[1] == pytest.approx(-0.4)
+    assert shape.support((1, 0, 0))[0] == pytest.approx(0.6)
+    assert shape.size == pytest.approx(np.hypot(0.5, 0.3) + np.sqrt(0.03))
+    scene = Scene()
+    with pytest.raises(ValueError, match="inertia must be given"):
+        scene.add_body(shape, mass=1.0)
+    assert scene.add_body(shape, mass=1.0, inertia=(1, 1, 1)).shape is shape
+    with pytest.raises(ValueError, match="masses must be left out"):
+        Compound(parts, masses=(1, 1), centroid=(0, 0, 0))

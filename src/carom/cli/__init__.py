@@ -1,68 +1,44 @@
-"""The command ``carom``. Each command is a file here: `add` its arguments, `run` its work."""
+"""The command ``carom``: `main` runs it and turns whatever happens into an exit code and one line.
+
+Each command is a file here, a function with its options as arguments; `app.py` puts them together.
+"""
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Sequence
 
-OK, FAILED, USAGE = 0, 1, 2
-
-_ABOUT = """\
-Motion of multibody systems with frictional impacts.
-
-  carom paper       reproduce the paper: figures and tables under out/paper
-  carom throw       throw a die many times: how often each face, is it fair
-  carom warmup      compile everything once, so that later runs start at once
-  carom doctor      check this installation
-"""
-_END = "'carom COMMAND --help' explains a command. Exit codes: 0 done, 1 failed, 2 wrong arguments."
-
-
-class _Parser(argparse.ArgumentParser):
-    """A parser whose errors are one line and the way to the help."""
-
-    def error(self, message: str):
-        self.exit(USAGE, f"{self.prog}: {message} (see '{self.prog} --help')\n")
-
-
-def parser() -> argparse.ArgumentParser:
-    """Return the parser of the command with all its sub-commands."""
-    from carom import __version__
-    from carom.cli import doctor, paper, throw, warmup
-
-    main = _Parser(
-        prog="carom",
-        description=_ABOUT,
-        epilog=_END,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    main.add_argument("--version", action="version", version=f"carom {__version__}")
-    commands = main.add_subparsers(metavar="COMMAND", dest="command")
-    for module in (paper, throw, warmup, doctor):
-        module.add(commands)
-    return main
+#: exit codes: done; failed; wrong arguments, nothing was run; interrupted (Ctrl-C, as shells have it)
+OK, FAILED, USAGE, INTERRUPTED = 0, 1, 2, 130
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command; return its exit code."""
-    from carom.status import SimulationError
+    from typing import Any
 
-    whole = parser()
+    import typer
+
+    from carom.cli.app import command
+
+    # BadParameter is a UsageError, which is a ClickException: those classes are Click's own, or copies in typer
+    usage_error: Any = typer.BadParameter.__mro__[1]
+    any_error: Any = typer.BadParameter.__mro__[2]
+    whole: Any = command()
     try:
-        given = whole.parse_args(arguments)
-    except SystemExit as leave:  # help, version, or wrong arguments
-        return int(leave.code or 0)
-    if given.command is None:
-        whole.print_help()
+        code = whole.main(
+            None if arguments is None else list(arguments), prog_name="carom", standalone_mode=False
+        )
+    except usage_error as error:
+        path = error.ctx.command_path if error.ctx else "carom"
+        message = " ".join(error.format_message().split())
+        if "No such command" in message:
+            message += f" Commands: {', '.join(whole.commands)}."
+        print(f"{path}: {message} (see '{path} --help')", file=sys.stderr)
         return USAGE
-    try:
-        return given.run(given)
-    except KeyboardInterrupt:
+    except any_error as error:  # pragma: no cover: Click has few others
+        print(f"carom: {error.format_message()}", file=sys.stderr)
+        return FAILED
+    except (KeyboardInterrupt, typer.Abort):
         print("carom: interrupted", file=sys.stderr)
-    except ModuleNotFoundError as error:
-        extra = f"; try: pip install 'carom[{given.extra}]'" if hasattr(given, "extra") else ""
-        print(f"carom {given.command}: {error}{extra}", file=sys.stderr)
-    except (SimulationError, ValueError, OSError) as error:
-        print(f"carom {given.command}: {error}", file=sys.stderr)
-    return FAILED
+        return INTERRUPTED
+    return int(code or OK)

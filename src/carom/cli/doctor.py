@@ -6,61 +6,95 @@ import os
 import platform
 import sys
 import time
-from importlib import metadata
 from pathlib import Path
+from typing import Annotated, Any
 
-_ABOUT = """\
-Say which versions are installed and where compiled code is kept, and run a bouncing sphere against
-its closed form. Exit code 1 if something is wrong."""
-_NEEDED = ("numpy", "scipy", "numba")
-_OPTIONAL = ("matplotlib", "tqdm")
+import typer
 
-
-def add(commands) -> None:
-    """Add the command to the parser."""
-    this = commands.add_parser("doctor", help="check this installation", description=_ABOUT)
-    this.set_defaults(run=run)
+from carom.cli import FAILED, show
+from carom.cli.extras import requirements, version
+from carom.cli.outcome import warn
 
 
-def run(given) -> int:
-    """Check versions, cache and a run; name what is wrong and what to do."""
+def run(
+    warm: Annotated[
+        bool, typer.Option("--warm", help="Compile everything first, as 'carom warmup' does.")
+    ] = False,
+    json: Annotated[bool, typer.Option("--json", help="Print what was found as JSON.")] = False,
+) -> int:
+    """Check this installation.
+
+    Says which versions are there, which extras are missing and how to get them, and where compiled code
+    is kept, and runs a bouncing sphere against its closed form. Exit code 1 if something is wrong; an
+    extra that is not installed is nothing wrong.
+
+    For example:
+      carom doctor
+      carom doctor --warm            compile everything, then check
+      carom doctor --json > installation.json
+    """
+    from carom.cli import warmup
+
+    if warm:
+        warmup.compile_all()
+    found = examine()
+    if json:
+        show.as_json(found)
+    else:
+        _print(found)
+    for line in found["wrong"]:
+        warn("doctor", line)
+    return FAILED if found["wrong"] else 0
+
+
+def examine() -> dict[str, Any]:
+    """Return versions, extras, the cache, a run, and what is wrong."""
     import carom
 
-    print(f"carom {carom.__version__} at {Path(carom.__file__).parent}")
-    print(f"python {platform.python_version()} at {sys.executable}, {platform.machine()}")
-    trouble = []
-    for name in (*_NEEDED, *_OPTIONAL):
-        try:
-            print(f"{name} {metadata.version(name)}")
-        except metadata.PackageNotFoundError:
-            print(f"{name} is not installed")
-            if name in _NEEDED:
-                trouble.append(f"{name} is missing: pip install {name}")
-    trouble += _cache()
-    trouble += _smoke()
-    for line in trouble:
-        print(f"carom doctor: {line}", file=sys.stderr)
-    print("all well" if not trouble else f"{len(trouble)} found wrong")
-    return int(bool(trouble))
+    wrong: list[str] = []
+    wanted = requirements()
+    needed = {name: version(name) for name in wanted.pop("")}
+    wrong += [f"{n} is missing: pip install {n}" for n, v in needed.items() if v is None]
+    extras = {extra: {name: version(name) for name in names} for extra, names in wanted.items()}
+    cache, trouble = _cache()
+    sphere, wrong_run = _smoke()
+    return {
+        "carom": carom.__version__, "at": str(Path(carom.__file__).parent),
+        "python": platform.python_version(), "executable": sys.executable,
+        "machine": f"{platform.system()} {platform.machine()}, {os.cpu_count()} processors",
+        "packages": needed,
+        "extras": {
+            extra: {
+                "packages": names, "complete": None not in names.values(),
+                "install": f'pip install "carom[{extra}]"',
+            }
+            for extra, names in extras.items()
+        },
+        "cache": cache, "sphere": sphere, "wrong": wrong + trouble + wrong_run,
+    }  # fmt: skip
 
 
-def _cache() -> list[str]:
+def _cache() -> tuple[dict[str, Any], list[str]]:
     if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
-        return ["NUMBA_DISABLE_JIT is set: everything runs uncompiled, a thousand times slower"]
+        why = "NUMBA_DISABLE_JIT is set: everything runs uncompiled, a thousand times slower"
+        return {"folder": None, "megabytes": 0.0}, [why]
     from carom import march
 
-    cache = getattr(march.run, "_cache", None)
-    folder = getattr(cache, "cache_path", None)
+    folder = getattr(getattr(march.run, "_cache", None), "cache_path", None)
     if not folder:
-        return ["no place for compiled code: set NUMBA_CACHE_DIR to a folder that can be written"]
-    size = sum(file.stat().st_size for file in Path(folder).glob("*.nb*"))
-    print(f"compiled code in {folder} ({size / 1e6:.1f} MB)")
+        why = "no place for compiled code: set NUMBA_CACHE_DIR to a folder that can be written"
+        return {"folder": None, "megabytes": 0.0}, [why]
+    top = Path(folder)
+    if (top.parent / "jit.py").exists() or (top / "jit.py").exists():  # beside the source
+        top = top if (top / "jit.py").exists() else top.parent
+    size = sum(file.stat().st_size for file in top.rglob("*.nb[ic]"))
+    found = {"folder": str(folder), "megabytes": size / 1e6}
     if not os.access(folder, os.W_OK):
-        return [f"{folder} cannot be written: set NUMBA_CACHE_DIR to a folder that can"]
-    return []
+        return found, [f"{folder} cannot be written: set NUMBA_CACHE_DIR to a folder that can"]
+    return found, []
 
 
-def _smoke() -> list[str]:
+def _smoke() -> tuple[dict[str, float], list[str]]:
     """Run a sphere dropped from 0.4 m; t1 = sqrt(2 h / g) and the speed e g t1."""
     import carom
 
@@ -77,7 +111,35 @@ def _smoke() -> list[str]:
     impacts = run.impacts
     error = abs(impacts.time[0] - first) if len(impacts) else float("inf")
     error += abs(impacts.relative_velocity_after[0, 0] - 0.8 * 9.81 * first) if len(impacts) else 0
-    print(f"bouncing sphere: error {error:.1e}, first run {spent[0]:.2f} s, next {spent[1]:.4f} s")
+    found = {"error": float(error), "first_run_seconds": spent[0], "next_run_seconds": spent[1]}
     if not error < 1e-10:
-        return [f"the bouncing sphere is wrong by {error:.1e}: please report this installation"]
-    return []
+        return found, [
+            f"the bouncing sphere is wrong by {error:.1e}: please report this installation"
+        ]
+    return found, []
+
+
+def _print(found: dict[str, Any]) -> None:
+    print(f"carom {found['carom']} at {found['at']}")
+    print(f"python {found['python']} at {found['executable']}, {found['machine']}")
+    show.table(
+        ["needed", "version"], [(n, v or "missing") for n, v in found["packages"].items()], left=2
+    )
+    rows = [
+        (
+            extra, "yes" if told["complete"] else told["install"],
+            ", ".join(f"{n} {v or '(missing)'}" for n, v in told["packages"].items()),
+        )
+        for extra, told in found["extras"].items()
+    ]  # fmt: skip
+    print()
+    show.table(["extra", "there?", "packages"], rows, left=3)
+    print()
+    cache, sphere = found["cache"], found["sphere"]
+    if cache["folder"]:
+        print(f"compiled code in {cache['folder']} ({cache['megabytes']:.0f} MB)")
+    print(
+        f"bouncing sphere: error {sphere['error']:.1e}, first run {sphere['first_run_seconds']:.2f} s, "
+        f"next {sphere['next_run_seconds']:.4f} s"
+    )
+    print("all well" if not found["wrong"] else f"{len(found['wrong'])} found wrong")

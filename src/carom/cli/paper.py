@@ -2,76 +2,71 @@
 
 from __future__ import annotations
 
-import argparse
-import sys
 import time
 from pathlib import Path
+from typing import Annotated
 
-_ABOUT = """\
-Reproduce the paper: Figs. 2a to 6b as PDF and PNG, the table of numbers (Markdown and CSV),
-impacts of a real cube, and index.md, a page that shows and explains them all.
+import typer
 
-  carom paper                          everything, under out/paper
-  carom paper --figure fig3a fig6b     these figures only
-"""
+from carom.cli import show
+from carom.paper.book import names
 
-
-def add(commands) -> None:
-    """Add the command to the parser."""
-    from carom.paper.book import names
-
-    this = commands.add_parser(
-        "paper",
-        help="reproduce the paper: figures and tables",
-        description=_ABOUT,
-        epilog="Figures: " + ", ".join(names()),
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    this.add_argument(
-        "--out", type=Path, default=Path("out/paper"), metavar="DIR",
-        help="where to write; made if it is not there (default: %(default)s)",
-    )  # fmt: skip
-    this.add_argument(
-        "--figure", nargs="+", choices=names(), metavar="NAME", default=None,
-        help="only these figures, without tables and pages",
-    )  # fmt: skip
-    this.set_defaults(run=run, extra="paper")
+_WHICH = f"Of {', '.join(names())}."
 
 
-def run(given) -> int:
-    """Write the figures and tables, with a progress bar."""
+def _chosen(given: list[str] | None) -> list[str]:
+    """Return names of figures; several may be in one word, separated by commas."""
+    chosen = [name for word in given or [] for name in word.split(",") if name]
+    for name in chosen:
+        if name not in names():
+            raise typer.BadParameter(f"{name!r} is none of {', '.join(names())}.")
+    return chosen
+
+
+def run(
+    figures: Annotated[
+        list[str] | None,
+        typer.Argument(
+            metavar="FIGURE", callback=_chosen, show_default=False,
+            help=f"Only these figures, without tables and pages. {_WHICH}",
+        ),
+    ] = None,
+    figure: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--figure", metavar="NAME", callback=_chosen, show_default=False,
+            help="The same as an option: may be repeated, or hold several names with commas.",
+        ),
+    ] = None,
+    out: Annotated[
+        Path, typer.Option(metavar="DIR", help="Where to write; made if it is not there.")
+    ] = Path("out/paper"),
+) -> int:  # fmt: skip
+    """Reproduce the paper: figures and tables.
+
+    Figs. 2a to 6b as PDF and PNG, the table of numbers (Markdown and CSV), impacts of a real cube,
+    and index.md, a page that shows and explains them all. Half a minute, and some minutes the first
+    time, while everything is compiled.
+
+    For example:
+      carom paper                            everything, under out/paper
+      carom paper fig3a fig6b                these figures only
+      carom paper --figure fig3a,fig6b --out pictures
+    """
     from carom.paper.book import make, parts
 
     start = time.perf_counter()
-    bar = _Bar(parts(given.figure))
-    try:
-        written = make(given.out, given.figure, bar)
-    finally:
-        bar.close()
+    chosen = [*(figures or []), *(figure or [])] or None
+    total = parts(chosen)
+    with show.progress("paper", total) as bar:
+        begun = iter(range(total + 1))
+
+        def tell(name: str) -> None:
+            bar(next(begun), total)
+            bar.tell(name)
+
+        written = make(out, chosen, tell)
     spent = time.perf_counter() - start
-    print(f"carom paper: {len(written)} files under {given.out} in {spent:.1f} s", end="")
-    print("" if given.figure else f"; begin with {given.out / 'index.md'}")
+    more = "" if chosen else f"; begin with {out / 'index.md'}"
+    print(f"carom paper: {len(written)} files under {out} in {spent:.1f} s{more}")
     return 0
-
-
-class _Bar:
-    """A progress bar that names what is being made; without tqdm, nothing."""
-
-    def __init__(self, total: int):
-        self.begun, self.bar = 0, None
-        try:
-            from tqdm import tqdm
-        except ModuleNotFoundError:
-            print("carom paper: no progress bar without tqdm", file=sys.stderr)
-        else:
-            self.bar = tqdm(total=total, unit="part", leave=False, dynamic_ncols=True)
-
-    def __call__(self, name: str) -> None:
-        if self.bar is not None:
-            self.bar.update(self.begun - self.bar.n)
-            self.bar.set_postfix_str(name)
-        self.begun += 1
-
-    def close(self) -> None:
-        if self.bar is not None:
-            self.bar.close()

@@ -2,47 +2,69 @@
 
 from __future__ import annotations
 
-import json
 import time
+from types import SimpleNamespace
+from typing import Annotated
 
-_ABOUT = """\
-Throw a die many times in random orientation, each throw to rest, with every impact located and resolved; say
-how often each face came up, and whether that is fair."""
-_END = """\
-Example: carom throw --count 100000 --load 0.3 --save loaded.zarr
-A run that is interrupted goes on with the same arguments if it is saved. Results depend on --seed, not on
---workers."""
+import typer
+
+from carom.cli import INTERRUPTED, show
 
 
-def add(commands) -> None:
-    """Add the command to the parser."""
-    import argparse
+def run(
+    count: Annotated[int, typer.Option(metavar="N", help="Throws.")] = 1000,
+    edge: Annotated[float, typer.Option(metavar="M", help="Of the die [m].")] = 0.02,
+    height: Annotated[float, typer.Option(metavar="M", help="Of its centre at the start [m].")] = 0.3,
+    speed: Annotated[float, typer.Option(metavar="X", help="Horizontal [m/s].")] = 0.5,
+    drop: Annotated[float, typer.Option(metavar="X", help="Downward speed [m/s].")] = 0.5,
+    spin: Annotated[float, typer.Option(metavar="X", help="About the horizontal [rad/s].")] = 10.0,
+    restitution: Annotated[float, typer.Option(metavar="E", help="0 to 1.")] = 0.5,
+    friction: Annotated[float, typer.Option(metavar="MU", help="Coefficient.")] = 0.2,
+    load: Annotated[
+        float, typer.Option(metavar="X", help="Part of the mass under face 1, 0 to below 1.")
+    ] = 0.0,
+    step: Annotated[float, typer.Option(metavar="S", help="Time step [s].")] = 2e-3,
+    seconds: Annotated[float, typer.Option(metavar="S", help="Longest throw [s].")] = 4.0,
+    seed: Annotated[int, typer.Option(metavar="N", help="Of the orientations.")] = 0,
+    workers: Annotated[
+        int | None, typer.Option(metavar="N", help="Threads.", show_default="all processors")
+    ] = None,
+    save: Annotated[
+        str | None,
+        typer.Option(
+            metavar="DIR", show_default=False, help="Folder that results are written to, and gone on with."
+        ),
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print the results as JSON.")] = False,
+) -> int:  # fmt: skip
+    """Throw a die many times: how often each face, is it fair.
 
-    this = commands.add_parser(
-        "throw", help="throw a die many times", description=_ABOUT, epilog=_END,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
+    Orientations at the start are random; each throw goes to rest, with every impact located and
+    resolved. Says how often each face came up, and whether that is fair. With --save a run that is
+    interrupted goes on with the same arguments. Results depend on --seed, not on --workers.
+
+    For example:
+      carom throw --count 10000                             is it fair?
+      carom throw --count 100000 --load 0.3 --save loaded.zarr
+    """
+    import carom
+
+    given = SimpleNamespace(
+        edge=edge, height=height, speed=speed, drop=drop, spin=spin, restitution=restitution,
+        friction=friction, load=load,
     )  # fmt: skip
-    number = {"type": float, "metavar": "X"}
-    this.add_argument("--count", type=int, default=1000, metavar="N", help="throws (default 1000)")
-    this.add_argument("--edge", default=0.02, help="of the die, m (0.02)", **number)
-    this.add_argument("--height", default=0.3, help="of its centre at the start, m (0.3)", **number)
-    this.add_argument("--speed", default=0.5, help="horizontal, m/s (0.5)", **number)
-    this.add_argument("--drop", default=0.5, help="downward speed, m/s (0.5)", **number)
-    this.add_argument("--spin", default=10.0, help="about the horizontal, rad/s (10)", **number)
-    this.add_argument("--restitution", default=0.5, help="0 to 1 (0.5)", **number)
-    this.add_argument("--friction", default=0.2, help="coefficient (0.2)", **number)
-    this.add_argument(
-        "--load", default=0.0, help="part of the mass under face 1, 0 to below 1 (0)", **number
-    )
-    this.add_argument("--step", default=2e-3, help="s (0.002)", **number)
-    this.add_argument("--seconds", default=4.0, help="longest throw, s (4)", **number)
-    this.add_argument("--seed", type=int, default=0, metavar="N", help="of the orientations (0)")
-    this.add_argument("--workers", type=int, metavar="N", help="threads (all processors)")
-    this.add_argument(
-        "--save", metavar="PATH", help="folder that results are written to, and gone on with"
-    )
-    this.add_argument("--json", action="store_true", help="print the results as JSON")
-    this.set_defaults(run=run, extra="ensemble")
+    begin = time.perf_counter()
+    with show.progress("throw") as bar:
+        thrown = carom.ensemble(
+            scene(given), seconds, step=step, runs=count, seed=seed, workers=workers, save=save,
+            vary={"die.orientation": carom.UniformOrientation()}, progress=bar,
+        )  # fmt: skip
+    found = summary(thrown, time.perf_counter() - begin)
+    if json:
+        show.as_json(found)
+    else:
+        print(text(found))
+    return 0 if thrown.complete else INTERRUPTED
 
 
 def scene(given):
@@ -67,21 +89,6 @@ def scene(given):
     )  # fmt: skip
     made.add_contact(die, table, restitution=given.restitution, friction=given.friction)
     return made
-
-
-def run(given) -> int:
-    """Throw, and report."""
-    import carom
-
-    begin = time.perf_counter()
-    thrown = carom.ensemble(
-        scene(given), given.seconds, step=given.step, runs=given.count, seed=given.seed,
-        vary={"die.orientation": carom.UniformOrientation()}, workers=given.workers,
-        save=given.save, progress=not given.json,
-    )  # fmt: skip
-    found = summary(thrown, time.perf_counter() - begin)
-    print(json.dumps(found, indent=2) if given.json else text(found))
-    return 0 if thrown.complete else 1
 
 
 def summary(thrown, seconds: float) -> dict:

@@ -3,19 +3,100 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
+from typing import Annotated
 
-_ABOUT = """\
-Compile the library for every kind of system (free bodies, trees of joints, loops of joints) and every method,
-and for what the default method does with bodies that come to rest, touch each other, or lie in heaps. Compiled
-code is kept on disk: later processes load it in a fraction of a second."""
+import typer
+
+from carom.cli import show
+
+#: kinds of work that share compiled code: done by one process
+TOGETHER = (
+    ("free", "rest", "layer", "impact", "many contacts"),
+    ("stack", "heap"),
+    ("loops",),
+    ("tree",),
+)
 
 
-def add(commands) -> None:
-    """Add the command to the parser."""
-    this = commands.add_parser(
-        "warmup", help="compile everything once", description=_ABOUT, epilog="Takes a few minutes."
-    )
-    this.set_defaults(run=run)
+def run(
+    workers: Annotated[
+        int | None, typer.Option(min=1, metavar="N", show_default="all processors", help="Processes.")
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print times as JSON.")] = False,
+) -> int:  # fmt: skip
+    """Compile everything once, so that later runs start at once.
+
+    The library is compiled for every kind of system (free bodies, trees of joints, loops of joints)
+    and every method, and for what the default method does with bodies that come to rest, touch each
+    other, or lie in heaps. Compiled code is kept on disk: later processes load it in a fraction of a
+    second. Takes some minutes the first time, seconds after that.
+
+    For example:
+      carom warmup
+      NUMBA_CACHE_DIR=/scratch/numba carom warmup      keep compiled code there
+    """
+    rows = compile_all(workers)
+    if json:
+        show.as_json(rows)
+    else:
+        show.table(
+            ["scene", "method", "first run / s"],
+            [(row["kind"], row["method"], f"{row['seconds']:.2f}") for row in rows], left=2,
+        )  # fmt: skip
+    return 0
+
+
+def compile_all(workers: int | None = None) -> list[dict]:
+    """Compile everything in some processes; return kind, method and seconds of each part."""
+    import multiprocessing
+    import os
+    from concurrent.futures import ProcessPoolExecutor, as_completed
+
+    workers = min(workers or os.cpu_count() or 1, len(TOGETHER))
+    total, rows = len(work()), []
+    with show.progress("compile", total) as bar:
+        if workers == 1:
+            for kinds in TOGETHER:
+                rows += compile_kinds(kinds)
+                bar(len(rows), total)
+            return rows
+        context = multiprocessing.get_context("spawn")
+        with ProcessPoolExecutor(workers, mp_context=context) as pool:
+            for done in as_completed([pool.submit(compile_kinds, kinds) for kinds in TOGETHER]):
+                rows += done.result()
+                bar(len(rows), total)
+    order = {kind: k for k, kind in enumerate(kind for kinds in TOGETHER for kind in kinds)}
+    return sorted(rows, key=lambda row: order[row["kind"]])
+
+
+def compile_kinds(kinds: tuple[str, ...]) -> list[dict]:
+    """Compile some kinds of work in this process."""
+    rows = []
+    for kind, method, do in work():
+        if kind in kinds:
+            begin = time.perf_counter()
+            do()
+            rows.append({"kind": kind, "method": method, "seconds": time.perf_counter() - begin})
+    return rows
+
+
+def work() -> list[tuple[str, str, Callable[[], object]]]:
+    """Return all that is to be compiled: kind of scene, method, and what compiles it."""
+    import carom
+    from carom.simulate import METHODS
+
+    def simulating(scene, duration, method):
+        return lambda: carom.simulate(scene, duration, step=5e-3, method=method)
+
+    W, u = [[1, 0, 0], [0, 3.5, 0], [0, 0, 3.5]], (-1, 0.5, 0.1)
+    return [
+        *((k, m, simulating(s, 0.05, m)) for k, s in scenes().items() for m in METHODS),
+        *((k, "rk4", simulating(s, t, "rk4")) for k, (s, t) in contact_scenes().items()),
+        ("layer", "", lambda: carom.impact_layer(W, u, 0.3, 0.5, penetration=0.2, width=1e-6)),
+        ("impact", "", lambda: carom.resolve_impact(W, u, 0.3, 0.5)),
+        ("many contacts", "", lambda: carom.solve_contacts(W, u, 0.3)),
+    ]
 
 
 def scenes() -> dict:
@@ -26,29 +107,6 @@ def scenes() -> dict:
 def contact_scenes() -> dict:
     """Return scenes of contact that stays, and how long each is to run [s]."""
     return {"rest": (_free(), 0.4), "stack": (_pile(2), 0.2), "heap": (_pile(9), 0.2)}
-
-
-def run(given) -> int:
-    """Run each scene by each method, and say how long the first run took."""
-    import carom
-    from carom.simulate import METHODS
-
-    work = [(kind, s, 0.05, method) for kind, s in scenes().items() for method in METHODS]
-    work += [(kind, s, duration, "rk4") for kind, (s, duration) in contact_scenes().items()]
-    for kind, scene, duration, method in work:
-        start = time.perf_counter()
-        carom.simulate(scene, duration, step=5e-3, method=method)
-        print(f"{kind:6} {method:10} {time.perf_counter() - start:7.2f} s", flush=True)
-    start = time.perf_counter()
-    carom.impact_layer(
-        [[1, 0, 0], [0, 3.5, 0], [0, 0, 3.5]], (-1, 0.5, 0.1), 0.3, 0.5, penetration=0.2, width=1e-6
-    )
-    carom.resolve_impact([[1, 0, 0], [0, 3.5, 0], [0, 0, 3.5]], (-1, 0.5, 0.1), 0.3, 0.5)
-    print(f"{'impact':17} {time.perf_counter() - start:7.2f} s")
-    start = time.perf_counter()
-    carom.solve_contacts([[1, 0, 0], [0, 3.5, 0], [0, 0, 3.5]], (-1, 0.5, 0.1), 0.3)
-    print(f"{'many contacts':17} {time.perf_counter() - start:7.2f} s")
-    return 0
 
 
 def _free():

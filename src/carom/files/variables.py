@@ -155,7 +155,7 @@ def _joints(solution) -> list[Variable]:
         value, rate = solution.joint_coordinates(joint)
         number = value.shape[1]
         labels += [joint.name if number == 1 else f"{joint.name}[{k}]" for k in range(number)]
-        units += _coordinate_units(joint)
+        units += coordinate_units(joint)
         q.append(value)
         rates.append(rate)
     if not labels:
@@ -172,7 +172,8 @@ def _joints(solution) -> list[Variable]:
     ]
 
 
-def _coordinate_units(joint) -> list[str]:
+def coordinate_units(joint) -> list[str]:
+    """Return the units of the coordinates of a joint; none for one without."""
     d = joint.definition
     if isinstance(d, Distance):
         return ["m"]

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from carom.ledger import Ledger
+from carom.plots.drawn import Drawn
 from carom.status import Status
 from carom.tables import EventTable
 
@@ -74,7 +75,7 @@ class CoordinateImpactTable:
 
 
 @dataclass(frozen=True, eq=False)
-class GeneralizedSolution:
+class GeneralizedSolution(Drawn):
     """The motion of a system in n coordinates at T saved times, with K impacts.
 
     Attributes

@@ -7,27 +7,37 @@ from carom.gradient.parameters import make_parameters
 from carom.gradient.result import Sensitivities
 from carom.solution import Solution
 
+WAYS = ("auto", "saltation", "differences")
 
-def sensitivities(solution: Solution, with_respect_to, *, throw: bool = True) -> Sensitivities:
+
+def sensitivities(
+    solution: Solution, with_respect_to, *, by: str = "auto", throw: bool = True
+) -> Sensitivities:
     """Differentiate a run: its final state and its impacts, by its start and by numbers of its scene.
 
-    For bodies that fly freely between impacts of one point each. Free flight is differentiated along the exact
-    motion, each impact by its saltation matrix, with the time at which it happens.
+    Bodies that fly freely between impacts of one point each are differentiated along the exact motion, each
+    impact by its saltation matrix, with the time at which it happens. With joints, forces or contacts that are
+    held the run is taken again in pieces from event to event, each piece is differentiated by differences, and
+    tangents are handed on: errors do not grow with the length of the run.
 
     Parameters
     ----------
     solution : Solution
-        Of a scene without joints and forces, by any method but the paper's, with located impacts.
+        By any method but the paper's, with located impacts. By differences, with steps of one length.
     with_respect_to : str or sequence of str
         With the names of bodies and contacts of the scene before the dot:
 
         - ``"body.position"``, ``"body.velocity"``, ``"body.angular_velocity"``: three columns each, world axes;
         - ``"body.orientation"``: three, a rotation vector in world axes by which the body is turned, with
-          velocities as they are;
+          velocities as they are. Where bodies are joined: what the joints let pass of it, nearest in the
+          kinetic metric, the joints being where they are;
         - ``"body.mass"``, with the inertia as it is; ``"body.inertia"``: six, xx, yy, zz, xy, xz, yz in the
-          axes of the body;
+          axes of the body (not by differences);
         - ``"contact.restitution"``, ``"contact.friction"`` (in impacts);
         - ``"gravity"``: three; ``"restitution"`` and ``"friction"`` of all contacts together.
+    by : str
+        ``"saltation"``, ``"differences"`` or ``"auto"`` (default): differences if the scene has joints,
+        constraints or forces.
     throw : bool
         True (default): if a part of the run has no derivative by one of the parameters, a ValueError says
         why. False: NaN there, and the reasons in `notes`.
@@ -43,7 +53,8 @@ def sensitivities(solution: Solution, with_respect_to, *, throw: bool = True) ->
     ValueError
         For names that the scene does not know; for scenes and methods that are not as above; and if `throw`
         where there is no derivative: several points strike at once (except by parameters that keep them
-        together), a contact is held, slip starts from rest, an impact is about to take another course.
+        together), a contact is held (by saltation), slip starts from rest, an impact is about to take another
+        course.
 
     Notes
     -----
@@ -66,14 +77,15 @@ def sensitivities(solution: Solution, with_respect_to, *, throw: bool = True) ->
     """
     check.instance("solution", solution, (Solution,))
     check.flag("throw", throw)
+    check.choice("by", by, WAYS)
     scene = solution.scene
-    for what, parts in (
-        ("joints", scene.joints), ("constraints", scene.constraints), ("forces", scene.forces),
-    ):  # fmt: skip
-        if parts:
-            raise ValueError(
-                f"solution must be of a scene of free bodies, got one with {what}: {parts[0]!r}"
-            )
+    parts = (*scene.joints, *scene.constraints, *scene.forces)
+    if parts and by == "saltation":
+        raise ValueError(
+            f'solution must be of a scene of free bodies for by="saltation", got one with {parts[0]!r}; take '
+            'by="differences"'
+        )
+    differences = by == "differences" or bool(parts)
     settings, run = solution.settings, solution._run
     if settings["method"].startswith("paper") or settings["impact_location"] != "locate":
         raise ValueError(
@@ -83,13 +95,17 @@ def sensitivities(solution: Solution, with_respect_to, *, throw: bool = True) ->
     if run.options.add_layer_time:
         raise ValueError("solution must be of a run with Options(add_layer_time=False), got True")
 
-    from carom.gradient.walk import Walk
-
     system = run.compiled.system
     number = 1 + int(max(system.contacts.number, default=-1))
     parameters = make_parameters(scene, with_respect_to, number, run.compiled.to_principal)
-    walk = Walk(solution, parameters)
-    result = walk.result()
+    if differences:
+        from carom.gradient.differences import differentiate
+
+        result = differentiate(solution, parameters)
+    else:
+        from carom.gradient.walk import Walk
+
+        result = Walk(solution, parameters).result()
     if throw and result.notes:
         raise ValueError(
             "solution must be differentiable, got a run where "

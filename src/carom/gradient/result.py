@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom.gradient.body import Moving, fly
+from carom.gradient.tangents import Tangents
 
 NEAR = 0.05  # margins below this part of their scale are shown as near
 
@@ -89,7 +89,10 @@ class Sensitivities:
         vertices over half-spaces are looked at, not two bodies that pass each other, nor curved ones.
     defect : float
         Greatest distance between the stepped motion and the exact free flight that is differentiated, as a
-        part of the size of a body: the error of the time integration.
+        part of the size of a body: the error of the time integration. By differences: the greatest estimate of
+        their own error, relative.
+    by : str
+        ``"saltation"``, the exact derivative of free flight and impacts; or ``"differences"`` of pieces.
     """
 
     labels: tuple[str, ...]
@@ -104,19 +107,21 @@ class Sensitivities:
     margins: tuple[Margin, ...]
     defect: float
     final: Derivative = field(init=False)
-    _knots: list[list[Moving]]
-    _free: list[list[bool]]
-    _end: float
+    by: str
+    _motion: Tangents
 
     def __post_init__(self):
-        object.__setattr__(self, "final", self.evaluate(self._end))
+        object.__setattr__(self, "final", self.evaluate(self._motion.end))
 
     @property
     def reach(self) -> np.ndarray:
         """How far (P,) each parameter alone may go until the sequence of contact changes, to first order.
 
-        The least of all margins; of a parameter that has no derivative, NaN.
+        The least of all margins; of a parameter that has no derivative, NaN. By differences no margins are
+        known: NaN.
         """
+        if self.by == "differences":
+            return np.full(len(self.labels), np.nan)
         if not self.margins:
             return np.full(len(self.labels), np.inf)
         return np.min([m.reach for m in self.margins], axis=0)
@@ -130,7 +135,7 @@ class Sensitivities:
         Parameters
         ----------
         t : float or (n,)
-            Times within the run [s].
+            Times within the run [s]; by differences, ends of its steps.
 
         Returns
         -------
@@ -143,15 +148,10 @@ class Sensitivities:
             If a time is outside the run.
         """
         times = np.atleast_1d(np.asarray(t, dtype=float))
-        begin = self._knots[0][0].t
-        if not np.all((times >= begin) & (times <= self._end)):
-            raise ValueError(f"t must be within [{begin:g}, {self._end:g}] s, got {t!r}")
-        X = np.empty((len(times), len(self._knots), 12, len(self.labels)))
-        for b, (knots, free) in enumerate(zip(self._knots, self._free)):
-            last = np.searchsorted([k.t for k in knots], times, side="right") - 1
-            for i in np.argsort(times, kind="stable"):
-                k = last[i]
-                X[i, b] = fly(knots[k], float(times[i])).X if free[k] else knots[k].X
+        begin, end = self._motion.begin, self._motion.end
+        if not np.all((times >= begin) & (times <= end)):
+            raise ValueError(f"t must be within [{begin:g}, {end:g}] s, got {t!r}")
+        X = self._motion.at(times)
         X = X[0] if np.ndim(t) == 0 else X
         return Derivative(*(X[..., 3 * k : 3 * k + 3, :] for k in range(4)))
 
@@ -160,6 +160,6 @@ class Sensitivities:
         near = [m for m in self.margins if m.relative < NEAR]
         lines = [f"  no derivative: {note}" for note in self.notes]
         lines += [f"  near a change of sequence: {m}" for m in near]
-        if not near:
+        if not near and self.by == "saltation":
             lines.append("  no change of the sequence of contact is near")
         return "\n".join([head, *lines]) + ">"

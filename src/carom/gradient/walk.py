@@ -15,6 +15,7 @@ from carom.gradient.place import found_place, vertex_place
 from carom.gradient.result import Sensitivities
 from carom.gradient.saltation import Strike, inverse_mass, relative_velocity, strike
 from carom.gradient.sequence import Step, steps_of
+from carom.gradient.tangents import Flights
 from carom.solution import Solution
 
 SAME = 1e-8  # how far the impact of the record may be from the one that is differentiated, relative
@@ -81,8 +82,8 @@ class Walk:
             labels=self.parameters.labels, columns=self.parameters.columns,
             impact_time=self.times, impact_point=point, velocity_before=before,
             velocity_after=after, impulse=impulse, impact_error=self.errors,
-            notes=tuple(self.notes), margins=tuple(margins), defect=self.defect,
-            _knots=self.knots, _free=self.flies, _end=float(self.solution.t[-1]),
+            notes=tuple(self.notes), margins=tuple(margins), defect=self.defect, by="saltation",
+            _motion=Flights(self.knots, self.flies, float(self.solution.t[-1])),
         )  # fmt: skip
 
     def lose(

@@ -8,9 +8,9 @@ import numpy as np
 
 from carom.baselines import first_completing_steps, hht_alpha_layer
 from carom.impact.geometry import NormalMotion
-from carom.paper import style
 from carom.paper.figure import FigureOfPaper
 from carom.paper.runs import SPHERE_DELTA, sphere_run
+from carom.plots import style
 
 _MORE = ((10, style.GREEN), (20, style.ORANGE), (40, style.PURPLE))
 

@@ -8,8 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from carom.paper import real, style
+from carom.paper import real
 from carom.paper.figure import FigureOfPaper
+from carom.plots import style
 
 _LAW_COLOURS = dict(zip(real.LAWS, (style.BLUE, style.GREEN, style.RED)))
 

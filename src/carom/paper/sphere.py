@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom.paper import style
 from carom.paper.figure import FigureOfPaper
 from carom.paper.references import Bounce
 from carom.paper.runs import sphere_run, with_jumps
+from carom.plots import style
 
 CASES = ((1.0, style.BLUE), (0.8, style.RED))
 _MARKS = np.linspace(0.0, 3.0, 61)

@@ -8,7 +8,8 @@ import numpy as np
 
 from carom.geometry import quaternion
 from carom.identify.errors import angles, distances
-from carom.paper import style, tosses
+from carom.paper import tosses
+from carom.plots import style
 
 FACES = (
     style.BLUE,

@@ -30,6 +30,9 @@ class Compound(Touching):
     masses : sequence of float, optional
         What the parts weigh in proportion to each other, each at least 0. Default: their volumes (one
         density for all).
+    centroid : (3,), optional
+        The mass centre [m], where it is not that of the parts: a loaded die, a shape that only covers a body
+        known otherwise. Give the body its mass and inertia then.
 
     Attributes
     ----------
@@ -49,25 +52,33 @@ class Compound(Touching):
     volume: float
     size: float
     _pieces: tuple[Piece, ...]
-    _spread: np.ndarray  # inertia by mass [m^2]
+    _spread: (
+        np.ndarray | None
+    )  # inertia by mass [m^2]; None where the mass is not that of the parts
 
-    def __init__(self, parts: Sequence, masses: ArrayLike | None = None):
+    def __init__(
+        self,
+        parts: Sequence,
+        masses: ArrayLike | None = None,
+        centroid: ArrayLike | None = None,
+    ):
         placed = tuple(_part(k, part) for k, part in enumerate(_sequence(parts)))
         shapes = [shape for shape, _, _ in placed]
         volumes = np.array([shape.volume for shape in shapes])
-        weights = _weights(shapes, volumes, masses)
         positions = np.array([position for _, position, _ in placed])
-        centroid = weights @ positions
-        arms = positions - centroid
-        spread = np.zeros((3, 3))
-        for weight, arm, (shape, _, turn) in zip(weights, arms, placed):
-            axes = quaternion.matrix(turn)
-            spread += axes @ shape.inertia(weight) @ axes.T
-            spread += weight * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+        if centroid is None:
+            weights = _weights(shapes, volumes, masses)
+            middle = weights @ positions
+            spread = _spread_of(placed, positions - middle, weights)
+        else:
+            if masses is not None:
+                raise ValueError(f"masses must be left out where centroid is given, got {masses!r}")
+            middle, spread = point("centroid", centroid), None
+        arms = positions - middle
         size = max(float(np.linalg.norm(a)) + s.size for a, s in zip(arms, shapes))
         pieces = [p.placed(a, q) for a, (s, _, q) in zip(arms, placed) for p in s.pieces]
-        keep(self, parts=placed, centroid=centroid, volume=float(volumes.sum()), size=size)
-        keep(self, _pieces=tuple(pieces), _spread=0.5 * (spread + spread.T))
+        keep(self, parts=placed, centroid=middle, volume=float(volumes.sum()), size=size)
+        keep(self, _pieces=tuple(pieces), _spread=spread)
 
     def __repr__(self) -> str:
         return f"Compound(<{', '.join(type(shape).__name__ for shape, _, _ in self.parts)}>)"
@@ -83,8 +94,28 @@ class Compound(Touching):
         return self.pieces[0].radius
 
     def inertia(self, mass: float) -> np.ndarray:
-        """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
+        """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg].
+
+        Raises
+        ------
+        ValueError
+            If the compound was given its `centroid`: how its mass lies is not known.
+        """
+        if self._spread is None:
+            raise ValueError(
+                f"inertia must be given with {self!r} whose centroid was given: how its mass lies is not known"
+            )
         return mass * self._spread
+
+
+def _spread_of(placed, arms, weights) -> np.ndarray:
+    """Return the inertia (3,3) by mass of parts with these weights, about their mass centre."""
+    spread = np.zeros((3, 3))
+    for weight, arm, (shape, _, turn) in zip(weights, arms, placed):
+        axes = quaternion.matrix(turn)
+        spread += axes @ shape.inertia(weight) @ axes.T
+        spread += weight * (arm @ arm * np.eye(3) - np.outer(arm, arm))
+    return 0.5 * (spread + spread.T)
 
 
 def _sequence(parts) -> Sequence:

@@ -77,6 +77,17 @@ def check_gap(contact: Contact) -> None:
 
 def check_overlap(what: str, body: Body, other: HalfSpace | Body) -> None:
     """Refuse two that start inside each other by more than rounding; `what` names the pair."""
+    depth, normal = overlap(body, other)
+    if not depth <= 0.0:
+        raise ValueError(
+            f"{what}: position {body.position} puts {body.name!r} "
+            f"{depth:.6g} m deep into {other.name!r}, allowed is a gap of at least 0; move the body "
+            f"by at least that along the normal {normal}"
+        )
+
+
+def overlap(body: Body, other: HalfSpace | Body) -> tuple[float, np.ndarray]:
+    """Return how deep [m] a body starts inside the other, 0 where it is rounding, and the way out (3,)."""
     assert body.shape is not None
     gap, normal = _gap(body, other)
     if isinstance(other, HalfSpace):
@@ -85,12 +96,7 @@ def check_overlap(what: str, body: Body, other: HalfSpace | Body) -> None:
         assert other.shape is not None
         places = np.linalg.norm(body.position) + np.linalg.norm(other.position)
         length = body.shape.size + other.shape.size + float(places)
-    if not gap >= -TOUCH * length:
-        raise ValueError(
-            f"{what}: position {body.position} puts {body.name!r} "
-            f"{-gap:.6g} m deep into {other.name!r}, allowed is a gap of at least 0; move the body "
-            f"by at least that along the normal {normal}"
-        )
+    return (0.0 if gap >= -TOUCH * length else -gap), normal
 
 
 def _gap(body: Body, other: HalfSpace | Body) -> tuple[float, np.ndarray]:

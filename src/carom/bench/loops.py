@@ -1,0 +1,27 @@
+"""Compiled loops over many impacts, so that calls from Python do not count."""
+
+from __future__ import annotations
+
+from carom.impact.layer import traverse
+from carom.impact.resolve import resolve
+from carom.jit import entry
+
+
+@entry
+def resolve_many(W, u, mu, e, law, out):
+    """Resolve each impact; return how many failed."""
+    failed = 0
+    for i in range(u.shape[0]):
+        if resolve(W[i], u[i], mu, e, law, out) != 0:
+            failed += 1
+    return failed
+
+
+@entry
+def traverse_many(W, u, mu, e, law, history, out):
+    """Take each impact through the layer; return how many failed."""
+    failed = 0
+    for i in range(u.shape[0]):
+        if traverse(W[i], u[i], mu, e, law, 1e-6, 0.2, 2, history, out) != 0:
+            failed += 1
+    return failed

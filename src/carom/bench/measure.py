@@ -1,0 +1,121 @@
+"""Timing: processor time of calls and of steps, medians with quartiles, and what the machine is."""
+
+from __future__ import annotations
+
+import datetime
+import importlib
+import os
+import platform
+import statistics
+import time
+from collections.abc import Callable, Sequence
+from importlib import metadata
+from pathlib import Path
+from types import ModuleType
+from typing import Any, NamedTuple
+
+ROUNDS = 5
+PEERS = ("mujoco", "pybullet")
+
+#: Processor time: what is measured runs in one thread, and others use the machine too.
+clock = time.process_time
+
+
+class Spread(NamedTuple):
+    """The middle of some values, and the quartiles around it."""
+
+    median: float
+    low: float
+    high: float
+    count: int
+
+    def text(self, unit: float = 1.0, digits: int = 3) -> str:
+        """Return ``median (quartile to quartile)``, in units of `unit`."""
+        mid, low, high = (value / unit for value in self[:3])
+        return f"{mid:.{digits}g} ({low:.{digits}g} to {high:.{digits}g})"
+
+
+def spread(values: Sequence[float]) -> Spread:
+    """Return median and quartiles of some values."""
+    if len(values) < 2:
+        return Spread(values[0], values[0], values[0], len(values))
+    low, mid, high = statistics.quantiles(values, n=4, method="inclusive")
+    return Spread(mid, low, high, len(values))
+
+
+def seconds(
+    function: Callable[[], Any], rounds: int = ROUNDS, timer: Callable[[], float] = clock
+) -> list[float]:
+    """Return the times of `rounds` calls, after one that is not counted."""
+    function()
+    times = []
+    for _ in range(rounds):
+        begin = timer()
+        function()
+        times.append(timer() - begin)
+    return times
+
+
+def per_step(run: Callable[[int], Any], few: int, many: int, rounds: int = ROUNDS) -> list[float]:
+    """Return the time [s] of one more step: ``run(many)`` against ``run(few)``, each round anew.
+
+    What a call costs besides its steps (setting up, handing back) cancels.
+    """
+    run(few)
+    slopes = []
+    for _ in range(rounds):
+        times = []
+        for steps in (few, many):
+            begin = clock()
+            run(steps)
+            times.append(clock() - begin)
+        slopes.append((times[1] - times[0]) / (many - few))
+    return slopes
+
+
+def stepper(scene, step: float, **how) -> Callable[[int], Any]:
+    """Return ``run(steps)`` of a scene, nothing saved but both ends."""
+    import carom
+
+    def run(steps: int):
+        return carom.simulate(scene, duration=steps * step, step=step, save_every=steps, **how)
+
+    return run
+
+
+def peer(name: str) -> ModuleType | None:
+    """Return the module of another tool, or None where it cannot be imported."""
+    try:
+        return importlib.import_module(name)
+    except ImportError:
+        return None
+
+
+def machine() -> dict[str, Any]:
+    """Return processor, cores, load, system, versions, date."""
+    import carom
+
+    model = platform.processor() or platform.machine()
+    about = Path("/proc/cpuinfo")
+    if about.exists():
+        names = [s for s in about.read_text().splitlines() if s.startswith("model name")]
+        model = names[0].split(":")[1].strip() if names else model
+    versions = {"carom": carom.__version__, "python": platform.python_version()}
+    for name in ("numpy", "numba", "scipy", *PEERS):
+        try:
+            versions[name] = metadata.version(name)
+        except metadata.PackageNotFoundError:
+            continue
+    return {
+        "date": datetime.date.today().isoformat(), "processor": model, "cores": os.cpu_count(),
+        "load": os.getloadavg()[0] if hasattr(os, "getloadavg") else None,
+        "system": platform.system(), "versions": versions,
+    }  # fmt: skip
+
+
+def machine_line() -> str:
+    """Return the machine in one line."""
+    told = machine()
+    versions = ", ".join(f"{name} {version}" for name, version in told["versions"].items())
+    load = "" if told["load"] is None else f", load {told['load']:.1f}"
+    return f"{told['date']}; {told['processor']}, {told['cores']} cores{load}; {told['system']}; {versions}"

@@ -1,0 +1,68 @@
+"""A cube strikes with one corner: the impact alone, with friction, many at random."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+NAME, TITLE = "corner_impact", "Impact of a cube on a corner, mu = 0.2"
+COUNT = 2000
+NEWTON, STRONGE = 0, 2
+
+
+def impacts(count: int = COUNT, seed: int = 1) -> tuple[np.ndarray, np.ndarray]:
+    """Return W (count, 3, 3) [1/kg] and u (count, 3) [m/s] of a cube that strikes with one corner."""
+    random = np.random.default_rng(seed)
+    m, a = 0.016, 0.02
+    J = m * a * a / 6.0
+    W, u = np.empty((count, 3, 3)), np.empty((count, 3))
+    for i in range(count):
+        r = random.normal(size=3)
+        r *= 0.5 * a * np.sqrt(3.0) / np.linalg.norm(r)
+        hat = np.array([[0, -r[2], r[1]], [r[2], 0, -r[0]], [-r[1], r[0], 0]])
+        W[i] = np.eye(3) / m - hat @ hat / J
+        u[i] = random.normal(size=3)
+        u[i, 0] = -abs(u[i, 0]) - 0.1
+    return np.ascontiguousarray(W), u
+
+
+def ours(mu: float = 0.2, e: float = 0.5, law: int = NEWTON) -> Callable[[], None]:
+    """Return what resolves all of them once."""
+    from carom.bench.loops import resolve_many
+    from carom.impact.layout import SIZE
+
+    W, u = impacts()
+    out = np.zeros(SIZE)
+
+    def run() -> None:
+        assert resolve_many(W, u, mu, e, law, out) == 0
+
+    return run
+
+
+def error(mu: float = 0.2, e: float = 0.5, count: int = 200) -> float:
+    """Return by how much velocities after miss Newton's law, -e u_n, and u + W P, at most [m/s]."""
+    import carom
+
+    W, u = impacts(count)
+    worst = 0.0
+    for i in range(count):
+        found = carom.resolve_impact(W[i], u[i], mu, e)
+        balance = np.abs(found.velocity_after - u[i] - W[i] @ found.impulse).max()
+        worst = max(worst, balance, abs(found.velocity_after[0] + e * u[i, 0]))
+    return float(worst)
+
+
+def through_layer(mu: float = 0.2, e: float = 0.5, law: int = NEWTON) -> Callable[[], None]:
+    """Return what takes all of them through the paper's boundary layer, two spline steps each."""
+    from carom.bench.loops import traverse_many
+    from carom.impact.layout import SIZE
+
+    W, u = impacts()
+    history, out = np.zeros((64, 11)), np.zeros(SIZE)
+
+    def run() -> None:
+        assert traverse_many(W, u, mu, e, law, history, out) == 0
+
+    return run

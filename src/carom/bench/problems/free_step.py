@@ -1,0 +1,62 @@
+"""One step of a die that flies, with the check whether it touches the table."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from carom.bench.measure import stepper
+from carom.bench.problems import planar_die
+
+NAME, TITLE = "free_step", "Free step of a cube, with its contact check"
+STEP = 1e-3
+GENERAL = (0.9e-6, 1.0e-6, 1.2e-6)
+FAR = {"height": 1e7, "velocity": (0.5, 0, -0.5), "spin": (0, 10, 0)}
+NEAR = {"height": 0.012, "velocity": (0.5, 0, 0), "spin": (0, 0, 10), "gravity": 0.0}
+#: far: the ball around the die clears the table; near: it does not, and each corner is bounded
+CASES = {
+    "equal moments, far": FAR,
+    "equal moments, near (8 corners checked)": NEAR,
+    "general inertia, far": {**FAR, "inertia": GENERAL},
+    "general inertia, near (8 corners checked)": {**NEAR, "inertia": GENERAL},
+}
+
+
+def ours(case: str = "equal moments, far") -> Callable[[int], object]:
+    """Return ``run(steps)`` of carom."""
+    return stepper(planar_die.scene(**CASES[case]), STEP)  # pyright: ignore[reportArgumentType]
+
+
+def mujoco(module, integrator: str = "Euler") -> Callable[[int], object]:
+    """Return ``run(steps)`` of MuJoCo, far above a plane; the steps are made in C."""
+    model = module.MjModel.from_xml_string(f"""
+    <mujoco><option timestep="{STEP}" integrator="{integrator}"/>
+      <worldbody><geom type="plane" size="1 1 1"/>
+        <body pos="0 0 1e7"><freejoint/><geom type="box" size=".01 .01 .01" mass=".016"/></body>
+      </worldbody></mujoco>""")
+    data = module.MjData(model)
+
+    def run(steps: int) -> None:
+        module.mj_resetData(model, data)
+        data.qvel[:] = (0.5, 0, -0.5, 0, 10, 0)
+        module.mj_step(model, data, nstep=steps)
+
+    return run
+
+
+def pybullet(module) -> Callable[[int], object]:
+    """Return ``run(steps)`` of pybullet, far above a plane; one Python call a step."""
+    module.connect(module.DIRECT)
+    module.setTimeStep(STEP)
+    module.setGravity(0, 0, -9.81)
+    plane = module.createCollisionShape(module.GEOM_PLANE)
+    box = module.createCollisionShape(module.GEOM_BOX, halfExtents=[0.01] * 3)
+    module.createMultiBody(0, plane)
+    die = module.createMultiBody(0.016, box, basePosition=[0, 0, 1e7])
+
+    def run(steps: int) -> None:
+        module.resetBasePositionAndOrientation(die, [0, 0, 1e7], [0, 0, 0, 1])
+        module.resetBaseVelocity(die, [0.5, 0, -0.5], [0, 10, 0])
+        for _ in range(steps):
+            module.stepSimulation()
+
+    return run

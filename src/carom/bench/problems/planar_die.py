@@ -1,0 +1,98 @@
+"""The paper's planar die: thrown with spin, strikes a table with an edge, and is turned back by friction."""
+
+from __future__ import annotations
+
+import math
+
+from carom.bench.problems.task import Task, solref
+
+NAME, TITLE = "planar_die", "Planar die, one impact with friction"
+ERROR = "error of its centre at 0.3 s [m]"
+METHODS, STEPS, PEER_STEPS = ("rk4",), (1e-2, 1e-3, 1e-4), (1e-3, 1e-4, 1e-5)
+MASS, EDGE, GRAVITY, DURATION = 0.016, 0.02, 9.81, 0.6
+END = 0.3  # s, after the first impact, before the second
+FIRST = 0.196210991904  # s
+AFTER = (
+    -0.104880400901,
+    0.599572173967,
+)  # m/s, (v_x, v_z) after it: Routh's impulse in closed form
+
+
+def scene(
+    height: float = 0.3, velocity=(0.5, 0, -0.5), spin=(0, 10, 0), *, friction=0.2,
+    restitution=0.5, inertia=None, gravity=GRAVITY, law="newton",
+):  # fmt: skip
+    """Return the die above a table."""
+    import carom
+
+    made = carom.Scene(gravity=(0, 0, -gravity))
+    table = made.add_half_space(point=(0, 0, 0), normal=(0, 0, 1))
+    die = made.add_body(
+        carom.Box(EDGE, EDGE, EDGE), mass=MASS, inertia=inertia, position=(0, 0, height),
+        velocity=velocity, angular_velocity=spin,
+    )  # fmt: skip
+    made.add_contact(die, table, restitution=restitution, friction=friction, impact_law=law)
+    return made
+
+
+def centre() -> tuple[float, float]:
+    """Return where (x, z) the centre is at END."""
+    s, z = END - FIRST, 0.3 - 0.5 * FIRST - 0.5 * GRAVITY * FIRST**2
+    return 0.5 * FIRST + AFTER[0] * s, z + AFTER[1] * s - 0.5 * GRAVITY * s * s
+
+
+def wrong(x: float, z: float) -> float:
+    """Return the distance from there."""
+    return math.hypot(x - centre()[0], z - centre()[1])
+
+
+def ours(step: float, method: str = "rk4", duration: float = DURATION, **how) -> Task:
+    """Return the work of carom."""
+    import carom
+
+    made = scene()
+
+    def run(until=duration):
+        return carom.simulate(made, until, step=step, method=method, save_every=10**9, **how)
+
+    def error() -> float:
+        x = run(END).position[-1, 0]
+        return wrong(x[0], x[2])
+
+    return Task("carom", step, run, error)
+
+
+def model(module, step: float, frequency: float):
+    """Return MuJoCo's die and its data, before any throw."""
+    made = module.MjModel.from_xml_string(f"""
+    <mujoco><option timestep="{step}" integrator="implicitfast" cone="elliptic" impratio="10">
+    <flag refsafe="disable"/></option><default><geom condim="3" friction=".2 0 0" solimp=".999 .999 .001"
+    solref="{solref(frequency, 0.2155)}"/></default>
+    <worldbody><geom type="plane" size="0 0 1"/><body pos="0 0 .3"><freejoint/>
+    <geom type="box" size=".01 .01 .01" mass="{MASS}"/></body></worldbody></mujoco>""")
+    return made, module.MjData(made)
+
+
+def stiffness(step: float) -> float:
+    """Return a frequency of the contact [rad/s] that the step resolves, the best of those tried."""
+    return {1e-3: 500.0, 1e-4: 3000.0}.get(step, 0.2 / step)
+
+
+def throw(module, made, data, steps: int, spin=(0, 10, 0), turn=(1, 0, 0, 0)):
+    """Throw MuJoCo's die; return where its centre ends."""
+    module.mj_resetData(made, data)
+    data.qpos[:] = [0, 0, 0.3, *turn]
+    data.qvel[:] = [0.5, 0, -0.5, *spin]
+    module.mj_step(made, data, nstep=steps)
+    return data.qpos[:3]
+
+
+def mujoco(module, step: float, duration: float = DURATION) -> Task:
+    """Return the work of MuJoCo: springs and dampers, stiffer with a smaller step."""
+    made, data = model(module, step, stiffness(step))
+
+    def error() -> float:
+        x = throw(module, made, data, round(END / step))
+        return wrong(x[0], x[2])
+
+    return Task("MuJoCo", step, lambda: throw(module, made, data, round(duration / step)), error)

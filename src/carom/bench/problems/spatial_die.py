@@ -1,0 +1,84 @@
+"""The die of the paper thrown with spin about two axes, to rest: a corner strikes first."""
+
+from __future__ import annotations
+
+from functools import cache
+from time import perf_counter
+
+import numpy as np
+
+from carom.bench.problems import planar_die
+from carom.bench.problems.task import Task
+
+NAME, TITLE = "spatial_die", "Spatial die, thrown to rest (2 s)"
+ERROR = "error of its centre at 0.25 s [m]"
+METHODS, STEPS, PEER_STEPS = ("rk4",), (5e-3, 2e-3, 1e-3), (1e-3, 1e-4, 1e-5)
+SPIN, DURATION, END = (10, 10, 0), 2.0, 0.25
+
+
+def scene():
+    """Return the die above a table."""
+    return planar_die.scene(spin=SPIN)
+
+
+@cache
+def centre() -> np.ndarray:
+    """Return where the centre is at END: a cube flies exactly, and its impact is to round-off."""
+    import carom
+
+    return carom.simulate(scene(), END, step=1e-4).position[-1, 0]
+
+
+def ours(step: float, method: str = "rk4", duration: float = DURATION) -> Task:
+    """Return the work of carom."""
+    import carom
+
+    made = scene()
+
+    def run(until=duration):
+        return carom.simulate(made, until, step=step, method=method, save_every=10**9)
+
+    def error() -> float:
+        return float(np.linalg.norm(run(END).position[-1, 0] - centre()))
+
+    return Task("carom", step, run, error)
+
+
+def mujoco(module, step: float, duration: float = DURATION) -> Task:
+    """Return the work of MuJoCo."""
+    made, data = planar_die.model(module, step, planar_die.stiffness(step))
+
+    def run(until=duration):
+        return planar_die.throw(module, made, data, round(until / step), SPIN)
+
+    return Task("MuJoCo", step, run, lambda: float(np.linalg.norm(run(END) - centre())))
+
+
+def throws(step: float, runs: int, seed: int = 0, workers: int = 1):
+    """Return an ensemble of throws in random orientation."""
+    import carom
+
+    made = planar_die.scene()
+    vary = {f"{made.bodies[0].name}.orientation": carom.UniformOrientation()}
+    return carom.ensemble(
+        made, DURATION, step=step, vary=vary, runs=runs, seed=seed, workers=workers,
+        chunk=max(1, min(25, runs // (4 * workers))),
+    )  # fmt: skip
+
+
+def rate(step: float, runs: int, seed: int = 0, workers: int = 1, timer=perf_counter) -> float:
+    """Return throws of carom a second, of wall time if not otherwise."""
+    begin = timer()
+    throws(step, runs, seed, workers)
+    return runs / (timer() - begin)
+
+
+def mujoco_rate(module, step: float, runs: int, seed: int = 0, timer=perf_counter) -> float:
+    """Return the same of MuJoCo on one thread, contact of 500 rad/s."""
+    made, data = planar_die.model(module, step, 500.0)
+    turns = np.random.default_rng(seed).normal(size=(runs, 4))
+    turns /= np.linalg.norm(turns, axis=1, keepdims=True)
+    begin = timer()
+    for turn in turns:
+        planar_die.throw(module, made, data, round(DURATION / step), turn=turn)
+    return runs / (timer() - begin)

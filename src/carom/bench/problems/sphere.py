@@ -1,0 +1,60 @@
+"""A ball that bounces without loss for 60 s: falls of 0.4 m, one after the other."""
+
+from __future__ import annotations
+
+import math
+
+from carom.bench.problems.task import Task, solref
+
+NAME, TITLE = "sphere", "Bouncing ball, e = 1, 60 s"
+ERROR = "error of its height at the end [m]"
+METHODS, STEPS, PEER_STEPS = ("rk4",), (1e-2, 1e-3, 1e-4), (1e-3, 3e-4, 1e-4)
+RADIUS, DROP, GRAVITY, DURATION = 0.1, 0.4, 9.81, 60.0
+
+
+def scene():
+    """Return the ball above a floor."""
+    import carom
+
+    made = carom.Scene(gravity=(0, 0, -GRAVITY))
+    floor = made.add_half_space((0, 0, 0), (0, 0, 1))
+    ball = made.add_body(carom.Sphere(RADIUS), mass=1.0, position=(0, 0, RADIUS + DROP))
+    made.add_contact(ball, floor, restitution=1.0, friction=0.0)
+    return made
+
+
+def height(t: float) -> float:
+    """Return where the centre is: parabolas over the period 2 sqrt(2 h/g), highest at t = 0."""
+    half = math.sqrt(2.0 * DROP / GRAVITY)
+    since = (t + half) % (2.0 * half) - half  # the time since the last apex
+    return RADIUS + DROP - 0.5 * GRAVITY * since * since
+
+
+def ours(step: float, method: str = "rk4", duration: float = DURATION) -> Task:
+    """Return the work of carom."""
+    import carom
+
+    made = scene()
+
+    def run():
+        return carom.simulate(made, duration, step=step, method=method, save_every=10**9)
+
+    return Task("carom", step, run, lambda: abs(run().position[-1, 0, 2] - height(duration)))
+
+
+def mujoco(module, step: float, duration: float = DURATION) -> Task:
+    """Return the work of MuJoCo: an undamped spring, as stiff as the step allows."""
+    model = module.MjModel.from_xml_string(f"""
+    <mujoco><option timestep="{step}" integrator="implicitfast" gravity="0 0 {-GRAVITY}">
+    <flag refsafe="disable"/></option>
+    <default><geom solref="{solref(0.2 / step, 0.0)}" solimp=".9999 .9999 .001" condim="1"/></default>
+    <worldbody><geom type="plane" size="0 0 1"/><body pos="0 0 {RADIUS + DROP}"><freejoint/>
+    <geom type="sphere" size="{RADIUS}" mass="1"/></body></worldbody></mujoco>""")
+    data = module.MjData(model)
+
+    def run():
+        module.mj_resetData(model, data)
+        module.mj_step(model, data, nstep=round(duration / step))
+        return data.qpos[2]
+
+    return Task("MuJoCo", step, run, lambda: abs(run() - height(duration)))

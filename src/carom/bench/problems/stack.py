@@ -1,0 +1,79 @@
+"""A stack of 20 boxes that slides as one and is slowed by friction: 80 points of contact that stay.
+
+Between boxes friction is 0.5, below 0.02: nothing slips but the lowest one, and x = v t - mu g t^2/2 for all.
+(It stands: mu times the height of its centre, 1 m, is less than half an edge.)
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom.bench.measure import stepper
+from carom.bench.problems.task import Task
+
+NAME, TITLE = "stack", "Stack of 20 boxes that slides, 0.2 s"
+ERROR = "greatest error of a box [m]"
+METHODS, STEPS, PEER_STEPS = ("rk4",), (5e-3, 2e-3, 1e-3), (5e-3, 2e-3, 1e-3, 5e-4)
+BOXES, EDGE, SPEED, MU, BETWEEN, GRAVITY, DURATION = 20, 0.1, 1.0, 0.02, 0.5, 9.81, 0.2
+
+
+def scene(count: int = BOXES):
+    """Return the stack, sliding."""
+    import carom
+
+    made = carom.Scene(gravity=(0, 0, -GRAVITY))
+    below = made.add_half_space((0, 0, 0), (0, 0, 1))
+    for k in range(count):
+        box = made.add_body(
+            carom.Box(EDGE, EDGE, EDGE), mass=1.0, position=(0, 0, (k + 0.5) * EDGE),
+            velocity=(SPEED, 0, 0),
+        )  # fmt: skip
+        made.add_contact(box, below, restitution=0.0, friction=BETWEEN if k else MU)
+        below = box
+    return made
+
+
+def places(count: int = BOXES) -> np.ndarray:
+    """Return where the centres are at the end."""
+    z = (np.arange(count) + 0.5) * EDGE
+    x = SPEED * DURATION - 0.5 * MU * GRAVITY * DURATION**2
+    return np.stack([np.full(count, x), np.zeros(count), z], axis=1)
+
+
+def ours(step: float, method: str = "rk4", boxes: int = BOXES) -> Task:
+    """Return the work of carom."""
+    steps, count = stepper(scene(boxes), step, method=method), round(DURATION / step)
+
+    def error() -> float:
+        return float(np.abs(steps(count).position[-1] - places(boxes)).max())
+
+    return Task("carom", step, lambda: steps(count), error, steps, count)
+
+
+def mujoco(module, step: float, boxes: int = BOXES) -> Task:
+    """Return the work of MuJoCo, contact as stiff as it says for the step; the floor has its own friction."""
+    half = EDGE / 2
+    text = "".join(
+        f'<body pos="0 0 {(k + 0.5) * EDGE}"><freejoint/><geom type="box" size="{half} {half} {half}" mass="1" '
+        f'friction="{BETWEEN} 0 0"/></body>'
+        for k in range(boxes)
+    )
+    made = module.MjModel.from_xml_string(f"""
+    <mujoco><option timestep="{step}" integrator="implicitfast" cone="elliptic" impratio="10"
+    gravity="0 0 {-GRAVITY}"/><default><geom solref="{2 * step} 1"/></default>
+    <worldbody><geom type="plane" size="0 0 1" friction="{MU} 0 0" priority="1"/>
+    {text}</worldbody></mujoco>""")
+    data = module.MjData(made)
+
+    def steps(count: int):
+        module.mj_resetData(made, data)
+        data.qvel.reshape(boxes, 6)[:, 0] = SPEED
+        module.mj_step(made, data, nstep=count)
+        return data.qpos.reshape(boxes, 7)[:, :3]
+
+    count = round(DURATION / step)
+
+    def error() -> float:
+        return float(np.abs(steps(count) - places(boxes)).max())
+
+    return Task("MuJoCo", step, lambda: steps(count), error, steps, count)

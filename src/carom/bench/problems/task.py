@@ -1,0 +1,37 @@
+"""One way to solve one problem: what is timed, and how wrong its answer is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+from carom.bench.measure import ROUNDS, per_step, seconds
+
+
+class Task(NamedTuple):
+    """A problem by a tool with a step.
+
+    ``run()`` is the whole work. Where setting up is not to count there is ``steps(n)``, which makes n steps,
+    and `count`, how many the work has.
+    """
+
+    tool: str
+    step: float
+    run: Callable[[], Any]
+    error: Callable[[], float]
+    steps: Callable[[int], Any] | None = None
+    count: int = 0
+
+    def times(self, rounds: int = ROUNDS) -> list[float]:
+        """Return the times of the work [s]."""
+        if self.steps is None:
+            return seconds(self.run, rounds)
+        few, many = max(1, self.count // 20), self.count
+        return [self.count * t for t in per_step(self.steps, few, max(many, few + 50), rounds)]
+
+
+#: contact of MuJoCo as a spring and damper of frequency w: no coefficient of restitution, but a damping ratio
+#: that gives one on a flat impact (0: e = 1, 0.2155: e = 0.5), as found by integrating one free mass
+def solref(frequency: float, ratio: float) -> str:
+    """Return stiffness and damping as MuJoCo wants them."""
+    return f"{-(frequency**2)} {-2 * ratio * frequency}"

@@ -1,0 +1,146 @@
+"""The standard set of ``carom bench``: what is measured, in which unit, beside MuJoCo where it is asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple
+
+from carom.bench import measure
+from carom.bench.measure import Spread, clock, per_step, seconds, spread
+from carom.bench.problems import (
+    chain,
+    corner_impact,
+    four_bar,
+    free_step,
+    planar_die,
+    spatial_die,
+    sphere,
+    stack,
+)  # fmt: skip
+from carom.bench.problems.task import Task
+
+
+class Side(NamedTuple):
+    """What one tool needs, in the unit of the problem, and how wrong it is (None: no answer to compare)."""
+
+    time: Spread
+    error: float | None
+
+
+class Problem(NamedTuple):
+    """A problem of the set; `ours(rounds)` and `theirs(module, rounds)` measure it."""
+
+    name: str
+    what: str
+    unit: str
+    ours: Callable[[int], Side]
+    theirs: Callable[[Any, int], Side] | None
+    error: str = ""
+
+
+class Row(NamedTuple):
+    """A problem that was measured."""
+
+    problem: Problem
+    ours: Side
+    theirs: Side | None
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return it as plain values."""
+        told: dict[str, Any] = {
+            "name": self.problem.name, "what": self.problem.what, "unit": self.problem.unit,
+            "error_is": self.problem.error,
+        }  # fmt: skip
+        for name, side in (("carom", self.ours), ("mujoco", self.theirs)):
+            if side is not None:
+                told[name] = {**side.time._asdict(), "error": side.error}
+        return told
+
+
+def _whole(task: Task, rounds: int) -> Side:
+    """Return milliseconds of the whole work."""
+    return Side(spread([1e3 * t for t in seconds(task.run, rounds)]), task.error())
+
+
+def _step(task: Task, rounds: int) -> Side:
+    """Return microseconds a step."""
+    return Side(spread([1e6 * t / task.count for t in task.times(rounds)]), task.error())
+
+
+def _of(module, how, step: float, what: str, unit: str, name: str = "", **more) -> Problem:
+    """Return a problem of one of the files in `problems`, with the same step for both tools."""
+    return Problem(
+        name or module.NAME, what, unit, lambda rounds: how(module.ours(step, **more), rounds),
+        lambda peer, rounds: how(module.mujoco(peer, step, **more), rounds), module.ERROR,
+    )  # fmt: skip
+
+
+def _rate(of: Callable[[int], float], rounds: int) -> Spread:
+    """Return throws a second."""
+    of(0)
+    return spread([of(seed) for seed in range(rounds)])
+
+
+def _throws() -> Problem:
+    def ours(rounds: int) -> Side:
+        rate = _rate(lambda seed: spatial_die.rate(1e-3, 40, seed, timer=clock), rounds)
+        return Side(rate, spatial_die.ours(1e-3).error())
+
+    def theirs(module, rounds: int) -> Side:
+        rate = _rate(
+            lambda seed: spatial_die.mujoco_rate(module, 1e-3, 20, seed, timer=clock), rounds
+        )
+        return Side(rate, spatial_die.mujoco(module, 1e-3).error())
+
+    what = "spatial die to rest (2 s), h = 1 ms, one thread"
+    return Problem(spatial_die.NAME, what, "throws / s", ours, theirs, spatial_die.ERROR)
+
+
+def _free_step() -> Problem:
+    def side(run, rounds: int) -> Side:
+        return Side(spread([1e9 * t for t in per_step(run, 1000, 101000, rounds)]), None)
+
+    return Problem(
+        free_step.NAME, "free step of a cube, far from the table", "ns a step",
+        lambda rounds: side(free_step.ours(), rounds),
+        lambda module, rounds: side(free_step.mujoco(module), rounds),
+    )  # fmt: skip
+
+
+def _corner() -> Problem:
+    def ours(rounds: int) -> Side:
+        times = seconds(corner_impact.ours(), rounds)
+        each = [1e6 * t / corner_impact.COUNT for t in times]
+        return Side(spread(each), corner_impact.error())
+
+    return Problem(
+        corner_impact.NAME, "impact of a cube on a corner, mu = 0.2", "us an impact", ours, None,
+        "velocity after it against -e u_n and u + W P [m/s]",
+    )  # fmt: skip
+
+
+def problems() -> tuple[Problem, ...]:
+    """Return the set."""
+    chains = (
+        _of(chain, _step, 2e-3, f"chain of {n} rods, h = 2 ms", "us a step", f"chain_{n}", links=n)
+        for n in (1, 10, 100)
+    )
+    return (
+        _of(sphere, _whole, 1e-3, "bouncing ball, e = 1, 60 s, h = 1 ms", "ms a run"),
+        _of(planar_die, _whole, 1e-3, "planar die, 0.6 s, h = 1 ms", "ms a throw"),
+        _throws(), _free_step(), _corner(), *chains,
+        _of(four_bar, _step, 2.5e-3, "four-bars (A02), 10 s, h = 2.5 ms", "us a step"),
+        _of(stack, _step, 1e-3, "stack of 20 boxes slides, h = 1 ms", "us a step"),
+    )  # fmt: skip
+
+
+def run(
+    wanted: list[str] | None = None, rounds: int = measure.ROUNDS, peer: Any = None,
+    tell: Callable[[int, int, str], None] = lambda done, total, name: None,
+) -> Iterator[Row]:  # fmt: skip
+    """Measure the problems that are wanted (all), one after the other; beside `peer`, the module of MuJoCo."""
+    chosen = [p for p in problems() if not wanted or p.name in wanted]
+    for k, problem in enumerate(chosen):
+        tell(k, len(chosen), problem.what)
+        theirs = problem.theirs(peer, rounds) if peer is not None and problem.theirs else None
+        yield Row(problem, problem.ours(rounds), theirs)

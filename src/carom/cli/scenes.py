@@ -1,0 +1,132 @@
+"""Scenes from files: Python, JSON, a result file, or a model (MJCF, URDF)."""
+
+from __future__ import annotations
+
+import runpy
+import sys
+import traceback
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from carom.cli.outcome import Failed, Refused
+
+MODELS = (".xml", ".mjcf", ".urdf")
+RESULTS = (".nc", ".h5", ".hdf5", ".nc4")
+
+
+class Found(NamedTuple):
+    """A scene, and the settings that its file has for it."""
+
+    scene: Any
+    settings: dict[str, Any]
+
+
+def load(path: Path, **model: Any) -> Found:
+    """Return the scene of a file; `model` is what a model needs besides (None: as the model has it).
+
+    Raises
+    ------
+    Refused
+        If the file is of no kind that holds a scene, or holds none.
+    Failed
+        If the Python in it failed.
+    """
+    suffix = path.suffix.lower()
+    given = {name: value for name, value in model.items() if value is not None}
+    if suffix in MODELS:
+        return Found(_model(path, given), {})
+    if given:
+        names = " and ".join(f"--{name.replace('_', '-')}" for name in given)
+        raise Refused(f"{names} only for a model ({', '.join(MODELS)}), got {str(path)!r}")
+    if suffix == ".py":
+        return _python(path)
+    if suffix == ".json":
+        return Found(_json(path), {})
+    if suffix in RESULTS:
+        from carom import Solution
+
+        solution = Solution.load(path)
+        return Found(solution.scene, dict(solution.settings))
+    kinds = ", ".join((".py", ".json", *RESULTS[:2], *MODELS))
+    raise Refused(f"SCENE must be a file that ends in one of {kinds}, got {str(path)!r}")
+
+
+def functions(scene) -> dict[str, Callable]:
+    """Return the functions of the user's in a scene, by the names that a result file has for them."""
+    from carom.files.scene_data import Encoder
+
+    class Collector(Encoder):
+        def __init__(self):
+            super().__init__()
+            self.found: dict[str, Callable] = {}
+
+        def value(self, value: Any, where: str = "") -> Any:
+            before = len(self.functions)
+            out = super().value(value, where)
+            if len(self.functions) > before and callable(value):
+                self.found[where] = value
+            return out
+
+    collector = Collector()
+    for part in scene._parts:
+        collector.part(part)
+    return collector.found
+
+
+def _model(path: Path, given: dict[str, Any]):
+    """Read MJCF or URDF; what is not represented, or otherwise, goes to stderr."""
+    from carom import load_model
+
+    key = given.get("keyframe")
+    if key is not None and key.isdigit():
+        given["keyframe"] = int(key)
+    made = load_model(path, **given)
+    if len(made.report):
+        print(made.report, file=sys.stderr)
+    return made.scene
+
+
+def _json(path: Path):
+    from carom.files.scene_parts import scene_from_text
+
+    try:
+        scene, _ = scene_from_text(path.read_text(encoding="utf-8"))
+    except (KeyError, TypeError, ValueError, AttributeError) as error:
+        what = "'carom info RUN --scene' writes such a file"
+        raise Refused(
+            f"SCENE must be a scene as JSON, got {str(path)!r} ({error}); {what}"
+        ) from None
+    return scene
+
+
+def _python(path: Path) -> Found:
+    """Run a file; its `scene` is a Scene, or a function without arguments that returns one."""
+    from carom import GeneralizedSystem, Scene
+
+    sys.path.insert(0, str(path.parent))  # as `python file.py` has it
+    try:
+        names = runpy.run_path(str(path), run_name="carom_scene")
+        made = names.get("scene")
+        made = made() if callable(made) else made
+    except Exception as error:
+        raise Failed(f"{_where(path, error)}: {type(error).__name__}: {error}") from error
+    finally:
+        sys.path.remove(str(path.parent))
+    if not isinstance(made, (Scene, GeneralizedSystem)):
+        what = "none" if made is None else f"a {type(made).__name__}"
+        raise Refused(
+            f"SCENE must define 'scene', a carom.Scene or a function without arguments that returns one; "
+            f"{str(path)!r} has {what}"
+        )
+    return Found(made, {})
+
+
+def _where(path: Path, error: BaseException) -> str:
+    """Return the last line of the user's file that an error went through."""
+    if isinstance(error, SyntaxError):
+        return f"{error.filename}, line {error.lineno}"
+    here = [
+        frame for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(path)
+    ]
+    return f"{path}, line {here[-1].lineno}" if here else str(path)

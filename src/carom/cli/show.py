@@ -1,0 +1,89 @@
+"""What commands print: tables, JSON, and progress with the time that remains."""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any
+
+#: width where nobody looks (a pipe, a file): rows are not cut
+WIDE = 200
+
+
+def table(head: Sequence[str], rows: Sequence[Sequence[object]], left: int = 1) -> None:
+    """Print a table; the first `left` columns to the left, the others to the right.
+
+    In a terminal its head is bold (not with NO_COLOR) and long cells wrap; into a pipe rows stay whole.
+    """
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    screen = Console(highlight=False, width=None if sys.stdout.isatty() else WIDE)
+    made = Table(box=None, pad_edge=False, padding=(0, 2, 0, 0), show_header=any(head))
+    for k, name in enumerate(head):
+        made.add_column(name, justify="left" if k < left else "right", overflow="fold")
+    for row in rows:
+        made.add_row(*(Text(str(cell)) for cell in row))
+    if screen.is_terminal:
+        screen.print(made)
+        return
+    with screen.capture() as got:
+        screen.print(made)
+    print("\n".join(line.rstrip() for line in got.get().splitlines()))
+
+
+def as_json(value: Any) -> None:
+    """Print a value as JSON on stdout; numbers that are not finite as null."""
+    print(json.dumps(plain(value), indent=2, ensure_ascii=False, allow_nan=False))
+
+
+def plain(value: Any) -> Any:
+    """Return a value made of what JSON has."""
+    if isinstance(value, dict):
+        return {str(key): plain(one) for key, one in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(one) for one in value]
+    if hasattr(value, "tolist"):  # NumPy's
+        return plain(value.tolist())
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value if value is None or isinstance(value, (bool, int, float, str)) else str(value)
+
+
+class Progress:
+    """A bar on stderr as a function of (done, total); `tell` names what is being done."""
+
+    def __init__(self, bar=None, task=None):
+        self.bar, self.task = bar, task
+
+    def __call__(self, done: float, total: float) -> None:
+        """Say how much is done."""
+        if self.bar is not None:
+            self.bar.update(self.task, completed=done, total=total)
+
+    def tell(self, what: str) -> None:
+        """Say what is being done."""
+        if self.bar is not None:
+            self.bar.update(self.task, description=what)
+
+
+@contextmanager
+def progress(what: str, total: float | None = None) -> Iterator[Progress]:
+    """Show a bar with the share done, the time spent and the time left; nothing where stderr is no terminal."""
+    if not sys.stderr.isatty():
+        yield Progress()
+        return
+    from rich import progress as rich
+    from rich.console import Console
+
+    columns = (
+        rich.TextColumn("{task.description}", markup=False), rich.BarColumn(bar_width=None),
+        rich.TaskProgressColumn(), rich.TimeElapsedColumn(), "left", rich.TimeRemainingColumn(),
+    )  # fmt: skip
+    screen = Console(stderr=True)
+    with rich.Progress(*columns, console=screen, transient=True) as bar:
+        yield Progress(bar, bar.add_task(what, total=total))

@@ -1,0 +1,204 @@
+"""``carom simulate``: run a scene and keep the result."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from carom.cli import FAILED, INTERRUPTED, scenes, show
+from carom.cli.outcome import Refused, warn
+
+
+def run(
+    scene: Annotated[
+        Path | None,
+        typer.Argument(
+            metavar="SCENE", exists=True, dir_okay=False, show_default=False,
+            help="A Python file that defines 'scene' (a carom.Scene, or a function that returns one), a scene"
+            " as JSON, a result file (its scene and settings), or a model (MJCF, URDF).",
+        ),
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out", "-o", metavar="FILE", show_default=False,
+            help="File for the result (netCDF-4, which is HDF5), written as the run goes. Without it nothing is"
+            " kept.",
+        ),
+    ] = None,
+    duration: Annotated[
+        float | None,
+        typer.Option("--duration", "-d", metavar="S", help="Time to simulate [s].", show_default=False),
+    ] = None,
+    step: Annotated[
+        str | None,
+        typer.Option(metavar="S|auto", show_default="0.001", help="Time step [s], or 'auto' (rk5 and rk8)."),
+    ] = None,
+    method: Annotated[
+        str | None,
+        typer.Option(
+            show_default="rk4, or rk5 with --step auto",
+            help="How free motion is stepped: rk4, rk5, rk8, rattle, rattle4, rattle6, implicit, paper,"
+            " paper-ode.",
+        ),
+    ] = None,
+    impact_location: Annotated[
+        str | None,
+        typer.Option(show_default="locate", help="How impacts are found: locate, project (the paper's), work."),
+    ] = None,
+    rtol: Annotated[float | None, typer.Option(show_default="1e-6", help="Of --step auto.")] = None,
+    atol: Annotated[float | None, typer.Option(show_default="1e-9", help="Of --step auto [m].")] = None,
+    save_every: Annotated[
+        int | None, typer.Option(metavar="N", show_default="1", help="Keep each N-th step.")
+    ] = None,
+    save_seconds: Annotated[
+        float, typer.Option(metavar="S", help="Write the file so often while the run goes [s of real time].")
+    ] = 60.0,
+    resume: Annotated[
+        Path | None,
+        typer.Option(
+            exists=True, dir_okay=False, metavar="FILE", show_default=False,
+            help="Go on with the interrupted run in this file. SCENE is only needed where the scene has"
+            " functions of yours, which files do not hold.",
+        ),
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="Write over a FILE that is there.")] = False,
+    restitution: Annotated[
+        float | None, typer.Option(show_default=False, help="Model: of all its contacts.")
+    ] = None,
+    friction: Annotated[
+        float | None, typer.Option(show_default=False, help="Model: of all its contacts.")
+    ] = None,
+    impact_law: Annotated[
+        str | None, typer.Option(show_default=False, help="Model: newton, poisson or stronge.")
+    ] = None,
+    keyframe: Annotated[
+        str | None, typer.Option(show_default=False, help="Model: start there, by name or number.")
+    ] = None,
+    json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")] = False,
+) -> int:  # fmt: skip
+    """Run a scene and keep the result.
+
+    The file is written as the run goes: whoever stops it, with Ctrl-C, kill or a power cut, finds in
+    it what was computed until then, and --resume goes on from there, bit for bit as without interruption.
+    A run that fails is kept up to its failure, too.
+
+    For example:
+      carom simulate die.py -o die.h5 --duration 2
+      carom simulate die.py -o die.h5 --duration 2 --step auto --rtol 1e-8
+      carom simulate --resume die.h5
+      carom simulate die.h5 -o finer.h5 --step 1e-4      the same scene again
+      carom simulate robot.xml -o robot.h5 -d 5 --restitution 0.3 --friction 0.5
+
+    die.py:
+      import carom
+      scene = carom.Scene()
+      scene.add_half_space((0, 0, 0), (0, 0, 1))
+      scene.add_body(carom.Box(0.02, 0.02, 0.02), mass=0.016, position=(0, 0, 0.3))
+      scene.set_contact_default(restitution=0.5, friction=0.2)
+    """
+    model = {
+        "restitution": restitution, "friction": friction, "impact_law": impact_law, "keyframe": keyframe,
+    }  # fmt: skip
+    given = {
+        "duration": duration, "step": _step(step), "method": method, "impact_location": impact_location,
+        "rtol": rtol, "atol": atol, "save_every": save_every,
+    }  # fmt: skip
+    begin = time.perf_counter()
+    if resume is not None:
+        out = resume
+        solution = _go_on(resume, scene, {**given, **model}, save_seconds)
+    else:
+        solution = _start(scene, out, {k: v for k, v in given.items() if v is not None}, model,
+                          save_seconds, force)  # fmt: skip
+    return _end(solution, out, scene, time.perf_counter() - begin, json)
+
+
+def _step(given: str | None) -> float | str | None:
+    if given is None or given == "auto":
+        return given
+    try:
+        return float(given)
+    except ValueError:
+        raise Refused(f"--step must be a number [s] or 'auto', got {given!r}") from None
+
+
+def _start(scene, out, given: dict[str, Any], model, save_seconds: float, force: bool):
+    import carom
+
+    if scene is None:
+        raise Refused(
+            "SCENE is missing: a file with a scene, or --resume FILE (see 'carom simulate --help')"
+        )
+    if out is not None and out.exists() and not force:
+        raise Refused(
+            f"--out must be a new file, got {str(out)!r}; --force writes over it, and "
+            f"'carom simulate --resume {out}' goes on with an interrupted run"
+        )
+    found = scenes.load(scene, **model)
+    kept = {k: v for k, v in found.settings.items() if k in _SETTINGS and v is not None}
+    if "step" in given and given["step"] != "auto":  # tolerances are of steps of varying length
+        kept = {k: v for k, v in kept.items() if k not in ("rtol", "atol")}
+    settings = {"step": 1e-3, **kept, **given}
+    if "duration" not in settings:
+        raise Refused("--duration must be given [s]")
+    duration = settings.pop("duration")
+    with show.progress("simulate") as bar:
+        return carom.simulate(
+            found.scene, duration, progress=bar, throw=False, save=out, save_seconds=save_seconds,
+            **settings,
+        )  # fmt: skip
+
+
+#: what a result file knows of how it was made, and a new run takes over
+_SETTINGS = ("duration", "step", "method", "impact_location", "rtol", "atol", "save_every")
+
+
+def _go_on(path: Path, scene, given: dict[str, Any], save_seconds: float):
+    import carom
+
+    if any(value is not None for value in given.values()):
+        name = next(k for k, v in given.items() if v is not None).replace("_", "-")
+        raise Refused(f"--{name} must be left out with --resume: the run goes on as it was begun")
+    mine = scenes.functions(scenes.load(scene).scene) if scene is not None else None
+    with show.progress("resume") as bar:
+        return carom.resume(
+            path, functions=mine or None, progress=bar, throw=False, save_seconds=save_seconds
+        )
+
+
+def _end(solution, out: Path | None, scene: Path | None, seconds: float, json: bool) -> int:
+    """Say what came of it; return the exit code."""
+    from carom.status import Status
+
+    facts = {
+        "status": solution.status.name, "message": solution.message, "reached": float(solution.t[-1]),
+        "duration": solution.settings["duration"], "saved_steps": len(solution.t),
+        "impacts": len(solution.impacts), "seconds": seconds, "file": None if out is None else str(out),
+    }  # fmt: skip
+    if json:
+        show.as_json(facts)
+    else:
+        place = f", in {out}" if out is not None else ""
+        print(
+            f"t = 0 to {facts['reached']:g} s in {facts['saved_steps']} saved steps, "
+            f"{facts['impacts']} impacts, {seconds:.1f} s{place}"
+        )
+    if solution.success:
+        return 0
+    if solution.status is not Status.INTERRUPTED:
+        warn("simulate", solution.message)
+        return FAILED
+    more = "nothing was kept, which needs -o FILE"
+    if out is not None:
+        also = f" {scene}" if scene is not None and _has_functions(solution) else ""
+        more = f"go on with: carom simulate --resume {out}{also}"
+    warn("simulate", f"interrupted at t = {facts['reached']:g} s; {more}")
+    return INTERRUPTED
+
+
+def _has_functions(solution) -> bool:
+    return bool(getattr(solution, "scene", None) is not None and scenes.functions(solution.scene))

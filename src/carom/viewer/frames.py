@@ -1,0 +1,143 @@
+"""What is shown of a run: moments and poses, and where in the world it all takes place."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from carom.geometry import quaternion
+
+MOST = 5000  # frames, if nothing else is asked for
+VALUES = 3_000_000  # numbers of all poses together: 12 MB before packing
+FLAT = 1e-4  # part of the square of the displacements that leaves a plane, up to which it is one
+SMOOTH = 600  # about as many frames has a run with fewer saved times, so that nothing jerks
+
+
+class Frames(NamedTuple):
+    """Poses of N bodies at F moments; between them straight lines and steady turns are good enough."""
+
+    time: np.ndarray  #: (F,) [s]
+    position: np.ndarray  #: (F, N, 3) mass centres, world [m]
+    orientation: np.ndarray  #: (F, N, 4) body to world, (w, x, y, z)
+
+
+class Place(NamedTuple):
+    """Where the motion takes place, and from where it is best looked at."""
+
+    centre: np.ndarray  #: (3,) of the box around all bodies at all moments [m]
+    radius: float  #: of a ball around that box [m]
+    up: np.ndarray  #: (3,) unit vector against gravity
+    side: np.ndarray  #: (3,) unit vector, level: from the centre to the eye
+    lift: float  #: angle of the eye above the level [rad]
+
+
+class Outline(NamedTuple):
+    """How far a body reaches: a ball of radius `size` [m] about each of its `points` (3,), body axes."""
+
+    points: list[np.ndarray]
+    size: float
+
+
+def frames_of(solution, most: int = MOST) -> Frames:
+    """Return the moments to show: saved times, thinned to `most`, and those of impacts.
+
+    A run with few saved times is filled up from `Solution.evaluate`, which knows what is between them.
+    Many bodies have fewer frames, so that the poses stay below 3 million numbers.
+    """
+    most = max(2, min(most, max(200, VALUES // (7 * solution.position.shape[1]))))
+    times, saved = solution.t, len(solution.t)
+    if saved > most:
+        times = times[np.unique(np.linspace(0, saved - 1, most).round().astype(int))]
+    elif saved > 1 and (between := min(SMOOTH, most) // saved) > 1:
+        places = np.arange((saved - 1) * between + 1) / between
+        times = np.interp(places, np.arange(saved), times)
+    times = np.union1d(times, _moments_of_impacts(solution.impacts, most // 2))
+    return Frames(times, *_poses(solution, times))
+
+
+def _poses(solution, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return positions (F, N, 3) and orientations (F, N, 4): saved ones, others between them."""
+    row = np.searchsorted(solution.t, times)
+    new = solution.t[row] != times
+    x, Q = solution.position[row], solution.orientation[row]
+    if np.any(new):
+        x[new], Q[new] = solution.evaluate(times[new])[:2]
+    return x, Q
+
+
+def _moments_of_impacts(impacts, most: int) -> np.ndarray:
+    """Return the times of the strongest impacts: there the way has a corner."""
+    strongest = np.argsort(-np.linalg.norm(impacts.impulse, axis=1), kind="stable")
+    return impacts.time[strongest[:most]]
+
+
+def place_of(solution, frames: Frames, outlines: list[Outline], fixed: list[np.ndarray]) -> Place:
+    """Return where the motion takes place.
+
+    Parameters
+    ----------
+    outlines : (N,)
+        Of the bodies.
+    fixed
+        Points (3,) of the ground that are to be seen too.
+    """
+    least, greatest = [*fixed], [*fixed]
+    for b, (points, size) in enumerate(outlines):
+        for point in points:
+            way = frames.position[:, b] + quaternion.rotate(frames.orientation[:, b], point)
+            least.append(np.min(way, axis=0) - size)
+            greatest.append(np.max(way, axis=0) + size)
+    low, high = np.min(least, axis=0), np.max(greatest, axis=0)
+    radius = max(0.5 * float(np.linalg.norm(high - low)), 1e-9)
+    up = _up(solution.scene.gravity, frames.position)
+    return Place(0.5 * (low + high), radius, up, *_view(frames.position, up))
+
+
+def _up(gravity: np.ndarray, position: np.ndarray) -> np.ndarray:
+    """Return the direction against gravity; without it one in the plane of the motion, or z."""
+    pull = float(np.linalg.norm(gravity))
+    if pull > 0.0:
+        return -gravity / pull
+    ways = (position - position[0]).reshape(-1, 3)
+    turns, axes = np.linalg.eigh(ways.T @ ways)
+    flat = turns[1] > 0.0 and turns[0] < FLAT * turns[1]
+    normal = axes[:, 0] if flat else np.array([1.0, 0.0, 0.0])
+    up = np.array([0.0, 1.0, 0.0] if abs(normal[2]) > 0.7 else [0.0, 0.0, 1.0])
+    up -= (up @ normal) * normal
+    return up / np.linalg.norm(up)
+
+
+def _view(position: np.ndarray, up: np.ndarray) -> tuple[np.ndarray, float]:
+    """Return from where to look, and how steeply: across an upright plane, or down on a level one."""
+    east = np.eye(3)[np.argmin(np.abs(up))]
+    east -= (east @ up) * up
+    east /= np.linalg.norm(east)
+    north = np.cross(up, east)
+    ways = (position - position[0]).reshape(-1, 3)
+    level = np.stack([ways @ east, ways @ north])
+    turns, axes = np.linalg.eigh(level @ level.T)
+    if turns[1] > 0.0 and turns[0] < FLAT * turns[1]:
+        across = axes[0, 0] * east + axes[1, 0] * north
+        front = -north + 0.01 * east  # of the two sides the one from which x goes to the right
+        return (across if across @ front > 0.0 else -across), 0.3
+    down = np.sum((ways @ up) ** 2) < 0.01 * np.sum(turns)
+    return 0.6 * east - 0.8 * north, 0.9 if down else 0.3
+
+
+def poses_at(frames: Frames, t: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return positions (N, 3) and orientations (N, 4) at a time: straight lines and steady turns."""
+    time = frames.time
+    k = int(np.clip(np.searchsorted(time, t, side="right") - 1, 0, max(len(time) - 2, 0)))
+    n = min(k + 1, len(time) - 1)
+    s = float(np.clip((t - time[k]) / (time[n] - time[k]), 0.0, 1.0)) if n > k else 0.0
+    p, q = frames.orientation[k], frames.orientation[n]
+    cosine = np.sum(p * q, axis=1, keepdims=True)
+    q = np.where(cosine < 0.0, -q, q)  # the same attitude, by the shorter way
+    angle = np.arccos(np.clip(np.abs(cosine), 0.0, 1.0))
+    sine = np.where(angle > 1e-4, np.sin(angle), 1.0)
+    first = np.where(angle > 1e-4, np.sin((1.0 - s) * angle) / sine, 1.0 - s)
+    second = np.where(angle > 1e-4, np.sin(s * angle) / sine, s)
+    turned = first * p + second * q
+    x = (1.0 - s) * frames.position[k] + s * frames.position[n]
+    return x, turned / np.linalg.norm(turned, axis=1, keepdims=True)

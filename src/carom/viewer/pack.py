@@ -1,0 +1,37 @@
+"""Arrays for a browser: numbers in one packed block, and a header that says where each array is."""
+
+from __future__ import annotations
+
+import base64
+import json
+import zlib
+from typing import Any
+
+import numpy as np
+
+
+class Packer:
+    """Collects arrays; each becomes a small note in the header: where it begins, its type and its shape."""
+
+    def __init__(self):
+        self._bytes, self._length = [], 0
+
+    def add(self, array, kind: str = "f4") -> dict[str, Any]:
+        """Keep an array as `kind` ("f4", "f8" or "i4"); return its note."""
+        array = np.ascontiguousarray(array)
+        data = array.astype(f"<{kind}").tobytes()
+        data += bytes(-len(data) % 8)  # each array begins where any type may
+        note = {"at": self._length, "kind": kind, "shape": list(array.shape)}
+        self._bytes.append(data)
+        self._length += len(data)
+        return note
+
+    def block(self) -> str:
+        """Return all arrays, deflated, in base64."""
+        return base64.b64encode(zlib.compress(b"".join(self._bytes), 6)).decode("ascii")
+
+
+def header_text(header: dict) -> str:
+    """Return JSON that may stand inside a script element, whatever names are in it."""
+    text = json.dumps(header, ensure_ascii=True, allow_nan=False)
+    return text.replace("<", "\\u003c")

@@ -1,0 +1,144 @@
+// ---- From the run and a time to what is drawn ----
+
+const WAYS = 20; // bodies whose ways are drawn all at once; of more only that of the followed one
+const DOTS = 400; // impacts that are marked
+
+const rgba = (hex, alpha = 1) => [1, 3, 5].map((k) => parseInt(hex.slice(k, k + 2), 16) / 255).concat(alpha);
+
+class Painter {
+  constructor(run, motion, element) {
+    Object.assign(this, { run, motion });
+    this.canvas = new Canvas(element);
+    this.parts = run.parts.map(({ vertices, triangles, bodies, look }) => (
+      { bodies, look, mesh: this.canvas.mesh(shaded(vertices, triangles)) }));
+    this.furniture = Object.fromEntries(
+      Object.entries(furniture()).map(([name, numbers]) => [name, this.canvas.mesh(numbers)]));
+    this.cell = this.round(run.place.radius / 9);
+    this.planes = run.planes.map((plane) => this.plane(plane));
+    this.ways = new Map();
+    const lengths = (array) => Array.from({ length: array.length / 3 }, (_, k) => norm(row(array, k)));
+    this.strongest = Math.max(...lengths(run.impacts.arrow), 0);
+    const forces = lengths(run.held.force).sort((a, b) => a - b);
+    this.pressed = forces.length ? forces[Math.floor(0.99 * (forces.length - 1))] : 0;
+    const { up, side } = run.place; // light comes from above, behind the eye to the right
+    this.light = unit(add(times(0.85, up), add(times(0.45, side), times(0.35, cross(up, side)))));
+  }
+
+  /** 1, 2 or 5 times a power of ten, not above x. */
+  round(x) {
+    const power = 10 ** Math.floor(Math.log10(x)), m = x / power;
+    return (m >= 5 ? 5 : m >= 2 ? 2 : 1) * power;
+  }
+
+  plane({ corners, normal }) {
+    const middle = times(1 / corners.length, corners.reduce(add));
+    const ahead = sub(this.run.place.side, times(dot(this.run.place.side, normal), normal));
+    const along = norm(ahead) > 0.3 ? unit(ahead) : across(normal)[0];
+    const reach = Math.max(...corners.map((c) => norm(sub(c, middle)))) / Math.SQRT2 * 1.02;
+    // where walls cut it off it ends sharply
+    const cut = corners.length !== 4 || reach < 1.4 * this.run.place.radius;
+    return {
+      mesh: this.canvas.mesh(new Float32Array(corners.flat()), false), normal, along,
+      beside: cross(normal, along), middle, cell: this.cell, reach: cut ? 1e9 : reach,
+    };
+  }
+
+  colourOf(b) {
+    const { bodies } = this.run.colours;
+    return bodies[b % bodies.length];
+  }
+
+  solids(poses) {
+    const out = [];
+    for (const { mesh, bodies, look } of this.parts)
+      for (const b of bodies) {
+        const colour = rgba(look === "joint" ? "#5b6873" : this.colourOf(b));
+        out.push({ mesh, colour, model: frame(...axesOf(poses[b].Q), poses[b].x), pattern: look === "round" });
+      }
+    const thick = 0.02 * this.run.place.radius;
+    for (const { bodies, anchors, kind } of this.run.links) {
+      const [from, to] = anchors.map((a, k) => (bodies[k] < 0 ? a : carried(poses[bodies[k]], a)));
+      const way = sub(to, from), [a, b] = across(unit(way)), wide = kind === "rod" ? 0.35 * thick : thick;
+      const mesh = kind === "rod" ? this.furniture.shaft : this.furniture.coil;
+      out.push({ mesh, colour: rgba("#5b6873"), model: frame(times(wide, a), times(wide, b), way, from) });
+    }
+    return out;
+  }
+
+  /** An arrow as shaft and head. */
+  arrow(from, way, colour) {
+    const length = norm(way);
+    if (!(length > 1e-3 * this.run.place.radius)) return [];
+    const thick = Math.min(0.025 * this.run.longest, 0.07 * length), head = Math.min(7 * thick, 0.6 * length);
+    const along = unit(way), [a, b] = across(along), neck = add(from, times(length - head, along));
+    const stretched = (wide, long, at) => frame(times(wide, a), times(wide, b), times(long, along), at);
+    return [
+      { mesh: this.furniture.shaft, colour, model: stretched(thick, length - head, from) },
+      { mesh: this.furniture.head, colour, model: stretched(2.6 * thick, head, neck) },
+    ];
+  }
+
+  ball(at, size, colour, mesh = this.furniture.ball) {
+    return { mesh, colour, model: frame([size, 0, 0], [0, size, 0], [0, 0, size], at) };
+  }
+
+  /** Marks where impacts are and will be; of many, some. */
+  marks(t) {
+    const { time, point } = this.run.impacts, every = Math.max(1, Math.ceil(time.length / DOTS)), out = [];
+    const size = 0.008 * this.run.place.radius;
+    for (let k = 0; k < time.length; k += every) {
+      const colour = rgba(time[k] <= t ? "#5b6873" : "#b8c2ca");
+      out.push(this.ball(row(point, k), size, colour, this.furniture.mark));
+    }
+    return out;
+  }
+
+  /** Impulses, which fade during `fading` [s], and forces of contacts that stay. */
+  arrows(t, fading, length) {
+    const { impacts, held, colours } = this.run, out = [], longest = this.run.longest * length;
+    const impact = (k, alpha) => {
+      const point = row(impacts.point, k), colour = rgba(colours.impulse, alpha);
+      const way = times(longest / (this.strongest || 1), row(impacts.arrow, k));
+      out.push(this.ball(point, 0.03 * this.run.longest, colour), ...this.arrow(point, way, colour));
+    };
+    for (let k = 0; k < impacts.time.length; k++) {
+      const age = t - impacts.time[k];
+      if (age >= -1e-12 && age < fading) impact(k, 1 - age / fading);
+    }
+    const s = lastBefore(held.time, t);
+    for (let k = held.first[s]; k < held.first[s + 1]; k++) {
+      const force = row(held.force, k), least = Math.min(1, this.pressed / (norm(force) || 1));
+      const way = times((0.7 * longest * least) / (this.pressed || 1), force);
+      out.push(...this.arrow(row(held.point, k), way, rgba(colours.force)));
+    }
+    return out;
+  }
+
+  lines(t, followed) {
+    const all = Array.from({ length: this.motion.count }, (_, b) => b), out = [];
+    for (const b of this.motion.count <= WAYS ? all : followed >= 0 ? [followed] : []) {
+      if (!this.ways.has(b)) this.ways.set(b, this.canvas.mesh(this.motion.way(b), false));
+      const mesh = this.ways.get(b), now = lastBefore(this.motion.time, t);
+      out.push({ mesh, first: 0, count: now + 1, colour: [0.25, 0.31, 0.36, 0.8] });
+      out.push({ mesh, first: now, count: mesh.count - now, colour: [0.25, 0.31, 0.36, 0.22] });
+    }
+    return out;
+  }
+
+  /** Draw the moment; `state` says what is wanted. Returns the matrix to the screen. */
+  paint(camera, poses, state) {
+    const aspect = this.canvas.fit(), view = camera.matrix(aspect), { radius, up } = this.run.place;
+    const size = Math.min(1.4 * radius, 1.1 * camera.distance), far = 4 * radius + size;
+    const from = add(camera.target, times(far / 2, this.light));
+    const along = looking(from, camera.target, across(this.light)[0]);
+    const sun = product(parallel(size, -far / 2, 1.5 * far), along);
+    this.canvas.draw({
+      view, sun, eye: camera.eye, light: this.light, up,
+      solids: this.solids(poses), planes: this.planes,
+      lines: state.ways ? this.lines(state.time, state.follow) : [],
+      marks: state.arrows ? this.marks(state.time) : [],
+      arrows: state.arrows ? this.arrows(state.time, state.fading, state.length) : [],
+    });
+    return view;
+  }
+}

@@ -1,0 +1,177 @@
+"""Sources, errors, the report, and shapes."""
+
+import sys
+
+import mujoco
+import numpy as np
+import pytest
+
+import carom
+from carom.models.links import possible_inertia
+
+from .agreement import DATA
+
+BALL = """<mujoco><worldbody><body name="ball"><freejoint/><geom size=".1"/></body></worldbody></mujoco>"""
+URDF = """
+<robot name="r">
+  <link name="base"><inertial><mass value="2"/><inertia ixx=".1" iyy=".1" izz=".1" ixy="0" ixz="0" iyz="0"/>
+  </inertial></link>
+  <link name="arm"><inertial><mass value="1"/><inertia ixx=".1" iyy=".1" izz=".3" ixy="0" ixz="0" iyz="0"/>
+  </inertial>
+    <collision><geometry><mesh filename="package://r/arm.stl"/></geometry></collision>
+    <collision><geometry><sphere radius=".1"/></geometry></collision></link>
+  <link name="virtual"/>
+  <link name="hand"><inertial><mass value="1"/><inertia ixx=".1" iyy=".1" izz=".1" ixy="0" ixz="0" iyz="0"/>
+  </inertial></link>
+  <link name="frame"/>
+  <joint name="elbow" type="revolute"><parent link="base"/><child link="arm"/><axis xyz="0 1 0"/>
+    <limit lower="-1" upper="1" effort="1" velocity="1"/></joint>
+  <joint name="wrist1" type="continuous"><parent link="arm"/><child link="virtual"/><axis xyz="1 0 0"/></joint>
+  <joint name="wrist2" type="continuous"><parent link="virtual"/><child link="hand"/><axis xyz="0 0 1"/></joint>
+  <joint name="glued" type="fixed"><parent link="hand"/><child link="frame"/></joint>
+</robot>"""
+
+
+def test_sources(tmp_path):
+    path = tmp_path / "ball.xml"
+    path.write_text(BALL)
+    spec = mujoco.MjSpec.from_string(BALL)
+    for source in (path, str(path), BALL, spec, spec.compile()):
+        assert carom.load_model(source).scene["ball"].mass == pytest.approx(
+            4 / 3 * np.pi, rel=1e-12
+        )
+
+
+@pytest.mark.parametrize(
+    ("source", "error", "message"),
+    [
+        ("no/such.xml", FileNotFoundError, "no model file 'no/such.xml'"),
+        ("<mujoco><worldbody>", ValueError, "no XML that can be read"),
+        ("<sdf/>", ValueError, "root <sdf>"),
+        ("<mujoco colour='red'/>", ValueError, "unrecognized attribute: 'colour'"),
+        (
+            "<mujoco><worldbody><body><joint/></body></worldbody></mujoco>",
+            ValueError,
+            "mass and inertia",
+        ),
+        ("<mujoco/>", ValueError, "something that moves"),
+        (3, TypeError, "source must be a path"),
+    ],
+)
+def test_what_cannot_be_read(source, error, message):
+    with pytest.raises(error, match=message) as caught:
+        carom.load_model(source)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [{"restitution": 2}, {"friction": -1}, {"impact_law": "x"}, {"keyframe": "x"}, {"qpos": [1]},
+     {"overlaps": "x"}, {"contacts": 1}, {"free_root": True}],
+)  # fmt: skip
+def test_arguments_are_checked(arguments):
+    with pytest.raises((ValueError, TypeError), match=next(iter(arguments))):
+        carom.load_model(BALL, **arguments)
+
+
+def test_without_mujoco(monkeypatch):
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    with pytest.raises(ModuleNotFoundError, match=r'pip install "carom\[models\]"'):
+        carom.load_model(BALL)
+
+
+def test_urdf():
+    model = carom.load_model(URDF, friction=0.5)
+    assert [b.name for b in model.scene.bodies] == ["arm", "virtual", "hand"]
+    assert model.bodies["base"] is carom.GROUND
+    assert model.bodies["frame"] is model.scene["hand"]
+    assert model.scene["virtual"].mass == pytest.approx(4e-9)
+    said = str(model.report)
+    assert "'package://r/arm.stl' was not found; left out" in said
+    assert "link 'arm': its inertia is that of no body" in said
+    assert "link 'virtual': moves and has no mass" in said
+    assert model.scene["elbow:upper"].upper == 1.0
+    floats = carom.load_model(URDF, free_root=True)
+    assert [b.name for b in floats.scene.bodies] == ["base", "arm", "virtual", "hand"]
+    assert len(floats.scene.joints) == 3
+
+
+def test_meshes_of_packages_are_found(tmp_path):
+    folder = tmp_path / "r"
+    folder.mkdir()
+    corners = [(0, 0, 0), (0.3, 0, 0), (0, 0.2, 0), (0, 0, 0.1)]
+    faces = [(1, 3, 2), (1, 2, 4), (1, 4, 3), (2, 3, 4)]
+    text = [f"v {x} {y} {z}" for x, y, z in corners] + [f"f {a} {b} {c}" for a, b, c in faces]
+    (folder / "arm.obj").write_text("\n".join(text))
+    xml = URDF.replace("arm.stl", "arm.obj")
+    for arguments in ({"package_dirs": [tmp_path]}, {"package_dirs": [folder]}):
+        model = carom.load_model(xml, **arguments)
+        shape = model.scene["arm"].shape
+        assert [type(part).__name__ for part, _, _ in shape.parts] == ["Convex", "Sphere"]
+        hull, place, turn = shape.parts[0]
+        found = carom.geometry.quaternion.rotate(turn, hull.vertices) + place
+        far = np.max(np.abs(np.sort(found, axis=0) - np.sort(corners, axis=0)))
+        assert far < 1e-7  # MuJoCo keeps vertices as float32
+
+
+def test_shapes_weigh_what_mujoco_says():
+    """A body of one geom has the mass and the inertia of its shape: the shapes are the same, and lie alike."""
+    kinds = {
+        "sphere": ".2", "capsule": ".1 .3", "cylinder": ".1 .3", "ellipsoid": ".1 .2 .3", "box": ".1 .2 .3",
+    }  # fmt: skip
+    for kind, size in kinds.items():
+        xml = BALL.replace(
+            'size=".1"', f'type="{kind}" size="{size}" pos=".3 .2 .1" euler="20 30 40"'
+        )
+        body = carom.load_model(xml).scene["ball"]
+        parts = getattr(body.shape, "parts", [(body.shape, np.zeros(3), np.array([1.0, 0, 0, 0]))])
+        shape, place, turn = parts[0]
+        axes = carom.geometry.quaternion.matrix(turn)
+        np.testing.assert_allclose(place, 0.0, atol=1e-12)
+        assert shape.volume * 1000 == pytest.approx(body.mass, rel=1e-12)
+        expected = axes @ shape.inertia(body.mass) @ axes.T
+        np.testing.assert_allclose(body.inertia, expected, rtol=0, atol=1e-12 * np.max(expected))
+
+
+def test_everything_left_out_is_reported():
+    model = carom.load_model(DATA / "dm_control" / "quadruped.xml")
+    for kind, count in (("actuator", model.mujoco.nu), ("tendon", model.mujoco.ntendon),
+                        ("sensor", model.mujoco.nsensor)):  # fmt: skip
+        assert len(model.report.of(f"{kind} ")) == count > 0
+    assert "a height field; left out" in str(model.report)
+    assert "more: sensors are not represented" in str(model.report)
+
+
+def test_names_that_bodies_and_joints_share():
+    xml = BALL.replace("<freejoint/>", '<joint name="ball"/>')
+    model = carom.load_model(xml)
+    assert model.joints["ball"].joint.name == "ball (joint)"
+    assert model.scene["ball"].mass > 4
+
+
+def test_a_scene_of_a_model_goes_to_a_file_and_back(tmp_path):
+    model = carom.load_model(DATA / "own" / "loops.xml")
+    solution = carom.simulate(model.scene, 2e-3, step=1e-3)
+    solution.save(tmp_path / "run.nc")
+    again = carom.Solution.load(tmp_path / "run.nc")
+    np.testing.assert_array_equal(again.position, solution.position)
+
+
+def test_inertias_are_mended_as_little_as_possible():
+    flat = np.diag([1.0, 2.0, 3.0])
+    assert possible_inertia(flat) == (pytest.approx(flat), 0.0)
+    better, change = possible_inertia(np.diag([1.0, 1.0, 3.0]))
+    np.testing.assert_allclose(np.linalg.eigvalsh(better), [1.5, 1.5, 3.0])
+    assert change == pytest.approx(1 / 6)
+    better, _ = possible_inertia(np.diag([0.0, 2.0, 2.0]))
+    assert np.linalg.eigvalsh(better)[0] > 0.0
+
+
+def test_flags_of_the_model():
+    off = '<option><flag contact="disable" gravity="disable" limit="disable"/></option><worldbody>'
+    floor = '<geom type="plane" size="1 1 1"/>'
+    model = carom.load_model(BALL.replace("<worldbody>", off + floor))
+    assert not np.any(model.scene.gravity)
+    assert model.scene.contact_default is None
+    assert not model.scene.half_spaces
+    assert "switches off limits of joints; they are there" in str(model.report)
