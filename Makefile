@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 
-.PHONY: paper test lint docs bench history clean
+.PHONY: paper test lint docs bench history release-check clean
 
 $(VENV)/installed-%: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -34,6 +34,10 @@ history: $(VENV)/installed-bench ## measure this commit for benchmarks/history (
 
 docs: $(VENV)/installed-docs
 	$(BIN)/sphinx-build -W -b html docs out/docs
+
+release-check: $(VENV)/installed-test ## build wheel and sdist, look inside, install the wheel in an empty environment, run it
+	$(BIN)/python -m pip install --quiet build
+	$(BIN)/python tools/check_release.py
 
 clean:
 	rm -rf $(VENV) out

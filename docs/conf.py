@@ -35,6 +35,9 @@ default_role = "literal"
 html_theme = "pydata_sphinx_theme"
 html_title = "carom"
 html_static_path = ["_static"]
+html_css_files = ["carom.css"]
+_ALONE = ("start", "notation", "benchmarks", "comparison", "limits", "changes", "cite")
+html_sidebars = {page: [] for page in _ALONE}  # pages without others beside them
 html_theme_options = {
     "show_toc_level": 2,
     "navigation_with_keys": False,

@@ -1,11 +1,16 @@
-"""The code of the README and of the documentation pages runs, and prints what the pages say."""
+"""The code of README, pages and docstrings runs, and prints what they say; names in them exist."""
 
 import contextlib
+import doctest
+import importlib
 import io
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
+
+import carom
 
 ROOT = Path(__file__).parents[1]
 FOLDERS = (ROOT / "docs" / "tutorial", ROOT / "docs" / "howto")
@@ -51,3 +56,126 @@ def test_code_of_a_page_prints_what_is_shown(page, monkeypatch, tmp_path):
             assert len(shown) == len(got), f"shown:\n{text}\nprinted:\n{printed}"
             wrong = [pair for pair in zip(shown, got) if not same(*pair)]
             assert not wrong, f"(shown, printed): {wrong}"
+
+
+NAME = re.compile(r"`((?:[A-Za-z_]\w*\.)*[A-Za-z_]\w*)(?:\([^`]*\))?`")
+TEXTS = [
+    p for p in [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")] if "generated" not in p.parts
+]
+
+
+def member(value, name: str):
+    """Return a part of a module or class; of an attribute that has no value yet, its annotation."""
+    if hasattr(value, name):
+        return getattr(value, name)
+    notes = [vars(base).get("__annotations__", {}) for base in getattr(value, "__mro__", ())]
+    for note in notes:
+        if name in note:
+            return note[name]
+    return importlib.import_module(f"{value.__name__}.{name}")
+
+
+def named(dotted: str):
+    """Return what a name in the pages stands for: `carom...`, or `Class.member` of a public class."""
+    first, *rest = dotted.split(".")
+    value = carom if first == "carom" else getattr(carom, first)
+    for name in rest:
+        value = member(value, name)
+    return value
+
+
+def exists(dotted: str) -> bool:
+    try:
+        named(dotted)
+    except (AttributeError, ModuleNotFoundError):
+        return False
+    return True
+
+
+def test_a_name_that_is_not_there_is_found_out():
+    assert exists("carom.impact.resolve.resolve")
+    assert exists("Options.layer_width")
+    assert exists("Solution.position")
+    assert not exists("carom.impact.resolve.nothing")
+    assert not exists("Options.nothing")
+
+
+@pytest.mark.parametrize("path", TEXTS, ids=lambda path: str(path.relative_to(ROOT)))
+def test_names_in_a_page_exist(path):
+    """All that begin with `carom.` or a public class; after "In code:" also short ones, by the one before."""
+    text = re.sub(r"^```.*?^```", "", path.read_text(encoding="utf-8"), flags=re.M | re.S)
+    missing = []
+    for paragraph in text.split("\n\n"):
+        code, package = False, None
+        for part in re.split(r"(In code:)", paragraph):
+            code = code or part == "In code:"
+            for name in NAME.findall(part):
+                first = name.split(".")[0]
+                if name.endswith(".py"):
+                    continue
+                if first == "carom" or (first in carom.__all__ and "." in name):
+                    missing += [] if exists(name) else [name]
+                    package = name if first == "carom" else package
+                elif code and package and first not in carom.__all__:
+                    levels = package.split(".")
+                    tried = [".".join([*levels[:k], name]) for k in range(1, len(levels) + 1)]
+                    asked = getattr(
+                        named(package), "__code__", None
+                    )  # or an argument of a function
+                    tried = [] if asked and name in asked.co_varnames else tried
+                    missing += (
+                        [] if not tried or any(map(exists, tried)) else [f"{name} after {package}"]
+                    )
+    assert not missing
+
+
+def test_names_of_the_reference_exist():
+    names = re.findall(r"^   ([\w.]+)$", (ROOT / "docs/api.rst").read_text(encoding="utf-8"), re.M)
+    assert len(names) > 50
+    assert not [name for name in names if not exists(f"carom.{name}")]
+    reference = {name.split(".")[0] for name in names}
+    assert not [name for name in carom.__all__ if name not in reference and name not in MODULES]
+
+
+ASKED = re.compile(r">>> (?!.*\+SKIP)")
+MODULES = ("baselines", "constraints", "forces", "geometry", "identify", "joints")
+SHOWN = [
+    "Scene", "Scene.add_body", "Scene.add_contact", "Scene.add_joint", "Scene.check", "simulate",
+    "Solution", "tables.ImpactTable", "resolve_impact", "impact_layer", "ensemble", "sensitivities",
+    "solve_contacts",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("name", SHOWN)
+def test_example_of_a_docstring(name):
+    finder = doctest.DocTestFinder(recurse=False)
+    runner = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE)
+    (test,) = finder.find(named(f"carom.{name}"), name, globs={"carom": carom, "np": np})
+    assert test.examples
+    output = io.StringIO()
+    runner.run(test, out=output.write)
+    assert runner.failures == 0, output.getvalue()
+
+
+def test_all_examples_are_run():
+    """An example that is added to a docstring of the reference is added to the list above."""
+    names = re.findall(r"^   ([\w.]+)$", (ROOT / "docs/api.rst").read_text(encoding="utf-8"), re.M)
+    with_examples = set()
+    for name in names:
+        value = named(f"carom.{name}")
+        methods = vars(value) if isinstance(value, type) else {}
+        for label, part in {name: value, **{f"{name}.{k}": v for k, v in methods.items()}}.items():
+            if (
+                label[-1] != "_"
+                and callable(part)
+                and ASKED.search(getattr(part, "__doc__", None) or "")
+            ):
+                with_examples.add(label)
+    assert with_examples <= set(SHOWN)
+
+
+def test_every_status_is_explained():
+    page = (ROOT / "docs/howto/failure.md").read_text(encoding="utf-8")
+    assert not [
+        s.name for s in carom.Status if s.name != "SUCCESS" and f"| `{s.name}` |" not in page
+    ]

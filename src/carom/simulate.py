@@ -124,6 +124,18 @@ def simulate(
         For `save` without its packages.
     SimulationError
         If the run fails part-way, or cannot be saved at its end, and `throw` is True.
+
+    Examples
+    --------
+    A ball that falls 0.4 m strikes after sqrt(2 h / g), whatever the step:
+
+    >>> scene = carom.Scene(gravity=(0, 0, -9.81))
+    >>> floor = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1))
+    >>> ball = scene.add_body(carom.Sphere(0.1), mass=1.0, position=(0, 0, 0.5))
+    >>> contact = scene.add_contact(ball, floor, restitution=0.8)
+    >>> solution = carom.simulate(scene, duration=0.5, step=0.01)
+    >>> bool(abs(solution.impacts.time[0] - (2 * 0.4 / 9.81) ** 0.5) < 1e-14)
+    True
     """
     if not isinstance(scene, (Scene, GeneralizedSystem)):
         raise TypeError(

@@ -57,6 +57,23 @@ class Solution(Portable, Drawn):
         steps of held points and their rounds (of a heap: sweeps); `explicit_steps`, those that a symplectic
         method left to the explicit one in singular positions; and `whole_steps`, how often bodies that could
         not go from event to event took steps as a heap.
+
+    Examples
+    --------
+    >>> scene = carom.Scene(gravity=(0, 0, -9.81))
+    >>> floor = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1))
+    >>> ball = scene.add_body(carom.Sphere(0.1), mass=1.0, position=(0, 0, 0.5))
+    >>> contact = scene.add_contact(ball, floor, restitution=0.5)
+    >>> solution = carom.simulate(scene, duration=2.0, step=0.01)
+    >>> solution.position.shape
+    (201, 1, 3)
+    >>> x, Q, v, w = solution.evaluate(0.1)  # between saved times, too
+    >>> print(v.round(6) + 0.0)
+    [[ 0.     0.    -0.981]]
+    >>> print(solution.contact_force[-1, 0].round(9) + 0.0)  # it rests
+    [9.81 0.   0.  ]
+    >>> bool(abs(solution.ledger.residual).max() < 1e-13)
+    True
     """
 
     t: np.ndarray

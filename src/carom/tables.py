@@ -37,7 +37,21 @@ class ImpactRecord(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ImpactTable:
-    """All impacts of a run in the order of time; fields of `ImpactRecord` as columns (K, ...)."""
+    """All impacts of a run in the order of time; fields of `ImpactRecord` as columns (K, ...).
+
+    Examples
+    --------
+    >>> scene = carom.Scene(gravity=(0, 0, -9.81))
+    >>> floor = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1))
+    >>> ball = scene.add_body(carom.Sphere(0.1), mass=1.0, position=(0, 0, 0.5))
+    >>> contact = scene.add_contact(ball, floor, restitution=0.5)
+    >>> impacts = carom.simulate(scene, duration=0.8, step=0.01).impacts
+    >>> print(impacts.time.round(6))
+    [0.285569 0.571137 0.713922 0.785314]
+    >>> blow = impacts[0]
+    >>> print(blow.relative_velocity_before[0].round(6), blow.relative_velocity_after[0].round(6))
+    -2.801428 1.400714
+    """
 
     time: np.ndarray
     contact: np.ndarray

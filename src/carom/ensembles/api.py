@@ -100,8 +100,16 @@ def ensemble(
     Examples
     --------
     >>> from scipy.stats import uniform
-    >>> thrown = carom.ensemble(scene, 2.0, step=1e-3, runs=100, vary={
+    >>> scene = carom.Scene(gravity=(0, 0, -9.81))
+    >>> ground = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1), name="ground")
+    >>> die = scene.add_body(carom.Box(0.02, 0.02, 0.02), mass=0.016, position=(0, 0, 0.1), name="die")
+    >>> contact = scene.add_contact(die, ground, restitution=0.5, friction=0.2)
+    >>> thrown = carom.ensemble(scene, 2.0, step=2e-3, runs=8, vary={
     ...     "die.orientation": carom.UniformOrientation(), "die-ground.friction": uniform(0.1, 0.3)})
+    >>> thrown
+    <Ensemble of 8 runs: 8 success>
+    >>> thrown.position.shape, bool(np.all(thrown.velocity == 0))  # where each came to rest
+    ((8, 1, 3), True)
     """
     if not isinstance(scene, Scene) and not callable(scene):
         raise TypeError(

@@ -60,6 +60,20 @@ def sensitivities(
     -----
     Mathematics page, part VIII. The derivative belongs to the sequence of contact of this run; `margins` and
     `reach` say how far it is from another one.
+
+    Examples
+    --------
+    By how much the second impact of a ball comes later for more restitution: it leaves the floor with e times
+    2.8014 m/s, and is in the air for 2 e 2.8014 / g.
+
+    >>> scene = carom.Scene(gravity=(0, 0, -9.81))
+    >>> floor = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1), name="floor")
+    >>> ball = scene.add_body(carom.Sphere(0.1), mass=1.0, position=(0, 0, 0.5), name="ball")
+    >>> contact = scene.add_contact(ball, floor, restitution=0.8)
+    >>> solution = carom.simulate(scene, duration=0.8, step=0.01)
+    >>> by_e = carom.sensitivities(solution, "ball-floor.restitution")
+    >>> print(by_e.impact_time[:, 0].round(6), round(2 * 2.801428 / 9.81, 6))
+    [0.       0.571137] 0.571137
     """
     check.instance("solution", solution, (Solution,))
     check.flag("throw", throw)

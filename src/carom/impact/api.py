@@ -79,6 +79,15 @@ def resolve_impact(
     Mathematics page, II.9 and II.10. Slip follows its Taylor series and ends where the contact
     sticks, if the friction suffices to hold it, or else starts anew along the one direction that
     leads away from rest.
+
+    Examples
+    --------
+    A sphere of 1 kg strikes the ground at 1 m/s while it slips at 1 m/s; its tangential W is 7/2 of the normal
+    one:
+
+    >>> impact = carom.resolve_impact(np.diag([1.0, 3.5, 3.5]), (-1.0, 1.0, 0.0), friction=0.1, restitution=0.5)
+    >>> print(impact.velocity_after, impact.impulse, impact.phases)
+    [0.5   0.475 0.   ] [ 1.5  -0.15  0.  ] ('slip',)
     """
     from carom.impact import layout as o
     from carom.impact.resolve import resolve

@@ -124,6 +124,15 @@ def impact_layer(
     Notes
     -----
     Mathematics page, II.8 to II.11; the paper, section on the boundary layer.
+
+    Examples
+    --------
+    >>> layer = carom.impact_layer(np.diag([1.0, 3.5, 3.5]), (-1.0, 1.0, 0.0), 0.1, 0.5,
+    ...                            penetration=0.9, width=1e-6)
+    >>> print(f"{layer.x_min:.2g} m after {layer.t[1]:.3e} s, at {layer.normal_force[0]:.4g} N")
+    1e-07 m after 4.605e-06 s, at 2.171e+05 N
+    >>> print(layer.velocity_after)
+    [0.5   0.475 0.   ]
     """
     from carom.impact import layout as o
     from carom.impact.layer import traverse

@@ -113,6 +113,17 @@ class Scene(TouchingPairs):
         ------
         ValueError
             If an argument is outside its range, the inertia is that of no body, or the name is taken.
+
+        Examples
+        --------
+        >>> scene = carom.Scene()
+        >>> die = scene.add_body(carom.Box(0.02, 0.02, 0.02), mass=0.016, position=(0, 0, 0.3), name="die")
+        >>> print(die.inertia[0].round(12))  # m a^2 / 6
+        [1.066667e-06 0.000000e+00 0.000000e+00]
+        >>> scene.add_body(carom.Sphere(0.1), mass=-1.0)
+        Traceback (most recent call last):
+            ...
+        ValueError: mass must be finite and above 0 [kg], got -1.0
         """
         index, name = self._parts.new(Body, name, "body")
         motion = (position, orientation, velocity, angular_velocity)
@@ -148,6 +159,14 @@ class Scene(TouchingPairs):
             world.
         name
             Default ``"joint1"``, ``"joint2"``, ...
+
+        Examples
+        --------
+        >>> scene = carom.Scene()
+        >>> rod = scene.add_body(carom.Box(1, 0.1, 0.1), mass=1.0, position=(0.5, 0, 0), name="rod")
+        >>> hinge = carom.joints.Revolute(anchor=(0, 0, 0), axis=(0, 1, 0))
+        >>> scene.add_joint(hinge, carom.GROUND, rod, name="hinge")
+        Joint('hinge', Revolute, 'GROUND' -> 'rod')
         """
         check.instance("definition", definition, JOINTS)
         self._parts.pair(parent, child)
@@ -330,9 +349,16 @@ class Scene(TouchingPairs):
 
         Examples
         --------
+        A door on two hinges:
+
+        >>> scene = carom.Scene()
+        >>> door = scene.add_body(carom.Box(0.9, 0.04, 2), mass=20, position=(0.45, 0, 1), name="door")
+        >>> for name, z in (("lower", 0.2), ("upper", 1.8)):
+        ...     hinge = carom.joints.Revolute(anchor=(0, 0, z), axis=(0, 0, 1))
+        ...     joint = scene.add_joint(hinge, carom.GROUND, door, name=name)
         >>> print(scene.check())
-        3 bodies, 20 constraint rows: 1 degrees of freedom
-        3 redundant rows, among a, b, c, d
+        1 bodies, 10 constraint rows: 1 degrees of freedom
+        5 redundant rows, among lower, upper
         """
         from carom.system.mobility import mobility
 

@@ -64,6 +64,14 @@ class TouchingPairs:
         ValueError
             If the two are inside each other at the start, are one body, have a contact already, or have
             materials that no rule combines.
+
+        Examples
+        --------
+        >>> scene = carom.Scene()
+        >>> table = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1), name="table")
+        >>> ball = scene.add_body(carom.Sphere(0.1), mass=1.0, position=(0, 0, 1), name="ball")
+        >>> scene.add_contact(ball, table, restitution=0.8, friction=0.3, impact_law="stronge")
+        Contact('ball-table', restitution=0.8, friction=0.3, impact_law='stronge')
         """
         self._parts.member("body", body, (Body,))
         self._parts.member("other", other, (HalfSpace, Body))
