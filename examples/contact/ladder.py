@@ -36,7 +36,9 @@ def main(out="out/examples"):
     part = s.evaluate(opened)[0][0, 2] / centre[2]
     held = s.t < opened
     error = np.max(np.abs(np.hypot(x, z)[held] - length / 2))
-    print(f"the ladder lets go of the wall after {opened:.4f} s, at {part:.6f} of its height (exact 2/3)")
+    print(
+        f"the ladder lets go of the wall after {opened:.4f} s, at {part:.6f} of its height (exact 2/3)"
+    )
     print(f"until then its centre is on the circle to {error:.0e} m")
 
     with style.style():

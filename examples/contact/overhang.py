@@ -21,7 +21,9 @@ SIGNS = np.array([(-1, 0, -1), (1, 0, -1), (1, 0, 1), (-1, 0, 1)])
 
 def stack(part):
     scene = carom.Scene(gravity=(0, 0, -g))
-    table = scene.add_body(carom.Box(0.4, 0.2, 0.1), mass=1.0, position=(-0.2, 0, -0.05), name="table")
+    table = scene.add_body(
+        carom.Box(0.4, 0.2, 0.1), mass=1.0, position=(-0.2, 0, -0.05), name="table"
+    )
     scene.add_joint(carom.joints.Fixed(), carom.GROUND, table)
     x = -length / 2
     for k in range(count):  # from the table up

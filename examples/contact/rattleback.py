@@ -33,11 +33,16 @@ def boat(spin, duration=3.0):
 def main(out="out/examples"):
     with style.style():
         figure, (left, right) = style.new(style.PAGE, 2.5, columns=2)
-        for sign, colour, way in ((1, style.GREY, "the good way"), (-1, style.BLUE, "the other way")):
+        for sign, colour, way in (
+            (1, style.GREY, "the good way"),
+            (-1, style.BLUE, "the other way"),
+        ):
             s = boat(sign * spin)
             w = s.angular_velocity[:, 0]
             lost = np.max(np.abs(s.total_energy - s.total_energy[0])) / s.kinetic_energy[0]
-            print(f"spun {way}: from {w[0, 2]:+.2f} to {w[-1, 2]:+.2f} rad/s, energy kept to {lost:.1e}")
+            print(
+                f"spun {way}: from {w[0, 2]:+.2f} to {w[-1, 2]:+.2f} rad/s, energy kept to {lost:.1e}"
+            )
             left.plot(s.t, w[:, 2], color=colour, label=way)
             assert lost < 1e-3
             assert (w[-1, 2] > 0.9 * spin) or sign < 0

@@ -32,11 +32,15 @@ def main(out="out/examples"):
     s = carom.simulate(scene, 6.0, step=1e-3)
 
     times = np.unique(s.impacts.time)
-    spins = np.array([[s.evaluate(t, side=side)[3][0, 1] for side in ("left", "right")] for t in times])
+    spins = np.array(
+        [[s.evaluate(t, side=side)[3][0, 1] for side in ("left", "right")] for t in times]
+    )
     ratio = spins[:, 1] / spins[:, 0]
     first = np.arccosh(1 / (1 - tilt)) / np.sqrt(3 * g / (4 * R))  # of the linear equation
     error = np.max(np.abs(ratio[:8] - kept))
-    print(f"{len(times)} impacts; each keeps {ratio[0]:.9f} of the spin, Housner {kept:.9f}, error {error:.0e}")
+    print(
+        f"{len(times)} impacts; each keeps {ratio[0]:.9f} of the spin, Housner {kept:.9f}, error {error:.0e}"
+    )
     print(f"the first after {times[0]:.4f} s; Housner, small angles: {first:.4f} s")
 
     with style.style():

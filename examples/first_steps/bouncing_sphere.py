@@ -1,4 +1,8 @@
-"""A sphere that bounces to rest: infinitely many impacts in finite time.
+"""
+A ball bounces to rest
+======================
+
+A sphere that bounces to rest: infinitely many impacts in finite time.
 
 Dropped from h, with restitution e, the k-th impact is at t_k = t_1 (1 + 2 e + ... + 2 e^(k-1)),
 t_1 = sqrt(2 h / g). The times add up to t_1 (1 + e)/(1 - e): then the sphere is at rest.

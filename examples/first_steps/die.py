@@ -1,4 +1,8 @@
-"""A thrown die strikes a table with an edge, and friction turns it back.
+"""
+A die goes on, or turns back
+============================
+
+A thrown die strikes a table with an edge, and friction turns it back.
 
 Slip keeps its direction, so the impulse is known in closed form (Routh):
 P_n = (1 + e) |u_n| / (W_nn - mu s W_nt),  P_t = -mu s P_n,  s the direction of slip.

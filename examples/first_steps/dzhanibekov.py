@@ -40,7 +40,9 @@ def main(out="out/examples"):
     solution = carom.simulate(scene, 100.0, step=0.02)
 
     attitude = solution.orientation[:, 0]
-    seen = np.array([quaternion.rotate_back(*row) for row in zip(attitude, solution.angular_velocity[:, 0])])
+    seen = np.array(
+        [quaternion.rotate_back(*row) for row in zip(attitude, solution.angular_velocity[:, 0])]
+    )
     momentum = I * w / np.linalg.norm(I * w)
     points = np.array([quaternion.rotate_back(q, momentum)[1] for q in attitude])
     error = np.max(np.abs(seen - exact(solution.t)))

@@ -1,4 +1,8 @@
-"""A bead on a ring-shaped surface, in two angles: a manifold that is not flat, in the user's own coordinates.
+"""
+Coordinates of your own: a bead on a torus
+==========================================
+
+A bead on a ring-shaped surface, in two angles: a manifold that is not flat, in the user's own coordinates.
 
 The metric of the torus is diag(r^2, (R + r cos a)^2); gravity points along its axis, and a level floor cuts
 it. So the momentum about the axis, (R + r cos a)^2 b' (Clairaut's integral), is kept, through all impacts.

@@ -50,7 +50,12 @@ def main(out="out/examples"):
     errors = []
     with style.style():
         figure, axes = style.new(style.PAGE, 3.0)
-        for spin, colour in ((0, style.GREY), (60, style.GREEN), (120, style.BLUE), (240, style.RED)):
+        for spin, colour in (
+            (0, style.GREY),
+            (60, style.GREEN),
+            (120, style.BLUE),
+            (240, style.RED),
+        ):
             s = fly(spin)
             true = exact(s.t, spin)
             path = s.position[:, 0, 0] + 1j * s.position[:, 0, 2]

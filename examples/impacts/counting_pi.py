@@ -44,7 +44,9 @@ def main(out="out/examples"):
             times = np.sort(np.concatenate([shown.t, shown.impacts.time]))
             left.plot(times, shown.evaluate(times)[0][:, body, 0], color=colour, label=name)
         left.axhline(0, color="k", lw=2)
-        left.set(xlabel="time / s", ylabel="distance from the wall / m", xlim=(0, 2.5), ylim=(0, 1.7))
+        left.set(
+            xlabel="time / s", ylabel="distance from the wall / m", xlim=(0, 2.5), ylim=(0, 1.7)
+        )
         left.legend(loc="upper left", title="mass ratio 100")
         after = shown.evaluate(np.concatenate([[0.0], shown.impacts.time]))[2][..., 0]
         x, y = 10 * after[:, 1], after[:, 0]

@@ -54,7 +54,9 @@ def swing(multiple):
 def main(out="out/examples"):
     with style.style():
         figure, rows = style.new(style.PAGE, 2.4, columns=2, sharey=True)
-        for axes, multiple, true in zip(rows, ("sequential", "simultaneous"), ([0, 0, 1], springs())):
+        for axes, multiple, true in zip(
+            rows, ("sequential", "simultaneous"), ([0, 0, 1], springs())
+        ):
             s = swing(multiple)
             blow = s.impacts.time[0]
             v = s.evaluate(blow)[2][:, 0] / s.evaluate(blow, side="left")[2][0, 0]

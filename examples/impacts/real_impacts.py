@@ -1,4 +1,8 @@
-"""Real impacts of a real cube against the impact laws, at nominal and at fitted (e, mu).
+"""
+Real impacts of a real cube
+===========================
+
+Real impacts of a real cube against the impact laws, at nominal and at fitted (e, mu).
 
 One corner strikes: W = G M^-1 G^T and u = G v from the measured state before; the impulse P of
 `carom.resolve_impact` gives v+ = v + M^-1 G^T P, and gravity acts until the next measured sample.

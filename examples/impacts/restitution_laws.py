@@ -45,7 +45,9 @@ def main(out="out/examples"):
             true = np.array([exact(mu, law) for mu in friction])
             worst = max(worst, np.max(np.abs(u - true)))
             kept = np.array([energy(row) for row in u]) / energy(before)
-            print(f"{law:8} energy after / before at mu = 0.8: {np.interp(0.8, friction, kept):.6f}")
+            print(
+                f"{law:8} energy after / before at mu = 0.8: {np.interp(0.8, friction, kept):.6f}"
+            )
             left.plot(friction, kept, color=colour, label=law.capitalize())
             right.plot(u[:, 1], u[:, 0], color=colour)
             right.plot(*u[[0, -1], ::-1].T, "o", color=colour)

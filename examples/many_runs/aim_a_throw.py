@@ -1,4 +1,8 @@
-"""Gradients of a throw: its coefficients from a measured bounce, and how to throw it to a target.
+"""
+Gradients: measure a bounce, aim a throw
+========================================
+
+Gradients of a throw: its coefficients from a measured bounce, and how to throw it to a target.
 
 With the derivatives of a run, the times of its impacts included, both are a few Gauss-Newton steps.
 """

@@ -1,4 +1,8 @@
-"""Real tosses of a real cube, simulated from flight to rest, with the error to motion capture.
+"""
+Real tosses of a real cube
+==========================
+
+Real tosses of a real cube, simulated from flight to rest, with the error to motion capture.
 
 `python examples/cube_toss.py --data FILE --start B` runs all recorded tosses of a file (default: the even
 ones, to which the parameters were fitted) with the chosen parameters; `--fit` fits them anew. What is done

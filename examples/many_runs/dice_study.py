@@ -1,4 +1,8 @@
-"""How random is a die? The face that comes up against how it was held, and from which height.
+"""
+How random is a die?
+====================
+
+How random is a die? The face that comes up against how it was held, and from which height.
 
 Left: held at two angles, let go with a little speed and spin. Right: how often the face that was up comes
 up again, for random speeds and spins. The pages show `python examples/dice_study.py 120 2000`.

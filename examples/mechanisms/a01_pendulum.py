@@ -1,4 +1,8 @@
-"""IFToMM A01, the simple pendulum: a point mass on a rod without mass, released from the horizontal.
+"""
+A01: the simple pendulum, and the order of each method
+======================================================
+
+IFToMM A01, the simple pendulum: a point mass on a rod without mass, released from the horizontal.
 
 Its angle from below is known in elliptic functions, sin(theta/2) = k cd(sqrt(g/l) t; k) with
 k = sin(theta_0/2), so the error of every method and step can be measured: its slope is the order.

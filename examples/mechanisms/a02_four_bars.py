@@ -1,4 +1,8 @@
-"""IFToMM A02, N four-bars in a row (N = 2): redundant rows, and a singular position in every turn.
+"""
+A02: four-bars through their singular position
+==============================================
+
+IFToMM A02, N four-bars in a row (N = 2): redundant rows, and a singular position in every turn.
 
 All bars have 1 m and 1 kg. One freedom, the lean theta of the N + 1 upright bars:
 theta'' = g sin(theta) ((N + 1)/2 + N) / ((N + 1)/3 + N); the N bars across stay level. Where all bars are in

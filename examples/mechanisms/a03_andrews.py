@@ -1,4 +1,8 @@
-"""IFToMM A03, Andrews' squeezing mechanism: seven plane bodies, ten hinges, one freedom, 30 ms.
+"""
+A03: Andrews' squeezing mechanism
+=================================
+
+IFToMM A03, Andrews' squeezing mechanism: seven plane bodies, ten hinges, one freedom, 30 ms.
 
 Points are complex numbers; data, the start (at rest) and the end are those of the IVP test set. A motor
 turns the crank with a constant torque, so T + V - E_0 = torque (beta - beta_0).

@@ -1,4 +1,8 @@
-"""IFToMM A05, the flyball governor: stiff, since springs with dampers stand for its lower rods.
+"""
+A05: the flyball governor
+=========================
+
+IFToMM A05, the flyball governor: stiff, since springs with dampers stand for its lower rods.
 
 Rods of 1 m with 5 kg at the end, alpha = 30 degrees below the horizontal, hang from a free shaft, 1 m up and
 0.05 m from its axis; springs join their middles to the sides of a slider 0.5 m up. Read so, the springs are

@@ -1,4 +1,8 @@
-"""A closed loop that strikes: a parallelogram of rods tips over onto a stop in one of its hinges.
+"""
+A closed loop that strikes
+==========================
+
+A closed loop that strikes: a parallelogram of rods tips over onto a stop in one of its hinges.
 
 All four hinges are spatial (three rows are redundant). With the angle a of the bars on the ground from upright,
   T = 5/6 a'^2,   V = 2 g (cos a - 1),
