@@ -45,7 +45,7 @@ sphinx_gallery_conf = {
     "filename_pattern": r"\.py$",  # each one is run
     "subsection_order": [f"../examples/{name}" for name in SECTIONS],
     "within_subsection_order": "examples_gallery.Order",
-    "image_scrapers": ("examples_gallery.Pictures",),
+    "image_scrapers": ("examples_gallery.pictures",),
     "reset_modules": (),
     "abort_on_example_error": True,
     "download_all_examples": False,

@@ -14,22 +14,20 @@ FIRST = (  # of each section; the others follow by name
 )  # fmt: skip
 
 
-class Pictures:
-    """Moves the picture that an example has written into the page, and leaves no trace beside the example."""
-
-    def __call__(self, block, block_vars, gallery_conf):
-        source = Path(block_vars["src_file"])
-        folder = source.parent / WRITTEN
-        made = folder / f"{source.stem}.png"
-        if not made.exists():
-            return ""
-        place = Path(next(block_vars["image_path_iterator"]))
-        place.write_bytes(made.read_bytes())
-        made.unlink()
-        for empty in (folder, folder.parent):
-            if not any(empty.iterdir()):
-                empty.rmdir()
-        return figure_rst([place], gallery_conf["src_dir"])
+def pictures(block, block_vars, gallery_conf):
+    """Move the picture that an example has written into its page, and leave no trace beside the example."""
+    source = Path(block_vars["src_file"])
+    folder = source.parent / WRITTEN
+    made = folder / f"{source.stem}.png"
+    if not made.exists():
+        return ""
+    place = Path(next(block_vars["image_path_iterator"]))
+    place.write_bytes(made.read_bytes())
+    made.unlink()
+    for empty in (folder, folder.parent):
+        if not any(empty.iterdir()):
+            empty.rmdir()
+    return figure_rst([place], gallery_conf["src_dir"])
 
 
 class Order:
@@ -39,5 +37,6 @@ class Order:
         self.folder = folder
 
     def __call__(self, file):
+        """Return its place."""
         stem = Path(file).stem
         return (FIRST.index(stem) if stem in FIRST else len(FIRST), stem)

@@ -1,10 +1,10 @@
-r"""
-Follow, stun and draw: a ball slides until it rolls
+r"""Follow, stun and draw: a ball slides until it rolls
 ===================================================
 
-A billiard ball is struck with top spin, none, or back spin. Friction acts until it rolls, at 5/7 of its speed plus 2/7 of
-its spin times the radius, reached after :math:`\frac{2}{7} |v_0 - \omega_0 r| / (\mu g)` (Coriolis, 1835). With enough back
-spin it comes back. The instant at which slip ends is found in time, and friction is then exactly zero.
+A billiard ball is struck with top spin, none, or back spin. Friction acts until it rolls, at 5/7 of its speed
+plus 2/7 of its spin times the radius, reached after :math:`\frac{2}{7} |v_0 - \omega_0 r| / (\mu g)` (Coriolis,
+1835). With enough back spin it comes back. The instant at which slip ends is found in time, and friction is
+then exactly zero.
 """
 
 from pathlib import Path

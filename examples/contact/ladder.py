@@ -1,10 +1,9 @@
-r"""
-A ladder slides down a wall, and lets go of it
+r"""A ladder slides down a wall, and lets go of it
 ==============================================
 
-Without friction the centre of a ladder goes on a circle until the wall would have to pull: that is when its top has
-come down to 2/3 of the height from which it was let go, with :math:`\dot\theta^2 = \frac{3 g}{l} (\sin\theta_0 - \sin\theta)`
-until then. The contact opens by itself; nobody has to look for the instant.
+Without friction the centre of a ladder goes on a circle until the wall would have to pull: that is when its top
+has come down to 2/3 of the height from which it was let go, with :math:`\dot\theta^2 = \frac{3 g}{l}
+(\sin\theta_0 - \sin\theta)` until then. The contact opens by itself; nobody has to look for the instant.
 """
 
 from pathlib import Path

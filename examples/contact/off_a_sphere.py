@@ -1,10 +1,9 @@
-r"""
-A bead slides off a sphere
+r"""A bead slides off a sphere
 ==========================
 
-Without friction it leaves the sphere where :math:`\cos\theta = 2/3`, 48.19 degrees from the top, wherever gravity and
-whatever the radius: a body that slides on another one, and the contact opens where its force has come down to zero,
-:math:`N = m g (3 \cos\theta - 2)`, all for a start at rest near the top.
+Without friction it leaves the sphere where :math:`\cos\theta = 2/3`, 48.19 degrees from the top, wherever
+gravity and whatever the radius: a body that slides on another one, and the contact opens where its force has
+come down to zero, :math:`N = m g (3 \cos\theta - 2)`, all for a start at rest near the top.
 """
 
 from pathlib import Path

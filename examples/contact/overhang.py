@@ -1,9 +1,9 @@
-r"""
-How far a stack of blocks may lean over the table
+r"""How far a stack of blocks may lean over the table
 =================================================
 
-Four blocks just balance if from the top down they reach over by 1/2, 1/4, 1/6 and 1/8 of their length:
-together 25/24, and the top block is wholly beyond the edge. A per cent less stands, to the last bit; a per cent more falls.
+Four blocks just balance if from the top down they reach over by 1/2, 1/4, 1/6 and 1/8 of their length: together
+25/24, and the top block is wholly beyond the edge. A per cent less stands, to the last bit; a per cent more
+falls.
 """
 
 from pathlib import Path
@@ -21,9 +21,7 @@ SIGNS = np.array([(-1, 0, -1), (1, 0, -1), (1, 0, 1), (-1, 0, 1)])
 
 def stack(part):
     scene = carom.Scene(gravity=(0, 0, -g))
-    table = scene.add_body(
-        carom.Box(0.4, 0.2, 0.1), mass=1.0, position=(-0.2, 0, -0.05), name="table"
-    )
+    table = scene.add_body(carom.Box(0.4, 0.2, 0.1), mass=1.0, position=(-0.2, 0, -0.05))
     scene.add_joint(carom.joints.Fixed(), carom.GROUND, table)
     x = -length / 2
     for k in range(count):  # from the table up
@@ -36,8 +34,7 @@ def stack(part):
 def draw(axes, s, t, **look):
     position, orientation = s.evaluate(t)[:2]
     for body, x, q in zip(s.scene.bodies, position, orientation):
-        half = body.shape.half
-        corners = [quaternion.rotate(q, half * c)[[0, 2]] for c in SIGNS]
+        corners = [quaternion.rotate(q, body.shape.half * c)[[0, 2]] for c in SIGNS]
         axes.add_patch(Polygon(x[[0, 2]] + np.array(corners), **look))
 
 

@@ -1,9 +1,8 @@
-"""
-A rattleback turns back by itself
+"""A rattleback turns back by itself
 =================================
 
-The heavy axes of this boat of stone are turned by 10 degrees against those of its belly. Spun one way it
-spins on; spun the other way it begins to rattle and turns back (Walker, 1896; Bondi, 1986). It rolls, so that no
+The heavy axes of this boat of stone are turned by 10 degrees against those of its belly. Spun one way it spins
+on; spun the other way it begins to rattle and turns back (Walker, 1896; Bondi, 1986). It rolls, so that no
 energy is lost on the way: what the spin loses is in the rattling, and comes back.
 """
 

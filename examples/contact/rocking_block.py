@@ -1,10 +1,9 @@
-r"""
-A block rocks, and loses a known part of its spin each time
+r"""A block rocks, and loses a known part of its spin each time
 ===========================================================
 
-Housner (1963): a block that rocks from corner to corner, without bounce or slip, keeps the part
-:math:`1 - \frac{3}{2} \sin^2\alpha` of its spin at each impact, where :math:`\tan\alpha = b / h`. Nothing of that is put in: it
-follows from plastic impacts of two corners, one of which is let go.
+Housner (1963): a block that rocks from corner to corner, without bounce or slip, keeps the part :math:`1 -
+\frac{3}{2} \sin^2\alpha` of its spin at each impact, where :math:`\tan\alpha = b / h`. Nothing of that is put
+in: it follows from plastic impacts of two corners, one of which is let go.
 """
 
 from pathlib import Path

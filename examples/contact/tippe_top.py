@@ -1,10 +1,9 @@
-r"""
-A tippe top turns over and keeps its Jellett constant
+r"""A tippe top turns over and keeps its Jellett constant
 =====================================================
 
-A spinning ball whose mass centre is off its middle stands up on its head: friction of the slipping foot does it.
-Whatever that friction does, the angular momentum along the line from the mass centre to the foot,
-:math:`J = -\mathbf{L} \cdot \mathbf{a}`, stays what it is (Jellett, 1872).
+A spinning ball whose mass centre is off its middle stands up on its head: friction of the slipping foot does
+it. Whatever that friction does, the angular momentum along the line from the mass centre to the foot, :math:`J
+= -\mathbf{L} \cdot \mathbf{a}`, stays what it is (Jellett, 1872).
 """
 
 from pathlib import Path
@@ -22,10 +21,7 @@ I = np.array([3.1e-6, 3.1e-6, 3.2e-6])  # about the mass centre
 def main(out="out/examples"):
     scene = carom.Scene(gravity=(0, 0, -g))
     table = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1), name="table")
-    stud = (
-        carom.Sphere(1e-3),
-        (0, 0, -offset),
-    )  # inside; its weight puts the mass centre where it is
+    stud = (carom.Sphere(1e-3), (0, 0, -offset))  # inside; it draws the mass centre down
     ball = carom.Compound([(carom.Sphere(radius), (0, 0, offset)), stud], masses=[1, 1])
     lean = 0.1
     top = scene.add_body(
@@ -44,18 +40,13 @@ def main(out="out/examples"):
     change = np.ptp(jellett) / jellett[0]
     tilt = np.degrees(np.arccos(axis[:, 2]))
     print(
-        f"the top leans at {tilt[-1]:.1f} degrees in the end; Jellett's constant kept to {change:.1e}"
+        f"its axis is at {tilt[-1]:.1f} degrees in the end; Jellett's constant kept to {change:.1e}"
     )
 
     with style.style():
         figure, (left, right) = style.new(style.PAGE, 2.4, columns=2)
         left.plot(s.t, tilt, color=style.BLUE)
-        left.set(
-            xlabel="time / s",
-            ylabel="angle of its axis / degrees",
-            ylim=(0, 180),
-            yticks=[0, 90, 180],
-        )
+        left.set(xlabel="time / s", ylabel="angle of its axis / degrees", ylim=(0, 180))
         right.plot(s.t, 1e3 * s.kinetic_energy, color=style.RED, label="kinetic")
         right.plot(s.t, -1e3 * s.ledger.friction, color=style.GREEN, label="taken by friction")
         rise = 1e3 * (s.potential_energy - s.potential_energy[0])

@@ -1,5 +1,4 @@
-r"""
-The wing nut that turns over
+r"""The wing nut that turns over
 ============================
 
 A body that spins about its middle axis of inertia turns over, again and again (Dzhanibekov, 1985; the tennis
@@ -7,7 +6,7 @@ racket). With :math:`I_1 < I_2 < I_3` and :math:`L^2 > 2 E I_2` the motion is kn
 functions (Landau and Lifshitz, *Mechanics*, section 37):
 
 .. math::
-   \omega_1 = a_1\,\mathrm{cn}\,\tau,\quad \omega_2 = a_2\,\mathrm{sn}\,\tau,\quad \omega_3 = a_3\,\mathrm{dn}\,\tau.
+   \omega_1 = a_1\,\mathrm{cn}\,\tau,\ \omega_2 = a_2\,\mathrm{sn}\,\tau,\ \omega_3 = a_3\,\mathrm{dn}\,\tau.
 """
 
 from pathlib import Path

@@ -1,5 +1,4 @@
-"""
-A run that is killed, and goes on to the same bits
+"""A run that is killed, and goes on to the same bits
 ==================================================
 
 A long run writes itself to a netCDF file as it goes. Whatever ends it, `carom.resume` goes on from the file,

@@ -1,5 +1,4 @@
-r"""
-Two balls and a wall count the digits of pi
+r"""Two balls and a wall count the digits of pi
 ===========================================
 
 A heavy ball pushes a light one against a wall, all elastic. With a mass ratio of :math:`100^k` the number of
@@ -21,7 +20,8 @@ def run(M, duration=6.0):
     scene = carom.Scene(gravity=(0, 0, 0))
     wall = scene.add_half_space(point=(0, 0, 0), normal=(1, 0, 0), name="wall")
     light = scene.add_body(carom.Sphere(0.05), mass=m, position=(0.5, 0, 0), name="light")
-    heavy = scene.add_body(carom.Sphere(0.1), mass=M, position=(1, 0, 0), velocity=(-1, 0, 0), name="heavy")  # fmt: skip
+    start = dict(position=(1, 0, 0), velocity=(-1, 0, 0))
+    heavy = scene.add_body(carom.Sphere(0.1), mass=M, **start, name="heavy")
     scene.add_contact(light, wall, restitution=1)
     scene.add_contact(heavy, light, restitution=1)
     # 3141 impacts come within some milliseconds: small steps, and none may be left out

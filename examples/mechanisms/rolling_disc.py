@@ -1,9 +1,9 @@
-r"""
-A wheel that rolls in a circle, and one that was pushed
+r"""A wheel that rolls in a circle, and one that was pushed
 =======================================================
 
 A thin disc that rolls without slip goes round for ever at a constant lean, if its rates fit: with the lean
-:math:`\alpha` from the vertical, the turning rate :math:`\Omega` and the radius :math:`\rho` of the circle of its centre
+:math:`\alpha` from the vertical, the turning rate :math:`\Omega` and the radius :math:`\rho` of the circle of
+its centre
 
 .. math:: \Omega^2 \cos\alpha \left( 6 \rho + r \sin\alpha \right) = 4 g \sin\alpha .
 
@@ -53,10 +53,7 @@ def main(out="out/examples"):
                   f"energy kept to {drift:.0e} J")  # fmt: skip
             assert drift < 1e-7
         left.set(xlabel="x / m", ylabel="y / m", aspect="equal", title="path of the foot")
-        (
-            right.set(xlabel="time / s", ylabel="lean / degrees"),
-            right.legend(loc="upper left", ncols=2),
-        )
+        right.set(xlabel="time / s", ylabel="lean / degrees"), right.legend(ncols=2)
     Path(out).mkdir(parents=True, exist_ok=True)
     figure.savefig(Path(out) / "rolling_disc.png", dpi=style.DPI)
     assert np.max(np.abs(lean - alpha)) < 1e-8

@@ -1,11 +1,10 @@
-r"""
-Chaplygin's sleigh turns its spin into speed
+r"""Chaplygin's sleigh turns its spin into speed
 ============================================
 
-A sleigh that stands on one blade may not go sideways there: a nonholonomic constraint. With the mass centre ahead of
-the blade the spin dies out, and all of its energy becomes speed along the blade (Chaplygin, 1911):
+A sleigh that stands on one blade may not go sideways there: a nonholonomic constraint. With the mass centre
+ahead of the blade the spin dies out, and all of its energy becomes speed along the blade (Chaplygin, 1911):
 
-.. math:: u = c \tanh \frac{a c t}{k^2}, \qquad \omega = \frac{c}{k} \operatorname{sech} \frac{a c t}{k^2}, \qquad k^2 = a^2 + I/m.
+.. math:: u = c \tanh (a c t / k^2), \quad \omega = (c / k) / \cosh (a c t / k^2), \quad k^2 = a^2 + I/m.
 """
 
 from pathlib import Path
@@ -47,8 +46,9 @@ def main(out="out/examples"):
             left.plot(*s.position[i, 0, :2], "o", color=style.RED)
         left.set(xlabel="x / m", ylabel="y / m", aspect="equal")
         left.text(*(blade[-1] + [-0.3, 0.2]), "blade", color=style.BLUE)
-        for name, found, true, colour in (("speed / m s$^{-1}$", speed, u, style.BLUE),
-                                          ("spin / rad s$^{-1}$", s.angular_velocity[:, 0, 2], w, style.RED)):  # fmt: skip
+        spins = s.angular_velocity[:, 0, 2]
+        both = ("speed / m s$^{-1}$", speed, u, "k"), ("spin / rad s$^{-1}$", spins, w, style.RED)
+        for name, found, true, colour in both:
             right.plot(s.t, found, color=colour, label=name)
             right.plot(s.t[::50], true[::50], ".", color=colour)
         right.set(xlabel="time / s"), right.legend(title="lines: carom, dots: closed form")

@@ -1,10 +1,9 @@
-r"""
-The trammel of Archimedes draws ellipses
+r"""The trammel of Archimedes draws ellipses
 ========================================
 
 The ends of a rod slide in two grooves at a right angle. Each of its points then draws an ellipse, its middle a
-circle; and where nothing drives it, it turns at a constant rate, for its kinetic energy is
-:math:`\frac{1}{2}(m l^2/4 + I)\,\dot\theta^2` wherever it is.
+circle; and where nothing drives it, it turns at a constant rate, for its kinetic energy is :math:`\frac{1}{2}(m
+l^2/4 + I)\,\dot\theta^2` wherever it is.
 """
 
 from pathlib import Path
@@ -23,7 +22,6 @@ COLOURS = (style.PURPLE, style.RED, style.GREEN, "k", style.BLUE)
 def main(out="out/examples"):
     scene, start = carom.Scene(gravity=(0, 0, 0)), 0.3
     ends = l * np.array([[np.cos(start), 0, 0], [0, np.sin(start), 0]])
-    # theta' = rate: the middle goes backwards round the circle, the rod turns clockwise
     rod = scene.add_body(
         mass=m, inertia=3 * [m * l**2 / 12], position=ends.mean(axis=0), name="rod",
         velocity=l / 2 * rate * np.array([-np.sin(start), np.cos(start), 0]), angular_velocity=(0, 0, -rate),
@@ -32,42 +30,28 @@ def main(out="out/examples"):
         scene.add_joint(carom.joints.PointOnLine(end, groove), carom.GROUND, rod)
     s = carom.simulate(scene, 5.0, step=0.01, method="rk8")
 
-    theta = start + rate * s.t
-    errors = []
+    theta, errors = start + rate * s.t, []
     with style.style():
         figure, axes = style.new(style.COLUMN, 3.2)
         for part, colour in zip(PARTS, COLOURS):
-            arm = ends[0] + part * (ends[1] - ends[0]) - ends.mean(axis=0)
-            path = np.array(
-                [
-                    x + quaternion.rotate(q, arm)
-                    for x, q in zip(s.position[:, 0], s.orientation[:, 0])
-                ]
-            )
-            exact = l * np.stack(
-                [(1 - part) * np.cos(theta), part * np.sin(theta), 0 * theta], axis=1
-            )
+            arm = (part - 0.5) * (ends[1] - ends[0])
+            turned = np.array([quaternion.rotate(q, arm) for q in s.orientation[:, 0]])
+            path = (s.position[:, 0] + turned)[:, :2]
+            exact = l * np.stack([(1 - part) * np.cos(theta), part * np.sin(theta)], axis=1)
             errors.append(np.max(np.abs(path - exact)))
-            axes.plot(*path[:, :2].T, color=colour)
-            axes.plot(*path[40, :2], "o", color=colour)
+            axes.plot(*path.T, color=colour)
+            axes.plot(*path[40], "o", color=colour)
+        reach = np.array([PARTS[0], 1.0])
         axes.plot(
-            *(
-                l
-                * np.array(
-                    [[1.25 * np.cos(theta[40]), 0], [-0.25 * np.sin(theta[40]), np.sin(theta[40])]]
-                )
-            ),
+            l * (1 - reach) * np.cos(theta[40]),
+            l * reach * np.sin(theta[40]),
             "k",
             lw=0.8,
             zorder=0,
         )
-        (
-            axes.axhline(0, color="0.85", lw=4, zorder=-1),
-            axes.axvline(0, color="0.85", lw=4, zorder=-1),
-        )
-        axes.set(
-            xlabel="x / m", ylabel="y / m", aspect="equal", xlim=(-1.35, 1.35), ylim=(-1.1, 1.1)
-        )
+        for groove in (axes.axhline, axes.axvline):
+            groove(0, color="0.88", lw=4, zorder=-1)
+        axes.set(xlabel="x / m", ylabel="y / m", aspect="equal", xlim=(-1.4, 1.4), ylim=(-1.1, 1.1))
     print(scene.check())
     print(f"five points on their ellipses, at their time, to {max(errors):.0e} m after 5 s")
     Path(out).mkdir(parents=True, exist_ok=True)
