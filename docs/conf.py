@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import sys
+from pathlib import Path
+
 import carom
+
+sys.path.insert(0, str(Path(__file__).parent))  # examples_gallery
 
 project = "carom"
 author = "The carom developers"
@@ -17,9 +22,10 @@ extensions = [
     "sphinx.ext.mathjax",
     "sphinx.ext.viewcode",
     "sphinx-mathjax-offline",  # equations without a network
+    "sphinx_gallery.gen_gallery",
 ]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
-exclude_patterns = ["_build", "_templates"]
+exclude_patterns = ["_build", "_templates", "**/GALLERY_HEADER.rst"]
 templates_path = ["_templates"]
 
 myst_enable_extensions = ["amsmath", "deflist", "dollarmath"]
@@ -31,6 +37,24 @@ autodoc_typehints = "none"  # the docstrings say it, with shapes and units
 autodoc_member_order = "bysource"
 numpydoc_show_class_members = False
 default_role = "literal"
+
+SECTIONS = ("first_steps", "impacts", "contact", "mechanisms", "many_runs", "paper")
+sphinx_gallery_conf = {
+    "examples_dirs": "../examples",
+    "gallery_dirs": "gallery",
+    "filename_pattern": r"\.py$",  # each one is run
+    "subsection_order": [f"../examples/{name}" for name in SECTIONS],
+    "within_subsection_order": "examples_gallery.Order",
+    "image_scrapers": ("examples_gallery.pictures",),
+    "reset_modules": (),
+    "abort_on_example_error": True,
+    "download_all_examples": False,
+    "show_signature": False,
+    "write_computation_times": False,
+    "min_reported_time": 1e6,
+    "copyfile_regex": r"",
+    "thumbnail_size": (400, 280),
+}
 
 html_theme = "pydata_sphinx_theme"
 html_title = "carom"

@@ -1,9 +1,9 @@
 """Numba's options of a compile, compared by what was set.
 
 Numba keeps compiled operators by their types and options, and asks for them hundreds of thousands of times
-while a scene is compiled. Each time it looks up all two dozen options of both sides, and its hash of them is one
-number for all: a tenth of all compile time. What is equal stays equal here; where what was set differs, Numba
-decides.
+while a scene is compiled. Each time it looks up all two dozen options of both sides, and its hash of them is
+one number for all: a tenth of all compile time. What is equal stays equal here; where what was set differs,
+Numba decides.
 """
 
 from __future__ import annotations

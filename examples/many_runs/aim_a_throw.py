@@ -1,4 +1,5 @@
-"""Gradients of a throw: its coefficients from a measured bounce, and how to throw it to a target.
+"""Gradients: measure a bounce, aim a throw
+========================================
 
 With the derivatives of a run, the times of its impacts included, both are a few Gauss-Newton steps.
 """
@@ -53,8 +54,7 @@ def main(out="out/examples"):
         v = v + np.linalg.solve(carom.sensitivities(run, "die.velocity").final.position[0], miss)
     right.plot(*target[[0, 2]], "k+", ms=12, label="target")
     for axes in (left, right):
-        axes.set(xlabel="x [m]", ylabel="z [m]")
-        axes.legend()
+        axes.set(xlabel="x [m]", ylabel="z [m]"), axes.legend()
     Path(out).mkdir(parents=True, exist_ok=True)
     figure.savefig(Path(out) / "aim_a_throw.png", dpi=150)
     assert np.all(np.abs(fit.x - [0.5, 0.2]) < 4 * error)

@@ -1,7 +1,9 @@
-"""IFToMM A01, the simple pendulum: a point mass on a rod without mass, released from the horizontal.
+r"""A01: the simple pendulum, and the order of each method
+======================================================
 
-Its angle from below is known in elliptic functions, sin(theta/2) = k cd(sqrt(g/l) t; k) with
-k = sin(theta_0/2), so the error of every method and step can be measured: its slope is the order.
+A point mass on a rod without mass, released from the horizontal. Its angle is known in elliptic functions,
+:math:`\sin(\theta/2) = k \, \mathrm{cd}(\sqrt{g/l}\, t;\, k)` with :math:`k = \sin(\theta_0/2)`, so the error of
+every method and step can be measured: its slope is the order.
 """
 
 from pathlib import Path

@@ -1,7 +1,10 @@
-"""A thrown die strikes a table with an edge, and friction turns it back.
+r"""A die goes on, or turns back
+============================
 
-Slip keeps its direction, so the impulse is known in closed form (Routh):
-P_n = (1 + e) |u_n| / (W_nn - mu s W_nt),  P_t = -mu s P_n,  s the direction of slip.
+A thrown die strikes a table with an edge, and friction turns it back. Slip keeps its direction s, so the
+impulse is known in closed form (Routh):
+
+.. math:: P_n = (1 + e) |u_n| / (W_{nn} - \mu s W_{nt}), \quad P_t = -\mu s P_n .
 """
 
 from pathlib import Path

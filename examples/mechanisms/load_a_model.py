@@ -1,4 +1,7 @@
-"""A model in MJCF: a gate falls against its stop and bounces, with the restitution that is asked for.
+"""A model in MJCF
+==================
+
+A gate falls against its stop and bounces, with the restitution that is asked for.
 
 Gate and handle are one body. About the hinge its inertia is J = 1/3 + 1/4 + 0.01, its weight acts with
 the moment g (1/2 + 1/2) cos q. From q0 = 0.3 the limit at -0.5 is first struck with

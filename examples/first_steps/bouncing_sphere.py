@@ -1,7 +1,12 @@
-"""A sphere that bounces to rest: infinitely many impacts in finite time.
+r"""A ball bounces to rest
+======================
 
-Dropped from h, with restitution e, the k-th impact is at t_k = t_1 (1 + 2 e + ... + 2 e^(k-1)),
-t_1 = sqrt(2 h / g). The times add up to t_1 (1 + e)/(1 - e): then the sphere is at rest.
+Infinitely many impacts in finite time: dropped from h, with restitution e, the k-th is at
+
+.. math:: t_k = t_1 (1 + 2 e + \ldots + 2 e^{k-1}), \quad t_1 = \sqrt{2 h / g},
+
+and the times add up to :math:`t_1 (1 + e)/(1 - e)`. Then the ball is at rest, within a step, with no threshold
+to choose.
 """
 
 from pathlib import Path

@@ -1,11 +1,11 @@
-"""IFToMM A05, the flyball governor: stiff, since springs with dampers stand for its lower rods.
+r"""A05: the flyball governor
+=========================
 
-Rods of 1 m with 5 kg at the end, alpha = 30 degrees below the horizontal, hang from a free shaft, 1 m up and
-0.05 m from its axis; springs join their middles to the sides of a slider 0.5 m up. Read so, the springs are
-0.5 m long at the start, as they are at rest. In the coordinates alpha and s, with l the length of a spring,
-  2 T = H^2/I(alpha) + 2 I_r alpha'^2 + m s'^2,   V = m g s - (m_r + 2 m_p) g sin(alpha) + K (l - l_0)^2,
-where H is the kept momentum: the reference value. The damper decays with 8100/s at the start: explicit
-rk4 needs h < 2.785/8100 s = 0.34 ms (measured: 0.33 ms runs, 0.35 ms does not).
+Springs with dampers stand for its lower rods. They decay with 8100/s at the start: explicit rk4 needs a step below
+2.785/8100 s = 0.34 ms (measured: 0.33 ms runs, 0.35 ms does not). The reference has two coordinates, the slope
+alpha of the upper rods and the height s; H is the kept momentum, l the length of a spring:
+:math:`2 T = H^2/I(\alpha) + 2 I_r \dot\alpha^2 + m \dot s^2`,
+:math:`V = m g s - (m_r + 2 m_p) g \sin\alpha + K (l - l_0)^2`.
 """
 
 from pathlib import Path

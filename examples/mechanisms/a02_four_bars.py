@@ -1,8 +1,8 @@
-"""IFToMM A02, N four-bars in a row (N = 2): redundant rows, and a singular position in every turn.
+r"""A02: four-bars through their singular position
+==============================================
 
-All bars have 1 m and 1 kg. One freedom, the lean theta of the N + 1 upright bars:
-theta'' = g sin(theta) ((N + 1)/2 + N) / ((N + 1)/3 + N); the N bars across stay level. Where all bars are in
-line each loop could fold, and there are N + 1 freedoms for that instant (grey): the motion must pass it.
+One freedom, :math:`\ddot\theta = g \sin\theta \, (3 N + 1) / 2 \, / \, ((4 N + 1) / 3)`, N = 2. Where all bars are in
+line each loop could fold, with N + 1 freedoms there (grey): the motion must pass it.
 """
 
 from pathlib import Path

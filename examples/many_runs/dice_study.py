@@ -1,7 +1,8 @@
-"""How random is a die? The face that comes up against how it was held, and from which height.
+"""How random is a die?
+====================
 
-Left: held at two angles, let go with a little speed and spin. Right: how often the face that was up comes
-up again, for random speeds and spins. The pages show `python examples/dice_study.py 120 2000`.
+Left: the face up, of a die held at two angles and let go with a little spin. Right: how often the face that was
+up comes up again. (In the pages: `python examples/many_runs/dice_study.py 120 2000`.)
 """
 
 import sys
@@ -35,8 +36,7 @@ def main(out="out/examples", basins=12, throws=40):
     held = Rotation.from_euler("yx", tilt, degrees=True).as_quat(scalar_first=True)
     ends = carom.ensemble(die(0.1), 3.0, step=2e-3, vary={"die.orientation": held})
     turn, speed = 3 * [norm(0, 3)], 2 * [uniform(-0.2, 0.4)] + [0]
-    vary = {"die.angular_velocity": turn, "die.velocity": speed}
-    again = []
+    vary, again = {"die.angular_velocity": turn, "die.velocity": speed}, []
     for height in HEIGHTS:
         e = carom.ensemble(die(height), 4.0, step=2e-3, vary=vary, runs=throws, sampling="sobol")
         assert e.counts() == {"success": throws}

@@ -1,7 +1,8 @@
-"""IFToMM A03, Andrews' squeezing mechanism: seven plane bodies, ten hinges, one freedom, 30 ms.
+"""A03: Andrews' squeezing mechanism
+=================================
 
-Points are complex numbers; data, the start (at rest) and the end are those of the IVP test set. A motor
-turns the crank with a constant torque, so T + V - E_0 = torque (beta - beta_0).
+Seven bodies, ten hinges, one freedom, a motor of constant torque; points are complex numbers. Data, start and
+end are those of the IVP test set.
 """
 
 from pathlib import Path
@@ -46,9 +47,8 @@ def main(out="out/examples"):
     angle, work = start + turned[:, [0, 2, 4, 6]], torque * turned[:, 0]
     energy = np.max(np.abs(s.total_energy - s.total_energy[0] - work))
     error, kept = np.max(np.abs(angle[-1] / end - 1)), np.max(s.constraint_errors)
-    print(
-        f"{mechanism().check()}\nangles at the end {error:.1e}, energy {energy:.1e} J, kept {kept:.1e}"
-    )
+    print(mechanism().check())
+    print(f"angles at the end {error:.1e}, energy {energy:.1e} J, constraints {kept:.1e}")
     figure = Figure(figsize=(6.5, 3), layout="constrained")
     angles, energies = figure.subplots(1, 2)
     angles.plot(1e3 * s.t, angle[:, 1:], lw=1, label=["spring arm", "left arm", "right arm"])

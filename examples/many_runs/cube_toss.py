@@ -1,8 +1,9 @@
-"""Real tosses of a real cube, simulated from flight to rest, with the error to motion capture.
+"""Real tosses of a real cube
+==========================
 
-`python examples/cube_toss.py --data FILE --start B` runs all recorded tosses of a file (default: the even
-ones, to which the parameters were fitted) with the chosen parameters; `--fit` fits them anew. What is done
-to the data is written in `carom.paper.tosses`.
+Simulated from flight to rest, with the error to motion capture. `python examples/many_runs/cube_toss.py --data
+FILE --start B` runs all recorded tosses of a file (default: the even ones, to which the parameters were
+fitted); `--fit` fits them anew. What is done to the data is written in `carom.paper.tosses`.
 """
 
 import argparse

@@ -1,7 +1,7 @@
-"""Balls poured between two panes of glass come to rest, and the forces that carry them form chains.
+"""A heap of balls and its chains of force
+=======================================
 
-At rest the floor and the walls carry the weight: sum of the vertical forces = m g, whatever way it is shared.
-`python examples/heap.py 500` pours more of them.
+At rest floor and walls carry the weight, shared as it may be. `python examples/contact/heap.py 500` pours more.
 """
 
 import sys

@@ -1,7 +1,9 @@
-"""Real impacts of a real cube against the impact laws, at nominal and at fitted (e, mu).
+r"""Real impacts of a real cube
+===========================
 
-One corner strikes: W = G M^-1 G^T and u = G v from the measured state before; the impulse P of
-`carom.resolve_impact` gives v+ = v + M^-1 G^T P, and gravity acts until the next measured sample.
+Measured first impacts against the laws of impact, at nominal and at fitted (e, mu). One corner strikes: with
+:math:`W = G M^{-1} G^T` and :math:`u = G v` from the measured state before, the impulse P of
+`carom.resolve_impact` gives :math:`v^+ = v + M^{-1} G^T P`, and gravity acts until the next measured sample.
 What is decided about the data is written in `carom.paper.real`.
 """
 

@@ -1,7 +1,9 @@
-"""IFToMM A04, Bricard's mechanism: five rods and the ground in a ring of six hinges, each across the last.
+"""A04: Bricard's mechanism
+========================
 
-Counting says 30 - 30 = 0 freedoms, but one row follows from the others everywhere: it moves. Gravity and
-the hinges do no work on the whole, so the energy is kept; the benchmark asks for 1 mJ in 10 s.
+Five rods and the ground in a ring of six hinges, each across the last. Counting says 30 - 30 = 0 freedoms, but
+one row follows from the others everywhere: it moves. Gravity and the hinges do no work on the whole, so the
+energy is kept; the benchmark asks for 1 mJ in 10 s.
 """
 
 from itertools import pairwise

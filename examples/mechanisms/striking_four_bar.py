@@ -1,9 +1,11 @@
-"""A closed loop that strikes: a parallelogram of rods tips over onto a stop in one of its hinges.
+r"""A closed loop that strikes
+==========================
 
-All four hinges are spatial (three rows are redundant). With the angle a of the bars on the ground from upright,
-  T = 5/6 a'^2,   V = 2 g (cos a - 1),
-so that the stop at a = 1.2 is first struck with a' = sqrt(1 + 12/5 g (1 - cos 1.2)), thrown back with
-e = 0.7. The impulse of the one stop reaches every hinge: both bars on the ground turn back at once.
+A parallelogram of rods tips over onto a stop in one of its hinges. All four are spatial (three rows are
+redundant). With the angle a of the bars on the ground from upright, :math:`T = \frac{5}{6} \dot a^2` and
+:math:`V = 2 g (\cos a - 1)`: the stop at a = 1.2 is first struck with :math:`\dot a^2 = 1 + \frac{12}{5} g (1 -
+\cos 1.2)`, and throws back with e = 0.7. Its impulse reaches every hinge: both bars on the ground turn back at
+once.
 """
 
 from pathlib import Path

@@ -1,7 +1,9 @@
-"""A bead on a ring-shaped surface, in two angles: a manifold that is not flat, in the user's own coordinates.
+r"""Coordinates of your own: a bead on a torus
+==========================================
 
-The metric of the torus is diag(r^2, (R + r cos a)^2); gravity points along its axis, and a level floor cuts
-it. So the momentum about the axis, (R + r cos a)^2 b' (Clairaut's integral), is kept, through all impacts.
+A manifold that is not flat, in two angles, with the metric :math:`\mathrm{diag}(r^2, (R + r \cos a)^2)`.
+Gravity points along the axis of the torus, and a level floor cuts it: so the momentum about the axis, :math:`(R
++ r \cos a)^2 \dot b` (Clairaut's integral), is kept, through all impacts.
 """
 
 from pathlib import Path
