@@ -25,8 +25,9 @@ lint: $(VENV)/installed-test
 	$(BIN)/ruff check --fix .
 	$(BIN)/ruff format .
 
-docs: $(VENV)/installed-docs
+docs: $(VENV)/installed-docs ## the pages; the examples of the gallery are run anew
+	rm -rf docs/gallery
 	$(BIN)/sphinx-build -W -b html docs out/docs
 
 clean:
-	rm -rf $(VENV) out
+	rm -rf $(VENV) out docs/gallery

@@ -53,12 +53,13 @@ sphinx_gallery_conf = {
     "write_computation_times": False,
     "min_reported_time": 1e6,
     "copyfile_regex": r"",
-    "thumbnail_size": (400, 280),
+    "thumbnail_size": (600, 360),
 }
 
 html_theme = "pydata_sphinx_theme"
 html_title = "carom"
 html_static_path = ["_static"]
+html_css_files = ["gallery.css"]
 html_theme_options = {
     "show_toc_level": 2,
     "navigation_with_keys": False,

@@ -18,12 +18,11 @@ import carom
 from carom.geometry import quaternion
 from carom.paper import style
 
-g, R, count, mu = 9.81, 1.0, 11, 0.9
-angles, LIMIT = np.linspace(0, np.pi, count + 1), 0.104589
+g, R, count, mu, LIMIT = 9.81, 1.0, 11, 0.9, 0.104589
 
 
 def corners(thickness):  # of the joints (count + 1), inner and outer (2), x and z (2)
-    radii = R * (1 + np.array([-0.5, 0.5]) * thickness)
+    radii, angles = R + thickness / 2 * np.array([-R, R]), np.linspace(0, np.pi, count + 1)
     return radii[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)[:, None]
 
 
@@ -52,10 +51,11 @@ def main(out="out/examples"):
         for one, thickness, duration in ((axes[0], 0.105, 0.3), (axes[1], 0.09, 0.44)):
             s = simulate(thickness, duration)
             for x, q, body in zip(s.position[-1], s.orientation[-1], s.scene.bodies):
-                p = np.array([x + quaternion.rotate(q, p) for p in body.shape.points])[:, [0, 2]]
+                arms = body.shape.points - body.shape.centroid
+                p = np.array([x + quaternion.rotate(q, arm) for arm in arms])[:, [0, 2]]
                 one.add_patch(Polygon(p[ConvexHull(p).vertices], fc="0.9", ec="k", lw=0.6))
-            one.set(aspect="equal", xlim=(-1.25, 1.25), ylim=(0, 1.12), xlabel="x / R")
-            one.set(title=f"thickness {thickness:g} R, after {duration:g} s")
+            one.set(title=f"thickness {thickness:g} R, after {duration:g} s", xlabel="x / R")
+            one.set(aspect="equal", xlim=(-1.25, 1.25), ylim=(0, 1.12))
     Path(out).mkdir(parents=True, exist_ok=True)
     figure.savefig(Path(out) / "arch.png", dpi=style.DPI)
     assert abs(found - LIMIT) < 1e-4

@@ -46,7 +46,7 @@ def main(out="out/examples"):
             left.add_patch(Circle(s.evaluate(t)[0][1, [0, 2]], r, fc="w", ec="k", lw=0.6))
         left.set(xlim=(-0.1, 1.6), ylim=(0, 1.25), aspect="equal", xlabel="x / m", ylabel="z / m")
         right.plot(np.degrees(theta[held]), s.contact_force[held, 0, 0], color=style.BLUE)
-        angles = np.radians(np.linspace(3, 50, 12))
+        angles = np.radians(np.linspace(3, 47, 12))
         right.plot(np.degrees(angles), m * g * (3 * np.cos(angles) - 2 * np.cos(theta_0)), "k.")
         right.axhline(0, color=style.GREY, lw=0.8)
         right.set(xlabel="angle from the top / degrees", ylabel="force / N")

@@ -52,10 +52,10 @@ def main(out="out/examples"):
         for k, colour in enumerate((style.RED, style.BLUE, style.GREEN)):
             left.plot(solution.t, seen[:, k], color=colour, label=rf"$\omega_{k + 1}$")
             left.plot(solution.t[::100], exact(solution.t[::100])[:, k], ".", color=colour)
-        left.set(xlabel="time / s", ylabel="angular velocity / rad s$^{-1}$", ylim=(-1.1, 1.4))
+        left.set(xlabel="time / s", ylabel="angular velocity / rad s$^{-1}$", ylim=(-1.1, 1.8))
         left.legend(ncols=3, loc="upper center", title="lines: carom, dots: closed form")
         right.plot(solution.t, points, color=style.BLUE)
-        right.set(xlabel="time / s", ylabel="middle axis along the momentum", ylim=(-1.1, 1.1))
+        right.set(xlabel="time / s", ylabel="cosine: axis 2, momentum", ylim=(-1.1, 1.1))
     Path(out).mkdir(parents=True, exist_ok=True)
     figure.savefig(Path(out) / "dzhanibekov.png", dpi=style.DPI)
     assert error < 1e-6

@@ -1,7 +1,7 @@
 """A break at pool
 ===============
 
-The cue ball strikes fifteen balls that lie a hundredth of a radius apart. Each impact that follows has its own
+The cue ball strikes fifteen balls that lie a tenth of a radius apart. Each impact that follows has its own
 instant, and those of mirror images the same one: so the two halves of the table stay mirror images, momentum is
 kept until the first cushion, and each impact leaves 95 % of the speed at which it came.
 """
@@ -18,7 +18,7 @@ r, m, e, size = 0.0286, 0.17, 0.95, np.array([1.27, 0.635])  # half the table
 
 
 def table():
-    scene, apart = carom.Scene(gravity=(0, 0, 0)), 2.01 * r
+    scene, apart = carom.Scene(gravity=(0, 0, 0)), 2.1 * r
     scene.add_body(carom.Sphere(r), mass=m, position=(-0.6, 0, 0), velocity=(7, 0, 0), name="cue")
     for row in range(5):
         for k in range(row + 1):

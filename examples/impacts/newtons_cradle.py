@@ -53,9 +53,9 @@ def main(out="out/examples"):
             for k, colour in enumerate((style.BLUE, style.GREEN, style.RED)):
                 x = 1e3 * (s.position[:, k, 0] - 2 * radius * k)
                 axes.plot(s.t, x, color=colour, label=f"ball {k + 1}")
-            axes.set(xlabel="time / s", title=multiple, ylim=(-80, 110))
+            axes.set(xlabel="time / s", title=f'multiple="{multiple}"', ylim=(-80, 110))
             assert np.allclose(v / before[0], true, atol=1e-6)
-    rows[0].set(ylabel="displacement / mm"), rows[0].legend(ncols=3, loc="upper center")
+        rows[0].set(ylabel="displacement / mm"), rows[0].legend(ncols=3, loc="upper center")
     Path(out).mkdir(parents=True, exist_ok=True)
     figure.savefig(Path(out) / "newtons_cradle.png", dpi=style.DPI)
 

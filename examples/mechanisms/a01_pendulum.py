@@ -2,8 +2,8 @@ r"""A01: the simple pendulum, and the order of each method
 ======================================================
 
 A point mass on a rod without mass, released from the horizontal. Its angle is known in elliptic functions,
-:math:`\sin(\theta/2) = k \, \mathrm{cd}(\sqrt{g/l}\, t;\, k)` with :math:`k = \sin(\theta_0/2)`, so the error of
-every method and step can be measured: its slope is the order.
+:math:`\sin(\theta/2) = k \, \mathrm{cd}(\sqrt{g/l}\, t;\, k)` with :math:`k = \sin(\theta_0/2)`, so the error
+of every method and step can be measured: its slope is the order.
 """
 
 from pathlib import Path

@@ -1,8 +1,8 @@
 r"""A02: four-bars through their singular position
 ==============================================
 
-One freedom, :math:`\ddot\theta = g \sin\theta \, (3 N + 1) / 2 \, / \, ((4 N + 1) / 3)`, N = 2. Where all bars are in
-line each loop could fold, with N + 1 freedoms there (grey): the motion must pass it.
+One freedom, :math:`\ddot\theta = g \sin\theta \, (3 N + 1) / 2 \, / \, ((4 N + 1) / 3)`, N = 2. Where all bars
+are in line each loop could fold, with N + 1 freedoms there (grey): the motion must pass it.
 """
 
 from pathlib import Path

@@ -1,11 +1,11 @@
 r"""A05: the flyball governor
 =========================
 
-Springs with dampers stand for its lower rods. They decay with 8100/s at the start: explicit rk4 needs a step below
-2.785/8100 s = 0.34 ms (measured: 0.33 ms runs, 0.35 ms does not). The reference has two coordinates, the slope
-alpha of the upper rods and the height s; H is the kept momentum, l the length of a spring:
-:math:`2 T = H^2/I(\alpha) + 2 I_r \dot\alpha^2 + m \dot s^2`,
-:math:`V = m g s - (m_r + 2 m_p) g \sin\alpha + K (l - l_0)^2`.
+Springs with dampers stand for its lower rods. They decay with 8100/s at the start: explicit rk4 needs a step
+below 2.785/8100 s = 0.34 ms (measured: 0.33 ms runs, 0.35 ms does not). The reference has two coordinates, the
+slope alpha of the upper rods and the height s; H is the kept momentum, l the length of a spring: :math:`2 T =
+H^2/I(\alpha) + 2 I_r \dot\alpha^2 + m \dot s^2`, :math:`V = m g s - (m_r + 2 m_p) g \sin\alpha + K (l -
+l_0)^2`.
 """
 
 from pathlib import Path

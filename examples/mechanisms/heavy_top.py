@@ -43,7 +43,7 @@ def top(w):
 def main(out="out/examples"):
     with style.style():
         figure, rows = style.new(style.PAGE, 3.0, rows=3, sharex=True, sharey=True)
-        for axes, (w, name) in zip(rows, ((-3, "sent back"), (0, "let go"), (3, "sent on"))):
+        for axes, (w, name) in zip(rows, ((-3, "sent back"), (0, "let go"), (1.5, "sent on"))):
             s, (time, way) = top(w), nod(w)
             (x, y, z), at = s.position[:, 0].T / arm, s.evaluate(time)[0][0] / arm
             error = max(abs(at[2]), abs(np.arctan2(at[1], at[0]) - way))
@@ -53,9 +53,9 @@ def main(out="out/examples"):
             turn = np.degrees(np.unwrap(np.arctan2(y, x)))
             axes.plot(turn, np.degrees(np.arcsin(z)), color=style.BLUE)
             axes.plot(np.degrees(way), 0, "o", color=style.RED)
-            axes.text(-9, -14, name)
+            axes.set_title(name, loc="left", pad=2)
             assert error < 1e-8
-        rows[2].set(xlabel="way round / degrees", xlim=(-10, 130), ylim=(-24, 6))
+        rows[2].set(xlabel="way round / degrees", xlim=(-6, 130), ylim=(-24, 3))
         rows[1].set(ylabel="height of the axle / degrees")
     Path(out).mkdir(parents=True, exist_ok=True)
     figure.savefig(Path(out) / "heavy_top.png", dpi=style.DPI)

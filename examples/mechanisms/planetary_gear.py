@@ -26,8 +26,8 @@ def main(out="out/examples"):
     sun, carrier = (scene.add_body(mass=0.1, inertia=(I, I, I)) for I in (I_s, I_c))
     bearing = carom.joints.Revolute((0, 0, 0), up)
     shaft, output = (scene.add_joint(bearing, carom.GROUND, body) for body in (sun, carrier))
-    for k in range(3):
-        place = a * np.array([np.cos(2 * np.pi * k / 3), np.sin(2 * np.pi * k / 3), 0])
+    around = 2 * np.pi / 3 * np.arange(3)
+    for place in a * np.stack([np.cos(around), np.sin(around), 0 * around], axis=1):
         planet = scene.add_body(mass=m, inertia=(I_p, I_p, I_p), position=place)
         pin = scene.add_joint(carom.joints.Revolute(place, up), carrier, planet)
         scene.add_constraint(carom.constraints.Coupling({shaft: z_s, output: -z_s, pin: z_p}))
@@ -42,18 +42,18 @@ def main(out="out/examples"):
     print(f"sun: {sun_turn[-1]:.6f} rad, error {error:.0e}; ratio {ratio:g} kept to {slip:.0e} rad")
     with style.style():
         figure, (left, right) = style.new(style.PAGE, 2.8, columns=2)
-        at = np.searchsorted(turn, np.radians(50))  # the carrier has turned by 50 degrees
-        spin = 2 * np.arctan2(s.orientation[at, :, 3], s.orientation[at, :, 0])
+        spin = 2 * np.arctan2(*s.orientation[at := 300, :, [3, 0]])
         wheels = [(0, z_s, spin[0], style.RED), (0, z_r, np.pi / z_r, "k")]
-        wheels += [(k, z_p, spin[k], style.BLUE) for k in (2, 3, 4)]
+        mesh = np.pi + around - (np.pi - z_s * around) / z_p  # a tooth in a gap of the sun
+        wheels += [(2 + k, z_p, spin[2 + k] + mesh[k], style.BLUE) for k in range(3)]
         for k, z, turned, colour in wheels:
             b = np.linspace(0, 2 * np.pi, 40 * z)
             r = 1e3 * module * (z / 2 + 0.45 * np.tanh(4 * np.cos(z * (b - turned))))
             x, y = 1e3 * s.position[at, k, :2]
             left.plot(x + r * np.cos(b), y + r * np.sin(b), color=colour, lw=0.8)
         left.set(aspect="equal", xlabel="x / mm", ylabel="y / mm")
-        for name, found, colour in (("sun", sun_turn, style.RED), ("carrier", turn, "k")):
-            right.plot(s.t, found / (2 * np.pi), color=colour, label=name)
+        right.plot(s.t, sun_turn / (2 * np.pi), color=style.RED, label="sun")
+        right.plot(s.t, turn / (2 * np.pi), "k", label="carrier")
         right.plot(s.t[::50], exact[::50] / (2 * np.pi), ".", color=style.RED, label="closed form")
         right.set(xlabel="time / s", ylabel="turns"), right.legend()
     Path(out).mkdir(parents=True, exist_ok=True)

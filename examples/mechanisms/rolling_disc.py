@@ -34,7 +34,7 @@ def roll(push):
         orientation=(np.cos(half), 0, np.sin(half), 0), velocity=np.cross(w, spoke), angular_velocity=w,
     )  # fmt: skip
     scene.add_joint(carom.joints.RollingDisc(r, axle), carom.GROUND, wheel)
-    return carom.simulate(scene, 6.0, step=5e-3)
+    return carom.simulate(scene, 10.0, step=5e-3)
 
 
 def main(out="out/examples"):
@@ -53,7 +53,7 @@ def main(out="out/examples"):
                   f"energy kept to {drift:.0e} J")  # fmt: skip
             assert drift < 1e-7
         left.set(xlabel="x / m", ylabel="y / m", aspect="equal", title="path of the foot")
-        right.set(xlabel="time / s", ylabel="lean / degrees"), right.legend(ncols=2)
+        right.set(xlabel="time / s", ylabel="lean / degrees", ylim=(17, 34)), right.legend(ncols=2)
     Path(out).mkdir(parents=True, exist_ok=True)
     figure.savefig(Path(out) / "rolling_disc.png", dpi=style.DPI)
     assert np.max(np.abs(lean - alpha)) < 1e-8

@@ -45,7 +45,7 @@ def main(out="out/examples"):
             left.plot(*np.stack([blade[i], s.position[i, 0, :2]]).T, "k", lw=0.7)
             left.plot(*s.position[i, 0, :2], "o", color=style.RED)
         left.set(xlabel="x / m", ylabel="y / m", aspect="equal")
-        left.text(*(blade[-1] + [-0.3, 0.2]), "blade", color=style.BLUE)
+        left.text(0.4, 2.2, "blade ", color=style.BLUE, ha="right")
         spins = s.angular_velocity[:, 0, 2]
         both = ("speed / m s$^{-1}$", speed, u, "k"), ("spin / rad s$^{-1}$", spins, w, style.RED)
         for name, found, true, colour in both:

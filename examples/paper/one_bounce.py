@@ -53,9 +53,8 @@ def main(out="out/examples"):
     with style.style():
         figure, axes = style.new(style.PAGE, 2.9)
         for (name, error), colour in zip(errors.items(), (style.RED, style.PURPLE, style.BLUE)):
-            axes.loglog(1e3 * STEPS, error, "o-", color=colour)
-            axes.text(1.05e3 * STEPS[0], error[0], name, color=colour, va="center")
-        axes.set(xlabel="step / ms", ylabel="error after one bounce / m", xlim=(0.05, 5))
+            axes.loglog(1e3 * STEPS, error, "o-", color=colour, label=name)
+        axes.set(xlabel="step / ms", ylabel="error after one bounce / m"), axes.legend(loc="center")
     Path(out).mkdir(parents=True, exist_ok=True)
     figure.savefig(Path(out) / "one_bounce.png", dpi=style.DPI)
     assert max(errors["located"]) < 1e-12
