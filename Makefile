@@ -32,7 +32,8 @@ bench: $(VENV)/installed-bench ## measure everything; tables and figures into th
 history: $(VENV)/installed-bench ## measure this commit for benchmarks/history (asv)
 	cd benchmarks && ../$(BIN)/asv machine --yes && ../$(BIN)/asv run 'HEAD^!'
 
-docs: $(VENV)/installed-docs
+docs: $(VENV)/installed-docs ## the pages; the examples of the gallery are run anew
+	rm -rf docs/gallery
 	$(BIN)/sphinx-build -W -b html docs out/docs
 
 release-check: $(VENV)/installed-test ## build wheel and sdist, look inside, install the wheel in an empty environment, run it
@@ -40,4 +41,4 @@ release-check: $(VENV)/installed-test ## build wheel and sdist, look inside, ins
 	$(BIN)/python tools/check_release.py
 
 clean:
-	rm -rf $(VENV) out
+	rm -rf $(VENV) out docs/gallery
