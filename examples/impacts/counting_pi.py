@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 import carom
-from carom.paper import style
+from carom.plots import style
 
 m = 1.0
 
