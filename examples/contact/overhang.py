@@ -2,7 +2,7 @@ r"""How far a stack of blocks may lean over the table
 =================================================
 
 Four blocks just balance if from the top down they reach over by 1/2, 1/4, 1/6 and 1/8 of their length: together
-25/24, and the top block is wholly beyond the edge. A per cent less stands, to the last bit; a per cent more
+25/24, and the top block is wholly beyond the edge. A per cent less stands, to round-off; a per cent more
 falls.
 """
 
