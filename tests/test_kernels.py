@@ -1,6 +1,7 @@
 """Inner kernels have no wrapper for Python: calling one from Python would end the process."""
 
 import ast
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -20,6 +21,7 @@ def module(path: Path) -> str:
     return ".".join(["carom", *path.relative_to(SOURCE).with_suffix("").parts])
 
 
+@cache  # every file is asked about, and there are many
 def inner_kernels() -> set[tuple[str, str]]:
     return {
         (module(path), node.name)
