@@ -16,7 +16,7 @@ from scipy.optimize import root
 
 import carom
 
-EXAMPLE = runpy.run_path(str(Path(__file__).parents[2] / "examples" / "a05_governor.py"))
+EXAMPLE = runpy.run_path(str(Path(__file__).parents[2] / "examples/mechanisms/a05_governor.py"))
 mechanism = EXAMPLE["mechanism"]
 g, K, C, l_0, a, b, m_p, m_r, m = (
     EXAMPLE[k] for k in ("g", "K", "C", "l_0", "a", "b", "m_p", "m_r", "m")

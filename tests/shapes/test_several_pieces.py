@@ -108,10 +108,11 @@ def test_all_pairs_of_a_scene_with_all_kinds_of_shapes():
     for k, shape in enumerate(shapes):
         scene.add_body(shape, density=1000.0, position=(0.05 * k, 0, 0.2 + 0.25 * k))
     scene.set_contact_default(restitution=0.2, friction=0.3)
-    s = carom.simulate(scene, 0.3, step=5e-3)
+    s = carom.simulate(scene, 0.3, step=2e-3)
     assert s.contact_mode.shape == (len(s.t), 6)
     assert np.all(s.impacts.contact < 6)
-    assert np.max(np.abs(s.ledger.residual)) < 1e-5 * s.total_energy[0]
+    # what steps of several points do not account for: 1e-5 at 5 ms, 3e-8 at 2 ms, 4e-9 at 1 ms
+    assert np.max(np.abs(s.ledger.residual)) < 1e-6 * s.total_energy[0]
 
 
 def test_a_compound_about_a_given_mass_centre():

@@ -64,7 +64,7 @@ def newton_on_graph(heap, k, n, before):
     p, best = work.vector[o.P], work.vector[o.BEST]
     for i in range(3 * k):
         best[i] = p[i]
-    work.count[o.LIMIT] = int(factors)
+    work.count[o.LIMIT], work.mismatch[o.ENOUGH] = int(factors), 0.0
     r, _, _ = polished(work, k, False, True)
     if not r < before:
         for i in range(3 * k):

@@ -12,7 +12,7 @@ import math
 
 from carom.contact.gap import slow
 from carom.contact.place import drift_of
-from carom.coulomb.layout import CONE, SLIDING
+from carom.coulomb.layout import CONE, ENOUGH, SLIDING
 from carom.coulomb.solve import solve_cones
 from carom.hold.turning import bound_turning, take_torque
 from carom.jit import kernel
@@ -86,6 +86,7 @@ def solve_once(k, cluster):
             both = stays and cluster.seats[j // 3].stays == 1
             M[i, j] = W[i, j] if both else 1.0 if i == j else 0.0
         b[i] = cluster.v[C][i] if stays else 1.0 if i % 3 == 0 else 0.0
+    cluster.cone.mismatch[ENOUGH] = 0.0  # to round-off
     status, _, _ = solve_cones(k, M, b, cluster.mu, cluster.kind, cluster.heading, p, cluster.cone)
     for i in range(n):
         a = cluster.v[C][i]

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from carom.coulomb.layout import CONE
+from carom.coulomb.layout import CONE, ENOUGH
 from carom.coulomb.solve import solve_cones
 from carom.impact.corner.layout import CLEAN, FACTOR, SCRATCH, STACK, TRY
 from carom.jit import kernel
@@ -47,6 +47,7 @@ def all_at_once(k, u, mu, e, scratch, out):
                 c[3 * i + r], p[3 * i + r] = u[3 * i + r], 0.0
             if turn == 0:
                 c[3 * i] += e[i] * min(0.0, u[3 * i])
+        scratch.cones.mismatch[ENOUGH] = 0.0
         solve_cones(k, W, c, mu, kind, heading, p, scratch.cones)
         energy, size = 0.0, 0.0
         for a in range(3 * k):

@@ -5,7 +5,7 @@ For e = 0 everywhere, and to close what does not end by itself (a body trapped b
 
 from __future__ import annotations
 
-from carom.coulomb.layout import CONE, SOLVED
+from carom.coulomb.layout import CONE, ENOUGH, SOLVED
 from carom.coulomb.solve import solve_cones
 from carom.dispatch import by_address
 from carom.impact.corner import law
@@ -58,6 +58,7 @@ def _once(k, work, cones, turn):
     heading = work.matrix[FACTOR]  # of no meaning for cones, but finite
     for i in range(k):
         heading[i, 0], heading[i, 1] = 0.0, 0.0
+    cones.mismatch[ENOUGH] = 0.0
     status, _, _ = solve_cones(k, work.matrix[MASS], before, mu, kind, heading, impulse, cones)
     change = _take(k, work, 1.0)
     if status != SOLVED and change > 0.0:  # too much: as far as the energy falls most
