@@ -3,8 +3,8 @@
 
 A ball with backspin comes back; its impulses, which the page shows as arrows, are checked against momentum.
 
-A ball that slides through its whole impact gets the impulse P (n - mu s), P = m (1 + e) times its normal speed, s
-the direction of slip; so the arrows that are shown are known, as long as the slip at the contact lasts.
+A ball that slides through its whole impact gets the impulse P (n - mu s), P = m (1 + e) times its normal speed,
+s the direction of slip; so the arrows that are shown are known, as long as the slip at the contact lasts.
 """
 
 from pathlib import Path
