@@ -61,12 +61,9 @@ def functions(scene) -> dict[str, Callable]:
             super().__init__()
             self.found: dict[str, Callable] = {}
 
-        def value(self, value: Any, where: str = "") -> Any:
-            before = len(self.functions)
-            out = super().value(value, where)
-            if len(self.functions) > before and callable(value):
-                self.found[where] = value
-            return out
+        def function(self, value: Any, where: str) -> dict:
+            self.found[where] = value
+            return super().function(value, where)
 
     collector = Collector()
     for part in scene._parts:
