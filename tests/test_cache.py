@@ -64,3 +64,18 @@ def test_no_place_that_can_be_written(tmp_path):
         value, hits = result(start(blocked / "cache", **places))
         assert value.startswith("(")
         assert int(hits) == 0
+
+
+def test_scipy_is_loaded_where_linear_algebra_is_compiled():
+    """Not for kernels, which use none: it would be a seventh of the first run of a process."""
+    code = """
+import sys
+import numba, numpy as np
+from carom.geometry.rotation import exp
+exp(0.1, 0.2, 0.3)
+print("scipy.linalg" in sys.modules)
+a = np.array([2.0, 1.0])
+print(numba.njit(lambda a, b: a @ b)(a, a) == 5.0, "scipy.linalg" in sys.modules)
+"""
+    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert told.stdout.split() == ["False", "True", "True"]

@@ -6,70 +6,108 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom.columns import Columns
 from carom.coordinates import Motion, coordinates_of
 from carom.geometry import quaternion
 from carom.ledger import Ledger
 from carom.motion.mounts import mounted
+from carom.scene.forces import AppliedForce
 from carom.scene.more_forces import JointSpring, UserForce
 from carom.status import Status
 from carom.system import records as r
 from carom.system.arrays import Relations
-from carom.tables import LAWS, EventTable, ImpactTable, contact_table
+from carom.tables import LAWS, ContactTable, EventTable, ImpactTable, contact_table
+
+#: what tables say of contacts (an ensemble changes them from run to run)
+OF_CONTACTS = (
+    "number", "other", "first", "law", "restitution", "friction", "penetration", "width",
+)  # fmt: skip
+
+
+class Written(NamedTuple):
+    """Copies of what a run has written: a solution works out of them what it is asked for."""
+
+    attitude: np.ndarray  # (T, N, 4) of the principal axes
+    series: np.recarray  # (T,) SERIES
+    impact: np.recarray  # (K,) IMPACTS, in the order of time
+    event: np.recarray  # (E,) EVENT, in the order of time
+    contacts: dict[str, np.ndarray]  # (C,) columns of CONTACT
+    forces: tuple[AppliedForce, ...]  # of the scene, which may be given more
 
 
 def assemble(run, status: Status) -> dict:
     """Return the fields of a `Solution`."""
-    rec = r.trimmed(run.records, run.clock)
-    state, clock = rec.state, run.clock[0]
-    # of a step, one island after the other
-    event = _rows(rec.event, np.argsort(rec.event.time, kind="stable"))
-    rec = rec._replace(impact=_rows(rec.impact, np.argsort(rec.impact.time, kind="stable")))
-    kinetic, potential = energies(run.compiled.system, state)
-    potential += more_energies(run, rec.series.t, state)
-    ledger = Ledger(kinetic, potential, *(rec.series[name].copy() for name, _ in r.LEDGER))
+    rec, clock = r.written(run.records, run.clock), r.told(run.clock)
+    state, series, contacts = rec.state, rec.series, run.compiled.system.contacts
     return {
-        "t": rec.series.t.copy(),
-        "position": state.x.copy(),
-        "orientation": to_scene_axes(state.Q, run.compiled.to_principal),
-        "velocity": state.v.copy(),
-        "angular_velocity": state.w.copy(),
-        "kinetic_energy": kinetic,
-        "potential_energy": potential,
-        "impacts": impact_table(run, rec),
-        "events": EventTable(
-            event.time.copy(), np.array(r.EVENTS)[event.kind], event.contact.copy(),
-        ),
-        "contacts": contact_table(
-            event, r.EVENTS, first_vertices(run.compiled.system.contacts), float(rec.series.t[-1]),
-        ),
-        "held_residual": rec.series.residual.copy(),
-        "ledger": ledger,
+        "t": np.array(series["t"]),
+        "position": np.array(state["x"]),
+        "velocity": np.array(state["v"]),
+        "angular_velocity": np.array(state["w"]),
+        "held_residual": np.array(series["residual"]),
         "status": status,
         "stats": {
-            "steps": int(clock.step), "trial_steps": int(clock.trials),
-            "rejected": int(clock.rejected), "cuts": int(clock.cuts),
-            "located": int(clock.located), "impacts": int(clock.struck), "holds": int(clock.holds),
-            "held_steps": int(clock.pressed), "held_rounds": int(clock.rounds),
-            "whole_steps": int(clock.whole), "explicit_steps": int(run.work.result[0].fallen),
+            "steps": clock["step"], "trial_steps": clock["trials"], "rejected": clock["rejected"],
+            "cuts": clock["cuts"], "located": clock["located"], "impacts": clock["struck"],
+            "holds": clock["holds"], "held_steps": clock["pressed"],
+            "held_rounds": clock["rounds"], "whole_steps": clock["whole"],
+            "explicit_steps": int(run.work.result["fallen"][0]),
         },
         "scene": run.scene,
         "settings": dict(run.settings),
         "_run": run,
-        "_touch": rec.touch,
+        "_touch": rec.touch.copy(),
+        "_written": Written(
+            np.array(state["Q"]), series.copy(), _in_time(rec.impact), _in_time(rec.event),
+            {name: np.array(contacts[name]) for name in OF_CONTACTS}, run.scene.forces,
+        ),
     }  # fmt: skip
 
 
-def _rows(records: np.recarray, which) -> np.recarray:
-    """Return the chosen rows."""
-    return records[which].view(np.recarray)
+def _in_time(rows: np.recarray) -> np.recarray:
+    """Return rows in the order of time: of a step they were written one island after the other."""
+    return rows[rows["time"].argsort(kind="stable")].view(Columns)
+
+
+def orientation(solution) -> np.ndarray:
+    """Return the attitudes (T, N, 4) of the scene's body axes."""
+    return to_scene_axes(solution._written.attitude, solution._run.compiled.to_principal)
+
+
+def potential_and_kinetic(solution) -> tuple[np.ndarray, np.ndarray]:
+    """Return potential and kinetic energy (T,) of all bodies, springs and forces with a potential."""
+    system, Q = solution._run.compiled.system, solution._written.attitude
+    x, v, w = solution.position, solution.velocity, solution.angular_velocity
+    kinetic, potential = energies(system, x, Q, v, w)
+    return potential + more_energies(solution), kinetic
+
+
+def ledger(solution) -> Ledger:
+    """Return where the energy went."""
+    series = solution._written.series
+    entries = (np.array(series[name]) for name, _ in r.LEDGER)
+    return Ledger(solution.kinetic_energy, solution.potential_energy, *entries)
+
+
+def event_table(solution) -> EventTable:
+    """Return the events in the order of time."""
+    event = solution._written.event
+    names = np.array(r.EVENTS)[event["kind"]]
+    return EventTable(np.array(event["time"]), names, np.array(event["contact"]))
+
+
+def intervals(solution) -> ContactTable:
+    """Return the intervals of contact that stays."""
+    written = solution._written
+    end = float(solution.t[-1])
+    return contact_table(written.event, r.EVENTS, first_vertices(written.contacts), end)
 
 
 @np.errstate(over="ignore", invalid="ignore")  # of a motion that diverged
-def energies(system, state) -> tuple[np.ndarray, np.ndarray]:
-    """Return kinetic and potential energy (T,) of states (T, N)."""
-    bodies, x, Q = system.bodies, state.x, state.Q
-    W = quaternion.rotate_back(Q, state.w)
-    kinetic = 0.5 * np.einsum("n,tnk->t", bodies.mass, state.v**2)
+def energies(system, x, Q, v, w) -> tuple[np.ndarray, np.ndarray]:
+    """Return kinetic and potential energy (T,) of states (T, N); Q of the principal axes."""
+    bodies, W = system.bodies, quaternion.rotate_back(Q, w)
+    kinetic = 0.5 * np.einsum("n,tnk->t", bodies.mass, v**2)
     kinetic += 0.5 * np.einsum("nk,tnk->t", bodies.inertia, W**2)
     potential = -np.einsum("n,tnk,k->t", bodies.mass, x, system.gravity)
     for s in system.springs:
@@ -108,21 +146,19 @@ def _curve_energy(pieces, length: np.ndarray) -> np.ndarray:
     return before[i] + np.sum(pieces.c[i] / powers * s[:, None] ** powers, axis=1)
 
 
-def more_energies(run, t, state) -> np.ndarray:
+def more_energies(solution) -> np.ndarray:
     """Return the potential energy (T,) of springs along coordinates, and of forces of the user's with one."""
-    scene, total = run.scene, np.zeros(len(t))
-    for force in scene.forces:
+    t, total = solution.t, np.zeros(len(solution.t))
+    for force in solution._written.forces:
         d = force.definition
+        state = (solution.position, solution.orientation, solution.velocity)
         if isinstance(d, JointSpring) and d.stiffness > 0.0:
-            motion = Motion(
-                t, state.x, to_scene_axes(state.Q, run.compiled.to_principal), state.v, state.w
-            )
+            motion = Motion(t, *state, solution.angular_velocity)
             q = coordinates_of(motion, d.joint)[0][:, d.coordinate]
             total += 0.5 * d.stiffness * (q - d.rest) ** 2
         elif isinstance(d, UserForce) and d.potential is not None:
             own = [b.index for b in d.bodies]
-            Q = to_scene_axes(state.Q, run.compiled.to_principal)
-            states = np.concatenate([state.x, Q, state.v, state.w], axis=2)[:, own]
+            states = np.concatenate([*state, solution.angular_velocity], axis=2)[:, own]
             total += [float(d.potential(time, s)) for time, s in zip(t, states)]
     return total
 
@@ -136,35 +172,31 @@ def to_scene_axes(Q: np.ndarray, to_principal: np.ndarray) -> np.ndarray:
 
 def first_vertices(contacts) -> np.ndarray:
     """Return the first vertex of each contact of the scene with a half-space, 0 for two bodies."""
-    _, row = np.unique(contacts.number, return_index=True)
-    return np.where(contacts.other < 0, contacts.first, 0)[row]
+    _, row = np.unique(contacts["number"], return_index=True)
+    return np.where(contacts["other"] < 0, contacts["first"], 0)[row]
 
 
-def impact_table(run, rec) -> ImpactTable:
+def impact_table(solution) -> ImpactTable:
     """Return the impacts with all that the scene knows of their contacts."""
-    rows, contacts = rec.impact, run.compiled.system.contacts
-    number, first = np.unique(contacts.number, return_index=True)
+    rows, contacts = solution._written.impact, solution._written.contacts
+    number, first = np.unique(contacts["number"], return_index=True)
     c = first[np.searchsorted(number, rows.contact)]
     return ImpactTable(
-        time=rows.time.copy(),
-        contact=rows.contact.copy(),
-        point=rows.point.copy(),
-        normal=rows.normal.copy(),
         relative_velocity_before=rows.before.copy(),
         relative_velocity_after=rows.after.copy(),
-        impulse=rows.impulse.copy(),
-        energy_change=rows.energy_change.copy(),
-        penetration=contacts.penetration[c] * contacts.width[c],
-        duration=rows.duration.copy(),
-        law=np.array(LAWS)[contacts.law[c]],
+        penetration=contacts["penetration"][c] * contacts["width"][c],
+        law=np.array(LAWS)[contacts["law"][c]],
         inverse_mass=rows.W.copy(),
-        restitution=contacts.restitution[c],
-        friction=contacts.friction[c],
-        compression_work=rows.compression_work.copy(),
-        restitution_work=rows.restitution_work.copy(),
-        friction_loss=rows.friction_loss.copy(),
-        together=rows.together.copy(),
-    )
+        restitution=contacts["restitution"][c],
+        friction=contacts["friction"][c],
+        **{
+            name: np.array(rows[name])
+            for name in (
+                "time", "contact", "point", "normal", "impulse", "energy_change", "duration",
+                "compression_work", "restitution_work", "friction_loss", "together",
+            )
+        },
+    )  # fmt: skip
 
 
 class Nodes(NamedTuple):
@@ -180,7 +212,7 @@ def nodes(run) -> list[Nodes]:
     """Return the nodes of each body, in the order of time."""
     rec = r.trimmed(run.records, run.clock)
     state, shot = rec.state, rec.snapshot
-    events = _rows(rec.event, shot.event)
+    events = rec.event[shot.event].view(Columns)
     # an event stands after the saved rows that were written before it
     place = np.arange(1.0, len(state) + 1)
     by_body = np.argsort(shot.body, kind="stable")
@@ -188,7 +220,7 @@ def nodes(run) -> list[Nodes]:
     out = []
     for b in range(state.shape[1]):
         own = by_body[ends[b] : ends[b + 1]]
-        here, event = state[:, b].view(np.recarray), _rows(shot, own)
+        here, event = state[:, b].view(Columns), shot[own].view(Columns)
         order = np.argsort(np.concatenate([place, events.saved[own] + 0.5]), kind="stable")
         speed = np.hstack([here.v, here.w])
         columns = (

@@ -13,6 +13,7 @@ from numba.extending import intrinsic, overload
 
 from carom.contact.pairs.layout import NoHulls
 from carom.jit import OPTIONS
+from carom.references import refer_to
 from carom.system.arrays import FreeSolver, LoopSolver, Relations, TreeSolver
 
 
@@ -70,10 +71,13 @@ def _call(typing, address, *arguments):
 
     def generate(context, builder, signature, values):
         pointer, packed = values
-        function = context.call_conv.get_function_type(types.none, kinds)
+        given = [
+            refer_to(builder, t, builder.extract_value(packed, i)) for i, t in enumerate(kinds)
+        ]
+        taken, unpacked = zip(*given)
+        function = context.call_conv.get_function_type(types.none, taken)
         pointer = builder.inttoptr(pointer, function.as_pointer())
-        unpacked = [builder.extract_value(packed, i) for i in range(len(kinds))]
-        context.call_conv.call_function(builder, pointer, types.none, kinds, unpacked)
+        context.call_conv.call_function(builder, pointer, types.none, taken, unpacked)
         return context.get_dummy_value()
 
     return signature, generate

@@ -17,11 +17,13 @@ import numba
 import numpy as np
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 
-from carom import flags
+from carom import hasten, references, symbols
 from carom.parts import PartCompiler
 from carom.stamp import stamp
 
-flags.install()
+hasten.install()
+references.install()
+symbols.install()
 
 _RULES: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
 _INSIDE: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
@@ -62,15 +64,31 @@ def kernel(function):
 
     Division follows IEEE (``error_model="numpy"``), no fast-math: results are the same on every run.
     """
-    return numba.njit(**_PART)(function)
+    return _of_plain_types(numba.njit(**_PART)(function))
 
 
 def inlined(function):
-    """Compile `function` as `kernel` does, always inlined: for what every step passes.
+    """Compile `function` as `kernel` does, always inlined: for what every step passes."""
+    return _of_plain_types(numba.njit(**_PART, forceinline=True)(function))
 
-    A call that hands on a system costs more than a free step (some 150 values go on the stack).
+
+def _of_plain_types(compiled):
+    """Let callers ask for a function of plain types only.
+
+    A variable that begins as a constant (``n = 0``) has a type of its own until all that is assigned to it is
+    known. Numba compiles what is called meanwhile for that type, with all that this calls, and uses none of it:
+    a quarter of all functions that a thrown die needs.
     """
-    return numba.njit(**_PART, forceinline=True)(function)
+    if not hasattr(compiled, "get_call_template"):  # NUMBA_DISABLE_JIT=1
+        return compiled
+    asked = compiled.get_call_template
+
+    def get_call_template(args, kws):
+        plain = {name: numba.types.unliteral(kind) for name, kind in kws.items()}
+        return asked(tuple(map(numba.types.unliteral, args)), plain)
+
+    compiled.get_call_template = get_call_template
+    return compiled
 
 
 def unit(function):

@@ -12,6 +12,7 @@ from carom.jit import entry, inlined, kernel
 from carom.loop import NOT_FINITE, advance, strayed
 from carom.motion.adapt import begin_step
 from carom.motion.more_forces import note_turns
+from carom.references import refer
 from carom.save import finite, save, still
 from carom.system import records as r
 
@@ -40,6 +41,7 @@ def run(
         code = 0
         while code == 0 and some_left(islands, length, clock):
             part, own, here, scratch = take(islands, system, held, now, work)
+            part, own, scratch = refer(part), refer(own), refer(scratch)
             enter(islands, part, own, held, scratch, begin, clock)
             code = move(
                 islands, part, method, controls, own, here, begin, length, cluster, corner, heap,

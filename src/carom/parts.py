@@ -54,7 +54,7 @@ class PartLowering(typed_passes.NativeLowering):
             function.lookup_module(), function.qualname, "", 0, made.env, (state.library,)
         )
         context.insert_user_function(entry, function, [state.library])
-        state.reload_init.extend(state.library._reload_init)
+        state.reload_init.extend(getattr(state.library, "_reload_init", ()))  # not in Numba 0.61
         state["cr"] = made._replace(cfunc=entry)
         return True
 

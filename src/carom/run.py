@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from carom import loop, march, save
+from carom.addresses import Addresses
 from carom.contact.stop import write_stop_gaps
 from carom.coulomb.newton import newton_unit
-from carom.heap.layout import new_heap, roomier_heap
+from carom.heap.layout import new_heap, no_heap, roomier_heap
 from carom.heap.step import heap_unit
 from carom.hold.joint_events import first_modes
 from carom.hold.lifecycle import hold_unit, settle_unit
@@ -102,9 +103,21 @@ class Run:
         self.now = self.compiled.start
         self.held = r.new_held(system)
         self.work = r.new_work(system, self.method.b.size)
-        if np.any(system.contacts.touches == 1):
+        if (system.contacts["touches"] == 1).any():
             system = self.find_touches(system)
-        system = with_address(system, self.now, self.work)
+        located = self.settings["impact_location"] == "locate"
+        apart = located and tolerances is None and not method.startswith("paper")
+        self.islands = new_islands(system, self.held) if apart else NoIslands(0)
+        self.controls = self.controls._replace(retry=int(isinstance(self.islands, Islands)))
+        self.cluster = new_cluster(system)
+        self.heap = no_heap()  # made when there is one
+        self.corner = new_corner(1, corner_settings(options))  # and this
+        self.clock = r.new_clock()
+        self.clock["ahead"] = FIRST * self.controls.longest
+        rows = 256 if tolerances else -(-self.controls.last // self.controls.save_every) + 1
+        self.records = r.new_records(system, rows, 512)
+        self.address = Addresses(system, self.method, self.controls, self.corner.settings)
+        system = with_address(system, self.now, self.work, self.address)
         self.compiled = self.compiled._replace(system=system)
         if options.project_start and len(system.joints):
             error = project_start(system, self.now, self.work)
@@ -116,28 +129,16 @@ class Run:
         check_start(scene, self.compiled, self.now, self.work, options)
         check_stops(scene, self.compiled, self.now, self.work, options)
         if system.contacts.size:
-            self.work.body.group = system.bodies.component
-        located = self.settings["impact_location"] == "locate"
-        apart = located and tolerances is None and not method.startswith("paper")
-        self.islands = new_islands(system, self.held) if apart else NoIslands(0)
-        self.controls = self.controls._replace(retry=int(isinstance(self.islands, Islands)))
-        self.cluster = new_cluster(system)
-        self.heap = new_heap(1, 1, 1)  # made when there is one
-        self.corner = new_corner(system, corner_settings(options))
-        self.clock = r.new_clock()
-        self.clock.ahead = FIRST * self.controls.longest
-        rows = 256 if tolerances else -(-self.controls.last // self.controls.save_every) + 1
-        self.records = r.new_records(system, rows, 512)
-        if system.contacts.size:
+            self.work.body["group"] = system.bodies["component"]
             self.find_strike()
-        if not np.all(system.bodies.ballistic):
+        if not system.bodies["ballistic"].all():
             self.find_constrained_step()
         self.note_modes()
         self.save_now()
 
     def note_modes(self) -> None:
         """Note which joints with friction stick at the start."""
-        if not np.all(self.compiled.system.bodies.ballistic):
+        if not self.compiled.system.bodies["ballistic"].all():
             first_modes(self.compiled.system, self.held, self.now, self.work)
 
     def renew(self) -> None:
@@ -152,13 +153,14 @@ class Run:
         if controls.heap_at:
             self.find_heap()
         self.clock[:] = r.new_clock()
-        self.clock.ahead = FIRST * self.controls.longest
+        self.clock["ahead"] = FIRST * self.controls.longest
 
     def save_now(self) -> None:
         """Write the present state into the records."""
-        save.save_now(
+        state = (
             self.compiled.system, self.held, self.now, self.clock, self.work, self.records
-        )
+        )  # fmt: skip
+        self.address.entry(save.save_now, *state)(*state)
 
     def find_touches(self, system):
         """Compile what finds the points of two solids; return the system with its addresses."""
@@ -185,7 +187,7 @@ class Run:
 
     def find_strike(self) -> None:
         """Compile what a scene with contacts needs, and note where it is."""
-        found = address(
+        found = self.address(
             strike_unit, self.method, self.compiled.system, self.controls, self.held, 0, self.now,
             self.cluster, self.corner, self.work, self.clock, self.records,
         )  # fmt: skip
@@ -194,22 +196,24 @@ class Run:
     def find_constrained_step(self) -> None:
         """Compile the step of bodies that are joined, loaded or held."""
         system, coefficients = self.compiled.system, (self.method.A, self.method.b, self.method.E)
-        found = address(
+        found = self.address(
             acceleration_unit, system, self.now, self.held, self.work, self.work.stages[0]
         )
         self.compiled = self.compiled._replace(system=system._replace(acceleration_at=found))
-        found = address(
+        found = self.address(
             constrained_unit, *coefficients, self.compiled.system, self.held, self.now, 0.0, self.now,
             self.work,
         )  # fmt: skip
         self.method = self.method._replace(address=found)
         if isinstance(self.method, Rattle) and self.method.at == 0:
-            found = address(
+            found = self.address(
                 rattle_unit, self.method.parts, system, self.now, 0.0, self.now, self.work
             )
             self.method = self.method._replace(at=found)
         elif isinstance(self.method, Implicit) and self.method.at == 0:
-            found = address(implicit_unit, system, self.held, self.now, 0.0, self.now, self.work)
+            found = self.address(
+                implicit_unit, system, self.held, self.now, 0.0, self.now, self.work
+            )
             self.method = self.method._replace(at=found)
 
     def find_hold(self) -> None:
@@ -217,13 +221,15 @@ class Run:
         from carom.coulomb.search import with_address as with_search
 
         system, held, now = self.compiled.system, self.held, self.now
-        self.cluster = self.cluster._replace(cone=with_search(self.cluster.cone))
+        self.cluster = self.cluster._replace(cone=with_search(self.cluster.cone, self.address))
         scratch = (self.cluster, self.work, self.clock)
-        hold = address(hold_unit, system, self.controls, held, 0, now, 0.0, *scratch, self.records)
-        settle = address(
+        hold = self.address(
+            hold_unit, system, self.controls, held, 0, now, 0.0, *scratch, self.records
+        )
+        settle = self.address(
             settle_unit, system, self.controls, held, 0, now, self.work, self.clock, self.records
         )
-        press = address(press_unit, system, self.controls, held, now, 0.0, now, *scratch)
+        press = self.address(press_unit, system, self.controls, held, now, 0.0, now, *scratch)
         self.controls = self.controls._replace(hold_at=hold or 1, settle_at=settle, press_at=press)
 
     def find_heap(self) -> None:
@@ -243,15 +249,17 @@ class Run:
         """Compile the impact of several points: only when the first one is to be resolved."""
         from carom.impact.corner.work import with_units
 
-        self.corner = self.corner._replace(scratch=with_units(self.corner.scratch))
+        made = new_corner(len(self.cluster.mu), self.corner.settings)
+        known = made.scratch._replace(units=self.corner.scratch.units)  # the second time: the rest
+        self.corner = made._replace(scratch=with_units(known, self.address))
         W, u, mu = self.cluster.m[0], self.cluster.v[0], self.cluster.mu
-        found = address(corner_unit, 1, W, u, mu, self.corner)
+        found = self.address(corner_unit, 1, W, u, mu, self.corner)
         self.controls = self.controls._replace(corner_at=found or 1)
 
     @property
     def steps_done(self) -> int:
         """Number of finished steps."""
-        return int(self.clock[0].step)
+        return int(self.clock["step"][0])
 
     @property
     def to_principal(self) -> np.ndarray:
@@ -271,16 +279,17 @@ class Run:
     @property
     def reached(self) -> float:
         """Time that the run has come to."""
-        return float(self.clock[0].now)
+        return float(self.clock["now"][0])
 
     def go_on(self, until: float) -> Status:
         """Go on to step number `until`, or to that time if steps vary, or to a failure."""
         while True:
-            code = march.run(
+            state = (
                 self.compiled.system, self.method, self.controls, self.held, self.now, self.work,
                 self.islands, self.cluster, self.corner, self.heap, self.clock, self.records,
                 float(until),
             )  # fmt: skip
+            code = self.address.entry(march.run, *state)(*state)
             if code == r.FULL:
                 self.records = r.longer(self.records)
             elif code == r.NEEDS_ROWS:
@@ -307,12 +316,13 @@ class Run:
 
     def solution(self, status: Status) -> Solution:
         """Return what was computed; after a failure up to the last state, between saved steps or not."""
-        clock = self.clock[0]
-        further = clock.now > self.records.series.t[clock.saved - 1]
-        whole = all(np.all(np.isfinite(self.now[name])) for name in ("x", "Q", "v", "w"))
-        if status is not Status.SUCCESS and further and whole:
-            self.records = r.room_for_one(self.records, clock.saved)
-            self.save_now()
+        if status is not Status.SUCCESS:
+            clock = self.clock[0]
+            further = clock.now > self.records.series.t[clock.saved - 1]
+            whole = all(np.all(np.isfinite(self.now[name])) for name in ("x", "Q", "v", "w"))
+            if further and whole:
+                self.records = r.room_for_one(self.records, clock.saved)
+                self.save_now()
         return Solution.from_run(self, status)
 
 

@@ -22,6 +22,7 @@ METHODS = (
 )  # fmt: skip
 ADAPTIVE = ("rk5", "rk8")  # methods with an estimate of their error
 LOCATIONS = ("locate", "project", "work")
+_DEFAULT = Options()
 
 
 @overload
@@ -198,7 +199,7 @@ def checked_settings(
     check.choice("impact_location", impact_location, LOCATIONS)
     tolerances = check_tolerances(adapts, method, impact_location, rtol, atol)
     check.integer("save_every", save_every, least=1)
-    options = Options() if options is None else options
+    options = _DEFAULT if options is None else options
     if not isinstance(options, Options):
         raise TypeError(f"options must be carom.Options, got {type(options).__name__}")
     h, steps = spacing(duration, step, options)

@@ -16,6 +16,7 @@ from carom.status import Status
 from carom.tables import ContactTable, EventTable, ForceTable, ImpactTable, force_table
 
 if TYPE_CHECKING:
+    from carom.assemble import Written
     from carom.run import Run
     from carom.scene.scene import Scene
 
@@ -78,22 +79,17 @@ class Solution(Portable, Drawn):
 
     t: np.ndarray
     position: np.ndarray
-    orientation: np.ndarray
     velocity: np.ndarray
     angular_velocity: np.ndarray
-    kinetic_energy: np.ndarray
-    potential_energy: np.ndarray
-    impacts: ImpactTable
-    events: EventTable
-    contacts: ContactTable
     held_residual: np.ndarray
-    ledger: Ledger
     status: Status
     stats: dict[str, int]
     scene: Scene = field(repr=False)
     settings: dict[str, Any]
     _run: Run = field(repr=False)
     _touch: np.recarray = field(repr=False)
+    #: what the rest is worked out from; None: from a file, which has had it all
+    _written: Written | None = field(repr=False, default=None)
 
     @classmethod
     def from_run(cls, run: Run, status: Status) -> Solution:
@@ -101,6 +97,57 @@ class Solution(Portable, Drawn):
         from carom.assemble import assemble
 
         return cls(**assemble(run, status))
+
+    @cached_property
+    def orientation(self) -> np.ndarray:
+        """Unit quaternions (T, N, 4), body to world."""
+        from carom.assemble import orientation
+
+        return orientation(self)
+
+    @cached_property
+    def _energies(self) -> tuple[np.ndarray, np.ndarray]:
+        from carom.assemble import potential_and_kinetic
+
+        return potential_and_kinetic(self)
+
+    @cached_property
+    def kinetic_energy(self) -> np.ndarray:
+        """Of all bodies (T,) [J]."""
+        return self._energies[1]
+
+    @cached_property
+    def potential_energy(self) -> np.ndarray:
+        """Of gravity and springs (T,) [J]."""
+        return self._energies[0]
+
+    @cached_property
+    def impacts(self) -> ImpactTable:
+        """One record for each impact."""
+        from carom.assemble import impact_table
+
+        return impact_table(self)
+
+    @cached_property
+    def events(self) -> EventTable:
+        """Impacts and changes of held contacts, in their order."""
+        from carom.assemble import event_table
+
+        return event_table(self)
+
+    @cached_property
+    def contacts(self) -> ContactTable:
+        """Intervals of contact that stays."""
+        from carom.assemble import intervals
+
+        return intervals(self)
+
+    @cached_property
+    def ledger(self) -> Ledger:
+        """Where the energy went."""
+        from carom.assemble import ledger
+
+        return ledger(self)
 
     @property
     def success(self) -> bool:

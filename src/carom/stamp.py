@@ -19,6 +19,7 @@ _RULES = (
     "dispatch.py",
     "stamp.py",
     "functions.py",
+    "references.py",
 )  # how everything is compiled
 _CONSTANTS = (int, float, str, bool, tuple, frozenset)
 

@@ -8,6 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom.columns import Columns
+
 LAWS = ("newton", "poisson", "stronge")
 CURVED = 1 << 40  # features of curved pieces are above, numbers of vertices below
 
@@ -131,10 +133,13 @@ class ForceTable(NamedTuple):
 
 def force_table(touch) -> ForceTable:
     """Return the forces of all held points that were saved, (M,)."""
-    row = touch[np.argsort(touch.saved, kind="stable")].view(np.recarray)
+    row = touch[np.argsort(touch.saved, kind="stable")].view(Columns)
     mode = np.array(["open", "slipping", "sticking"])[row.mode]
     columns = (row.saved, row.contact, row.body, row.other, mode, row.point, row.force, row.push)
     return ForceTable(*(np.array(column) for column in columns))
+
+
+_MODES = {"slips": 1, "sticks": 2, "opens": 0}
 
 
 def contact_table(event, kinds, first, end: float) -> ContactTable:
@@ -148,8 +153,9 @@ def contact_table(event, kinds, first, end: float) -> ContactTable:
     end : time of the last state
     """
     rows, at = [], {}  # rows: contact, feature, start, end, mode; at: the row that a point is in
-    for e in event:
-        key, kind = (int(e.contact), int(e.feature)), kinds[e.kind]
+    fields = ("contact", "feature", "kind", "time", "mode")
+    for contact, feature, code, time, mode_held in zip(*(event[f].tolist() for f in fields)):
+        key, kind = (contact, feature), kinds[code]
         if kind not in ("held", "slips", "sticks", "opens"):
             continue
         if kind != "held" and key not in at:  # took the place of another
@@ -157,14 +163,14 @@ def contact_table(event, kinds, first, end: float) -> ContactTable:
             if not others:
                 continue
             at[key] = at.pop(others[0])
-        mode = {"slips": 1, "sticks": 2, "opens": 0}.get(kind, int(e.mode))
+        mode: int = mode_held if kind == "held" else _MODES[kind]
         if key in at:
             if rows[at[key]][4] == mode:
                 continue  # slip that has turned
-            rows[at.pop(key)][3] = float(e.time)
+            rows[at.pop(key)][3] = time
         if mode > 0:
             at[key] = len(rows)
-            rows.append([*key, float(e.time), end, mode])
+            rows.append([*key, time, end, mode])
     columns = list(zip(*rows)) if rows else [[]] * 5
     contact = np.array(columns[0], dtype=np.int64)
     feature = np.array(columns[1], dtype=np.int64)

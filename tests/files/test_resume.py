@@ -33,7 +33,7 @@ slow = int(sys.argv[3])
 
 def progress(done, total):  # slow enough to be killed, from some step on
     if done >= slow:
-        time.sleep(0.05)
+        time.sleep(0.5)
 
 carom.simulate(
     scene, 0.5, step=1e-3, save=sys.argv[2], save_seconds=0.0, progress=progress

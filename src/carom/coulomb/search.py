@@ -70,10 +70,10 @@ def search_unit(work, k):
 search = by_address(search_unit)
 
 
-def with_address(work):
+def with_address(work, find=address):
     """Return the work arrays with the addresses of what is compiled for arrays like these."""
-    work = work._replace(newton=address(newton_unit, work, 1, 1.0, True))
-    return work._replace(address=address(search_unit, work, 1))
+    work = work._replace(newton=find(newton_unit, work, 1, 1.0, True))
+    return work._replace(address=find(search_unit, work, 1))
 
 
 @kernel

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from carom.columns import Columns
 from carom.ensembles.targets import Target, changed, check_places
 from carom.run import Run, check_start, check_stops
 from carom.scene.scene import Scene
@@ -29,7 +30,7 @@ class Again:
         if self.light:
             self.run = Run(scene, *settings)
             start = self.run.compiled.start.copy()
-            self.first = start.view(np.recarray)  # `Run.now` is written to
+            self.first = start.view(Columns)  # `Run.now` is written to
             self.remember()
 
     def start(self, values: dict[str, np.ndarray]) -> Run:

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom.columns import table as new_table
 from carom.system import records as r
 from carom.system.arrays import STATE
 
@@ -72,7 +73,7 @@ def from_columns(read, sizes: Mapping[str, int]) -> r.Records:
     tables = {}
     for table, fields in FIELDS.items():
         shape = tuple(sizes[dim] for dim in DIMS[table])
-        made = np.zeros(shape, dtype=np.dtype(fields, align=True)).view(np.recarray)
+        made = new_table(fields, *shape)
         for field in fields:
             name = f"{table}_{field[0]}"
             made[field[0]] = read(name, SAME.get(name, ""))

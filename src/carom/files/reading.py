@@ -30,6 +30,8 @@ BROKEN = (
     UnicodeDecodeError, json.JSONDecodeError,
 )  # fmt: skip
 #: types of columns of words
+MOTION = ("position", "velocity", "angular_velocity", "held_residual")
+DERIVED = ("orientation", "kinetic_energy", "potential_energy")
 MODES = ("open", "slipping", "sticking")
 WORDS = {"impact_law": LAWS, "event_kind": r.EVENTS, "interval_mode": MODES}
 
@@ -44,23 +46,22 @@ def read(path: Path, functions: Mapping[str, Callable] | None = None) -> dict[st
         run = KeptRun(scene, settings, options, records, _checkpoint(file), missing)
         fields: dict[str, Any] = {
             "t": _array(file, "time"),
-            **{
-                name: _array(file, name)
-                for name in (
-                    "position", "orientation", "velocity", "angular_velocity", "kinetic_energy",
-                    "potential_energy", "held_residual",
-                )
-            },
-            "impacts": ImpactTable(**{k: _array(file, f"impact_{k}") for k in IMPACT}),
-            "events": EventTable(**{k: _array(file, f"event_{k}") for k in EVENT}),
-            "contacts": ContactTable(**{k: _array(file, f"interval_{k}") for k in INTERVAL}),
+            **{name: _array(file, name) for name in MOTION},
             "status": Status[file.attrs["status"]],
             "stats": json.loads(file.attrs["stats"]),
             "scene": scene, "settings": settings, "_run": run, "_touch": records.touch,
         }  # fmt: skip
+        derived = {name: _array(file, name) for name in DERIVED}
         entries = [_array(file, f"ledger_{name}") for name in LEDGER if name != "residual"]
-        fields["ledger"] = Ledger(fields["kinetic_energy"], fields["potential_energy"], *entries)
-        fields["cached"] = _cached(file)
+        energies = derived["kinetic_energy"], derived["potential_energy"]
+        fields["cached"] = {
+            **derived,
+            "impacts": ImpactTable(**{k: _array(file, f"impact_{k}") for k in IMPACT}),
+            "events": EventTable(**{k: _array(file, f"event_{k}") for k in EVENT}),
+            "contacts": ContactTable(**{k: _array(file, f"interval_{k}") for k in INTERVAL}),
+            "ledger": Ledger(*energies, *entries),
+            **_cached(file),
+        }
     return fields
 
 

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from carom.columns import Columns
 from carom.impact.api import phase_names
 from carom.solution import Solution
 from carom.system import records as r
@@ -43,7 +44,7 @@ def steps_of(solution: Solution) -> list[Step]:
         kind, k = r.EVENTS[event.kind], -1
         if kind in ("impact", "jams"):
             k = _impact_of(event, impacts, used)
-        shots = rec.snapshot[rec.snapshot.event == number].view(np.recarray)
+        shots = rec.snapshot[rec.snapshot.event == number].view(Columns)
         steps.append(Step(event, kind, shots, k, impacts[k] if k >= 0 else None))
     return steps
 

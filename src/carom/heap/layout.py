@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -93,6 +94,12 @@ def new_heap(bodies: int, held: int, points: int) -> Heap:
         parent=np.zeros(bodies, dtype=np.int64),
         speed=np.zeros((2, bodies)),
     )
+
+
+@cache
+def no_heap() -> Heap:
+    """Return what stands for the scratch while no heap was met: nothing is written to it."""
+    return new_heap(1, 1, 1)
 
 
 def roomier_heap(heap: Heap) -> Heap:

@@ -15,6 +15,7 @@ from carom.coulomb.solve import scale_vectors
 from carom.heap.graph import find_order
 from carom.heap.sweeps import sweep_until
 from carom.jit import kernel
+from carom.references import refer
 
 FIRST, MOST = 40, 200  # sweeps before Newton, and in all
 SWEEP, UPDATE, CONTACT = 60.0, 130.0, 1000.0  # cost [ns] of a contact in a sweep, of factors
@@ -60,7 +61,7 @@ def newton_on_graph(heap, k, n, before):
     factors = SHARE * MOST * SWEEP * k / (UPDATE * updates + CONTACT * k)
     if factors < 3.0:
         return before
-    work = part(heap.problem, n, pairs, updates)
+    work = refer(part(heap.problem, n, pairs, updates))
     p, best = work.vector[o.P], work.vector[o.BEST]
     for i in range(3 * k):
         best[i] = p[i]

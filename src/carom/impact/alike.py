@@ -20,6 +20,7 @@ from carom.motion.contact_point import (
     place,
     spread,
 )
+from carom.motion.several import inverse_masses_of_one, of_one_body
 
 SAME = 1e-12  # relative to W_nn: round-off of a difference of two answers
 
@@ -34,7 +35,7 @@ def as_one(system, k, state, cluster, work):
         if k > 1:
             return False
         copy_point(cluster.points[0][0], point)
-        effective_inverse_mass(system, point, state, work, hit.W)
+        _inverse_mass(system, state, work)
         hit.u[0], hit.u[1], hit.u[2] = contact_velocity(point, state)
         return True
     for r in range(3):
@@ -45,7 +46,7 @@ def as_one(system, k, state, cluster, work):
         if seats[i].contact != c:
             return False
     place(contact, core, state, point)
-    effective_inverse_mass(system, point, state, work, hit.W)
+    _inverse_mass(system, state, work)
     hit.u[0], hit.u[1], hit.u[2] = contact_velocity(point, state)
     if k == 1:
         return True
@@ -74,6 +75,16 @@ def as_one(system, k, state, cluster, work):
     t1, t2 = W[1, 1] * d1 + W[1, 2] * d2, W[2, 1] * d1 + W[2, 2] * d2
     planar = abs(W[2, 0] * d1 - W[1, 0] * d2) <= tiny and abs(t2 * d1 - t1 * d2) <= tiny
     return planar and answers_alike(system, k, 0.0, d1, d2, tiny, state, cluster, work)
+
+
+@kernel
+def _inverse_mass(system, state, work):
+    """Write W of the point in `work`; that of one free body in closed form."""
+    points, W = work.point, work.hit[0].W
+    if of_one_body(system, 1, points):
+        inverse_masses_of_one(system.bodies[points[0].a], 1, points, state, W)
+    else:
+        effective_inverse_mass(system, points[0], state, work, W)
 
 
 @kernel

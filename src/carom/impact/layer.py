@@ -19,7 +19,7 @@ from carom.impact import laws
 from carom.impact import layout as o
 from carom.impact.phase import replay, run, shoot, write
 from carom.impact.rays import outgoing, stick_ratio
-from carom.impact.resolve import resolve
+from carom.impact.resolve import resolve_one
 from carom.impact.spline import force, slip_ratio
 from carom.jit import entry, kernel
 
@@ -49,7 +49,7 @@ def traverse(W, u, mu, e, law, b, delta, steps, history, out):
     T_2), as many as there is room for; their number to ``out[KNOTS]``. Forces are those right of
     the knot, at the last one those left of it.
     """
-    code = resolve(W, u, mu, e, law, out)
+    code = resolve_one(W, u, mu, e, law, out)
     if code != o.OK:
         return code
     jam = (int(out[o.PHASES]) & o.JAM) != 0

@@ -57,6 +57,12 @@ def _direction(m, mu, s, size):
 
 @entry
 def resolve(W, u, mu, e, law, out):
+    """Resolve one impact as `resolve_one`, for calls from Python."""
+    return resolve_one(W, u, mu, e, law, out)
+
+
+@kernel
+def resolve_one(W, u, mu, e, law, out):
     """Resolve one impact of inverse mass `W` (3, 3), approach velocity `u` (3,), friction `mu`.
 
     Normal first, ``u[0] < 0``; `e` and `law` (as in `laws`) give the restitution; results go to

@@ -15,7 +15,7 @@ from carom.impact.alike import as_one
 from carom.impact.collapse import what_is_left
 from carom.impact.driven import driven_work
 from carom.impact.layer import traverse
-from carom.impact.resolve import resolve
+from carom.impact.resolve import resolve_one
 from carom.impact.strike_several import strike_several
 from carom.impact.write import write_impact
 from carom.jit import kernel, unit
@@ -162,7 +162,7 @@ def strike_one(method, system, controls, held, c, state, work, clock, records):
 @kernel
 def by_impulse(method, controls, contact, hit, history):
     """Solve the impact to round-off."""
-    return resolve(hit.W, hit.u, hit.friction, hit.restitution, contact.law, hit.out)
+    return resolve_one(hit.W, hit.u, hit.friction, hit.restitution, contact.law, hit.out)
 
 
 @kernel

@@ -7,12 +7,13 @@ import math
 from carom.contact.gap import slow
 from carom.dispatch import by_address
 from carom.impact.collapse import what_is_left
-from carom.impact.corner.layout import OK
-from carom.impact.corner.resolve import resolve_corner
+from carom.impact.corner.layout import NEEDS_UNITS, OK
+from carom.impact.corner.resolve import resolve_contacts
 from carom.jit import kernel, unit
 from carom.motion.contact_point import add_velocity, spread
 from carom.motion.several import inverse_masses, velocities
 from carom.system.cluster import U
+from carom.system.records import NEEDS_CORNER
 
 IMPACT_FAILED = 6
 SEED = 1e-7  # of the slip
@@ -21,7 +22,7 @@ SEED = 1e-7  # of the slip
 @unit
 def corner_unit(k, W, u, mu, corner):
     """Resolve the impact of k points; its code goes to the clock of the scratch."""
-    corner.scratch.work.clock[0].code = resolve_corner(
+    corner.scratch.work.clock[0].code = resolve_contacts(
         k, W, u, mu, corner.e, corner.law, corner.kappa, corner.settings, corner.scratch,
         corner.result,
     )  # fmt: skip
@@ -50,11 +51,12 @@ def strike_several(system, controls, held, c, k, state, cluster, corner, work, c
             u[3 * i] -= SEED * math.sqrt(u[3 * i + 1] ** 2 + u[3 * i + 2] ** 2)
             cluster.mu[i] = contact.friction_held
         corner.law[i], corner.kappa[i] = contact.law, contact.stiffness
-    count_blows(held, k, cluster)
     at_corner(controls.corner_at, k, cluster.m[0], u, cluster.mu, corner)
-    if corner.scratch.work.clock[0].code != OK:
-        hit.code = IMPACT_FAILED
+    code = corner.scratch.work.clock[0].code
+    if code != OK:
+        hit.code = NEEDS_CORNER if code == NEEDS_UNITS else IMPACT_FAILED
         return
+    count_blows(held, k, cluster)
     P = corner.result.impulse
     for i in range(k):
         n, t1, t2 = P[3 * i], P[3 * i + 1], P[3 * i + 2]

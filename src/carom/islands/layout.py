@@ -72,7 +72,7 @@ class NoIslands(NamedTuple):
 def new_islands(system: System, held: Held) -> Islands | NoIslands:
     """Return the scratch for a scene whose bodies may move apart from each other."""
     n = system.bodies.size
-    if n == 1 or not np.all(system.bodies.ballistic):
+    if n == 1 or not system.bodies["ballistic"].all():
         return NoIslands(0)
     contacts = system.contacts
     rows = np.arange(contacts.size)

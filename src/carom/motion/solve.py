@@ -103,7 +103,7 @@ def solve_near(system, state, work):
     _solve_at(system.solver.address, system, state, True, True, work)
 
 
-def with_address(system, state, work):
-    """Return the system with the address of its back end for arrays like these."""
-    found = address(BACK_ENDS[type(system.solver)], system, state, True, False, work)
+def with_address(system, state, work, find=address):
+    """Return the system with the address of its back end for arrays like these, which `find` finds."""
+    found = find(BACK_ENDS[type(system.solver)], system, state, True, False, work)
     return system._replace(solver=system.solver._replace(address=found))

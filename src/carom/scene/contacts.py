@@ -77,6 +77,8 @@ def check_gap(contact: Contact) -> None:
 
 def check_overlap(what: str, body: Body, other: HalfSpace | Body) -> None:
     """Refuse two that start inside each other by more than rounding; `what` names the pair."""
+    if _far(body, other):
+        return
     depth, normal = overlap(body, other)
     if not depth <= 0.0:
         raise ValueError(
@@ -84,6 +86,16 @@ def check_overlap(what: str, body: Body, other: HalfSpace | Body) -> None:
             f"{depth:.6g} m deep into {other.name!r}, allowed is a gap of at least 0; move the body "
             f"by at least that along the normal {normal}"
         )
+
+
+def _far(body: Body, other: HalfSpace | Body) -> bool:
+    """Return whether the ball around a body does not reach the other: nothing else is to be worked out."""
+    assert body.shape is not None
+    if isinstance(other, HalfSpace):
+        return float((body.position - other.point) @ other.normal) > body.shape.size
+    assert other.shape is not None
+    way = body.position - other.position
+    return float(way @ way) > (body.shape.size + other.shape.size) ** 2
 
 
 def overlap(body: Body, other: HalfSpace | Body) -> tuple[float, np.ndarray]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -88,7 +89,7 @@ class Convex(Touching):
         """The points in body axes (m,3) [m]."""
         return self._vertices
 
-    @property
+    @cached_property
     def pieces(self) -> tuple[Piece, ...]:
         """A hull, swollen."""
         half = np.max(np.abs(self.vertices), axis=0)

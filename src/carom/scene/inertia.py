@@ -32,14 +32,15 @@ def inertia_matrix(value) -> np.ndarray:
         raise ValueError(f"inertia must be symmetric, got {value!r}")
     matrix = 0.5 * (matrix + matrix.T)
     small, middle, large = np.linalg.eigvalsh(matrix)
+    positive, possible = small > SLACK * large, large <= (small + middle) * (1 + SLACK)
+    if positive and possible:
+        return matrix
     moments = f"got {value!r} with principal moments {small:.6g}, {middle:.6g}, {large:.6g}"
-    if not small > SLACK * large:
+    if not positive:
         raise ValueError(
             f"inertia must have principal moments above 0 [kg m^2], {moments}; "
             "for a thin rod give a small positive moment about its axis"
         )
-    if not large <= (small + middle) * (1 + SLACK):
-        raise ValueError(
-            f"inertia must have no principal moment above the sum of the other two, {moments}"
-        )
-    return matrix
+    raise ValueError(
+        f"inertia must have no principal moment above the sum of the other two, {moments}"
+    )

@@ -130,7 +130,8 @@ def law_of(first, second, given: Mapping, default: ContactLaw | None, rules: Map
     given = {name: value for name, value in given.items() if value is not None}
     if "friction" in given:
         given.setdefault("friction_held", given["friction"])
-    base = {f.name: getattr(default or ContactLaw(), f.name) for f in fields(ContactLaw)}
+    default = default or ContactLaw()
+    base = {f.name: getattr(default, f.name) for f in fields(ContactLaw)}
     one, two = first.material, second.material
     if one is not None and two is not None:
         base["stiffness"] = 2.0 / (1.0 / one.stiffness + 1.0 / two.stiffness)

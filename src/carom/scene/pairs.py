@@ -72,6 +72,8 @@ class Pairs:
     def check_all(self, bodies, half_spaces) -> None:
         """Refuse pairs that touch by default and start inside each other, or have no law."""
         pairs = self.by_default(bodies, half_spaces)
+        if not len(pairs.body):
+            return
         for b in np.union1d(pairs.body, pairs.other[pairs.other >= 0]):
             _ = bodies[b].shape.pieces  # refused by a shape that has nothing to touch with
         for k in near(pairs, bodies, half_spaces):

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -13,6 +14,8 @@ from carom.geometry import quaternion
 from carom.scene.values import keep
 
 IDENTITY = (1.0, 0.0, 0.0, 0.0)
+#: of the corners of a box
+SIGNS = np.array([(i, j, k) for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)])
 VERTEX_KINDS = ("point", "segment", "box", "hull")
 
 
@@ -53,7 +56,7 @@ class Piece:
     def __post_init__(self):
         keep(self, half=np.array(self.half, dtype=float))
 
-    @property
+    @cached_property
     def corners(self) -> np.ndarray | None:
         """The vertices of the core (n,3) in body axes; None for a smooth core."""
         if self.kind not in VERTEX_KINDS:
@@ -63,9 +66,10 @@ class Piece:
         elif self.kind == "segment":
             local = self.half * np.array([[0, 0, -1], [0, 0, 1]])
         else:
-            signs = np.array([(i, j, k) for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)])
-            local = self.half * signs if self.kind == "box" else np.zeros((1, 3))
-        return self.position + quaternion.rotate(self.orientation, local)
+            local = self.half * SIGNS if self.kind == "box" else np.zeros((1, 3))
+        corners = self.position + quaternion.rotate(self.orientation, local)
+        corners.setflags(write=False)
+        return corners
 
     def support(self, direction: np.ndarray) -> np.ndarray:
         """Return the point (3,) farthest along a unit `direction`, both in body axes."""
@@ -85,12 +89,10 @@ class Piece:
 
     def placed(self, position: np.ndarray, orientation: np.ndarray) -> Piece:
         """Return the piece of a part that has this place in a body."""
-        return Piece(
-            **{
-                **vars(self),
-                "position": position + quaternion.rotate(orientation, self.position),
-                "orientation": quaternion.multiply(orientation, self.orientation),
-            }
+        return replace(
+            self,
+            position=position + quaternion.rotate(orientation, self.position),
+            orientation=quaternion.multiply(orientation, self.orientation),
         )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -42,7 +43,7 @@ class Capsule(Touching):
         """Largest distance of a point of the shape from its mass centre [m]."""
         return 0.5 * self.length + self.radius
 
-    @property
+    @cached_property
     def pieces(self) -> tuple[Piece, ...]:
         """A segment, swollen."""
         half = np.array([0.0, 0.0, 0.5 * self.length])
@@ -79,7 +80,7 @@ class Cylinder(Touching):
         """Largest distance of a point of the shape from its mass centre [m]."""
         return math.hypot(self.radius, 0.5 * self.length)
 
-    @property
+    @cached_property
     def pieces(self) -> tuple[Piece, ...]:
         """A cylinder with sharp rims."""
         half = np.array([self.radius, self.radius, 0.5 * self.length])
@@ -121,7 +122,7 @@ class Disc(Touching):
         """Largest distance of a point of the shape from its mass centre [m]."""
         return self.radius
 
-    @property
+    @cached_property
     def pieces(self) -> tuple[Piece, ...]:
         """A cylinder of length 0."""
         return (Piece("cylinder", np.array([self.radius, self.radius, 0.0]), extent=self.size),)

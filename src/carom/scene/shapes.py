@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -39,7 +40,7 @@ class Sphere(Touching):
         """Largest distance of a point of the shape from its mass centre [m]."""
         return self.radius
 
-    @property
+    @cached_property
     def pieces(self) -> tuple[Piece, ...]:
         """A point, swollen."""
         return (Piece("point", radius=self.radius, extent=self.size),)
@@ -77,10 +78,12 @@ class Box(Touching):
         radius = f", radius={self.radius!r}" if self.radius else ""
         return f"Box(lx={self.lx!r}, ly={self.ly!r}, lz={self.lz!r}{radius})"
 
-    @property
+    @cached_property
     def half(self) -> np.ndarray:
         """Half edges (3,) of the core, the box inside the rounding [m]."""
-        return 0.5 * np.array([self.lx, self.ly, self.lz]) - self.radius
+        half = 0.5 * np.array([self.lx, self.ly, self.lz]) - self.radius
+        half.setflags(write=False)
+        return half
 
     @property
     def volume(self) -> float:
@@ -89,12 +92,12 @@ class Box(Touching):
             return self.lx * self.ly * self.lz
         return _rounded_box(self.half, self.radius)[0]
 
-    @property
+    @cached_property
     def size(self) -> float:
         """Largest distance of a point of the shape from its mass centre [m]."""
         return math.hypot(*self.half) + self.radius
 
-    @property
+    @cached_property
     def pieces(self) -> tuple[Piece, ...]:
         """A box, swollen; a point if it is all rounding."""
         half = self.half
@@ -134,7 +137,7 @@ class Ellipsoid(Touching):
         """Largest distance of a point of the shape from its mass centre [m]."""
         return max(self.a, self.b, self.c)
 
-    @property
+    @cached_property
     def pieces(self) -> tuple[Piece, ...]:
         """An ellipsoid; `inner` is its least radius of curvature, min^2 / max of the semi-axes."""
         axes = (self.a, self.b, self.c)

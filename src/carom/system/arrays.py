@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom.columns import table as table
 from carom.contact.pairs.layout import Hulls, NoHulls, PairWork
 
 #: kinds of joints in kernels
@@ -389,17 +390,6 @@ HIT = [
     ("closed", "i8"),
     ("code", "i8"),
 ]
-
-
-def table(fields: list, *shape: int) -> np.recarray:
-    """Return a zero array of records with the given fields."""
-    if id(fields) not in _KINDS:
-        _KINDS[id(fields)] = fields, np.dtype((np.record, np.dtype(fields, align=True)))
-    return np.zeros(shape, dtype=_KINDS[id(fields)][1]).view(np.recarray)
-
-
-#: the lists of fields that were met, with what they make: working that out took a tenth of a short run
-_KINDS: dict[int, tuple[list, np.dtype]] = {}
 
 
 #: of a row of the scratch of a forest: where the freedoms begin, and numbers for each (`carom.motion.tree`)

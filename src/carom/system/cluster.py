@@ -72,14 +72,13 @@ class Corner(NamedTuple):
 def capacity(system: System) -> int:
     """Return the greatest number of points that may be closed in one group."""
     contacts = system.contacts
-    if np.any(contacts.touches == 1):
-        points = np.where(contacts.touches == 1, MOST_POINTS, contacts.last - contacts.first)
+    vertices, found = contacts["last"] - contacts["first"], contacts["touches"] == 1
+    if found.any():
+        points = np.where(found, MOST_POINTS, vertices)
         return max(1, min(MOST, int(points.sum())))
     count = np.zeros(system.bodies.size + 1, dtype=np.int64)
-    rows = 1 + np.sum(contacts.turning > 0.0, axis=1)
-    np.add.at(
-        count, system.bodies.component[contacts.body], rows * (contacts.last - contacts.first)
-    )
+    rows = 1 + (contacts["turning"] > 0.0).sum(axis=1)
+    np.add.at(count, system.bodies["component"][contacts["body"]], rows * vertices)
     return max(1, min(MOST, int(count.max())))
 
 
@@ -100,9 +99,8 @@ def new_cluster(system: System) -> Cluster:
     )
 
 
-def new_corner(system: System, settings: CornerSettings) -> Corner:
-    """Return the scratch of impacts for the largest group of `system`."""
-    k = capacity(system)
+def new_corner(k: int, settings: CornerSettings) -> Corner:
+    """Return the scratch of impacts of `k` points."""
     return Corner(
         scratch=corner_arrays(k),
         settings=settings,

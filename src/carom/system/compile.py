@@ -61,18 +61,19 @@ def compile_scene(
     placement, functions = Placement(start, to_principal), Functions()
     coordinates = Coordinates(placement)
     pieces = Pieces()
-    elements = Elements(scene, coordinates, functions, pieces, start_sizes(scene))
+    sizes = start_sizes(scene)
+    elements = Elements(scene, coordinates, functions, pieces, sizes)
     if implicit:
         elements.add_springs(scene, placement)
     more = MoreForces(scene, coordinates, functions, pieces, implicit)
     joints, flipped, solver = _joints(scene, placement, elements, options, loops)
     contacts, vertices, solids, hulls = compile_contacts(scene, to_principal, options)
-    contacts = with_stops(scene, contacts, coordinates, start_sizes(scene), options)
+    contacts = with_stops(scene, contacts, coordinates, sizes, options)
     relations = elements.arrays(solver, more)
     springs, loads = _springs(scene, placement, more, implicit), _loads(scene, placement)
     bushings = _bushings(scene, placement)
     bodies = _bodies(scene, moments, joints, elements, springs, loads, bushings, more)
-    bodies.axes = to_principal
+    bodies["axes"] = to_principal
     gravity = np.array(scene.gravity)
     system = System(
         bodies,
@@ -96,11 +97,12 @@ def compile_scene(
 
 def principal(inertia: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return principal moments (3,) and the quaternion principal -> body axes; identity if diagonal."""
-    diagonal = np.diag(inertia).copy()
-    scale = diagonal.max()
-    if np.ptp(diagonal) <= 1e-13 * scale:
+    diagonal = inertia.diagonal().copy()
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = inertia.tolist()
+    scale = max(xx, yy, zz)
+    if scale - min(xx, yy, zz) <= 1e-13 * scale:
         diagonal[:] = diagonal.mean()
-    if np.max(np.abs(inertia - np.diag(np.diag(inertia)))) <= 1e-15 * scale:
+    if max(map(abs, (xy, xz, yx, yz, zx, zy))) <= 1e-15 * scale:
         return diagonal, np.array([1.0, 0.0, 0.0, 0.0])
     moments, axes = np.linalg.eigh(inertia)
     if np.linalg.det(axes) < 0.0:
@@ -116,10 +118,10 @@ def _start(scene):
     moments = np.array([m for m, _ in pairs])
     to_principal = np.array([q for _, q in pairs])
     start = table(STATE, len(bodies))
-    start.Q = attitudes(np.array([b.orientation for b in bodies]), to_principal)
-    start.x = [b.position for b in bodies]
-    start.v = [b.velocity for b in bodies]
-    start.w = [b.angular_velocity for b in bodies]
+    start["Q"] = attitudes(np.array([b.orientation for b in bodies]), to_principal)
+    start["x"] = [b.position for b in bodies]
+    start["v"] = [b.velocity for b in bodies]
+    start["w"] = [b.angular_velocity for b in bodies]
     return start, to_principal, moments
 
 
@@ -156,6 +158,8 @@ def _anchors(joint, flipped):
 
 def _joints(scene, placement, elements, options, loops):
     defined = scene.joints
+    if not defined and not elements.kinds:
+        return table(JOINT, 0), np.zeros(0, dtype=bool), arrays.FreeSolver(0)
     count, number = len(scene.bodies), len(defined)
     kind = np.array([KIND[type(j.definition)] for j in defined], dtype=np.int64)
     parent = np.array([j.parent.index for j in defined], dtype=np.int64)
@@ -185,9 +189,7 @@ def _joints(scene, placement, elements, options, loops):
         joints.number[j] = elements.numbers[j - number]
         joints.child[j], joints.parent[j] = bodies[0], -1
     touching += elements.touching
-    if not touching:
-        solver = arrays.FreeSolver(0)
-    elif forest:
+    if forest:
         solver = solvers.tree_solver(joints, order, carrier)
     else:
         solver = solvers.loop_solver(
@@ -265,13 +267,11 @@ def start_sizes(scene) -> np.ndarray:
 
 
 def _bodies(scene, moments, joints, elements, springs, loads, bushings, more):
-    bodies = table(BODY, len(scene.bodies))
-    size = np.array([0.0 if b.shape is None else b.shape.size for b in scene.bodies])
-    isolated = np.ones(len(scene.bodies), dtype=np.int64)
-    for sides, anchors in (
-        (joints.parent, joints.parent_anchor),
-        (joints.child, joints.child_anchor),
-    ):
+    bodies, number = table(BODY, len(scene.bodies)), np.arange(len(scene.bodies))
+    ball = np.array([0.0 if b.shape is None else b.shape.size for b in scene.bodies])
+    size, isolated = ball.copy(), np.ones(len(bodies), dtype=np.int64)
+    for side in ("parent", "child") if len(joints) else ():
+        sides, anchors = joints[side], joints[f"{side}_anchor"]
         inside = sides >= 0
         isolated[sides[inside]] = 0
         np.maximum.at(size, sides[inside], np.linalg.norm(anchors[inside], axis=1))
@@ -279,16 +279,17 @@ def _bodies(scene, moments, joints, elements, springs, loads, bushings, more):
         isolated[touched] = 0
     size[size == 0.0] = 1.0
     ballistic = isolated.copy()
-    for loaded in (
-        springs.parent, springs.child, loads.body, bushings.parent, bushings.child
+    for forces, ends in (
+        (springs, ("parent", "child")), (loads, ("body",)), (bushings, ("parent", "child"))
     ):  # fmt: skip
-        ballistic[loaded[loaded >= 0]] = 0
+        for end in ends if len(forces) else ():
+            loaded = forces[end]
+            ballistic[loaded[loaded >= 0]] = 0
     ballistic[more.named] = 0
-    bodies.mass = [b.mass for b in scene.bodies]
-    bodies.inertia, bodies.extent = moments, size
-    bodies.isotropic = np.ptp(moments, axis=1) == 0.0
-    bodies.isolated, bodies.ballistic = isolated, ballistic
-    bodies.number = np.arange(len(bodies))
-    bodies.ball = [0.0 if b.shape is None else b.shape.size for b in scene.bodies]
-    bodies.component = np.where(isolated == 1, np.arange(len(bodies)), len(bodies))
+    bodies["mass"] = [b.mass for b in scene.bodies]
+    bodies["inertia"], bodies["extent"], bodies["ball"] = moments, size, ball
+    bodies["isotropic"] = moments.max(axis=1) == moments.min(axis=1)
+    bodies["isolated"], bodies["ballistic"] = isolated, ballistic
+    bodies["number"] = number
+    bodies["component"] = np.where(isolated == 1, number, len(bodies))
     return bodies

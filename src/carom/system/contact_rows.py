@@ -24,13 +24,19 @@ class Rows(NamedTuple):
 def touching_pairs(scene: Scene) -> PairTable:
     """Return the pairs of the contacts of a scene: those added, then those of `set_contact_default`."""
     added, rest = scene.contacts, scene.pairs_by_default()
-    body = np.array([c.body.index for c in added], dtype=np.int64)
-    other = np.array([c.other.index for c in added], dtype=np.int64)
-    planes = np.array([isinstance(c.other, HalfSpace) for c in added], dtype=bool)
+    ends = [
+        (c.body.index, -1, c.other.index)
+        if isinstance(c.other, HalfSpace)
+        else (c.body.index, c.other.index, -1)
+        for c in added
+    ]
+    body, other, plane = np.array(ends, dtype=np.int64).reshape(-1, 3).T
+    if not rest.laws:
+        return PairTable(body, other, plane, np.arange(len(added)), [*added])
     return PairTable(
         np.append(body, rest.body),
-        np.append(np.where(planes, -1, other), rest.other),
-        np.append(np.where(planes, other, -1), rest.plane),
+        np.append(other, rest.other),
+        np.append(plane, rest.plane),
         np.append(np.arange(len(added)), rest.law + len(added)),
         [*added, *rest.laws],
     )
@@ -42,14 +48,23 @@ def contact_rows(pairs: PairTable, grounded: Cores, single: Cores) -> Rows:
     `grounded` are the cores of bodies against half-spaces, `single` those of their pieces one by one.
     """
     between = pairs.other >= 0
-    mine, others = np.diff(single.first)[pairs.body], np.diff(single.first)[pairs.other]
-    count = np.where(between, mine * others, np.diff(grounded.first)[pairs.body])
+    count = _lengths(grounded.first)[pairs.body]
+    if between.any():
+        pieces = _lengths(single.first)
+        count = np.where(between, pieces[pairs.body] * pieces[pairs.other], count)
     number = np.repeat(np.arange(len(count)), count)
     k = np.arange(len(number)) - np.repeat(np.cumsum(count) - count, count)
     core, other = table(CORE, len(number)), table(CORE, len(number))
     flat = ~between[number]
     core[flat] = grounded.group[grounded.first[pairs.body[number[flat]]] + k[flat]]
-    pair, k = number[~flat], k[~flat]
-    core[~flat] = single.group[single.first[pairs.body[pair]] + k // others[pair]]
-    other[~flat] = single.group[single.first[pairs.other[pair]] + k % others[pair]]
+    if between.any():
+        pair, k = number[~flat], k[~flat]
+        others = pieces[pairs.other[pair]]
+        core[~flat] = single.group[single.first[pairs.body[pair]] + k // others]
+        other[~flat] = single.group[single.first[pairs.other[pair]] + k % others]
     return Rows(number, core, other)
+
+
+def _lengths(first: np.ndarray) -> np.ndarray:
+    """Return the lengths of ranges."""
+    return first[1:] - first[:-1]

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import lru_cache
+from itertools import accumulate
 from typing import NamedTuple
 
 import numpy as np
@@ -51,35 +53,47 @@ def new_cores(
     shapes: Sequence[Shape | None], split: Callable[..., list[list[int]]], to_principal: np.ndarray
 ) -> Cores:
     """Return the cores of the shape of each body, None to leave one out; `split` groups the pieces."""
-    known = {shape: _groups(shape, split) for shape in dict.fromkeys(shapes) if shape is not None}
-    own = [([], []) if shape is None else known[shape] for shape in shapes]
-    first = np.cumsum([0, *(len(leads) for leads, _ in own)])
-    points = [corners for _, groups in own for corners in groups]
-    lengths = np.array([len(corners) for corners in points], dtype=np.int64)
-    body = np.repeat(np.repeat(np.arange(len(shapes)), np.diff(first)), lengths)
-    q = to_principal[body]
-    vertices = quaternion.rotate_back(q, np.concatenate([np.zeros((0, 3)), *points]))
-    group = np.concatenate([table(CORE, 0), *(leads for leads, _ in own if len(leads))])
-    group = group.view(np.recarray)
-    group.last = np.cumsum(lengths)
-    group.first = group.last - lengths
-    distance = np.linalg.norm(vertices, axis=1)
-    for row in group:
-        if row.first < row.last:
-            row.reach = np.max(distance[row.first : row.last])
-    return Cores(group, first, vertices)
+    own = [
+        None if shape is None else _cores_of(shape, split, tuple(q))
+        for shape, q in zip(shapes, to_principal.tolist())
+    ]
+    counts = [0 if one is None else len(one.group) for one in own]
+    first = np.array([0, *accumulate(counts)], dtype=np.int64)
+    there = [one for one in own if one is not None]
+    if not there:
+        return Cores(table(CORE, 0), first, np.zeros((0, 3)))
+    group, at = table(CORE, int(first[-1])), 0
+    for one in there:
+        group[at : at + len(one.group)] = one.group
+        at += len(one.group)
+    length = group["last"]
+    last = np.cumsum(length)
+    group["first"], group["last"] = last - length, last
+    return Cores(group, first, np.concatenate([one.vertices for one in there]))
 
 
-def _groups(shape: Shape, split) -> tuple[np.recarray, list[np.ndarray]]:
-    """Return the groups of one shape, and the vertices of each in body axes."""
+class CoresOfShape(NamedTuple):
+    """G groups of the pieces of one shape."""
+
+    group: np.recarray  # (G,) CORE, `last` as from 0 on for each
+    vertices: np.ndarray  # (V, 3) principal axes
+
+
+@lru_cache(maxsize=64)
+def _cores_of(shape: Shape, split, to_principal: tuple[float, ...]) -> CoresOfShape:
+    """Return the groups of one shape: kept, as the shapes of one simulation are often those of the next."""
     pieces = shape.pieces
     groups = split(pieces)
-    rows = table(CORE, len(groups))
-    rows.several, rows.extent, rows.reach = len(pieces) > 1, shape.size, shape.size
-    for row, mine in zip(rows, groups):
-        row.piece, row.radius = mine[0], pieces[mine[0]].radius
-        row.curved = pieces[mine[0]].corners is None
-    return rows, [_corners([pieces[k] for k in mine], shape.size) for mine in groups]
+    rows, points = table(CORE, len(groups)), []
+    rows["several"], rows["extent"], rows["reach"] = len(pieces) > 1, shape.size, shape.size
+    for k, mine in enumerate(groups):
+        corners = _corners([pieces[i] for i in mine], shape.size)
+        points.append(quaternion.rotate_back(np.array(to_principal), corners))
+        rows["piece"][k], rows["radius"][k] = mine[0], pieces[mine[0]].radius
+        rows["curved"][k], rows["last"][k] = pieces[mine[0]].corners is None, len(corners)
+        if len(corners):
+            rows["reach"][k] = np.max(np.linalg.norm(points[k], axis=1))
+    return CoresOfShape(rows, np.concatenate(points))
 
 
 def _corners(pieces: Sequence[Piece], size: float) -> np.ndarray:

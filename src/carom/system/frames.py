@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
+
+_AXES = np.eye(3)
 
 
 def triad(axis: np.ndarray) -> np.ndarray:
     """Return a right-handed frame whose first column is the unit vector `axis`."""
-    across = np.eye(3)[np.argmin(np.abs(axis))]
+    frame = np.empty((3, 3))
+    across = _AXES[np.abs(axis).argmin()]
     second = across - (across @ axis) * axis
-    second /= np.linalg.norm(second)
-    return np.stack([axis, second, np.cross(axis, second)], axis=1)
+    second /= math.sqrt(second @ second)
+    (a, b, c), (d, e, f) = np.asarray(axis).tolist(), second.tolist()
+    frame[:, 0], frame[:, 1] = axis, second
+    frame[:, 2] = b * f - c * e, c * d - a * f, a * e - b * d
+    return frame
 
 
 def contact_axes(normal: np.ndarray) -> np.ndarray:

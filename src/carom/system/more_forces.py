@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from carom.columns import Columns
 from carom.functions import Functions
 from carom.scene.more_forces import CurveSpring, JointForce, JointFriction, JointSpring, UserForce
 from carom.system.arrays import FRICTION, PIECE, PUSH, USER_FORCE, table
@@ -29,7 +30,7 @@ class Pieces:
         pieces.start, pieces.end = x[:-1], x[1:]
         pieces.c[:, : len(c)] = c[::-1].T
         first = len(self.rows)
-        self.rows = np.concatenate([self.rows, pieces]).view(np.recarray)
+        self.rows = np.concatenate([self.rows, pieces]).view(Columns)
         return first, len(self.rows)
 
 

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom.columns import Columns
 from carom.contact.pairs.layout import new_points, pair_arrays
 from carom.system.arrays import (
     BODY_WORK,
@@ -153,14 +154,14 @@ class Records(NamedTuple):
 def new_clock() -> np.recarray:
     """Return the clock of a run that has not begun, (1,)."""
     clock = table(CLOCK, 1)
-    clock.still = np.inf
+    clock["still"] = np.inf
     return clock
 
 
 def new_held(system: System) -> Held:
     """Return what is held at the start: nothing, and all contacts are to be looked at first."""
     contacts = system.contacts
-    grounded = int(np.sum((contacts.touches == 1) & (contacts.other < 0)))
+    grounded = int(np.count_nonzero((contacts["touches"] == 1) & (contacts["other"] < 0)))
     between = max(len(system.bodies), len(system.solids))  # bodies, or pieces of them
     held = Held(
         points=table(
@@ -170,7 +171,7 @@ def new_held(system: System) -> Held:
         carries=np.zeros(len(system.vertices), dtype=np.int64),
         count=np.zeros(1, dtype=np.int64),
     )
-    held.brinks.near = 1
+    held.brinks["near"] = 1
     return held
 
 
@@ -178,7 +179,7 @@ def new_work(system: System, stages: int) -> Work:
     """Return the scratch of one run."""
     n, j = system.bodies.size, system.joints.size
     body = table(BODY_WORK, n)
-    body.room = np.inf
+    body["room"] = np.inf
     return Work(
         body=body,
         joint=table(JOINT_WORK, j),
@@ -215,7 +216,7 @@ def longer(records: Records) -> Records:
     """Return the records with room for twice as many impacts, events and held points."""
     return records._replace(
         **{
-            name: np.concatenate([a, np.zeros_like(a)]).view(np.recarray)
+            name: np.concatenate([a, np.zeros_like(a)]).view(Columns)
             for name in ("touch", "impact", "event", "snapshot")
             for a in [getattr(records, name)]
         }
@@ -226,7 +227,7 @@ def more_rows(records: Records) -> Records:
     """Return the records with room for twice as many saved steps."""
     return records._replace(
         **{
-            name: np.concatenate([a, np.zeros_like(a)]).view(np.recarray)
+            name: np.concatenate([a, np.zeros_like(a)]).view(Columns)
             for name in ("series", "state")
             for a in [getattr(records, name)]
         }
@@ -239,7 +240,7 @@ def room_for_one(records: Records, saved: int) -> Records:
         return records
     return records._replace(
         **{
-            name: np.concatenate([a, np.zeros_like(a[:1])]).view(np.recarray)
+            name: np.concatenate([a, np.zeros_like(a[:1])]).view(Columns)
             for name in ("series", "state")
             for a in [getattr(records, name)]
         }
@@ -248,10 +249,17 @@ def room_for_one(records: Records, saved: int) -> Records:
 
 def trimmed(records: Records, clock: np.recarray) -> Records:
     """Return copies of the rows that were written."""
-    ends = {
-        "touch": clock[0].touched, "impact": clock[0].struck, "event": clock[0].event,
-        "snapshot": clock[0].snapped,
-    }  # fmt: skip
-    return Records(
-        **{k: a[: ends.get(k, clock[0].saved)].copy() for k, a in records._asdict().items()}
-    )
+    return Records(*(rows.copy().view(Columns) for rows in written(records, clock)))
+
+
+def written(records: Records, clock: np.recarray) -> Records:
+    """Return the rows that were written: a run that goes on may write to them."""
+    row = told(clock)
+    saved = row["saved"]
+    ends = saved, saved, row["touched"], row["struck"], row["event"], row["snapped"]
+    return Records(*(rows[:end].view(Columns) for rows, end in zip(records, ends)))
+
+
+def told(clock: np.recarray) -> dict:
+    """Return what the clock says as numbers of Python, by name."""
+    return dict(zip(clock.dtype.names or (), clock[0].item()))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from carom.columns import Columns
 from carom.functions import Functions
 from carom.scene.constraints import Coupling, Rows, coordinate_kind
 from carom.scene.forces import Spring
@@ -55,7 +56,7 @@ class Coordinates:
 
     def table(self) -> np.recarray:
         """Return all rows."""
-        return np.concatenate([table(COORDINATE, 0), *self.rows]).view(np.recarray)
+        return np.concatenate([table(COORDINATE, 0), *self.rows]).view(Columns)
 
     def _row(self, joint, coordinate):
         d, made = joint.definition, table(COORDINATE, 1)
@@ -215,7 +216,7 @@ class Elements:
 
 
 def _joined(fields, rows) -> np.recarray:
-    return np.concatenate([table(fields, 0), *rows]).view(np.recarray)
+    return np.concatenate([table(fields, 0), *rows]).view(Columns)
 
 
 def _of_time(function):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from carom.columns import Columns
 from carom.scene.constraints import coordinate_kind
 from carom.scene.materials import IMPACT_LAWS
 from carom.system.arrays import CONTACT, STOP, table
@@ -27,4 +28,4 @@ def with_stops(scene, contacts: np.recarray, coordinates, sizes, options) -> np.
     rows.still = 1e-14 * np.sqrt(np.linalg.norm(scene.gravity) * rows.extent)
     rows.width = 1e-5 * rows.extent if options.layer_width is None else options.layer_width
     rows.penetration = options.penetration
-    return np.concatenate([contacts, rows]).view(np.recarray)
+    return np.concatenate([contacts, rows]).view(Columns)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom import check
+from carom.columns import Columns
 
 
 @dataclass(frozen=True)
@@ -58,7 +59,7 @@ def contact_points(shape_a, pose_a, shape_b, pose_b, reach: float) -> np.recarra
     Arguments as of `nearest_points`; points with gaps up to the least gap of their pieces plus `reach` [m].
     """
     reach = check.number("reach", reach, least=0, unit="m")
-    return np.concatenate(list(_touches(shape_a, pose_a, shape_b, pose_b, reach))).view(np.recarray)
+    return np.concatenate(list(_touches(shape_a, pose_a, shape_b, pose_b, reach))).view(Columns)
 
 
 def _touches(shape_a, pose_a, shape_b, pose_b, reach):

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom.columns import table
 from carom.geometry import quaternion
 
 #: kinds of cores; a pair is handled with the smaller kind first
@@ -96,13 +97,9 @@ class PairWork(NamedTuple):
     closest: int  # address of the compiled search that curved cores, hulls and some boxes need
 
 
-def _table(fields: list, *shape: int) -> np.recarray:
-    return np.zeros(shape, dtype=np.dtype(fields, align=True)).view(np.recarray)
-
-
 def pair_arrays() -> PairWork:
     """Return the scratch of the kernels of pairs, without the address of the search."""
-    return PairWork(_table(PAIR_STATE, 1), _table(TOUCH_POINT, 96), 0)
+    return PairWork(table(PAIR_STATE, 1), table(TOUCH_POINT, 96), 0)
 
 
 def new_pair_work() -> PairWork:
@@ -111,15 +108,15 @@ def new_pair_work() -> PairWork:
     from carom.jit import address
 
     state, found, _ = pair_arrays()
-    solid = _table(SOLID, 1)
-    hulls = Hulls(np.zeros((0, 3)), _table(FACE, 0), np.zeros(0, dtype=np.int64))
+    solid = table(SOLID, 1)
+    hulls = Hulls(np.zeros((0, 3)), table(FACE, 0), np.zeros(0, dtype=np.int64))
     found_at = address(closest_unit, state[0], solid[0], solid[0], hulls, found)
     return PairWork(state, found, found_at)
 
 
 def new_points(count: int = MOST_POINTS) -> np.recarray:
     """Return a table for the points of a contact, (count,) TOUCH_POINT."""
-    return _table(TOUCH_POINT, count)
+    return table(TOUCH_POINT, count)
 
 
 def solid_table(shapes, turns=None) -> tuple[np.recarray, Hulls]:
@@ -134,7 +131,7 @@ def solid_table(shapes, turns=None) -> tuple[np.recarray, Hulls]:
         own body axes. Default: none.
     """
     pieces = [(k, piece) for k, shape in enumerate(shapes) for piece in shape.pieces]
-    solid = _table(SOLID, len(pieces))
+    solid = table(SOLID, len(pieces))
     vertices, faces, corners = [np.zeros((0, 3))], [], [np.zeros(0, dtype=np.int64)]
     count = turned = 0
     for row, (k, piece) in zip(solid, pieces):
@@ -152,7 +149,7 @@ def solid_table(shapes, turns=None) -> tuple[np.recarray, Hulls]:
                 corners.append(np.asarray(ring, dtype=np.int64))
                 turned += len(ring)
         row.last, row.last_face = count, len(faces)
-    face = _table(FACE, len(faces))
+    face = table(FACE, len(faces))
     for row, (normal, first, last) in zip(face, faces):
         row.normal[:], row.first, row.last = normal, first, last
     return solid, Hulls(np.concatenate(vertices), face, np.concatenate(corners))

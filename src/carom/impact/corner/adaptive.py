@@ -7,16 +7,17 @@ import math
 from carom.dispatch import by_address
 from carom.impact.corner import events, law
 from carom.impact.corner.by_series import series_step
-from carom.impact.corner.by_stages import stages_step
-from carom.impact.corner.layout import SAVED_D, SAVED_P, WHEN, D, P, U
-from carom.impact.corner.motion import gather_discs, set_velocity
-from carom.jit import kernel, unit
+from carom.impact.corner.by_stages import by_stages
+from carom.impact.corner.layout import MISSING, SAVED_D, SAVED_P, SAVED_WHEN, WHEN, D, P, U
+from carom.impact.corner.motion import set_velocity
+from carom.jit import inlined, kernel, unit
 
 ENDED, TRAPPED = 0, 1
 
 APART = 1e-12  # velocities of approach below this part of the scale, or 1e-4 rtol, are none
 WEDGED = 1e-11  # greatest velocity of a group that rests wedged
 _LASTING = 0.01
+_FINE = 1e-10  # stages of order four go no further
 _FIRST_STEP = 0.05
 _STIFF_STEPS = 4  # steps by stages before series are tried again
 
@@ -43,10 +44,10 @@ def start(k, work):
 
 
 @kernel
-def branch(k, work):
+def branch(k, work, latest):
     """Save the state at the first unloading: what came before does not depend on restitution."""
     clock = work.clock[0]
-    clock.branched, clock.saved_step = 1, clock.step
+    clock.branched, clock.saved_step, clock.saved_latest = 1, clock.step, latest
     clock.saved_stiff = clock.stiff
     clock.saved_idle = clock.idle
     for i in range(3 * k):
@@ -54,11 +55,12 @@ def branch(k, work):
     for i in range(k):
         work.saved[i] = work.contact[i]
         work.vector[SAVED_D, i] = work.vector[D, i]
+        work.vector[SAVED_WHEN, i] = work.vector[WHEN, i]
 
 
 @kernel
-def resume(k, work):
-    """Go back to the first unloading, with the coefficients e that the contacts have now."""
+def resume(k, work, p):
+    """Go back to the first unloading, with the coefficients e that the contacts have now; unload."""
     clock = work.clock[0]
     clock.step, clock.idle, clock.stiff = clock.saved_step, clock.saved_idle, clock.saved_stiff
     clock.rest, clock.cut, clock.stretched = 0, 0, 0
@@ -69,9 +71,12 @@ def resume(k, work):
         work.contact[i] = work.saved[i]
         work.contact[i].e = e
         work.vector[D, i] = work.vector[SAVED_D, i]
+    when = work.vector[SAVED_WHEN]
+    events.change_modes(k, work, when, clock.saved_latest, p, clock.idle > 2 * k)
+    clock.events += 1
 
 
-@kernel
+@inlined
 def drift(k, work, apart, p):
     """Return 1 if all is over. Where no force acts, go on with constant velocities to the next closure."""
     u, d = work.vector[U], work.vector[D]
@@ -101,7 +106,7 @@ def drift(k, work, apart, p):
     return 0
 
 
-@kernel
+@inlined
 def wedged(k, work, h, p):
     """Return whether all rest though forces act: friction holds them compressed, and so it stays.
 
@@ -130,6 +135,7 @@ def traverse(k, work, units, rtol, p, max_events, max_steps):
     first_events, first_steps, h = clock.events, clock.steps, 0.0
     while True:
         if drift(k, work, apart, p) == 1 or wedged(k, work, h, p):
+            set_velocity(k, work)
             return ENDED
         if (
             clock.events - first_events > max_events
@@ -139,17 +145,20 @@ def traverse(k, work, units, rtol, p, max_events, max_steps):
             return TRAPPED
         h, changes = -1.0, False
         if p == 1.0 and clock.stiff == 0:
-            h, changes = series_step(k, work, rtol)
+            h, changes = series_step(k, work, units, rtol)
         if h < 0.0:
-            m = gather_discs(k, work)
-            clock.stretched = 0
-            h, changes = stages_step(k, m, work, units, rtol, p)
+            if units.stages == MISSING or clock.wants == 1:
+                clock.wants = 1
+                return TRAPPED
+            fine = max(0.1 * rtol, min(rtol, _FINE)) if p == 1.0 else rtol  # as exact as series are
+            by_stages(units.stages, k, work, units, fine, p)
+            h, changes = clock.length, clock.changes == 1
             clock.stiff = clock.stiff - 1 if clock.stiff > 0 else _STIFF_STEPS - 1
         if changes:
             latest = h + events.TOGETHER
             clock.idle = clock.idle + 1 if h <= events.TOGETHER else 0
             if clock.branched == 0 and events.would_unload(k, work, when, latest):
-                branch(k, work)
+                branch(k, work, latest)
             events.change_modes(k, work, when, latest, p, clock.idle > 2 * k)
             clock.events += 1
 

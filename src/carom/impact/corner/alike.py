@@ -1,13 +1,21 @@
-"""Contacts that move alike are one, and contacts that do not reach each other are solved apart: exactly.
+"""What makes an impact smaller, exactly.
+
+Contacts that move alike are one, those that no force presses take no part, and contacts that do not reach each
+other are solved apart.
 
 Contacts of equal velocity, friction, restitution, law and stiffness whose coupling to each class of such
 contacts is equal have the same history in the layer. m of them are one contact, with the impulse shared
 equally: W_CD = sum_ij W_ij / (m_C m_D), kappa_C = m_C kappa. A box that falls flat on its face is one contact.
+
+A contact that does not approach stays open, whatever the forces of the others are, if each of them can only
+part it: W_jn,in >= mu_i |W_jn,it|. (One end of an edge strikes while the other lies: that one is lifted.)
 """
 
 from __future__ import annotations
 
-from carom.impact.corner.layout import CLASS, FIRST, GROUP, SIZE, STACK
+import math
+
+from carom.impact.corner.layout import CLASS, FIRST, GROUP, PRESSED, SIZE, STACK
 from carom.jit import kernel
 
 SAME = 1e-11  # relative difference of velocities and inverse masses that is round-off
@@ -154,14 +162,51 @@ def coupled(W, i, j):
 
 
 @kernel
+def find_pressed(k, W, u, mu, least, index):
+    """Note the contacts that approach faster than `least`, and those that forces of such can press."""
+    pressed, stack, height = index[PRESSED], index[STACK], 0
+    for i in range(k):
+        pressed[i] = 0
+        if u[3 * i] < -least:
+            pressed[i] = 1
+            stack[height] = i
+            height += 1
+    while height > 0:
+        height -= 1
+        i = stack[height]
+        for j in range(k):
+            if pressed[j] == 0:
+                row = W[3 * j]
+                side = math.sqrt(row[3 * i + 1] ** 2 + row[3 * i + 2] ** 2)
+                if not row[3 * i] >= mu[i] * side:
+                    pressed[j] = 1
+                    stack[height] = j
+                    height += 1
+
+
+@kernel
+def parts_others(k, W, i, index):
+    """Return whether forces of contact `i` act on others that nothing presses."""
+    for j in range(k):
+        if index[PRESSED, j] == 0 and coupled(W, i, j):
+            return True
+    return False
+
+
+@kernel
 def find_groups(k, count, W, index):
-    """Write the group of each class: classes that reach each other; return how many."""
-    group, stack, cls = index[GROUP], index[STACK], index[CLASS]
+    """Write the group of each class: classes that reach each other; return how many.
+
+    Classes that nothing presses are of no group (-1).
+    """
+    group, stack, cls, pressed, first = (
+        index[GROUP], index[STACK], index[CLASS], index[PRESSED], index[FIRST],
+    )  # fmt: skip
     for q in range(count):
         group[q] = -1
     groups = 0
     for start in range(count):
-        if group[start] >= 0:
+        if group[start] >= 0 or pressed[first[start]] == 0:
             continue
         group[start] = groups
         stack[0] = start
@@ -173,7 +218,7 @@ def find_groups(k, count, W, index):
                 if cls[i] != q:
                     continue
                 for j in range(k):
-                    if group[cls[j]] < 0 and coupled(W, i, j):
+                    if group[cls[j]] < 0 and pressed[j] == 1 and coupled(W, i, j):
                         group[cls[j]] = groups
                         stack[height] = cls[j]
                         height += 1

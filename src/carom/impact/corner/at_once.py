@@ -11,8 +11,9 @@ import math
 
 from carom.coulomb.layout import CONE, ENOUGH
 from carom.coulomb.solve import solve_cones
-from carom.impact.corner.layout import CLEAN, FACTOR, SCRATCH, STACK, TRY
-from carom.jit import kernel
+from carom.dispatch import by_address
+from carom.impact.corner.layout import CLEAN, FACTOR, MISSING, SCRATCH, STACK, TRY
+from carom.jit import kernel, unit
 
 _GROWTH = 1e-9  # of the energy that the greatest velocity stands for
 _MOST = 1e3  # times the greatest velocity before: none is thrown off faster
@@ -33,8 +34,8 @@ def unsound(k, u, scale, out):
     return not (sound and gain <= 1e-6 * bound)
 
 
-@kernel
-def all_at_once(k, u, mu, e, scratch, out):
+@unit
+def at_once_unit(k, u, mu, e, scratch, out):
     """Write impulses and works of all contacts."""
     work = scratch.work
     W, c, p = work.matrix[CLEAN], work.vector[SCRATCH], work.vector[TRY]
@@ -68,3 +69,15 @@ def all_at_once(k, u, mu, e, scratch, out):
         slip += p[a + 2] * (u[a + 2] + out.velocity[a + 2])
         out.compression[i], out.restitution[i] = min(0.0, part), max(0.0, part)
         out.friction[i] = max(0.0, -0.5 * slip)
+
+
+_solve = by_address(at_once_unit)
+
+
+@kernel
+def all_at_once(k, u, mu, e, scratch, out):
+    """Write impulses and works of all contacts."""
+    if scratch.units.at_once == MISSING:
+        scratch.work.clock[0].wants = 1
+        return
+    _solve(scratch.units.at_once, k, u, mu, e, scratch, out)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from carom.dispatch import by_address
 from carom.impact.corner import events, law
 from carom.impact.corner.by_series import AT_REST
 from carom.impact.corner.implicit import advance, implicit_step, interpolate
@@ -14,16 +15,27 @@ from carom.impact.corner.layout import (
     MASS,
     NEW_D,
     NEW_U,
-    S_D,
-    S_U,
     WHEN,
     D,
 )
-from carom.impact.corner.motion import friction_now, normal_forces, set_velocity
-from carom.jit import kernel
+from carom.impact.corner.motion import friction_now, gather_discs, normal_forces, set_velocity
+from carom.jit import kernel, unit
 
 _LEAST_STEP = 1e-9
 _AT_CHANGE = 0.02  # part of the tolerance where a contact begins or ceases to stick
+
+
+@unit
+def stages_unit(k, work, units, rtol, p):
+    """One implicit step, cut at the first change of mode; its length and any change go to the clock."""
+    m = gather_discs(k, work)
+    work.clock[0].stretched = 0
+    h, changes = stages_step(k, m, work, units, rtol, p)
+    work.clock[0].length, work.clock[0].changes = h, 1 if changes else 0
+
+
+#: by_stages(address, k, work, units, rtol, p)
+by_stages = by_address(stages_unit)
 
 
 @kernel
@@ -31,7 +43,7 @@ def stages_step(k, m, work, units, rtol, p):
     """One implicit step, cut at the first change of mode; return its length and whether one changes."""
     clock, when, tolerance = work.clock[0], work.vector[WHEN], 1e-3 * rtol
     h, slow = clock.step, max(AT_REST, 0.01 * rtol)
-    force = work.series[FORCE]
+    force = work.stage[FORCE]
     normal_forces(k, work, work.vector[D], p, force[0])
     friction_now(k, m, work, units, 1e-7 * h, slow, tolerance / h, force[0])
     while True:
@@ -47,7 +59,7 @@ def stages_step(k, m, work, units, rtol, p):
     clock.step = h * (5.0 if error < 1e-3 * rtol else 0.9 * (rtol / error) ** 0.25)
     clock.step = min(clock.step, 0.5)
     interpolate(k, work, h)
-    first = events.find_changes(k, work.contact, work.series[S_D], work.series[S_U], 5, h, when)
+    first = events.find_changes(k, work, 5, h, when)
     changes = first <= h
     if changes:
         if first > events.TOGETHER:
@@ -77,7 +89,7 @@ def _land(k, m, work, units, h, p, tolerance, residual):
         if c.mode == law.OPEN:
             g, rate = d - c.d0, -u_n
         elif c.mode == law.LOAD:
-            row, force = work.matrix[MASS, 3 * lead], work.series[FORCE, 5]
+            row, force = work.matrix[MASS, 3 * lead], work.stage[FORCE, 5]
             g, rate = u_n, 0.0
             for j in range(3 * k):
                 rate += row[j] * force[j]
@@ -98,7 +110,7 @@ def _land(k, m, work, units, h, p, tolerance, residual):
 def _sticks(s, work, slow):
     """Return 1 if disc `s` ends the step at rest, with friction inside the disc."""
     t, i = work.vector[DISC_T], work.index[DISC, s]
-    u, n = work.vector[NEW_U], work.series[FORCE, 5, 3 * i]
+    u, n = work.vector[NEW_U], work.stage[FORCE, 5, 3 * i]
     size = math.sqrt(t[2 * s] * t[2 * s] + t[2 * s + 1] * t[2 * s + 1])
     speed = math.sqrt(u[3 * i + 1] * u[3 * i + 1] + u[3 * i + 2] * u[3 * i + 2])
     return 1 if size < work.contact[i].mu * n * (1.0 - 1e-9) and speed < slow else 0

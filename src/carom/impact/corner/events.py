@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from carom.impact.corner import law
-from carom.impact.corner.layout import D, P
-from carom.jit import kernel
+from carom.impact.corner.four import store
+from carom.impact.corner.lanes import blocks, value_and_slope, values
+from carom.impact.corner.layout import AT_D, AT_U, LANES, S_AT, S_D, S_U, D, P
+from carom.jit import inlined, kernel
 
 ROUND_OFF = 1e-13  # of the scales of velocity and depth
 TOGETHER = 1e-10  # changes closer than this in time are one
@@ -12,80 +14,104 @@ _SAMPLES = 5
 
 
 @kernel
-def value(series, column, degree, x):
-    """Return the polynomial of a column of `series` at x."""
-    v = series[degree, column]
-    for j in range(degree - 1, -1, -1):
-        v = v * x + series[j, column]
-    return v
-
-
-@kernel
-def gauge(c, i, depth, velocity, degree, x):
-    """Return what turns positive where contact `c`, number `i`, changes its mode."""
+def gauge(c, d, u_n):
+    """Return what turns positive where contact `c` changes its mode."""
     if c.mode == law.OPEN:
-        return value(depth, i, degree, x) - c.d0
+        return d - c.d0
     if c.mode == law.LOAD:
-        return value(velocity, 3 * i, degree - 1, x)
-    d = value(depth, i, degree, x)
+        return u_n
     return max(c.rest - d, d - c.d0 - c.most)
 
 
-@kernel
-def first_change(c, i, depth, velocity, degree, end):
-    """Return the first x in [0, end] where contact `c` changes its mode, or a number beyond `end`."""
-    a = 0.0
+@inlined
+def evaluate(k, series, degree, x):
+    """Write depths and normal velocities at x."""
+    at, line = series[S_AT], series.shape[2] * LANES
+    for b in range(blocks(k)):
+        p = LANES * b
+        store(at, AT_D * line + p, values(line, series[S_D], p, degree, x))
+        store(at, AT_U * line + p, values(line, series[S_U], p, degree, x))
+
+
+@inlined
+def any_change(k, work, degree, x):
+    """Return whether a contact has changed its mode at x."""
+    evaluate(k, work.series, degree, x)
+    d, u = work.series[S_AT, AT_D], work.series[S_AT, AT_U]
+    for i in range(k):
+        b, l = i // LANES, i % LANES
+        if gauge(work.contact[i], d[b, l], u[b, l]) > ROUND_OFF:
+            return True
+    return False
+
+
+@inlined
+def find_changes(k, work, degree, end, when):
+    """Write the first change of each contact in [0, end] to `when`, a number beyond if there is none.
+
+    Return the first of all; others that come later than that are not looked for.
+    """
+    first, a = 2.0 * end, 0.0
+    d, u = work.series[S_AT, AT_D], work.series[S_AT, AT_U]
+    for i in range(k):
+        when[i] = first
     for s in range(_SAMPLES):
-        b = end if s == _SAMPLES - 1 else end * ((s + 1) / _SAMPLES)
-        gb = gauge(c, i, depth, velocity, degree, b)
-        if gb > ROUND_OFF:
-            return _root(c, i, depth, velocity, degree, a, b, gb)
-        a = b
-    return 2.0 * end
+        x = end if s == _SAMPLES - 1 else end * ((s + 1) / _SAMPLES)
+        if any_change(k, work, degree, x):
+            for i in range(k):
+                c, b, l = work.contact[i], i // LANES, i % LANES
+                if gauge(c, d[b, l], u[b, l]) > ROUND_OFF:
+                    over = c.rest - d[b, l] > d[b, l] - c.d0 - c.most
+                    when[i] = _root(c, i, over, work.series, degree, a, x)
+                    first = min(first, when[i])
+            break
+        a = x
+    return first
 
 
 @kernel
-def _root(c, i, depth, velocity, degree, a, b, gb):
-    """Return where the gauge passes round-off between a and b: Illinois, each third time a bisection."""
-    ga = gauge(c, i, depth, velocity, degree, a) - ROUND_OFF
-    if ga >= 0.0:
+def _gauge_and_slope(c, i, over, series, degree, x):
+    """Return the gauge of contact `i` less round-off at x, and its derivative.
+
+    A contact that unloads opens if `over`.
+    """
+    if c.mode == law.LOAD:
+        s, slope = value_and_slope(series[S_U], i, degree, x)
+        return s - ROUND_OFF, slope
+    s, slope = value_and_slope(series[S_D], i, degree, x)
+    if c.mode == law.OPEN:
+        return s - c.d0 - ROUND_OFF, slope
+    if over:
+        return c.rest - s - ROUND_OFF, -slope
+    return s - c.d0 - c.most - ROUND_OFF, slope
+
+
+@kernel
+def _root(c, i, over, series, degree, a, b):
+    """Return where the gauge passes round-off between a and b, where it has: Newton, with bisection."""
+    g, _ = _gauge_and_slope(c, i, over, series, degree, a)
+    if g >= 0.0:
         return a
-    gb -= ROUND_OFF
-    side, width = 0, b - a
-    for turn in range(90):
-        if b - a <= 1e-15 * width:
-            break
-        x = (a * gb - b * ga) / (gb - ga)
-        if turn % 3 == 2 or not a < x < b:
-            x = 0.5 * (a + b)
-            if not a < x < b:
-                break
-        g = gauge(c, i, depth, velocity, degree, x) - ROUND_OFF
-        if g > 0.0:
-            b, gb = x, g
-            if side == 1:
-                ga *= 0.5
-            side = 1
-        else:
-            a, ga = x, g
-            if side == -1:
-                gb *= 0.5
-            side = -1
+    x, width = b, b - a
+    for _ in range(90):
+        g, slope = _gauge_and_slope(c, i, over, series, degree, x)
         if abs(g) <= 1e-3 * ROUND_OFF:
             return x
+        if g > 0.0:
+            b = x
+        else:
+            a = x
+        if not b - a > 1e-15 * width:
+            break
+        new = x - g / slope
+        if not a < new < b:
+            new = 0.5 * (a + b)
+            if not a < new < b:
+                break
+        elif abs(new - x) <= 1e-16 * width:
+            return new
+        x = new
     return b
-
-
-@kernel
-def find_changes(k, contact, depth, velocity, degree, end, when):
-    """Write the first change of each contact to `when`; return the first of all."""
-    first = 2.0 * end
-    for i in range(k):
-        when[i] = first_change(contact[i], i, depth, velocity, degree, end)
-        first = min(first, when[i])
-        if first < end:
-            end = first + TOGETHER
-    return first
 
 
 @kernel

@@ -9,14 +9,19 @@ from __future__ import annotations
 
 import math
 
+from carom.dispatch import by_address
 from carom.impact.corner.law import OPEN
 from carom.impact.corner.layout import (
     FACTOR,
     HOLDING,
+    LANES,
     LEFT,
     MASS,
     MIDDLE,
+    MISSING,
     S_P,
+    S_P1,
+    S_P2,
     SCALE,
     STICK_T,
     STUCK,
@@ -26,7 +31,7 @@ from carom.impact.corner.layout import (
 )
 from carom.impact.corner.motion import set_velocity
 from carom.impact.corner.series import stick
-from carom.jit import kernel
+from carom.jit import kernel, unit
 
 _EMPTY = 1e-11  # pivots below this part of the largest: directions that are redundant
 _SAMPLES = 5
@@ -34,7 +39,7 @@ _MOMENT = 0.3  # units of the time of the fastest contact
 
 
 @kernel
-def gather_stuck(k, work):
+def gather_stuck(k, work, units):
     """List the closed contacts that stick; return how many. What holds them goes to HOLDING."""
     z = 0
     for i in range(k):
@@ -44,8 +49,10 @@ def gather_stuck(k, work):
         elif c.sticks == 1 and c.mu > 0.0:
             work.index[STUCK, z] = i
             z += 1
-    if z > 0:
-        _holding(z, work)
+    if z > 0 and units.hold == MISSING:
+        work.clock[0].wants = 1
+    elif z > 0:
+        find_holding(units.hold, z, work)
     return z
 
 
@@ -75,8 +82,8 @@ def _bearing(z, work, weight):
         weight[a] = weight[a] / most if most > 0.0 else 1.0
 
 
-@kernel
-def _holding(z, work):
+@unit
+def holding_unit(z, work):
     """Write H = D^2 L (L^T D^2 L)^-1 (L^T L)^-1 L^T, W_ZZ = L L^T by Cholesky with pivots: T = -H a."""
     n, slot, vector = 2 * z, work.index[STUCK], work.vector
     L, M, hold = work.matrix[FACTOR], work.matrix[MIDDLE], work.matrix[HOLDING]
@@ -109,6 +116,10 @@ def _holding(z, work):
             for q in range(rank):
                 s += row[q] * L[b, q]
             hold[a, b] = s
+
+
+#: find_holding(address, z, work)
+find_holding = by_address(holding_unit)
 
 
 @kernel
@@ -198,13 +209,14 @@ def halt(k, z, work):
 
 
 @kernel
-def excess(c, i, impulse, degree, x):
+def excess(c, i, S, degree, x):
     """Return |T|^2 - (mu N)^2 of a sticking contact, from the derivative of its impulse at `x`."""
     n, t1, t2 = 0.0, 0.0, 0.0
+    b, l = i // LANES, i % LANES
     for j in range(degree, 0, -1):
-        n = n * x + j * impulse[j, 3 * i]
-        t1 = t1 * x + j * impulse[j, 3 * i + 1]
-        t2 = t2 * x + j * impulse[j, 3 * i + 2]
+        n = n * x + j * S[S_P, j, b, l]
+        t1 = t1 * x + j * S[S_P1, j, b, l]
+        t2 = t2 * x + j * S[S_P2, j, b, l]
     room = c.mu * max(0.0, n)
     return t1 * t1 + t2 * t2 - room * room * (1.0 + 1e-9) - 1e-20
 
@@ -212,17 +224,17 @@ def excess(c, i, impulse, degree, x):
 @kernel
 def first_slip(z, work, degree, end):
     """Return the first x in [0, end] where a contact can no longer stick, or 2 end."""
-    first, impulse = 2.0 * end, work.series[S_P]
+    first, S = 2.0 * end, work.series
     for b in range(z):
         i = work.index[STUCK, b]
         c = work.contact[i]
         low = 0.0
         for s in range(_SAMPLES):
             high = end * ((s + 1) / _SAMPLES)
-            if excess(c, i, impulse, degree, high) > 0.0:
+            if excess(c, i, S, degree, high) > 0.0:
                 for _ in range(50):
                     x = 0.5 * (low + high)
-                    if excess(c, i, impulse, degree, x) > 0.0:
+                    if excess(c, i, S, degree, x) > 0.0:
                         high = x
                     else:
                         low = x

@@ -20,6 +20,7 @@ from carom.impact.corner.layout import (
     ERROR,
     FORCE,
     JACOBIAN,
+    LANES,
     MASS,
     NEW_D,
     NEW_P,
@@ -69,11 +70,11 @@ DEFECT = WEIGHTS - np.array([
 def step_unit(k, m, work, units, h, p, tolerance):
     """Step from (d, P, u) by `h` to the new state; the error goes to the clock.
 
-    Forces of this instant are in ``work.series[FORCE, 0]``; `m` discs are gathered. `tolerance` is for the
-    velocity of friction. At the end ``work.series[FORCE, 5]`` holds the forces of the new instant.
+    Forces of this instant are in ``work.stage[FORCE, 0]``; `m` discs are gathered. `tolerance` is for the
+    velocity of friction. At the end ``work.stage[FORCE, 5]`` holds the forces of the new instant.
     """
     n = 3 * k
-    force, rate, W = work.series[FORCE], work.series[STAGE], work.matrix[MASS]
+    force, rate, W = work.stage[FORCE], work.stage[STAGE], work.matrix[MASS]
     vector = work.vector
     u, u1, q = vector[U], vector[NEW_U], vector[SCRATCH]
     for i in range(k):
@@ -155,7 +156,7 @@ def _friction(k, m, work, units, step, force, u, tolerance):
 @kernel
 def advance(k, work, h):
     """Take over the new state; add what friction has dissipated."""
-    rate, vector = work.series[STAGE], work.vector
+    rate, vector = work.stage[STAGE], work.vector
     for i in range(3 * k):
         vector[P, i] = vector[NEW_P, i]
     for i in range(k):
@@ -177,20 +178,21 @@ def interpolate(k, work, h):
     for i in range(3 * k):
         a0[i] = 0.0
         a1[i] = 0.0
-    add_velocity(3 * k, W, work.series[FORCE, 0], a0)
-    add_velocity(3 * k, W, work.series[FORCE, 5], a1)
+    add_velocity(3 * k, W, work.stage[FORCE, 0], a0)
+    add_velocity(3 * k, W, work.stage[FORCE, 5], a1)
     d, u = work.series[S_D], work.series[S_U]
     for i in range(k):
-        n = 3 * i
+        n, b, l = 3 * i, i // LANES, i % LANES
         y0, v0, w0 = vector[D, i], -vector[U, n], -a0[n]
         y1, v1, w1 = vector[NEW_D, i], -vector[NEW_U, n], -a1[n]
         # Remainders at the end after the Taylor polynomial of the start, times powers of h.
         e0 = y1 - y0 - h * (v0 + 0.5 * h * w0)
         e1 = h * (v1 - v0 - h * w0)
         e2 = h * h * (w1 - w0)
-        d[0, i], d[1, i], d[2, i] = y0, v0, 0.5 * w0
-        d[3, i] = (10.0 * e0 - 4.0 * e1 + 0.5 * e2) / h**3
-        d[4, i] = (-15.0 * e0 + 7.0 * e1 - e2) / h**4
-        d[5, i] = (6.0 * e0 - 3.0 * e1 + 0.5 * e2) / h**5
+        d[0, b, l], d[1, b, l], d[2, b, l] = y0, v0, 0.5 * w0
+        d[3, b, l] = (10.0 * e0 - 4.0 * e1 + 0.5 * e2) / h**3
+        d[4, b, l] = (-15.0 * e0 + 7.0 * e1 - e2) / h**4
+        d[5, b, l] = (6.0 * e0 - 3.0 * e1 + 0.5 * e2) / h**5
         for j in range(5):
-            u[j, n] = -(j + 1) * d[j + 1, i]
+            u[j, b, l] = -(j + 1) * d[j + 1, b, l]
+        u[5, b, l] = 0.0

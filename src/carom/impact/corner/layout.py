@@ -16,6 +16,7 @@ MULTIPLE = {"simultaneous": SIMULTANEOUS, "sequential": SEQUENTIAL, "newton": BY
 OK = 0
 BAD_INPUT = 1  #: a number is not finite, or a law or a coefficient is out of its range
 NOT_RESOLVED = 2  #: no method ended with contacts that do not approach
+NEEDS_UNITS = 3  #: something has to be compiled first (`work.with_units`); then again
 
 MESSAGES = {
     BAD_INPUT: "a number is not finite or out of its range",
@@ -102,22 +103,34 @@ class CornerWork(NamedTuple):
     contact: np.recarray  # (K,) CONTACT
     saved: np.recarray  # (K,) CONTACT, at the first unloading
     clock: np.recarray  # (1,) CLOCK
-    index: np.ndarray  # (9, 3K) rows below
+    index: np.ndarray  # (11, 3K) rows below
     matrix: np.ndarray  # (9, 3K, 3K) below
-    vector: np.ndarray  # (34, 3K) rows below
-    series: np.ndarray  # (13, ORDERS, 3K) below
+    vector: np.ndarray  # (37, 3K) rows below
+    series: np.ndarray  # (18, ORDERS, B, 4) below; contact i is lane i % 4 of block i // 4
+    columns: (
+        np.ndarray
+    )  # (3K, 3B, 4) W of the group, scaled, in lanes: blocks of n, then of t1 and t2
+    stage: np.ndarray  # (2, 6, 3K) forces and rates at the stages of an implicit step
     single: np.ndarray  # result of one contact, as `carom.impact.layout` says
 
 
 class CornerUnits(NamedTuple):
-    """Addresses of what is compiled on its own, since it is called from several places."""
+    """Addresses of what is compiled on its own; MISSING where it was not needed so far."""
 
+    layer: int
+    single: int
+    # rarely needed: compiled together when one of them is asked for
     discs: int
     step: int
-    layer: int
+    stages: int
+    hold: int
     fixed: int
     plastic: int
-    single: int
+    at_once: int
+
+
+MISSING = -1
+NO_UNITS = CornerUnits(*[MISSING] * 9)
 
 
 class CornerScratch(NamedTuple):
@@ -129,8 +142,9 @@ class CornerScratch(NamedTuple):
 
 
 #: rows of `index`: class of a contact, first member of a class, its size, its group, members of
-#: a group, a stack, contacts of the discs, contacts that stick, pivots
-CLASS, FIRST, SIZE, GROUP, MEMBER, STACK, DISC, STUCK, PIVOT = range(9)
+#: a group, a stack, contacts of the discs, contacts that stick, pivots, contacts that are closed,
+#: 1 for those that some force can press
+CLASS, FIRST, SIZE, GROUP, MEMBER, STACK, DISC, STUCK, PIVOT, CLOSED, PRESSED = range(11)
 #: `matrix`: W of all contacts, cleaned; W of the group, scaled; W_tt of the discs; Newton's matrix; what
 #: holds the sticking contacts, and two for it; the inverse Jacobian of the outer iteration; W of one contact
 CLEAN, MASS, DISCS, JACOBIAN, HOLDING, FACTOR, MIDDLE, INVERSE, SINGLE = range(9)
@@ -146,15 +160,30 @@ FRICTION = 33
 WEIGHT, SCALE, LEFT, STICK_T = range(20, 24)
 #: of the outer iteration: ln e_*, misses, new misses, step, change of misses, a product, best e_*, its misses
 OUT_X, OUT_F, OUT_NEW, OUT_DX, OUT_DF, OUT_H, OUT_BEST, OUT_BEST_F = range(24, 32)
-#: first index of `series`: velocity, impulse, depth, squared slip, 1/slip, N/slip, the same times dt/dtau, N,
-#: friction loss, dtau/dt, dt/dtau; forces and rates at the stages of an implicit step
-S_U, S_P, S_D, S_Q, S_G, S_F, S_FS, S_N, S_LOSS, S_RATE, S_SIGMA, FORCE, STAGE = range(13)
+#: of a new order of the series: impulses and velocities
+ORDER_P, ORDER_U = 34, 35
+#: of the first unloading: which contacts change their modes then
+SAVED_WHEN = 36
+#: first index of `series`: velocity n, t1, t2; impulse n, t1, t2; depth; N; |u_t|^2; |u_t|; mu N/|u_t|, the
+#: same times dt/dtau; 1/|u_t|; friction loss; dtau/dt and dt/dtau; numbers of each contact (rows below)
+S_U, S_U1, S_U2, S_P, S_P1, S_P2, S_D, S_N, S_Q, S_R, S_F, S_FS, S_G, S_LOSS, S_RATE, S_SIGMA = (
+    range(16)
+)
+S_LANE, S_AT = 16, 17
+#: rows of S_LANE: stiffness, mu where friction is that of slip, 1/|u_t| there, the rates c_i of stretched
+#: time, how much more slow slip must be exact, whether any contact of a block slips
+SLOPE, ROUGH, ONE_OVER, PULL, FINE, SLIPPING = range(6)
+#: rows of S_AT, values at one instant: depth, normal velocity
+AT_D, AT_U = 0, 1
+LANES = 4
+FORCE, STAGE = 0, 1  # of `stage`
 ORDERS = 26  # room for series
 
 #: where the passage of the layer stands
 CLOCK = [
     ("step", "f8"),  # next step to try
     ("saved_step", "f8"),
+    ("saved_latest", "f8"),
     ("saved_idle", "i8"),
     ("steps", "i8"),
     ("events", "i8"),
@@ -169,6 +198,9 @@ CLOCK = [
     ("error", "f8"),
     ("change", "f8"),
     ("code", "i8"),
+    ("length", "f8"),
+    ("changes", "i8"),
+    ("wants", "i8"),  # 1: something that is needed is not compiled; results are of no use
 ]
 
 
@@ -183,15 +215,17 @@ def new_corner_result(capacity: int) -> CornerResult:
 def corner_arrays(capacity: int) -> CornerScratch:
     """Return scratch for up to `capacity` contacts that does not have the addresses of its units yet."""
     k = max(int(capacity), 1)
-    n = 3 * k
+    n, blocks = 3 * k, (k + LANES - 1) // LANES
     work = CornerWork(
         contact=table(CONTACT, k),
         saved=table(CONTACT, k),
         clock=table(CLOCK, 1),
-        index=np.zeros((9, n), dtype=np.int64),
+        index=np.zeros((11, n), dtype=np.int64),
         matrix=np.zeros((9, n, n)),
-        vector=np.zeros((34, n)),
-        series=np.zeros((13, ORDERS, n)),
+        vector=np.zeros((37, 3 * LANES * blocks)),
+        series=np.zeros((18, ORDERS, blocks, LANES)),
+        columns=np.zeros((n, 3 * blocks, LANES)),
+        stage=np.zeros((2, 6, n)),
         single=np.zeros(one.SIZE),
     )
-    return CornerScratch(work, cone_arrays(k), CornerUnits(0, 0, 0, 0, 0, 0))
+    return CornerScratch(work, cone_arrays(k), NO_UNITS)

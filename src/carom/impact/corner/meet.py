@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from carom.impact.corner import restitution as r
-from carom.impact.corner.adaptive import ENDED, pass_layer, resume, start
+from carom.impact.corner.adaptive import ENDED, TRAPPED, pass_layer, resume, start
 from carom.impact.corner.fixed import pass_fixed
-from carom.impact.corner.layout import CAPPED, MISSED, OUT_F, OUT_NEW
+from carom.impact.corner.layout import CAPPED, MISSED, MISSING, OUT_F, OUT_NEW
 from carom.jit import kernel
 
 _GAIN = 0.8  # a round is a gain if it leaves at most this part of the greatest miss
@@ -20,12 +20,15 @@ def run(k, work, units, settings, rtol, fixed, anew):
     p, most_events = settings.exponent, settings.max_events * k
     if anew:
         start(k, work)
+    if fixed > 0 and units.fixed == MISSING:
+        work.clock[0].wants = 1
+        return TRAPPED
     if fixed > 0:
         most = 20 * fixed * k + 50 * fixed
         pass_fixed(units.fixed, k, work, units, fixed, p, 8 * most_events, most)
         return work.clock[0].code
     if not anew:
-        resume(k, work)
+        resume(k, work, p)
     most = settings.max_steps * k
     pass_layer(units.layer, k, work, units, rtol, p, most_events, most)
     return work.clock[0].code

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from carom.impact.corner.discs import friction
+from carom.impact.corner.lanes import blocks
 from carom.impact.corner.law import OPEN, force
 from carom.impact.corner.layout import (
     DISC,
@@ -12,6 +13,7 @@ from carom.impact.corner.layout import (
     DISC_T,
     DISCS,
     JACOBIAN,
+    LANES,
     MASS,
     RADIUS,
     SCRATCH,
@@ -39,6 +41,19 @@ def set_velocity(k, work):
     for i in range(3 * k):
         u[i] = u0[i]
     add_velocity(3 * k, work.matrix[MASS], work.vector[P], u)
+
+
+@kernel
+def into_lanes(k, work):
+    """Copy W of the group, column by column, as the series take it."""
+    W, columns = work.matrix[MASS], work.columns
+    width = columns.shape[1] // 3
+    for j in range(3 * k):
+        for b in range(blocks(k)):
+            for r in range(3):
+                for l in range(LANES):
+                    i = LANES * b + l
+                    columns[j, r * width + b, l] = W[j, 3 * i + r] if i < k else 0.0
 
 
 @kernel

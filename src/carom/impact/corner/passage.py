@@ -6,6 +6,7 @@ from carom.impact.corner import restitution as r
 from carom.impact.corner.adaptive import ENDED, start
 from carom.impact.corner.layout import FIXED, PLASTIC, TRY, U
 from carom.impact.corner.meet import meet_laws, run
+from carom.impact.corner.motion import into_lanes
 from carom.impact.corner.plastic import end_plastically
 from carom.jit import kernel
 
@@ -30,6 +31,7 @@ def pass_group(k, work, cones, units, settings, result):
         result.plastic_change += work.clock[0].change
         result.marks |= PLASTIC
         return
+    into_lanes(k, work)
     fixed = 0 if k <= settings.adaptive_up_to else settings.fixed_steps
     ended = run(k, work, units, settings, settings.rtol, fixed, True)
     if ended != ENDED and fixed == 0 and work.clock[0].steps >= settings.max_steps * k:

@@ -9,7 +9,7 @@ from carom.coulomb.layout import CONE, ENOUGH, SOLVED
 from carom.coulomb.solve import solve_cones
 from carom.dispatch import by_address
 from carom.impact.corner import law
-from carom.impact.corner.layout import FACTOR, MASS, SCRATCH, STACK, TRY, WEIGHT, D, P, U
+from carom.impact.corner.layout import FACTOR, MASS, MISSING, SCRATCH, STACK, TRY, WEIGHT, D, P, U
 from carom.impact.corner.motion import set_velocity
 from carom.jit import kernel, unit
 
@@ -40,8 +40,16 @@ def plastic_unit(k, work, cones, p):
     work.clock[0].change = plastic_event(k, work, cones, p)
 
 
-#: end_plastically(address, k, work, cones, p)
-end_plastically = by_address(plastic_unit)
+_end = by_address(plastic_unit)
+
+
+@kernel
+def end_plastically(address, k, work, cones, p):
+    """End the event plastically; the change of energy goes to the clock."""
+    if address == MISSING:
+        work.clock[0].wants = 1
+        return
+    _end(address, k, work, cones, p)
 
 
 @kernel

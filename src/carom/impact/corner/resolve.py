@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from carom.impact import laws
 from carom.impact import layout as one
 from carom.impact.corner import alike
 from carom.impact.corner.at_once import all_at_once, unsound
@@ -11,6 +12,7 @@ from carom.impact.corner.layout import (
     AT_ONCE,
     BAD_INPUT,
     BY_NEWTON,
+    CAPPED,
     CLASS,
     CLEAN,
     EXACT,
@@ -19,6 +21,7 @@ from carom.impact.corner.layout import (
     GROUP,
     MASS,
     MEMBER,
+    NEEDS_UNITS,
     NOT_RESOLVED,
     OK,
     REPELLED,
@@ -40,7 +43,13 @@ _TOUCHES = 1e-13  # approach below this part of the greatest velocity is none
 
 @entry
 def resolve_corner(k, W, u, mu, e, law, kappa, settings, scratch, out):
-    """Resolve an impact of `k` contacts; return OK or BAD_INPUT (nothing is written then).
+    """Resolve an impact of `k` contacts as `resolve_contacts`, for calls from Python."""
+    return resolve_contacts(k, W, u, mu, e, law, kappa, settings, scratch, out)
+
+
+@kernel
+def resolve_contacts(k, W, u, mu, e, law, kappa, settings, scratch, out):
+    """Resolve an impact of `k` contacts; return OK or BAD_INPUT (nothing is written then), or NEEDS_UNITS.
 
     `W` (3K, 3K) symmetric inverse mass, often singular, and `u` (3K,) velocities before, rows (n, t1, t2) of
     each contact, approach negative; of contacts that touch or are held u_n = 0. `mu`, `e`, `law` and
@@ -50,6 +59,7 @@ def resolve_corner(k, W, u, mu, e, law, kappa, settings, scratch, out):
     scale = _check(k, W, u, mu, e, law, kappa)
     if not scale >= 0.0:
         return BAD_INPUT
+    scratch.work.clock[0].wants = 0
     result, index, clean = out.summary[0], scratch.work.index, scratch.work.matrix[CLEAN]
     result.energy_change, result.plastic_change = 0.0, 0.0
     result.error, result.miss = 0.0, 0.0
@@ -78,6 +88,7 @@ def resolve_corner(k, W, u, mu, e, law, kappa, settings, scratch, out):
         largest = alike.clean(k, W, friction, clean)
         count = alike.find_classes(k, clean, u, friction, e, law, kappa, largest, scale, index)
     result.classes = count
+    alike.find_pressed(k, clean, u, friction, _TOUCHES * scale, index)
     groups = alike.find_groups(k, count, clean, index)
     code = NOT_RESOLVED if settings.multiple == BY_NEWTON else OK
     for g in range(groups if code == OK else 0):
@@ -90,7 +101,7 @@ def resolve_corner(k, W, u, mu, e, law, kappa, settings, scratch, out):
         result.marks, result.miss, result.plastic_change = AT_ONCE, 0.0, 0.0
         all_at_once(k, u, mu, e, scratch, out)
         _finish(k, W, u, scale, out)
-    return OK
+    return NEEDS_UNITS if scratch.work.clock[0].wants == 1 else OK
 
 
 @kernel
@@ -135,7 +146,9 @@ def _group(k, g, count, u, mu, e, law, kappa, scale, settings, scratch, out):
                     )
     if n == 1:
         i = index[FIRST, index[MEMBER, 0]]
-        if _exactly(k, i, u, mu, e, law, work, scratch.units, out) == OK:
+        parts = alike.parts_others(k, work.matrix[CLEAN], i, index)
+        gives = e[i] > 0.0 or not parts  # several that give nothing back are one plastic event
+        if gives and _exactly(k, i, parts, u, mu, e, law, work, scratch.units, out) == OK:
             return OK
     mass, speed, rate = _fill(n, u, mu, e, law, kappa, scale, settings.exponent, work)
     if not (mass > 0.0 and rate > 0.0):
@@ -201,8 +214,11 @@ def _fill(n, u, mu, e, law, kappa, scale, exponent, work):
 
 
 @kernel
-def _exactly(k, i, u, mu, e, law, work, units, out):
-    """Resolve a group that is one contact, number `i` and those like it; NOT_RESOLVED if it wedges."""
+def _exactly(k, i, parts, u, mu, e, law, work, units, out):
+    """Resolve a group that is one contact, number `i` and those like it; NOT_RESOLVED if it wedges.
+
+    If it `parts` others, it gives back no more than it took, as each of several contacts.
+    """
     index, W, before = work.index, work.matrix[SINGLE], work.vector[TRY]
     q = index[CLASS, i]
     for r in range(3):
@@ -212,6 +228,9 @@ def _exactly(k, i, u, mu, e, law, work, units, out):
     single = work.single
     clock = work.clock
     resolve_single(units.single, clock, W, before, mu[i], e[i], law[i], single)
+    if parts and clock[0].code == one.OK and single[one.WORK_R] > -single[one.WORK_C]:
+        resolve_single(units.single, clock, W, before, mu[i], 1.0, laws.STRONGE, single)
+        out.summary[0].marks |= CAPPED
     if clock[0].code != one.OK:
         return NOT_RESOLVED
     share = 1.0 / index[SIZE, q]
@@ -222,7 +241,8 @@ def _exactly(k, i, u, mu, e, law, work, units, out):
             out.compression[j] = single[one.WORK_C] * share
             out.restitution[j] = single[one.WORK_R] * share
             out.friction[j] = single[one.FRICTION_LOSS] * share
-    out.summary[0].marks |= EXACT
+    if not parts:
+        out.summary[0].marks |= EXACT
     out.summary[0].steps += int(single[one.STEPS])
     return OK
 

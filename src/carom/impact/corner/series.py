@@ -1,7 +1,7 @@
 """A step of high order: the Taylor series of the layer between changes of mode, for p = 1.
 
 Normal forces are linear in the depth, friction of sticking contacts is linear in the other forces, and that
-of slipping ones follows order by order from q = u_t.u_t, g = q^(-1/2), F = N g, T = -mu F u_t. Where slip may
+of slipping ones follows order by order from q = u_t.u_t, r r = q, F r = mu N, T = -F u_t. Where slip may
 end soon time is stretched, dt = sigma dtau with 1/sigma = 1 + sum c_i/|u_t,i|: in tau slip fades like an
 exponential, and the series reaches far. Changes of mode are found on the series, without another step.
 """
@@ -10,21 +10,39 @@ from __future__ import annotations
 
 import math
 
+from carom.impact.corner.four import add, load, multiply, same, store, subtract
+from carom.impact.corner.lanes import blocks, product, square
 from carom.impact.corner.law import OPEN
 from carom.impact.corner.layout import (
+    CLOSED,
+    FINE,
     HOLDING,
+    LANES,
     MASS,
+    ONE_OVER,
+    ORDER_P,
+    ORDER_U,
+    PULL,
+    ROUGH,
     S_D,
     S_F,
     S_FS,
     S_G,
+    S_LANE,
     S_LOSS,
     S_N,
     S_P,
+    S_P1,
+    S_P2,
     S_Q,
+    S_R,
     S_RATE,
     S_SIGMA,
     S_U,
+    S_U1,
+    S_U2,
+    SLIPPING,
+    SLOPE,
     STICK_T,
     STUCK,
     WEIGHT,
@@ -32,12 +50,8 @@ from carom.impact.corner.layout import (
     P,
     U,
 )
-from carom.impact.corner.motion import add_velocity
-from carom.jit import kernel
+from carom.jit import inlined, kernel
 
-_FARTHEST = 4.0  # longest step, in units of the time of the fastest contact
-_FARTHEST_STRETCHED = 40.0
-_SAMPLES = 4
 _NEAR = 0.3  # slip may end within this time: stretch
 
 
@@ -60,7 +74,7 @@ def likely_force(c, d, u_n):
     return max(force, max(0.0, force) + _NEAR * c.slope * max(0.0, -u_n))
 
 
-@kernel
+@inlined
 def stretch_weights(k, work):
     """Write c_i, the rate at which a contact's own friction can change its slip; return if it matters."""
     stretched = False
@@ -77,95 +91,156 @@ def stretch_weights(k, work):
     return stretched
 
 
-@kernel
-def expand(k, z, work, degree, stretched):
-    """Write the series of velocity, impulse and depth to `degree`; `z` contacts stick (see `grip`)."""
-    S, W, weights = work.series, work.matrix[MASS], work.vector[WEIGHT]
-    u, pp, d, q, g, f, fs = S[S_U], S[S_P], S[S_D], S[S_Q], S[S_G], S[S_F], S[S_FS]
-    normal, loss, inverse, sigma = S[S_N], S[S_LOSS], S[S_RATE], S[S_SIGMA]
-    for i in range(3 * k):
-        u[0, i] = work.vector[U, i]
-        pp[0, i] = work.vector[P, i]
-    for i in range(k):
-        d[0, i] = work.vector[D, i]
-        loss[0, i] = 0.0
-    for n in range(degree):
-        step = 1.0 / (n + 1)
-        total = 1.0 if n == 0 else 0.0
-        for i in range(k):
-            c = work.contact[i]
-            if c.mode == OPEN:
-                continue
-            normal[n, i] = c.slope * (d[n, i] - c.rest if n == 0 else d[n, i])
-            if not slips(c):
-                continue
-            x, y = 3 * i + 1, 3 * i + 2
-            s = 0.0
-            for j in range(n + 1):
-                s += u[j, x] * u[n - j, x] + u[j, y] * u[n - j, y]
-            q[n, i] = s
-            if n == 0:
-                g[0, i] = 1.0 / math.sqrt(s)
-            else:
-                s = 0.0
-                for j in range(1, n + 1):
-                    s += (n - 0.5 * j) * q[j, i] * g[n - j, i]
-                g[n, i] = -s / (n * q[0, i])
-            s = 0.0
-            for j in range(n + 1):
-                s += normal[j, i] * g[n - j, i]
-            f[n, i] = c.mu * s
-            total += weights[i] * g[n, i]
+@inlined
+def begin(k, work, stretched):
+    """Write order 0 of the series, and the numbers of each contact; return how many are closed."""
+    S, vector, closed = work.series, work.vector, 0
+    lane = S[S_LANE]
+    for b in range(blocks(k)):
+        for l in range(LANES):
+            i = LANES * b + l
+            slope, rest, rough, inverse, fine, r = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+            pull = 0.0
+            for s in range(3):
+                S[S_U + s, 0, b, l] = vector[U, 3 * i + s] if i < k else 0.0
+                S[S_P + s, 0, b, l] = vector[P, 3 * i + s] if i < k else 0.0
+            S[S_D, 0, b, l] = vector[D, i] if i < k else 0.0
+            S[S_LOSS, 0, b, l] = 0.0
+            if i < k:
+                c = work.contact[i]
+                if c.mode != OPEN:
+                    slope, rest = c.slope, c.rest
+                    work.index[CLOSED, closed] = i
+                    closed += 1
+                if slips(c):
+                    x, y = S[S_U1, 0, b, l], S[S_U2, 0, b, l]
+                    r = math.sqrt(x * x + y * y)
+                    rough, inverse, pull = c.mu, 1.0 / r, vector[WEIGHT, i]
+                    fine = 1.0 / math.sqrt(min(1.0, r))
+            S[S_N, 0, b, l] = slope * (S[S_D, 0, b, l] - rest)
+            S[S_R, 0, b, l] = r
+            S[S_G, 0, b, l] = inverse
+            lane[SLOPE, b, l], lane[ROUGH, b, l], lane[ONE_OVER, b, l] = slope, rough, inverse
+            lane[PULL, b, l], lane[FINE, b, l] = pull, fine
+        v = lane[ONE_OVER, b]
+        lane[SLIPPING, b, 0] = v[0] + v[1] + v[2] + v[3]
+    return closed
+
+
+@inlined
+def expand(k, z, closed, work, first, degree, stretched):
+    """Write the series of velocity, impulse and depth of orders `first` + 1 to `degree`.
+
+    Those up to `first` are there; `z` contacts stick (see `grip`).
+    """
+    S, lane = work.series, work.series[S_LANE]
+    line = S.shape[2] * LANES
+    un, u1, u2, d, normal = S[S_U], S[S_U1], S[S_U2], S[S_D], S[S_N]
+    pn, p1, p2, q, loss, sigma = S[S_P], S[S_P1], S[S_P2], S[S_Q], S[S_LOSS], S[S_SIGMA]
+    f = S[S_FS] if stretched else S[S_F]
+    for n in range(first, degree):
+        step = same(1.0 / (n + 1))
+        back = same(-1.0 / (n + 1))
+        for b in range(blocks(k)):
+            if lane[SLIPPING, b, 0] > 0.0:
+                _forces(line, S, LANES * b, n)
         if stretched:
-            inverse[n, 0] = total
-            if n == 0:
-                sigma[0, 0] = 1.0 / total
-            else:
-                s = 0.0
-                for j in range(1, n + 1):
-                    s += inverse[j, 0] * sigma[n - j, 0]
-                sigma[n, 0] = -s * sigma[0, 0]
-        new = pp[n + 1]
-        for i in range(k):
-            c = work.contact[i]
-            b = 3 * i
-            new[b], new[b + 1], new[b + 2] = 0.0, 0.0, 0.0
-            s = u[n, b]
+            _stretch(k, line, S, n)
+        for b in range(blocks(k)):
+            p = LANES * b
+            i, o = n * line + p, (n + 1) * line + p
+            force, speed = load(normal, i), load(un, i)
             if stretched:
-                s = 0.0
-                for j in range(n + 1):
-                    s += u[j, b] * sigma[n - j, 0]
-            d[n + 1, i] = -s * step
-            if c.mode == OPEN:
-                continue
-            s = normal[n, i]
-            if stretched:
-                s = 0.0
-                for j in range(n + 1):
-                    s += normal[j, i] * sigma[n - j, 0]
-            new[b] = s * step
-            if not slips(c):
-                continue
-            s = f[n, i]
-            if stretched:
-                s = 0.0
-                for j in range(n + 1):
-                    s += f[j, i] * sigma[n - j, 0]
-            fs[n, i] = s
-            s1, s2, s3 = 0.0, 0.0, 0.0
-            for j in range(n + 1):
-                v = fs[j, i]
-                s1 += v * u[n - j, b + 1]
-                s2 += v * u[n - j, b + 2]
-                s3 += v * q[n - j, i]
-            new[b + 1], new[b + 2] = -s1 * step, -s2 * step
-            loss[n + 1, i] = s3 * step
-        velocity = u[n + 1]
-        for i in range(3 * k):
-            velocity[i] = 0.0
-        add_velocity(3 * k, W, new, velocity)
+                force = product(line, normal, p, sigma, 0, 0, n)
+                speed = product(line, un, p, sigma, 0, 0, n)
+            depth = multiply(back, speed)
+            store(pn, o, multiply(step, force))
+            store(d, o, depth)
+            store(normal, o, multiply(load(lane, SLOPE * line + p), depth))
+            x, y, heat = same(0.0), same(0.0), same(0.0)
+            if lane[SLIPPING, b, 0] > 0.0:
+                if stretched:
+                    store(f, i, product(line, S[S_F], p, sigma, 0, 0, n))
+                x = product(line, f, p, u1, p, 0, n)
+                y = product(line, f, p, u2, p, 0, n)
+                heat = product(line, f, p, q, p, 0, n)
+            store(p1, o, multiply(back, x))
+            store(p2, o, multiply(back, y))
+            store(loss, o, multiply(step, heat))
+        _answer(k, closed, line, S, work.columns, work.index[CLOSED], n + 1)
         if z > 0:
-            stick(k, z, work, new, velocity)
+            _hold(k, z, work, n + 1)
+
+
+@inlined
+def _forces(line, S, p, n):
+    """Write order `n` of |u_t|^2, |u_t| and mu N/|u_t| of the block at `p`."""
+    r, f, lane, i = S[S_R], S[S_F], S[S_LANE], n * line + p
+    g = load(lane, ONE_OVER * line + p)
+    q = add(square(line, S[S_U1], p, 0, n), square(line, S[S_U2], p, 0, n))
+    store(S[S_Q], i, q)
+    if n > 0:
+        q = subtract(q, square(line, r, p, 1, n))
+        store(r, i, multiply(multiply(same(0.5), q), g))
+    force = multiply(load(lane, ROUGH * line + p), load(S[S_N], i))
+    store(f, i, multiply(subtract(force, product(line, r, p, f, p, 1, n)), g))
+
+
+@kernel
+def _stretch(k, line, S, n):
+    """Write order `n` of dtau/dt = 1 + sum c_i/|u_t,i| and of dt/dtau, the same in all lanes."""
+    g, rate, sigma, lane, total = S[S_G], S[S_RATE], S[S_SIGMA], S[S_LANE], 1.0 if n == 0 else 0.0
+    for b in range(blocks(k)):
+        if lane[SLIPPING, b, 0] > 0.0:
+            p = LANES * b
+            if n > 0:
+                s = product(line, S[S_R], p, g, p, 1, n)
+                s = multiply(s, load(lane, ONE_OVER * line + p))
+                store(g, n * line + p, multiply(same(-1.0), s))
+            for l in range(LANES):
+                total += lane[PULL, b, l] * g[n, b, l]
+    store(rate, n * line, same(total))
+    if n == 0:
+        s = same(1.0 / total)
+    else:
+        s = multiply(same(-sigma[0, 0, 0]), product(line, rate, 0, sigma, 0, 1, n))
+    store(sigma, n * line, s)
+
+
+@inlined
+def _answer(k, closed, line, S, columns, slot, n):
+    """Write order `n` of the velocities: W times the impulses of the closed contacts."""
+    row, b0 = 3 * line, n * line  # of a column of W
+    for b in range(blocks(k)):
+        p = LANES * b
+        un, u1, u2 = same(0.0), same(0.0), same(0.0)
+        for a in range(closed):
+            i = slot[a]
+            o = 3 * i * row + p
+            for r in range(3):
+                x = same(S[S_P + r, n, i // LANES, i % LANES])
+                un = add(un, multiply(x, load(columns, o)))
+                u1 = add(u1, multiply(x, load(columns, o + line)))
+                u2 = add(u2, multiply(x, load(columns, o + 2 * line)))
+                o += row
+        store(S[S_U], b0 + p, un)
+        store(S[S_U1], b0 + p, u1)
+        store(S[S_U2], b0 + p, u2)
+
+
+@kernel
+def _hold(k, z, work, n):
+    """Add the friction of stick to order `n`."""
+    S, impulse, velocity = work.series, work.vector[ORDER_P], work.vector[ORDER_U]
+    for i in range(k):
+        for r in range(3):
+            impulse[3 * i + r] = S[S_P + r, n, i // LANES, i % LANES]
+            velocity[3 * i + r] = S[S_U + r, n, i // LANES, i % LANES]
+    stick(k, z, work, impulse, velocity)
+    for i in range(k):
+        for r in range(3):
+            S[S_P + r, n, i // LANES, i % LANES] = impulse[3 * i + r]
+            S[S_U + r, n, i // LANES, i % LANES] = velocity[3 * i + r]
 
 
 @kernel
@@ -189,88 +264,3 @@ def stick(k, z, work, impulse, velocity):
     for b in range(z):
         n = 3 * slot[b]
         velocity[n + 1], velocity[n + 2] = 0.0, 0.0
-
-
-@kernel
-def reach(k, work, degree, stretched, tolerance):
-    """Return the step at which the last two terms are within `tolerance`."""
-    u, d = work.series[S_U], work.series[S_D]
-    last, other = 0.0, 0.0
-    for i in range(k):
-        n = 3 * i
-        c = work.contact[i]
-        last = max(last, abs(u[degree, n]), abs(d[degree, i]))
-        other = max(other, abs(u[degree - 1, n]), abs(d[degree - 1, i]))
-        if slips(c):  # the direction of slow slip counts
-            r = math.sqrt(u[0, n + 1] * u[0, n + 1] + u[0, n + 2] * u[0, n + 2])
-            f = 1.0 / math.sqrt(min(1.0, r))
-            last = max(last, f * abs(u[degree, n + 1]), f * abs(u[degree, n + 2]))
-            other = max(other, f * abs(u[degree - 1, n + 1]), f * abs(u[degree - 1, n + 2]))
-    h = _FARTHEST_STRETCHED if stretched else _FARTHEST
-    if last > 0.0:
-        h = min(h, (tolerance / last) ** (1.0 / degree))
-    if other > 0.0:
-        h = min(h, (tolerance / other) ** (1.0 / (degree - 1)))
-    return h
-
-
-@kernel
-def move(k, work, degree, x):
-    """Go to `x` on the series: depths and impulses; what friction dissipated is added."""
-    for i in range(3 * k):
-        s = work.series[S_P, degree, i]
-        for j in range(degree - 1, -1, -1):
-            s = s * x + work.series[S_P, j, i]
-        work.vector[P, i] = s
-    for i in range(k):
-        s = work.series[S_D, degree, i]
-        for j in range(degree - 1, -1, -1):
-            s = s * x + work.series[S_D, j, i]
-        work.vector[D, i] = s
-        c = work.contact[i]
-        if slips(c):
-            s = work.series[S_LOSS, degree, i]
-            for j in range(degree - 1, -1, -1):
-                s = s * x + work.series[S_LOSS, j, i]
-            c.loss += s
-
-
-@kernel
-def first_turn(k, work, degree, end):
-    """Return the first x in [0, end] where slip has turned by a right angle, or 2 end.
-
-    Slip along a line passes through u_t = 0 without any sign of it in the series, which then go on with
-    friction of the wrong sign.
-    """
-    u, first = work.series[S_U], 2.0 * end
-    for i in range(k):
-        if not slips(work.contact[i]):
-            continue
-        a, low = 3 * i + 1, 0.0
-        x0, y0 = u[0, a], u[0, a + 1]
-        for s in range(_SAMPLES):
-            high = end * ((s + 1) / _SAMPLES)
-            if _along(u, a, degree, x0, y0, high) <= 0.0:
-                for _ in range(60):
-                    x = 0.5 * (low + high)
-                    if _along(u, a, degree, x0, y0, x) > 0.0:
-                        low = x
-                    else:
-                        high = x
-                    if high - low <= 1e-15 * end:
-                        break
-                first = min(first, high)
-                end = min(end, high)
-                break
-            low = high
-    return first
-
-
-@kernel
-def _along(u, a, degree, x0, y0, x):
-    """Return the slip at `x` along (x0, y0)."""
-    p, q = u[degree, a], u[degree, a + 1]
-    for j in range(degree - 1, -1, -1):
-        p = p * x + u[j, a]
-        q = q * x + u[j, a + 1]
-    return p * x0 + q * y0

@@ -4,10 +4,19 @@ from __future__ import annotations
 
 from carom.coulomb.search import with_address
 from carom.impact.corner.adaptive import layer_unit
+from carom.impact.corner.at_once import at_once_unit
+from carom.impact.corner.by_stages import stages_unit
 from carom.impact.corner.discs import discs_unit
 from carom.impact.corner.fixed import fixed_unit
+from carom.impact.corner.grip import holding_unit
 from carom.impact.corner.implicit import step_unit
-from carom.impact.corner.layout import CornerScratch, CornerUnits, corner_arrays
+from carom.impact.corner.layout import (
+    MISSING,
+    NO_UNITS,
+    CornerScratch,
+    corner_arrays,
+    new_corner_result,
+)
 from carom.impact.corner.one import single_unit
 from carom.impact.corner.plastic import plastic_unit
 from carom.jit import address
@@ -15,19 +24,43 @@ from carom.jit import address
 
 def new_corner_work(capacity: int) -> CornerScratch:
     """Return scratch for up to `capacity` contacts; compiles what is not on disk."""
-    return with_units(corner_arrays(capacity))
+    return with_all_units(with_units(corner_arrays(capacity)))
 
 
-def with_units(scratch: CornerScratch) -> CornerScratch:
-    """Return the scratch with the addresses of what is compiled on its own."""
-    work, none = scratch.work, CornerUnits(0, 0, 0, 0, 0, 0)
-    v, matrix, cones = work.vector, work.matrix, with_address(scratch.cones)
-    units = CornerUnits(
-        discs=address(discs_unit, 1, matrix[0], matrix[0], v, work.index, 0.0),
-        step=address(step_unit, 1, 1, work, none, 0.0, 0.0, 0.0),
-        layer=address(layer_unit, 1, work, none, 0.0, 0.0, 1, 1),
-        fixed=address(fixed_unit, 1, work, none, 1, 0.0, 1, 1),
-        plastic=address(plastic_unit, 1, work, cones, 0.0),
-        single=address(single_unit, work.clock, matrix[0], v[0], 0.0, 0.0, 0, v[0]),
+_WANTED = False  # in this process, what is rarely needed
+
+
+def with_units(scratch: CornerScratch, find=address) -> CornerScratch:
+    """Return the scratch with the addresses of what is compiled on its own.
+
+    What is rarely needed comes where `scratch` has the others already: it takes as long to compile as these.
+    """
+    global _WANTED
+    _WANTED = _WANTED or scratch.units.layer != MISSING
+    work = scratch.work
+    units = NO_UNITS._replace(
+        layer=find(layer_unit, 1, work, NO_UNITS, 0.0, 0.0, 1, 1),
+        single=find(
+            single_unit, work.clock, work.matrix[0], work.vector[0], 0.0, 0.0, 0, work.vector[0]
+        ),
     )
-    return CornerScratch(work, cones, units)
+    scratch = scratch._replace(units=units)
+    return with_all_units(scratch, find) if _WANTED else scratch
+
+
+def with_all_units(scratch: CornerScratch, find=address) -> CornerScratch:
+    """Return the scratch with the addresses of all."""
+    work, none = scratch.work, NO_UNITS
+    v, matrix, cones = work.vector, work.matrix, with_address(scratch.cones, find)
+    scratch = scratch._replace(cones=cones)
+    out = new_corner_result(1)
+    units = scratch.units._replace(
+        discs=find(discs_unit, 1, matrix[0], matrix[0], v, work.index, 0.0),
+        step=find(step_unit, 1, 1, work, none, 0.0, 0.0, 0.0),
+        stages=find(stages_unit, 1, work, none, 0.0, 0.0),
+        hold=find(holding_unit, 1, work),
+        fixed=find(fixed_unit, 1, work, none, 1, 0.0, 1, 1),
+        plastic=find(plastic_unit, 1, work, cones, 0.0),
+        at_once=find(at_once_unit, 1, v[0], v[0], v[0], scratch, out),
+    )
+    return scratch._replace(units=units)

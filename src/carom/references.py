@@ -1,0 +1,146 @@
+"""Records of arrays (system, scratch, held points, ...) are handed from kernel to kernel by one address.
+
+Numba passes a named tuple by value: some 300 numbers for a step of a scene, written out and read back at every
+call, in the compiler's work as in the run. Here a named tuple of ours becomes a pointer when
+compiled code is entered, and each field is loaded where it is used. Nobody writes to the fields of a
+named tuple: the loads are marked invariant, so that they cost no more than numbers at hand.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from functools import cache
+from typing import Any
+
+from llvmlite import ir
+from numba.core import cgutils, config, types
+from numba.core.typing.templates import AttributeTemplate, infer_getattr
+from numba.core.typing.typeof import Purpose, typeof_impl
+from numba.extending import (
+    NativeValue,
+    intrinsic,
+    lower_getattr_generic,
+    models,
+    register_model,
+    unbox,
+)
+
+
+class Reference(types.Type):
+    """The address of a named tuple."""
+
+    def __init__(self, record: Any):  # a types.BaseNamedTuple
+        self.record = record
+        digest = hashlib.sha256(str(record).encode()).hexdigest()[:16]
+        super().__init__(f"{record.instance_class.__name__}_{digest}")
+
+    @property
+    def instance_class(self) -> type:
+        """The class of the named tuple."""
+        return self.record.instance_class
+
+    @property
+    def fields(self) -> tuple[str, ...]:
+        """The names of its fields."""
+        return self.record.fields
+
+    @property
+    def types(self) -> tuple[types.Type, ...]:
+        """The types of its fields."""
+        return self.record.types
+
+
+@cache
+def _reference(record: Any) -> Reference:
+    return Reference(record)
+
+
+def install() -> None:
+    """Let Numba take our named tuples by reference in this process."""
+    typeof_impl.register(tuple)(_type_of_tuple)
+
+
+def _type_of_tuple(value, context):
+    """Return the type of a tuple from Python: a reference if it is a record of ours."""
+    kinds = [typeof_impl(v, context) for v in value]
+    if any(kind is None for kind in kinds):
+        return None
+    made: Any = types.BaseTuple.from_types(kinds, type(value))
+    return _reference(made) if is_ours(made) and context.purpose is Purpose.argument else made
+
+
+def is_ours(kind: Any) -> bool:
+    """Return whether a type is that of a named tuple of this library."""
+    named = isinstance(kind, types.NamedTuple | types.NamedUniTuple)
+    return named and kind.instance_class.__module__.startswith("carom.")
+
+
+def refer_to(builder, kind, value):
+    """Return type and value of a reference to a named tuple at hand; other things as they are."""
+    return (_reference(kind), _keep(builder, value)) if is_ours(kind) else (kind, value)
+
+
+@register_model(Reference)
+class _ReferenceModel(models.PointerModel):
+    def __init__(self, dmm, fe_type):
+        self._pointee_model = dmm.lookup(fe_type.record)
+        self._pointee_be_type = self._pointee_model.get_value_type()
+        models.PrimitiveModel.__init__(self, dmm, fe_type, self._pointee_be_type.as_pointer())
+
+
+@infer_getattr
+class _ReferenceAttribute(AttributeTemplate):
+    key = Reference
+
+    def generic_resolve(self, reference, attr):
+        if attr in reference.fields:
+            return reference.types[reference.fields.index(attr)]
+        return None
+
+
+@lower_getattr_generic(Reference)
+def _load_field(context, builder, reference, pointer, attr):
+    """Load a field; it is the same whenever it is loaded."""
+    place = cgutils.gep_inbounds(builder, pointer, 0, reference.fields.index(attr))
+    loaded = builder.load(place)
+    loaded.set_metadata("invariant.load", builder.module.add_metadata([]))
+    return loaded
+
+
+def _keep(builder, value):
+    """Store a value in the frame of the function at hand; return its address.
+
+    The address goes through an empty instruction that the compiler cannot look into: for what it sees
+    stored the loads would not be invariant.
+    """
+    place = cgutils.alloca_once(builder, value.type)
+    builder.store(value, place)
+    same = ir.FunctionType(place.type, [place.type])
+    return builder.asm(same, "", "=r,0,~{memory}", [place], True, name="kept")
+
+
+@unbox(Reference)
+def _unbox(reference, value, c):
+    native = c.unbox(reference.record, value)
+    return NativeValue(
+        _keep(c.builder, native.value), is_error=native.is_error, cleanup=native.cleanup
+    )
+
+
+@intrinsic
+def _refer(typing, record):
+    """Return a reference to a named tuple; it holds as long as the function that asks for it runs."""
+
+    def generate(context, builder, signature, values):
+        return refer_to(builder, record, values[0])[1]
+
+    return (_reference(record) if is_ours(record) else record)(record), generate
+
+
+def _same(record):
+    """Do so uncompiled."""
+    return record
+
+
+#: for named tuples that are put together in compiled code: by reference from there on
+refer: Any = _same if getattr(config, "DISABLE_JIT", 0) else _refer

@@ -1,0 +1,83 @@
+"""Named tuples of the library are handed on by reference."""
+
+import numba
+import numpy as np
+import pytest
+
+from carom.contact.pairs.layout import FACE, Hulls
+from carom.dispatch import by_address
+from carom.jit import address, entry, kernel, unit
+from carom.references import Reference, refer
+from carom.system.arrays import table
+
+
+def hulls(n):
+    """`n` vertices, numbered in their x and in `corners`."""
+    vertices = np.zeros((n, 3))
+    vertices[:, 0] = np.arange(n)
+    return Hulls(vertices, table(FACE, 0), np.arange(n))
+
+
+@kernel
+def total(h):
+    s = 0.0
+    for i in range(h.vertices.shape[0]):
+        s += h.vertices[i, 0] + h.corners[i]
+    return s
+
+
+@unit
+def total_unit(h, out):
+    out[0] = total(h)
+
+
+total_at = by_address(total_unit)
+
+
+@entry
+def of_parts(h, at, out, each):
+    """Write twice the sum of each vertex alone, found directly and through an address; return that of all."""
+    for i in range(each.shape[0]):
+        part = refer(Hulls(h.vertices[i : i + 1], h.faces, h.corners[i : i + 1]))
+        each[i] = total(part)
+        total_at(at, Hulls(h.vertices[i : i + 1], h.faces, h.corners[i : i + 1]), out)
+        each[i] += out[0]
+    return total(h)
+
+
+@pytest.mark.plain
+def test_what_is_put_together_in_a_loop_is_what_is_read():
+    """Loads are marked invariant: those of one turn must not be those of the turn before."""
+    h, out, each = hulls(7), np.zeros(1), np.zeros(7)
+    assert of_parts(h, address(total_unit, h, out), out, each) == 42.0
+    np.testing.assert_array_equal(each, 4.0 * np.arange(7))
+
+
+@pytest.mark.plain
+def test_a_change_of_arrays_is_seen():
+    """What is invariant is where the arrays are, not what is in them."""
+    h, out, each = hulls(3), np.zeros(1), np.zeros(3)
+    at = address(total_unit, h, out)
+    assert of_parts(h, at, out, each) == 6.0
+    h.vertices[:, 0] += 1.0
+    assert of_parts(h, at, out, each) == 9.0
+    other = Hulls(h.vertices[:2], h.faces, h.corners)
+    assert of_parts(other, at, out, each[:2]) == 1.0 + 3.0
+
+
+def test_types():
+    """Ours by reference; tuples and the named tuples of others by value, as Numba has it."""
+    made = numba.typeof(hulls(2))
+    assert isinstance(made, Reference)
+    assert made.fields == Hulls._fields
+    assert numba.typeof(hulls(5)) == made
+    assert isinstance(numba.typeof((1, 2.0)), numba.types.Tuple)
+    assert isinstance(numba.typeof(np.linalg.slogdet(np.eye(2))), numba.types.BaseNamedTuple)
+
+
+@pytest.mark.skipif(not hasattr(of_parts, "overloads"), reason="nothing is compiled")
+def test_names_are_short():
+    h, out = hulls(2), np.zeros(1)
+    of_parts(h, address(total_unit, h, out), out, np.zeros(2))
+    (compiled,) = of_parts.overloads.values()
+    assert len(compiled.fndesc.mangled_name) < 300
