@@ -16,6 +16,7 @@ from carom.contact.pair_point import REACH, find_touches, smaller, touch_rate
 from carom.contact.stop import look_at_stop
 from carom.dispatch import only_with_pairs
 from carom.geometry.rotation import norm
+from carom.hold.balance import too_long
 from carom.hold.events import (
     CONE,
     GAP,
@@ -90,6 +91,7 @@ def advance(
 ):
     """Move the bodies of an island to the end of the step. Returns 0, or what `run` is to return."""
     clock, search, trial = clocks[0], work.search[0], work.trial
+    pace = math.inf
     while clock.spent < length:
         if full(system, held, clock, records):
             return r.FULL
@@ -108,7 +110,7 @@ def advance(
             # a trial step, cut until nothing can lie inside it, or shortened to its first event
             dt, cuts, found, again = remaining, 0, False, False
             if held.count[0] > 0:
-                dt = until_stop(controls, held, dt, clock)
+                dt = until_stop(controls, held, min(dt, pace), clock)
             search.active, search.eager = 0, 1 if clock.in_step < 20 else 0
             while True:
                 work.result[0].start = clock.now
@@ -152,7 +154,12 @@ def advance(
                     if state == 0:
                         dt = propose(search)
                         continue
-                verdict, kind, other, low, d1, d2 = examine(system, controls, held, now, dt, work)
+                verdict, kind, other, low, d1, d2 = UNSURE, GAP, -1, 0.0, 0.0, 0.0
+                loses = too_long(controls, held, dt, pace < math.inf, work)
+                if not loses:
+                    verdict, kind, other, low, d1, d2 = examine(
+                        system, controls, held, now, dt, work
+                    )
                 if verdict == FLAT_RIM:  # its points strike together where they are
                     search.pending, search.contact, search.horizon = STRIKE, other, remaining
                     break
@@ -173,6 +180,7 @@ def advance(
                         return STEP_CUT
                     search.active = 0
                     dt *= 0.5
+                    pace = dt if loses else pace
                     continue
                 begin_search(search, kind, other, low, dt, d1, d2)
                 if kind != GAP and kind < STOPS:
@@ -188,6 +196,7 @@ def advance(
             if controls.retry == 1 and held.count[0] > 0 and unsolved(system, controls, work):
                 return NO_CONVERGENCE
             accept(now, trial, dt, applied, friction, begin, clock)
+            pace *= 2.0
             if strayed(system, now, dt, work):
                 return r.STRAYED
             if dt == remaining:

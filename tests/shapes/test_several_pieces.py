@@ -96,15 +96,9 @@ def test_a_mesh_falls_on_a_box():
     assert np.max(np.abs(s.ledger.residual)) < 2e-6 * s.total_energy[0]
 
 
-@pytest.mark.parametrize(
-    ("step", "unnamed"),
-    [
-        (5e-3, 1e-5),
-        # edges that stay on each other lose what the ledger does not name (docs/development/open.md)
-        pytest.param(2e-3, 1e-6, marks=pytest.mark.xfail(reason="open: edges held", strict=False)),
-    ],
-)
-def test_all_pairs_of_a_scene_with_all_kinds_of_shapes(step, unnamed):
+@pytest.mark.parametrize("step", [2e-3, 5e-3])
+@pytest.mark.parametrize("moved", [0.0, 1e-9, 1e-5])
+def test_all_pairs_of_a_scene_with_all_kinds_of_shapes(step, moved):
     # Rows of the tables are those of the scene: three bodies and a half-space, six contacts.
     scene = Scene(gravity=(0, 0, -G))
     scene.add_half_space((0, 0, 0), (0, 0, 1))
@@ -114,13 +108,16 @@ def test_all_pairs_of_a_scene_with_all_kinds_of_shapes(step, unnamed):
         Compound([(Sphere(0.03), (0, 0, 0)), (Box(0.1, 0.02, 0.02), (0.05, 0, 0))]),
     )
     for k, shape in enumerate(shapes):
-        scene.add_body(shape, density=1000.0, position=(0.05 * k, 0, 0.2 + 0.25 * k))
+        scene.add_body(
+            shape, density=1000.0, position=(0.05 * k, 0, 0.2 + 0.25 * k + (k == 1) * moved)
+        )
     scene.set_contact_default(restitution=0.2, friction=0.3)
     s = carom.simulate(scene, 0.3, step=step)
     assert s.contact_mode.shape == (len(s.t), 6)
     assert np.all(s.impacts.contact < 6)
-    # at 5 ms 2e-7 to 1.5e-6, as the start is moved by 1e-9 to 1e-5 m
-    assert np.max(np.abs(s.ledger.residual)) < unnamed * s.total_energy[0]
+    # Edges that are nearly parallel push each other for 1e-4 s: steps over all of that lost up to 1.3e-3, by
+    # the path that last digits of an early impact decide (`carom.hold.balance`).
+    assert np.max(np.abs(s.ledger.residual)) < 1e-6 * s.total_energy[0]
 
 
 def test_a_compound_about_a_given_mass_centre():

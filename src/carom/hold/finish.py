@@ -29,7 +29,7 @@ def gained(start, count, cluster):
 
 @kernel
 def finish(system, controls, held, k, start, h, end, count, cluster, work):
-    """Put the bodies to rest if nothing is left to move them; note modes, friction's work, bounds."""
+    """Put the bodies to rest if nothing is left to move them; note modes and bounds, return friction's work."""
     tolerance, friction = controls.rest * gained(start, count, cluster), 0.0
     at_rest = settle(system, tolerance, start, end, count, cluster)
     stop, away = tolerance * controls.step / h, 1e-6 * gained(start, count, cluster)
@@ -50,7 +50,6 @@ def finish(system, controls, held, k, start, h, end, count, cluster, work):
         if at_rest:
             hold.next = STICK
         hold.settles = 1 if at_rest else 0
-    work.result[0].friction += friction
     for m in range(count):
         b = cluster.member[m]
         linear, angular, spin = 0.0, 0.0, 0.0
@@ -61,6 +60,7 @@ def finish(system, controls, held, k, start, h, end, count, cluster, work):
         bound = work.body[b].bound
         bound[0], bound[1] = 2.0 * math.sqrt(linear) / h, 2.0 * math.sqrt(angular) / h
         bound[2] = math.sqrt(spin)
+    return friction
 
 
 @kernel

@@ -25,6 +25,7 @@ from carom.coulomb.residual import measure
 from carom.coulomb.solve import solve_cones
 from carom.dispatch import by_address
 from carom.geometry.rotation import rotate, rotate_back
+from carom.hold.balance import unnamed
 from carom.hold.finish import finish, forces_at_end, gained
 from carom.hold.middle import halfway, mean_velocity, spin_momentum
 from carom.hold.surface import onto_surfaces
@@ -55,7 +56,8 @@ def press_unit(system, controls, held, start, h, end, cluster, work, clocks):
     Forces at the end go to the held points; work of friction, of loads and a status to `work.result`.
     """
     result = work.result[0]
-    result.applied, result.friction, result.code, result.residual = 0.0, 0.0, 0, 0.0
+    result.applied, result.friction, result.code = 0.0, 0.0, 0
+    result.residual, result.unnamed = 0.0, 0.0
     for i in range(held.count[0]):
         hold = held.points[i]
         group = work.body[hold.body].group
@@ -119,9 +121,13 @@ def press_group(system, controls, held, group, start, h, end, cluster, work, clo
     cluster.cone.count[NEAR], cluster.cone.mismatch[ENOUGH] = 0, 0.0
     impose(system, held, k, h, end, count, loaded, cluster, work)
     check(system, k, start, end, count, cluster, work)
-    finish(system, controls, held, k, start, h, end, count, cluster, work)
+    friction = finish(system, controls, held, k, start, h, end, count, cluster, work)
+    work.result[0].friction += friction
     if loaded:
         work.result[0].applied += extra_work(system, h, start, end, cluster, work)
+    elif count > 1:  # a rim that runs round faster than steps can follow is struck flat instead
+        over = unnamed(system, controls, start, end, friction, count, cluster.member)
+        work.result[0].unnamed = max(work.result[0].unnamed, over)
     forces_at_end(system, controls, held, k, end, cluster, work)
 
 

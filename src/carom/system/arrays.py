@@ -346,6 +346,7 @@ RESULT = [
     ("power", "f8"),  # of loads, and of friction, with the last accelerations
     ("drag", "f8"),
     ("residual", "f8"),  # greatest of the groups held at several points
+    ("unnamed", "f8"),  # the same: energy lost without a name, as a part of what may be
     ("fallen", "i8"),  # steps of a symplectic method that the explicit one has taken
     ("start", "f8"),  # time at which the step on trial starts
     ("time", "f8"),  # of the state that is looked at: what is prescribed depends on it

@@ -1,0 +1,48 @@
+"""What a step of a group loses or gains without a name: where that is too much the step is too long.
+
+Edges that are nearly parallel turn their normal in some 1e-5 s, with forces of 1e4 times the weight: a step of
+order 2 over all of such a push takes energy that no friction has. Where only gravity acts the balance is known.
+"""
+
+from __future__ import annotations
+
+from carom.geometry.rotation import norm
+from carom.hold.middle import spin_momentum
+from carom.jit import inlined, kernel
+
+# what a step may lose: this part of the kinetic energy at its start, and of what a fall of a whole step gains;
+# one that is cut is cut on until it loses CAREFUL of that
+OF_MOTION, OF_FALL = 1e-6, 1e-2
+CAREFUL = 0.01
+SHORTEST = 1e-4  # of the step: what is no longer is cut no more
+
+
+@kernel
+def kinetic(body, state):
+    """Return the kinetic energy of a body."""
+    q, v, w = state.Q, state.v, state.w
+    l = spin_momentum(body, q, w[0], w[1], w[2])
+    return 0.5 * (body.mass * norm(v) ** 2 + l[0] * w[0] + l[1] * w[1] + l[2] * w[2])
+
+
+@kernel
+def unnamed(system, controls, start, end, friction, count, member):
+    """Return what the step has lost or gained besides the work of friction, as a part of what it may."""
+    lost, may, g = friction, 0.0, system.gravity
+    fall = controls.step * norm(g)
+    for m in range(count):
+        b = member[m]
+        body, before = system.bodies[b], kinetic(system.bodies[b], start[b])
+        lost += before - kinetic(body, end[b])
+        for r in range(3):
+            lost += body.mass * g[r] * (end[b].x[r] - start[b].x[r])
+        may += OF_MOTION * before + OF_FALL * 0.5 * body.mass * fall * fall
+    return abs(lost) / may if may > 0.0 else 0.0
+
+
+@inlined
+def too_long(controls, held, dt, careful, work):
+    """Return whether a step with held points is to be cut for what it loses."""
+    if held.count[0] == 0 or dt <= SHORTEST * controls.step:
+        return False
+    return work.result[0].unnamed > (CAREFUL if careful else 1.0)
