@@ -16,7 +16,7 @@ from carom.contact.pair_point import REACH, find_touches, smaller, touch_rate
 from carom.contact.stop import look_at_stop
 from carom.dispatch import only_with_pairs
 from carom.geometry.rotation import norm
-from carom.hold.balance import too_long
+from carom.hold.balance import too_long, unsolved
 from carom.hold.events import (
     CONE,
     GAP,
@@ -51,8 +51,8 @@ from carom.system.notes import begin_event, end_event
 LOCATE, PROJECT, WORK = range(3)
 STEP_CUT, TOO_MANY, NOT_FINITE = 2, 3, 4
 NO_CONVERGENCE, STEP_TOO_SMALL = 1, 12
-# where a step is given up: trial steps, work for held contacts, their residual as a part of what gravity gives
-TRIES, EFFORT, UNSOLVED = 3000, 2e7, 0.01
+# where a step is given up: trial steps, work for held contacts
+TRIES, EFFORT = 3000, 2e7
 
 
 class Controls(NamedTuple):
@@ -155,7 +155,7 @@ def advance(
                         dt = propose(search)
                         continue
                 verdict, kind, other, low, d1, d2 = UNSURE, GAP, -1, 0.0, 0.0, 0.0
-                loses = too_long(controls, held, dt, pace < math.inf, work)
+                loses = too_long(system, controls, held, dt, pace < math.inf, work)
                 if not loses:
                     verdict, kind, other, low, d1, d2 = examine(
                         system, controls, held, now, dt, work
@@ -265,13 +265,6 @@ def full(system, held, clock, records):
     if last > records.event.shape[0] or clock.touched + rows > records.touch.shape[0]:
         return True
     return clock.snapped + 2 * (system.bodies.shape[0] + rows) > records.snapshot.shape[0]
-
-
-@kernel
-def unsolved(system, controls, work):
-    """Return whether the contact problem of the last trial step was not solved."""
-    gained = controls.step * norm(system.gravity)
-    return gained > 0.0 and not work.result[0].residual <= UNSOLVED * gained
 
 
 @inlined

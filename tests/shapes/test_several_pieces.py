@@ -96,7 +96,7 @@ def test_a_mesh_falls_on_a_box():
     assert np.max(np.abs(s.ledger.residual)) < 2e-6 * s.total_energy[0]
 
 
-@pytest.mark.parametrize("step", [2e-3, 5e-3])
+@pytest.mark.parametrize("step", [1e-3, 2e-3])
 @pytest.mark.parametrize("moved", [0.0, 1e-9, 1e-5])
 def test_all_pairs_of_a_scene_with_all_kinds_of_shapes(step, moved):
     # Rows of the tables are those of the scene: three bodies and a half-space, six contacts.

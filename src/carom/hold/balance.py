@@ -14,7 +14,9 @@ from carom.jit import inlined, kernel
 # one that is cut is cut on until it loses CAREFUL of that
 OF_MOTION, OF_FALL = 1e-6, 1e-2
 CAREFUL = 0.01
-SHORTEST = 1e-4  # of the step: what is no longer is cut no more
+UNSOLVED = 0.01  # residual of contacts, as a part of what gravity gives in a step
+# of the step: what is no longer is cut no more, for what it loses and for a solution
+SHORTEST, RETRIED = 1e-4, 1e-2
 
 
 @kernel
@@ -40,9 +42,18 @@ def unnamed(system, controls, start, end, friction, count, member):
     return abs(lost) / may if may > 0.0 else 0.0
 
 
+@kernel
+def unsolved(system, controls, work):
+    """Return whether the contact problem of the last trial step was not solved."""
+    gained = controls.step * norm(system.gravity)
+    return gained > 0.0 and not work.result[0].residual <= UNSOLVED * gained
+
+
 @inlined
-def too_long(controls, held, dt, careful, work):
-    """Return whether a step with held points is to be cut for what it loses."""
+def too_long(system, controls, held, dt, careful, work):
+    """Return whether a step with held points is to be cut: for what it loses, or for want of a solution."""
     if held.count[0] == 0 or dt <= SHORTEST * controls.step:
         return False
+    if controls.retry == 1 and dt > RETRIED * controls.step and unsolved(system, controls, work):
+        return True
     return work.result[0].unnamed > (CAREFUL if careful else 1.0)
