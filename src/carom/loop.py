@@ -16,7 +16,7 @@ from carom.contact.pair_point import REACH, find_touches, smaller, touch_rate
 from carom.contact.stop import look_at_stop
 from carom.dispatch import only_with_pairs
 from carom.geometry.rotation import norm
-from carom.hold.balance import too_long, unsolved
+from carom.hold.balance import UNSOLVED, USELESS, too_long, unsolved
 from carom.hold.events import (
     CONE,
     GAP,
@@ -193,7 +193,8 @@ def advance(
                 dt = propose(search)
             if search.pending != NOTHING:
                 continue
-            if controls.retry == 1 and held.count[0] > 0 and unsolved(system, controls, work):
+            part = UNSOLVED if controls.retry == 1 else USELESS
+            if held.count[0] > 0 and unsolved(system, controls, work, part):
                 return NO_CONVERGENCE
             accept(now, trial, dt, applied, friction, begin, clock)
             pace *= 2.0

@@ -14,7 +14,9 @@ from carom.jit import inlined, kernel
 # one that is cut is cut on until it loses CAREFUL of that
 OF_MOTION, OF_FALL = 1e-6, 1e-2
 CAREFUL = 0.01
-UNSOLVED = 0.01  # residual of contacts, as a part of what gravity gives in a step
+# residual of contacts, as a part of what gravity gives in a step: where a step is cut, then taken whole; where
+# there is nothing to take whole, and the run stops
+UNSOLVED, USELESS = 0.01, 10.0
 # of the step: what is no longer is cut no more, for what it loses and for a solution
 SHORTEST, RETRIED = 1e-4, 1e-2
 
@@ -43,10 +45,10 @@ def unnamed(system, controls, start, end, friction, count, member):
 
 
 @kernel
-def unsolved(system, controls, work):
-    """Return whether the contact problem of the last trial step was not solved."""
+def unsolved(system, controls, work, part):
+    """Return whether contacts of the last trial step are off by that part of what gravity gives in one."""
     gained = controls.step * norm(system.gravity)
-    return gained > 0.0 and not work.result[0].residual <= UNSOLVED * gained
+    return gained > 0.0 and not work.result[0].residual <= part * gained
 
 
 @inlined
@@ -54,6 +56,6 @@ def too_long(system, controls, held, dt, careful, work):
     """Return whether a step with held points is to be cut: for what it loses, or for want of a solution."""
     if held.count[0] == 0 or dt <= SHORTEST * controls.step:
         return False
-    if controls.retry == 1 and dt > RETRIED * controls.step and unsolved(system, controls, work):
+    if dt > RETRIED * controls.step and unsolved(system, controls, work, UNSOLVED):
         return True
     return work.result[0].unnamed > (CAREFUL if careful else 1.0)
