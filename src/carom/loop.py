@@ -193,8 +193,9 @@ def advance(
                 dt = propose(search)
             if search.pending != NOTHING:
                 continue
-            part = UNSOLVED if controls.retry == 1 else USELESS
-            if held.count[0] > 0 and unsolved(system, controls, work, part):
+            # an island is taken whole then; where there are none the run goes on as long as it makes sense
+            bearable = UNSOLVED if controls.retry == 1 else USELESS
+            if held.count[0] > 0 and unsolved(system, controls, work, bearable):
                 return NO_CONVERGENCE
             accept(now, trial, dt, applied, friction, begin, clock)
             pace *= 2.0

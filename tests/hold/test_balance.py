@@ -33,19 +33,6 @@ def test_edges_that_push_each_other_lose_what_is_named(seed):
     assert np.max(np.abs(s.ledger.residual)) < 2e-5 * s.total_energy[0]
 
 
-def test_steps_of_a_body_alone_are_not_cut_for_what_they_lose():
-    # A box that rocks on a plane at 10 ms: its steps are as long as they are asked for, but for events.
-    scene = Scene(gravity=(0, 0, -9.81))
-    ground = scene.add_half_space((0, 0, 0), (0, 0, 1))
-    box = scene.add_body(
-        Box(0.1, 0.1, 0.4), mass=1.0, position=(0, 0, 0.205), angular_velocity=(0, 0.5, 0)
-    )
-    scene.add_contact(box, ground, restitution=0.0, friction=0.8)
-    s = carom.simulate(scene, 1.0, step=1e-2)
-    assert s.stats["held_steps"] > 50
-    assert s.stats["cuts"] < 10
-
-
 @pytest.mark.parametrize("part", [1.01, 1.05])
 def test_a_stack_that_topples_from_a_fixed_table(part):
     # Four blocks that lean over by more than 1/2, 1/4, 1/6, 1/8 of their length. Contacts of some steps of 2 ms
