@@ -1,0 +1,9 @@
+"""Random scenes of every kind that a user could state, and what is demanded of each run.
+
+A module here is a family of scenes: it has a function ``case(seed) -> Case``. `benchmarks/campaign.py` runs
+them by the thousand; the tests run a few of each.
+"""
+
+from campaigns import mechanisms, piles, throws
+
+FAMILIES = {"throws": throws.case, "mechanisms": mechanisms.case, "piles": piles.case}

@@ -1,0 +1,114 @@
+"""One random case, how it is run, and what is measured of the result."""
+
+from __future__ import annotations
+
+import time
+import warnings
+from dataclasses import asdict, dataclass, field
+
+import numpy as np
+
+import carom
+from carom.geometry import quaternion
+
+#: what a run may break at most: depth by size; energy gained, and without a name, by the energy exchanged
+DEPTH, GAIN, UNNAMED = 1e-9, 1e-6, 1e-4
+
+
+@dataclass
+class Case:
+    """A scene to be run, with a line that says what it is."""
+
+    scene: carom.Scene
+    duration: float
+    step: float
+    label: dict = field(default_factory=dict)
+
+
+@dataclass
+class Outcome:
+    """What a run gave. Energies are parts of the largest that the run exchanged."""
+
+    status: str
+    reached: float  # part of the duration
+    seconds: float  # processor time
+    residual: float  # greatest energy without a name
+    gained: float  # greatest rise of a line of the ledger that must not rise
+    depth: float  # greatest penetration of the ground at a saved time, by size of the body
+    slip_residual: float  # greatest held_residual by the greatest speed
+    impacts: int
+    whole: int  # steps taken whole
+    warned: int  # sentences in `solution.warnings`, where there are
+
+
+def wrong(row: dict) -> list[str]:
+    """Return what is wrong with an outcome, in words."""
+    found = [] if row["status"] == "SUCCESS" else [row["status"]]
+    found += [] if row["depth"] <= DEPTH else ["penetrates"]
+    found += [] if row["gained"] <= GAIN else ["gains"]
+    return found + ([] if row["residual"] <= UNNAMED else ["unnamed energy"])
+
+
+def run(case: Case) -> Outcome:
+    """Run a case and measure the result."""
+    begin = time.process_time()
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        s = carom.simulate(case.scene, case.duration, step=case.step, throw=False)
+    spent = time.process_time() - begin
+    scale = exchanged(s)
+    energies = {
+        "impacts": s.ledger.impacts,
+        "friction": s.ledger.friction,
+        "bounces": s.ledger.bounces,
+    }
+    if case.label.get("impact_law") == "newton" and case.label["friction"] > 0.0:
+        del energies["impacts"]  # Newton's law may gain energy by itself
+    speed = float(np.max(np.linalg.norm(s.velocity, axis=2), initial=0.0))
+    return Outcome(
+        status=s.status.name,
+        reached=float(s.t[-1] / case.duration),
+        seconds=spent,
+        residual=float(np.max(np.abs(s.ledger.residual))) / scale,
+        gained=max((rise(line) for line in energies.values()), default=0.0) / scale,
+        depth=depth(case.scene, s),
+        slip_residual=float(np.max(s.held_residual)) / max(speed, 1e-300),
+        impacts=len(s.impacts),
+        whole=int(s.stats.get("whole_steps", 0)),
+        warned=len(getattr(s, "warnings", ())),
+    )
+
+
+def exchanged(s: carom.Solution) -> float:
+    """Return the largest energy that a run exchanged: kinetic, potential against the start, loads [J]."""
+    potential = s.potential_energy - s.potential_energy[0]
+    largest = max(
+        np.max(s.kinetic_energy), np.max(np.abs(potential)), np.max(np.abs(s.ledger.loads))
+    )
+    return max(float(largest), 1e-300)
+
+
+def rise(line: np.ndarray) -> float:
+    """Return the greatest rise of what must not rise."""
+    return float(np.max(np.diff(line, prepend=0.0), initial=0.0))
+
+
+def depth(scene: carom.Scene, s: carom.Solution) -> float:
+    """Return how far bodies get into the half-spaces that they touch, by their size, by their support alone."""
+    worst = 0.0
+    bodies = {body.name: k for k, body in enumerate(scene.bodies)}
+    for contact in scene.contacts:
+        plane, body = contact.half_space, contact.body
+        if plane is None or body.shape is None:
+            continue
+        k = bodies[body.name]
+        down = quaternion.rotate_back(s.orientation[:, k], -np.asarray(plane.normal, dtype=float))
+        reach = np.array([body.shape.support(d) @ d for d in down])
+        gap = (s.position[:, k] - plane.point) @ plane.normal - reach
+        worst = max(worst, float(-np.min(gap)) / body.shape.size)
+    return worst
+
+
+def as_row(family: str, seed: int, case: Case, outcome: Outcome) -> dict:
+    """Return what is written down of a case."""
+    return {"family": family, "seed": seed, **case.label, **asdict(outcome)}
