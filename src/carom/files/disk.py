@@ -40,10 +40,17 @@ def put(path: Path, parts: Iterable[bytes | memoryview]) -> None:
     _settle(path.parent)
 
 
-def _settle(folder: Path) -> None:
-    """Have the names in a folder on the disk too, where the system can do that."""
+def settle(folder: Path) -> None:
+    """Have all that is in a folder on the disk, where the system can do that."""
+    for one in folder.rglob("*"):
+        _settle(one)
+    _settle(folder)
+
+
+def _settle(place: Path) -> None:
+    """Have a file, or the names in a folder, on the disk."""
     with contextlib.suppress(OSError):
-        number = os.open(folder, os.O_RDONLY)
+        number = os.open(place, os.O_RDONLY)
         try:
             os.fsync(number)
         finally:
