@@ -201,7 +201,7 @@ def test_info_is_what_the_solution_says(made, capsys):
 def test_what_is_not_there_is_one_line(made, capsys, monkeypatch):
     """A missing package is named with the line that installs it."""
     monkeypatch.setitem(sys.modules, "h5netcdf", None)
-    assert main(["info", str(made / "die.h5")]) == FAILED
+    assert main(["simulate", str(made / "die.h5"), "-o", str(made / "more.h5")]) == FAILED
     assert 'pip install "carom[files]"' in one_line(capsys)
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     assert main(["paper", "fig3a", "--out", str(made / "paper")]) == FAILED

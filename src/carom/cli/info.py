@@ -51,11 +51,9 @@ def run(
 
 def facts(solution, file: Path) -> dict[str, Any]:
     """Return what is in a solution as plain values."""
-    from carom.files.reading import opened
     from carom.scene.summary import KINDS
 
-    with opened(file) as opened_file:
-        attributes = {k: opened_file.attrs.get(k) for k in ("source", "citation", "references")}
+    attributes = {k: solution._run.attributes[k] for k in ("source", "citation", "references")}
     made, ledger = solution.scene, solution.ledger
     energy = {
         name: float(getattr(ledger, name)[-1])

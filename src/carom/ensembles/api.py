@@ -10,6 +10,7 @@ import numpy as np
 
 from carom import check
 from carom.drive import reporter
+from carom.ensembles.outcome import PENDING
 from carom.ensembles.result import Ensemble
 from carom.ensembles.sampling import draw
 from carom.options import Options
@@ -88,6 +89,8 @@ def ensemble(
 
     Raises
     ------
+    OSError
+        If `save` cannot be written, as on a full disk. What was written is kept: the same call goes on with it.
     TypeError, ValueError
         For an argument of another type or outside its range, a name that is not known, a scene that cannot
         start, or a `save` that holds another ensemble. Nothing has run then.
@@ -131,7 +134,9 @@ def ensemble(
     store = _store(save, plan, inputs, chunk) if save is not None else None
     chunk = store.chunk if store is not None else chunk
     parts: list = []
-    done = store.done() if store is not None else np.zeros(count, dtype=bool)
+    done = (
+        np.zeros(count, dtype=bool) if store is None else store.read().outcomes["status"] != PENDING
+    )
     report = reporter(progress, count, "run")
     try:
         _go(plan, inputs, done, chunk, executor, workers, store, parts, report)
@@ -147,8 +152,8 @@ def ensemble(
         if close is not None:
             close()
     if store is not None:
-        outcomes, observed, failures = store.outcomes(), store.observed(), store.failures()
-        return Ensemble(inputs, outcomes, observed, failures, store.about, plan)
+        whole = store.read()
+        return Ensemble(inputs, whole.outcomes, whole.observed, whole.failures, store.about, plan)
     return _collect(plan, inputs, parts, count)
 
 
@@ -168,10 +173,10 @@ def _plan(scene, settings: tuple, inputs: dict[str, np.ndarray], observe):
 def _store(save, plan, inputs, chunk):
     from carom import __version__
     from carom.ensembles.mark import digest
-    from carom.ensembles.store import Store
+    from carom.ensembles.store import Store, is_begun
 
     mark = digest(plan, inputs)
-    if Path(save).exists() and any(Path(save).iterdir()):
+    if is_begun(Path(save)):
         store = Store.open(save)
         if store.about.get("digest") != mark:
             raise ValueError(

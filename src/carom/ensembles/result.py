@@ -58,9 +58,8 @@ class Ensemble:
         from carom.ensembles.store import Store
 
         store = Store.open(path)
-        return cls(
-            store.inputs(), store.outcomes(), store.observed(), store.failures(), store.about
-        )
+        whole = store.read()
+        return cls(store.inputs(), whole.outcomes, whole.observed, whole.failures, store.about)
 
     def __getattr__(self, name: str) -> np.ndarray:
         """Return a column of the outcomes."""

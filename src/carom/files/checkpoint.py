@@ -6,15 +6,17 @@ large it was. Addresses of compiled units are those of one process, and found ag
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+import zlib
+from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
 
+from carom import check
 from carom.system import records as r
 from carom.system.arrays import Relations
 
-GROUP = "checkpoint"
 #: arrays that are the same in every run of a scene, or hold addresses
 FIXED = {
     "islands.partner", "islands.partner_first", "islands.plane", "islands.plane_first",
@@ -23,11 +25,31 @@ FIXED = {
 }  # fmt: skip
 
 
+class Packed(NamedTuple):
+    """An array as it is in a file: unpacked when it is known to be one of the run."""
+
+    dtype: np.dtype
+    shape: tuple[int, ...]
+    data: bytes  # none: all zeros; shorter than the array: deflated
+
+    def unpacked(self) -> np.ndarray:
+        """Return the array."""
+        size = self.dtype.itemsize * math.prod(self.shape)
+        if not self.data:
+            return np.zeros(self.shape, self.dtype)
+        whole = self.data
+        if len(whole) < size:
+            whole = zlib.decompressobj().decompress(whole, size)
+        if len(whole) != size:
+            raise ValueError("an array of the checkpoint has another size than it should")
+        return np.frombuffer(whole, self.dtype).reshape(self.shape)
+
+
 class Checkpoint(NamedTuple):
     """A run between two steps."""
 
     found: dict[str, int]  # which units were compiled, and the sizes of what grows
-    arrays: dict[str, np.ndarray]  # by name, copies
+    arrays: Mapping[str, np.ndarray | Packed]  # by name, copies
 
 
 def capture(run) -> Checkpoint | None:
@@ -76,16 +98,50 @@ def restore(run, checkpoint: Checkpoint, records: r.Records) -> None:
     if layout_of(here) != layout_of(checkpoint.arrays):
         raise ValueError("the checkpoint was written by another version of carom")
     for name, array in here.items():
-        array[...] = checkpoint.arrays[name]
+        kept = checkpoint.arrays[name]
+        array[...] = kept.unpacked() if isinstance(kept, Packed) else kept
     _put_records(run, records)
 
 
-def layout_of(arrays: dict[str, np.ndarray]) -> dict[str, tuple]:
+def packed(checkpoint: Checkpoint, add: Callable[[bytes], int]) -> dict:
+    """Return what an index has of a checkpoint; `add` takes bytes of a file, and returns where they stand."""
+    arrays = {}
+    for name, array in checkpoint.arrays.items():
+        data = array.data if isinstance(array, Packed) else _deflated(array)
+        kind = array.dtype.descr if array.dtype.names else array.dtype.str
+        arrays[name] = kind, array.shape, add(data), len(data)
+    return {"found": checkpoint.found, "arrays": arrays}
+
+
+def from_index(note: dict, data: memoryview) -> Checkpoint:
+    """Return a checkpoint: what `packed` has written."""
+    arrays = {}
+    for name, (kind, shape, start, length) in note["arrays"].items():
+        kind = [(f[0], f[1], *map(tuple, f[2:])) for f in kind] if isinstance(kind, list) else kind
+        dtype = np.dtype(kind)
+        sizes = [*shape, start, length]
+        if dtype.hasobject or not all(type(n) is int and n >= 0 for n in sizes):
+            raise ValueError(f"checkpoint: {name!r} is no array")
+        arrays[name] = Packed(dtype, tuple(shape), bytes(data[start : start + length]))
+    found = {str(name): check.integer(name, n, least=0) for name, n in note["found"].items()}
+    return Checkpoint(found, arrays)
+
+
+def _deflated(array: np.ndarray) -> bytes:
+    """Return the bytes of an array, deflated where that is shorter; none if they are zeros."""
+    whole = np.ascontiguousarray(array).tobytes()
+    if not np.frombuffer(whole, "u1").any():
+        return b""
+    short = zlib.compress(whole, 1)
+    return short if len(short) < len(whole) else whole
+
+
+def layout_of(arrays: Mapping[str, np.ndarray | Packed]) -> dict[str, tuple]:
     """Return type and shape of arrays by name."""
     return {name: (_type_of(a), tuple(a.shape)) for name, a in sorted(arrays.items())}
 
 
-def _type_of(array: np.ndarray) -> str:
+def _type_of(array: np.ndarray | Packed) -> str:
     return str(array.dtype.descr if array.dtype.names else array.dtype.str)
 
 

@@ -10,6 +10,7 @@ from time import perf_counter
 from carom import check
 from carom.files.checkpoint import Checkpoint, capture
 from carom.files.needs import need
+from carom.files.scene_parts import scene_to_text
 from carom.files.writing import write
 from carom.solution import Solution
 from carom.status import Status
@@ -22,6 +23,7 @@ class Keeper:
 
     def __init__(self, run, path: str | os.PathLike, seconds: float):
         self.run, self.path = run, checked_path(path)
+        scene_to_text(run.scene)  # what no file can hold is refused before anything runs
         self.seconds = check.number("save_seconds", seconds, least=0.0, unit="s")
         self.checkpoint: Checkpoint | None = None
         self.written, self.took = perf_counter(), 0.0
@@ -37,10 +39,10 @@ class Keeper:
         if begin - self.written < self.interval:
             return
         self.checkpoint = capture(self.run)
-        so_far = Solution.from_run(self.run, Status.INTERRUPTED)
         try:
+            so_far = Solution.from_run(self.run, Status.INTERRUPTED)
             write(self.path, so_far, self.checkpoint, whole=False)
-        except OSError as error:  # a full disk is no reason to lose the run
+        except Exception as error:  # a full disk, or whatever else, is no reason to lose the run
             warnings.warn(
                 f"the run could not be saved to {str(self.path)!r} and goes on: {error}",
                 RuntimeWarning,
@@ -53,12 +55,12 @@ class Keeper:
         """Keep where the run stands, before its end is written down, if that is between two steps."""
         self.checkpoint = capture(self.run) or self.checkpoint
 
-    def finish(self, solution: Solution) -> OSError | None:
+    def finish(self, solution: Solution) -> Exception | None:
         """Write the end, with a checkpoint only if it was interrupted; return what went wrong."""
         going_on = solution.status is Status.INTERRUPTED
         try:
             write(self.path, solution, self.checkpoint if going_on else None)
-        except OSError as error:
+        except Exception as error:
             return error
         return None
 

@@ -31,8 +31,9 @@ class KeptRun:
 
     def __init__(
         self, scene: Scene, settings: dict, options: Options, records: r.Records,
-        checkpoint: Checkpoint | None, missing: list[str],
+        checkpoint: Checkpoint | None, missing: list[str], attributes: dict,
     ):  # fmt: skip
+        self.attributes = attributes
         self.scene, self.settings, self.options = scene, settings, options
         self.records, self.checkpoint, self.missing = records, checkpoint, missing
         self.clock = r.new_clock()
@@ -84,6 +85,9 @@ class KeptRun:
     @cached_property
     def contact_count(self) -> int:
         """Number of contacts and stops."""
-        from carom.system.contact_rows import touching_pairs
-
-        return len(touching_pairs(self.scene).body) + len(self.scene.stops)
+        scene = self.scene
+        return (
+            len(scene.contacts)
+            + scene._pairs.count(scene.bodies, scene.half_spaces)
+            + len(scene.stops)
+        )

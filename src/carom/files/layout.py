@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-#: version of the layout; a reader takes its own and older ones
-FORMAT = 1
+#: version of the layout of what carom reads
+FORMAT = 2
 CONVENTIONS = "CF-1.11"
 DOI = "10.1007/978-3-030-81166-2_44"
 CITATION = (
@@ -78,6 +78,13 @@ HELD = {
     "point": (("axis",), "m", "where, world axes"),
     "force": (("contact_axis",), "N", "force on the body, contact axes"),
     "vector": (("axis",), "N", "force on the body, world axes"),
+}
+
+#: columns of words, of which there are few
+WORDS = {
+    "impact_law": ("newton", "poisson", "stronge"),
+    "event_kind": ("impact", "held", "slips", "sticks", "opens", "jams"),
+    "interval_mode": ("open", "slipping", "sticking"),
 }
 
 LEDGER = {

@@ -69,14 +69,13 @@ def columns(records: r.Records, labelled: Mapping[str, np.ndarray]) -> list[Colu
 
 
 def from_columns(read, sizes: Mapping[str, int]) -> r.Records:
-    """Return records; `read` gives a column by its name, or the name of the variable that holds it."""
+    """Return records; `read` gives a column of a shape and a type by its name, or that of the same variable."""
     tables = {}
     for table, fields in FIELDS.items():
-        shape = tuple(sizes[dim] for dim in DIMS[table])
-        made = new_table(fields, *shape)
+        made = new_table(fields, *(sizes[dim] for dim in DIMS[table]))
         for field in fields:
-            name = f"{table}_{field[0]}"
-            made[field[0]] = read(name, SAME.get(name, ""))
+            name, column = f"{table}_{field[0]}", made[field[0]]
+            made[field[0]] = read(name, SAME.get(name, ""), column.shape, column.dtype)
         tables[table] = made
     return r.Records(**tables)
 

@@ -1,190 +1,217 @@
-"""Reading a run from its file."""
+"""Reading a run from its file.
+
+The file has not changed since it was written (`carom.files.sealed`), but anybody may have written it: all that
+is taken from it is looked at, sizes before anything is made of them, numbers of rows before they are used.
+"""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+import math
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from carom.files import checkpoint as state
+from carom import check
 from carom.files import raw
-from carom.files.checkpoint import Checkpoint
+from carom.files.checkpoint import from_index
 from carom.files.kept import KeptRun
-from carom.files.layout import EVENT, FORMAT, IMPACT, INTERVAL, LEDGER
-from carom.files.needs import need
+from carom.files.layout import EVENT, IMPACT, INTERVAL, LEDGER, WORDS
 from carom.files.scene_parts import scene_from_text
+from carom.files.sealed import Sealed, refusal, unsealed
 from carom.ledger import Ledger
 from carom.options import Options
+from carom.simulate import checked_settings
 from carom.status import Status
 from carom.system import records as r
-from carom.tables import LAWS, ContactTable, EventTable, ImpactTable
+from carom.tables import ContactTable, EventTable, ImpactTable
 
-ALLOWED = "allowed is a file that Solution.save or simulate(save=...) has written"
-#: what HDF5, h5netcdf and JSON raise where a file has been damaged
-BROKEN = (
-    KeyError, TypeError, IndexError, AttributeError, OSError, RuntimeError, MemoryError,
-    UnicodeDecodeError, json.JSONDecodeError,
-)  # fmt: skip
-#: types of columns of words
-MOTION = ("position", "velocity", "angular_velocity", "held_residual")
-DERIVED = ("orientation", "kinetic_energy", "potential_energy")
-MODES = ("open", "slipping", "sticking")
-WORDS = {"impact_law": LAWS, "event_kind": r.EVENTS, "interval_mode": MODES}
+SPATIAL = ("time", "body", "axis")
+#: dimensions of the variables that a solution is made of
+MOTION = {
+    "position": SPATIAL, "velocity": SPATIAL, "angular_velocity": SPATIAL,
+    "held_residual": ("time",),
+}  # fmt: skip
+DERIVED = {
+    "orientation": ("time", "body", "quaternion"),
+    "kinetic_energy": ("time",), "potential_energy": ("time",),
+}  # fmt: skip
+LENGTHS = {"axis": 3, "quaternion": 4, "contact_axis": 3, "contact_axis_2": 3}
+WHOLE = ("contact", "together", "feature")  # columns of tables that count something
 
 
 def read(path: Path, functions: Mapping[str, Callable] | None = None) -> dict[str, Any]:
-    """Return the fields of a solution, and in ``cached`` its properties that were worked out already."""
-    with opened(path) as file, _told(path):
-        scene, missing = scene_from_text(_text(file.variables["scene"]), functions)
-        options = Options(**json.loads(file.attrs["options"]))
-        settings = json.loads(file.attrs["settings"])
-        records = _records(file)
-        run = KeptRun(scene, settings, options, records, _checkpoint(file), missing)
-        fields: dict[str, Any] = {
-            "t": _array(file, "time"),
-            **{name: _array(file, name) for name in MOTION},
-            "status": Status[file.attrs["status"]],
-            "stats": json.loads(file.attrs["stats"]),
-            "scene": scene, "settings": settings, "_run": run, "_touch": records.touch,
-        }  # fmt: skip
-        derived = {name: _array(file, name) for name in DERIVED}
-        entries = [_array(file, f"ledger_{name}") for name in LEDGER if name != "residual"]
-        energies = derived["kinetic_energy"], derived["potential_energy"]
-        fields["cached"] = {
-            **derived,
-            "impacts": ImpactTable(**{k: _array(file, f"impact_{k}") for k in IMPACT}),
-            "events": EventTable(**{k: _array(file, f"event_{k}") for k in EVENT}),
-            "contacts": ContactTable(**{k: _array(file, f"interval_{k}") for k in INTERVAL}),
-            "ledger": Ledger(*energies, *entries),
-            **_cached(file),
-        }
-    return fields
-
-
-@contextmanager
-def opened(path: Path) -> Iterator[Any]:
-    """Open a file for reading, or say what it is instead of a run.
+    """Return the fields of a solution, and in ``cached`` its properties that were worked out already.
 
     Raises
     ------
     FileNotFoundError
-        If there is none.
+        If there is no file.
     ValueError
-        If it is of another kind, broken, or newer than this version of carom.
+        If it is foreign, damaged, or newer than this version of carom; if a function is none of the scene's.
     """
-    h5netcdf = need("h5netcdf", "loading a run")
-    import h5py
-
-    if not path.exists():
-        raise FileNotFoundError(f"path must be a file of a run, got {str(path)!r}: there is none")
-    if path.is_dir() or not h5py.is_hdf5(path):
-        what = "a folder" if path.is_dir() else "not HDF5, or its beginning is lost"
-        raise ValueError(_refusal(path, f"it is {what}"))
+    file = unsealed(path)
     try:
-        file = h5netcdf.File(path, "r")
-        version, made = (file.attrs.get(name) for name in ("carom_format", "source"))
-    except (*BROKEN, ValueError) as error:
-        raise ValueError(_refusal(path, f"it is broken ({error})")) from error
-    with file:
-        if not isinstance(version, (int, np.integer)):
-            raise ValueError(_refusal(path, "it is HDF5, but not from carom (no carom_format)"))
-        if not 1 <= version <= FORMAT:
-            raise ValueError(
-                f"path must be a file in format {FORMAT} or older, got {str(path)!r} in format {version}, "
-                f"written by {made or 'another program'}; update carom to read it"
-            )
-        yield file
-
-
-def _refusal(path: Path, why: str) -> str:
-    return f"path must be a file of a run, got {str(path)!r}: {why}; {ALLOWED}"
-
-
-@contextmanager
-def _told(path: Path) -> Iterator[None]:
-    """Say of a file whose inside is not as it should be that it is broken."""
+        scene, missing = scene_from_text(file.index["scene"], functions)
+    except ValueError as error:
+        if str(error).startswith("functions must"):
+            raise
+        raise ValueError(refusal(path, f"its scene is broken: {error}")) from error
     try:
-        yield
-    except (
-        KeyError,
-        TypeError,
-        IndexError,
-        AttributeError,
-        OSError,
-        json.JSONDecodeError,
-    ) as error:
+        return _fields(file, scene, missing)
+    except Exception as error:  # whatever a made-up index leads to
         what = f"{type(error).__name__}: {error}"
-        raise ValueError(_refusal(path, f"a part of it is missing or broken ({what})")) from error
+        raise ValueError(refusal(path, f"a part of it is missing or broken ({what})")) from error
 
 
-def _text(variable) -> str:
-    value = variable[()]
-    value = value.item() if isinstance(value, np.ndarray) else value
-    return value.decode() if isinstance(value, bytes) else value
+def _fields(file: Sealed, scene, missing: list[str]) -> dict[str, Any]:
+    index = file.index
+    attributes = index["attributes"]
+    options = Options(**json.loads(attributes["options"]))
+    settings = _settings(json.loads(attributes["settings"]), options)
+    arrays = _Arrays(file, len(scene.bodies))
+    records = raw.from_columns(arrays.column, arrays.sizes)
+    note = index["checkpoint"]
+    checkpoint = None if note is None else from_index(note, file.data)
+    run = KeptRun(scene, settings, options, records, checkpoint, missing, attributes)
+    check_numbers(records, run.contact_count)
+    derived = {name: arrays.array(name, dims) for name, dims in DERIVED.items()}
+    entries = [arrays.array(f"ledger_{name}", ("time",)) for name in LEDGER if name != "residual"]
+    return {
+        "t": arrays.array("time", ("time",)),
+        **{name: arrays.array(name, dims) for name, dims in MOTION.items()},
+        "status": Status[attributes["status"]],
+        "stats": {
+            str(name): check.integer(name, n)
+            for name, n in json.loads(attributes["stats"]).items()
+        },
+        "scene": scene, "settings": settings, "_run": run, "_touch": records.touch,
+        "cached": {
+            **derived,
+            "impacts": ImpactTable(**arrays.table("impact", IMPACT)),
+            "events": EventTable(**arrays.table("event", EVENT)),
+            "contacts": ContactTable(**arrays.table("interval", INTERVAL)),
+            "ledger": Ledger(derived["kinetic_energy"], derived["potential_energy"], *entries),
+            **_cached(arrays),
+        },
+    }  # fmt: skip
 
 
-def _array(file, name: str) -> np.ndarray:
-    """Return a variable as the array that it was."""
-    data = np.asarray(file.variables[name][...])
-    if data.dtype.kind not in "OS":
-        return data
-    words = [one.decode() if isinstance(one, bytes) else str(one) for one in data.ravel()]
-    kind = np.array(WORDS[name]).dtype if name in WORDS else None
-    return np.array(words, dtype=kind or str).reshape(data.shape)
+def _settings(given: dict, options: Options) -> dict:
+    """Return the settings of a run, looked at as those of `simulate` are."""
+    checked_settings(
+        given["duration"], given["step"], given["method"], given["impact_location"],
+        given.get("rtol"), given.get("atol"), given["save_every"], options,
+    )  # fmt: skip
+    return given
 
 
-def _records(file) -> r.Records:
-    group = file.groups[raw.GROUP]
-    sizes = {
-        name: file.dimensions[name].size for name in ("time", "body", "held", "impact", "event")
-    }
-    sizes["snapshot"] = group.dimensions["snapshot"].size
+class _Arrays:
+    """The arrays of a file by name: those that its index places in it, of the shape that they should have."""
 
-    def column(name: str, same: str) -> np.ndarray:
-        return _array(
-            group if name in group.variables else file, name if name in group.variables else same
-        )
+    def __init__(self, file: Sealed, bodies: int):
+        self.data, self.index = file.data, file.index
+        self.sizes = {
+            str(dim): check.integer(f"size of {dim}", n, least=0)
+            for dim, n in file.index["sizes"].items()
+        } | LENGTHS
+        if self.sizes["time"] < 1 or self.sizes["body"] != bodies:
+            raise ValueError(f"it has {bodies} bodies, and {self.sizes['body']} rows for them")
+        for dims in raw.DIMS.values():
+            if 8 * math.prod(self.sizes[dim] for dim in dims) > len(self.data):
+                raise ValueError(f"it is too short for its sizes {self.sizes}")
 
-    return raw.from_columns(column, sizes)
+    def __contains__(self, name: str) -> bool:
+        return name in self.index["arrays"]
+
+    def array(self, name: str, dims: tuple[str, ...], kind: str = "f8") -> np.ndarray:
+        """Return a variable with these dimensions."""
+        return self._placed(name, tuple(self.sizes[dim] for dim in dims), np.dtype(kind))
+
+    def column(self, name: str, same: str, shape: tuple[int, ...], kind) -> np.ndarray:
+        """Return a column of the records, or the variable that has the same bits."""
+        own = f"{raw.GROUP}/{name}"
+        return self._placed(own if own in self else same, shape, np.dtype(kind))
+
+    def table(self, prefix: str, columns: dict) -> dict[str, np.ndarray]:
+        """Return the columns of a table."""
+        out = {}
+        for column, (dims, _, _) in columns.items():
+            name = f"{prefix}_{column}"
+            kind = "i8" if column in WHOLE else "f8"
+            out[column] = (
+                self._words(name, self.sizes[prefix])
+                if name in WORDS
+                else self.array(name, (prefix, *dims), kind)
+            )
+        return out
+
+    def _words(self, name: str, rows: int) -> np.ndarray:
+        codes = np.frombuffer(self.index["words"][name].encode(), "u1") - ord("0")
+        if len(codes) != rows:
+            raise ValueError(f"{name} has {len(codes)} rows where {rows} should be")
+        return np.array(WORDS[name])[codes]
+
+    def _placed(self, name: str, shape: tuple[int, ...], kind: np.dtype) -> np.ndarray:
+        stored, start = self.index["arrays"][name]
+        if np.dtype(str(stored)).newbyteorder("=") != kind:
+            raise ValueError(f"{name} is of type {stored!r} where {kind.str!r} should be")
+        size = math.prod(shape)
+        check.integer(f"place of {name}", start, least=0, most=len(self.data) - 8 * size)
+        flat = np.frombuffer(self.data, np.dtype(stored), size, start) if size else np.zeros(0)
+        return flat.reshape(shape).astype(kind)
 
 
-def _checkpoint(file) -> Checkpoint | None:
-    if state.GROUP not in file.groups:
-        return None
-    group = file.groups[state.GROUP]
-    note = json.loads(_text(group.variables["note"]))
-    arrays = {}
-    for name, of in note["arrays"].items():
-        kind = of["dtype"]
-        kind = (
-            [(f[0], f[1], *(tuple(n) for n in f[2:])) for f in kind]
-            if isinstance(kind, list)
-            else kind
-        )
-        made = np.zeros(tuple(of["shape"]), dtype=np.dtype(kind))
-        if not of["zero"]:
-            made.reshape(-1).view("u8")[:] = group.variables[name][...]
-        arrays[name] = made
-    return Checkpoint(note["found"], arrays)
+def check_numbers(records: r.Records, contacts: int) -> None:
+    """Refuse numbers of rows that there are not: of contacts, bodies, saved times, events, snapshots.
+
+    Raises
+    ------
+    ValueError
+        With the column.
+    """
+    saved, bodies = records.state.shape
+    events, shots = len(records.event), len(records.snapshot)
+    ranges = {
+        "touch": {
+            "saved": (0, saved), "contact": (0, contacts), "body": (0, bodies),
+            "other": (-1, bodies), "mode": (0, 3),
+        },
+        "impact": {"contact": (0, contacts)},
+        "event": {
+            "kind": (0, len(r.EVENTS)), "contact": (0, contacts), "saved": (0, saved + 1),
+            "first": (0, shots + 1), "mode": (0, 3),
+        },
+        "snapshot": {"event": (0, events), "body": (0, bodies)},
+    }  # fmt: skip
+    for table, columns in ranges.items():
+        for name, (least, end) in columns.items():
+            column = getattr(records, table)[name]
+            if column.size and not (column.min() >= least and column.max() < end):
+                raise ValueError(
+                    f"{table}_{name} has numbers outside {least} to {end - 1}, of what is not there"
+                )
 
 
-def _cached(file) -> dict[str, Any]:
+def _cached(arrays: _Arrays) -> dict[str, Any]:
     """Return what the file of a finished run holds of reactions, empty where there are none of a kind."""
-    if "position_error" not in file.variables:
+    if "position_error" not in arrays:
         return {}
-    saved = file.dimensions["time"].size
+    saved = arrays.sizes["time"]
+    errors = (arrays.array(name, ("time",)) for name in ("position_error", "velocity_error"))
     out: dict[str, Any] = {
         "joint_reactions": np.zeros((saved, 0, 6)),
         "constraint_forces": np.zeros((saved, 0)),
-        "constraint_errors": (_array(file, "position_error"), _array(file, "velocity_error")),
+        "constraint_errors": tuple(errors),
     }
-    if "joint_force" in file.variables:
-        pair = [_array(file, name) for name in ("joint_force", "joint_torque")]
+    if "joint_force" in arrays:
+        pair = [
+            arrays.array(name, ("time", "joint", "axis"))
+            for name in ("joint_force", "joint_torque")
+        ]
         out["joint_reactions"] = np.concatenate(pair, axis=2)
-    if "constraint_force" in file.variables:
-        out["constraint_forces"] = _array(file, "constraint_force")
+    if "constraint_force" in arrays:
+        out["constraint_forces"] = arrays.array("constraint_force", ("time", "row"))
     return out

@@ -26,6 +26,8 @@ from typing import Any
 
 import numpy as np
 
+from carom import check
+from carom.files.scene_check import check_record
 from carom.scene.bodies import GROUND, Body, Ground, HalfSpace
 from carom.scene.constraints import CONSTRAINTS, Constraint, Gear
 from carom.scene.contacts import Contact
@@ -43,6 +45,7 @@ TYPES = {
     kind.__name__: kind
     for kind in (*PARTS, *SHAPES, *JOINTS, *FORCES, *CONSTRAINTS, Gear, ContactLaw, Material, Piece)
 }
+ARRAYS = ("<f8", "<i8", ">f8", ">i8", "|b1")
 
 
 class MissingFunction:
@@ -126,19 +129,11 @@ class Encoder:
 class Decoder:
     """Values from JSON: the reverse of `Encoder`."""
 
-    def __init__(self, shapes: list, functions: Mapping[str, Callable] | None = None):
-        self.parts: dict[str, Any] = {}
+    def __init__(self, functions: Mapping[str, Callable] | None = None):
+        self.parts: dict[str, Any] = {}  # those that later ones may refer to
+        self.shapes: list = []
         self.given = dict(functions or {})
         self.missing: list[str] = []
-        self.shapes: list = []
-        for shape in shapes:
-            self.shapes.append(self.value(shape))
-
-    def part(self, data: dict):
-        """Return a named part; later ones may refer to it."""
-        part = self.value(data)
-        self.parts[part.name] = part
-        return part
 
     def value(self, data) -> Any:
         """Return the value that `data` stands for."""
@@ -150,8 +145,12 @@ class Decoder:
             kind = TYPES[data["type"]]
             record = object.__new__(kind)
             keep(record, **{f.name: self.value(data[f.name]) for f in fields(kind)})
+            if not isinstance(record, PARTS):
+                check_record(record)
             return record
         if "dtype" in data:
+            if data["dtype"] not in ARRAYS:
+                raise ValueError(f"dtype must be one of {ARRAYS}, got {data['dtype']!r}")
             array = np.array(data["array"], dtype=np.dtype(data["dtype"]))
             return _frozen(array.reshape(data["of"]))
         return self._reference(data)
@@ -164,6 +163,7 @@ class Decoder:
         if "tuple" in data:
             return tuple(self.value(one) for one in data["tuple"])
         if "number" in data:
+            check.choice("number", data["number"], ("nan", "inf", "-inf"))
             return float(data["number"])
         if "ground" in data:
             return GROUND
@@ -171,8 +171,10 @@ class Decoder:
             from scipy.interpolate import PPoly
 
             c, x = self.value(data["polynomial"]), self.value(data["breaks"])
+            if not (np.all(np.isfinite(c)) and np.all(np.isfinite(x))):
+                raise ValueError("a polynomial must be finite")
             return PPoly(c.copy(), x.copy())
-        name = data["function"]
+        name = str(data["function"])
         if name in self.given:
             return self.given[name]
         self.missing.append(name)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 
-import numpy as np
-
-from carom.files.scene_data import Decoder, Encoder
+from carom import check
+from carom.files.scene_check import check_pair, check_part
+from carom.files.scene_data import PARTS, Decoder, Encoder
+from carom.scene.materials import ContactLaw, checked_rule
 from carom.scene.scene import Scene
 
 #: what a missing function means, in the words of the file
@@ -52,25 +54,67 @@ def scene_from_text(
     Raises
     ------
     ValueError
-        If a name of `functions` is none that the scene knows.
+        With the part that is wrong: if the text is no JSON, or a part is none that a scene would take; if a
+        name of `functions` is none that the scene knows.
     """
-    data = json.loads(text)
-    unknown = set(functions or {}) - set(data["functions"])
+    with told("the text"):
+        data = json.loads(text, parse_constant=_no_number)
+        check.instance("a scene", data, (dict,))
+        known = [str(name) for name in data["functions"]]
+    unknown = set(functions or {}) - set(known)
     if unknown:
-        known = ", ".join(map(repr, sorted(set(data["functions"])))) or "none"
-        raise ValueError(f"functions must have names of the file ({known}), got {min(unknown)!r}")
-    decoder = Decoder(data["shapes"], functions)
-    scene = Scene(np.array(data["gravity"], dtype=float))
-    for part in data["parts"]:
-        scene._parts.add(decoder.part(part))
+        names = ", ".join(map(repr, sorted(set(known)))) or "none"
+        raise ValueError(f"functions must have names of the file ({names}), got {min(unknown)!r}")
+    decoder = Decoder(functions)
+    for k, shape in enumerate(_list(data, "shapes")):
+        with told(f"shapes[{k}]"):
+            decoder.shapes.append(decoder.value(shape))
+    with told("gravity"):
+        scene = Scene(data["gravity"])
+    for k, part in enumerate(_list(data, "parts")):
+        with told(f"parts[{k}]"):
+            made = decoder.value(part)
+            check.instance("a part", made, PARTS)
+            check_part(scene, made)
+            decoder.parts[made.name] = scene._parts.add(made)
+    with told("contacts"):
+        _put_pairs(scene, data, decoder)
+    return scene, decoder.missing
+
+
+def _put_pairs(scene: Scene, data: dict, decoder: Decoder) -> None:
+    """Let those pairs of a scene touch that do in the file."""
     pairs, values = scene._pairs, decoder.value(data["contact_values"])
+    if values is not None:
+        check.instance("contact_values", values, (ContactLaw,))
     pairs._own, pairs._ignored = (
-        {frozenset(decoder.value(one) for one in pair) for pair in data[name]}
+        {check_pair(frozenset(map(decoder.value, pair))) for pair in data[name]}
         for name in ("own_pairs", "ignored_pairs")
     )
-    pairs._rules = dict(data["combine"])
-    pairs._values, pairs.default = values, values if data["all_pairs"] else None
-    return scene, decoder.missing
+    check.instance("combine", data["combine"], (dict,))
+    pairs._rules = checked_rule(data["combine"])
+    pairs._values = values
+    pairs.default = values if check.flag("all_pairs", data["all_pairs"]) else None
+
+
+@contextmanager
+def told(where: str) -> Iterator[None]:
+    """Say of whatever goes wrong with a part of a scene that it is that one."""
+    try:
+        yield
+    except Exception as error:
+        what = str(error) if isinstance(error, ValueError) else f"{type(error).__name__}: {error}"
+        raise ValueError(f"{where}: {what}") from error
+
+
+def _list(data: dict, name: str) -> list:
+    with told(name):
+        check.instance(name, data[name], (list,))
+    return data[name]
+
+
+def _no_number(name: str):
+    raise ValueError(f"{name} is no number of JSON")
 
 
 def _names(pairs) -> list:

@@ -1,67 +1,114 @@
-"""Writing a run to a netCDF-4 file: all of it, or nothing."""
+"""Writing a run to its file: all of it, or nothing.
+
+The HDF5 library makes its part in memory; the bytes are written without it. (It does not survive a full disk:
+version 2.0 ends the process.)
+"""
 
 from __future__ import annotations
 
-import contextlib
-import json
-import os
+import io
 from pathlib import Path
 
 import numpy as np
 
-from carom.files import checkpoint as state
 from carom.files import raw
-from carom.files.checkpoint import Checkpoint
+from carom.files.checkpoint import Checkpoint, packed
+from carom.files.disk import put
+from carom.files.layout import WORDS, Variable
 from carom.files.needs import need
+from carom.files.sealed import seal
 from carom.files.variables import attributes, labelled
 from carom.system import records as r
-
-SMALL = (
-    4096  # bytes up to which an array is stored as it is: without a checksum, and not compressed
-)
 
 
 def write(path: Path, solution, checkpoint: Checkpoint | None = None, whole: bool = True) -> None:
     """Write a solution to `path`, replacing what is there in one go.
 
-    A file that is being written stands beside it under another name; who kills the process, or fills the disk,
-    leaves what was there before. Without `whole` the reactions of joints are left out.
+    Without `whole` the reactions of joints are left out.
+
+    Raises
+    ------
+    OSError
+        With the path and the reason, if it could not be written; what was there is as it was.
     """
-    h5netcdf = need("h5netcdf", "saving a run")
-    part = path.with_name(
-        f".{path.name}.part"
-    )  # what a killed process leaves, the next saving writes over
     try:
-        with h5netcdf.File(part, "w") as file:
-            _write_all(file, solution, checkpoint, whole)
-        with part.open("r+b") as file:
-            os.fsync(file.fileno())  # on the disk before it takes the place of the old one
-        os.replace(part, path)
-    finally:
-        with contextlib.suppress(FileNotFoundError):
-            part.unlink()
+        parts = file_of(solution, checkpoint, whole)
+    except (OSError, MemoryError) as error:
+        why = str(error) or "no memory is left"
+        raise OSError(f"{str(path)!r} could not be written, and is as it was: {why}") from error
+    put(path, parts)
 
 
-def _write_all(file, solution, checkpoint, whole) -> None:
-    file.attrs.update(attributes(solution))
+def file_of(solution, checkpoint: Checkpoint | None = None, whole: bool = True) -> list:
+    """Return the bytes of a file, in parts: HDF5, carom's own arrays, the index of both, the digest."""
     variables = labelled(solution, reactions=whole)
-    for one in variables:
-        made = _create(file, one.name, one.dims, one.data)
-        made.attrs.update(one.attrs)
+    known = {one.name: one.data for one in variables}
+    image, arrays = hdf5(variables, attributes(solution))
+    parts: list[bytes | memoryview] = [image]
+    end = len(image)
+
+    def add(data: bytes) -> int:
+        nonlocal end
+        parts.append(data)
+        end += len(data)
+        return end - len(data)
+
     run = solution._run
     records = r.trimmed(run.records, run.clock)
-    group = file.create_group(raw.GROUP)
-    for column in raw.columns(records, {one.name: one.data for one in variables}):
-        _create(group, *column)
-    if checkpoint is not None:
-        _write_checkpoint(file.create_group(state.GROUP), checkpoint)
+    for name, _, data in raw.columns(records, known):
+        arrays[f"{raw.GROUP}/{name}"] = data.dtype.str, add(data.tobytes())
+    index = {
+        "attributes": attributes(solution),
+        "scene": known["scene"].item(),
+        "sizes": {
+            dim: n for one in variables for dim, n in zip(one.dims, one.data.shape)
+        } | {dim: len(getattr(records, dim)) for dim in ("snapshot",)},
+        "arrays": arrays,
+        "words": {name: _coded(known[name], words) for name, words in WORDS.items()},
+        "checkpoint": None if checkpoint is None else packed(checkpoint, add),
+    }  # fmt: skip
+    return seal(parts, index)
 
 
-def _create(group, name: str, dims: tuple[str, ...], data: np.ndarray):
-    """Create a variable, and the dimensions that are new; many numbers with a checksum (Fletcher's)."""
-    for dim, size in zip(dims, data.shape):
-        if dim not in group.dimensions and dim not in getattr(group.parent, "dimensions", {}):
-            group.dimensions[dim] = size
+def hdf5(variables: list[Variable], attrs: dict) -> tuple[memoryview, dict[str, tuple[str, int]]]:
+    """Return a netCDF-4 file as it would lie on the disk, and where in it the numbers of each variable are.
+
+    Raises
+    ------
+    OSError
+        If the HDF5 library fails, or has not written what it was given.
+    """
+    h5netcdf = need("h5netcdf", "saving a run")
+    import h5py
+
+    made, arrays = io.BytesIO(), {}
+    try:
+        with h5netcdf.File(made, "w") as file:
+            file.attrs.update(attrs)
+            for one in variables:
+                _create(file, one).attrs.update(one.attrs)
+        image = made.getbuffer()
+        with h5py.File(made, "r") as file:
+            for one in variables:
+                if one.data.dtype.kind in "fi":
+                    start = file[one.name].id.get_offset() or 0  # None where there are no elements
+                    arrays[one.name] = one.data.dtype.str, start
+    except Exception as error:  # of its own kinds: RuntimeError, KeyError, ...
+        raise OSError(f"HDF5 could not make the file: {type(error).__name__}: {error}") from error
+    for one in variables:
+        if one.name in arrays:
+            start = arrays[one.name][1]
+            if image[start : start + one.data.nbytes] != one.data.tobytes():
+                raise OSError(f"HDF5 has not written {one.name!r} as it was given")
+    return image, arrays
+
+
+def _create(file, one: Variable):
+    """Create a variable, and the dimensions that are new."""
+    for dim, size in zip(one.dims, one.data.shape):
+        if dim not in file.dimensions:
+            file.dimensions[dim] = size
+    data = one.data
     if data.dtype.kind in "UO":
         import h5py
 
@@ -69,29 +116,11 @@ def _create(group, name: str, dims: tuple[str, ...], data: np.ndarray):
     else:
         kind = data.dtype
     if data.size == 0:  # a length of 0 stands for one that may grow, and such arrays have chunks
-        return group.create_variable(
-            name, dims, dtype=kind, chunks=tuple(max(1, n) for n in data.shape)
-        )
-    checked = {"fletcher32": True} if data.nbytes > SMALL and data.dtype.kind != "O" else {}
-    return group.create_variable(name, dims, dtype=kind, data=data, **checked)
+        chunks = tuple(max(1, n) for n in data.shape)
+        return file.create_variable(one.name, one.dims, dtype=kind, chunks=chunks)
+    return file.create_variable(one.name, one.dims, dtype=kind, data=data)
 
 
-def _write_checkpoint(group, checkpoint: Checkpoint) -> None:
-    """Write arrays as words of 8 bytes, those of zeros by name alone."""
-    layout = {}
-    for name, array in checkpoint.arrays.items():
-        words = np.ascontiguousarray(array).reshape(-1).view("u8")
-        kind = array.dtype.descr if array.dtype.names else array.dtype.str
-        empty = not np.any(words)
-        layout[name] = {"dtype": kind, "shape": list(array.shape), "zero": empty}
-        if empty:
-            continue
-        dim = f"words_{words.size}"
-        if dim not in group.dimensions:
-            group.dimensions[dim] = words.size
-        packed = {"compression": "gzip", "compression_opts": 1, "fletcher32": True}
-        group.create_variable(
-            name, (dim,), dtype=words.dtype, data=words, **(packed if words.nbytes > SMALL else {})
-        )
-    note = {"found": checkpoint.found, "arrays": layout}
-    _create(group, "note", (), np.array(json.dumps(note), dtype=object))
+def _coded(data: np.ndarray, words: tuple[str, ...]) -> str:
+    """Return a column of words as one digit a row."""
+    return "".join(str(words.index(word)) for word in data.tolist())

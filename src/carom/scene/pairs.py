@@ -69,6 +69,20 @@ class Pairs:
         left_out = self._own | self._ignored
         return all_pairs(bodies, half_spaces, left_out, lambda a, b: self.law(a, b, {}))
 
+    def count(self, bodies, half_spaces) -> int:
+        """Return how many pairs touch without a contact of their own, without making them."""
+        if self.default is None:
+            return 0
+        solid = sum(body.shape is not None for body in bodies)
+        left_out = sum(
+            all(
+                isinstance(one, HalfSpace) or getattr(one, "shape", None) is not None
+                for one in pair
+            )
+            for pair in self._own | self._ignored
+        )
+        return solid * len(half_spaces) + solid * (solid - 1) // 2 - left_out
+
     def check_all(self, bodies, half_spaces) -> None:
         """Refuse pairs that touch by default and start inside each other, or have no law."""
         pairs = self.by_default(bodies, half_spaces)

@@ -1,0 +1,63 @@
+"""A disk that is full: an error with path and reason, the old file as it was, and no run lost.
+
+The system lets the process write so many bytes to a file and no more: what it then says is what a full disk
+says, but for the name of the error.
+"""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import carom
+from files.compare import differences
+
+resource = pytest.importorskip("resource")
+TESTS = Path(__file__).parents[1]
+CHILD = """
+import resource, sys, warnings
+import carom
+from files.compare import differences
+from simulate.scenes import die
+
+path, full = sys.argv[1], int(sys.argv[2])
+hard = resource.getrlimit(resource.RLIMIT_FSIZE)[1]
+straight = carom.simulate(die(), 0.25, step=5e-3)
+resource.setrlimit(resource.RLIMIT_FSIZE, (full, hard))
+warnings.simplefilter("always")
+with warnings.catch_warnings(record=True) as said:
+    try:
+        straight.save(path)
+    except OSError as error:
+        print("save:", error)
+    try:
+        carom.simulate(die(), 0.25, step=5e-3, save=path, save_seconds=0.0)
+    except carom.SimulationError as error:
+        print("simulate:", error, differences(error.solution, straight))
+print("said:", len(said), {str(one.message).split(":")[0] for one in said})
+resource.setrlimit(resource.RLIMIT_FSIZE, (hard, hard))
+straight.save(path)
+print("then:", differences(carom.Solution.load(path), straight))
+"""
+
+
+@pytest.mark.parametrize("full", [0, 1, 30000])
+def test_full_disk(full, thrown, tmp_path):
+    path = tmp_path / "run.nc"
+    path.write_bytes(b"what was there")
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(TESTS), *sys.path])}
+    done = subprocess.run(
+        [sys.executable, "-c", CHILD, str(path), str(full)],
+        env=environment, capture_output=True, text=True, check=True, timeout=300,
+    )  # fmt: skip
+    told = dict(line.split(": ", 1) for line in done.stdout.splitlines())
+    assert "File too large; nothing was written, what was there is as it was" in told["save"]
+    assert "run.nc" in told["save"]
+    assert told["simulate"].startswith("The run ended and could not be saved: [Errno ")
+    assert told["simulate"].endswith("[]")  # the solution that it holds is the run
+    assert "the run could not be saved to" in told["said"]
+    assert told["then"] == "[]"
+    assert differences(carom.Solution.load(path), thrown) == []
+    assert list(tmp_path.iterdir()) == [path]
