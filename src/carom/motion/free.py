@@ -24,10 +24,11 @@ def free_flight(body, g, h, start, end, memory):
     if body.isotropic == 1:
         r = exp(h * w0[0], h * w0[1], h * w0[2])
         q = multiply(r[0], r[1], r[2], r[3], q0[0], q0[1], q0[2], q0[3])
+        q = renormalize(q[0], q[1], q[2], q[3])
         w = (w0[0], w0[1], w0[2])
     else:
         q, w = tumble(body.inertia, h, q0, w0, memory)
-    q1[0], q1[1], q1[2], q1[3] = renormalize(q[0], q[1], q[2], q[3])
+    q1[0], q1[1], q1[2], q1[3] = q
     w1[0], w1[1], w1[2] = w
 
 

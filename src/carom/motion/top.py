@@ -13,7 +13,8 @@ principal. The attitude is C exp(theta e_3) M(b), M(b) the shortest turn from b 
 
 z = pi u/2K, eta = pi w/2K, dn(iw) = 1/A_3 (mathematics page, free flight). Where K' < K/2 the theta functions
 are taken by Jacobi's imaginary transformation: either way four terms are enough. On the separatrix K is
-infinite, and the same formulas hold. Sources: Jacobi 1849; van Zon and Schofield, J. Comput. Phys. 225, 145 (2007).
+infinite, and the same formulas hold. Sources: Jacobi 1849; van Zon and Schofield, J. Comput. Phys. 225, 145
+(2007).
 """
 
 from __future__ import annotations
@@ -212,8 +213,18 @@ def by_complement(c, u):
     p1 = root * g
     p2, p3 = q2 * g * g, q2 * q2 * root * g * g * g
     e3 = e2 * e
-    X = c[0] * (1.0 + e) + p1 * c[1] * (1.0 + e3) + p2 * c[2] * (1.0 + e4 * e) + p3 * c[3] * (1.0 + e4 * e3)
-    Y = c[4] * (1.0 - e) + p1 * c[5] * (1.0 - e3) + p2 * c[6] * (1.0 - e4 * e) + p3 * c[7] * (1.0 - e4 * e3)
+    X = (
+        c[0] * (1.0 + e)
+        + p1 * c[1] * (1.0 + e3)
+        + p2 * c[2] * (1.0 + e4 * e)
+        + p3 * c[3] * (1.0 + e4 * e3)
+    )
+    Y = (
+        c[4] * (1.0 - e)
+        + p1 * c[5] * (1.0 - e3)
+        + p2 * c[6] * (1.0 - e4 * e)
+        + p3 * c[7] * (1.0 - e4 * e3)
+    )
     f = 1.0 / math.sqrt(X * X + Y * Y)
     return sign * cn, sign * sn, dn, f * X, math.copysign(f * Y, -r), c[12] * r
 

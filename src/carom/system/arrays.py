@@ -311,7 +311,11 @@ POINT = [
 
 #: the flight that a body is on, or was on last (`carom.motion.free`, `carom.motion.top`)
 FLIGHT = [
-    ("known_attitude", "f8", (2, 4)),  # states of it whose times are known: where a step starts, and ends
+    (
+        "known_attitude",
+        "f8",
+        (2, 4),
+    ),  # states of it whose times are known: where a step starts, and ends
     ("known_spin", "f8", (2, 3)),
     ("age", "f8", (2, 2)),  # their times since it began, each as a sum of two numbers
     ("turn", "f8", 4),  # attitude at its start, less the turn that `attitude` gives for that
@@ -336,7 +340,11 @@ BODY_WORK = [
     ("holds", "i8"),  # of the body that its group is named after: held points of the group
     ("status", "i8"),  # FREE, ONE, RESTS or SEVERAL held points
     ("push", "f8", 6),  # change of momentum (linear, angular about the centre) in a step
-    ("spin", "f8", 3),  # angular velocity that the momentum below goes with, in the three-field step
+    (
+        "spin",
+        "f8",
+        3,
+    ),  # angular velocity that the momentum below goes with, in the three-field step
     ("momentum", "f8", 3),  # spatial angular momentum
     *FLIGHT,
     ("whole_until", "i8"),  # steps up to this are taken whole
