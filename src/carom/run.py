@@ -262,6 +262,11 @@ class Run:
         return int(self.clock["step"][0])
 
     @property
+    def bodies(self):
+        """What kernels know about the bodies, (N,) BODY."""
+        return self.compiled.system.bodies
+
+    @property
     def to_principal(self) -> np.ndarray:
         """Quaternions (N, 4) from principal axes to the scene's body axes."""
         return self.compiled.to_principal

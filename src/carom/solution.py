@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from carom.between import between, flights
 from carom.files.portable import Portable
-from carom.geometry import quaternion, spline
+from carom.geometry import quaternion
 from carom.ledger import Ledger
 from carom.plots.drawn import Drawn
 from carom.status import Status
@@ -245,9 +246,9 @@ class Solution(Portable, Drawn):
     def evaluate(self, t, side: str = "right"):
         """Return (position, orientation, velocity, angular_velocity) at times between saved ones.
 
-        Cubic in each interval between saved steps and events, so continuous except at impacts; error
-        of order 4 in the saved interval for positions and orientations, of order 3 for velocities; none for
-        free flight of the mass centre.
+        Exact for bodies on which only gravity acts, while they touch nothing. Else cubic in each interval
+        between saved steps and events, so continuous except at impacts; error of order 4 in the saved interval
+        for positions and orientations, of order 3 for velocities.
 
         Parameters
         ----------
@@ -271,7 +272,8 @@ class Solution(Portable, Drawn):
         times = np.atleast_1d(np.asarray(t, dtype=float))
         if not np.all((times >= self.t[0]) & (times <= self.t[-1])):
             raise ValueError(f"t must be within [{self.t[0]:g}, {self.t[-1]:g}] s, got {t!r}")
-        bodies = [_between(node, times, side) for node in self._nodes]
+        known = zip(self._nodes, self._flights)
+        bodies = [between(node, flies, times, side) for node, flies in known]
         x, Q, v, w = (np.stack(column, axis=1) for column in zip(*bodies))
         Q = quaternion.multiply(Q, quaternion.conjugate(self._run.to_principal))
         result = (x, Q, v, w)
@@ -307,6 +309,10 @@ class Solution(Portable, Drawn):
         from carom.assemble import nodes
 
         return nodes(self._run)
+
+    @cached_property
+    def _flights(self):
+        return flights(self)
 
     def impact_history(self, k: int, steps: int | None = None):
         """Return impact k resolved in time inside its boundary layer, a `LayerHistory`.
@@ -347,18 +353,3 @@ class Solution(Portable, Drawn):
             f"<Solution: {self.position.shape[1]} bodies, t = {self.t[0]:g} .. {self.t[-1]:g} s in "
             f"{len(self.t)} saved steps, {len(self.impacts)} impacts; {self.message}>"
         )
-
-
-def _between(node, times: np.ndarray, side: str):
-    """Return position, attitude and velocities of one body at times (K,), from its nodes."""
-    at, pose, left, right = node
-    i = np.searchsorted(at, times, side="right" if side == "right" else "left") - 1
-    i = np.clip(i, 0, max(len(at) - 2, 0))
-    n = np.minimum(i + 1, len(at) - 1)
-    start = (pose[i, :3], pose[i, 3:], right[i, :3], right[i, 3:])
-    end = (pose[n, :3], pose[n, 3:], left[n, :3], left[n, 3:])
-    x, Q, v, w = spline.interpolate(times, at[i], at[n], start, end)
-    last = times == at[-1]
-    if side == "right" and np.any(last):
-        v[last], w[last] = right[-1, :3], right[-1, 3:]
-    return x, Q, v, w

@@ -58,18 +58,44 @@ def test_evaluate_at_impacts(bounce):
 
 
 def test_evaluate_a_tumbling_body():
-    # Angular velocity of the cubic: order 3 in the saved interval; ends exact.
-    scene = carom.Scene(gravity=(0, 0, 0))
-    scene.add_body(mass=1, inertia=(1, 2, 3), angular_velocity=(0.3, 2, 0.2))
-    fine = carom.simulate(scene, 2.0, step=1e-3)
+    # Where gravity alone acts it is exact, with two saved times in all; with a damper that hardly acts the
+    # angular velocity of the cubic is of order 3 in the saved interval.
+    def tumbling(damping):
+        scene = carom.Scene()
+        body = scene.add_body(mass=1, inertia=(1, 2, 3), angular_velocity=(0.3, 2, 0.2))
+        if damping:
+            scene.add_force(carom.forces.Torque((1e-14, 0, 0)), body)
+        return scene
+
+    fine = carom.simulate(tumbling(False), 2.0, step=1e-2)
+    x, Q, v, w = carom.simulate(tumbling(False), 2.0, step=2.0).evaluate(fine.t)
+    np.testing.assert_allclose(x, fine.position, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(v, fine.velocity, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(Q, fine.orientation, rtol=0, atol=1e-14)
+    np.testing.assert_allclose(w, fine.angular_velocity, rtol=0, atol=1e-13)
     error = []
-    for step in (0.1, 0.05):
-        a = carom.simulate(scene, 2.0, step=step)
-        t = fine.t[::10]
-        _, Q, _, w = a.evaluate(t)
-        error.append(np.max(np.abs(w - fine.angular_velocity[::10])))
-        assert np.max(np.abs(np.abs(np.sum(Q * fine.orientation[::10], -1)) - 1)) < 1e-8
+    for every in (10, 5):
+        a = carom.simulate(tumbling(True), 2.0, step=1e-2, save_every=every)
+        _, Q, _, w = a.evaluate(fine.t)
+        error.append(np.max(np.abs(w - fine.angular_velocity)))
+        assert np.max(np.abs(np.abs(np.sum(Q * fine.orientation, -1)) - 1)) < 1e-8
     assert 6 < error[0] / error[1] < 20
+
+
+def test_evaluate_between_impacts():
+    # A plate falls on the ground; with five saved times in all, flights between impacts are as of a fine run.
+    scene = carom.Scene()
+    floor = scene.add_half_space((0, 0, 0), (0, 0, 1))
+    plate = scene.add_body(
+        carom.Box(0.2, 0.1, 0.01), mass=1, position=(0, 0, 0.3), angular_velocity=(3, 20, 2)
+    )
+    scene.add_contact(plate, floor, restitution=0.5, friction=0.3)
+    fine = carom.simulate(scene, 0.5, step=1e-2)
+    assert len(fine.impacts) > 3
+    x, Q, _, w = carom.simulate(scene, 0.5, step=1e-2, save_every=10).evaluate(fine.t)
+    np.testing.assert_allclose(x, fine.position, rtol=0, atol=1e-13)
+    np.testing.assert_allclose(Q, fine.orientation, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(w, fine.angular_velocity, rtol=0, atol=1e-11)
 
 
 def test_evaluate_one_time_and_bad_input(bounce):

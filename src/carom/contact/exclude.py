@@ -6,8 +6,8 @@ Of each vertex the gap z and its rate are known at both ends, and |d2z/dt2| <= a
 
 and the path is clear if the times for which either bound is positive, (z0' + sqrt(z0'^2 + 2 a z0))/a
 and the same from the end, together reach h. If not, the caller cuts the step in half. In free flight a is
-exact: |n.g| + |w|^2 r, with |w| bounded by the energy of rotation; otherwise it is taken as twice what the
-stages of the step have seen. A held body moves as the cubic does that has the gaps and rates at both ends,
+exact: |n.g| + (|W|^2 + |W'|) r with the greatest of both on the flight; otherwise it is taken as twice what
+the stages of the step have seen. A held body moves as the cubic does that has the gaps and rates at both ends,
 which is never less than its control points (Bezier): z0, z0 + h z0'/3, z1 - h z1'/3, z1.
 """
 
@@ -17,6 +17,7 @@ import math
 
 from carom.contact.gap import along_normal, gap_and_rate, plane_in_body, round_off
 from carom.jit import inlined
+from carom.motion.free import point_bound
 from carom.system.arrays import FREE, RESTS
 
 #: verdicts on a step: nothing was touched; something is inside at the end; too long to say; a rim that was held
@@ -31,15 +32,9 @@ def greatest_acceleration(system, contact, state, work):
     body, r = system.bodies[contact.body], contact.core
     status, bound = work.body[contact.body].status, work.body[contact.body].bound
     if body.ballistic == 1 and status == FREE:
-        w, J = state[contact.body].w, body.inertia
+        begin = state[contact.body]
         centre = abs(along_normal(contact, system.gravity))
-        spin2 = w[0] * w[0] + w[1] * w[1] + w[2] * w[2]
-        if body.isotropic == 1:
-            return centre, centre + spin2 * r
-        # 2T = W.J W is kept: |w|^2 <= 2T/J_min <= |w0|^2 J_max/J_min, |w'| <= |w|^2 (J_max - J_min)/J_min
-        low, high = min(J[0], min(J[1], J[2])), max(J[0], max(J[1], J[2]))
-        spin2 *= high / low
-        return centre, centre + spin2 * r * (1.0 + (high - low) / low)
+        return centre, centre + r * point_bound(body, begin.Q, begin.w, work.body[contact.body])
     centre = 2.0 * bound[0]
     return centre, centre + 2.0 * r * (bound[1] + bound[2] * bound[2])
 

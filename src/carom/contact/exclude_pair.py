@@ -29,6 +29,7 @@ from carom.contact.rim import OTHER_SIDE, SMOOTH, closed_rim, longest_way, same_
 from carom.dispatch import only_with_pairs
 from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.jit import kernel
+from carom.motion.free import point_bound
 from carom.motion.wrench import point_velocity
 from carom.system.arrays import FREE, RESTS
 
@@ -36,17 +37,12 @@ SHORT = 0.25  # way past each other, as a part of the smaller body, in which no 
 
 
 @kernel
-def spin_bound(body, extent, w, memory):
+def spin_bound(body, extent, state, memory):
     """Return a bound of the acceleration of a point of a body relative to its centre."""
     if memory.status == RESTS:
         return 0.0
     if body.ballistic == 1 and memory.status == FREE:
-        J = body.inertia
-        spin2 = w[0] * w[0] + w[1] * w[1] + w[2] * w[2]
-        if body.isotropic == 1:
-            return spin2 * extent
-        low, high = min(J[0], min(J[1], J[2])), max(J[0], max(J[1], J[2]))
-        return spin2 * high / low * extent * (1.0 + (high - low) / low)
+        return extent * point_bound(body, state.Q, state.w, memory)
     return 2.0 * extent * (memory.bound[1] + memory.bound[2] * memory.bound[2])
 
 
@@ -70,9 +66,9 @@ def relative_bound(system, contact, state, work):
             if work.body[body].status != RESTS:
                 centres += fall if free else 2.0 * work.body[body].bound[0]
     r = core_extent(system.solids[contact.solid])
-    spin = spin_bound(system.bodies[a], r, state[a].w, work.body[a])
+    spin = spin_bound(system.bodies[a], r, state[a], work.body[a])
     r = core_extent(system.solids[contact.other_solid])
-    spin += spin_bound(system.bodies[b], r, state[b].w, work.body[b])
+    spin += spin_bound(system.bodies[b], r, state[b], work.body[b])
     return centres, centres + spin
 
 

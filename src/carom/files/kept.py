@@ -56,14 +56,21 @@ class KeptRun:
     @cached_property
     def compiled(self):
         """The compiled scene; with functions missing it cannot stand where the run did."""
-        if not self.missing:
-            return self._run.compiled
+        return self._as_at_start if self.missing else self._run.compiled
+
+    @cached_property
+    def _as_at_start(self):
         from carom.system.compile import compile_scene
 
         method = self.settings["method"]
         return compile_scene(
             self.scene, self.options, method.startswith("paper"), method == "implicit"
         )
+
+    @property
+    def bodies(self):
+        """What kernels know about the bodies, (N,) BODY."""
+        return self._as_at_start.system.bodies
 
     @property
     def method(self):

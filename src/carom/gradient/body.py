@@ -107,22 +107,13 @@ def fly(body: Moving, until: float, accuracy: float = ACCURACY) -> Moving:
 
 
 def path(body: Moving, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return position (n, 3) and attitude (n, 3, 3) of a free flight at `times`, the attitude to 1e-8."""
+    """Return position (n, 3) and attitude (n, 3, 3) of a free flight at `times`."""
+    from carom.motion.flown import torque_free
+
     h = (times - body.t)[:, None]
     x = body.x + h * (body.v + 0.5 * h * body.gravity)
-    if np.ptp(body.inertia) == 0.0:
-        return x, quaternion.matrix(quaternion.exp(h * body.w)) @ body.R
-    L, i = body.momentum, 1.0 / body.inertia
-
-    def rate(_, Q):
-        W = i * (quaternion.matrix(Q).T @ L)
-        return 0.5 * quaternion.multiply(Q, np.append(0.0, W))
-
-    done = solve_ivp(
-        rate, (0.0, float(h[-1, 0])), quaternion.from_matrix(body.R), method="DOP853",
-        rtol=1e-8, atol=1e-8, t_eval=h[:, 0],
-    )  # fmt: skip
-    return x, quaternion.matrix(quaternion.normalize(done.y.T))
+    Q, w = (np.tile(a, (len(times), 1)) for a in (quaternion.from_matrix(body.R), body.w))
+    return x, quaternion.matrix(torque_free(body.inertia, Q, w, times - body.t)[0])
 
 
 def _turn_closed(body: Moving, h: float):
@@ -143,7 +134,9 @@ def _left(a: np.ndarray) -> np.ndarray:
 
 
 def _turn(body: Moving, h: float, accuracy: float):
-    """Return the same for any moments: Euler's equations and their variation, integrated."""
+    """Return the same for any moments: the motion in closed form, its variation integrated along with it."""
+    from carom.motion.flown import torque_free
+
     i, L, dL = 1.0 / body.inertia, body.momentum, body.d_momentum
     unit = np.einsum("i,kij,j->kij", i, UNITS, i)  # J^-1 dJ J^-1
 
@@ -166,10 +159,10 @@ def _turn(body: Moving, h: float, accuracy: float):
     atol = accuracy * np.append(np.ones(4), np.tile(size + 1e-300, 3))
     done = solve_ivp(rate, (0.0, h), y0, method="DOP853", rtol=accuracy, atol=np.abs(atol))
     y = done.y[:, -1]
-    R = quaternion.matrix(y[:4] / np.linalg.norm(y[:4]))
+    Q, w = torque_free(body.inertia, y0[None, :4], body.w[None], np.array([h]))
+    R, w = quaternion.matrix(Q[0]), w[0]
     moments = np.array([body.dJ[a, b] for a, b in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))])
     phi = y[4:].reshape(3, 12) @ np.concatenate([body.R.T @ body.X[3:6], dL, moments])
     l = R.T @ L
-    w = R @ (i * l)
     change = i[:, None] * (R.T @ dL - cross(phi, l) - np.einsum("ijp,j->ip", body.dJ, i * l))
     return R, w, R @ phi, cross(R @ phi, w) + R @ change

@@ -94,19 +94,10 @@ def principal_axes(inertia):
 
 def _torque_free(moments):
     """Return a function like `constant_spin` for a body with these principal moments."""
-    from scipy.integrate import solve_ivp
-
-    def rate(_, y):
-        q, W = np.split(y.reshape(-1, 7), [4], axis=1)
-        turned = 0.5 * quaternion.multiply(q, np.insert(W, 0, 0.0, axis=1))
-        return np.hstack([turned, np.cross(moments * W, W) / moments]).ravel()
+    from carom.motion.flown import torque_free
 
     def spin(t, starts, w):
-        first = np.hstack([starts, quaternion.rotate_back(starts, w)])
-        found = solve_ivp(
-            rate, (0.0, t[-1]), first.ravel(), method="DOP853", t_eval=t, rtol=1e-12, atol=1e-13
-        )
-        states = found.y.T.reshape(t.size, -1, 7)
-        return quaternion.normalize(np.swapaxes(states[..., :4], 0, 1))
+        each = np.repeat(starts, t.size, axis=0), np.repeat(w, t.size, axis=0)
+        return torque_free(moments, *each, np.tile(t, len(starts)))[0].reshape(len(starts), -1, 4)
 
     return spin

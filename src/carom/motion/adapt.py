@@ -12,9 +12,9 @@ step is good if for all bodies
     miss <= atol + rtol max(L, h V).
 
 Order 8 has two estimates: miss = miss_5^2 / sqrt(miss_5^2 + miss_3^2/100) (Hairer, Norsett and Wanner 1993). Of
-bodies of unequal moments in free flight the error of the attitude is bounded; of groups held at several points
-(order 2) that of a turn, (h w)^3/12, and of a stop inside the step, a h^2/8. The next step is 0.9 times the
-one whose error would be 1, within 0.2 and 10 times the last.
+groups held at several points (order 2) the errors of a turn, (h w)^3/12, and of a stop inside the step,
+a h^2/8, are bounded. Free flight has none. The next step is 0.9 times the one whose error would be 1, within
+0.2 and 10 times the last.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ import math
 
 from carom.geometry.rotation import multiply, norm
 from carom.jit import kernel
-from carom.system.arrays import FREE, ONE, RESTS, SEVERAL
+from carom.system.arrays import ONE, SEVERAL
 
 SAFETY, LEAST, MOST = 0.9, 0.2, 10.0
 NOTHING_LEFT = 1e-14  # of the time that is left: no step is shorter
@@ -93,20 +93,10 @@ def step_error(system, rtol, atol, start, h, end, work):
         if not a <= first:
             first = a
         second = max(second, miss[1] / allowed)
-        if memory.status == RESTS or (
-            body.ballistic == 1 and memory.status == FREE and body.isotropic == 1
-        ):
-            continue
-        turn = abs(h) * max(norm(start[b].w), norm(end[b].w))
         if memory.status == SEVERAL:
+            turn = abs(h) * max(norm(start[b].w), norm(end[b].w))
             first = max(first, body.extent * turn * turn * turn / (12.0 * allowed))
             first = max(first, error_of_stop(body.extent, start[b], h, end[b]) / allowed)
-        elif memory.status == FREE and body.ballistic == 1:
-            J = body.inertia
-            low, high = min(J[0], min(J[1], J[2])), max(J[0], max(J[1], J[2]))
-            k = (high - low) / low
-            f = k * math.sqrt(max(1.0, k)) / 80.0  # fits bodies from nearly equal moments to 1:20
-            first = max(first, f * body.extent * turn * turn * turn * turn * turn / allowed)
     if second > 0.0:
         return first * first / math.sqrt(first * first + 0.01 * second * second)
     return first

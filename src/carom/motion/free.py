@@ -1,30 +1,16 @@
-"""Free flight of one body: exact translation; rotation exact (equal moments) or of order 4.
+"""Free flight of one body, exact: translation on a parabola, rotation as a torque-free top in closed form.
 
-A body on which only gravity acts keeps its spatial angular momentum L and its energy of rotation T.
-With equal moments w is constant and the rotation is exp(h w). Otherwise the attitude alone is integrated,
-
-    dQ/dt = 1/2 Q (0, W),   W = J^-1 R(Q)^T L,
-
-by the classical Runge-Kutta method; L is then exact, and a last small turn restores T: along a body turn th,
-dT = th . (W x l) with l = R^T L, so th = -(T - T0) (W x l)/|W x l|^2. Both invariants hold to round-off
-for any number of steps. A turn beyond what the method can have missed, (|W| h)^5 |W x l|/2T, would come from
-round-off of T, divided by next to nothing where moments are nearly equal or the axis is nearly principal.
+With equal moments w is constant and the rotation is exp(h w). Otherwise the constants of a flight are worked
+out where it begins (`carom.motion.top`), and kept with two states whose times on it are known: where the last
+step started, and where it ended. A step from either goes on with the same flight, so that no round-off
+gathers over steps; from any other state, as after an impact, another flight begins.
 """
 
 from __future__ import annotations
 
-import math
-
-from carom.geometry.rotation import (
-    cross,
-    exp,
-    multiply,
-    normalize,
-    renormalize,
-    rotate,
-    rotate_back,
-)
+from carom.geometry.rotation import exp, multiply, renormalize, rotate, rotate_back
 from carom.jit import inlined, kernel
+from carom.motion.top import attitude, begin_top
 
 
 @inlined
@@ -38,87 +24,67 @@ def free_flight(body, g, h, start, end, memory):
     if body.isotropic == 1:
         r = exp(h * w0[0], h * w0[1], h * w0[2])
         q = multiply(r[0], r[1], r[2], r[3], q0[0], q0[1], q0[2], q0[3])
+        q = renormalize(q[0], q[1], q[2], q[3])
         w = (w0[0], w0[1], w0[2])
     else:
         q, w = tumble(body.inertia, h, q0, w0, memory)
-    q1[0], q1[1], q1[2], q1[3] = renormalize(q[0], q[1], q[2], q[3])
+    q1[0], q1[1], q1[2], q1[3] = q
     w1[0], w1[1], w1[2] = w
 
 
 @kernel
-def turning(i, q, l):
-    """Return dQ/dt = 1/2 Q (0, W) for spatial momentum l, W = J^-1 R^T l, with i = 1/J."""
-    a = rotate_back(q[0], q[1], q[2], q[3], l[0], l[1], l[2])
-    return multiply(
-        q[0], q[1], q[2], q[3], 0.0, 0.5 * a[0] * i[0], 0.5 * a[1] * i[1], 0.5 * a[2] * i[2]
-    )
+def knows(memory, i, q, w):
+    """Return whether a state is known state i of the flight in `memory`."""
+    a, s = memory.known_attitude, memory.known_spin
+    return (
+        a[i, 0] == q[0] and a[i, 1] == q[1] and a[i, 2] == q[2] and a[i, 3] == q[3]
+        and s[i, 0] == w[0] and s[i, 1] == w[1] and s[i, 2] == w[2]
+    )  # fmt: skip
 
 
 @kernel
-def along(q, h, k):
-    """Return q + h k divided by its length, as a series in d = |q + h k|^2 - 1, which is (h |W|)^2/4 at most.
-
-    What is left of the length tilts what it rotates: to be of no account it has to be of high order in h.
-    """
-    w, x, y, z = q[0] + h * k[0], q[1] + h * k[1], q[2] + h * k[2], q[3] + h * k[3]
-    d = w * w + x * x + y * y + z * z - 1.0
-    s = 1.0 - d * (0.5 - d * (0.375 - d * (0.3125 - d * 0.2734375)))
-    return s * w, s * x, s * y, s * z
+def note(memory, i, q, w, age, more):
+    """Make a state, at the time age + more, known state i of the flight."""
+    a, s = memory.known_attitude, memory.known_spin
+    a[i, 0], a[i, 1], a[i, 2], a[i, 3] = q[0], q[1], q[2], q[3]
+    s[i, 0], s[i, 1], s[i, 2] = w[0], w[1], w[2]
+    memory.age[i, 0], memory.age[i, 1] = age, more
 
 
 @kernel
-def invariants(J, q, w, memory):
-    """Put spatial momentum and (twice) energy into `memory`, unless they are those of this flight already.
-
-    Taken anew from Q and w at each step they would drift by the round-off of each step, all of one sign:
-    2e-11 of the energy in 10^5 steps.
-    """
-    spin, l = memory.spin, memory.momentum
-    if spin[0] == w[0] and spin[1] == w[1] and spin[2] == w[2]:
+def board(J, q, w, memory):
+    """Have a state be the known state 0 of the flight in `memory`: of that which it holds, or of a new one."""
+    if knows(memory, 0, q, w):
+        return
+    if knows(memory, 1, q, w):
+        note(memory, 0, q, w, memory.age[1, 0], memory.age[1, 1])
         return
     W = rotate_back(q[0], q[1], q[2], q[3], w[0], w[1], w[2])
-    m = (J[0] * W[0], J[1] * W[1], J[2] * W[2])
-    memory.energy = m[0] * W[0] + m[1] * W[1] + m[2] * W[2]
-    l[0], l[1], l[2] = rotate(q[0], q[1], q[2], q[3], m[0], m[1], m[2])
+    begin_top(J, q, W, memory)
+    note(memory, 0, q, w, 0.0, 0.0)
 
 
 @kernel
 def tumble(J, h, q0, w0, memory):
     """Return attitude and angular velocity (world) after a time h; momentum and energy are kept."""
-    i = (1.0 / J[0], 1.0 / J[1], 1.0 / J[2])
-    invariants(J, q0, w0, memory)
-    energy = memory.energy
-    l = (memory.momentum[0], memory.momentum[1], memory.momentum[2])
-    q = (q0[0], q0[1], q0[2], q0[3])
-    k1 = turning(i, q, l)
-    k2 = turning(i, along(q, 0.5 * h, k1), l)
-    k3 = turning(i, along(q, 0.5 * h, k2), l)
-    k4 = turning(i, along(q, h, k3), l)
-    s = h / 6.0
-    q = normalize(
-        q[0] + s * (k1[0] + 2.0 * (k2[0] + k3[0]) + k4[0]),
-        q[1] + s * (k1[1] + 2.0 * (k2[1] + k3[1]) + k4[1]),
-        q[2] + s * (k1[2] + 2.0 * (k2[2] + k3[2]) + k4[2]),
-        q[3] + s * (k1[3] + 2.0 * (k2[3] + k3[3]) + k4[3]),
-    )
-    m = rotate_back(q[0], q[1], q[2], q[3], l[0], l[1], l[2])
-    for _ in range(3):
-        W = (m[0] * i[0], m[1] * i[1], m[2] * i[2])
-        excess = m[0] * W[0] + m[1] * W[1] + m[2] * W[2] - energy
-        d = cross(W[0], W[1], W[2], m[0], m[1], m[2])
-        size = d[0] * d[0] + d[1] * d[1] + d[2] * d[2]
-        # near a principal axis T is at an extremum and cannot drift: nothing to restore
-        if not (abs(excess) > 5e-16 * energy and size > 1e-14 * energy * energy):
-            break
-        turned = h * h * (W[0] * W[0] + W[1] * W[1] + W[2] * W[2])
-        missed = turned * turned * math.sqrt(turned * size) / energy + 1e-15
-        if not 0.5 * abs(excess) <= missed * math.sqrt(size):
-            break
-        f = -0.5 * excess / size
-        r = exp(f * d[0], f * d[1], f * d[2])
-        q = multiply(q[0], q[1], q[2], q[3], r[0], r[1], r[2], r[3])
-        m = rotate_back(q[0], q[1], q[2], q[3], l[0], l[1], l[2])
+    board(J, q0, w0, memory)
+    age, more = memory.age[0, 0], memory.age[0, 1] + h
+    t = age + more
+    more -= t - age  # what the sum has lost, where age is the larger; else a part of round-off of h
+    turn, b = attitude(memory, t)
+    q = memory.turn
+    q = multiply(q[0], q[1], q[2], q[3], turn[0], turn[1], turn[2], turn[3])
     q = renormalize(q[0], q[1], q[2], q[3])
-    w = rotate(q[0], q[1], q[2], q[3], m[0] * i[0], m[1] * i[1], m[2] * i[2])
-    memory.spin[0], memory.spin[1], memory.spin[2] = w
+    L = memory.magnitude
+    w = rotate(q[0], q[1], q[2], q[3], L * b[0] / J[0], L * b[1] / J[1], L * b[2] / J[2])
+    note(memory, 1, q, w, t, more)
     return q, w
+
+
+@kernel
+def point_bound(body, q, w, memory):
+    """Return a bound of |W x (W x r) + W' x r|/|r| in free flight: of the accelerations of points of a body."""
+    if body.isotropic == 1:
+        return w[0] * w[0] + w[1] * w[1] + w[2] * w[2]
+    board(body.inertia, q, w, memory)
+    return memory.fastest

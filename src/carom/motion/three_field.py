@@ -42,7 +42,6 @@ from carom.motion.elements import (
 )
 from carom.motion.explicit import constrained, fly, keep, mark_held
 from carom.motion.forces import applied_wrenches
-from carom.motion.free import invariants
 from carom.motion.joints import child_arm, parent_arm
 from carom.motion.loops import factor, substitute, subtract_rows
 from carom.motion.project import project_position
@@ -149,6 +148,20 @@ def middle_of_arc(start, h, end, middle):
 
 
 @kernel
+def take_up_momentum(J, q, w, memory):
+    """Put the spatial momentum into `memory`, unless what the last step has left there goes with w.
+
+    Taken anew from Q and w at each step it would drift by the round-off of each step, all of one sign:
+    2e-11 of the energy in 10^5 steps.
+    """
+    spin, l = memory.spin, memory.momentum
+    if spin[0] == w[0] and spin[1] == w[1] and spin[2] == w[2]:
+        return
+    W = rotate_back(q[0], q[1], q[2], q[3], w[0], w[1], w[2])
+    l[0], l[1], l[2] = rotate(q[0], q[1], q[2], q[3], J[0] * W[0], J[1] * W[1], J[2] * W[2])
+
+
+@kernel
 def momenta(system, start, h, work):
     """Turn the wrenches into p0 + h f + Abar^T Lam: momenta at the end, about each centre, world.
 
@@ -158,7 +171,7 @@ def momenta(system, start, h, work):
     for b in range(system.bodies.shape[0]):
         body, wrench, l = system.bodies[b], work.body[b].wrench, work.body[b].momentum
         J = body.inertia
-        invariants(J, start[b].Q, start[b].w, work.body[b])
+        take_up_momentum(J, start[b].Q, start[b].w, work.body[b])
         for k in range(3):
             wrench[k] = h * wrench[k] + body.mass * start[b].v[k]
             wrench[3 + k] = h * wrench[3 + k] + l[k]
@@ -311,7 +324,5 @@ def leave_for_later(system, start, h, end, work):
             system.bodies[b].isolated == 1
         ):  # the next step takes up this momentum, not its round-off
             memory = work.body[b]
-            memory.energy = 0.0
             for k in range(3):
                 memory.spin[k], memory.momentum[k] = end[b].w[k], memory.wrench[3 + k]
-                memory.energy += memory.momentum[k] * end[b].w[k]

@@ -309,6 +309,27 @@ POINT = [
     ("length", "f8"),  # that makes a speed of an angular velocity
 ]
 
+#: the flight that a body is on, or was on last (`carom.motion.free`, `carom.motion.top`)
+FLIGHT = [
+    (
+        "known_attitude",
+        "f8",
+        (2, 4),
+    ),  # states of it whose times are known: where a step starts, and ends
+    ("known_spin", "f8", (2, 3)),
+    ("age", "f8", (2, 2)),  # their times since it began, each as a sum of two numbers
+    ("turn", "f8", 4),  # attitude at its start, less the turn that `attitude` gives for that
+    ("axes", "i8", 3),  # principal axes in Jacobi's order, and their signs
+    ("sign", "f8", 3),
+    ("magnitude", "f8"),  # of the angular momentum
+    ("amplitude", "f8", 3),  # of its direction in the body
+    ("rate", "f8", 2),  # of half the turn about the momentum, and of the argument
+    ("phase", "f8"),  # argument at the start
+    ("kind", "i8"),  # how elliptic functions are worked out
+    ("series", "f8", 14),
+    ("fastest", "f8"),  # bound of the acceleration of a point, over its distance from the centre
+]
+
 BODY_WORK = [
     ("wrench", "f8", 6),  # what a solve takes: force and torque, or impulse
     ("motion", "f8", 6),  # what a solve gives: linear, angular
@@ -319,9 +340,13 @@ BODY_WORK = [
     ("holds", "i8"),  # of the body that its group is named after: held points of the group
     ("status", "i8"),  # FREE, ONE, RESTS or SEVERAL held points
     ("push", "f8", 6),  # change of momentum (linear, angular about the centre) in a step
-    ("spin", "f8", 3),  # angular velocity for which the invariants of free flight below hold
+    (
+        "spin",
+        "f8",
+        3,
+    ),  # angular velocity that the momentum below goes with, in the three-field step
     ("momentum", "f8", 3),  # spatial angular momentum
-    ("energy", "f8"),  # twice the energy of rotation
+    *FLIGHT,
     ("whole_until", "i8"),  # steps up to this are taken whole
     ("whole_for", "i8"),  # for so many steps, when that was last found
     ("home", "f8", 3),  # centre at the start of the step
