@@ -56,7 +56,7 @@ def read(path: Path, functions: Mapping[str, Callable] | None = None) -> dict[st
         energies = derived["kinetic_energy"], derived["potential_energy"]
         fields["cached"] = {
             **derived,
-            "impacts": ImpactTable(**{k: _array(file, f"impact_{k}") for k in IMPACT}),
+            "impacts": _impacts(file),
             "events": EventTable(**{k: _array(file, f"event_{k}") for k in EVENT}),
             "contacts": ContactTable(**{k: _array(file, f"interval_{k}") for k in INTERVAL}),
             "ledger": Ledger(*energies, *entries),
@@ -125,6 +125,13 @@ def _text(variable) -> str:
     value = variable[()]
     value = value.item() if isinstance(value, np.ndarray) else value
     return value.decode() if isinstance(value, bytes) else value
+
+
+def _impacts(file) -> ImpactTable:
+    """Return the table of impacts; files of 0.1.0 do not know which were wedged, and none is."""
+    columns = {k: _array(file, f"impact_{k}") for k in IMPACT if f"impact_{k}" in file.variables}
+    columns.setdefault("wedged", np.zeros_like(columns["together"]))
+    return ImpactTable(**columns)
 
 
 def _array(file, name: str) -> np.ndarray:
