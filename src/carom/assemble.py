@@ -9,6 +9,7 @@ import numpy as np
 from carom.columns import Columns
 from carom.coordinates import Motion, coordinates_of
 from carom.geometry import quaternion
+from carom.impact.layout import WEDGED
 from carom.ledger import Ledger
 from carom.motion.mounts import mounted
 from carom.scene.forces import AppliedForce
@@ -189,6 +190,7 @@ def impact_table(solution) -> ImpactTable:
         inverse_mass=rows.W.copy(),
         restitution=contacts["restitution"][c],
         friction=contacts["friction"][c],
+        wedged=(rows.phases & WEDGED) // WEDGED,
         **{
             name: np.array(rows[name])
             for name in (

@@ -35,6 +35,7 @@ class ImpactRecord(NamedTuple):
     restitution_work: float  #: of the normal force [J]
     friction_loss: float  #: [J]
     together: int  #: points that were resolved together, each with a row of its own; 1 for most
+    wedged: int  #: 1 where friction held the pair, and its law of restitution could not be met; 0 for most
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -73,6 +74,7 @@ class ImpactTable:
     restitution_work: np.ndarray
     friction_loss: np.ndarray
     together: np.ndarray
+    wedged: np.ndarray
 
     def __len__(self) -> int:
         return len(self.time)

@@ -51,6 +51,7 @@ IMPACT = {
     "restitution_work": ((), "J", "work of the normal force in restitution"),
     "friction_loss": ((), "J", "energy lost to friction"),
     "together": ((), "1", "points that were resolved together, each with a row of its own"),
+    "wedged": ((), "1", "1 where friction held the pair and its law of restitution could not be met"),
 }  # fmt: skip
 
 EVENT = {

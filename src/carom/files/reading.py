@@ -39,7 +39,7 @@ DERIVED = {
     "kinetic_energy": ("time",), "potential_energy": ("time",),
 }  # fmt: skip
 LENGTHS = {"axis": 3, "quaternion": 4, "contact_axis": 3, "contact_axis_2": 3}
-WHOLE = ("contact", "together", "feature")  # columns of tables that count something
+WHOLE = ("contact", "together", "wedged", "feature")  # columns of tables that count something
 
 
 def read(path: Path, functions: Mapping[str, Callable] | None = None) -> dict[str, Any]:

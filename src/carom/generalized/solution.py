@@ -37,6 +37,7 @@ class CoordinateImpact(NamedTuple):
     restitution_work: float  #: of the normal force [J]
     friction_loss: float  #: [J]
     together: int  #: contacts that were resolved together, each with a row of its own
+    wedged: int  #: 1 where friction held the pair, and its law of restitution could not be met; 0 for most
 
 
 class CoordinateImpactTable:
@@ -45,7 +46,13 @@ class CoordinateImpactTable:
     def __init__(self, records: list[dict], n: int):
         shapes = {"position": (n,), "inverse_mass": (3, 3)}
         for name in CoordinateImpact._fields:
-            kind = object if name == "law" else int if name in ("contact", "together") else float
+            kind = (
+                object
+                if name == "law"
+                else int
+                if name in ("contact", "together", "wedged")
+                else float
+            )
             vector = name.startswith("relative") or name == "impulse"
             shape = (len(records), *shapes.get(name, (3,) if vector else ()))
             column = np.array(

@@ -15,7 +15,6 @@ if TYPE_CHECKING:
 
 BLOWS = 200  # at one instant
 SEED = 1e-7  # approach of a contact that jams, as a part of its slip (mathematics page, VI.6)
-NEARLY = 1e-14  # of W_nn: room in directions in which nothing moves
 SPENT = 1e-6
 
 
@@ -64,14 +63,12 @@ class Strike:
         mu, e, law = float(here.friction[c]), self.restitution(c), int(here.law[c])
         code = resolve(W, u, mu, e, law, out)
         if code != o.OK:
-            code = resolve(W + NEARLY * W[0, 0] * np.eye(3), u, mu, e, law, out)
-        if code != o.OK:
             return Status.IMPACT_FAILED
         impulse = out[o.IMPULSE : o.IMPULSE + 3].copy()
         self.apply(G, impulse)
         self.write(
             c, now, 1, W, e, u, out[o.VELOCITY : o.VELOCITY + 3], impulse, out[o.ENERGY_CHANGE],
-            out[o.WORK_C], out[o.WORK_R], out[o.FRICTION_LOSS],
+            out[o.WORK_C], out[o.WORK_R], out[o.FRICTION_LOSS], int(out[o.PHASES]) & o.WEDGED != 0,
         )  # fmt: skip
         return 0
 
@@ -118,7 +115,7 @@ class Strike:
             if np.any(p[i] != 0.0):
                 self.write(
                     c, now, k, W[3 * i : 3 * i + 3, 3 * i : 3 * i + 3], e[i], u[i], after[i], p[i],
-                    works[i], out.compression[i], out.restitution[i], out.friction[i],
+                    works[i], out.compression[i], out.restitution[i], out.friction[i], out.wedged[i] != 0,
                 )  # fmt: skip
         return 0
 
@@ -131,7 +128,20 @@ class Strike:
         run.clock[0].impacts += 0.5 * (run.x[n:] - v) @ M @ (run.x[n:] + v)
 
     def write(
-        self, c, now, together, W, e, before, after, impulse, energy, compression, restitution, loss
+        self,
+        c,
+        now,
+        together,
+        W,
+        e,
+        before,
+        after,
+        impulse,
+        energy,
+        compression,
+        restitution,
+        loss,
+        wedged,
     ) -> None:
         """Keep the record of an impact."""
         here = self.contacts
@@ -146,5 +156,6 @@ class Strike:
                 "restitution": float(e), "friction": float(here.friction[c]),
                 "compression_work": float(compression), "restitution_work": float(restitution),
                 "friction_loss": float(loss), "together": together,
+                "wedged": int(wedged),
             }
         )  # fmt: skip

@@ -31,7 +31,11 @@ class Impact:
         Change of kinetic energy: compression_work + restitution_work - friction_loss [J].
     phases : tuple of str
         What the contact did, in order: "slip", "jam" (the normal force drove the bodies together
-        while slipping), then "stick" or "reversal" (slip stopped and began again at once).
+        while slipping), then "stick" or "reversal" (slip stopped and began again at once), "wedged".
+    wedged : bool
+        Whether friction held the pair in restitution however large the impulse is (W singular along the way):
+        the impact ended with the velocity that was reached, and not as its law says. With Poisson's law
+        the impulse of restitution is there, and changes nothing.
     """
 
     velocity_after: np.ndarray
@@ -42,6 +46,7 @@ class Impact:
     friction_loss: float
     energy_change: float
     phases: tuple[str, ...]
+    wedged: bool
 
 
 def resolve_impact(
@@ -72,7 +77,8 @@ def resolve_impact(
     Raises
     ------
     ValueError
-        If an argument is not as above, or the normal velocity cannot be reversed (W singular).
+        If an argument is not as above, or nothing stops the approach: W is singular, friction holds the pair
+        wedged, and `velocity` has a part that no impulse changes (something drives it).
 
     Notes
     -----
@@ -104,6 +110,7 @@ def resolve_impact(
         friction_loss=float(out[o.FRICTION_LOSS]),
         energy_change=float(out[o.ENERGY_CHANGE]),
         phases=phase_names(int(out[o.PHASES])),
+        wedged=int(out[o.PHASES]) & o.WEDGED != 0,
     )
 
 
@@ -144,7 +151,9 @@ def raise_for(code: int) -> None:
 
 def phase_names(mask: int) -> tuple[str, ...]:
     """Return the phases of a bit mask, in the order in which they are passed."""
-    from carom.impact.layout import JAM, RESTART, SLIP, STICK
+    from carom.impact.layout import JAM, RESTART, SLIP, STICK, WEDGED
 
-    names = ((SLIP, "slip"), (JAM, "jam"), (RESTART, "reversal"), (STICK, "stick"))
+    names = (
+        (SLIP, "slip"), (JAM, "jam"), (RESTART, "reversal"), (STICK, "stick"), (WEDGED, "wedged"),
+    )  # fmt: skip
     return tuple(name for bit, name in names if mask & bit)

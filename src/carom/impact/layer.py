@@ -7,8 +7,9 @@ Flat coordinates (s, x^2, x^3), s = b ln(x/b). Two ways of giving the normal for
 - Poisson and Stronge, and Newton when k(tau) <= 0 on the way (jam): the steps are taken in the
   normal impulse and replayed in time with constant N_c = |A_c|/(b l), N_r = A_r/(b l) (II.10).
 
-Either way s returns to 0 from exactly -b l. The instant at which slip ends, where a step must be
-split, is taken from the resolver; every velocity is the spline's own.
+Either way s returns to 0 from exactly -b l; where the pair is wedged it stays there, compressed. The
+instant at which slip ends, where a step must be split, is taken from the resolver; every velocity is the
+spline's own.
 """
 
 from __future__ import annotations
@@ -52,7 +53,7 @@ def traverse(W, u, mu, e, law, b, delta, steps, history, out):
     code = resolve_one(W, u, mu, e, law, out)
     if code != o.OK:
         return code
-    jam = (int(out[o.PHASES]) & o.JAM) != 0
+    jam = (int(out[o.PHASES]) & (o.JAM | o.WEDGED)) != 0
     code = o.NO_CONVERGENCE
     for _ in range(_DOUBLINGS):
         if law == laws.NEWTON and not jam:
@@ -74,6 +75,9 @@ def _pass(W, u, mu, e, law, impulse_form, b, delta, steps, history, out):
     n = max(1, steps // 2)
     slip_end_p, slip_end_u = out[o.SLIP_END_P], out[o.SLIP_END_UN]
     p_c, p_f = out[o.P_C], out[o.IMPULSE]
+    wedged = (
+        int(out[o.PHASES]) & o.WEDGED
+    ) != 0  # no law says where the phases end: the resolver does
     ends_in_c = 0.0 <= slip_end_p <= p_c
 
     size = math.sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2])
@@ -85,7 +89,10 @@ def _pass(W, u, mu, e, law, impulse_form, b, delta, steps, history, out):
     start = (u[1], u[2], u[0])
     if impulse_form:
         accel, split = 0.0, slip_end_p if ends_in_c else -1.0
-        result = shoot(m, mu, laws.NEWTON, 0.0, start, p_c, n, split, fixed, f1, f2, history, 0)
+        if wedged:
+            result = run(m, mu, 0.0, start, p_c, n, split, fixed, f1, f2, history, 0)
+        else:
+            result = shoot(m, mu, laws.NEWTON, 0.0, start, p_c, n, split, fixed, f1, f2, history, 0)
     else:
         accel = 0.5 * v0 * v0 / depth
         split = min((slip_end_u + v0) / accel, v0 / accel) if ends_in_c else -1.0
@@ -108,14 +115,19 @@ def _pass(W, u, mu, e, law, impulse_form, b, delta, steps, history, out):
 
     # Restitution, to where the law ends it.
     p0, p1, p2, work_r = c0, c1, c2, 0.0
-    if e >= E_MIN:
+    if e >= E_MIN and not (wedged and p_f <= p_c):
         first, start = row, (x1, y1, 0.0)
         later = slip_end_p >= 0.0 and not fixed
         if impulse_form:
             split = max(slip_end_p - p_c, 0.0) if later else -1.0
             goal = laws.goal(law, e, v0, c0, work_c)
             length = p_f - p_c
-            result = shoot(m, mu, law, goal, start, length, n, split, fixed, f1, f2, history, row)
+            if wedged:
+                result = run(m, mu, 0.0, start, length, n, split, fixed, f1, f2, history, row)
+            else:
+                result = shoot(
+                    m, mu, law, goal, start, length, n, split, fixed, f1, f2, history, row
+                )
         else:
             accel *= e * e
             length = e * v0 / accel
@@ -131,10 +143,13 @@ def _pass(W, u, mu, e, law, impulse_form, b, delta, steps, history, out):
         energy = 0.5 * (r0 * u_end + r1 * (x1 + x2) + r2 * (y1 + y2))
         work_r = total[0] if impulse_form and mu > 0.0 else energy + total[6]
         loss += work_r - energy
-        factor = work_r / depth if impulse_form else 1.0
-        replay(history, first, row, time, s_end, sx, sy, factor)
-        time += r0 / factor if impulse_form else length
-        sx, sy, s_end = sx + total[1] / factor, sy + total[2] / factor, 0.0
+        if wedged and not work_r > _AT_REST * -work_c:
+            row = first  # an impulse that moves nothing takes no time
+        else:
+            factor = work_r / depth if impulse_form else 1.0
+            replay(history, first, row, time, s_end, sx, sy, factor)
+            time += r0 / factor if impulse_form else length
+            sx, sy, s_end = sx + total[1] / factor, sy + total[2] / factor, 0.0
         p0, p1, p2 = p0 + r0, p1 + r1, p2 + r2
         x1, y1 = x2, y2
 

@@ -26,18 +26,21 @@ SLIP = 1  #: the contact slipped
 STICK = 2  #: it stuck, to the end
 RESTART = 4  #: slip stopped and began again at once (reversal)
 JAM = 8  #: the normal force drove the bodies together while slipping (Painleve)
+WEDGED = (
+    16  #: friction held the pair in restitution, however large the impulse: W is singular there
+)
 
 OK = 0
 BAD_INPUT = 1  #: a number is not finite, or W_nn is not positive
 NOT_APPROACHING = 2  #: u_n is not negative
-NO_END = 3  #: the normal velocity cannot be reversed: W is singular along the way
+NO_END = 3  #: the pair approaches, and no impulse stops it: W is singular along the way
 TOO_MANY_STEPS = 4  #: the integrator did not get to the end
 NO_CONVERGENCE = 5  #: a step of the spline was not solved
 
 MESSAGES = {
     BAD_INPUT: "a number is not finite, or the inverse mass of the normal is not positive",
     NOT_APPROACHING: "the normal velocity is not negative: the bodies do not approach",
-    NO_END: "the normal velocity cannot be reversed: the inverse mass is singular along the way",
+    NO_END: "the pair is wedged and still approaches: no impulse stops it (the inverse mass is singular)",
     TOO_MANY_STEPS: "the equation of slip was not integrated to its end",
     NO_CONVERGENCE: "a step of the spline through the layer was not solved to round-off",
 }

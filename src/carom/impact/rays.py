@@ -18,11 +18,21 @@ _EMPTY = 1e-13
 def solve_tangential(b11, b12, b22, x, y):
     """Return B^+ (x, y), the least-norm solution, for B symmetric and positive semidefinite."""
     trace = b11 + b22
-    det = b11 * b22 - b12 * b12
-    if det > _EMPTY * trace * trace:
-        return (b22 * x - b12 * y) / det, (b11 * y - b12 * x) / det
     if not trace > 0.0:
         return 0.0, 0.0  # nothing moves in the plane of contact
+    # Elimination, the greater pivot first: B times the answer is (x, y) to round-off, however thin B is.
+    if b11 >= b22:
+        ratio = b12 / b11
+        left = b22 - ratio * b12
+        if left > _EMPTY * trace:
+            second = (y - ratio * x) / left
+            return (x - b12 * second) / b11, second
+    else:
+        ratio = b12 / b22
+        left = b11 - ratio * b12
+        if left > _EMPTY * trace:
+            first = (x - ratio * y) / left
+            return first, (y - b12 * first) / b22
     # Rank one: B = trace d d^T, B^+ = B / trace^2.
     return (b11 * x + b12 * y) / trace / trace, (b12 * x + b22 * y) / trace / trace
 
@@ -40,24 +50,30 @@ def outgoing(a1, a2, b11, b12, b22, mu):
 
     The ray satisfies a - mu B e = g e, so e = (mu B + g)^-1 a, and |(mu B + g)^-1 a| falls with g:
     from |a|_{stick}/mu > 1 at g = 0 to 0. So for mu below the critical value there is exactly one.
-    Newton's iteration on 1/|e(g)| rises to the root from the left without ever passing it.
+    Newton's iteration on 1/|e(g)| rises to the root from the left without ever passing it. Where mu is the
+    critical value to round-off g is 0, |(c, s)| <= 1, and -mu (c, s) the ratio of stick.
     """
-    size = math.sqrt(a1 * a1 + a2 * a2)
+    # In the principal axes of B, the greater first: each direction to round-off of its own, and |e| = 1.
     half = 0.5 * (b11 - b22)
-    largest = 0.5 * (b11 + b22) + math.sqrt(half * half + b12 * b12)
-    g = size - mu * largest  # |e(g)| >= size / (mu largest + g): a lower bound of the root
-    g = max(g, 1e-15 * (size + mu * largest))
-    c, s = a1 / size, a2 / size
+    root = math.sqrt(half * half + b12 * b12)
+    b1 = 0.5 * (b11 + b22) + root
+    x, y = (half + root, b12) if half >= 0.0 else (b12, root - half)
+    norm = math.sqrt(x * x + y * y)
+    x, y = (x / norm, y / norm) if norm > 0.0 else (1.0, 0.0)
+    p, q = x * a1 + y * a2, x * a2 - y * a1
+    m1, m2 = mu * b1, (mu * max(0.0, (b11 * b22 - b12 * b12) / b1) if b1 > 0.0 else 0.0)
+    size = math.sqrt(a1 * a1 + a2 * a2)
+    least = 1e-30 * (size + m1)
+    g = max(size - m1, least)  # |e(g)| >= size / (m1 + g): a lower bound of the root
     for _ in range(100):
-        m11, m12, m22 = mu * b11 + g, mu * b12, mu * b22 + g
-        det = m11 * m22 - m12 * m12
-        c = (m22 * a1 - m12 * a2) / det
-        s = (m11 * a2 - m12 * a1) / det
+        c, s = p / (m1 + g), q / (m2 + g)
         norm2 = c * c + s * s
-        slope = (m22 * c * c - 2.0 * m12 * c * s + m11 * s * s) / det
-        change = (math.sqrt(norm2) - 1.0) * norm2 / slope
-        g += change
-        if not abs(change) > 1e-15 * g:
+        if not norm2 > 1.0 and g <= least:
+            return x * c - y * s, y * c + x * s, 0.0
+        change = (math.sqrt(norm2) - 1.0) * norm2 / (c * c / (m1 + g) + s * s / (m2 + g))
+        if not change > 1e-15 * g:
             break
-    norm = math.sqrt(c * c + s * s)
-    return c / norm, s / norm, g
+        g += change
+    norm = math.sqrt(norm2)
+    c, s = c / norm, s / norm
+    return x * c - y * s, y * c + x * s, g

@@ -47,8 +47,8 @@ def land(m, mu, law, goal, start, end, t, h):
     """
     low, high = 0.0, h
     left = laws.remaining(law, goal, start[2], start[3], start[7])
-    scale = left - laws.remaining(law, goal, end[2], end[3], end[7])
-    z = h * left / scale
+    first = left
+    z = h * left / (left - laws.remaining(law, goal, end[2], end[3], end[7]))
     s = end
     for _ in range(60):
         s = moved(m, mu, start, t, z)
@@ -60,7 +60,7 @@ def land(m, mu, law, goal, start, end, t, h):
         else:
             high = z
         new = z + left / slope if slope > 0.0 else math.inf
-        if not abs(left) > 4e-16 * scale or new == z:
+        if not abs(left) > 4e-16 * first or new == z:
             return s
         if not (low < new < high):
             new = 0.5 * (low + high)

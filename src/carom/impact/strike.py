@@ -30,7 +30,6 @@ from carom.system.notes import begin_event, end_event
 from carom.system.records import IMPACT, JAMS, NEEDS_CORNER
 
 LOCATE, WORK = 0, 2
-NEARLY = 1e-9  # of W_nn: what makes a W of rank 1 regular
 RETURN_MAP_FAILED, IMPACT_FAILED, TOO_MANY_POINTS = 5, 6, 10
 SEED = 1e-10  # approach given to a point that jams, as a part of its slip; the result does not depend on it
 
@@ -143,16 +142,8 @@ def strike_one(method, system, controls, held, c, state, work, clock, records):
     hit.restitution = what_is_left(contact, held.brinks[c])
     held.brinks[c].blows += 1
     if collide(method, controls, contact, hit, work.history) != layout.OK:
-        # a hinge lets the point move along one line only: slip and approach end at once, and W has rank 1
-        little = NEARLY * hit.W[0, 0]
-        for i in range(3):
-            hit.W[i, i] += little
-        code = collide(method, controls, contact, hit, work.history)
-        for i in range(3):
-            hit.W[i, i] -= little
-        if code != layout.OK:
-            hit.code = IMPACT_FAILED
-            return
+        hit.code = IMPACT_FAILED
+        return
     write_impact(contact, c, state, point, hit, clock, records)
     out, P = hit.out, layout.IMPULSE
     spread(system, point, state, out[P], out[P + 1], out[P + 2], work)

@@ -9,6 +9,7 @@ from carom.dispatch import by_address
 from carom.impact.collapse import what_is_left
 from carom.impact.corner.layout import NEEDS_UNITS, OK
 from carom.impact.corner.resolve import resolve_contacts
+from carom.impact.layout import WEDGED
 from carom.jit import kernel, unit
 from carom.motion.contact_point import add_velocity, spread
 from carom.motion.several import inverse_masses, velocities
@@ -93,6 +94,6 @@ def write_share(system, i, k, state, cluster, corner, clock, records):
     row.compression_work, row.restitution_work = result.compression[i], result.restitution[i]
     row.friction_loss = result.friction[i]
     row.energy_change = result.compression[i] + result.restitution[i] - result.friction[i]
-    row.phases, row.duration = 0, 0.0
+    row.phases, row.duration = WEDGED if result.wedged[i] != 0 else 0, 0.0
     clock.impacts += row.energy_change
     clock.struck += 1

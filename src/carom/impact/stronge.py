@@ -15,7 +15,7 @@ from carom.jit import kernel
 @kernel
 def goal(e, v0, p_c, work_c):
     """Return the value at which restitution ends: A_r = -e^2 A_c."""
-    return -e * e * work_c
+    return max(0.0, -e * e * work_c)
 
 
 @kernel

@@ -8,6 +8,8 @@ from carom.impact import laws, layout
 from carom.impact.layer import E_MIN
 from carom.jit import kernel
 
+_NOT_LAW_A = layout.JAM | layout.WEDGED
+
 
 @kernel
 def write_impact(contact, c, state, point, hit, clock, records):
@@ -37,10 +39,10 @@ def layer_time(contact, hit, out):
     """Return the duration in the layer.
 
     Newton: law A, T_c = 2 b l/v_0, T_r = T_c/e. Else (and after a jam): constant N in each phase,
-    N_c = |A_c|/(b l), N_r = A_r/(b l).
+    N_c = |A_c|/(b l), N_r = A_r/(b l). What is wedged has no restitution.
     """
     depth = -contact.width * math.log1p(-contact.penetration)
-    if contact.law == laws.NEWTON and (int(out[layout.PHASES]) & layout.JAM) == 0:
+    if contact.law == laws.NEWTON and (int(out[layout.PHASES]) & _NOT_LAW_A) == 0:
         e = hit.restitution
         return 2.0 * depth / -hit.u[0] * (1.0 + (1.0 / e if e >= E_MIN else 0.0))
     compression, p_c = out[layout.WORK_C], out[layout.P_C]

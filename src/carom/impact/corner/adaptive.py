@@ -34,7 +34,7 @@ def start(k, work):
     for i in range(k):
         c = work.contact[i]
         c.mode, c.slope, c.rest, c.most = law.OPEN, 0.0, 0.0, 0.0
-        c.d0, c.mark, c.sticks = 0.0, 0.0, 0
+        c.d0, c.mark, c.sticks, c.wedged = 0.0, 0.0, 0, 0
         c.loading, c.unloading, c.absorbed, c.returned, c.loss = 0.0, 0.0, 0.0, 0.0, 0.0
         work.vector[D, i] = 0.0
     set_velocity(k, work)
@@ -108,19 +108,24 @@ def drift(k, work, apart, p):
 
 @inlined
 def wedged(k, work, h, p):
-    """Return whether all rest though forces act: friction holds them compressed, and so it stays.
+    """Return whether all that are closed rest though forces act: friction holds them, and so it stays.
 
-    At the deepest point all may rest as well, for a moment: so it must last for a step of some length `h`.
+    With u = 0 in all rows that have forces their power is nothing for good, so W times the forces is, and what
+    has opened keeps its velocity too. At the deepest point all may rest for a moment: it must last for a
+    step of some length `h`.
     """
     clock, u = work.clock[0], work.vector[U]
-    for i in range(3 * k):
-        if not abs(u[i]) <= WEDGED:
+    for i in range(k):
+        n, held = 3 * i, work.contact[i].mode != law.OPEN
+        slip = abs(u[n + 1]) + abs(u[n + 2]) if held and work.contact[i].mu > 0.0 else 0.0
+        if not (slip <= WEDGED and (abs(u[n]) if held else -u[n]) <= WEDGED):
             clock.rest = 0
             return False
     clock.rest += 1 if h >= _LASTING and clock.stretched == 0 else 0
     if clock.rest < 2:
         return False
     for i in range(k):  # what is stored is lost
+        work.contact[i].wedged = 1 if law.force(work.contact[i], work.vector[D, i], p) > 0.0 else 0
         law.abandon(work.contact[i], work.vector[D, i], p)
     return True
 

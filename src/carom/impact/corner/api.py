@@ -35,6 +35,8 @@ class CornerImpact:
         law could not be met; 0 where all are met.
     capped : bool
         Whether somewhere the law asks for more energy than the contact took: it gives back all, not more.
+    wedged : ndarray of bool, shape (k,)
+        Where friction holds a contact at rest at the end: its law of restitution could not be met.
     at_once : bool
         Whether the boundary layer could not be passed, and the impact was solved as one contact problem instead
         (Newton's law at each contact; Moreau 1988).
@@ -51,6 +53,7 @@ class CornerImpact:
     plastic_change: float
     law_missed: float
     capped: bool
+    wedged: np.ndarray
     at_once: bool
     steps: int
     events: int
@@ -166,6 +169,7 @@ def resolve_impacts(
         plastic_change=float(summary["plastic_change"]),
         law_missed=float(summary["miss"]),
         capped=bool(summary["marks"] & CAPPED),
+        wedged=out.wedged != 0,
         at_once=bool(summary["marks"] & AT_ONCE),
         steps=int(summary["steps"]),
         events=int(summary["events"]),

@@ -62,6 +62,7 @@ CONTACT = [
     ("slope", "f8"),  # N = (slope (d - rest))^p
     ("rest", "f8"),
     ("mark", "f8"),  # normal impulse at the last change of mode
+    ("wedged", "i8"),  # 1: friction holds it compressed at the end
     # friction
     ("sticks", "i8"),
     ("grip", "f8"),  # mu times the greatest own inverse mass of W_tt
@@ -94,6 +95,7 @@ class CornerResult(NamedTuple):
     compression: np.ndarray  # (K,) work of the normal force while loading, <= 0
     restitution: np.ndarray  # (K,) while unloading, >= 0
     friction: np.ndarray  # (K,) energy dissipated by friction
+    wedged: np.ndarray  # (K,) 1 where friction holds it at the end, and its law could not be met
     summary: np.recarray  # (1,) RESULT
 
 
@@ -208,8 +210,9 @@ def new_corner_result(capacity: int) -> CornerResult:
     """Return arrays for the result of up to `capacity` contacts."""
     k = max(int(capacity), 1)
     return CornerResult(
-        np.zeros(3 * k), np.zeros(3 * k), np.zeros(k), np.zeros(k), np.zeros(k), table(RESULT, 1)
-    )
+        np.zeros(3 * k), np.zeros(3 * k), np.zeros(k), np.zeros(k), np.zeros(k),
+        np.zeros(k, dtype=np.int64), table(RESULT, 1),
+    )  # fmt: skip
 
 
 def corner_arrays(capacity: int) -> CornerScratch:

@@ -66,6 +66,7 @@ def resolve_contacts(k, W, u, mu, e, law, kappa, settings, scratch, out):
     result.steps, result.events, result.rounds, result.classes, result.marks = 0, 0, 0, 0, 0
     for i in range(k):
         out.compression[i], out.restitution[i], out.friction[i] = 0.0, 0.0, 0.0
+        out.wedged[i] = 0
     for i in range(3 * k):
         out.impulse[i] = 0.0
         out.velocity[i] = u[i]
@@ -172,6 +173,7 @@ def _group(k, g, count, u, mu, e, law, kappa, scale, settings, scratch, out):
                 out.compression[i] = -max(0.0, c.absorbed) * share * energy
                 out.restitution[i] = max(0.0, c.returned) * share * energy
                 out.friction[i] = max(0.0, c.loss) * share * energy
+                out.wedged[i] = c.wedged
     summary.plastic_change = plastic + energy * summary.plastic_change
     summary.error = max(error, speed * summary.error)
     return OK
@@ -215,7 +217,7 @@ def _fill(n, u, mu, e, law, kappa, scale, exponent, work):
 
 @kernel
 def _exactly(k, i, parts, u, mu, e, law, work, units, out):
-    """Resolve a group that is one contact, number `i` and those like it; NOT_RESOLVED if it wedges.
+    """Resolve a group that is one contact, number `i` and those like it; NOT_RESOLVED if nothing stops it.
 
     If it `parts` others, it gives back no more than it took, as each of several contacts.
     """
@@ -241,6 +243,7 @@ def _exactly(k, i, parts, u, mu, e, law, work, units, out):
             out.compression[j] = single[one.WORK_C] * share
             out.restitution[j] = single[one.WORK_R] * share
             out.friction[j] = single[one.FRICTION_LOSS] * share
+            out.wedged[j] = 1 if int(single[one.PHASES]) & one.WEDGED != 0 else 0
     if not parts:
         out.summary[0].marks |= EXACT
     out.summary[0].steps += int(single[one.STEPS])

@@ -61,7 +61,7 @@ def misses(k, work, out):
     for i in range(k):
         out[i] = 0.0
         c = work.contact[i]
-        if not aims(c):
+        if not aims(c) or c.wedged == 1:  # no e_* would part what friction holds
             continue
         if c.law == laws.NEWTON:
             target, reached = c.restitution * c.approach, work.vector[U, 3 * i]
