@@ -21,11 +21,12 @@ from carom.motion.free import free_flight
 from carom.motion.joint_friction import stay_stuck
 from carom.motion.loops import dropped_rows
 from carom.motion.project import LOST, project_position, project_velocity
+from carom.motion.singular import SINGULAR, is_singular, pass_round, return_stage, steps
 from carom.motion.stay import return_held, stay_held
 from carom.system.arrays import FREE, ONE, RESTS, SEVERAL
 
 CONSTRAINTS_LOST = 7
-EVEN, FIRST, LAST, MIDDLE = range(4)  # which stages leave out more rows than others
+MANY = 1 << 30  # rows, more than there are
 
 
 class Explicit(NamedTuple):
@@ -85,44 +86,28 @@ def explicit_step(method, system, held, start, h, end, work):
 @inlined
 def constrained(method, system, held, start, h, end, work):
     """Step the bodies that are joined, loaded or held; as `explicit_step` gives back."""
-    whole_or_parts(method.address, method.A, method.b, method.E, system, held, start, h, end, work)
+    whole_step(method.address, method.A, method.b, method.E, system, held, start, h, end, work)
     result = work.result[0]
     return result.applied, result.friction, result.code
 
 
 @unit
 def constrained_unit(A, weight, E, system, held, start, h, end, work):
-    """Step at once; or in two unequal parts, if some stages fell into a singular position.
-
-    There rows depend on each other that do not elsewhere, and are left out: the acceleration of that
-    stage is not the limit of its neighbours. The parts have their stages at other times; where the
-    step itself starts or ends in such a position, the part that does so is short.
-    """
-    share = 1.0
-    applied, friction, code = 0.0, 0.0, 0
-    for part in range(3):
-        if part == 1:  # what the whole step gave is void
-            forget_misses(work)
-            applied, friction = 0.0, 0.0
-        first, last, dt, t0 = start, end, h, work.result[0].start
-        if part == 1:
-            for b in range(start.shape[0]):
-                keep(start[b], work.middle[b])
-            last, dt = work.middle, share * h
-        elif part == 2:
-            first, dt, t0 = work.middle, (1.0 - share) * h, t0 + share * h
-        p, f, code, where = constrained_step(system, A, weight, E, held, first, t0, dt, last, work)
-        applied, friction = applied + p, friction + f
-        if code != 0 or (part == 0 and where == EVEN):
-            break
-        if part == 0:
-            share = 0.0625 if where == FIRST else 0.9375 if where == LAST else 0.375
+    """Step; and again with care, if some stages fell into a singular position (`carom.motion.singular`)."""
     result = work.result[0]
+    for care in (False, True):
+        applied, friction, code, least, most = constrained_step(
+            system, A, weight, E, held, start, care, h, end, work
+        )
+        if not is_singular(system, least, most):
+            break
+        if not care:
+            forget_misses(work)  # what was done is void
     result.applied, result.friction, result.code = applied, friction, code
 
 
-#: whole_or_parts(address, A, weight, E, system, held, start, h, end, work)
-whole_or_parts = by_address(constrained_unit)
+#: whole_step(address, A, weight, E, system, held, start, h, end, work)
+whole_step = by_address(constrained_unit)
 
 
 @inlined
@@ -164,18 +149,21 @@ def mark_held(system, held, work):
 
 
 @kernel
-def constrained_step(system, A, weight, E, held, start, t0, h, end, work):
-    """Step the bodies that are joined, loaded or held, from the time t0; the others are in `end` already.
+def constrained_step(system, A, weight, E, held, start, care, h, end, work):
+    """Step the bodies that are joined, loaded or held; the others are in `end` already.
 
-    Returns work of loads, of friction, a status, and which stages left out more rows than others.
+    With `care` the stages return to the joints first, and those in singular positions are passed round. Returns
+    work of loads, of friction, a status, and the least and the most rows that stages left out, or nearly.
     """
-    stages, stage = weight.size, work.stage
+    stages, stage, t0 = weight.size, work.stage, work.result[0].start
     applied, friction = 0.0, 0.0
     aim(system, held, start, work)
-    least, most, at_first, at_last = 1 << 30, 0, 0, 0
+    least, most = MANY, 0
     for s in range(stages):
         combine(A[s], s, h, start, work.stages, stage)
         work.result[0].time = t0 + h * node(A[s], s)
+        if care:
+            return_stage(system, stage, work)
         for b in range(stage.shape[0]):
             speed, attitude = work.stages[s, b].speed, work.stages[s, b].attitude
             for k in range(3):
@@ -183,11 +171,12 @@ def constrained_step(system, A, weight, E, held, start, t0, h, end, work):
             for k in range(4):
                 attitude[k] = stage[b].Q[k]
         accelerations(system, stage, held, work, work.stages[s])
+        dropped = dropped_rows(system, SINGULAR)
+        least, most = min(least, dropped), max(most, dropped)
+        if care:
+            pass_round(system, stage, held, end, work, work.stages[s])
         applied += h * weight[s] * work.result[0].power
         friction += h * weight[s] * work.result[0].drag
-        at_last = dropped_rows(system)
-        at_first = at_last if s == 0 else at_first
-        least, most = min(least, at_last), max(most, at_last)
     combine(weight, stages, h, start, work.stages, stage)
     work.result[0].time = t0 + h
     if system.contacts.shape[0] > 0 or E.shape[0] > 0:
@@ -195,18 +184,15 @@ def constrained_step(system, A, weight, E, held, start, t0, h, end, work):
     if E.shape[0] > 0:
         note_misses(system, E, h, work)
     for b in range(stage.shape[0]):
-        status = work.body[b].status
-        if status == ONE or (status != RESTS and system.bodies[b].ballistic == 0):
+        if steps(system, b, work):
             keep(stage[b], end[b])
     if not (project_position(system, end, True, 1e-14, work) <= LOST):
-        return applied, friction, CONSTRAINTS_LOST, EVEN
+        return applied, friction, CONSTRAINTS_LOST, least, most
     return_held(system, held, end, work)
     project_velocity(system, end, work)
     stay_stuck(system, end, work)
     stay_held(system, held, end, work)
-    if most == least:
-        return applied, friction, 0, EVEN
-    return applied, friction, 0, FIRST if at_first > least else LAST if at_last > least else MIDDLE
+    return applied, friction, 0, least, most
 
 
 @kernel

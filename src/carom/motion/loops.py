@@ -23,10 +23,29 @@ from carom.system.arrays import FreeSolver, LoopSolver, TreeSolver
 @kernel
 def factor(system, state, augment, work):
     """Factor A M^-1 A^T + augment * diag in the position of `state`."""
-    solver, joints, block = system.solver, system.joints, system.solver.block
-    for b in range(solver.pose.shape[0]):
-        solver.pose[b, 0] = math.nan  # the caller may say of which pose it is
+    solver, joints = system.solver, system.joints
+    forget_pose(solver)
     build_rows(system, state, work)
+    gather(system)
+    for j in range(joints.shape[0]):
+        for r in range(joints[j].rows):
+            d = solver.block[j, r, r]
+            solver.rows[j].weight[r] = d
+            solver.block[j, r, r] = d * (1.0 + augment) + solver.rows[j].compliance[r]
+    eliminate(system, solver.drop if augment == 0.0 else 0.0)
+
+
+@kernel
+def forget_pose(solver):
+    """Begin a factor: the caller may say of which pose it is."""
+    for b in range(solver.pose.shape[0]):
+        solver.pose[b, 0] = math.nan
+
+
+@kernel
+def gather(system):
+    """Write the blocks of A Y^T."""
+    solver, joints, block = system.solver, system.joints, system.solver.block
     for k in range(block.shape[0]):
         clear(block[k])
     for t in range(solver.term.shape[0]):
@@ -38,13 +57,13 @@ def factor(system, state, augment, work):
             joints[one.element].rows,
             joints[two.element].rows,
         )
+
+
+@kernel
+def eliminate(system, drop):
+    """Factor the blocks in place; `weight` has the diagonal that pivots are judged by."""
+    solver, joints, block = system.solver, system.joints, system.solver.block
     count = joints.shape[0]
-    for j in range(count):
-        for r in range(joints[j].rows):
-            d = block[j, r, r]
-            solver.rows[j].weight[r] = d
-            block[j, r, r] = d * (1.0 + augment) + solver.rows[j].compliance[r]
-    drop = solver.drop if augment == 0.0 else 0.0
     for place in range(count):
         k = solver.order[place]
         n, pivot = joints[k].rows, solver.rows[k].pivot
@@ -211,23 +230,24 @@ def solve_factored(system, state, biased, work):
 
 
 @kernel
-def _dropped_rows(system):
-    """Return how many rows the last factor left out."""
+def _dropped_rows(system, part):
+    """Return how many rows the last factor left out, or kept for less than `part` of their diagonal."""
     count = 0
     for j in range(system.joints.shape[0]):
+        row = system.solver.rows[j]
         for r in range(system.joints[j].rows):
-            if system.solver.rows[j].pivot[r] == 0.0:
+            if row.pivot[r] == 0.0 or part * row.weight[r] * row.pivot[r] > 1.0:
                 count += 1
     return count
 
 
 @kernel
-def _none_dropped(system):
+def _none_dropped(system, part):
     """Only the loops' back end leaves rows out."""
     return 0
 
 
-#: dropped_rows(system): how many rows the last solve left out
+#: dropped_rows(system, part): how many rows the last solve left out, or all but left out
 dropped_rows = by_solver(
     {FreeSolver: _none_dropped, TreeSolver: _none_dropped, LoopSolver: _dropped_rows}
 )

@@ -34,7 +34,7 @@ from carom.motion.explicit import constrained, fly, keep
 from carom.motion.kick import add_momentum, first_kick, second_kick
 from carom.motion.loops import dropped_rows, solve_factored
 from carom.motion.move_error import error_of_move
-from carom.motion.solve import joint_wrench, solve
+from carom.motion.solve import joint_wrench, solve, solve_near
 from carom.motion.turn import turn_by_momentum
 from carom.system.arrays import RELATION, FreeSolver, LoopSolver, TreeSolver
 
@@ -136,7 +136,7 @@ def one_part(system, start, t, h, end, work):
     result = work.result[0]
     result.time = t
     total = first_kick(system, start, h, work)
-    lost = dropped_rows(system)
+    lost = dropped_rows(system, 0.0)
     least, last, fine = math.inf, math.inf, round_off(system, start)
     for k in range(MOST):
         if not move_all(system, start, h, end, work):
@@ -152,7 +152,7 @@ def one_part(system, start, t, h, end, work):
         total += driven_power(system, start, work)  # of an impulse: its work
     result.time = t + h
     total += second_kick(system, h, end, work)
-    if dropped_rows(system) != lost:
+    if dropped_rows(system, 0.0) != lost:
         return 0.0, STALLED
     return total, DONE
 
@@ -190,6 +190,9 @@ def _solve(system, state, work):
 @kernel
 def _solve_factored(system, state, work):
     """Do the same with the factor that is there."""
+    if system.solver.scaled.shape[0] > 0:
+        solve_near(system, state, work)
+        return
     solve_factored(system, state, True, work)
     keep_multipliers(system, state, work)
 

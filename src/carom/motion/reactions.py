@@ -15,6 +15,7 @@ from carom.motion.elements import (
     velocity_error,
 )
 from carom.motion.forces import applied_wrenches
+from carom.motion.light import factor_geometry, geometric_motion
 from carom.motion.loops import add_reactions, factor, free_motion, substitute, subtract_rows
 from carom.motion.solve import joint_wrench, solve
 from carom.motion.stiff import add_stiff
@@ -38,19 +39,31 @@ def least_norm(system, augment, state, work):
     """Share reactions by the augmented Lagrangian, started from zero.
 
     Each pass adds (A M^-1 A^T + eps)^-1 of what is missing in A a = target; the sum stays in the
-    range of A M^-1 A^T and so converges to the solution of least norm, rows weighed by eps.
+    range of A M^-1 A^T and so converges to the solution of least norm, rows weighed by eps. Where masses are spread
+    the same is done with A D^-1 A^T (`carom.motion.light`) for the multipliers mu that were found: of A^T lam = A^T mu.
     """
-    factor(system, state, augment, work)
+    spread = system.solver.scaled.shape[0] > 0
+    if spread:
+        push_multipliers(system, work)
+        factor_geometry(system, state, augment, work)
+    else:
+        factor(system, state, augment, work)
     for j in range(system.joints.shape[0]):
         for k in range(6):
             work.joint[j].multiplier[k] = 0.0
     for _ in range(8):
-        free_motion(system, work)
+        if spread:
+            geometric_motion(system, work)
+        else:
+            free_motion(system, work)
         swap(system, work)
         add_reactions(system, work)
         for j in range(system.joints.shape[0]):
             rhs = system.solver.rows[j].rhs
-            row_target(system, j, state, work.joint[j].bias, rhs)
+            for k in range(6):
+                rhs[k] = 0.0
+            if not spread:
+                row_target(system, j, state, work.joint[j].bias, rhs)
         subtract_rows(system, work)
         substitute(system)
         for j in range(system.joints.shape[0]):
@@ -59,6 +72,20 @@ def least_norm(system, augment, state, work):
     for j in range(system.joints.shape[0]):
         record = work.joint[j]
         joint_wrench(system.joints[j], state, record.multiplier, record.reaction)
+
+
+@kernel
+def push_multipliers(system, work):
+    """Write minus what the multipliers of the last solve do to each body into its wrench."""
+    for b in range(system.bodies.shape[0]):
+        for k in range(6):
+            work.body[b].wrench[k] = 0.0
+    for i in range(system.solver.sides.shape[0]):
+        side = system.solver.sides[i]
+        A, wrench, multiplier = side.A, work.body[side.body].wrench, system.solver.rows[side.element].rhs
+        for r in range(system.joints[side.element].rows):
+            for k in range(6):
+                wrench[k] -= A[r, k] * multiplier[r]
 
 
 @kernel

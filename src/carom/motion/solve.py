@@ -5,6 +5,7 @@ from __future__ import annotations
 from carom.dispatch import by_address, by_solver
 from carom.geometry.rotation import rotate, rotate_back
 from carom.jit import address, inlined, kernel, unit
+from carom.motion.light import factor_light, solve_light
 from carom.motion.loops import factor, solve_factored
 from carom.motion.pose import keep_pose, same_pose
 from carom.motion.rows import direction
@@ -43,6 +44,19 @@ def solve_loops(system, state, biased, near, work):
         joint_wrench(system.joints[j], state, system.solver.rows[j].rhs, work.joint[j].reaction)
 
 
+@unit
+def solve_spread(system, state, biased, near, work):
+    """Do the same where masses differ by many orders."""
+    poses = system.solver.pose
+    if not near and not same_pose(poses, state):
+        factor_light(system, state, work)
+        for b in range(poses.shape[0]):
+            keep_pose(state[b], poses[b])
+    solve_light(system, state, biased, work)
+    for j in range(system.joints.shape[0]):
+        joint_wrench(system.joints[j], state, system.solver.rows[j].rhs, work.joint[j].reaction)
+
+
 @kernel
 def joint_wrench(joint, state, multiplier, reaction):
     """Write the wrench on the child at its anchor: sum of multiplier times direction.
@@ -60,8 +74,14 @@ def joint_wrench(joint, state, multiplier, reaction):
             reaction[3 + k] += multiplier[r] * d[k]
 
 
-BACK_ENDS = {FreeSolver: solve_free, TreeSolver: solve_tree, LoopSolver: solve_loops}
-_solve_at = by_address(lambda system, *rest: BACK_ENDS[type(system.solver)](system, *rest))
+def back_end(solver):
+    """Return the unit that solves; of closed loops it depends on the masses."""
+    if isinstance(solver, LoopSolver):
+        return solve_spread if len(solver.scaled) else solve_loops
+    return solve_free if isinstance(solver, FreeSolver) else solve_tree
+
+
+_solve_at = by_address(lambda system, *rest: back_end(system.solver)(system, *rest))
 
 
 @inlined
@@ -105,5 +125,5 @@ def solve_near(system, state, work):
 
 def with_address(system, state, work, find=address):
     """Return the system with the address of its back end for arrays like these, which `find` finds."""
-    found = find(BACK_ENDS[type(system.solver)], system, state, True, False, work)
+    found = find(back_end(system.solver), system, state, True, False, work)
     return system._replace(solver=system.solver._replace(address=found))

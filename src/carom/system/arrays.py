@@ -451,6 +451,11 @@ class LoopSolver(NamedTuple):
     block: np.ndarray  # (J+B, 6, 6) diagonal blocks, then the others
     drop: float  # pivots below this part of the row's diagonal are dropped
     pose: np.ndarray  # (N, 7) that was factored, or (0, 7): rows depend on more than the pose
+    usual: np.ndarray  # (1,) how many rows depend on others away from singular positions; -1: not known yet
+    # scratch of `carom.motion.light`, empty where masses are alike: high and low parts
+    fine: np.ndarray  # (2, J+B, 6, 6) blocks
+    digits: np.ndarray  # (J, 4, 6) 1/pivots, multipliers
+    scaled: np.ndarray  # (N, 3, 6) scaled motions, and attitudes
 
 
 class NoRelations(NamedTuple):

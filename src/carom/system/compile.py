@@ -66,7 +66,7 @@ def compile_scene(
     if implicit:
         elements.add_springs(scene, placement)
     more = MoreForces(scene, coordinates, functions, pieces, implicit)
-    joints, flipped, solver = _joints(scene, placement, elements, options, loops)
+    joints, flipped, solver = _joints(scene, moments, placement, elements, options, loops)
     contacts, vertices, solids, hulls = compile_contacts(scene, to_principal, options)
     contacts = with_stops(scene, contacts, coordinates, sizes, options)
     relations = elements.arrays(solver, more)
@@ -156,7 +156,7 @@ def _anchors(joint, flipped):
     return anchor, anchor, np.eye(3)
 
 
-def _joints(scene, placement, elements, options, loops):
+def _joints(scene, moments, placement, elements, options, loops):
     defined = scene.joints
     if not defined and not elements.kinds:
         return table(JOINT, 0), np.zeros(0, dtype=bool), arrays.FreeSolver(0)
@@ -192,9 +192,18 @@ def _joints(scene, placement, elements, options, loops):
     if forest:
         solver = solvers.tree_solver(joints, order, carrier)
     else:
+        mass = np.array([b.mass for b in scene.bodies])
+        ratio, light, heavy = solvers.spread(touching, mass, moments, _extents(scene, joints))
+        if ratio > solvers.LIMIT and not loops:
+            names = scene.bodies[light].name, scene.bodies[heavy].name
+            raise ValueError(
+                f"masses, or moments over the squares of sizes, of bodies {names[0]!r} and {names[1]!r}, which "
+                f"closed loops join, must not differ by more than {solvers.LIMIT:g} times, got {ratio:.3g} times"
+            )
         solver = solvers.loop_solver(
-            touching, options.drop_tolerance, 0 if elements.touching else len(scene.bodies)
-        )
+            touching, options.drop_tolerance, 0 if elements.touching else count,
+            count if ratio > solvers.SPREAD else 0,
+        )  # fmt: skip
     return joints, flipped, solver
 
 
@@ -262,22 +271,33 @@ def _bushings(scene, frames):
 
 
 def start_sizes(scene) -> np.ndarray:
-    """Return the size (N,) of the shape of each body, 1 m where it has none."""
-    return np.array([1.0 if b.shape is None else b.shape.size for b in scene.bodies])
+    """Return the size (N,) of the shape of each body; its radius of gyration (of tr J = 2 m r^2) where it has none."""
+    return np.array(
+        [
+            np.sqrt(0.5 * np.trace(b.inertia) / b.mass) if b.shape is None else b.shape.size
+            for b in scene.bodies
+        ]
+    )
+
+
+def _extents(scene, joints) -> np.ndarray:
+    """Return a length (N,) of each body: of its shape, or the arms of its joints."""
+    size = np.array([0.0 if b.shape is None else b.shape.size for b in scene.bodies])
+    for side in ("parent", "child") if len(joints) else ():
+        sides, anchors = joints[side], joints[f"{side}_anchor"]
+        inside = sides >= 0
+        np.maximum.at(size, sides[inside], np.linalg.norm(anchors[inside], axis=1))
+    return np.where(size == 0.0, start_sizes(scene), size)
 
 
 def _bodies(scene, moments, joints, elements, springs, loads, bushings, more):
     bodies, number = table(BODY, len(scene.bodies)), np.arange(len(scene.bodies))
     ball = np.array([0.0 if b.shape is None else b.shape.size for b in scene.bodies])
-    size, isolated = ball.copy(), np.ones(len(bodies), dtype=np.int64)
+    isolated = np.ones(len(bodies), dtype=np.int64)
     for side in ("parent", "child") if len(joints) else ():
-        sides, anchors = joints[side], joints[f"{side}_anchor"]
-        inside = sides >= 0
-        isolated[sides[inside]] = 0
-        np.maximum.at(size, sides[inside], np.linalg.norm(anchors[inside], axis=1))
+        isolated[joints[side][joints[side] >= 0]] = 0
     for touched in elements.touching:
         isolated[touched] = 0
-    size[size == 0.0] = 1.0
     ballistic = isolated.copy()
     for forces, ends in (
         (springs, ("parent", "child")), (loads, ("body",)), (bushings, ("parent", "child"))
@@ -287,7 +307,7 @@ def _bodies(scene, moments, joints, elements, springs, loads, bushings, more):
             ballistic[loaded[loaded >= 0]] = 0
     ballistic[more.named] = 0
     bodies["mass"] = [b.mass for b in scene.bodies]
-    bodies["inertia"], bodies["extent"], bodies["ball"] = moments, size, ball
+    bodies["inertia"], bodies["extent"], bodies["ball"] = moments, _extents(scene, joints), ball
     bodies["isotropic"] = moments.max(axis=1) == moments.min(axis=1)
     bodies["isolated"], bodies["ballistic"] = isolated, ballistic
     bodies["number"] = number

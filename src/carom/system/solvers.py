@@ -7,6 +7,9 @@ import numpy as np
 from carom.system.arrays import FIRST, LINK, ROW, ROWS, SIDE, WIDTH, LoopSolver, TreeSolver, table
 from carom.system.graph import elimination
 
+SPREAD = 1e5  # of masses, from which on A M^-1 A^T loses too many digits (`carom.motion.light`)
+LIMIT = 1e24  # of masses, from which on nothing is left of 31 digits
+
 
 def tree_solver(joints: np.recarray, order: np.ndarray, joint: np.ndarray) -> TreeSolver:
     """Return the solver of a forest; `order` and `joint` are those of `forest_order`."""
@@ -26,11 +29,37 @@ def tree_solver(joints: np.recarray, order: np.ndarray, joint: np.ndarray) -> Tr
     return TreeSolver(0, links, np.full((order.size, FIRST + WIDTH * most), np.nan))
 
 
-def loop_solver(touching: list[list[int]], drop: float, poses: int) -> LoopSolver:
+def spread(touching: list[list[int]], mass, moments, extent) -> tuple[float, int, int]:
+    """Return by how much masses, or moments over the squares of sizes, differ in one mechanism, and of which bodies.
+
+    `touching` is that of `loop_solver`; for all bodies mass (N,), principal moments (N, 3) and size (N,). The bodies
+    are the lightest and the heaviest of that mechanism.
+    """
+    root = list(range(len(mass)))
+
+    def find(b):
+        while root[b] != b:
+            b = root[b]
+        return b
+
+    for first, *others in touching:
+        for b in others:
+            root[find(b)] = find(first)
+    inertia = np.column_stack([mass, moments / extent[:, None] ** 2])
+    least, most = inertia.min(axis=1), inertia.max(axis=1)
+    own: dict[int, list[int]] = {}
+    for b in {b for bodies in touching for b in bodies}:
+        own.setdefault(find(b), []).append(b)
+    ends = [(min(group, key=least.__getitem__), max(group, key=most.__getitem__)) for group in own.values()]
+    return max(((float(most[k] / least[i]), i, k) for i, k in ends), default=(1.0, 0, 0))
+
+
+def loop_solver(touching: list[list[int]], drop: float, poses: int, bodies: int) -> LoopSolver:
     """Return the solver of a scene with closed loops: the symbolic factor of A M^-1 A^T.
 
     `touching` has the bodies of each element, joints first: the child, then the parent if it is a body. `poses`
-    is the number of bodies if the rows depend on nothing but their poses, else 0.
+    is the number of bodies if the rows depend on nothing but their poses, else 0; `bodies` is that number where
+    their masses are spread, else 0.
     """
     number = len(touching)
     order, later = elimination(touching)
@@ -81,4 +110,8 @@ def loop_solver(touching: list[list[int]], drop: float, poses: int) -> LoopSolve
         block=np.zeros((number + len(row), 6, 6)),
         drop=drop,
         pose=np.full((poses, 7), np.nan),
+        usual=np.full(1, -1),
+        fine=np.zeros((2, number + len(row) if bodies else 0, 6, 6)),
+        digits=np.zeros((number if bodies else 0, 4, 6)),
+        scaled=np.zeros((bodies, 3, 6)),
     )
