@@ -120,7 +120,8 @@ class Store:
         runs = self.group["outcomes/status"].shape[0]
         rows = np.zeros(runs, dtype=outcome_type(int(self.group.attrs["bodies"])))
         for name in rows.dtype.names or ():
-            rows[name] = self.group[f"outcomes/{name}"][:]
+            known = f"outcomes/{name}" in self.group  # an older carom has no `energy_error`
+            rows[name] = self.group[f"outcomes/{name}"][:] if known else np.nan
         return rows
 
     def failures(self) -> dict[int, str]:

@@ -48,6 +48,7 @@ def read(path: Path, functions: Mapping[str, Callable] | None = None) -> dict[st
             "t": _array(file, "time"),
             **{name: _array(file, name) for name in MOTION},
             "status": Status[file.attrs["status"]],
+            "warnings": tuple(json.loads(file.attrs.get("warnings", "[]"))),
             "stats": json.loads(file.attrs["stats"]),
             "scene": scene, "settings": settings, "_run": run, "_touch": records.touch,
         }  # fmt: skip

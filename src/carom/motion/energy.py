@@ -24,8 +24,8 @@ def kinetic_energy(system, state):
 def energies(system, state, t):
     """Return kinetic and potential energy, and the size of what they are made of [J].
 
-    Its part of 1e-16 is round-off of the two: a potential is a difference of large numbers far from its zero, and
-    positions are known to the round-off of coordinates and of the bodies' size.
+    A part of 1e-16 of that is the round-off of the two: far from its zero a potential is a difference of large
+    numbers, and positions are known to the round-off of coordinates and of the size of the bodies.
     """
     kinetic = kinetic_energy(system, state)
     potential = potential_energy(system, state, t) + stiff_energy(system, state)
