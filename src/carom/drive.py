@@ -47,7 +47,7 @@ def finish(run, progress, keeper: Keeper | None, throw: bool):
         warnings.warn(what, RuntimeWarning, stacklevel=3)
     if throw and not solution.success:
         raise SimulationError(solution.message, solution) from run.failure
-    if solution.warnings and solution.status.ended:
+    if solution.warnings and solution.success:
         warnings.warn(" ".join(solution.warnings), AccuracyWarning, stacklevel=3)
     return solution
 

@@ -49,10 +49,11 @@ class Options:
         Bodies held at several points come to rest, exactly, when their speed is below this part of the speed
         that applied forces would give them in one step; slip below it has stopped. Default 1e-9.
     energy_tolerance : float
-        Energy that may come or go without a name in the ledger, as a part of the largest energy exchanged so
-        far: the greatest of kinetic energy, change of the potential, and each of the sums of loads, impacts,
-        friction and bounces. What is beyond it is in `Solution.warnings`, and an `AccuracyWarning`; a hundred
-        times that is `Status.INACCURATE`. Watched after each step. Default 1e-4. (Mathematics page, II.12.)
+        Energy that may come or go without a name in the ledger, as a part of the largest energy exchanged in
+        the run: the greatest of kinetic energy, change of the potential, and each of the sums of loads,
+        impacts, friction and bounces. What is beyond it is in `Solution.warnings`, and an `AccuracyWarning`;
+        beyond a hundred times that a run ends as `Status.INACCURATE`. Watched after each step. Default 1e-4.
+        (Mathematics page, II.12.)
     constraint_tolerance : float
         Greatest error of position (relative to the size of the bodies) and of velocity (relative
         to their speeds) that joints may have at the start. Default 1e-8.

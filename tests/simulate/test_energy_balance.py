@@ -40,7 +40,7 @@ def exchanged(solution):
 @pytest.mark.parametrize(
     ("h_omega", "status", "warns"),
     [
-        # RK4 multiplies the energy of an oscillator by 1 - (h w)^6/72 + ... a step: in 100 steps it loses a part
+        # RK4 multiplies the energy of an oscillator by 1 - (h w)^6/72 + ... a step: 100 steps lose a part
         # of 1.4e-6, of 1e-3, nearly all
         (0.1, Status.SUCCESS, False),
         (0.3, Status.SUCCESS, True),
