@@ -30,7 +30,7 @@ from carom.scene import (
 )
 from carom.simulate import simulate
 from carom.solution import Solution
-from carom.status import SimulationError, Status
+from carom.status import AccuracyWarning, SimulationError, Status
 
 if TYPE_CHECKING:
     from carom import baselines, identify, models, plots
@@ -48,6 +48,7 @@ __version__ = "0.1.0"
 
 __all__ = [
     "GROUND",
+    "AccuracyWarning",
     "Box",
     "Capsule",
     "Compound",

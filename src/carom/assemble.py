@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom.accuracy import sentences
 from carom.columns import Columns
 from carom.coordinates import Motion, coordinates_of
 from carom.geometry import quaternion
@@ -47,6 +48,7 @@ def assemble(run, status: Status) -> dict:
         "angular_velocity": np.array(state["w"]),
         "held_residual": np.array(series["residual"]),
         "status": status,
+        "warnings": sentences(run.watch[0]),
         "stats": {
             "steps": clock["step"], "trial_steps": clock["trials"], "rejected": clock["rejected"],
             "cuts": clock["cuts"], "located": clock["located"], "impacts": clock["struck"],

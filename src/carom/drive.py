@@ -6,7 +6,7 @@ import warnings
 from time import perf_counter
 from typing import TYPE_CHECKING
 
-from carom.status import SimulationError, Status
+from carom.status import AccuracyWarning, SimulationError, Status
 
 if TYPE_CHECKING:
     from carom.files.keeper import Keeper
@@ -47,6 +47,8 @@ def finish(run, progress, keeper: Keeper | None, throw: bool):
         warnings.warn(what, RuntimeWarning, stacklevel=3)
     if throw and not solution.success:
         raise SimulationError(solution.message, solution) from run.failure
+    if solution.warnings and solution.success:
+        warnings.warn(" ".join(solution.warnings), AccuracyWarning, stacklevel=3)
     return solution
 
 

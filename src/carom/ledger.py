@@ -18,9 +18,9 @@ class Ledger:
     kinetic, potential
         What there is. Potential: gravity and springs.
     loads
-        Work of constant forces and torques, and of dampers (negative).
+        Work of forces and torques without potential, of dampers (negative), and of motors.
     impacts
-        Change by impacts, negative where they dissipate.
+        Change by impacts: not above zero, but where Newton's law with friction gives energy.
     friction
         Work of friction in held contacts, not above zero.
     bounces

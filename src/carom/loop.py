@@ -43,14 +43,15 @@ from carom.motion.adapt import NOTHING_LEFT, plan_next, shorter, step_error
 from carom.motion.contact_point import contact_velocity
 from carom.motion.explicit import keep
 from carom.motion.step import step
-from carom.save import save_contacts
+from carom.save import finite, save_contacts
 from carom.system import records as r
 from carom.system.arrays import FREE, STOP
 from carom.system.notes import begin_event, end_event
+from carom.watch import IN_A_ROW, SHORTEST, multiplies
 
 LOCATE, PROJECT, WORK = range(3)
 STEP_CUT, TOO_MANY, NOT_FINITE = 2, 3, 4
-NO_CONVERGENCE, STEP_TOO_SMALL = 1, 12
+NO_CONVERGENCE, STEP_TOO_SMALL, UNSTABLE = 1, 12, 14
 # where a step is given up: trial steps, work for held contacts
 TRIES, EFFORT = 3000, 2e7
 
@@ -87,8 +88,9 @@ class Controls(NamedTuple):
 
 @inlined
 def advance(
-    system, method, controls, held, now, begin, length, cluster, corner, work, clocks, records
-):
+    system, method, controls, held, now, begin, length, cluster, corner, work, clocks, records,
+    watch,
+):  # fmt: skip
     """Move the bodies of an island to the end of the step. Returns 0, or what `run` is to return."""
     clock, search, trial = clocks[0], work.search[0], work.trial
     pace = math.inf
@@ -108,9 +110,9 @@ def advance(
             action, c = look_near(system, controls, held, now, work)
         if action == NOTHING:
             # a trial step, cut until nothing can lie inside it, or shortened to its first event
-            dt, cuts, found, again = remaining, 0, False, False
+            dt, cuts, found, again = min(remaining, pace), 0, False, False
             if held.count[0] > 0:
-                dt = until_stop(controls, held, min(dt, pace), clock)
+                dt = until_stop(controls, held, dt, clock)
             search.active, search.eager = 0, 1 if clock.in_step < 20 else 0
             while True:
                 work.result[0].start = clock.now
@@ -156,6 +158,16 @@ def advance(
                         continue
                 verdict, kind, other, low, d1, d2 = UNSURE, GAP, -1, 0.0, 0.0, 0.0
                 loses = too_long(system, controls, held, dt, pace < math.inf, work)
+                if not loses and controls.order == 0 and search.active == 0:
+                    named = applied + friction
+                    loses = multiplies(system, now, trial, named, clock.now, dt, watch)
+                    if loses and not dt > SHORTEST * controls.step:
+                        watch.gains += 1
+                        if watch.gains == IN_A_ROW:
+                            return UNSTABLE if finite(trial) else NOT_FINITE
+                        loses = False
+                    elif not loses:
+                        watch.gains = 0
                 if not loses:
                     verdict, kind, other, low, d1, d2 = examine(
                         system, controls, held, now, dt, work

@@ -15,12 +15,13 @@ from carom.motion.more_forces import note_turns
 from carom.references import refer
 from carom.save import finite, save, still
 from carom.system import records as r
+from carom.watch import watch_step
 
 
 @entry
 def run(
     system, method, controls, held, now, work, islands, cluster, corner, heap, clocks, records,
-    until,
+    watch, until,
 ):  # fmt: skip
     """Go on from `now` to step number `until`, or to that time if the length of steps is chosen.
 
@@ -45,7 +46,7 @@ def run(
             enter(islands, part, own, held, scratch, begin, clock)
             code = move(
                 islands, part, method, controls, own, here, begin, length, cluster, corner, heap,
-                scratch, clocks, records,
+                scratch, clocks, records, watch[0],
             )  # fmt: skip
             if controls.order > 0:
                 length = clock.length
@@ -69,6 +70,7 @@ def run(
             clock.now, last = controls.duration, True
         if not finite(now):
             return NOT_FINITE
+        watch_step(system, now, clock, records, watch[0])
         if clock.step % controls.save_every == 0 or last:
             save(system, held, now, clock, work, records)
     return 0
@@ -140,18 +142,19 @@ def _enter_island(islands, part, own, held, work, begin, clock):
 @inlined
 def _move_all(
     islands, system, method, controls, held, now, begin, length, cluster, corner, heap, work,
-    clocks, records,
+    clocks, records, watch,
 ):  # fmt: skip
     """Move all bodies to the end of the step."""
     return advance(
-        system, method, controls, held, now, begin, length, cluster, corner, work, clocks, records
-    )
+        system, method, controls, held, now, begin, length, cluster, corner, work, clocks, records,
+        watch,
+    )  # fmt: skip
 
 
 @inlined
 def _move_island(
     islands, part, method, controls, own, here, begin, length, cluster, corner, heap, work, clocks,
-    records,
+    records, watch,
 ):  # fmt: skip
     """Move an island to the end of the step: event by event, or whole if it is large."""
     if not parts.is_heap(part, controls.heap, clocks[0].step, work):
@@ -159,8 +162,9 @@ def _move_island(
             return r.NEEDS_HOLD
         parts.recover(part, clocks[0].step, work)
         return advance(
-            part, method, controls, own, here, begin, length, cluster, corner, work, clocks, records
-        )
+            part, method, controls, own, here, begin, length, cluster, corner, work, clocks, records,
+            watch,
+        )  # fmt: skip
     if controls.heap_at == 0:
         return r.NEEDS_HEAP
     step_heap(

@@ -48,6 +48,12 @@ class Options:
     rest_tolerance : float
         Bodies held at several points come to rest, exactly, when their speed is below this part of the speed
         that applied forces would give them in one step; slip below it has stopped. Default 1e-9.
+    energy_tolerance : float
+        Energy that may come or go without a name in the ledger, as a part of the largest energy exchanged in
+        the run: the greatest of kinetic energy, change of the potential, and each of the sums of loads,
+        impacts, friction and bounces. What is beyond it is in `Solution.warnings`, and an `AccuracyWarning`;
+        beyond a hundred times that a run ends as `Status.INACCURATE`. Watched after each step. Default 1e-4.
+        (Mathematics page, II.12.)
     constraint_tolerance : float
         Greatest error of position (relative to the size of the bodies) and of velocity (relative
         to their speeds) that joints may have at the start. Default 1e-8.
@@ -89,6 +95,7 @@ class Options:
     corner_exponent: float = 1.0
     hold: bool = True
     rest_tolerance: float = 1e-9
+    energy_tolerance: float = 1e-4
     constraint_tolerance: float = 1e-8
     project_start: bool = False
     drop_tolerance: float = 1e-8
@@ -111,6 +118,7 @@ class Options:
             check.number(name, getattr(self, name), above=0.0, below=1.0)
         for name in ("rest_tolerance", "augmentation", "residual_tolerance"):
             check.number(name, getattr(self, name), above=0.0, below=1.0)
+        check.number("energy_tolerance", self.energy_tolerance, above=0.0)
         for name in ("natural_frequency", "damping_ratio"):
             check.number(name, getattr(self, name), least=0.0)
         check.integer("heap", self.heap, least=2)

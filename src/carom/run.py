@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from carom import loop, march, save
+from carom.accuracy import judge
 from carom.addresses import Addresses
 from carom.contact.stop import write_stop_gaps
 from carom.coulomb.newton import newton_unit
@@ -34,6 +35,7 @@ from carom.status import Status
 from carom.system import records as r
 from carom.system.cluster import new_cluster, new_corner
 from carom.system.compile import compile_scene
+from carom.watch import new_watch
 
 LOCATIONS = {"locate": loop.LOCATE, "project": loop.PROJECT, "work": loop.WORK}
 
@@ -112,7 +114,7 @@ class Run:
         self.cluster = new_cluster(system)
         self.heap = no_heap()  # made when there is one
         self.corner = new_corner(1, corner_settings(options))  # and this
-        self.clock = r.new_clock()
+        self.clock, self.watch = r.new_clock(), new_watch(options.energy_tolerance)
         self.clock["ahead"] = FIRST * self.controls.longest
         rows = 256 if tolerances else -(-self.controls.last // self.controls.save_every) + 1
         self.records = r.new_records(system, rows, 512)
@@ -158,7 +160,8 @@ class Run:
     def save_now(self) -> None:
         """Write the present state into the records."""
         state = (
-            self.compiled.system, self.held, self.now, self.clock, self.work, self.records
+            self.compiled.system, self.held, self.now, self.clock, self.work, self.records,
+            self.watch,
         )  # fmt: skip
         self.address.entry(save.save_now, *state)(*state)
 
@@ -292,7 +295,7 @@ class Run:
             state = (
                 self.compiled.system, self.method, self.controls, self.held, self.now, self.work,
                 self.islands, self.cluster, self.corner, self.heap, self.clock, self.records,
-                float(until),
+                self.watch, float(until),
             )  # fmt: skip
             code = self.address.entry(march.run, *state)(*state)
             if code == r.FULL:
@@ -319,9 +322,15 @@ class Run:
             else:
                 return Status(code)
 
+    def judged(self, status: Status) -> Status:
+        """Return how the run ended, with its balance of energy."""
+        return judge(self.watch[0]) if status is Status.SUCCESS else status
+
     def solution(self, status: Status) -> Solution:
         """Return what was computed; after a failure up to the last state, between saved steps or not."""
-        if status is not Status.SUCCESS:
+        if status is Status.SUCCESS:
+            status = self.judged(status)
+        else:
             clock = self.clock[0]
             further = clock.now > self.records.series.t[clock.saved - 1]
             whole = all(np.all(np.isfinite(self.now[name])) for name in ("x", "Q", "v", "w"))

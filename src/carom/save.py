@@ -8,6 +8,7 @@ from carom.contact.place import place_any
 from carom.geometry.rotation import cross
 from carom.jit import entry, inlined, kernel
 from carom.motion.explicit import keep
+from carom.watch import begin_watch
 
 
 @inlined
@@ -32,8 +33,10 @@ def still(state):
 
 
 @entry
-def save_now(system, held, now, clocks, work, records):
+def save_now(system, held, now, clocks, work, records, watch):
     """Write the present state: at the start, and after a failure."""
+    if clocks[0].saved == 0:
+        begin_watch(system, now, clocks[0].now, watch[0])
     save(system, held, now, clocks[0], work, records)
 
 

@@ -54,6 +54,8 @@ class Solution(Portable, Drawn):
         Where the energy went.
     status : Status
         How the run ended; `success` and `message` say it shorter and longer.
+    warnings : tuple of str
+        What has gone beyond `Options.energy_tolerance`: when, how much, what to change. Empty if all is well.
     stats : dict
         Counts: steps, trial steps, rejected ones (``step="auto"``), cuts, located events, impacts, holds;
         steps of held points and their rounds (of a heap: sweeps); `explicit_steps`, those that a symplectic
@@ -91,6 +93,7 @@ class Solution(Portable, Drawn):
     _touch: np.recarray = field(repr=False)
     #: what the rest is worked out from; None: from a file, which has had it all
     _written: Written | None = field(repr=False, default=None)
+    warnings: tuple[str, ...] = ()
 
     @classmethod
     def from_run(cls, run: Run, status: Status) -> Solution:
@@ -152,14 +155,16 @@ class Solution(Portable, Drawn):
 
     @property
     def success(self) -> bool:
-        """Whether the run reached its end."""
+        """Whether the run reached its end, and kept the balance of energy."""
         return self.status is Status.SUCCESS
 
     @property
     def message(self) -> str:
         """How the run ended, in a sentence; if it failed, with the time it reached."""
-        reached = "" if self.success else f" (reached t = {self.t[-1]:.9g} s)"
-        return self.status.message + reached
+        if self.status.ended:
+            why = self.warnings if self.status is Status.INACCURATE else ()
+            return " ".join((self.status.message, *why))
+        return f"{self.status.message} (reached t = {self.t[-1]:.9g} s)"
 
     @property
     def total_energy(self) -> np.ndarray:

@@ -21,6 +21,13 @@ class Status(IntEnum):
     TOO_MANY_POINTS = 10
     SINGULAR_METRIC = 11
     STEP_TOO_SMALL = 12
+    INACCURATE = 13
+    UNSTABLE = 14
+
+    @property
+    def ended(self) -> bool:
+        """Whether the run reached its end, with or without the balance of energy."""
+        return self in (Status.SUCCESS, Status.INACCURATE)
 
     @property
     def message(self) -> str:
@@ -73,12 +80,24 @@ _MESSAGES = {
         "The step that the tolerances ask for has become too small: a force jumps or grows without "
         "bound, or rtol and atol are below round-off. Raise them, or give a step."
     ),
+    Status.INACCURATE: (
+        "The run reached its end, but its energy is off by more than a hundred times "
+        "Options.energy_tolerance. The solution is whole; do not trust it before a smaller step agrees."
+    ),
+    Status.UNSTABLE: (
+        "Each step, however short it was cut, gained as much energy as it exchanged: springs, dampers or loads "
+        'are too stiff for the step. Take a smaller step, or method="implicit".'
+    ),
     Status.INTERRUPTED: "The run was interrupted; the solution holds what was computed until then.",
 }
 
 
+class AccuracyWarning(UserWarning):
+    """A run has energy without a name beyond `Options.energy_tolerance`; `Solution.warnings` says more."""
+
+
 class SimulationError(RuntimeError):
-    """A run that failed part-way. `solution` holds everything up to the failure."""
+    """A run that failed. `solution` holds everything up to the failure, all of it if it was inaccurate."""
 
     def __init__(self, message: str, solution=None):
         super().__init__(message)

@@ -63,7 +63,7 @@ def facts(solution, file: Path) -> dict[str, Any]:
     energy["greatest_residual"] = float(abs(ledger.residual).max())
     return {
         "file": str(file), "bytes": file.stat().st_size, **attributes,
-        "status": solution.status.name, "message": solution.message,
+        "status": solution.status.name, "message": solution.message, "warnings": solution.warnings,
         "reached": float(solution.t[-1]), "saved_steps": len(solution.t),
         "settings": solution.settings, "stats": solution.stats,
         "gravity": made.gravity,
@@ -135,6 +135,7 @@ def _print(found: dict[str, Any]) -> None:
         [
             ("file", f"{found['file']}, {found['bytes'] / 1e6:.2f} MB, written by {found['source']}"),
             ("ended", f"{found['status']}: {found['message']}"),
+            *(("warning", one) for one in found["warnings"] if found["status"] != "INACCURATE"),
             ("time", f"0 to {found['reached']:g} s in {found['saved_steps']} saved steps"),
             ("settings", given), ("counts", counted), ("scene", found["summary"]),
             ("impacts", f"{impacts['count']}{span}"),

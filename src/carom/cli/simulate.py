@@ -175,7 +175,8 @@ def _end(solution, out: Path | None, scene: Path | None, seconds: float, json: b
     from carom.status import Status
 
     facts = {
-        "status": solution.status.name, "message": solution.message, "reached": float(solution.t[-1]),
+        "status": solution.status.name, "message": solution.message,
+        "warnings": solution.warnings, "reached": float(solution.t[-1]),
         "duration": solution.settings["duration"], "saved_steps": len(solution.t),
         "impacts": len(solution.impacts), "seconds": seconds, "file": None if out is None else str(out),
     }  # fmt: skip

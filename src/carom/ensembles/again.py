@@ -101,7 +101,7 @@ class Again:
         run = self.run
         return (
             run.now, run.held, run.work, run.islands, run.cluster, run.corner, run.heap, run.clock,
-            run.compiled.system, run.method,
+            run.compiled.system, run.method, run.watch,
         )  # fmt: skip
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from carom.accuracy import energy_error
 from carom.assemble import to_scene_axes
 from carom.geometry import quaternion
 from carom.run import Run
@@ -27,6 +28,7 @@ def outcome_type(bodies: int) -> np.dtype:
             ("friction_loss", "f8"),
             ("bounce_loss", "f8"),
             ("load_work", "f8"),
+            ("energy_error", "f8"),  # worst without a name, as a part of what was exchanged
             ("position", "f8", (bodies, 3)),
             ("orientation", "f8", (bodies, 4)),
             ("velocity", "f8", (bodies, 3)),
@@ -54,6 +56,7 @@ def write_outcome(run: Run, status: Status, row: np.void) -> None:
     row["first_impact"] = np.min(records.impact.time[:struck]) if struck else np.nan
     row["impact_loss"], row["friction_loss"] = -clock.impacts, -clock.friction
     row["bounce_loss"], row["load_work"] = -clock.bounces, clock.loads
+    row["energy_error"] = energy_error(run.watch[0])
     system = run.compiled.system
     body_rate = quaternion.rotate_back(now.Q, now.w)
     row["kinetic_energy"] = 0.5 * float(

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom.accuracy import sentences
 from carom.ensembles.again import Again
 from carom.ensembles.outcome import REFUSED, no_outcomes, write_outcome
 from carom.ensembles.targets import Target
@@ -65,10 +66,12 @@ def one(plan: Plan, values: dict[str, np.ndarray], k: int, part: Part) -> None:
             f"scene must have {plan.bodies} bodies as that of run 0, got {len(run.now)}"
         )
     auto = run.tolerances is not None
-    status = run.go_on(run.controls.duration if auto else run.controls.last)
+    status = run.judged(run.go_on(run.controls.duration if auto else run.controls.last))
     write_outcome(run, status, part.outcomes[k])
     if status != 0:
         part.failures[part.first + k] = f"{status.message} (reached t = {run.reached:.9g} s)"
+        if status.ended:
+            part.failures[part.first + k] = " ".join((status.message, *sentences(run.watch[0])))
     if plan.observe is None:
         return
     for name, value in plan.observe(run.solution(status)).items():

@@ -35,7 +35,8 @@ class Ensemble:
     Outcomes: `status`, a `Status`, or -1 of runs that were not made and -2 of those that could not begin; `t`,
     time reached [s]; `rest_time`, end of the first step after which nothing moves, else NaN; `impacts`, their
     number; `first_impact` [s]; `kinetic_energy` at the end, `impact_loss`, `friction_loss`, `bounce_loss`,
-    `load_work` [J]; and at the end `position` (R, N, 3), `orientation` (R, N, 4), `velocity`,
+    `load_work` [J]; `energy_error`, the worst energy without a name as a part of the largest exchanged until
+    then (`Options.energy_tolerance`); and at the end `position` (R, N, 3), `orientation` (R, N, 4), `velocity`,
     `angular_velocity` (R, N, 3).
     """
 

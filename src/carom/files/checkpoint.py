@@ -150,7 +150,7 @@ def _arrays(run) -> Iterator[tuple[str, np.ndarray]]:
     system = run.compiled.system
     roots = {
         "now": run.now, "clock": run.clock, "held": run.held, "work": run.work,
-        "islands": run.islands, "solver": system.solver,
+        "islands": run.islands, "solver": system.solver, "watch": run.watch,
     }  # fmt: skip
     if isinstance(system.relations, Relations):
         roots["relations"] = system.relations

@@ -83,6 +83,7 @@ def _fields(file: Sealed, scene, missing: list[str]) -> dict[str, Any]:
         "t": arrays.array("time", ("time",)),
         **{name: arrays.array(name, dims) for name, dims in MOTION.items()},
         "status": Status[attributes["status"]],
+        "warnings": tuple(str(one) for one in json.loads(attributes["warnings"])),
         "stats": {
             str(name): check.integer(name, n)
             for name, n in json.loads(attributes["stats"]).items()

@@ -50,7 +50,7 @@ def resume(
     from carom.files.keeper import Keeper
 
     solution = Solution.load(path, functions=functions)
-    if solution.success:
+    if solution.status.ended:
         return solution
     kept = solution._run
     assert isinstance(kept, KeptRun)

@@ -68,6 +68,7 @@ def attributes(solution) -> dict[str, Any]:
         "carom_format": FORMAT,
         "status": solution.status.name,
         "message": solution.message,
+        "warnings": json.dumps(solution.warnings),
         "stats": json.dumps(solution.stats),
         "settings": json.dumps(solution.settings),
         "options": json.dumps(solution._run.options.as_dict()),

@@ -81,6 +81,14 @@ class CoordinateImpactTable:
         return f"<CoordinateImpactTable: {len(self)} impacts>"
 
 
+def given_by_law(t: np.ndarray, impacts: CoordinateImpactTable) -> np.ndarray:
+    """Return what impacts have given until each time (T,) where Newton's law with friction may (V8)."""
+    may = (impacts.law == "newton") & (impacts.friction > 0.0)
+    given = np.where(may, np.maximum(impacts.energy_change, 0.0), 0.0)
+    before = np.concatenate([[0.0], np.cumsum(given)])
+    return before[np.searchsorted(impacts.time, t, side="right")]
+
+
 @dataclass(frozen=True, eq=False)
 class GeneralizedSolution(Drawn):
     """The motion of a system in n coordinates at T saved times, with K impacts.
@@ -103,6 +111,9 @@ class GeneralizedSolution(Drawn):
         Where the energy went.
     status : Status
         How the run ended; `success` and `message` say it shorter and longer.
+    warnings : tuple of str
+        What has gone beyond `Options.energy_tolerance` at saved times. (Not looked at where energies depend on
+        time themselves.)
     stats : dict
         Counts: steps, located events, impacts, holds.
     """
@@ -120,10 +131,12 @@ class GeneralizedSolution(Drawn):
     system: GeneralizedSystem = field(repr=False)
     settings: dict[str, Any]
     _run: GeneralizedRun = field(repr=False)
+    warnings: tuple[str, ...] = ()
 
     @classmethod
     def from_run(cls, run: GeneralizedRun, status: Status) -> GeneralizedSolution:
         """Collect what a run has written down."""
+        from carom.accuracy import judge, sentences, watched
         from carom.generalized.loop import energies
 
         saved, n = int(run.clock[0].saved), run.n
@@ -133,34 +146,43 @@ class GeneralizedSolution(Drawn):
         t = np.array(series.t)
         failed, run.made.functions.failed = run.made.functions.failed, None
         energies(run.system, t, states, kinetic, potential, run.work)
+        some = slice(None, None, max(1, saved // 8))
+        later = np.zeros((2, len(t[some])))
+        energies(run.system, t[some] + 0.4321 * run.plan.duration, states[some], *later, run.work)
+        steady = np.array_equal(later, [kinetic[some], potential[some]])
         run.made.functions.failed = failed
+        names = ("loads", "impacts", "friction", "bounces")
+        ledger = Ledger(kinetic, potential, *(np.array(series[one]) for one in names))
+        impacts, warnings = CoordinateImpactTable(run.contacts.strike.records, n), ()
+        if steady:  # energies that depend on time are kept by nothing
+            watch = watched(t, ledger, given_by_law(t, impacts), run.options.energy_tolerance)
+            warnings = sentences(watch)
+            status = judge(watch) if status is Status.SUCCESS else status
         events = run.contacts.events
         columns = [np.array(column) for column in zip(*events)]
         return cls(
             t=t, q=states[:, :n].copy(), v=states[:, n:].copy(), kinetic_energy=kinetic,
             potential_energy=potential,
-            impacts=CoordinateImpactTable(run.contacts.strike.records, n),
+            impacts=impacts,
             events=EventTable(*columns) if columns else EventTable(*(np.zeros(0) for _ in range(3))),
-            ledger=Ledger(
-                kinetic, potential, *(np.array(series[one]) for one in ("loads", "impacts",
-                                                                        "friction", "bounces"))
-            ),
-            status=status, stats={"steps": run.steps_done, **run.counts}, system=run.user,
-            settings=run.settings, _run=run,
+            ledger=ledger, status=status, warnings=warnings,
+            stats={"steps": run.steps_done, **run.counts}, system=run.user, settings=run.settings,
+            _run=run,
         )  # fmt: skip
 
     @property
     def success(self) -> bool:
-        """Whether the run reached its end."""
+        """Whether the run reached its end, and kept the balance of energy."""
         return self.status is Status.SUCCESS
 
     @property
     def message(self) -> str:
         """How the run ended, in a sentence; if it failed, with the time it reached."""
-        if self.success:
-            return self.status.message
-        why = f"{self._run.failure!r}, " if self._run.failure is not None else ""
-        return f"{self.status.message} ({why}reached t = {self.t[-1]:.9g} s)"
+        if self.status.ended:
+            why = self.warnings if self.status is Status.INACCURATE else ()
+            return " ".join((self.status.message, *why))
+        failed = f"{self._run.failure!r}, " if self._run.failure is not None else ""
+        return f"{self.status.message} ({failed}reached t = {self.t[-1]:.9g} s)"
 
     @property
     def total_energy(self) -> np.ndarray:

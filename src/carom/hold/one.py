@@ -12,12 +12,14 @@ from carom.jit import kernel
 from carom.motion.acceleration import SLIP, STICK, acceleration
 from carom.motion.contact_point import (
     add_velocity,
+    alone,
     contact_acceleration,
     contact_velocity,
     effective_inverse_mass,
     place,
     spread,
 )
+from carom.motion.elements import driven_power
 from carom.motion.friction import stick_force
 from carom.system.notes import begin_event, end_event
 from carom.system.records import HOLD, SLIPS, STICKS
@@ -89,6 +91,8 @@ def begin_hold(system, contact, hold, state, stop, work, clock):
     hold.mode = STICK if stops else SLIP
     spread(system, point, state, n, t1, t2, work)
     add_velocity(system, point, work, state)
+    if not alone(system, point):
+        clock.loads += driven_power(system, state, work)  # of an impulse: its work
     # work of the impulse: half of it times the sum of the velocities before and after
     clock.bounces += 0.5 * (n * u[0] + t1 * (u[1] + s1) + t2 * (u[2] + s2))
     return True

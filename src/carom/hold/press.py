@@ -33,6 +33,7 @@ from carom.hold.turning import bound_turning, first_torque
 from carom.jit import kernel, unit
 from carom.motion.acceleration import SLIP
 from carom.motion.contact_point import contact_velocity
+from carom.motion.elements import driven_power
 from carom.motion.explicit import keep
 from carom.motion.forces import applied_wrenches
 from carom.motion.project import project_velocity, shift
@@ -119,12 +120,12 @@ def press_group(system, controls, held, group, start, h, end, cluster, work, clo
         before = change
         clock.rounds += 1
     cluster.cone.count[NEAR], cluster.cone.mismatch[ENOUGH] = 0, 0.0
-    impose(system, held, k, h, end, count, loaded, cluster, work)
+    driven = impose(system, held, k, h, end, count, loaded, cluster, work)
     check(system, k, start, end, count, cluster, work)
     friction = finish(system, controls, held, k, start, h, end, count, cluster, work)
     work.result[0].friction += friction
     if loaded:
-        work.result[0].applied += extra_work(system, h, start, end, cluster, work)
+        work.result[0].applied += driven + extra_work(system, h, start, end, cluster, work)
     elif count > 1:  # a rim that runs round faster than steps can follow is struck flat instead
         over = unnamed(system, controls, start, end, friction, count, cluster.member)
         work.result[0].unnamed = max(work.result[0].unnamed, over)
@@ -220,9 +221,17 @@ def any_joined(system, count, member):
 
 @kernel
 def impose(system, held, k, h, end, count, loaded, cluster, work):
-    """Put `end` where the impulses p of the middle rows bring it; write u = G_1 v_1."""
-    member, flight = cluster.member, cluster.flight
+    """Put `end` where the impulses p of the middle rows bring it; write u = G_1 v_1.
+
+    Returns the work of what is prescribed: in answer to p, and in the return to the joints.
+    """
+    member, flight, result, driven = cluster.member, cluster.flight, work.result[0], 0.0
     spread_all(system, k, cluster.points[0], cluster.v[P], count, member, work.stage, work)
+    joined = system.joints.shape[0] > 0 and any_joined(system, count, member)
+    if joined:
+        result.time = result.start + 0.5 * h
+        driven += driven_power(system, work.stage, work)  # of an impulse: its work
+        result.time = result.start + h
     for m in range(count):
         b = member[m]
         body, motion, push = system.bodies[b], work.body[b].motion, work.body[b].push
@@ -247,10 +256,12 @@ def impose(system, held, k, h, end, count, loaded, cluster, work):
             v[i] = flight[b].v[i] + push[i] / body.mass
         a = rotate_back(q[0], q[1], q[2], q[3], l[0] + push[3], l[1] + push[4], l[2] + push[5])
         w[0], w[1], w[2] = rotate(q[0], q[1], q[2], q[3], a[0] / J[0], a[1] / J[1], a[2] / J[2])
-    if system.joints.shape[0] > 0 and any_joined(system, count, member):
+    if joined:
         project_velocity(system, end, work)
+        driven += driven_power(system, end, work)
     place_seats(system, k, end, cluster, cluster.points[1], work)
     velocities(k, cluster.points[1], end, cluster.v[U])
+    return driven
 
 
 @kernel

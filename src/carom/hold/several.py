@@ -14,7 +14,8 @@ from carom.hold.one import bounces_end
 from carom.hold.roster import enlist, strike_off
 from carom.jit import kernel
 from carom.motion.acceleration import SLIP, STICK
-from carom.motion.contact_point import add_velocity, contact_velocity, spread
+from carom.motion.contact_point import add_velocity, alone, contact_velocity, spread
+from carom.motion.elements import driven_power
 from carom.motion.several import factor, substitute
 from carom.system.cluster import OLD, C, U
 from carom.system.notes import begin_event, end_event
@@ -119,6 +120,8 @@ def drop_bounces(system, controls, k, group, state, cluster, work, clock):
         if n != 0.0 or t1 != 0.0 or t2 != 0.0:
             spread(system, cluster.points[0][i], state, n, t1, t2, work)
             add_velocity(system, cluster.points[0][i], work, state)
+            if not alone(system, cluster.points[0][i]):
+                clock.loads += driven_power(system, state, work)  # of an impulse: its work
             # work of the impulses: half of them times the velocities before; after they are none
             u = cluster.v[U]
             clock.bounces += 0.5 * (n * u[3 * i] + t1 * u[3 * i + 1] + t2 * u[3 * i + 2])

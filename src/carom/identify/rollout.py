@@ -59,7 +59,7 @@ def roll_out(
         scene, length, step=used, save_every=parts, options=options, throw=False
     )  # fmt: skip
     count = recording.position.shape[1]
-    if uniform and solution.success:
+    if uniform and solution.status.ended:
         x, q = solution.position, solution.orientation
     else:
         x, q, *_ = solution.evaluate(np.minimum(since, solution.t[-1]))

@@ -70,7 +70,7 @@ def accelerations(system, state, held, work, stage):
             contact, point = system.contacts[hold.contact], work.point[0]
             place(contact, hold.point, state, point)
             effective_inverse_mass(system, point, state, work, hold.W)
-            press_one(system, contact, hold, point, state, work, stage)
+            applied += press_one(system, contact, hold, point, state, work, stage)
             if hold.mode == SLIP:
                 _, u1, u2 = contact_velocity(point, state)
                 friction += hold.force[1] * u1 + hold.force[2] * u2
@@ -121,7 +121,10 @@ def slip_direction(contact, hold, point, state):
 
 @kernel
 def press_one(system, contact, hold, point, state, work, stage):
-    """Work out the force that meets the rows of one held point; add what it does to the accelerations."""
+    """Work out the force that meets the rows of one held point; add what it does to the accelerations.
+
+    Returns the power that what is prescribed answers with.
+    """
     f, W = hold.force, hold.W
     an, a1, a2 = contact_acceleration(point, state, stage)
     if hold.mode == STICK:
@@ -137,9 +140,10 @@ def press_one(system, contact, hold, point, state, work, stage):
     spread(system, point, state, n, t1, t2, work)
     if alone(system, point):
         accelerate(work.body[point.a].motion, stage[point.a].rate)
-    else:
-        for b in range(stage.shape[0]):
-            accelerate(work.body[b].motion, stage[b].rate)
+        return 0.0
+    for b in range(stage.shape[0]):
+        accelerate(work.body[b].motion, stage[b].rate)
+    return driven_power(system, state, work)
 
 
 @kernel

@@ -87,10 +87,10 @@ def implicit_unit(system, held, start, h, end, work):
             second.rate[k] = 1.5 * first.rate[k] + 0.5 * second.rate[k]
         move(start[b], h, second.speed, second.rate, end[b])
     bound_accelerations(work, 2)
-    result.applied = 0.5 * h * power
     if not (project_position(system, end, False, 1e-14, work) <= LOST):
         result.code = CONSTRAINTS_LOST
     project_velocity(system, end, work)
+    result.applied = 0.5 * h * power + damper_work(system, start, h, end)
 
 
 #: whole_step(address, system, held, start, h, end, work)
@@ -113,10 +113,10 @@ def move(start, h, speed, rate, out):
 
 @kernel
 def accelerate(system, state, h, s, work):
-    """Write the accelerations of stage s; return the power of loads, dampers and motors."""
+    """Write the accelerations of stage s; return the power of loads and motors, without these dampers."""
     power = applied_wrenches(system, state, True, work)
     bias_joints(system, state, work)
-    power += bias_springs(system, state, h, s, work)
+    bias_springs(system, state, h, s, work)
     solve(system, state, True, work)
     power += driven_power(system, state, work)
     for b in range(state.shape[0]):
@@ -129,15 +129,14 @@ def accelerate(system, state, h, s, work):
 
 @kernel
 def _bias_springs(system, state, h, s, work):
-    """Put the springs in as rows; return the power of their dampers."""
-    power, g = 0.0, GAMMA * h
+    """Put the springs in as rows."""
+    g = GAMMA * h
     for j in range(system.joints.shape[0]):
         if system.joints[j].kind != STIFF:
             continue
         one, row = system.relations.stiff[system.joints[j].number], system.solver.rows[j]
         length, speed = stretch(system, one, state)
         d = g * one.damping + g * g * one.stiffness
-        power -= one.damping * speed * speed
         start, more = speed, 0.0
         if s == 1:  # velocities and accelerations of the first stage, twice
             start, more = speed - 2.0 * (one.speed + g * one.gain), 2.0 * one.gain
@@ -145,7 +144,6 @@ def _bias_springs(system, state, h, s, work):
         force = one.stiffness * length + one.damping * speed + g * one.stiffness * start
         work.joint[j].bias[0] = more - force / d
         row.off, row.compliance[0] = 0, 1.0 / d
-    return power
 
 
 @kernel
@@ -154,15 +152,41 @@ def _release_springs(system, state, h, s, work):
     for j in range(system.joints.shape[0]):
         if system.joints[j].kind == STIFF:
             one, row = system.relations.stiff[system.joints[j].number], system.solver.rows[j]
-            one.gain = along_row(system, one, state, work)
+            gain = along_row(system, one, state, work)
+            if s == 1:  # the sum of the rates that the dampers see in both stages, less the first
+                one.speed += GAMMA * h * (gain - one.gain)
+            one.gain = gain
             row.off, row.compliance[0] = 1, 0.0
+
+
+@kernel
+def _damper_work(system, start, h, end):
+    """Return the work of the dampers: their impulse in the step times the mean rate of its ends.
+
+    In each stage a damper sees the rate s' + g h J a, so that its impulse is -c h/2 times the sum of both. (The
+    power at the stages would be wrong by any factor where the damper is stiff.)
+    """
+    total = 0.0
+    for j in range(system.joints.shape[0]):
+        if system.joints[j].kind == STIFF:
+            one = system.relations.stiff[system.joints[j].number]
+            _, first = stretch(system, one, start)
+            _, last = stretch(system, one, end)
+            total -= 0.25 * h * one.damping * (one.speed + first) * (first + last)
+    return total
 
 
 @kernel
 def _no_springs(system, state, h, s, work):
     """There are none."""
+
+
+@kernel
+def _no_work(system, start, h, end):
+    """There is none."""
     return 0.0
 
 
 bias_springs = only_with_relations(_bias_springs, _no_springs)
+damper_work = only_with_relations(_damper_work, _no_work)
 release_springs = only_with_relations(_release_springs, _no_springs)

@@ -111,9 +111,28 @@ def _add_stiff(system, state, work):
 
 
 @kernel
+def _stiff_energy(system, state):
+    """Return the potential energy of these springs [J]."""
+    total = 0.0
+    for j in range(system.joints.shape[0]):
+        if system.joints[j].kind == STIFF:
+            one = system.relations.stiff[system.joints[j].number]
+            s, _ = stretch(system, one, state)
+            total += 0.5 * one.stiffness * s * s
+    return total
+
+
+@kernel
 def _none(system, state, work):
     """There are none."""
     return 0.0
 
 
+@kernel
+def _no_energy(system, state):
+    """There are none."""
+    return 0.0
+
+
 add_stiff = only_with_relations(_add_stiff, _none)
+stiff_energy = only_with_relations(_stiff_energy, _no_energy)

@@ -74,7 +74,7 @@ def header(show: Show, packer: Packer) -> dict:
         "title": show.title,
         "note": "; ".join(show.left_out),
         "longest": show.longest,
-        "status": "" if solution.success else solution.message,
+        "status": " ".join(solution.warnings) if solution.success else solution.message,
         "colours": {"bodies": COLOURS, "impulse": IMPULSE, "force": FORCE},
         "bodies": [body.name for body in solution.scene.bodies],
         "sizes": [float(size) for size in show.sizes],

@@ -1,0 +1,79 @@
+"""What is said of a run whose balance of energy is off."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom.ledger import Ledger
+from carom.status import Status
+from carom.watch import ALL, BOUNCES, FRICTION, IMPACTS, RESIDUAL, ROUND_OFF, new_watch
+
+INACCURATE = 100.0  # times the tolerance: what is no success any more
+
+_WHAT = {
+    RESIDUAL: ("Energy that no entry of the ledger explains:", "Take a smaller step"),
+    IMPACTS: ("Impacts gave energy, which they never should:", 'Take impact_law="stronge"'),
+    FRICTION: ("Friction gave energy, which it never should:", "Take a smaller step"),
+    BOUNCES: (
+        "Bounces that were dropped gave energy, which they never should:",
+        "Take a smaller step",
+    ),
+    ALL: ("Energy without a name, of several kinds together:", "Take a smaller step"),
+}
+
+
+def beyond(i: int, watch: np.record, times: float = 1.0) -> bool:
+    """Return whether energy of a kind without a name is beyond the tolerance, or that so many times."""
+    allowed = watch.tolerance * watch.exchanged * times + ROUND_OFF * watch.size
+    return not abs(watch.amount[i]) <= allowed
+
+
+def judge(watch: np.record) -> Status:
+    """Return whether a run that has reached its end has kept the balance of energy."""
+    return Status.INACCURATE if beyond(ALL, watch, INACCURATE) else Status.SUCCESS
+
+
+def sentences(watch: np.record) -> tuple[str, ...]:
+    """Return what has gone beyond `Options.energy_tolerance`: when, how much, and what to change."""
+    kinds = [i for i in (RESIDUAL, IMPACTS, FRICTION, BOUNCES) if beyond(i, watch)]
+    if not kinds and beyond(ALL, watch):
+        kinds = [ALL]
+    return tuple(_sentence(i, watch) for i in kinds)
+
+
+def _sentence(i: int, watch: np.record) -> str:
+    what, cure = _WHAT[i]
+    amount, of = float(watch.amount[i]), float(watch.exchanged)
+    part = abs(amount) / of if of > 0.0 else np.inf
+    return (
+        f"{what} {amount:.3g} J at t = {watch.time[i]:.6g} s, {part:.2g} of the largest energy exchanged "
+        f"({of:.3g} J); allowed is Options.energy_tolerance = {float(watch.tolerance):g}. {cure}."
+    )
+
+
+def watched(t, ledger: Ledger, given, tolerance: float) -> np.record:
+    """Return that record from a ledger at saved times t, for runs that are not watched in their loop.
+
+    `given` is what impacts gave until then where Newton's law with friction may.
+    """
+    watch = new_watch(tolerance)[0]
+    rises = {IMPACTS: ledger.impacts - given, FRICTION: ledger.friction, BOUNCES: ledger.bounces}
+    kinds = {i: line - np.minimum.accumulate(line) for i, line in rises.items()}
+    kinds[ALL] = np.abs(ledger.residual) + sum(kinds.values())
+    kinds[RESIDUAL] = ledger.residual
+    for i, amounts in kinds.items():
+        k = int(np.argmax(np.abs(amounts)))
+        watch.amount[i], watch.time[i] = amounts[k], t[k]
+    change = ledger.potential - ledger.potential[0]
+    lines = (ledger.kinetic, change, ledger.loads, ledger.impacts, ledger.friction, ledger.bounces)
+    watch.exchanged = max(float(np.max(np.abs(line))) for line in lines)
+    watch.size = float(np.max(ledger.kinetic + np.abs(ledger.potential)))
+    return watch
+
+
+def energy_error(watch: np.record) -> float:
+    """Return the greatest energy without a name as a part of the largest exchanged; round-off is none."""
+    amount, of = abs(float(watch.amount[ALL])), float(watch.exchanged)
+    if amount <= ROUND_OFF * float(watch.size):
+        return 0.0
+    return amount / of if of > 0.0 else np.inf

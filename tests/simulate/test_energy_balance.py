@@ -1,0 +1,244 @@
+"""The balance of energy is watched, and what is off is said."""
+
+import warnings
+
+import numpy as np
+import pytest
+
+import carom
+from carom import GROUND, Status, constraints, forces, joints
+from carom.accuracy import judge, sentences, watched
+from carom.ledger import Ledger
+from simulate.scenes import G
+
+TOLERANCE = carom.Options().energy_tolerance
+
+
+def spring(stiffness, damping=0.0, height=0.0, gravity=0.0):
+    """A ball of 1 kg on a spring that is stretched by 1 cm, `height` above the origin."""
+    scene = carom.Scene(gravity=(0, 0, -gravity))
+    ball = scene.add_body(carom.Sphere(0.1), mass=1.0, position=(0, 0, height - 1.01))
+    ends = (0, 0, height), (0, 0, height - 1.01)
+    scene.add_force(forces.Spring(stiffness, *ends, rest_length=1.0, damping=damping), ball)
+    return scene
+
+
+def quiet(*given, **named):
+    """Simulate without raising or warning."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", carom.AccuracyWarning)
+        return carom.simulate(*given, throw=False, **named)
+
+
+def exchanged(solution):
+    """Return the largest energy exchanged, from the ledger."""
+    a = solution.ledger
+    lines = (a.kinetic, a.potential - a.potential[0], a.loads, a.impacts, a.friction, a.bounces)
+    return max(np.max(np.abs(line)) for line in lines)
+
+
+@pytest.mark.parametrize(
+    ("h_omega", "status", "warns"),
+    [
+        # RK4 multiplies the energy of an oscillator by 1 - (h w)^6/72 + ... a step: 100 steps lose a part
+        # of 1.4e-6, of 1e-3, nearly all
+        (0.1, Status.SUCCESS, False),
+        (0.3, Status.SUCCESS, True),
+        (1.0, Status.INACCURATE, True),
+        # beyond 2 sqrt(2) it grows: each step is cut until it does not
+        (10.0, Status.INACCURATE, True),
+        (300.0, Status.INACCURATE, True),
+        # no more where 1/1024 of the step is not enough
+        (1e6, Status.UNSTABLE, True),
+    ],
+)
+def test_an_oscillator(h_omega, status, warns):
+    solution = quiet(spring((h_omega / 5e-3) ** 2), 0.5, step=5e-3)
+    assert solution.status is status
+    assert bool(solution.warnings) == warns or status is Status.UNSTABLE
+    if status is not Status.UNSTABLE:
+        # a step may gain a quarter of what it exchanges, and no more than that
+        assert np.max(solution.total_energy) < 2.0 * solution.total_energy[0]
+
+
+@pytest.mark.parametrize("h_lambda", [0.01, 3.0, 100.0, 1e4, 1e6])
+@pytest.mark.parametrize("h_omega", [0.1, 1.0, 10.0, 1e3])
+def test_a_stiff_spring_and_damper_is_no_success(h_omega, h_lambda):
+    # What ends in SUCCESS has the energy that it must have: c s'^2 over the path that was taken, which the
+    # ledger works out by the quadrature of the method.
+    solution = quiet(spring((h_omega / 5e-3) ** 2, h_lambda / 5e-3), 0.1, step=5e-3)
+    if solution.success:
+        off = np.max(np.abs(solution.ledger.residual))
+        assert off <= 100.0 * TOLERANCE * exchanged(solution)
+        assert bool(solution.warnings) == (off > TOLERANCE * exchanged(solution))
+        assert h_omega <= 1.0
+        assert h_lambda <= 3.0
+
+
+def test_it_is_told_once_and_says_what_to_do():
+    with pytest.warns(carom.AccuracyWarning, match="Options.energy_tolerance") as found:
+        solution = carom.simulate(spring(60.0**2), 0.5, step=5e-3)
+    assert len(found) == 1
+    assert solution.success
+    (said,) = solution.warnings
+    off = np.abs(solution.ledger.residual)
+    assert f"at t = {solution.t[np.argmax(off)]:.6g} s" in said
+    assert f"{solution.ledger.residual[np.argmax(off)]:.3g} J" in said
+    assert "smaller step" in said
+    # allowed for, nothing is said
+    fine = carom.simulate(
+        spring(60.0**2), 0.5, step=5e-3, options=carom.Options(energy_tolerance=0.01)
+    )
+    assert fine.warnings == ()
+
+
+def test_a_run_that_is_inaccurate_is_whole_and_raises():
+    with pytest.raises(carom.SimulationError, match="energy is off") as found:
+        carom.simulate(spring(200.0**2), 0.5, step=5e-3)
+    solution = found.value.solution
+    assert solution.t[-1] == 0.5
+    assert solution.status is Status.INACCURATE
+    assert solution.status.ended
+    assert not solution.success
+    assert solution.warnings[0] in solution.message
+
+
+def test_the_zero_of_the_potential_does_not_matter():
+    # The same motion 1000 km higher: the same words, up to the round-off of m g z, 1e-9 of what is exchanged.
+    low, high = (quiet(spring(60.0**2, 0, z, G), 0.5, step=5e-3) for z in (0.0, 1e6))
+    assert low.success
+    assert high.success
+    assert len(low.warnings) == len(high.warnings) == 1
+    assert high.ledger.residual[-1] == pytest.approx(low.ledger.residual[-1], rel=1e-3)
+
+
+def test_save_every_hides_nothing():
+    # The step is watched, not the row: what is given back until the next row was gone before.
+    every, seldom = (
+        quiet(spring(60.0**2), 0.5, step=5e-3, save_every=k, options=carom.Options())
+        for k in (1, 100)
+    )
+    assert every.warnings == seldom.warnings
+
+
+def ledger(**lines):
+    zero = np.zeros(5)
+    given = {name: np.array(lines.get(name, zero), dtype=float) for name in (
+        "kinetic", "potential", "loads", "impacts", "friction", "bounces")}  # fmt: skip
+    return Ledger(**given)
+
+
+@pytest.mark.parametrize("line", ["impacts", "friction", "bounces"])
+def test_a_line_that_never_rises(line):
+    # 1 J goes, 0.3 J comes back, all of it in the ledger: the sum is right, and the line cannot be.
+    change = [0.0, -0.6, -1.0, -0.7, -0.9]
+    balance = ledger(kinetic=[2.0 + c for c in change], **{line: change})
+    assert np.all(np.abs(balance.residual) < 1e-15)
+    watch = watched(np.arange(5.0), balance, 0.0, 1e-4)
+    assert judge(watch) is Status.INACCURATE
+    (said,) = sentences(watch)
+    assert "0.3 J at t = 3 s, 0.15 of the largest energy exchanged (2 J)" in said
+    if line == "impacts":  # Newton's law with friction says so
+        named = watched(np.arange(5.0), balance, np.array([0, 0, 0, 0.3, 0.3]), 1e-4)
+        assert judge(named) is Status.SUCCESS
+        assert sentences(named) == ()
+
+
+def test_what_newtons_law_gives_is_named():
+    # V8 in a run: a rod at 45 degrees, mu = .8, e = .9, gains by the law itself.
+    def run(law):
+        scene = carom.Scene(gravity=(0, 0, 0))
+        floor = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1))
+        rod = scene.add_body(
+            carom.Box(1.0, 1e-3, 1e-3), mass=1.0, inertia=(1e-3, 1 / 12, 1 / 12), position=(0, 0, 0.5),
+            orientation=(np.cos(np.pi / 8), 0, np.sin(np.pi / 8), 0), velocity=(-0.6, 0, -1.0),
+        )  # fmt: skip
+        scene.add_contact(rod, floor, restitution=0.9, friction=0.8, impact_law=law)
+        return carom.simulate(scene, 0.3, step=1e-3)
+
+    gained = [run(law).ledger.impacts[-1] for law in ("newton", "stronge")]
+    assert gained[0] > 0.1
+    assert gained[1] < 0.0
+
+
+def slide(shape, motion, height=0.0, friction=0.4):
+    """A motor swings an arm about a vertical axis; the body at its end lies on the floor, free to rise."""
+    scene = carom.Scene(gravity=(0, 0, -G))
+    floor = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1))
+    rate = motion(0.0)[1]
+    arm = scene.add_body(
+        carom.Box(0.5, 0.05, 0.05), mass=1.0, position=(0.25, 0, 0.5),
+        velocity=(0, 0.25 * rate, 0), angular_velocity=(0, 0, rate),
+    )  # fmt: skip
+    hinge = scene.add_joint(joints.Revolute((0, 0, 0.5), axis=(0, 0, 1)), GROUND, arm)
+    body = scene.add_body(
+        shape, mass=2.0, position=(0.5, 0, 0.1 + height), velocity=(0, 0.5 * rate, 0),
+        angular_velocity=(0, 0, rate),
+    )  # fmt: skip
+    scene.add_joint(joints.Prismatic(axis=(0, 0, 1)), arm, body)
+    scene.add_contact(body, floor, restitution=0.3, friction=friction)
+    scene.add_constraint(constraints.Driver(hinge, motion=motion))
+    return scene
+
+
+def steady(t):
+    return 0.7 * t, 0.7, 0.0
+
+
+def uneven(t):
+    return 0.7 * t + 0.05 * (1 - np.cos(6 * t)), 0.7 + 0.3 * np.sin(6 * t), 1.8 * np.cos(6 * t)
+
+
+def test_work_of_a_motor_against_friction():
+    # A ball on the end of the arm rubs with mu m g at R: the motor gives mu m g R per radian.
+    solution = carom.simulate(slide(carom.Sphere(0.1), steady), 0.5, step=0.01)
+    work = 0.4 * 2.0 * G * 0.5 * 0.7 * solution.t
+    np.testing.assert_allclose(solution.ledger.loads, work, rtol=0, atol=1e-9 * work[-1])
+    np.testing.assert_allclose(solution.ledger.friction, -work, rtol=0, atol=1e-9 * work[-1])
+
+
+@pytest.mark.parametrize(
+    ("shape", "height", "order", "least"),
+    [(carom.Sphere(0.1), 0.0, 4, 1e-9), (carom.Box(0.2, 0.2, 0.2), 0.0, 2, 1e-5)],
+    ids=["one point", "four points"],
+)
+def test_the_ledger_closes_with_motors_and_held_contact(shape, height, order, least):
+    off = []
+    for step in (0.02, 0.01, 0.005):
+        solution = carom.simulate(slide(shape, uneven, height), 0.4, step=step)
+        off.append(np.max(np.abs(solution.ledger.residual)) / exchanged(solution))
+    assert off[-1] < least
+    slopes = np.log2(np.array(off[:-1]) / off[1:])
+    np.testing.assert_allclose(slopes, order, rtol=0, atol=0.3)
+
+
+def test_the_ledger_closes_with_motors_impacts_and_the_end_of_bounces():
+    # A ball falls, bounces, is held and rubs; the motor answers to each. Order 4 between exact events.
+    off = []
+    for step in (0.01, 0.005):
+        solution = carom.simulate(slide(carom.Sphere(0.1), uneven, 0.03), 0.4, step=step)
+        assert len(solution.impacts) > 2
+        assert solution.contact_mode[-1, 0] == 1
+        off.append(np.max(np.abs(solution.ledger.residual)) / exchanged(solution))
+    assert off[0] < 1e-7
+    assert off[1] < 1e-8
+
+
+def test_an_ensemble_has_it():
+    stiff = [20.0, 60.0, 200.0]
+    made = carom.ensemble(
+        lambda stiffness: spring(stiffness**2), 0.5, step=5e-3, vary={"stiffness": np.array(stiff)},
+        executor="serial",
+    )  # fmt: skip
+    assert [Status(s).name for s in made.status] == ["SUCCESS", "SUCCESS", "INACCURATE"]
+    assert list(made.failures) == [2]
+    for k, w in enumerate(stiff):
+        alone = quiet(spring(w**2), 0.5, step=5e-3)
+        off = np.max(np.abs(alone.ledger.residual)) / exchanged(alone)
+        assert made.energy_error[k] == pytest.approx(off, rel=1e-9, abs=1e-12)
+
+
+@pytest.mark.parametrize("value", [0.0, -1e-4, np.nan, "1e-4", True])
+def test_bad_tolerance(value):
+    with pytest.raises((ValueError, TypeError), match="energy_tolerance"):
+        carom.Options(energy_tolerance=value)
