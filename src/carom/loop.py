@@ -16,7 +16,7 @@ from carom.contact.pair_point import REACH, find_touches, smaller, touch_rate
 from carom.contact.stop import look_at_stop
 from carom.dispatch import only_with_pairs
 from carom.geometry.rotation import norm
-from carom.hold.balance import UNSOLVED, USELESS, too_long, unsolved
+from carom.hold.balance import UNSOLVED, USELESS, next_pace, too_long, unsolved
 from carom.hold.events import (
     CONE,
     GAP,
@@ -119,6 +119,7 @@ def advance(
                 applied, friction, code = step(method, system, held, now, dt, trial, work)
                 clock.trials += 1
                 clock.tries += 1
+                alone = friction  # of points that are held one to a body
                 if controls.retry == 1 and (clock.tries > TRIES or clock.effort > EFFORT):
                     return TOO_MANY
                 if code != 0 and controls.order == 0:
@@ -157,7 +158,7 @@ def advance(
                         dt = propose(search)
                         continue
                 verdict, kind, other, low, d1, d2 = UNSURE, GAP, -1, 0.0, 0.0, 0.0
-                loses = too_long(system, controls, held, dt, pace < math.inf, work)
+                loses = too_long(system, controls, held, now, trial, dt, alone, pace < math.inf, work)
                 if not loses and controls.order == 0 and search.active == 0:
                     named = applied + friction
                     loses = multiplies(system, now, trial, named, clock.now, dt, watch)
@@ -210,7 +211,7 @@ def advance(
             if held.count[0] > 0 and unsolved(system, controls, work, bearable):
                 return NO_CONVERGENCE
             accept(now, trial, dt, applied, friction, begin, clock)
-            pace *= 2.0
+            pace = next_pace(pace, work)
             if strayed(system, now, dt, work):
                 return r.STRAYED
             if dt == remaining:

@@ -10,6 +10,7 @@ import math
 from carom.contact.pairs.plane import touch_plane_at
 from carom.contact.pairs.touch import touch_at
 from carom.contact.rim import same_point
+from carom.contact.roll import roll_on_plane
 from carom.dispatch import only_with_pairs
 from carom.geometry.rotation import exp, multiply, normalize, rotate, rotate_back
 from carom.jit import kernel
@@ -166,12 +167,14 @@ def advance(start, t, end):
 def _drift(system, contact, feature, p, point, state, work):
     """Return (d/dt G) v, contact axes: how the velocity at the point changes as the bodies go on unchanged.
 
-    Central difference over a way of 1e-5 of the smaller body: normals and points turn and roll with the
-    shapes, whatever they are.
+    On a half-space in closed form. Of two bodies a central difference over a way of 1e-5 of the smaller one:
+    normals and points turn and roll with the shapes, whatever they are.
     """
     a, b = contact.body, contact.other
+    if b < 0:
+        return roll_on_plane(system, contact, feature, point, state)
     speed = 0.0
-    for side in range(2 if b >= 0 else 1):
+    for side in range(2):
         body = a if side == 0 else b
         v, w = state[body].v, state[body].w
         spin = math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
@@ -184,8 +187,7 @@ def _drift(system, contact, feature, p, point, state, work):
     for side in range(2):
         s = t if side == 1 else -t
         advance(state[a], s, moved[a])
-        if b >= 0:
-            advance(state[b], s, moved[b])
+        advance(state[b], s, moved[b])
         count = find_touches(system, contact, moved, HELD_REACH * smaller(contact), work)
         touch = work.touches[which_touch(system, contact, count, feature, p, moved, work)]
         ux, uy, uz = slip_velocity(contact, touch, moved)

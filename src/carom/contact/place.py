@@ -21,6 +21,16 @@ def place_any(system, contact, feature, p, state, point, work):
 
 
 @kernel
+def place_held(system, hold, state, point, work):
+    """Write the point of one that is held: never a stop."""
+    contact = system.contacts[hold.contact]
+    if contact.touches == 0:
+        place(contact, hold.point, state, point)
+    else:
+        place_pair(system, contact, hold.feature, hold.point, state, point, work)
+
+
+@kernel
 def drift_of(system, contact, feature, p, point, state, work):
     """Return (d/dt G) v, contact axes, of two bodies that touch and of a stop."""
     if contact.touches == STOP:

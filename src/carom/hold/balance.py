@@ -9,11 +9,17 @@ from __future__ import annotations
 from carom.geometry.rotation import norm
 from carom.hold.middle import spin_momentum
 from carom.jit import inlined, kernel
+from carom.system.arrays import ONE
 
-# what a step may lose: this part of the kinetic energy at its start, and of what a fall of a whole step gains;
-# one that is cut is cut on until it loses CAREFUL of that
+# what a step of several bodies may lose: this part of the kinetic energy at its start, and of what a fall of a
+# whole step gains; one that is cut is cut on until it loses CAREFUL of that
 OF_MOTION, OF_FALL = 1e-6, 1e-2
 CAREFUL = 0.01
+SURE = 1.0 / 32.0  # of that: what a step may lose for the next to be twice as long (order 4: 2^5)
+# of one body: these parts of its kinetic energy and of m g times its size, held at one point and at several
+OF_ONE, OF_SEVERAL = 1e-8, 1e-7
+# ... and how far it may turn: the methods are of use for less than a radian
+TURN = 0.5
 # residual of contacts, as a part of what gravity gives in a step: where a step is cut, then taken whole; where
 # there is nothing to take whole, and the run stops
 UNSOLVED, USELESS = 0.01, 10.0
@@ -30,18 +36,57 @@ def kinetic(body, state):
 
 
 @kernel
+def lost_by(system, b, start, end):
+    """Return the energy that a body on which gravity acts has lost in a step."""
+    body, lost, g = system.bodies[b], kinetic(system.bodies[b], start[b]), system.gravity
+    for r in range(3):
+        lost += body.mass * g[r] * (end[b].x[r] - start[b].x[r])
+    return lost - kinetic(body, end[b])
+
+
+@kernel
+def may_lose(system, b, start, part):
+    """Return a part of the kinetic energy of a body and of its weight times its size."""
+    body = system.bodies[b]
+    return part * (kinetic(body, start[b]) + body.mass * norm(system.gravity) * body.extent)
+
+
+@kernel
 def unnamed(system, controls, start, end, friction, count, member):
     """Return what the step has lost or gained besides the work of friction, as a part of what it may."""
-    lost, may, g = friction, 0.0, system.gravity
-    fall = controls.step * norm(g)
+    lost, may = friction, 0.0
+    fall = controls.step * norm(system.gravity)
     for m in range(count):
         b = member[m]
-        body, before = system.bodies[b], kinetic(system.bodies[b], start[b])
-        lost += before - kinetic(body, end[b])
-        for r in range(3):
-            lost += body.mass * g[r] * (end[b].x[r] - start[b].x[r])
-        may += OF_MOTION * before + OF_FALL * 0.5 * body.mass * fall * fall
+        body = system.bodies[b]
+        lost += lost_by(system, b, start, end)
+        may += OF_MOTION * kinetic(body, start[b]) + OF_FALL * 0.5 * body.mass * fall * fall
+    if count == 1:
+        may = may_lose(system, member[0], start, OF_SEVERAL)
     return abs(lost) / may if may > 0.0 else 0.0
+
+
+@kernel
+def unnamed_alone(system, start, end, friction, work):
+    """Return the same of bodies held at one point each, on which gravity alone acts besides."""
+    lost, may = friction, 0.0
+    for b in range(start.shape[0]):
+        if work.body[b].status == ONE:
+            if system.bodies[b].ballistic == 0:
+                return 0.0
+            lost += lost_by(system, b, start, end)
+            may += may_lose(system, b, start, OF_ONE)
+    return abs(lost) / may if may > 0.0 else 0.0
+
+
+@kernel
+def turns_far(system, held, start, end, dt):
+    """Return whether a body that is held turns too far in a step."""
+    for i in range(held.count[0]):
+        hold = held.points[i]
+        if hold.rest == 0 and not dt * max(norm(start[hold.body].w), norm(end[hold.body].w)) <= TURN:
+            return True
+    return False
 
 
 @kernel
@@ -52,10 +97,20 @@ def unsolved(system, controls, work, part):
 
 
 @inlined
-def too_long(system, controls, held, dt, careful, work):
+def too_long(system, controls, held, start, end, dt, friction, careful, work):
     """Return whether a step with held points is to be cut: for what it loses, or for want of a solution."""
     if held.count[0] == 0 or dt <= SHORTEST * controls.step:
         return False
     if dt > RETRIED * controls.step and unsolved(system, controls, work, UNSOLVED):
         return True
-    return work.result[0].unnamed > (CAREFUL if careful else 1.0)
+    if turns_far(system, held, start, end, dt):
+        return True
+    result = work.result[0]
+    result.unnamed = max(result.unnamed, unnamed_alone(system, start, end, friction, work))
+    return result.unnamed > (CAREFUL if careful else 1.0)
+
+
+@inlined
+def next_pace(pace, work):
+    """Return how long the next step may be: twice as long, unless that would lose too much."""
+    return 2.0 * pace if work.result[0].unnamed <= SURE * CAREFUL else pace

@@ -13,10 +13,11 @@ from __future__ import annotations
 
 import math
 
+from carom.contact.place import place_held
 from carom.hold.jam import yields
 from carom.jit import inlined, kernel
 from carom.motion.acceleration import OPEN, SLIP, STICK, acceleration
-from carom.motion.contact_point import contact_velocity, place
+from carom.motion.contact_point import contact_velocity
 
 GAP, SEPARATE, CONE, REVERSE, JAM = range(5)
 
@@ -32,7 +33,7 @@ def held_value(system, hold, kind, d1, d2, state, work):
     if kind == CONE:
         return contact.friction_held * f[0] - math.sqrt(f[1] * f[1] + f[2] * f[2])
     point = work.point[0]
-    place(contact, hold.point, state, point)
+    place_held(system, hold, state, point, work)
     _, u1, u2 = contact_velocity(point, state)
     if kind == JAM:
         return yields(hold.W, contact.friction_held, u1, u2)
@@ -81,7 +82,7 @@ def find_held_event(system, held, end, work):
 def reverses(system, hold, end, work):
     """Return whether slip has come to a stop and turned about: not if it has turned off to a side."""
     point = work.point[0]
-    place(system.contacts[hold.contact], hold.point, end, point)
+    place_held(system, hold, end, point, work)
     _, u1, u2 = contact_velocity(point, end)
     d1, d2 = hold.heading[0], hold.heading[1]
     across = abs(u1 * d2 - u2 * d1)
@@ -102,7 +103,7 @@ def turned(system, held, end, h, work):
         if hold.mode == SLIP and hold.rest == 0 and hold.several == 0:
             d1, d2 = hold.heading[0], hold.heading[1]
             point, contact = work.point[0], system.contacts[hold.contact]
-            place(contact, hold.point, end, point)
+            place_held(system, hold, end, point, work)
             _, u1, u2 = contact_velocity(point, end)
             along, across, square = u1 * d1 + u2 * d2, u1 * d2 - u2 * d1, u1 * u1 + u2 * u2
             if across * across > 1e-12 * square and braked(contact, hold, h) ** 2 > square:
@@ -125,7 +126,7 @@ def slides_on(system, hold, now, h, work):
     if hold.mode != SLIP or hold.other >= 0:
         return False
     contact, point = system.contacts[hold.contact], work.point[0]
-    place(contact, hold.point, now, point)
+    place_held(system, hold, now, point, work)
     _, u1, u2 = contact_velocity(point, now)
     return 100.0 * braked(contact, hold, h) ** 2 < u1 * u1 + u2 * u2
 
@@ -137,7 +138,7 @@ def residual(system, held, state, work):
     for i in range(held.count[0]):
         hold = held.points[i]
         if hold.several == 0 and hold.rest == 0:
-            place(system.contacts[hold.contact], hold.point, state, point)
+            place_held(system, hold, state, point, work)
             u0, u1, u2 = contact_velocity(point, state)
             slip = math.sqrt(u1 * u1 + u2 * u2) if hold.mode == STICK else 0.0
             worst = max(worst, max(abs(u0), slip))

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 
 from carom.contact.gap import slow
+from carom.contact.pair_point import drift
+from carom.contact.place import place_held
 from carom.hold.events import braked
 from carom.hold.jam import note_jam, presses, yields
 from carom.hold.roster import enlist
@@ -16,7 +18,6 @@ from carom.motion.contact_point import (
     contact_acceleration,
     contact_velocity,
     effective_inverse_mass,
-    place,
     spread,
 )
 from carom.motion.elements import driven_power
@@ -33,6 +34,8 @@ def hold_one(system, controls, held, state, horizon, cluster, work, clock, recor
     u, still = contact_velocity(point, state), slow(contact, state)
     acceleration(system, state, held, work, work.stages[0])
     g = -contact_acceleration(point, state, work.stages[0])[0]
+    if contact.touches != 0:
+        g -= drift(system, contact, seat.feature, seat.point, point, state, work)[0]
     if not bounces_end(contact, u[0], g, still, horizon):
         return
     begin_event(system, seat.contact, seat.feature, state, clock, records)
@@ -75,7 +78,7 @@ def begin_hold(system, contact, hold, state, stop, work, clock):
     to settle goes on slipping.
     """
     point, still = work.point[0], slow(contact, state)
-    place(contact, hold.point, state, point)
+    place_held(system, hold, state, point, work)
     u = contact_velocity(point, state)
     W = work.hit[0].W
     effective_inverse_mass(system, point, state, work, W)

@@ -126,7 +126,7 @@ def press_group(system, controls, held, group, start, h, end, cluster, work, clo
     work.result[0].friction += friction
     if loaded:
         work.result[0].applied += driven + extra_work(system, h, start, end, cluster, work)
-    elif count > 1:  # a rim that runs round faster than steps can follow is struck flat instead
+    else:
         over = unnamed(system, controls, start, end, friction, count, cluster.member)
         work.result[0].unnamed = max(work.result[0].unnamed, over)
     forces_at_end(system, controls, held, k, end, cluster, work)

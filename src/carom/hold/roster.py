@@ -93,7 +93,8 @@ def copy(a, b):
 @kernel
 def together(contact):
     """Return whether a point of a contact is always stepped as one of several."""
-    return contact.touches != 0 or contact.turning[0] > 0.0 or contact.turning[1] > 0.0
+    own = contact.touches == 0 or (contact.touches == 1 and contact.other < 0)
+    return not own or contact.turning[0] > 0.0 or contact.turning[1] > 0.0
 
 
 @kernel

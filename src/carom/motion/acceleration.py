@@ -10,6 +10,8 @@ from __future__ import annotations
 import math
 
 from carom.contact.gap import slow
+from carom.contact.pair_point import drift
+from carom.contact.place import place_held
 from carom.dispatch import by_address, only_with_joints
 from carom.jit import inlined, kernel, unit
 from carom.motion.contact_point import (
@@ -17,7 +19,6 @@ from carom.motion.contact_point import (
     contact_acceleration,
     contact_velocity,
     effective_inverse_mass,
-    place,
     spread,
 )
 from carom.motion.elements import acceleration_bias, driven_power
@@ -68,7 +69,7 @@ def accelerations(system, state, held, work, stage):
         hold = held.points[i]
         if hold.mode != OPEN and hold.several == 0 and hold.rest == 0:
             contact, point = system.contacts[hold.contact], work.point[0]
-            place(contact, hold.point, state, point)
+            place_held(system, hold, state, point, work)
             effective_inverse_mass(system, point, state, work, hold.W)
             applied += press_one(system, contact, hold, point, state, work, stage)
             if hold.mode == SLIP:
@@ -96,7 +97,7 @@ def aim(system, held, state, work):
         heading[0], heading[1], hold.speed = 0.0, 0.0, 0.0
         if hold.mode == SLIP:
             contact, point = system.contacts[hold.contact], work.point[0]
-            place(contact, hold.point, state, point)
+            place_held(system, hold, state, point, work)
             u1, u2 = slip_direction(contact, hold, point, state)
             speed = math.sqrt(u1 * u1 + u2 * u2)
             if speed > 0.0:
@@ -127,6 +128,9 @@ def press_one(system, contact, hold, point, state, work, stage):
     """
     f, W = hold.force, hold.W
     an, a1, a2 = contact_acceleration(point, state, stage)
+    if contact.touches != 0:
+        d = drift(system, contact, hold.feature, hold.point, point, state, work)
+        an, a1, a2 = an + d[0], a1 + d[1], a2 + d[2]
     if hold.mode == STICK:
         n, t1, t2 = stick_force(W, an, a1, a2)
     else:

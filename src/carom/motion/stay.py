@@ -9,6 +9,7 @@ displacement and the smallest change of velocity in the kinetic metric take that
 from __future__ import annotations
 
 from carom.contact.gap import round_off, slow
+from carom.contact.place import place_held
 from carom.jit import kernel
 from carom.motion.acceleration import OPEN, STICK
 from carom.motion.contact_point import (
@@ -17,7 +18,6 @@ from carom.motion.contact_point import (
     contact_motion,
     contact_velocity,
     effective_inverse_mass,
-    place,
     spread,
 )
 from carom.motion.friction import stick_force
@@ -46,7 +46,7 @@ def return_held(system, held, state, work):
             continue
         contact = system.contacts[hold.contact]
         for _ in range(4):
-            place(contact, hold.point, state, point)
+            place_held(system, hold, state, point, work)
             if not abs(point.gap) > round_off(contact, state):
                 break
             spread(system, point, state, 1.0, 0.0, 0.0, work)
@@ -64,7 +64,7 @@ def stay_held(system, held, state, work):
         if hold.mode == OPEN or hold.several == 1 or hold.rest == 1:
             continue
         contact = system.contacts[hold.contact]
-        place(contact, hold.point, state, point)
+        place_held(system, hold, state, point, work)
         u, still = contact_velocity(point, state), slow(contact, state)
         sticks = hold.mode == STICK
         if abs(u[0]) <= still and not (sticks and max(abs(u[1]), abs(u[2])) > still):

@@ -18,6 +18,12 @@ def of_vertex_a(i):
 
 
 @inlined
+def vertex_a(feature):
+    """Return i of such a feature."""
+    return (feature >> 45) & 0x7FFF
+
+
+@inlined
 def of_vertex_b(i):
     """Return the feature of vertex i of B on whatever A has there."""
     return (2 << 60) | (i << 15)
