@@ -6,6 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 import carom
 
 CODE = """
@@ -64,6 +66,55 @@ def test_no_place_that_can_be_written(tmp_path):
         value, hits = result(start(blocked / "cache", **places))
         assert value.startswith("(")
         assert int(hits) == 0
+
+
+FULL = """
+import resource, warnings
+from carom.geometry.rotation import exp, log
+hard = resource.getrlimit(resource.RLIMIT_FSIZE)[1]
+with warnings.catch_warnings(record=True) as said:
+    warnings.simplefilter("always")
+    resource.setrlimit(resource.RLIMIT_FSIZE, (int(sys.argv[1]), hard))
+    print(repr(exp(0.1, 0.2, 0.3)), repr(log(1.0, 0.0, 0.0, 0.0)))
+    resource.setrlimit(resource.RLIMIT_FSIZE, (hard, hard))
+print(len(said), *(one.message for one in said))
+"""
+
+
+@pytest.mark.parametrize("full", [0, 1000])
+def test_a_full_disk_costs_a_recompile(full, tmp_path):
+    """One warning, the right numbers, no file cut short; the next process keeps what it compiles."""
+    pytest.importorskip("resource")
+    child = subprocess.run(
+        [sys.executable, "-c", f"import sys\n{FULL}", str(full)],
+        env={**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}, capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    numbers, told = child.stdout.splitlines()
+    assert told.startswith("1 compiled code cannot be kept in")
+    assert "File too large" in told
+    assert not list(tmp_path.rglob("*.tmp.*"))
+    value, hits = result(start(tmp_path))
+    assert numbers.startswith(value)
+    assert int(hits) == 0
+    assert result(start(tmp_path)) == [value, "1"]
+
+
+def test_a_folder_that_is_gone_costs_a_recompile(tmp_path):
+    """As where a disk is taken away after the start: compiled, loaded and kept nowhere."""
+    code = """
+import shutil, sys, pathlib, warnings
+from carom.geometry.rotation import exp
+warnings.simplefilter("ignore")
+shutil.rmtree(sys.argv[1])
+pathlib.Path(sys.argv[1]).write_text("no folder")
+print(repr(exp(0.1, 0.2, 0.3)))
+"""
+    place = tmp_path / "cache"
+    child = subprocess.run(
+        [sys.executable, "-c", code, str(place)],
+        env={**os.environ, "NUMBA_CACHE_DIR": str(place)}, capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    assert child.stdout.startswith("(")
 
 
 def test_scipy_is_loaded_where_linear_algebra_is_compiled():

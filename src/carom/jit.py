@@ -4,22 +4,20 @@ Kernels are plain functions on scalars and arrays. They call only other kernels,
 uncompiled (``NUMBA_DISABLE_JIT=1``). They are compiled without Numba's memory manager: a kernel that
 would allocate does not compile, and no array is counted when it is passed on (which cost 8 microseconds a
 step). Kernels are parts of what calls them (`carom.parts`); units and entries are compiled as a whole, and
-kept on disk until something in them changes (`carom.stamp`).
+kept on disk until something in them changes (`carom.code_cache`).
 """
 
 from __future__ import annotations
 
 import contextlib
-from functools import cached_property
 from typing import Any
 
 import numba
 import numpy as np
-from numba.core.caching import FunctionCache, IndexDataCacheFile
 
 from carom import hasten, references, symbols
+from carom.code_cache import StampedCache
 from carom.parts import PartCompiler
-from carom.stamp import stamp
 
 hasten.install()
 references.install()
@@ -32,31 +30,6 @@ _PART: dict[str, Any] = {**_RULES, **_INSIDE, "pipeline_class": PartCompiler}
 
 #: for `numba.extending.overload`, whose functions are compiled by these rules
 OPTIONS: dict[str, Any] = {"jit_options": {**_PART, "forceinline": True}}
-
-
-class _StampedCache(FunctionCache):
-    """A function cache that is valid for one state of a function and of all that is linked into it."""
-
-    def __init__(self, py_func):
-        super().__init__(py_func)
-        self._kept = py_func
-        del self._cache_file  # made when it is first asked for: what is called may be defined later
-
-    def load_overload(self, sig, target_context):
-        """Load a compiled function; a file that is broken is as good as none, and is written anew."""
-        try:
-            return super().load_overload(sig, target_context)
-        except Exception:  # cut short by a crash or a full disk: whatever unpickling makes of it
-            self.flush()
-            return None
-
-    @cached_property
-    def _cache_file(self):
-        return IndexDataCacheFile(
-            cache_path=self._cache_path,
-            filename_base=self._impl.filename_base,
-            source_stamp=stamp(self._kept),
-        )
 
 
 def kernel(function):
@@ -145,5 +118,5 @@ def entry(function):
 def _keep_on_disk(compiled, function):
     if compiled is not function:  # it is with NUMBA_DISABLE_JIT=1
         with contextlib.suppress(RuntimeError):  # no writable place for a cache
-            compiled._cache = _StampedCache(function)
+            compiled._cache = StampedCache(function)
     return compiled

@@ -1,8 +1,8 @@
 """Kill an ensemble at one of its operations on files, go on with it, and say what came of it.
 
-Run as ``python kills.py FOLDER first step count``: operations first, first + step, ...; prints a line for each that
-does not end as an undisturbed run, and how many were tried. Each trial is a fork of one process that has all
-compiled code.
+Run as ``python kills.py FOLDER first step count``: operations first, first + step, ...; prints a line for each
+that does not end as an undisturbed run, and how many were tried. Each trial is a fork of one process that has
+all compiled code.
 """
 
 import contextlib

@@ -1,4 +1,4 @@
-"""An ensemble that is killed at any operation on files goes on; a full disk is an error that keeps what is done."""
+"""An ensemble that is killed at any operation on files goes on; a full disk keeps what is done."""
 
 import os
 import signal

@@ -1,8 +1,8 @@
 """An ensemble on disk: a Zarr group that grows by whole parts, and can be gone on with.
 
-A part is there when its mark is, a small file that is written last and at once, with the digest of all numbers of
-the part. Whatever an interruption leaves behind, a part whose numbers are not those of its mark is done again.
-While a store is made a file says so; one that was never finished is made anew.
+A part is there when its mark is, a small file that is written last and at once, with the digest of all numbers
+of the part. Whatever an interruption leaves behind, a part whose numbers are not those of its mark is done
+again. While a store is made a file says so; one that was never finished is made anew.
 """
 
 from __future__ import annotations

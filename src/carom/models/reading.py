@@ -8,6 +8,7 @@ import xml.etree.ElementTree as ET
 from pathlib import Path
 from typing import Any
 
+from carom.models.limits import check_model, drop_sizes, parsed
 from carom.models.needs import need_mujoco
 from carom.models.report import Report
 from carom.models.urdf import prepared
@@ -44,7 +45,7 @@ def compiled_model(source, free_root: bool, package_dirs, report: Report) -> Any
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always")
             model = spec.compile()
-    except ValueError as error:
+    except (ValueError, RuntimeError) as error:
         raise ValueError(f"{what} does not compile: {_line(error)}") from None
     for warning in said:
         report.add("MuJoCo", f"says: {_line(warning.message)}", "this is how it compiled the model")
@@ -66,25 +67,47 @@ def _specification(mujoco, source, package_dirs, report: Report) -> tuple[Any, s
         path = Path(source)
         if not path.is_file():
             raise FileNotFoundError(f"there is no model file {str(path)!r}")
-        text, folder, what = path.read_text(encoding="utf-8"), path.resolve().parent, path.name
-    try:
-        root = ET.fromstring(text)
-    except ET.ParseError as error:
-        raise ValueError(f"{what} is no XML that can be read: {_line(error)}") from None
+        text, folder, what = path.read_bytes(), path.resolve().parent, path.name
+    root = parsed(text, what)
     if root.tag not in ("mujoco", "robot"):
         raise ValueError(
             f"{what} must be MJCF (root <mujoco>) or URDF (root <robot>), got a root <{root.tag}>"
         )
+    check_model(root, what, folder)
+    mimics = []
     try:
         if root.tag == "robot":
             mimics = [j.get("name", "") for j in root.iter("joint") if j.find("mimic") is not None]
             text = prepared(root, folder, package_dirs, report)
-            return mujoco.MjSpec.from_string(text), what, mimics
-        if folder is None:
-            return mujoco.MjSpec.from_string(text), what, []
-        return mujoco.MjSpec.from_file(str(source)), what, []
-    except ValueError as error:
+            spec = mujoco.MjSpec.from_string(text)
+        elif isinstance(text, str):
+            spec = mujoco.MjSpec.from_string(text)
+        elif _is_utf8(text):
+            spec = mujoco.MjSpec.from_file(str(source))
+        else:
+            spec = _other_encoding(mujoco, root, folder)
+    except (ValueError, RuntimeError) as error:
         raise ValueError(f"{what} cannot be read: {_line(error)}") from None
+    drop_sizes(spec)
+    return spec, what, mimics
+
+
+def _is_utf8(data: bytes) -> bool:
+    """Return whether MuJoCo reads a file as it is: it knows no other encoding."""
+    try:
+        data.decode("utf-8")
+    except UnicodeDecodeError:
+        return False
+    return b"\0" not in data
+
+
+def _other_encoding(mujoco, root: ET.Element, folder: Path | None):
+    """Return the specification of a model whose file is not in UTF-8."""
+    if root.find(".//include") is not None:
+        raise ValueError("it includes other files and is not in UTF-8, which it must be then")
+    spec = mujoco.MjSpec.from_string(ET.tostring(root, encoding="unicode"))
+    spec.modelfiledir = str(folder)
+    return spec
 
 
 def _free(mujoco, spec, what: str) -> None:
