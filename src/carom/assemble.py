@@ -55,6 +55,7 @@ def assemble(run, status: Status) -> dict:
             "holds": clock["holds"], "held_steps": clock["pressed"],
             "held_rounds": clock["rounds"], "whole_steps": clock["whole"],
             "explicit_steps": int(run.work.result["fallen"][0]),
+            "parts": int(run.work.result["parts"][0]),
         },
         "scene": run.scene,
         "settings": dict(run.settings),

@@ -98,6 +98,7 @@ def part_work(work, islands, i):
         work.stage[:n],
         work.trial[:n],
         work.middle[:n],
+        work.first[:n],
         work.point,
         work.pair,
         work.touches,

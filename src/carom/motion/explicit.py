@@ -27,6 +27,8 @@ from carom.system.arrays import FREE, ONE, RESTS, SEVERAL
 
 CONSTRAINTS_LOST = 7
 MANY = 1 << 30  # rows, more than there are
+#: turn of a body [rad] for each stage of a part of a step (0.3 of `rk4`), and how many parts there are at most
+TURN, MOST_PARTS, TINY = 0.075, 100, 1e-300
 
 
 class Explicit(NamedTuple):
@@ -93,11 +95,49 @@ def constrained(method, system, held, start, h, end, work):
 
 @unit
 def constrained_unit(A, weight, E, system, held, start, h, end, work):
+    """Step at once, or in parts in which no body turns far.
+
+    The length of a part depends on where it starts alone, so that the end is a continuous function of h.
+    """
+    result = work.result[0]
+    begin, left, first = result.start, h, start
+    applied, friction = 0.0, 0.0
+    forget_bounds(work)
+    aim(system, held, start, work)
+    for part in range(MOST_PARTS):
+        dt = left
+        if E.shape[0] == 0 and part < MOST_PARTS - 1:
+            dt = min(left, TURN * weight.size / max(fastest_spin(system, first, work), TINY))
+        with_care(A, weight, E, system, held, first, begin + (h - left), dt, end, work)
+        applied, friction = applied + result.applied, friction + result.friction
+        left -= dt
+        if not (left > 0.0 and result.code == 0):
+            break
+        result.parts += 1
+        first = work.first
+        for b in range(start.shape[0]):
+            keep(end[b], first[b])
+    result.applied, result.friction = applied, friction
+
+
+@kernel
+def fastest_spin(system, state, work):
+    """Return the greatest |w| of the bodies that are joined, loaded or held."""
+    most = 0.0
+    for b in range(state.shape[0]):
+        status, w = work.body[b].status, state[b].w
+        if status == ONE or (status != RESTS and system.bodies[b].ballistic == 0):
+            most = max(most, w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
+    return math.sqrt(most)
+
+
+@kernel
+def with_care(A, weight, E, system, held, start, begin, h, end, work):
     """Step; and again with care, if some stages fell into a singular position (`carom.motion.singular`)."""
     result = work.result[0]
     for care in (False, True):
         applied, friction, code, least, most = constrained_step(
-            system, A, weight, E, held, start, care, h, end, work
+            system, A, weight, E, held, start, care, begin, h, end, work
         )
         if not is_singular(system, least, most):
             break
@@ -149,15 +189,14 @@ def mark_held(system, held, work):
 
 
 @kernel
-def constrained_step(system, A, weight, E, held, start, care, h, end, work):
-    """Step the bodies that are joined, loaded or held; the others are in `end` already.
+def constrained_step(system, A, weight, E, held, start, care, t0, h, end, work):
+    """Step the bodies that are joined, loaded or held, from the time t0; the others are in `end` already.
 
     With `care` the stages return to the joints first, and those in singular positions are passed round. Returns
     work of loads, of friction, a status, and the least and the most rows that stages left out, or nearly.
     """
-    stages, stage, t0 = weight.size, work.stage, work.result[0].start
+    stages, stage = weight.size, work.stage
     applied, friction = 0.0, 0.0
-    aim(system, held, start, work)
     least, most = MANY, 0
     for s in range(stages):
         combine(A[s], s, h, start, work.stages, stage)
@@ -229,14 +268,22 @@ def combine(weight, count, h, start, stages, out):
 
 
 @kernel
-def bound_accelerations(work, stages):
-    """Write the greatest |linear| and |angular| acceleration and |w| of each body over the stages."""
+def forget_bounds(work):
+    """Begin anew with the bounds of accelerations."""
     for b in range(work.body.shape[0]):
-        linear, angular, spin = 0.0, 0.0, 0.0
+        bound = work.body[b].bound
+        bound[0], bound[1], bound[2] = 0.0, 0.0, 0.0
+
+
+@kernel
+def bound_accelerations(work, stages):
+    """Raise the bounds of |linear| and |angular| acceleration and |w| of each body to those of the stages."""
+    for b in range(work.body.shape[0]):
+        bound = work.body[b].bound
+        linear, angular, spin = bound[0] * bound[0], bound[1] * bound[1], bound[2] * bound[2]
         for s in range(stages):
             a, u = work.stages[s, b].rate, work.stages[s, b].speed
             linear = max(linear, a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
             angular = max(angular, a[3] * a[3] + a[4] * a[4] + a[5] * a[5])
             spin = max(spin, u[3] * u[3] + u[4] * u[4] + u[5] * u[5])
-        bound = work.body[b].bound
         bound[0], bound[1], bound[2] = math.sqrt(linear), math.sqrt(angular), math.sqrt(spin)

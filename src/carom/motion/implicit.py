@@ -23,7 +23,7 @@ from carom.geometry.rotation import exp, multiply, normalize
 from carom.jit import inlined, kernel, unit
 from carom.motion.acceleration import bias_joints
 from carom.motion.elements import driven_power
-from carom.motion.explicit import bound_accelerations, constrained, fly, keep
+from carom.motion.explicit import bound_accelerations, constrained, fly, forget_bounds, keep
 from carom.motion.forces import applied_wrenches
 from carom.motion.project import LOST, project_position, project_velocity
 from carom.motion.solve import solve
@@ -86,6 +86,7 @@ def implicit_unit(system, held, start, h, end, work):
             second.speed[k] = 1.5 * first.speed[k] + 0.5 * second.speed[k]
             second.rate[k] = 1.5 * first.rate[k] + 0.5 * second.rate[k]
         move(start[b], h, second.speed, second.rate, end[b])
+    forget_bounds(work)
     bound_accelerations(work, 2)
     if not (project_position(system, end, False, 1e-14, work) <= LOST):
         result.code = CONSTRAINTS_LOST

@@ -75,7 +75,7 @@ def constants(J, b, size, top):
     even = second - first == 1 or second - first == -2
     s1, s3 = math.copysign(1.0, b[first]), math.copysign(1.0, b[third])
     s2 = s1 * s3 if even else -s1 * s3
-    top.axes[0], top.axes[1], top.axes[2] = first, second, third
+    top.axes[first], top.axes[second], top.axes[third] = 0, 1, 2
     top.sign[0], top.sign[1], top.sign[2] = s1, s2, s3
     x1, x2, x3 = abs(b[first]), s2 * b[second], abs(b[third])
     P, Q = d31 * x1 * x1 + d32 * x2 * x2, d31 * x3 * x3 + d21 * x2 * x2
@@ -251,9 +251,5 @@ def attitude(top, t):
     x, y = f * b2, -f * b1
     parts = top.sign[0] * (c * x - s * y), top.sign[1] * (c * y + s * x), top.sign[2] * (s * a)
     lie = top.sign[0] * b1, top.sign[1] * b2, top.sign[2] * b3
-    # from Jacobi's order to the body's
-    first, second = top.axes[0], top.axes[1]
-    i = 0 if first == 0 else 1 if second == 0 else 2
-    j = 0 if first == 1 else 1 if second == 1 else 2
-    k = 3 - i - j
+    i, j, k = top.axes[0], top.axes[1], top.axes[2]
     return (c * a, parts[i], parts[j], parts[k]), (lie[i], lie[j], lie[k])

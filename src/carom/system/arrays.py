@@ -319,8 +319,8 @@ FLIGHT = [
     ("known_spin", "f8", (2, 3)),
     ("age", "f8", (2, 2)),  # their times since it began, each as a sum of two numbers
     ("turn", "f8", 4),  # attitude at its start, less the turn that `attitude` gives for that
-    ("axes", "i8", 3),  # principal axes in Jacobi's order, and their signs
-    ("sign", "f8", 3),
+    ("axes", "i8", 3),  # place of each principal axis in Jacobi's order
+    ("sign", "f8", 3),  # by place: -1 where the axis is turned round
     ("magnitude", "f8"),  # of the angular momentum
     ("amplitude", "f8", 3),  # of its direction in the body
     ("rate", "f8", 2),  # of half the turn about the momentum, and of the argument
@@ -372,6 +372,7 @@ RESULT = [
     ("drag", "f8"),
     ("residual", "f8"),  # greatest of the groups held at several points
     ("unnamed", "f8"),  # the same: energy lost without a name, as a part of what may be
+    ("parts", "i8"),  # more parts of steps in which bodies turned far than steps
     ("fallen", "i8"),  # steps of a symplectic method that the explicit one has taken
     ("start", "f8"),  # time at which the step on trial starts
     ("time", "f8"),  # of the state that is looked at: what is prescribed depends on it
@@ -523,6 +524,7 @@ class Work(NamedTuple):
     stage: np.recarray  # (N,) STATE
     trial: np.recarray  # (N,) STATE
     middle: np.recarray  # (N,) STATE
+    first: np.recarray  # (N,) STATE
     point: np.recarray  # (1,) POINT, the one that strikes, or is looked at
     pair: PairWork
     touches: np.recarray  # (8,) TOUCH_POINT of the last pair

@@ -187,6 +187,7 @@ def new_work(system: System, stages: int) -> Work:
         stage=table(STATE, n),
         trial=table(STATE, n),
         middle=table(STATE, n),
+        first=table(STATE, n),
         point=table(POINT, 1),
         pair=pair_arrays(),
         touches=new_points(),
