@@ -11,14 +11,23 @@ from carom.watch import ALL, BOUNCES, FRICTION, IMPACTS, RESIDUAL, ROUND_OFF, ne
 INACCURATE = 100.0  # times the tolerance: what is no success any more
 
 _WHAT = {
-    RESIDUAL: ("Energy that no entry of the ledger explains:", "Take a smaller step"),
+    RESIDUAL: (
+        "Energy that no entry of the ledger explains:",
+        "Take a smaller step, or allow for it",
+    ),
     IMPACTS: ("Impacts gave energy, which they never should:", 'Take impact_law="stronge"'),
-    FRICTION: ("Friction gave energy, which it never should:", "Take a smaller step"),
+    FRICTION: (
+        "Friction gave energy, which it never should:",
+        "Take a smaller step, or allow for it",
+    ),
     BOUNCES: (
         "Bounces that were dropped gave energy, which they never should:",
         "Take a smaller step",
     ),
-    ALL: ("Energy without a name, of several kinds together:", "Take a smaller step"),
+    ALL: (
+        "Energy without a name, of several kinds together:",
+        "Take a smaller step, or allow for it",
+    ),
 }
 
 

@@ -10,6 +10,9 @@ import pytest
 import carom
 from carom import GROUND, forces, joints
 
+#: what a step far beyond the period of a spring takes out of it has no name
+DAMPED = carom.Options(energy_tolerance=1.0)
+
 
 def oscillator(k, c, h, duration=1.0, **more):
     scene = carom.Scene(gravity=(0, 0, 0))
@@ -27,6 +30,8 @@ def moved(k, c, t):
     return rest + np.exp(-a * t) * (-rest * np.cos(w * t) + (1 - a * rest) / w * np.sin(w * t))
 
 
+# order 2: 1e-3 of the energy at the longest step
+@pytest.mark.filterwarnings("ignore::carom.AccuracyWarning")
 def test_an_oscillator_has_order_two():
     errors = []
     for h in (0.05, 0.025, 0.0125):
@@ -39,7 +44,7 @@ def test_an_oscillator_has_order_two():
 @pytest.mark.parametrize(("k", "c"), [(1e8, 1e4), (1e8, 0.0), (1e6, 1e6)])
 def test_steps_far_beyond_the_periods_of_a_spring_settle(k, c):
     # h = .1 s is 1600 periods; a damped spring creeps with k/c where that is slow
-    x = oscillator(k, c, 0.1, duration=2.0).position[-1, 0, 0]
+    x = oscillator(k, c, 0.1, duration=2.0, options=DAMPED).position[-1, 0, 0]
     creep = np.exp(-2.0 * k / c) if c > 0.0 else 0.0
     assert abs(x - 2.0 / k * (1 - creep)) < 1e-6
 
@@ -78,7 +83,9 @@ def braced_four_bar(k, c):
 def test_a_stiff_brace_in_a_loop_carries_its_load():
     # the brace at 45 degrees: tension 10 sqrt 2 N; in one step of 0.05 s its period is 1e-3 s
     k = 1e8
-    solution = carom.simulate(braced_four_bar(k, 1e3), 2.0, step=0.05, method="implicit")
+    solution = carom.simulate(
+        braced_four_bar(k, 1e3), 2.0, step=0.05, method="implicit", options=DAMPED
+    )
     position, velocity = solution.constraint_errors
     assert max(position.max(), velocity.max()) < 1e-12
     ends = solution.position[-1, 1] + [0.5, 0, 0]  # the bar on top stays level

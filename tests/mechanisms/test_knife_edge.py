@@ -8,6 +8,9 @@ import carom
 from carom import GROUND, Scene, joints
 from references import chaplygin
 
+#: methods of order 2 miss the energy by 1e-4 to 1e-3 of it at these steps, and say so
+pytestmark = pytest.mark.filterwarnings("ignore::carom.AccuracyWarning")
+
 METHODS = {"rk4": 4.0, "paper": 2.0, "paper-ode": 2.0}
 SLOPE, TURN = 0.3, 1.5
 ALONG = G * np.sin(SLOPE)

@@ -10,6 +10,9 @@ import carom
 from carom import GROUND, Options, Scene, forces, joints
 from carom.motion.multipliers import second_order_multipliers
 
+#: methods of order 2 miss the energy by 1e-4 to 1e-3 of it at these steps, and say so
+pytestmark = pytest.mark.filterwarnings("ignore::carom.AccuracyWarning")
+
 
 def wrenches(solution, m):
     """Sum of h_R a^R for each joint on its child (T, J, 6): force, and torque about its anchor."""

@@ -7,6 +7,9 @@ from scipy.special import ellipj, ellipk
 
 import carom
 
+#: methods of order 2 miss the energy by 1e-4 to 1e-3 of it at these steps, and say so
+pytestmark = pytest.mark.filterwarnings("ignore::carom.AccuracyWarning")
+
 KINDS = ("Distance", "Revolute", "Spherical")
 
 

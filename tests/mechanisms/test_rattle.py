@@ -10,6 +10,9 @@ import carom
 from carom import GROUND, Scene, forces, joints
 from references import chaplygin
 
+#: the energy of a symplectic step of order 2 goes to and fro by 1e-3 of it at these steps, and that is said
+pytestmark = pytest.mark.filterwarnings("ignore::carom.AccuracyWarning")
+
 METHODS = {"rattle": 2.0, "rattle4": 4.0, "rattle6": 6.0}
 
 
