@@ -120,7 +120,7 @@ class Found:
     seconds: float
     residual: float  # greatest energy without a name
     gained: float  # greatest rise of impacts, friction or bounces
-    impulse: float  # greatest normal impulse, by mass and speed, against that of the stop, (1 + e) v0/W_nn
+    impulse: float  # greatest normal impulse, by that of a free mass 1/W_nn that is thrown back
     impacts: int
     wedged: int
 
@@ -136,9 +136,9 @@ def run(one: JointScene, step: float = STEP) -> Found:
     scale = float(np.ptp(s.kinetic_energy)) + float(np.ptp(s.potential_energy)) + 1e-300
     worst = 0.0
     for row in s.impacts:
-        v = row.relative_velocity_before
-        stop = 2.0 * np.linalg.norm(v) / row.inverse_mass[0, 0]
-        worst = max(worst, float(row.impulse[0] / stop))
+        speed = float(np.linalg.norm(row.relative_velocity_before))
+        if speed > 0.0 and row.together == 1:
+            worst = max(worst, float(row.impulse[0] * row.inverse_mass[0, 0] / (2.0 * speed)))
     return Found(
         status=s.status.name,
         seconds=spent,

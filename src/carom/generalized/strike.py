@@ -60,6 +60,7 @@ class Strike:
         W = np.ascontiguousarray(0.5 * (W + W.T))
         if jams:
             u[0] = -SEED * np.linalg.norm(u[1:])
+        out[o.STILL] = here.still[c]
         mu, e, law = float(here.friction[c]), self.restitution(c), int(here.law[c])
         code = resolve(W, u, mu, e, law, out)
         if code != o.OK:

@@ -20,6 +20,7 @@ SLIP_END_UN = 17  #: normal velocity there [m/s]
 DURATION = 18  #: duration of the impact in the layer [s]; 0 from `resolve`
 X_MIN = 19  #: least x in the layer [m]; 0 from `resolve`
 KNOTS = 20  #: knots of the history; 0 from `resolve`
+STILL = 21  #: given, not a result: speed that counts as none, round-off of u itself [m/s]
 SIZE = 24  #: length of `out`; the rest is free
 
 SLIP = 1  #: the contact slipped

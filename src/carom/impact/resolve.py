@@ -21,6 +21,7 @@ from carom.jit import entry, kernel
 _ACCURACY = 1e-14  # last term of the series of slip, relative to the root of |u_t| |u|
 _AT_REST = 1e-12  # slip is over below this part of the speed of impact
 _ON_RAY = 1e-13  # the direction of slip is constant if it turns slower than this (relative)
+_ROUND_OFF = 4e-15
 _LEFT = 1e-9  # greatest impulse that takes such slip, relative to that of the impact
 _FARTHEST = 1e6  # longest step in p, in units of size / W_nn: round-off of u grows with p
 _MAX_STEPS = 2000
@@ -70,7 +71,7 @@ def resolve_one(W, u, mu, e, law, out):
     """Resolve one impact of inverse mass `W` (3, 3), approach velocity `u` (3,), friction `mu`.
 
     Normal first, ``u[0] < 0``; `e` and `law` (as in `laws`) give the restitution; results go to
-    `out` as `layout` says. Returns 0, or the code of what went wrong (`out` then holds no result).
+    `out` as `layout` says, where STILL is given. Returns 0, or the code of what went wrong (`out` then holds no result).
     """
     total = W[0, 0] + W[0, 1] + W[0, 2] + W[1, 1] + W[1, 2] + W[2, 2] + u[0] + u[1] + u[2] + mu + e
     if not (math.isfinite(total) and W[0, 0] > 0.0):
@@ -161,7 +162,7 @@ def resolve_one(W, u, mu, e, law, out):
                 p, p1, p2 = s[3] + length, s[4] + length * t1, s[5] + length * t2
                 stuck = drowned(m, p, p1, p2, before[3] - before[4])
             if stuck:
-                if pushed(s[2], size):
+                if pushed(s[2], size, out[o.STILL] / v):
                     return o.NO_END
                 # Wedged: the velocity stays. Only Poisson's law knows how much impulse is to come.
                 k, f1, f2, grow = max(0.0, k), 0.0, 0.0, 0.0
@@ -170,8 +171,8 @@ def resolve_one(W, u, mu, e, law, out):
                     phases |= o.WEDGED
             if k <= 0.0 and mode == _STRAIGHT and not stuck:
                 phases |= o.JAM
-            if mode == _STICK and not abs(f1) + abs(f2) > _ON_RAY * (m[3] + m[5]):
-                f1, f2 = 0.0, 0.0
+            if mode == _STICK and not abs(f1) + abs(f2) > _ROUND_OFF * (abs(m[1]) + abs(m[2])):
+                f1, f2 = 0.0, 0.0  # else W_tt is so thin that stick leaves some creep
             done = True
             r = math.sqrt(s[0] * s[0] + s[1] * s[1])
             if mode == _STRAIGHT and mu > 0.0 and grow < 0.0 and r <= -grow * length:
@@ -192,7 +193,7 @@ def resolve_one(W, u, mu, e, law, out):
                 s[7] + length * (s[2] + 0.5 * k * length),
             )
 
-        if not compressing and not stuck and s[2] < (-_AT_REST * size if done else 0.0):
+        if not compressing and not stuck and s[2] < -_AT_REST * size:
             # Driven together again before restitution was over (jam): compression goes on, and
             # what came back counts to it. So p_c and A_c belong to the last zero of u_n.
             compressing, now, goal, done = True, laws.NEWTON, 0.0, False

@@ -139,7 +139,10 @@ def forget_jams(held, k, cluster):
 def strike_one(method, system, controls, held, c, state, work, clock, records):
     """Resolve the impact of the one point in work.point, with W and u in work.hit."""
     contact, hit, point = system.contacts[c], work.hit[0], work.point[0]
-    hit.restitution = what_is_left(contact, held.brinks[c])
+    hit.restitution, hit.out[layout.STILL] = (
+        what_is_left(contact, held.brinks[c]),
+        slow(contact, state),
+    )
     held.brinks[c].blows += 1
     if collide(method, controls, contact, hit, work.history) != layout.OK:
         hit.code = IMPACT_FAILED

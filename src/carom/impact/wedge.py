@@ -53,9 +53,9 @@ def drowned(m, p, p1, p2, energy):
 
 
 @kernel
-def pushed(u_n, size):
-    """Return whether a pair that nothing moves still approaches: no impulse stops it."""
-    return not u_n >= -_PUSHED * size
+def pushed(u_n, size, still):
+    """Return whether a pair that nothing moves still approaches, faster than `still`: no impulse stops it."""
+    return not u_n >= -max(_PUSHED * size, still)
 
 
 @kernel

@@ -149,7 +149,7 @@ def _group(k, g, count, u, mu, e, law, kappa, scale, settings, scratch, out):
         i = index[FIRST, index[MEMBER, 0]]
         parts = alike.parts_others(k, work.matrix[CLEAN], i, index)
         gives = e[i] > 0.0 or not parts  # several that give nothing back are one plastic event
-        if gives and _exactly(k, i, parts, u, mu, e, law, work, scratch.units, out) == OK:
+        if gives and _exactly(k, i, parts, u, mu, e, law, scale, work, scratch.units, out) == OK:
             return OK
     mass, speed, rate = _fill(n, u, mu, e, law, kappa, scale, settings.exponent, work)
     if not (mass > 0.0 and rate > 0.0):
@@ -216,7 +216,7 @@ def _fill(n, u, mu, e, law, kappa, scale, exponent, work):
 
 
 @kernel
-def _exactly(k, i, parts, u, mu, e, law, work, units, out):
+def _exactly(k, i, parts, u, mu, e, law, scale, work, units, out):
     """Resolve a group that is one contact, number `i` and those like it; NOT_RESOLVED if nothing stops it.
 
     If it `parts` others, it gives back no more than it took, as each of several contacts.
@@ -229,6 +229,7 @@ def _exactly(k, i, parts, u, mu, e, law, work, units, out):
             W[r, s] = work.matrix[MASS, r, s]
     single = work.single
     clock = work.clock
+    single[one.STILL] = _TOUCHES * scale
     resolve_single(units.single, clock, W, before, mu[i], e[i], law[i], single)
     if parts and clock[0].code == one.OK and single[one.WORK_R] > -single[one.WORK_C]:
         resolve_single(units.single, clock, W, before, mu[i], 1.0, laws.STRONGE, single)
