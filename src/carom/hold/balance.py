@@ -9,6 +9,7 @@ from __future__ import annotations
 from carom.geometry.rotation import norm
 from carom.hold.middle import spin_momentum
 from carom.jit import inlined, kernel
+from carom.system import records as r
 
 # what a step may lose: this part of the kinetic energy at its start, and of what a fall of a whole step gains;
 # one that is cut is cut on until it loses CAREFUL of that
@@ -17,8 +18,12 @@ CAREFUL = 0.01
 # residual of contacts, as a part of what gravity gives in a step: where a step is cut, then taken whole; where
 # there is nothing to take whole, and the run stops
 UNSOLVED, USELESS = 0.01, 10.0
+# what is solved so much worse than rest asks for is not rest
+POORLY = 1e3
 # of the step: what is no longer is cut no more, for what it loses and for a solution
 SHORTEST, RETRIED = 1e-4, 1e-2
+# how much more work a step may take where there is nothing else to be done
+PATIENCE = 100.0
 
 
 @kernel
@@ -38,8 +43,8 @@ def unnamed(system, controls, start, end, friction, count, member):
         b = member[m]
         body, before = system.bodies[b], kinetic(system.bodies[b], start[b])
         lost += before - kinetic(body, end[b])
-        for r in range(3):
-            lost += body.mass * g[r] * (end[b].x[r] - start[b].x[r])
+        for j in range(3):
+            lost += body.mass * g[j] * (end[b].x[j] - start[b].x[j])
         may += OF_MOTION * before + OF_FALL * 0.5 * body.mass * fall * fall
     return abs(lost) / may if may > 0.0 else 0.0
 
@@ -59,3 +64,20 @@ def too_long(system, controls, held, dt, careful, work):
     if dt > RETRIED * controls.step and unsolved(system, controls, work, UNSOLVED):
         return True
     return work.result[0].unnamed > (CAREFUL if careful else 1.0)
+
+
+@kernel
+def affordable(controls, clock):
+    """Return how much work a step may take for contacts, about [us]: more than that, and it is given up."""
+    return max(r.EACH, clock.credit) * (1.0 if controls.retry == 1 else PATIENCE)
+
+
+@kernel
+def rest_speed(controls, gained, residual, k):
+    """Return the speed [m/s] below which bodies rest that are held at k points.
+
+    `Options.rest_tolerance` of the speed that applied forces give them in the step, or what k contacts that are
+    solved to a residual may leave of it, up to a thousand times the former.
+    """
+    least = controls.rest * gained
+    return max(least, min(k * residual, POORLY * least))

@@ -372,6 +372,10 @@ SEARCH = [
     ("eager", "i8"),  # 0 where events of several points are left to the end of the step
     ("pending", "i8"),  # an action that waits for its unit to be compiled
     ("horizon", "f8"),
+    ("dt", "f8"),  # of a turn of the loop that was left in the middle: the next trial step,
+    ("pace", "f8"),  # the longest that may be taken,
+    ("cuts", "i8"),  # how often it was cut,
+    ("again", "i8"),  # and whether one was refused
 ]
 
 #: of `touches`: a stop in a joint
