@@ -14,12 +14,13 @@ $(VENV)/installed-%: pyproject.toml
 paper: $(VENV)/installed-paper ## reproduce the paper: figures and table under out/paper
 	$(BIN)/carom paper --out out/paper
 
-test: $(VENV)/installed-test ## all checks: style, types, tests, a part of them without the JIT
+test: $(VENV)/installed-test ## all checks: style, types, tests, a part of them without the JIT and for another processor
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check .
 	$(BIN)/basedpyright
 	$(BIN)/python -m pytest -n auto
 	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -m plain
+	NUMBA_CPU_NAME=generic NUMBA_CPU_FEATURES= $(BIN)/python -m pytest -n auto --dist loadfile -m processors
 
 lint: $(VENV)/installed-test
 	$(BIN)/ruff check --fix .

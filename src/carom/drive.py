@@ -1,4 +1,4 @@
-"""Taking a run to its end: in parts, to report and to save, and so that Ctrl-C stops it."""
+"""Taking a run to its end: in parts, to report and to save; Ctrl-C stops it."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from carom.status import AccuracyWarning, SimulationError, Status
 if TYPE_CHECKING:
     from carom.files.keeper import Keeper
 
-CHUNKS = 100  # calls of the compiled loop in one run, for progress and for Ctrl-C
+CHUNKS = 100  # reports of a run
 LOOKS = 4  # parts in the time between two savings, about
 
 
@@ -36,6 +36,8 @@ def finish(run, progress, keeper: Keeper | None, throw: bool):
         close = getattr(report, "close", None)
         if close is not None:
             close()
+    if status is Status.INTERRUPTED:
+        run.go_back()
     if keeper is not None:
         keeper.stop()
     solution = run.solution(status)

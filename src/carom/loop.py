@@ -16,7 +16,14 @@ from carom.contact.pair_point import REACH, find_touches, smaller, touch_rate
 from carom.contact.stop import look_at_stop
 from carom.dispatch import only_with_pairs
 from carom.geometry.rotation import norm
-from carom.hold.balance import UNSOLVED, USELESS, next_pace, too_long, unsolved
+from carom.hold.balance import (
+    UNSOLVED,
+    USELESS,
+    affordable,
+    next_pace,
+    too_long,
+    unsolved,
+)
 from carom.hold.events import (
     CONE,
     GAP,
@@ -35,6 +42,7 @@ from carom.hold.margins import meet_due, note_due
 from carom.hold.press import press
 from carom.hold.roster import is_held, refresh_pairs, regroup, set_anchor, strike_off
 from carom.hold.search import begin_search, event_value, examine, narrow, propose
+from carom.impact.collapse import TIRED
 from carom.impact.strike import strike
 from carom.jit import inlined, kernel
 from carom.loop_codes import HOLD, NOTHING, SETTLE, STRIKE
@@ -52,8 +60,10 @@ from carom.watch import IN_A_ROW, SHORTEST, multiplies
 LOCATE, PROJECT, WORK = range(3)
 STEP_CUT, TOO_MANY, NOT_FINITE = 2, 3, 4
 NO_CONVERGENCE, STEP_TOO_SMALL, UNSTABLE = 1, 12, 14
-# where a step is given up: trial steps, work for held contacts
-TRIES, EFFORT = 3000, 2e7
+TRIES = 3000  # trial steps of a step that is given up
+# a step that is given up goes on in so many parts without looking for the times of events, with so many events
+# in a part at most
+PARTS, MOST_AT_ONCE = 16, 50
 
 
 class Controls(NamedTuple):
@@ -93,17 +103,27 @@ def advance(
 ):  # fmt: skip
     """Move the bodies of an island to the end of the step. Returns 0, or what `run` is to return."""
     clock, search, trial = clocks[0], work.search[0], work.trial
-    pace = math.inf
+    late = controls.retry == 1 and is_whole(
+        clock.step, work
+    )  # events at the ends of parts of the step
+    pace = search.pace if clock.paused == 1 else math.inf
     while clock.spent < length:
+        if clock.since > r.LONG and clock.paused == 0 and not pace < math.inf:
+            return r.PAUSE
         if full(system, held, clock, records):
             return r.FULL
-        if clock.in_step > controls.max_impacts or clock.at_once > 1000:
-            return TOO_MANY
+        if not late:
+            if clock.in_step > controls.max_impacts or clock.at_once > 1000:
+                return TOO_MANY
+            if controls.retry == 1 and clock.effort > affordable(controls, clock):
+                return TOO_MANY
         remaining = length - clock.spent
-        exact = controls.location == LOCATE and controls.order == 0
+        exact = controls.location == LOCATE and controls.order == 0 and not late
         horizon = remaining if exact else controls.step
         action, c = search.pending, search.contact
-        if action != NOTHING:  # what was put off until its unit was compiled
+        if clock.paused == 1 or (late and clock.at_once > MOST_AT_ONCE):
+            action = search.pending = NOTHING
+        elif action != NOTHING:  # what was put off until its unit was compiled
             horizon = search.horizon
             search.pending = NOTHING
         else:
@@ -111,17 +131,29 @@ def advance(
         if action == NOTHING:
             # a trial step, cut until nothing can lie inside it, or shortened to its first event
             dt, cuts, found, again = min(remaining, pace), 0, False, False
-            if held.count[0] > 0:
-                dt = until_stop(controls, held, dt, clock)
-            search.active, search.eager = 0, 1 if clock.in_step < 20 else 0
+            if clock.paused == 1:
+                dt, cuts, again = search.dt, search.cuts, search.again == 1
+                clock.paused = 0
+            else:
+                if held.count[0] > 0 and not late:
+                    dt = until_stop(controls, held, dt, clock)
+                if late:
+                    dt = min(dt, length / PARTS)
+                search.active, search.eager = 0, 1 if clock.in_step < 20 else 0
             while True:
+                if clock.since > r.LONG:
+                    search.dt, search.cuts, search.pace = dt, cuts, pace
+                    search.again, clock.paused = 1 if again else 0, 1
+                    return r.PAUSE
                 work.result[0].start = clock.now
                 applied, friction, code = step(method, system, held, now, dt, trial, work)
                 clock.trials += 1
                 clock.tries += 1
                 alone = friction  # of points that are held one to a body
-                if controls.retry == 1 and (clock.tries > TRIES or clock.effort > EFFORT):
-                    return TOO_MANY
+                clock.since += 1.0 + now.shape[0] + held.brinks.shape[0]
+                if controls.retry == 1 and not late:
+                    if clock.tries > TRIES or clock.effort > affordable(controls, clock):
+                        return TOO_MANY
                 if code != 0 and controls.order == 0:
                     return code
                 if held.count[0] > 0 and code == 0:
@@ -158,7 +190,9 @@ def advance(
                         dt = propose(search)
                         continue
                 verdict, kind, other, low, d1, d2 = UNSURE, GAP, -1, 0.0, 0.0, 0.0
-                loses = too_long(system, controls, held, now, trial, dt, alone, pace < math.inf, work)
+                loses = not late and too_long(
+                    system, controls, held, now, trial, dt, alone, pace < math.inf, work
+                )
                 if not loses and controls.order == 0 and search.active == 0:
                     named = applied + friction
                     loses = multiplies(system, now, trial, named, clock.now, dt, watch)
@@ -173,7 +207,7 @@ def advance(
                     verdict, kind, other, low, d1, d2 = examine(
                         system, controls, held, now, dt, work
                     )
-                if verdict == FLAT_RIM:  # its points strike together where they are
+                if verdict == FLAT_RIM and not late:  # its points strike together where they are
                     search.pending, search.contact, search.horizon = STRIKE, other, remaining
                     break
                 own = search.active == 1 and kind == search.kind and other == search.contact
@@ -183,6 +217,9 @@ def advance(
                 if verdict == AGAIN:
                     search.active = 0
                     continue
+                if late and verdict != CLEAR and verdict != AGAIN:  # at the end of this part
+                    search.kind, search.contact, found = kind, other, other >= 0
+                    break
                 if verdict == UNSURE:
                     if search.active == 1 and dt <= 1e-9 * horizon:
                         found = True
@@ -207,7 +244,7 @@ def advance(
             if search.pending != NOTHING:
                 continue
             # an island is taken whole then; where there are none the run goes on as long as it makes sense
-            bearable = UNSOLVED if controls.retry == 1 else USELESS
+            bearable = UNSOLVED if controls.retry == 1 and not late else USELESS
             if held.count[0] > 0 and unsolved(system, controls, work, bearable):
                 return NO_CONVERGENCE
             accept(now, trial, dt, applied, friction, begin, clock)
@@ -217,7 +254,7 @@ def advance(
             if dt == remaining:
                 clock.spent = length
             of_contact = found and search.kind != GAP and search.kind < STOPS
-            met = of_contact and meet_due(held, search)
+            met = of_contact and not late and meet_due(held, search)
             if held.count[0] > 0:
                 turn_modes(system, controls, held, now, work, clock, records)
             if not found:
@@ -242,6 +279,9 @@ def advance(
                 work, clocks, records,
             )  # fmt: skip
             closed = work.hit[0].closed
+            clock.since += 10.0
+            if late:
+                tire_contacts(held)
             if work.hit[0].code != 0:
                 search.pending, search.contact, search.horizon = STRIKE, c, horizon
                 return work.hit[0].code
@@ -270,6 +310,20 @@ def advance(
                 clock.touched = clock.first_touch
                 save_contacts(system, held, now, 0, clock, work, records)
     return 0
+
+
+@inlined
+def is_whole(step, work):
+    """Return whether the bodies are to take this step without looking for the times of its events."""
+    return work.body[0].whole_until > step
+
+
+@inlined
+def tire_contacts(held):
+    """Let contacts that were struck be plastic up to the end of the step."""
+    for c in range(held.brinks.shape[0]):
+        if held.brinks[c].blows > 0:
+            held.brinks[c].blows = TIRED
 
 
 @inlined

@@ -6,10 +6,11 @@ import math
 
 from carom.dispatch import by_method
 from carom.heap.step import step_heap
-from carom.islands import parts
+from carom.hold.roster import regroup
+from carom.islands import parts, together
 from carom.islands.layout import Islands, NoIslands
 from carom.jit import entry, inlined, kernel
-from carom.loop import NOT_FINITE, advance, strayed
+from carom.loop import NOT_FINITE, advance, is_whole, strayed
 from carom.motion.adapt import begin_step
 from carom.motion.more_forces import note_turns
 from carom.references import refer
@@ -28,7 +29,11 @@ def run(
     Returns 0, what the caller is to do, or a `Status`.
     """
     clock = clocks[0]
+    clock.since = 0.0
     while (clock.now if controls.order > 0 else clock.step) < until:
+        if clock.since > r.LONG:
+            return r.PAUSE
+        clock.since += 0.1 * now.shape[0]
         if controls.order > 0:
             if clock.saved >= records.series.shape[0]:
                 return r.NEEDS_ROWS
@@ -52,8 +57,9 @@ def run(
                 length = clock.length
             if code == 0:
                 leave(islands, own)
+                clock.credit, clock.effort = max(0.0, clock.credit - clock.effort), 0.0
         if code != 0:
-            if not lost(islands, controls, code, held, clocks, work):
+            if not lost(islands, system, controls, code, held, now, clocks, work):
                 return code
             continue
         if clock.touched + held.points.shape[0] > records.touch.shape[0]:
@@ -62,6 +68,7 @@ def run(
         clock.spent = 0.0
         clock.step += 1
         clock.in_step = 0
+        clock.credit = min(r.SAVED, clock.credit + r.EACH)
         clock.now = begin + length
         clock.still = min(clock.still, clock.now) if still(now) else math.inf
         note_turns(system, now)
@@ -79,10 +86,7 @@ def run(
 @kernel
 def _start_all(islands, system, held, now, length, clocks, work):
     """Begin a step of all bodies together."""
-    clocks[0].first_touch = 0
-    if clocks[0].spent == 0.0:
-        for c in range(held.brinks.shape[0]):
-            held.brinks[c].blows = 0
+    together.begin_together(held, now, clocks, islands)
     return True
 
 
@@ -144,11 +148,23 @@ def _move_all(
     islands, system, method, controls, held, now, begin, length, cluster, corner, heap, work,
     clocks, records, watch,
 ):  # fmt: skip
-    """Move all bodies to the end of the step."""
-    return advance(
-        system, method, controls, held, now, begin, length, cluster, corner, work, clocks, records,
-        watch,
-    )  # fmt: skip
+    """Move all bodies to the end of the step: event by event, or whole if that did not get on."""
+    step = clocks[0].step
+    if islands.free == 0 or not is_whole(step, work):
+        parts.recover(system, step, work)
+        return advance(
+            system, method, controls, held, now, begin, length, cluster, corner, work, clocks,
+            records, watch,
+        )  # fmt: skip
+    if controls.hold_at == 0:
+        return r.NEEDS_HOLD
+    if controls.heap_at == 0:
+        return r.NEEDS_HEAP
+    step_heap(
+        controls.heap_at, system, controls, held, now, begin, length, heap, work, clocks, records
+    )
+    regroup(system, held, work)
+    return work.result[0].code
 
 
 @inlined
@@ -186,26 +202,36 @@ def _leave_island(islands, own):
 
 
 @kernel
-def _all_lost(islands, controls, code, held, clocks, work):
-    """There is nothing to do again."""
-    return False
+def _all_lost(islands, system, controls, code, held, now, clocks, work):
+    """Go back to the start of a step that could not be taken from event to event; return whether so."""
+    if code >= r.FULL or controls.retry == 0:
+        return False
+    if not together.tire_together(clocks[0].step, work):
+        return False
+    spent = clocks[0].effort
+    together.forget_together(system, held, now, clocks, work, islands)
+    clocks[0].whole += 1
+    clocks[0].credit = max(0.0, clocks[0].credit - spent)
+    return True
 
 
 @kernel
-def _island_lost(islands, controls, code, held, clocks, work):
+def _island_lost(islands, system, controls, code, held, now, clocks, work):
     """Go back to the start of the step; return whether it is to be done again.
 
     With more room for bodies that have left theirs; with islands as heaps where one could not go from event
     to event.
     """
-    if r.FULL <= code < r.STRAYED:
+    if code >= r.FULL and code != r.STRAYED:
         return False  # the caller sees to it, and comes back
     again = code == r.STRAYED
     if again:
         islands.plan[0].widen *= 2.0
     elif controls.hold == 1:
         again = parts.tire(islands, clocks[0].step, work)
+    spent = clocks[0].effort
     parts.forget_step(held, clocks, islands)
+    clocks[0].credit = max(0.0, clocks[0].credit - spent)
     if again and code != r.STRAYED:
         clocks[0].whole += 1
     return again
@@ -214,6 +240,7 @@ def _island_lost(islands, controls, code, held, clocks, work):
 @kernel
 def _end_all(islands, system, held, now, length, clock, work):
     """All bodies are there already."""
+    islands.begun[0] = 0
 
 
 @kernel

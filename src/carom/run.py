@@ -17,7 +17,7 @@ from carom.hold.press import press_unit
 from carom.impact.corner.layout import MULTIPLE, CornerSettings
 from carom.impact.strike import strike_unit
 from carom.impact.strike_several import corner_unit
-from carom.islands.layout import Islands, NoIslands, new_islands, roomier
+from carom.islands.layout import Islands, new_islands, no_islands, roomier
 from carom.jit import address
 from carom.methods import FIRST, ORDERS, make_method, time_of_bounces
 from carom.motion.acceleration import acceleration_unit
@@ -109,8 +109,9 @@ class Run:
             system = self.find_touches(system)
         located = self.settings["impact_location"] == "locate"
         apart = located and tolerances is None and not method.startswith("paper")
-        self.islands = new_islands(system, self.held) if apart else NoIslands(0)
-        self.controls = self.controls._replace(retry=int(isinstance(self.islands, Islands)))
+        self.islands = (new_islands if apart else no_islands)(system, self.held)
+        again = apart and options.hold and system.contacts.size > 0
+        self.controls = self.controls._replace(retry=int(again))
         self.cluster = new_cluster(system)
         self.heap = no_heap()  # made when there is one
         self.corner = new_corner(1, corner_settings(options))  # and this
@@ -300,6 +301,8 @@ class Run:
             code = self.address.entry(march.run, *state)(*state)
             if code == r.FULL:
                 self.records = r.longer(self.records)
+            elif code == r.PAUSE and self.failure is None:
+                continue  # here Ctrl-C is raised
             elif code == r.NEEDS_ROWS:
                 self.records = r.more_rows(self.records)
             elif code == r.NEEDS_HOLD:
@@ -325,6 +328,26 @@ class Run:
     def judged(self, status: Status) -> Status:
         """Return how the run ended, with its balance of energy."""
         return judge(self.watch[0]) if status is Status.SUCCESS else status
+
+    def go_back(self) -> None:
+        """Go back to the start of a step in the middle of which the run was interrupted."""
+        islands, held, search = self.islands, self.held, self.work.search
+        if isinstance(islands, Islands):
+            if islands.plan[0].planned == 0:
+                return
+            islands.plan["planned"], islands.plan["entered"] = 0, 0
+            islands.carried[0] = 0
+        elif islands.begun[0] == 1:
+            self.now[:], held.brinks[:] = islands.state, islands.brinks
+            held.count[0] = islands.count[0]
+            held.points[: held.count[0]] = islands.points[: held.count[0]]
+            islands.begun[0] = 0
+        else:
+            return
+        self.clock[:] = islands.clock
+        search["pending"], held.carries[:] = 0, 0
+        points = held.points[: held.count[0]]
+        held.carries[points.feature[points.touches == 0]] = 1
 
     def solution(self, status: Status) -> Solution:
         """Return what was computed; after a failure up to the last state, between saved steps or not."""

@@ -67,6 +67,7 @@ def dice():
     return scene, carom.simulate(scene, 1.2, step=1e-3, save_every=10)
 
 
+@pytest.mark.processors
 def test_poured_dice_come_to_rest(dice):
     """Exactly, and none inside another: 1e-9 m at saved times."""
     scene, s = dice
@@ -146,6 +147,7 @@ def test_blocks_slide_down_an_incline():
     np.testing.assert_allclose(s.position[-1, 1, 0], s.position[-1, 0, 0], atol=1e-7)
 
 
+@pytest.mark.processors
 def test_a_tower_stands_and_its_lowest_face_carries_all():
     scene = carom.Scene(gravity=(0, 0, -G))
     scene.add_half_space((0, 0, 0), (0, 0, 1))

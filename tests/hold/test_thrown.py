@@ -36,6 +36,7 @@ def check(s, shape):
     assert np.max(np.abs(s.ledger.residual)) < 1e-6 * start
 
 
+@pytest.mark.processors
 @pytest.mark.parametrize("law", ["newton", "poisson", "stronge"])
 def test_the_papers_die(law):
     # 20 random throws a law. Rest after .4 to 1 s (mean .70 of many).

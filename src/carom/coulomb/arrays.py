@@ -65,7 +65,7 @@ class IslandWork(NamedTuple):
     contact: np.recarray  # (k,) CONTACT
     link: np.recarray  # (k,) LINK
     vector: np.ndarray  # (VECTORS, 3k)
-    count: np.ndarray  # (4,) int64
+    count: np.ndarray  # (5,) int64
     mismatch: np.ndarray  # (2,) |f| that Newton reached, and one that is ENOUGH
     body: np.recarray  # (N,) ISLAND_BODY
     place: np.recarray  # (N,) PLACE
@@ -89,7 +89,7 @@ def new_island_work(graph: IslandGraph, body: np.ndarray) -> IslandWork:
             table(CONTACT, k),
             link,
             np.zeros((VECTORS, 3 * k)),
-            np.zeros(4, dtype=np.int64),
+            np.zeros(5, dtype=np.int64),
             np.zeros(2),
             table(ISLAND_BODY, bodies),
             graph.place,

@@ -52,6 +52,7 @@ VECTORS = 11
 ITERATIONS = 0
 ROWS = 1  # of the factors at hand, -1 where there are none
 LIMIT = 3  # most steps of one call of Newton, 0: what is usual
+BUDGET = 4  # most iterations of a search, about; 0: as many as its starting points take
 NEAR = 2  # 1: of several solutions the one near the start is wanted, not that of least norm
 
 # Place in `mismatch`: an |f|, and a residual as a part of c, at which a search may end; 0: at round-off.
@@ -65,7 +66,7 @@ class ConeWork(NamedTuple):
     newton: int  # of what it calls
     contact: np.recarray  # (K,) CONTACT
     vector: np.ndarray  # (VECTORS, 3K)
-    count: np.ndarray  # (4,) int64
+    count: np.ndarray  # (5,) int64
     mismatch: np.ndarray  # (2,) |f| that Newton reached, and one that is ENOUGH
     W: np.ndarray  # (3K, 3K) scaled inverse mass: each diagonal block has trace 3
     matrix: np.ndarray  # (3K, 3K) of a linear system, and its factors
@@ -89,7 +90,7 @@ def cone_arrays(capacity: int) -> ConeWork:
         0,
         table(CONTACT, contacts),
         np.zeros((VECTORS, n)),
-        np.zeros(4, dtype=np.int64),
+        np.zeros(5, dtype=np.int64),
         np.zeros(2),
         np.zeros((n, n)),
         np.zeros((n, n)),

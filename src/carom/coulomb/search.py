@@ -60,6 +60,8 @@ def search_unit(work, k):
                 p[i] = 0.0
         if least <= goal:
             break
+        if spent(work):
+            break
         if least <= 0.9 * tolerance:
             last = min(last, start + 1 + _EXTRA)
     for i in range(3 * k):
@@ -74,6 +76,12 @@ def with_address(work, find=address):
     """Return the work arrays with the addresses of what is compiled for arrays like these."""
     work = work._replace(newton=find(newton_unit, work, 1, 1.0, True))
     return work._replace(address=find(search_unit, work, 1))
+
+
+@kernel
+def spent(work):
+    """Return whether a search has had the iterations that it was given."""
+    return 0 < work.count[o.BUDGET] <= work.count[o.ITERATIONS]
 
 
 @kernel
@@ -104,6 +112,8 @@ def _release(work, k):
         kept[i] = p[i]
     eps = _RELEASE_FROM
     for _ in range(_RELEASES):
+        if spent(work):
+            break
         for i in range(3 * k):
             centre[i] = p[i] = kept[i]
         work.count[o.ROWS] = -1
@@ -141,7 +151,7 @@ def polished(work, k, least_norm, patient):
             n = 3 * i
             p[n], p[n + 1], p[n + 2] = project(work.contact[i], p[n], p[n + 1], p[n + 2])
         r, goal, tolerance = residual(work, k)
-        enough = r <= goal or not r < 0.5 * least
+        enough = r <= goal or not r < 0.5 * least or spent(work)
         if r < least:
             least = r
             for i in range(3 * k):

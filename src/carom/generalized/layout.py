@@ -26,7 +26,7 @@ SLIP, STICK = 1, 2
 NOTHING, GAP, RATE, SEPARATE, CONE, REVERSE, JAM = range(7)
 
 # How a call of the loop ended, if not by a `carom.status.Status`.
-DONE, EVENT = 0, 100
+DONE, EVENT, PAUSE = 0, 100, 101
 
 
 class Coordinates(NamedTuple):

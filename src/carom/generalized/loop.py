@@ -4,19 +4,27 @@ from __future__ import annotations
 
 from carom.functions import call_function
 from carom.generalized.events import keep, locate, note_start, turned
-from carom.generalized.layout import DONE, EVENT, LOADS, NOTHING, TOUCHES, N
+from carom.generalized.layout import DONE, EVENT, LOADS, NOTHING, PAUSE, TOUCHES, N
 from carom.generalized.motion import find_metric
 from carom.generalized.step import take
 from carom.jit import entry, kernel
 
 CUTS = 12  # most halvings of a step in which slip turns
+LONG = 20_000  # trial steps, times the square of the coordinates, after which the loop is left for a moment
 
 
 @entry
 def march(system, method, held, x, plan, until, work, clock, series, states):
-    """Go on to step number `until`; return DONE, EVENT (`clock` says which) or a status of failure."""
+    """Go on to step number `until`; return DONE, EVENT (`clock` says which) or a status of failure.
+
+    PAUSE after much work: so that Ctrl-C is seen.
+    """
     c, h = clock[0], plan.step
+    n = system.size[N]
+    most = c.trials + LONG // (n * n) + 1
     while c.step < until:
+        if c.trials > most:
+            return PAUSE
         last = c.step + 1 == plan.steps
         target = plan.duration if last else (c.step + 1) * h
         left = target - c.now

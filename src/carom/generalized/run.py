@@ -8,7 +8,16 @@ import numpy as np
 
 from carom.generalized.contacts import Contacts
 from carom.generalized.evaluate import Evaluation
-from carom.generalized.layout import CLOCK, DONE, EVENT, SERIES, Plan, new_held, new_work
+from carom.generalized.layout import (
+    CLOCK,
+    DONE,
+    EVENT,
+    PAUSE,
+    SERIES,
+    Plan,
+    new_held,
+    new_work,
+)  # fmt: skip
 from carom.generalized.loop import march, save_now
 from carom.generalized.step import settle_rates
 from carom.motion.explicit import tableau
@@ -107,6 +116,9 @@ class GeneralizedRun:
                 self.system, self.method, self.held, self.x, self.plan, int(until), self.work,
                 self.clock, self.series, self.states,
             )  # fmt: skip
+            if code == PAUSE and self.made.functions.failed is None:
+                code = 0  # here Ctrl-C is raised
+                continue
             if code != EVENT:
                 break
             code = self.event()
@@ -118,6 +130,9 @@ class GeneralizedRun:
         if self.failure is not None:
             return Status.FUNCTION_FAILED
         return Status.SUCCESS if code == DONE else Status(code)
+
+    def go_back(self) -> None:
+        """Go back to where the run can be gone on from: it is interrupted there only."""
 
     def event(self) -> int:
         """Resolve the event that the loop has stopped at; return a status."""

@@ -7,6 +7,7 @@ import math
 from carom.contact.gap import slow
 from carom.coulomb.solve import inverse_mass_of
 from carom.geometry.rotation import norm
+from carom.hold.balance import rest_speed
 from carom.hold.roster import begin_point
 from carom.jit import kernel
 from carom.motion.acceleration import SLIP, STICK
@@ -17,26 +18,32 @@ from carom.system.records import HOLD, IMPACT, OPENS, SLIPS, STICKS
 
 
 @kernel
-def finish(system, controls, held, k, h, fall, start, end, heap, work, clock, records):
-    """Write what the step has done, and put to rest what moves no more."""
-    tolerance = controls.rest * fall * h
+def finish(system, controls, held, k, h, fall, residual, start, end, heap, work, clock, records):
+    """Write what the step has done, and put to rest what moves no more; return the energy that has a name."""
+    tolerance = rest_speed(controls, fall * h, residual, k)
+    blows, pressing, rubbing = 0.0, 0.0, 0.0
     for i in range(k):
         spot, point = heap.spots[i], heap.points[0][i]
         contact, p, u = system.contacts[spot.contact], spot.impulse, spot.before
         w = contact_velocity(point, end)
-        pressure = 0.5 * p[0] * (u[0] + w[0])
-        rubbing = 0.5 * (p[1] * (u[1] + w[1]) + p[2] * (u[2] + w[2]))
-        clock.friction += rubbing
-        if spot.turns > 0:
-            continue
-        if p[0] > 0.0 and spot.strikes == 1:
-            clock.impacts += pressure
+        normal = 0.5 * p[0] * (u[0] + w[0]) if spot.turns == 0 else 0.0
+        tangential = 0.5 * (p[1] * (u[1] + w[1]) + p[2] * (u[2] + w[2]))
+        if spot.turns == 0 and p[0] > 0.0 and spot.strikes == 1:
+            blows += normal + tangential
             write_impact(
-                contact, spot, point, w, pressure, rubbing, i, k, end, heap, clock, records
+                contact, spot, point, w, normal, tangential, i, k, end, heap, clock, records
             )
             note_event(system, spot.contact, spot.feature, IMPACT, 0, clock, records)
         else:
-            clock.bounces += pressure
+            pressing += normal
+            rubbing += tangential
+    # where slip has turned within the step friction has done less than these products say
+    pressing, rubbing = pressing + max(0.0, rubbing), min(0.0, rubbing)
+    if end.shape[0] == 1:  # what they gain is taken out again (`carom.heap.step.balance`)
+        blows, pressing = min(0.0, blows), min(0.0, pressing)
+    clock.impacts += blows
+    clock.friction += rubbing
+    clock.bounces += pressing
     count = list_held(system, held, k, h, tolerance, end, heap, clock, records)
     settle(system, tolerance, count, start, end, heap)
     for i in range(held.count[0]):
@@ -50,6 +57,7 @@ def finish(system, controls, held, k, h, fall, start, end, heap, work, clock, re
     for i in range(k):  # in a smaller island it is looked at first
         held.brinks[heap.spots[i].contact].near = 1
         held.brinks[heap.spots[i].contact].leaving = 0
+    return blows + pressing + rubbing
 
 
 @kernel

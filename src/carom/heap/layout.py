@@ -66,7 +66,7 @@ def new_heap(bodies: int, held: int, points: int) -> Heap:
         contact=table(CONTACT, points),
         link=table(LINK, points),
         vector=np.zeros((VECTORS, 3 * points)),
-        count=np.zeros(4, dtype=np.int64),
+        count=np.zeros(5, dtype=np.int64),
         mismatch=np.zeros(2),
         body=table(ISLAND_BODY, bodies),
         place=table(PLACE, bodies),

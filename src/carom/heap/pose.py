@@ -8,10 +8,17 @@ from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.jit import kernel
 from carom.motion.contact_point import contact_velocity
 
+LEAVES = 1e-6  # of what gravity gives in the step: what is slower at the start only trembles
+
 
 @kernel
 def pose(system, held, k, h, fall, start, heap):
-    """Write the problem of k points whose rows are in `heap.points[0]`; start from the last forces."""
+    """Write the problem of k points whose rows are in `heap.points[0]`; start from the last forces.
+
+    A body that is alone strikes with -p in the cone's law for w + e u, tangents too: p . (w + u)/2 is then
+    (p . (w + e u) - (1 - e)/2 p . W p)/(1 + e), which is never positive, and 0 without friction if e = 1.
+    """
+    alone = start.shape[0] == 1
     for i in range(k):
         spot, point = heap.spots[i], heap.points[0][i]
         contact, p = system.contacts[spot.contact], heap.p
@@ -30,6 +37,9 @@ def pose(system, held, k, h, fall, start, heap):
             continue
         set_bound(spot, contact, h, fall)
         heap.c[3 * i] -= spot.bound
+        if alone and spot.strikes == 1:
+            heap.c[3 * i + 1] += contact.restitution * spot.before[1]
+            heap.c[3 * i + 2] += contact.restitution * spot.before[2]
         row.kind, row.mu = CONE, contact.friction
         if spot.held >= 0:
             row.mu = contact.friction_held
@@ -43,12 +53,15 @@ def set_bound(spot, contact, h, fall):
 
     An impact leaves with e times the approach at the start (Moreau 1988), unless all its bounces, which last
     2 e|u|/(g (1 - e)), end within the step: then it stays. What is open at the end without contacts
-    may close no faster than its gap allows.
+    may close no faster than its gap allows. What leaves at the start, and is pressed on within the step, comes
+    back as fast as it left: (u + w)/2 = 0, so that it gains nothing.
     """
     u, e = spot.before[0], contact.restitution
     spot.bound, spot.strikes = 0.0, 0
     if spot.gap > 0.0 and spot.left > 0.0:
-        spot.bound = -spot.gap / h
+        spot.bound = min(-spot.gap / h, -u)
+    elif u > LEAVES * fall * h + contact.still:
+        spot.bound = -u
     elif 2.0 * e * -u > (1.0 - e) * fall * h + contact.still:
         spot.bound, spot.strikes = -e * u, 1
     elif -u > 2.0 * fall * h + contact.still:

@@ -21,6 +21,7 @@ from carom.heap.pose import pose
 from carom.heap.solve import solve
 from carom.heap.spots import gather, place_all
 from carom.heap.surface import move, onto_surfaces
+from carom.hold.balance import kinetic
 from carom.hold.middle import halfway, spin_momentum
 from carom.jit import kernel, unit
 from carom.motion.explicit import keep
@@ -28,7 +29,15 @@ from carom.motion.free import free_flight
 from carom.system import records as r
 
 FINE = 0.1  # of the speed below which bodies rest: to be reached, or they never would
-FAR = 0.25  # of its ball: a body goes no further in a piece of the step
+FAR = (
+    0.25  # of its ball: a body goes no further in a piece of the step; alone it turns no more [rad]
+)
+MISSED = -1  # an impact within a piece
+CAREFUL, SHORTEST = (
+    300,
+    1e-4,
+)  # pieces of a step that may be cut for that; of the step: none is shorter
+ALONE = 16  # pieces of a step of a body that is alone: they cost little
 
 
 @unit
@@ -37,8 +46,19 @@ def heap_unit(system, controls, held, now, begin, length, heap, work, clocks, re
     clock, result = clocks[0], work.result[0]
     result.code = 0
     while clock.spent < length:
+        if clock.since > r.LONG:
+            result.code = r.PAUSE
+            return
         dt = piece(system, now, controls.step, length - clock.spent)
-        result.code = move_on(system, controls, held, now, begin, dt, heap, work, clock, records)
+        while True:
+            clock.tries += 1
+            careful = now.shape[0] == 1 and clock.tries <= CAREFUL and dt > SHORTEST * controls.step
+            result.code = move_on(
+                system, controls, held, now, begin, dt, careful, heap, work, clock, records
+            )
+            if result.code != MISSED:
+                break
+            dt *= 0.5
         if result.code != 0:
             return
         if dt == length - clock.spent:
@@ -55,16 +75,18 @@ step_heap = by_address(heap_unit)
 def piece(system, now, step, left):
     """Return the time of the next piece: what is left in equal parts, so that no body goes too far in one."""
     g = norm(system.gravity)
-    parts = 1.0
+    parts = math.ceil(ALONE * left / step) if now.shape[0] == 1 else 1.0
     for b in range(now.shape[0]):
         way = (norm(now[b].v) + g * left) * left
         parts = max(parts, math.ceil(way / (FAR * system.bodies[b].ball)))
-    return min(left, max(left / parts, 1e-4 * step))
+        if now.shape[0] == 1:
+            parts = max(parts, math.ceil(norm(now[b].w) * left / FAR))
+    return min(left, max(left / parts, SHORTEST * step))
 
 
 @kernel
-def move_on(system, controls, held, now, begin, h, heap, work, clock, records):
-    """Make one piece of the step; return 0 or a code."""
+def move_on(system, controls, held, now, begin, h, careful, heap, work, clock, records):
+    """Make one piece of the step; return 0 or a code: MISSED if it was to be `careful` and is too long."""
     n, fall = now.shape[0], norm(system.gravity)
     k = gather(system, held, h, fall, now, heap, work)
     if k < 0:
@@ -87,16 +109,66 @@ def move_on(system, controls, held, now, begin, h, heap, work, clock, records):
             heap.spots[i].impulse[j] = heap.p[3 * i + j]
     clock.trials += 1
     clock.pressed += 1
+    clock.since += 10.0 * (k + n)
+    if careful and misses_bounce(system, k, h, fall, heap):
+        return MISSED
     clock.residual = max(clock.residual, residual)
     gain(system, gamma, heap, work.trial)
     move(n, 0.5 * h * gamma, work.trial, heap.problem)
     respin(system, heap.flight, work.trial)
     onto_surfaces(system, k, n, work.trial, heap, work)
     clock.now = begin + clock.spent + h
-    finish(system, controls, held, k, h, fall, now, work.trial, heap, work, clock, records)
+    named = finish(
+        system, controls, held, k, h, fall, residual, now, work.trial, heap, work, clock, records
+    )
+    if n == 1 and k > 0:
+        clock.bounces += balance(system, now[0], heap.flight[0], work.trial[0], named)
     for b in range(n):
         keep(work.trial[b], now[b])
     return 0
+
+
+@kernel
+def balance(system, start, flight, end, named):
+    """Return the energy that a body alone has lost besides what is `named`.
+
+    What it has gained is taken out of its impulses, all by one factor, as far as that is possible: no impulse
+    has another direction then.
+    """
+    body, g = system.bodies[0], system.gravity
+    gained = kinetic(body, end) - kinetic(body, start) - named
+    for j in range(3):
+        gained -= body.mass * g[j] * (end.x[j] - start.x[j])
+    if not gained > 0.0:
+        return gained
+    # dE = a s^2 + b s for velocities v + s (v - v_f)
+    q, v, w, d, t = end.Q, end.v, end.w, flight.v, flight.w
+    l = spin_momentum(body, q, w[0], w[1], w[2])
+    k = spin_momentum(body, q, w[0] - t[0], w[1] - t[1], w[2] - t[2])
+    a, b = 0.0, 0.0
+    for j in range(3):
+        a += 0.5 * (body.mass * (v[j] - d[j]) ** 2 + k[j] * (w[j] - t[j]))
+        b += body.mass * v[j] * (v[j] - d[j]) + l[j] * (w[j] - t[j])
+    if not (b > 0.0 and b * b >= 4.0 * a * gained):
+        return 0.0
+    s = -2.0 * gained / (b + math.sqrt(b * b - 4.0 * a * gained))
+    for j in range(3):
+        v[j] += s * (v[j] - d[j])
+        w[j] += s * (w[j] - t[j])
+    return 0.0
+
+
+@kernel
+def misses_bounce(system, k, h, fall, heap):
+    """Return whether a point that was open is struck within the piece and would bounce: no blow was written."""
+    for i in range(k):
+        spot = heap.spots[i]
+        contact = system.contacts[spot.contact]
+        if spot.turns == 0 and spot.gap > 0.0 and spot.left > 0.0 and spot.impulse[0] > 0.0:
+            e = contact.restitution
+            if 2.0 * e * spot.gap / h > (1.0 - e) * fall * h + contact.still:
+                return True
+    return False
 
 
 @kernel

@@ -10,6 +10,7 @@ from carom.geometry.rotation import norm
 from carom.hold.middle import spin_momentum
 from carom.jit import inlined, kernel
 from carom.system.arrays import ONE
+from carom.system import records as r
 
 # what a step of several bodies may lose: this part of the kinetic energy at its start, and of what a fall of a
 # whole step gains; one that is cut is cut on until it loses CAREFUL of that
@@ -23,8 +24,12 @@ TURN = 0.5
 # residual of contacts, as a part of what gravity gives in a step: where a step is cut, then taken whole; where
 # there is nothing to take whole, and the run stops
 UNSOLVED, USELESS = 0.01, 10.0
+# what is solved so much worse than rest asks for is not rest
+POORLY = 1e3
 # of the step: what is no longer is cut no more, for what it loses and for a solution
 SHORTEST, RETRIED = 1e-4, 1e-2
+# how much more work a step may take where there is nothing else to be done
+PATIENCE = 100.0
 
 
 @kernel
@@ -39,8 +44,8 @@ def kinetic(body, state):
 def lost_by(system, b, start, end):
     """Return the energy that a body on which gravity acts has lost in a step."""
     body, lost, g = system.bodies[b], kinetic(system.bodies[b], start[b]), system.gravity
-    for r in range(3):
-        lost += body.mass * g[r] * (end[b].x[r] - start[b].x[r])
+    for k in range(3):
+        lost += body.mass * g[k] * (end[b].x[k] - start[b].x[k])
     return lost - kinetic(body, end[b])
 
 
@@ -84,7 +89,10 @@ def turns_far(system, held, start, end, dt):
     """Return whether a body that is held turns too far in a step."""
     for i in range(held.count[0]):
         hold = held.points[i]
-        if hold.rest == 0 and not dt * max(norm(start[hold.body].w), norm(end[hold.body].w)) <= TURN:
+        if (
+            hold.rest == 0
+            and not dt * max(norm(start[hold.body].w), norm(end[hold.body].w)) <= TURN
+        ):
             return True
     return False
 
@@ -114,3 +122,20 @@ def too_long(system, controls, held, start, end, dt, friction, careful, work):
 def next_pace(pace, work):
     """Return how long the next step may be: twice as long, unless that would lose too much."""
     return 2.0 * pace if work.result[0].unnamed <= SURE * CAREFUL else pace
+
+
+@kernel
+def affordable(controls, clock):
+    """Return how much work a step may take for contacts, about [us]: more than that, and it is given up."""
+    return max(r.EACH, clock.credit) * (1.0 if controls.retry == 1 else PATIENCE)
+
+
+@kernel
+def rest_speed(controls, gained, residual, k):
+    """Return the speed [m/s] below which bodies rest that are held at k points.
+
+    `Options.rest_tolerance` of the speed that applied forces give them in the step, or what k contacts that are
+    solved to a residual may leave of it, up to a thousand times the former.
+    """
+    least = controls.rest * gained
+    return max(least, min(k * residual, POORLY * least))

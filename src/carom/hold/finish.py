@@ -6,6 +6,7 @@ import math
 
 from carom.contact.closed import place_seats
 from carom.contact.gap import slow
+from carom.hold.balance import rest_speed
 from carom.hold.forces import pose_forces, solve_forces, take_forces
 from carom.hold.jam import jams_among
 from carom.hold.margins import greatest_push, set_margins
@@ -30,7 +31,8 @@ def gained(start, count, cluster):
 @kernel
 def finish(system, controls, held, k, start, h, end, count, cluster, work):
     """Put the bodies to rest if nothing is left to move them; note modes and bounds, return friction's work."""
-    tolerance, friction = controls.rest * gained(start, count, cluster), 0.0
+    friction = 0.0
+    tolerance = rest_speed(controls, gained(start, count, cluster), work.result[0].residual, k)
     at_rest = settle(system, tolerance, start, end, count, cluster)
     stop, away = tolerance * controls.step / h, 1e-6 * gained(start, count, cluster)
     for i in range(k):

@@ -20,12 +20,12 @@ import math
 
 from carom.contact.closed import gather_held, place_seats
 from carom.contact.groups import members
-from carom.coulomb.layout import CONE, ENOUGH, NEAR
+from carom.coulomb.layout import BUDGET, CONE, ENOUGH, NEAR
 from carom.coulomb.residual import measure
 from carom.coulomb.solve import solve_cones
 from carom.dispatch import by_address
 from carom.geometry.rotation import rotate, rotate_back
-from carom.hold.balance import unnamed
+from carom.hold.balance import affordable, unnamed
 from carom.hold.finish import finish, forces_at_end, gained
 from carom.hold.middle import halfway, mean_velocity, spin_momentum
 from carom.hold.surface import onto_surfaces
@@ -48,6 +48,7 @@ FAR, ROUGH = 1e-4, 1e-8
 # of a body alone, whose motion is unique though forces are not: how well the first round solves for these, and
 # the others as a part of what the last has changed
 FIRST, PART = 1e-5, 1e-4
+ITERATION = 0.3  # cost [us] of an iteration for k points, by k^2
 
 
 @unit
@@ -112,9 +113,9 @@ def press_group(system, controls, held, group, start, h, end, cluster, work, clo
         enough = ROUGH if turn > 0 and far else 0.0
         if single:
             enough = FIRST if turn == 0 else PART * before
-        change = find_impulses(k, enough, cluster, clock)
+        change = find_impulses(controls, k, enough, cluster, clock)
         if single and change <= SETTLED:  # good enough as they were: or the solution?
-            change = find_impulses(k, 0.0, cluster, clock)
+            change = find_impulses(controls, k, 0.0, cluster, clock)
         if change <= SETTLED or (change <= 1e-7 and change >= 0.3 * before):
             break
         before = change
@@ -133,14 +134,17 @@ def press_group(system, controls, held, group, start, h, end, cluster, work, clo
 
 
 @kernel
-def find_impulses(k, enough, cluster, clock):
+def find_impulses(controls, k, enough, cluster, clock):
     """Solve for the impulses of a round, to `enough` (0: to round-off); return what that moves, relative."""
+    left, each = affordable(controls, clock) - clock.effort, ITERATION * k * k
     cluster.cone.mismatch[ENOUGH] = enough
+    cluster.cone.count[BUDGET] = max(100, int(left / each))
     _, _, iterations = solve_cones(
         k, cluster.m[0], cluster.v[C], cluster.mu, cluster.kind, cluster.heading, cluster.v[P],
         cluster.cone,
     )  # fmt: skip
-    clock.effort += iterations * k * k
+    clock.effort += each * iterations
+    clock.since += 5.0 * k + each * iterations
     return moved(3 * k, cluster)
 
 

@@ -10,10 +10,13 @@ from __future__ import annotations
 from carom.jit import kernel
 
 SPENT = 1e-6  # part of a speed that counts as nothing
+TIRED = 1 << 40  # blows after which the next is plastic even with e = 1
 
 
 @kernel
 def what_is_left(contact, brink):
     """Return the restitution of a contact for its next blow in this step."""
     e = contact.restitution
+    if brink.blows >= TIRED:
+        return 0.0
     return 0.0 if e < 1.0 and e ** float(brink.blows) <= SPENT else e

@@ -18,6 +18,7 @@ from carom.system.records import NEEDS_CORNER
 
 IMPACT_FAILED = 6
 SEED = 1e-7  # of the slip
+STEP = 10.0  # cost of a step through the layers, of a point [us]
 
 
 @unit
@@ -54,6 +55,9 @@ def strike_several(system, controls, held, c, k, state, cluster, corner, work, c
         corner.law[i], corner.kappa[i] = contact.law, contact.stiffness
     at_corner(controls.corner_at, k, cluster.m[0], u, cluster.mu, corner)
     code = corner.scratch.work.clock[0].code
+    worked = STEP * k * corner.result.summary[0].steps
+    clock.effort += worked
+    clock.since += worked
     if code != OK:
         hit.code = NEEDS_CORNER if code == NEEDS_UNITS else IMPACT_FAILED
         return

@@ -64,16 +64,35 @@ class Islands(NamedTuple):
 
 
 class NoIslands(NamedTuple):
-    """All bodies together: one of them, or joined."""
+    """All bodies together: one of them, or joined. What a step begins with is kept, to go back to."""
 
-    count: int
+    free: int  # 1 where gravity and contacts alone act
+    begun: np.ndarray  # (1,) 1 while a step is going on
+    state: np.recarray  # (N,) STATE
+    brinks: np.recarray  # (M,) BRINK
+    points: np.recarray  # (P,) HELD
+    count: np.ndarray  # (1,) number of held points
+    clock: np.recarray  # (1,) CLOCK
+
+
+def no_islands(system: System, held: Held) -> NoIslands:
+    """Return the scratch for bodies that are stepped together."""
+    return NoIslands(
+        free=int(system.bodies["ballistic"].all()),
+        begun=np.zeros(1, dtype=np.int64),
+        state=table(STATE, system.bodies.size),
+        brinks=table(BRINK, len(held.brinks)),
+        points=table(HELD, len(held.points)),
+        count=np.zeros(1, dtype=np.int64),
+        clock=table(CLOCK, 1),
+    )
 
 
 def new_islands(system: System, held: Held) -> Islands | NoIslands:
     """Return the scratch for a scene whose bodies may move apart from each other."""
     n = system.bodies.size
     if n == 1 or not system.bodies["ballistic"].all():
-        return NoIslands(0)
+        return no_islands(system, held)
     contacts = system.contacts
     rows = np.arange(contacts.size)
     pairs = rows[contacts.other >= 0]

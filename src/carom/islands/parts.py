@@ -149,7 +149,7 @@ def is_heap(part, least, step, work):
     """Return whether an island takes its step whole: large, or of late unable to go from event to event."""
     n = part.bodies.shape[0]
     heap = n >= least
-    for b in range(n if n > 1 else 0):
+    for b in range(n):
         heap = heap or work.body[b].whole_until > step
     return heap
 
@@ -163,13 +163,16 @@ def tire(islands, step, work):
     first, at, new = islands.first, islands.plan[0].at, True
     for slot in range(first[0, at], first[0, at + 1]):
         new = new and not work.body[islands.body_of[slot]].whole_until > step
-    if not new or first[0, at + 1] - first[0, at] == 1:
-        return False
-    for slot in range(first[0, at], first[0, at + 1]):
-        memory = work.body[islands.body_of[slot]]
-        memory.whole_for = min(128, max(1, 2 * memory.whole_for))
-        memory.whole_until = step + memory.whole_for
-    return True
+    for slot in range(first[0, at], first[0, at + 1] if new else 0):
+        tire_body(work.body[islands.body_of[slot]], step)
+    return new
+
+
+@kernel
+def tire_body(memory, step):
+    """Have a body take this step and some more whole."""
+    memory.whole_for = min(128, max(1, 2 * memory.whole_for))
+    memory.whole_until = step + memory.whole_for
 
 
 @kernel

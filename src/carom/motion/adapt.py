@@ -139,7 +139,7 @@ def plan_next(dt, error, again, controls, clock):
 @kernel
 def begin_step(controls, clock):
     """Note start and length of a step; what is left of the run, if less than two steps, in equal ones."""
-    if clock.spent != 0.0:
+    if clock.spent != 0.0 or clock.paused == 1:
         return
     left = controls.duration - clock.now
     clock.begin, clock.length = clock.now, min(clock.ahead, left)

@@ -25,7 +25,11 @@ from carom.motion.project import project_position, project_velocity
 from carom.system.arrays import ONE, RESTS, FreeSolver, LoopSolver, TreeSolver
 
 SINGULAR = 1e-5  # of a row's diagonal: the square of the angle to the rows before it
-NEAR, FARTHER, TRIES = 1e-2, 3.0, 2  # T turns bodies by this angle; if rows still depend on each other, by more
+NEAR, FARTHER, TRIES = (
+    1e-2,
+    3.0,
+    2,
+)  # T turns bodies by this angle; if rows still depend on each other, by more
 
 
 @kernel
@@ -56,7 +60,12 @@ def _pass_round(system, stage, held, sums, work, rates):
 
     `sums` is scratch: the velocities of the bodies that step. What has no other position on its way stays as it is.
     """
-    dropped, usual, result, pace = dropped_rows(system, SINGULAR), system.solver.usual, work.result[0], 0.0
+    dropped, usual, result, pace = (
+        dropped_rows(system, SINGULAR),
+        system.solver.usual,
+        work.result[0],
+        0.0,
+    )
     if dropped <= usual[0]:
         return
     for b in range(stage.shape[0]):

@@ -398,6 +398,10 @@ SEARCH = [
     ("eager", "i8"),  # 0 where events of several points are left to the end of the step
     ("pending", "i8"),  # an action that waits for its unit to be compiled
     ("horizon", "f8"),
+    ("dt", "f8"),  # of a turn of the loop that was left in the middle: the next trial step,
+    ("pace", "f8"),  # the longest that may be taken,
+    ("cuts", "i8"),  # how often it was cut,
+    ("again", "i8"),  # and whether one was refused
 ]
 
 #: of `touches`: a stop in a joint
@@ -452,7 +456,9 @@ class LoopSolver(NamedTuple):
     block: np.ndarray  # (J+B, 6, 6) diagonal blocks, then the others
     drop: float  # pivots below this part of the row's diagonal are dropped
     pose: np.ndarray  # (N, 7) that was factored, or (0, 7): rows depend on more than the pose
-    usual: np.ndarray  # (1,) how many rows depend on others away from singular positions; -1: not known yet
+    usual: (
+        np.ndarray
+    )  # (1,) how many rows depend on others away from singular positions; -1: not known yet
     # scratch of `carom.motion.light`, empty where masses are alike: high and low parts
     fine: np.ndarray  # (2, J+B, 6, 6) blocks
     digits: np.ndarray  # (J, 4, 6) 1/pivots, multipliers

@@ -57,7 +57,10 @@ CLOCK = [
     ("trials", "i8"),
     ("rejected", "i8"),  # trial steps of too great an error
     ("tries", "i8"),  # trial steps of the present step of an island
-    ("effort", "f8"),  # iterations of its contact problems, times the squares of their sizes
+    ("effort", "f8"),  # work for its contact problems and corners, about [us]
+    ("credit", "f8"),  # how much of it a step may take, as those before took less than they might
+    ("since", "f8"),  # work since the loop was entered, about [us]
+    ("paused", "i8"),  # 1 where it was left in the middle of a trial step
     ("located", "i8"),
     ("holds", "i8"),
     ("pressed", "i8"),  # steps of groups held at several points, on trial too
@@ -138,6 +141,11 @@ NEEDS_HEAP = 104  # an island is a heap: the caller compiles its step and goes o
 NEEDS_SPOTS = 105  # more points may touch in a heap than there is room for: the caller makes more
 NEEDS_ROWS = 107  # more steps are to be saved than there is room for: the same
 STRAYED = 106  # a body has left the ball that its island gave it
+PAUSE = 108  # much was done: the caller looks for Ctrl-C and goes on
+
+LONG = 5e4  # work after which the loop is left for a moment, about [us]
+# work for contacts, about [us]: what a step may take on the average, and one after others that took less
+EACH, SAVED = 1e4, 1e6
 
 
 class Records(NamedTuple):
@@ -154,7 +162,7 @@ class Records(NamedTuple):
 def new_clock() -> np.recarray:
     """Return the clock of a run that has not begun, (1,)."""
     clock = table(CLOCK, 1)
-    clock["still"] = np.inf
+    clock["still"], clock["credit"] = np.inf, SAVED
     return clock
 
 

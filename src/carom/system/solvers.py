@@ -50,7 +50,10 @@ def spread(touching: list[list[int]], mass, moments, extent) -> tuple[float, int
     own: dict[int, list[int]] = {}
     for b in {b for bodies in touching for b in bodies}:
         own.setdefault(find(b), []).append(b)
-    ends = [(min(group, key=least.__getitem__), max(group, key=most.__getitem__)) for group in own.values()]
+    ends = [
+        (min(group, key=least.__getitem__), max(group, key=most.__getitem__))
+        for group in own.values()
+    ]
     return max(((float(most[k] / least[i]), i, k) for i, k in ends), default=(1.0, 0, 0))
 
 

@@ -1,0 +1,80 @@
+"""Ctrl-C ends any run soon, with what was computed until then: the loop is left for a moment now and then."""
+
+import signal
+import subprocess
+import sys
+import time
+
+import numba
+import numpy as np
+import pytest
+
+import carom
+from carom.system import records
+from simulate.scenes import die, turn
+
+#: A run says when it begins in earnest, and at its end how far it came. Longer than anybody waits.
+RUN = """
+import numpy as np, carom
+carom.simulate({scene}, 3.0, step=1e-3)  # compiled
+print("begins", flush=True)
+s = carom.simulate({scene}, 1e6, step=1e-3, save_every=10**8, throw=False)
+whole = all(np.all(np.isfinite(a)) for a in (s.t, s.position, s.velocity, s.total_energy))
+print(s.status.name, whole, 0.0 < s.t[-1] < 1e6)
+"""
+
+SCENES = """
+def ball():
+    scene = carom.Scene(gravity=(0, 0, -9.81))
+    floor = scene.add_half_space((0, 0, 0), (0, 0, 1))
+    scene.add_contact(
+        scene.add_body(carom.Sphere(0.1), mass=1.0, position=(0, 0, 0.5)), floor, restitution=1.0
+    )
+    return scene
+
+def balls():
+    scene = carom.Scene(gravity=(0, 0, -9.81))
+    scene.add_half_space((0, 0, 0), (0, 0, 1))
+    for k in range(2):
+        scene.add_body(carom.Sphere(0.1), mass=1.0, position=(0.05 * k, 0, 0.3 * k + 0.2))
+    scene.set_contact_default(restitution=0.5, friction=0.3)
+    return scene
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="SIGINT is sent by other means there")
+@pytest.mark.parametrize("scene", ["ball()", "balls()"])
+def test_an_interrupt_ends_a_run(scene):
+    """Within a second on an idle machine; five are allowed for."""
+    code = "import carom\n" + SCENES + RUN.format(scene=scene)
+    child = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
+    assert child.stdout is not None
+    assert child.stdout.readline() == "begins\n"
+    time.sleep(0.5)
+    assert child.poll() is None
+    child.send_signal(signal.SIGINT)
+    begin = time.monotonic()
+    said = child.communicate(timeout=60)[0]
+    assert time.monotonic() - begin < 5.0
+    assert said.split() == ["INTERRUPTED", "True", "True"]
+
+
+@pytest.mark.plain
+@pytest.mark.parametrize("count", [1, 2])
+def test_leaving_the_loop_changes_nothing(monkeypatch, count):
+    """Left after each trial step, or never: the same bits. (What is compiled does not see the patch.)"""
+    if not numba.config.DISABLE_JIT:
+        pytest.skip("only without the JIT")
+    solutions = []
+    for work in (0.5, np.inf):
+        monkeypatch.setattr(records, "LONG", work)
+        scene = die((3, 10, 0), 0.2, orientation=turn((1, 2, 3), 0.5), position=(0, 0, 0.03))
+        if count == 2:
+            scene.add_body(carom.Sphere(0.01), mass=0.01, position=(0.002, 0, 0.06))
+            scene.set_contact_default(restitution=0.3, friction=0.3)
+        solutions.append(carom.simulate(scene, 0.15, step=5e-3))
+    a, b = solutions
+    assert len(a.impacts) > 5
+    np.testing.assert_array_equal(a.position, b.position)
+    np.testing.assert_array_equal(a.velocity, b.velocity)
+    np.testing.assert_array_equal(a.events.time, b.events.time)
