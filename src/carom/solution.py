@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from carom import check
 from carom.between import between, flights
 from carom.files.portable import Portable
 from carom.geometry import quaternion
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
     from carom.assemble import Written
     from carom.run import Run
     from carom.scene.scene import Scene
+
+SIDES = ("right", "left")
 
 
 @dataclass(frozen=True, eq=False)
@@ -273,11 +276,8 @@ class Solution(Portable, Drawn):
         ValueError
             If a time is outside the run, or `side` is another word.
         """
-        if side not in ("right", "left"):
-            raise ValueError(f"side must be 'right' or 'left', got {side!r}")
-        times = np.atleast_1d(np.asarray(t, dtype=float))
-        if not np.all((times >= self.t[0]) & (times <= self.t[-1])):
-            raise ValueError(f"t must be within [{self.t[0]:g}, {self.t[-1]:g}] s, got {t!r}")
+        check.choice("side", side, SIDES)
+        times = check.times("t", t, self.t[0], self.t[-1])
         known = zip(self._nodes, self._flights)
         bodies = [between(node, flies, times, side) for node, flies in known]
         x, Q, v, w = (np.stack(column, axis=1) for column in zip(*bodies))
@@ -339,6 +339,9 @@ class Solution(Portable, Drawn):
         """
         from carom.impact.history import impact_layer
 
+        count, k = len(self.impacts), check.integer("k", k)
+        if not -count <= k < count:
+            raise IndexError(f"k must be the number of an impact, got impact {k} of {count}")
         record = self.impacts[k]
         if record.together > 1:
             raise ValueError(

@@ -58,9 +58,13 @@ class Ensemble:
         """
         from carom.ensembles.store import Store
 
-        store = Store.open(path)
-        whole = store.read()
-        return cls(store.inputs(), whole.outcomes, whole.observed, whole.failures, store.about)
+        where = check.path("path", path)
+        try:
+            store = Store.open(where)
+            whole, inputs = store.read(), store.inputs()
+        except ValueError as error:
+            raise ValueError(f"path: {error}") from None
+        return cls(inputs, whole.outcomes, whole.observed, whole.failures, store.about)
 
     def __getattr__(self, name: str) -> np.ndarray:
         """Return a column of the outcomes."""
