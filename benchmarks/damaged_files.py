@@ -2,9 +2,9 @@
 
 python benchmarks/damaged_files.py [COUNT] [SEED]
 
-Of runs, scenes as JSON and models COUNT each (default 1000). Each is loaded, and looked at in every way, in a child
-process with a limit of time and memory; one that hangs, dies or raises what is no ValueError or OSError is printed
-with its seed. Made-up files are damaged inside, with a digest that is right.
+Of runs, scenes as JSON and models COUNT each (default 1000). Each is loaded, and looked at in every way, in a
+child process with a limit of time and memory; one that hangs, dies or raises what is no ValueError or OSError
+is printed with its seed. Made-up files are damaged inside, with a digest that is right.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ from carom.files.scene_parts import scene_from_text, scene_to_text
 SECONDS, MEMORY, PART = 5.0, 4 << 30, 20
 MODEL = """<mujoco><worldbody><geom type="plane" size="1 1 1"/><replicate count="3" offset="1 0 0">
 <body pos="0 0 1" name="a"><freejoint/><geom type="box" size=".1 .1 .1" mass="1"/></body></replicate>
-<body pos="5 0 1"><joint type="hinge" axis="0 1 0" range="-1 1"/><geom size=".1" fromto="0 0 0 1 0 0" type="capsule"/>
-</body></worldbody></mujoco>"""
+<body pos="5 0 1"><joint type="hinge" axis="0 1 0" range="-1 1"/>
+<geom size=".1" fromto="0 0 0 1 0 0" type="capsule"/></body></worldbody></mujoco>"""
 WORDS = (
     b"nan",
     b"1e308",

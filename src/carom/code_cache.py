@@ -42,8 +42,8 @@ class StampedCache(FunctionCache):
             if not StampedCache.told:
                 StampedCache.told = True
                 warnings.warn(
-                    f"compiled code cannot be kept in {self._cache_path!r} and is compiled again in each process: "
-                    f"{error}",
+                    f"compiled code cannot be kept in {self._cache_path!r} and is compiled again in each "
+                    f"process: {error}",
                     RuntimeWarning,
                     stacklevel=2,
                 )

@@ -105,7 +105,8 @@ def simulate(
         there. False: the solution is returned, with its `status` and `message`.
     save : str or path, optional
         File that the run is saved to at its end and as it goes (needs ``carom[files]``): whoever kills the run
-        finds in it what was computed until then, and where `resume` goes on. Not for a system in coordinates.
+        finds in it what was computed until then, and where `resume` goes on. Where that fails on the way, as on
+        a full disk, a `RuntimeWarning` says so and the run goes on. Not for a system in coordinates.
     save_seconds : float
         How often it is saved [s of real time]. Default 60; at least ten times what one saving takes.
 

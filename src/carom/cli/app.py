@@ -28,7 +28,7 @@ _END = """\
 #: name, function, and the extra that it needs, in the order of the help
 COMMANDS: tuple[tuple[str, Callable, str], ...] = (
     ("simulate", simulate.run, "files"),
-    ("info", info.run, "files"),
+    ("info", info.run, ""),
     ("view", view.run, "view"),
     ("plot", pictures.plot, "plot"),
     ("film", pictures.film, "film"),

@@ -89,7 +89,7 @@ def _json(path: Path):
 
     try:
         scene, _ = scene_from_text(path.read_text(encoding="utf-8"))
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
+    except ValueError as error:
         what = "'carom info RUN --scene' writes such a file"
         raise Refused(
             f"SCENE must be a scene as JSON, got {str(path)!r} ({error}); {what}"

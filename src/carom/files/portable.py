@@ -20,7 +20,8 @@ class Portable:
 
         With labelled dimensions, units, the tables of impacts, events and held contacts, the ledger, reactions
         and coordinates of joints, the scene as JSON, settings, options, version and citation. The file
-        appears when it is complete, in the place of what was there. (How to: keep results in files.)
+        appears when it is complete, in the place of what was there, and has a digest of all its bytes. (How to:
+        keep results in files.)
 
         Parameters
         ----------
@@ -31,6 +32,8 @@ class Portable:
         ------
         ImportError
             Without h5netcdf.
+        OSError
+            If it cannot be written, as on a full disk; what was there is as it was.
         ValueError
             If the folder is not there.
         """
@@ -45,6 +48,9 @@ class Portable:
         cls, path: str | os.PathLike, *, functions: Mapping[str, Callable] | None = None
     ) -> Self:
         """Return the solution that a file holds, bit for bit the one that was saved.
+
+        No damaged file is read: a digest of all its bytes is checked first. No other file is read, whatever it
+        says, and no code is run.
 
         Also of a run that was killed or stopped, up to the last saving; `status` is ``INTERRUPTED`` then (see
         `resume`). What a solution works out on demand, as between saved times, is worked out alike.
@@ -61,10 +67,9 @@ class Portable:
         ------
         FileNotFoundError
             If there is no such file.
-        ImportError
-            Without h5netcdf.
         ValueError
-            If the file is foreign, broken, or newer than this carom; if a function is none of the scene's.
+            If the file is foreign, damaged, changed, or of another version of the format; if a function is none
+            of the scene's.
         """
         from carom import check
         from carom.files.reading import read

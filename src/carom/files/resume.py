@@ -22,7 +22,8 @@ def resume(
     """Go on with a run that `simulate` was saving when it ended before its time.
 
     With the same version of carom on the same machine the result is that of a run without interruption, bit
-    for bit. It is saved to the same file.
+    for bit. It is saved to the same file. The state that it goes on from is taken from the file as it is: go on
+    with files that are yours, or of somebody whom you trust.
 
     Parameters
     ----------
