@@ -58,8 +58,8 @@ _MESSAGES = {
         "too deep. Take a smaller step."
     ),
     Status.IMPACT_FAILED: (
-        "The equations of the boundary layer were not solved to tolerance; look at the inverse "
-        "mass, the friction and the velocity of the last impact."
+        "Something drives a pair that friction holds wedged, so that no impulse stops it, or the equations of "
+        "the boundary layer were not solved; look at W, the friction and the velocity of the last impact."
     ),
     Status.CONSTRAINTS_LOST: (
         "The bilateral constraints could not be met at the end of a step: the mechanism is in a "

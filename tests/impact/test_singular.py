@@ -115,7 +115,7 @@ def test_all_that_must_hold_of_any_impact(many):
     turned = np.abs(works).sum(axis=1) + loss
     change = out[:, o.ENERGY_CHANGE]
     assert np.all(loss >= 0)
-    assert np.all(np.abs(works.sum(axis=1) - loss - change) <= 1e-9 * turned + 1e3 * EPS * square)
+    assert np.all(np.abs(works.sum(axis=1) - loss - change) <= 1e-7 * turned + 1e5 * EPS * square)
     assert np.all(change[law > 0] <= 1e-12 * turned[law > 0] + 1e2 * EPS * square[law > 0])
 
     # What each law says: its goal, or wedged with what was reached.
@@ -125,9 +125,8 @@ def test_all_that_must_hold_of_any_impact(many):
     poisson = law == 1
     np.testing.assert_allclose(P[poisson, 0], ((1 + e) * P_c[:, 0])[poisson], rtol=1e-14)
     stronge = ~wedged & (law == 2) & (works[:, 0] < -1e-3 * loss)
-    np.testing.assert_allclose(
-        works[stronge, 1], (-(e**2) * works[:, 0])[stronge], rtol=1e-8, atol=1e-300
-    )
+    missed = np.abs(works[:, 1] + e**2 * works[:, 0])[stronge]
+    assert np.all(missed <= (1e-8 * np.abs(works[:, 0]) + 1e-12 * turned)[stronge])
     assert np.all(
         after[wedged, 0] <= -u[wedged, 0] * e[wedged] * (1 + 1e-9) + (law > 0)[wedged] * 1e300
     )
@@ -161,8 +160,9 @@ def test_no_impulse_is_greater_than_what_stops_the_body(many):
     of = sound & ~jams & (mu > 0.0)
     values, V = np.linalg.eigh(W[of])
     keeps = values > 1e-12 * values[:, -1:]
-    energy = np.sum(np.where(keeps, np.einsum("nij,ni->nj", V, u[of]) ** 2 / values, 0.0), axis=1)
-    smallest = np.min(np.where(keeps, values, np.inf), axis=1)
+    values = np.where(keeps, values, np.inf)
+    energy = np.sum(np.einsum("nij,ni->nj", V, u[of]) ** 2 / values, axis=1)
+    smallest = np.min(values, axis=1)
     most = np.sqrt(energy / smallest) / np.minimum(1.0, mu[of])
     assert np.all(p_c[of] <= most * (1 + 1e-6))
 
@@ -190,11 +190,12 @@ def test_the_path_of_an_independent_integrator():
     assert np.all(np.max(np.abs(after - out[:, 0:3]), axis=1) <= 2.0 * step)
     total = out[:, o.WORK_C] + out[:, o.WORK_R]
     assert np.all(np.abs(work - total) <= 2.0 * step * p)
-    # Beyond a wedge nothing moves: the same impulse again changes no velocity.
-    wedged = out[:, o.PHASES].astype(int) & o.WEDGED != 0
+    # Beyond a wedge nothing moves: the same impulse again. Not where mu is critical to 1e-6, k of that size.
+    tau = np.einsum("nij,nj->ni", np.linalg.pinv(W[:, 1:, 1:], 1e-10), W[:, 1:, 0])
+    wedged = (out[:, o.PHASES].astype(int) & o.WEDGED != 0) & (mu > 1.001 * np.hypot(*tau.T))
     assert wedged.sum() > 50
     again, _, _ = follow(W[wedged], out[wedged, 0:3], mu[wedged], p[wedged], 100, speed[wedged])
-    assert np.all(np.max(np.abs(again - out[wedged, 0:3]), axis=1) <= 1e-5 * speed[wedged])
+    assert np.all(np.max(np.abs(again - out[wedged, 0:3]), axis=1) <= 1e-12 * speed[wedged])
 
 
 def test_scales_do_not_matter(many):

@@ -71,7 +71,8 @@ def resolve_one(W, u, mu, e, law, out):
     """Resolve one impact of inverse mass `W` (3, 3), approach velocity `u` (3,), friction `mu`.
 
     Normal first, ``u[0] < 0``; `e` and `law` (as in `laws`) give the restitution; results go to
-    `out` as `layout` says, where STILL is given. Returns 0, or the code of what went wrong (`out` then holds no result).
+    `out` as `layout` says, where STILL is given. Returns 0, or the code of what went wrong (`out` then
+    holds no result).
     """
     total = W[0, 0] + W[0, 1] + W[0, 2] + W[1, 1] + W[1, 2] + W[2, 2] + u[0] + u[1] + u[2] + mu + e
     if not (math.isfinite(total) and W[0, 0] > 0.0):
@@ -212,6 +213,7 @@ def resolve_one(W, u, mu, e, law, out):
         now = law
         goal = laws.goal(law, e, -u0, before[0], before[4])
 
+    s = (s[0], s[1], max(0.0, s[2]), s[3], s[4], s[5], s[6], s[7])
     P = (before[0] + s[3], before[1] + s[4], before[2] + s[5])
     if not 0.0 < P[0] < math.inf:
         return o.NO_END
