@@ -38,9 +38,10 @@ def of_forest(system, augment, state, work):
 def least_norm(system, augment, state, work):
     """Share reactions by the augmented Lagrangian, started from zero.
 
-    Each pass adds (A M^-1 A^T + eps)^-1 of what is missing in A a = target; the sum stays in the
-    range of A M^-1 A^T and so converges to the solution of least norm, rows weighed by eps. Where masses are spread
-    the same is done with A D^-1 A^T (`carom.motion.light`) for the multipliers mu that were found: of A^T lam = A^T mu.
+    Each pass adds (A M^-1 A^T + eps)^-1 of what is missing in A a = target; the sum stays in the range of A
+    M^-1 A^T and so converges to the solution of least norm, rows weighed by eps. Where masses are spread the
+    same is done with A D^-1 A^T (`carom.motion.light`) for the multipliers mu that were found: of A^T lam =
+    A^T mu.
     """
     spread = system.solver.scaled.shape[0] > 0
     if spread:
@@ -82,7 +83,11 @@ def push_multipliers(system, work):
             work.body[b].wrench[k] = 0.0
     for i in range(system.solver.sides.shape[0]):
         side = system.solver.sides[i]
-        A, wrench, multiplier = side.A, work.body[side.body].wrench, system.solver.rows[side.element].rhs
+        A, wrench, multiplier = (
+            side.A,
+            work.body[side.body].wrench,
+            system.solver.rows[side.element].rhs,
+        )
         for r in range(system.joints[side.element].rows):
             for k in range(6):
                 wrench[k] -= A[r, k] * multiplier[r]

@@ -210,7 +210,8 @@ CONTACT = [
     ("law", "i8"),  # 0 newton, 1 poisson, 2 stronge
     ("axes", "f8", (3, 3)),  # of a half-space: rows n, t1, t2
     ("offset", "f8"),  # n . point of the plane; of a stop side times where it is
-    ("side", "f8"),  # of a stop: gap = side q - offset, 1 for a lower, -1 for an upper one
+    # of a stop: gap = side q - offset, above 0 for a lower, below for an upper one; 1 or, of a turn, a length
+    ("side", "f8"),
     ("radius", "f8"),  # of both, where they are two solids
     ("friction", "f8"),
     ("friction_held", "f8"),
@@ -426,7 +427,9 @@ class LoopSolver(NamedTuple):
     block: np.ndarray  # (J+B, 6, 6) diagonal blocks, then the others
     drop: float  # pivots below this part of the row's diagonal are dropped
     pose: np.ndarray  # (N, 7) that was factored, or (0, 7): rows depend on more than the pose
-    usual: np.ndarray  # (1,) how many rows depend on others away from singular positions; -1: not known yet
+    usual: (
+        np.ndarray
+    )  # (1,) how many rows depend on others away from singular positions; -1: not known yet
     # scratch of `carom.motion.light`, empty where masses are alike: high and low parts
     fine: np.ndarray  # (2, J+B, 6, 6) blocks
     digits: np.ndarray  # (J, 4, 6) 1/pivots, multipliers
