@@ -17,12 +17,12 @@ from carom.scene.forces import AppliedForce
 from carom.scene.more_forces import JointSpring, UserForce
 from carom.status import Status
 from carom.system import records as r
-from carom.system.arrays import Relations
+from carom.system.arrays import STOP, Relations
 from carom.tables import LAWS, ContactTable, EventTable, ImpactTable, contact_table
 
 #: what tables say of contacts (an ensemble changes them from run to run)
 OF_CONTACTS = (
-    "number", "other", "first", "law", "restitution", "friction", "penetration", "width",
+    "number", "other", "first", "law", "restitution", "friction", "penetration", "width", "touches", "side",
 )  # fmt: skip
 
 
@@ -185,19 +185,21 @@ def impact_table(solution) -> ImpactTable:
     rows, contacts = solution._written.impact, solution._written.contacts
     number, first = np.unique(contacts["number"], return_index=True)
     c = first[np.searchsorted(number, rows.contact)]
+    arm = arms(contacts)[c]
     return ImpactTable(
-        relative_velocity_before=rows.before.copy(),
-        relative_velocity_after=rows.after.copy(),
-        penetration=contacts["penetration"][c] * contacts["width"][c],
+        relative_velocity_before=rows.before / arm[:, None],
+        relative_velocity_after=rows.after / arm[:, None],
+        penetration=contacts["penetration"][c] * contacts["width"][c] / arm,
         law=np.array(LAWS)[contacts["law"][c]],
-        inverse_mass=rows.W.copy(),
+        inverse_mass=rows.W / arm[:, None, None] ** 2,
+        impulse=rows.impulse * arm[:, None],
         restitution=contacts["restitution"][c],
         friction=contacts["friction"][c],
         wedged=(rows.phases & WEDGED) // WEDGED,
         **{
             name: np.array(rows[name])
             for name in (
-                "time", "contact", "point", "normal", "impulse", "energy_change", "duration",
+                "time", "contact", "point", "normal", "energy_change", "duration",
                 "compression_work", "restitution_work", "friction_loss", "together",
             )
         },
@@ -236,6 +238,11 @@ def nodes(run) -> list[Nodes]:
         )
         out.append(Nodes(*(np.concatenate(pair)[order] for pair in columns)))
     return out
+
+
+def arms(contacts) -> np.ndarray:
+    """Return the lengths (C,) at which stops that end turns have their forces and ways; 1 for all others."""
+    return np.where(contacts["touches"] == STOP, np.abs(contacts["side"]), 1.0)
 
 
 def contact_sums(touch: np.recarray, saved: int, contacts: int) -> tuple[np.ndarray, np.ndarray]:

@@ -61,7 +61,8 @@ class Options:
         Take from the initial velocities what joints forbid: the least change in the kinetic metric. Default
         False: velocities that break a joint are refused.
     drop_tolerance : float
-        A constraint row is redundant when its pivot is below this part of its own diagonal. Default 1e-8.
+        A constraint row is redundant when its pivot is below this part of its own diagonal (of bodies of equal
+        mass, where masses differ by more than 1e5). Default 1e-8.
     augmentation : float
         Augmented-Lagrangian parameter of the paper's methods and of reported reactions, as a part of
         each row's diagonal of A M^-1 A^T. Default 1e-3.

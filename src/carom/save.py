@@ -73,8 +73,11 @@ def save_contacts(system, held, now, k, clock, work, records):
         fz = f[0] * E[0, 2] + f[1] * E[1, 2] + f[2] * E[2, 2]
         tx, ty, tz = cross(arm[0], arm[1], arm[2], fx, fy, fz)
         sx, sy, sz = cross(other[0], other[1], other[2], -fx, -fy, -fz)
-        if point.turns == 3:  # the force of such a stop is a torque
-            tx, ty, tz, sx, sy, sz = fx, fy, fz, -fx, -fy, -fz
+        unit = 1.0
+        if point.turns == 3:  # the force of such a stop is a torque over a length
+            unit = point.length
+            tx, ty, tz = unit * fx, unit * fy, unit * fz
+            sx, sy, sz = -tx, -ty, -tz
             fx, fy, fz = 0.0, 0.0, 0.0
         m = hold.torque
         mx = m[0] * E[0, 0] + m[1] * E[1, 0] + m[2] * E[2, 0]
@@ -85,5 +88,5 @@ def save_contacts(system, held, now, k, clock, work, records):
         o[0], o[1], o[2] = sx - mx, sy - my, sz - mz
         p[0], p[1], p[2] = fx, fy, fz
         for j in range(3):
-            touch.force[j], touch.point[j] = f[j], now[hold.body].x[j] + arm[j]
+            touch.force[j], touch.point[j] = unit * f[j], now[hold.body].x[j] + arm[j]
         clock.touched += 1

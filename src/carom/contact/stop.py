@@ -1,7 +1,8 @@
 """Stops in joints: unilateral constraints on a coordinate, gap = side q - offset, without tangents.
 
-They strike through the same boundary layer as any contact and may be held like one. The normal row is the
-coordinate's own, its impulse a torque in time [N m s] where that is an angle.
+They strike through the same boundary layer as any contact and may be held like one. Where the coordinate is
+an angle the gap is the way at the distance of the body's size, so that all contacts have the same units; a
+solution gives angles and torques (`carom.assemble`).
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ def _place_stop(system, contact, state, point):
     c = system.relations.coordinates[contact.solid]
     nx, ny, nz = axis(state, c.parent, c.parent_frame, 0)
     # the row is that of the child against the parent; where that is the ground the other way round
-    s = contact.side if contact.body == c.child else -contact.side
+    s = 1.0 if (contact.side > 0.0) == (contact.body == c.child) else -1.0
     point.a, point.b = contact.body, contact.other
     tangents(s * nx, s * ny, s * nz, point.axes)
     for k in range(3):
@@ -36,7 +37,7 @@ def _place_stop(system, contact, state, point):
             r = parent_arm(c, state)
             point.arm_b[0], point.arm_b[1], point.arm_b[2] = r
     point.gap = contact.side * value(c, state) - contact.offset
-    point.turns, point.length = 4 if c.kind == PRISMATIC else 3, 1.0
+    point.turns, point.length = 4 if c.kind == PRISMATIC else 3, abs(contact.side)
 
 
 @kernel

@@ -33,7 +33,7 @@ RESTITUTION = (
     0.0  # where neither the caller nor the model has one: MuJoCo's own contacts hardly bounce
 )
 # masses and moments of links between two joints of one body, as a part of the body's: nothing to the solver of
-# trees; that of loops would take rows between lighter ones for redundant (Options.drop_tolerance)
+# trees; that of loops takes five times as long with lighter ones (`carom.motion.light`)
 LIGHT, LIGHT_IN_LOOPS = 1e-12, 1e-6
 
 

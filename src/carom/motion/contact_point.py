@@ -53,11 +53,11 @@ def in_axes(point, x, y, z):
 def turning_rows(point, x, y, z):
     """Return the rows of a point of rolling or pivoting: relative angular velocity times a length.
 
-    Of a stop that ends a turn the relative angular velocity about its axis.
+    Of a stop that ends a turn that about its axis.
     """
     n, t1, t2 = in_axes(point, x, y, z)
     if point.turns == 3:
-        return n, 0.0, 0.0
+        return point.length * n, 0.0, 0.0
     if point.turns == 1:
         return 0.0, point.length * t1, point.length * t2
     return 0.0, point.length * n, 0.0
@@ -161,9 +161,10 @@ def add_impulse(point, ln, l1, l2, work):
     E, r, s = point.axes, point.arm_a, point.arm_b
     if point.turns == 3:
         for k in range(3):
-            work.body[point.a].wrench[3 + k] += ln * E[0, k]
+            torque = point.length * ln * E[0, k]
+            work.body[point.a].wrench[3 + k] += torque
             if point.b >= 0:
-                work.body[point.b].wrench[3 + k] -= ln * E[0, k]
+                work.body[point.b].wrench[3 + k] -= torque
         return
     if point.turns == 4:
         l1, l2 = 0.0, 0.0

@@ -1,14 +1,14 @@
 """Closed loops of bodies whose masses and moments differ by more than `SPREAD`.
 
-A M^-1 A^T is the sum of what all bodies yield. Light bodies yield much, and where one of them stands between two
-heavy ones what the heavy ones yield is a small difference of large numbers: a part (light mass)/(heavy mass) of them.
-So two things change against `carom.motion.loops`.
+A M^-1 A^T is the sum of what all bodies yield. Light bodies yield much, and where one of them stands between
+two heavy ones what the heavy ones yield is a small difference of large numbers: a part (light mass)/(heavy
+mass) of them. So two things change against `carom.motion.loops`.
 
-Which rows depend on others is a matter of geometry. It is judged with bodies of equal mass, and of moments that are
-the squares of their sizes: in A D^-1 A^T, whose pivots know nothing of masses.
+Which rows depend on others is a matter of geometry. It is judged with bodies of equal mass, and of moments
+that are the squares of their sizes: in A D^-1 A^T, whose pivots know nothing of masses.
 
-The rows that stay are solved with 31 digits (`carom.motion.double_double`): with U = A M^-1/2 in principal axes, of
-which each product is exact,
+The rows that stay are solved with 31 digits (`carom.motion.double_double`): with U = A M^-1/2 in principal
+axes, of which each product is exact,
 
     U U^T = L L^T,    L L^T lam = target - U y0,   y = y0 + U^T lam,    y0 = M^-1/2 wrench, motion = M^-1/2 y.
 
@@ -97,7 +97,7 @@ def factor_light(system, state, work):
 
 @kernel
 def scaled_rows(system, state):
-    """Turn Y of all sides into U: rows in principal axes, over the roots of masses and moments; keep the axes."""
+    """Turn Y of all sides into U: rows in principal axes, over roots of masses and moments; keep the axes."""
     for b in range(system.bodies.shape[0]):
         for k in range(4):
             system.solver.scaled[b, 2, k] = state[b].Q[k]

@@ -281,11 +281,16 @@ def applied_force(system: System, x, Q, v, w) -> np.ndarray:
 
 
 def _derivatives(system, x, Q, v, w, c, step=1e-5):
-    """Return c_RR and k_RR (T, K) by central differences of the force along each c_R."""
+    """Return c_RR and k_RR (T, K) by central differences of the force along each c_R.
+
+    Bodies turn by `step`, or move by that part of their size.
+    """
+    unit = np.ones((len(system.bodies), 6))
+    unit[:, :3] = system.bodies["extent"][:, None]
     damping, stiffness = np.zeros(c.shape[:2]), np.zeros(c.shape[:2])
     for k in range(c.shape[1]):
         along, turn = c[:, k, :, :3], c[:, k, :, 3:]
-        size = step / np.max(np.abs(c[:, k]), axis=(1, 2))[:, None, None]  # (T, 1, 1)
+        size = step / np.max(np.abs(c[:, k]) / unit, axis=(1, 2))[:, None, None]  # (T, 1, 1)
         pair = []
         for e in (size, -size):
             spin = w + e * quaternion.rotate(Q, turn)

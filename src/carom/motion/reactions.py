@@ -38,9 +38,10 @@ def of_forest(system, augment, state, work):
 def least_norm(system, augment, state, work):
     """Share reactions by the augmented Lagrangian, started from zero.
 
-    Each pass adds (A M^-1 A^T + eps)^-1 of what is missing in A a = target; the sum stays in the
-    range of A M^-1 A^T and so converges to the solution of least norm, rows weighed by eps. Where masses are spread
-    the same is done with A D^-1 A^T (`carom.motion.light`) for the multipliers mu that were found: of A^T lam = A^T mu.
+    Each pass adds (A M^-1 A^T + eps)^-1 of what is missing in A a = target; the sum stays in the range of A
+    M^-1 A^T and so converges to the solution of least norm, rows weighed by eps. Where masses are spread the
+    same is done with A D^-1 A^T (`carom.motion.light`) for the multipliers mu that were found: of A^T lam =
+    A^T mu.
     """
     spread = system.solver.scaled.shape[0] > 0
     if spread:

@@ -1,15 +1,16 @@
 """Stages of a step in singular positions, where rows depend on each other that do not elsewhere.
 
-Such rows are left out there, and the acceleration is not the limit of its neighbours: what the rows would say is
-0/0, and nearby (at an angle e between them) round-off of the joints over e^3. On a path q(t) in the constraints the
-limit exists, as the acceleration is smooth along it, and comes from what is outside,
+Such rows are left out there, and the acceleration is not the limit of its neighbours: what the rows would say
+is 0/0, and nearby (at an angle e between them) round-off of the joints over e^3. On a path q(t) in the
+constraints the limit exists, as the acceleration is smooth along it, and comes from what is outside,
 
     a(0) = sum over k = 2, 3, 4 of c_k (a(k T) + a(-k T))/2 + O(T^6),    c = (12/5, -64/35, 3/7).
 
-The path is that of constant velocities, returned to the joints in position and velocity, which is the same to the
-order that is needed. A stage of a Runge-Kutta step is off the constraints by O(h^2), which rows that all but depend
-on each other multiply by the inverse of their angle; so all stages of the step return to the joints first. (With P the
-projection, F(P(y)) is as good an extension of the motion to all y as F(y): the order stays.)
+The path is that of constant velocities, returned to the joints in position and velocity, which is the same to
+the order that is needed. A stage of a Runge-Kutta step is off the constraints by O(h^2), which rows that all
+but depend on each other multiply by the inverse of their angle; so all stages of the step return to the
+joints first. (With P the projection, F(P(y)) is as good an extension of the motion to all y as F(y): the
+order stays.)
 """
 
 from __future__ import annotations
@@ -58,7 +59,8 @@ def _is_singular(system, least, most):
 def _pass_round(system, stage, held, sums, work, rates):
     """Write the accelerations of a stage in a singular position from those before and after it on its way.
 
-    `sums` is scratch: the velocities of the bodies that step. What has no other position on its way stays as it is.
+    `sums` is scratch: the velocities of the bodies that step. What has no other position on its way stays as
+    it is.
     """
     dropped, usual, result, pace = (
         dropped_rows(system, SINGULAR),

@@ -19,7 +19,6 @@ from carom.jit import kernel
 from carom.motion.rows import write_row
 
 WAY = 1e-5  # of the size of a body
-LONGEST = 1e-5  # [s], where nothing moves
 
 
 @kernel
@@ -97,10 +96,13 @@ def user_error(system, j, state, t, out):
 def user_bias(system, j, state, t, out, scratch):
     """Write what the rows times the accelerations must be."""
     user = system.relations.user[system.joints[j].number]
-    ahead = LONGEST
+    g = system.gravity
+    fall, ahead = math.sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]), math.inf
     for s in range(user.first, user.last):
         b = system.solver.sides[s].body
         v, w, size = state[b].v, state[b].w, system.bodies[b].extent
+        # where nothing moves: in the time in which the body falls by its size
+        ahead = min(ahead, WAY * (math.sqrt(size / fall) if fall > 0.0 else 1.0))
         speed = math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
         speed += size * math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
         if speed * ahead > WAY * size:

@@ -210,7 +210,8 @@ CONTACT = [
     ("law", "i8"),  # 0 newton, 1 poisson, 2 stronge
     ("axes", "f8", (3, 3)),  # of a half-space: rows n, t1, t2
     ("offset", "f8"),  # n . point of the plane; of a stop side times where it is
-    ("side", "f8"),  # of a stop: gap = side q - offset, 1 for a lower, -1 for an upper one
+    # of a stop: gap = side q - offset, above 0 for a lower, below for an upper one; 1 or, of a turn, a length
+    ("side", "f8"),
     ("radius", "f8"),  # of both, where they are two solids
     ("friction", "f8"),
     ("friction_held", "f8"),

@@ -198,7 +198,8 @@ def _joints(scene, moments, placement, elements, options, loops):
             names = scene.bodies[light].name, scene.bodies[heavy].name
             raise ValueError(
                 f"masses, or moments over the squares of sizes, of bodies {names[0]!r} and {names[1]!r}, which "
-                f"closed loops join, must not differ by more than {solvers.LIMIT:g} times, got {ratio:.3g} times"
+                f"closed loops join, must not differ by more than {solvers.LIMIT:g} times, "
+                f"got {ratio:.3g} times"
             )
         solver = solvers.loop_solver(
             touching, options.drop_tolerance, 0 if elements.touching else count,
@@ -271,7 +272,7 @@ def _bushings(scene, frames):
 
 
 def start_sizes(scene) -> np.ndarray:
-    """Return the size (N,) of the shape of each body; its radius of gyration (of tr J = 2 m r^2) where it has none."""
+    """Return the size (N,) of the shape of each body; where it has none its radius r, tr J = 2 m r^2."""
     return np.array(
         [
             np.sqrt(0.5 * np.trace(b.inertia) / b.mass) if b.shape is None else b.shape.size

@@ -30,10 +30,10 @@ def tree_solver(joints: np.recarray, order: np.ndarray, joint: np.ndarray) -> Tr
 
 
 def spread(touching: list[list[int]], mass, moments, extent) -> tuple[float, int, int]:
-    """Return by how much masses, or moments over the squares of sizes, differ in one mechanism, and of which bodies.
+    """Return by how much masses, or moments over squares of sizes, differ in a mechanism, and of which bodies.
 
-    `touching` is that of `loop_solver`; for all bodies mass (N,), principal moments (N, 3) and size (N,). The bodies
-    are the lightest and the heaviest of that mechanism.
+    `touching` is that of `loop_solver`; for all bodies mass (N,), principal moments (N, 3) and size (N,). The
+    bodies are the lightest and the heaviest of that mechanism.
     """
     root = list(range(len(mass)))
 

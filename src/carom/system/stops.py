@@ -21,9 +21,11 @@ def with_stops(scene, contacts: np.recarray, coordinates, sizes, options) -> np.
         turns = coordinate_kind(stop.joint, stop.coordinate) == "turn"
         row.number, row.solid, row.touches = first + stop.index, number, STOP
         row.body, row.other = (c.child, c.parent) if c.child >= 0 else (c.parent, -1)
-        row.side, row.offset = stop.side, stop.side * stop.end
+        size = sizes[stop.joint.child.index]
+        row.side = stop.side * (size if turns else 1.0)
+        row.offset = row.side * stop.end
         row.law, row.restitution = IMPACT_LAWS.index(stop.impact_law), stop.restitution
-        row.extent = row.other_extent = 1.0 if turns else sizes[stop.joint.child.index]
+        row.extent = row.other_extent = size
         row.first, row.last, row.stiffness = 0, 1, 1.0
     rows.still = 1e-14 * np.sqrt(np.linalg.norm(scene.gravity) * rows.extent)
     rows.width = 1e-5 * rows.extent if options.layer_width is None else options.layer_width
