@@ -156,7 +156,9 @@ def advance(
                         dt = propose(search)
                         continue
                 verdict, kind, other, low, d1, d2 = UNSURE, GAP, -1, 0.0, 0.0, 0.0
-                loses = too_long(system, controls, held, now, trial, dt, alone, pace < math.inf, work)
+                loses = too_long(
+                    system, controls, held, now, trial, dt, alone, pace < math.inf, work
+                )
                 if not loses:
                     verdict, kind, other, low, d1, d2 = examine(
                         system, controls, held, now, dt, work

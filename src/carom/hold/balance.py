@@ -84,7 +84,10 @@ def turns_far(system, held, start, end, dt):
     """Return whether a body that is held turns too far in a step."""
     for i in range(held.count[0]):
         hold = held.points[i]
-        if hold.rest == 0 and not dt * max(norm(start[hold.body].w), norm(end[hold.body].w)) <= TURN:
+        if (
+            hold.rest == 0
+            and not dt * max(norm(start[hold.body].w), norm(end[hold.body].w)) <= TURN
+        ):
             return True
     return False
 
