@@ -21,7 +21,7 @@ from carom.motion.contact_point import (
     spread,
 )
 from carom.motion.elements import driven_power
-from carom.motion.friction import stick_force
+from carom.motion.friction import slip_force, stick_force
 from carom.system.notes import begin_event, end_event
 from carom.system.records import HOLD, SLIPS, STICKS
 
@@ -75,7 +75,8 @@ def begin_hold(system, contact, hold, state, stop, work, clock):
     """Take out the normal velocity, and slip that has stopped; set the mode to try first.
 
     Slip has stopped when all of it is below `stop` (or round-off). Returns False if a contact that was
-    to settle goes on slipping.
+    to settle goes on slipping. Else friction goes with what pulls the normal velocity out: over the bounces
+    that are dropped, t = 2 u_n/(g (1 - e)), the normal impulse is less by that than over as long a hold.
     """
     point, still = work.point[0], slow(contact, state)
     place_held(system, hold, state, point, work)
@@ -92,13 +93,30 @@ def begin_hold(system, contact, hold, state, stop, work, clock):
         n, t1, t2 = stick_force(W, u[0], u[1], u[2])
         s1, s2 = 0.0, 0.0
     hold.mode = STICK if stops else SLIP
+    if hold.mode == SLIP and yields(W, contact.friction, u[1], u[2]) > 0.0:
+        p = slip_force(W, u[0], u[1], u[2], u[1], u[2], contact.friction)
+        e1, e2 = u[1] + moved(W, 1, p), u[2] + moved(W, 2, p)
+        if e1 * u[1] + e2 * u[2] > 0.0:
+            n, t1, t2 = p
+            s1, s2 = e1, e2
     spread(system, point, state, n, t1, t2, work)
     add_velocity(system, point, work, state)
     if not alone(system, point):
         clock.loads += driven_power(system, state, work)  # of an impulse: its work
-    # work of the impulse: half of it times the sum of the velocities before and after
-    clock.bounces += 0.5 * (n * u[0] + t1 * (u[1] + s1) + t2 * (u[2] + s2))
+    # work of the impulse: half of it times the sum of the velocities before and after; that of friction is less
+    # than what the hold takes too much until the bounces would have ended
+    clock.bounces += 0.5 * n * u[0]
+    if stops:
+        clock.bounces += 0.5 * (t1 * u[1] + t2 * u[2])
+    else:
+        clock.friction += 0.5 * (t1 * (u[1] + s1) + t2 * (u[2] + s2))
     return True
+
+
+@kernel
+def moved(W, r, p):
+    """Return row r of W p."""
+    return W[r, 0] * p[0] + W[r, 1] * p[1] + W[r, 2] * p[2]
 
 
 @kernel

@@ -17,11 +17,12 @@ from carom.motion.acceleration import SLIP, STICK
 from carom.motion.contact_point import add_velocity, alone, contact_velocity, spread
 from carom.motion.elements import driven_power
 from carom.motion.several import factor, substitute
-from carom.system.cluster import OLD, C, U
+from carom.system.cluster import OLD, C, P, U
 from carom.system.notes import begin_event, end_event
 from carom.system.records import HOLD, OPENS, SLIPS, STICKS
 
 DROP = 1e-10  # of a pivot, relative to its row
+ROUNDS = 60  # of friction with what it does to the normal impulses
 
 
 @kernel
@@ -100,21 +101,29 @@ def speed_of(system, state, count, member):
 def drop_bounces(system, controls, k, group, state, cluster, work, clock):
     """Take out the normal velocities of the points that stay, in the kinetic metric.
 
-    A point without slip keeps none: else it would stick with the slip that this gives it. Where that
-    leaves nothing but round-off it leaves nothing.
+    A point without slip keeps none: else it would stick with the slip that this gives it. With slip friction
+    goes with the impulse (`carom.hold.one.begin_hold`). Where that leaves nothing but round-off it leaves
+    nothing.
     """
     count = members(work, group, cluster.member)
     still = 1e-12 * speed_of(system, state, count, cluster.member)
     for i in range(3 * k):
         still = max(still, controls.rest * controls.step * abs(cluster.v[C][i]))
-    n, L, x = 3 * k, cluster.m[1], cluster.v[OLD]
-    for i in range(n):
-        x[i] = -cluster.v[U][i] if stops(cluster, i) else 0.0
-        for j in range(n):
-            both = stops(cluster, i) and stops(cluster, j)
-            L[i, j] = cluster.m[0][i, j] if both else 1.0 if i == j else 0.0
-    factor(n, DROP, L)
-    substitute(n, L, x)
+    find_pull(k, cluster)
+    x, u, W = cluster.v[OLD], cluster.v[U], cluster.m[0]
+    for i in range(3 * k):
+        if x[i] == 0.0:
+            continue
+        after = 0.0
+        if not stops(cluster, i):
+            after = u[i]
+            for j in range(3 * k):
+                after += W[i, j] * x[j]
+        # work of the impulse: half of it times the sum of the velocities before and after
+        if i % 3 > 0 and not stops(cluster, i):
+            clock.friction += 0.5 * x[i] * (u[i] + after)
+        else:
+            clock.bounces += 0.5 * x[i] * (u[i] + after)
     for i in range(k):
         n, t1, t2 = x[3 * i], x[3 * i + 1], x[3 * i + 2]
         if n != 0.0 or t1 != 0.0 or t2 != 0.0:
@@ -122,14 +131,62 @@ def drop_bounces(system, controls, k, group, state, cluster, work, clock):
             add_velocity(system, cluster.points[0][i], work, state)
             if not alone(system, cluster.points[0][i]):
                 clock.loads += driven_power(system, state, work)  # of an impulse: its work
-            # work of the impulses: half of them times the velocities before; after they are none
-            u = cluster.v[U]
-            clock.bounces += 0.5 * (n * u[3 * i] + t1 * u[3 * i + 1] + t2 * u[3 * i + 2])
     if speed_of(system, state, count, cluster.member) <= still:
         for m in range(count):
             b = cluster.member[m]
             for r in range(3):
                 state[b].v[r], state[b].w[r] = 0.0, 0.0
+
+
+@kernel
+def find_pull(k, cluster):
+    """Write the impulses that take the velocities out into `old`: with friction, if rounds find that."""
+    n, L, x, last = 3 * k, cluster.m[1], cluster.v[OLD], cluster.v[P]
+    for i in range(n):
+        for j in range(n):
+            both = stops(cluster, i) and stops(cluster, j)
+            L[i, j] = cluster.m[0][i, j] if both else 1.0 if i == j else 0.0
+    factor(n, DROP, L)
+    largest = 0.0
+    for with_friction in range(1, -1, -1):
+        for i in range(n):
+            last[i] = 0.0
+        before = math.inf
+        for _ in range(ROUNDS):
+            change, largest = pull_once(k, with_friction, cluster)
+            for i in range(n):
+                last[i] = x[i]
+            if not change < before:
+                break
+            before = change
+        if with_friction == 0 or before <= 1e-9 * largest:
+            return
+
+
+@kernel
+def pull_once(k, with_friction, cluster):
+    """Solve for the impulses with the friction of those of the last round; return their change and size."""
+    n, W, x, last = 3 * k, cluster.m[0], cluster.v[OLD], cluster.v[P]
+    for i in range(k):  # friction of the points that slip
+        slides = with_friction == 1 and cluster.seats[i].stays == 1 and cluster.kind[i] == SLIDING
+        for r in range(2):
+            q = 3 * i + 1 + r
+            if not stops(cluster, q):
+                last[q] = -cluster.mu[i] * cluster.heading[i, r] * last[3 * i] if slides else 0.0
+    for i in range(n):
+        x[i] = 0.0
+        if stops(cluster, i):
+            x[i] = -cluster.v[U][i]
+            for j in range(n):
+                x[i] -= W[i, j] * last[j] if not stops(cluster, j) else 0.0
+    substitute(n, cluster.m[1], x)
+    change, largest = 0.0, 0.0
+    for i in range(n):
+        if stops(cluster, i):
+            change, largest = max(change, abs(x[i] - last[i])), max(largest, abs(x[i]))
+        else:
+            x[i] = last[i]
+    return change, largest
 
 
 @kernel
