@@ -89,7 +89,7 @@ class Controls(NamedTuple):
     press_at: int
     heap_at: int
     heap: int  # an island of so many bodies takes its steps whole
-    retry: int  # 1: a step that does not get on is given up, to be taken whole
+    retry: int  # a step that does not get on is given up, to be taken: 1 whole, 2 in parts; 0: it is not
     order: int  # of the error of a step whose length is chosen; 0: all steps are `step`
     rtol: float
     atol: float
@@ -103,7 +103,7 @@ def advance(
 ):  # fmt: skip
     """Move the bodies of an island to the end of the step. Returns 0, or what `run` is to return."""
     clock, search, trial = clocks[0], work.search[0], work.trial
-    late = controls.retry == 1 and is_whole(
+    late = controls.retry == 2 and is_whole(
         clock.step, work
     )  # events at the ends of parts of the step
     pace = search.pace if clock.paused == 1 else math.inf
@@ -115,7 +115,7 @@ def advance(
         if not late:
             if clock.in_step > controls.max_impacts or clock.at_once > 1000:
                 return TOO_MANY
-            if controls.retry == 1 and clock.effort > affordable(controls, clock):
+            if controls.retry > 0 and clock.effort > affordable(controls, clock):
                 return TOO_MANY
         remaining = length - clock.spent
         exact = controls.location == LOCATE and controls.order == 0 and not late
@@ -151,7 +151,7 @@ def advance(
                 clock.tries += 1
                 alone = friction  # of points that are held one to a body
                 clock.since += 1.0 + now.shape[0] + held.brinks.shape[0]
-                if controls.retry == 1 and not late:
+                if controls.retry > 0 and not late:
                     if clock.tries > TRIES or clock.effort > affordable(controls, clock):
                         return TOO_MANY
                 if code != 0 and controls.order == 0:
@@ -244,7 +244,7 @@ def advance(
             if search.pending != NOTHING:
                 continue
             # an island is taken whole then; where there are none the run goes on as long as it makes sense
-            bearable = UNSOLVED if controls.retry == 1 and not late else USELESS
+            bearable = UNSOLVED if controls.retry == 1 else USELESS
             if held.count[0] > 0 and unsolved(system, controls, work, bearable):
                 return NO_CONVERGENCE
             accept(now, trial, dt, applied, friction, begin, clock)

@@ -112,7 +112,8 @@ class Run:
         apart = located and tolerances is None and not method.startswith("paper")
         self.islands = (new_islands if apart else no_islands)(system, self.held)
         again = apart and options.hold and system.contacts.size > 0
-        self.controls = self.controls._replace(retry=int(again))
+        whole = 1 if system.bodies["ballistic"].all() else 2
+        self.controls = self.controls._replace(retry=whole if again else 0)
         self.cluster = new_cluster(system)
         self.heap = no_heap()  # made when there is one
         self.corner = new_corner(1, corner_settings(options))  # and this
@@ -349,7 +350,7 @@ class Run:
         self.clock[:] = islands.clock
         search["pending"], held.carries[:] = 0, 0
         points = held.points[: held.count[0]]
-        held.carries[points.feature[points.touches == 0]] = 1
+        held.carries[points["feature"][points["touches"] == 0]] = 1
 
     def solution(self, status: Status) -> Solution:
         """Return what was computed; after a failure up to the last state, between saved steps or not."""

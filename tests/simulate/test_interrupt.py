@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import carom
+from carom import march
 from carom.system import records
 from simulate.scenes import die, turn
 
@@ -59,22 +60,55 @@ def test_an_interrupt_ends_a_run(scene):
     assert said.split() == ["INTERRUPTED", "True", "True"]
 
 
-@pytest.mark.plain
-@pytest.mark.parametrize("count", [1, 2])
-def test_leaving_the_loop_changes_nothing(monkeypatch, count):
-    """Left after each trial step, or never: the same bits. (What is compiled does not see the patch.)"""
+@pytest.fixture
+def paused(monkeypatch):
+    """Have the loop left after each trial step. (What is compiled does not see the patch.)"""
     if not numba.config.DISABLE_JIT:
         pytest.skip("only without the JIT")
-    solutions = []
-    for work in (0.5, np.inf):
-        monkeypatch.setattr(records, "LONG", work)
-        scene = die((3, 10, 0), 0.2, orientation=turn((1, 2, 3), 0.5), position=(0, 0, 0.03))
-        if count == 2:
-            scene.add_body(carom.Sphere(0.01), mass=0.01, position=(0.002, 0, 0.06))
-            scene.set_contact_default(restitution=0.3, friction=0.3)
-        solutions.append(carom.simulate(scene, 0.15, step=5e-3))
-    a, b = solutions
+    monkeypatch.setattr(records, "LONG", 0.5)
+    return monkeypatch
+
+
+def thrown(count):
+    """Return a scene of a die, alone or with a ball."""
+    scene = die((3, 10, 0), 0.2, orientation=turn((1, 2, 3), 0.5), position=(0, 0, 0.03))
+    if count == 2:
+        scene.add_body(carom.Sphere(0.01), mass=0.01, position=(0.002, 0, 0.06))
+        scene.set_contact_default(restitution=0.3, friction=0.3)
+    return scene
+
+
+@pytest.mark.plain
+@pytest.mark.parametrize("count", [1, 2])
+def test_leaving_the_loop_changes_nothing(paused, count):
+    """After each trial step, or never: the same bits."""
+    a = carom.simulate(thrown(count), 0.15, step=5e-3)
+    paused.setattr(records, "LONG", np.inf)
+    b = carom.simulate(thrown(count), 0.15, step=5e-3)
     assert len(a.impacts) > 5
     np.testing.assert_array_equal(a.position, b.position)
     np.testing.assert_array_equal(a.velocity, b.velocity)
     np.testing.assert_array_equal(a.events.time, b.events.time)
+
+
+@pytest.mark.plain
+@pytest.mark.parametrize("count", [1, 2])
+@pytest.mark.parametrize("last", [7, 20, 41])
+def test_a_run_that_is_interrupted_goes_back_to_the_end_of_a_step(paused, count, last):
+    """Wherever in a step that happens."""
+    whole, run, left = carom.simulate(thrown(count), 0.15, step=5e-3), march.run, []
+
+    def entered(*arguments):
+        code = run(*arguments)
+        left.append(code)
+        if left.count(records.PAUSE) == last:
+            raise KeyboardInterrupt
+        return code
+
+    paused.setattr(march, "run", entered)
+    a = carom.simulate(thrown(count), 0.15, step=5e-3, throw=False)
+    assert a.status is carom.Status.INTERRUPTED
+    assert 0.0 < a.t[-1] < 0.15
+    np.testing.assert_array_equal(a.t, whole.t[: len(a.t)])
+    np.testing.assert_array_equal(a.position, whole.position[: len(a.t)])
+    np.testing.assert_array_equal(a.velocity, whole.velocity[: len(a.t)])

@@ -28,8 +28,8 @@ UNSOLVED, USELESS = 0.01, 10.0
 POORLY = 1e3
 # of the step: what is no longer is cut no more, for what it loses and for a solution
 SHORTEST, RETRIED = 1e-4, 1e-2
-# how much more work a step may take where there is nothing else to be done
-PATIENCE = 100.0
+# how much more work a step may take where it cannot be taken whole: in parts, or not in another way
+PATIENCE = 10.0
 
 
 @kernel
