@@ -9,8 +9,8 @@ from __future__ import annotations
 from carom.geometry.rotation import norm
 from carom.hold.middle import spin_momentum
 from carom.jit import inlined, kernel
-from carom.system.arrays import ONE
 from carom.system import records as r
+from carom.system.arrays import ONE
 
 # what a step of several bodies may lose: this part of the kinetic energy at its start, and of what a fall of a
 # whole step gains; one that is cut is cut on until it loses CAREFUL of that
