@@ -140,20 +140,20 @@ def words(data: bytes, rng: random.Random) -> bytes:
 def look_at_run(path: Path, known: list[bytes]) -> str:
     """Load a run, and ask it for all that it holds; say whether it is one of the whole ones."""
     found = carom.Solution.load(path)
-    repr(found), str(found.scene), len(found.impacts), found.message, found.success
+    _ = repr(found), str(found.scene), len(found.impacts), found.message, found.success
     _ = found.contact_mode, found.contact_force, found.forces, found.ledger.residual
     found.evaluate(
         np.linspace(found.t[0], found.t[-1], 5) if np.all(np.diff(found.t) > 0) else found.t[0]
     )
     with contextlib.suppress(ValueError, OSError):
-        found.to_pandas(), found.to_xarray()
+        _ = found.to_pandas(), found.to_xarray()
     return "the same" if path.read_bytes() in known else "read"
 
 
 def look_at_scene(path: Path, known: list[bytes]) -> str:
     """Make a scene of JSON, and look at it."""
     scene, _ = scene_from_text(path.read_text(encoding="utf-8"))
-    repr(scene), str(scene), scene_to_text(scene), scene.validate()
+    _ = repr(scene), str(scene), scene_to_text(scene), scene.validate()
     return "read"
 
 
