@@ -13,19 +13,24 @@ import contextlib
 import multiprocessing
 import random
 import resource
+import signal
 import sys
 import tempfile
+import time
 import warnings
 from collections import Counter
 from pathlib import Path
 
 import numpy as np
+import pandas  # noqa: F401  (so that each child has them)
+import xarray  # noqa: F401
 
 import carom
 from carom.files import sealed
 from carom.files.scene_parts import scene_from_text, scene_to_text
 
-SECONDS, MEMORY, PART = 5.0, 4 << 30, 20
+SECONDS, WAIT = 5, 300.0  # of processor time, and on the clock, for one file
+MEMORY, PART = 4 << 30, 20
 MODEL = """<mujoco><worldbody><geom type="plane" size="1 1 1"/><replicate count="3" offset="1 0 0">
 <body pos="0 0 1" name="a"><freejoint/><geom type="box" size=".1 .1 .1" mass="1"/></body></replicate>
 <body pos="5 0 1"><joint type="hinge" axis="0 1 0" range="-1 1"/>
@@ -135,20 +140,20 @@ def words(data: bytes, rng: random.Random) -> bytes:
 def look_at_run(path: Path, known: list[bytes]) -> str:
     """Load a run, and ask it for all that it holds; say whether it is one of the whole ones."""
     found = carom.Solution.load(path)
-    repr(found), str(found.scene), len(found.impacts), found.message, found.success
+    _ = repr(found), str(found.scene), len(found.impacts), found.message, found.success
     _ = found.contact_mode, found.contact_force, found.forces, found.ledger.residual
     found.evaluate(
         np.linspace(found.t[0], found.t[-1], 5) if np.all(np.diff(found.t) > 0) else found.t[0]
     )
     with contextlib.suppress(ValueError, OSError):
-        found.to_pandas(), found.to_xarray()
+        _ = found.to_pandas(), found.to_xarray()
     return "the same" if path.read_bytes() in known else "read"
 
 
 def look_at_scene(path: Path, known: list[bytes]) -> str:
     """Make a scene of JSON, and look at it."""
     scene, _ = scene_from_text(path.read_text(encoding="utf-8"))
-    repr(scene), str(scene), scene_to_text(scene), scene.validate()
+    _ = repr(scene), str(scene), scene_to_text(scene), scene.validate()
     return "read"
 
 
@@ -166,6 +171,8 @@ def part_of(kind: str, seeds: list[int], wholes: list[bytes], line) -> None:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"file{end}"
         for seed in seeds:
+            limit = int(time.process_time()) + SECONDS, resource.getrlimit(resource.RLIMIT_CPU)[1]
+            resource.setrlimit(resource.RLIMIT_CPU, limit)
             rng = random.Random(f"{kind} {seed}")
             path.write_bytes(change(rng.choice(wholes), rng))
             try:
@@ -196,10 +203,12 @@ def campaign(kind: str, count: int, first: int, wholes: list[bytes]) -> Counter:
         child.start()
         there.close()
         for seed in seeds:
-            told = "hangs" if not here.poll(SECONDS) else None
+            told = None if here.poll(WAIT) else "hangs"
             with contextlib.suppress(EOFError):
                 told = told or here.recv()[1]
-            told = told or "dies"
+            if told is None:
+                child.join()
+                told = "hangs" if child.exitcode == -signal.SIGXCPU else "dies"
             left.remove(seed)
             known = told in ("refused", "read", "the same")
             counts[told if known else "wrong"] += 1

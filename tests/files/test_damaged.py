@@ -108,7 +108,7 @@ def changed(place, value):
         (("sizes", "event"), 3.5, "size of event must be a whole number"),
         (("arrays", "position", 1), 10**18, "place of position must be"),
         (("arrays", "position", 1), -8, "place of position must be"),
-        (("arrays", "position", 0), "|O", "position is of type"),
+        (("arrays", "position", 0), "|O", "type of position must be one of"),
         (("arrays", "impact_contact", 0), "<f8", "impact_contact is of type"),
         (("arrays", "held_saved"), [], "ValueError"),
         (("words", "impact_law"), "9", "impact_law has 1 rows|out of bounds"),
@@ -116,7 +116,7 @@ def changed(place, value):
         (("attributes", "settings"), '{"duration": -1}', "missing or broken"),
         (("attributes", "options"), '{"heaps": 3}', "heaps"),
         (("attributes", "status"), "FINE", "FINE"),
-        (("attributes", "stats"), '{"steps": "many"}', "steps must be a whole number"),
+        (("attributes", "stats"), '{"steps": "many"}', "steps must be a number"),
         (("checkpoint",), {"found": {}, "arrays": {"x": ["|O", [1], 0, 8]}}, "is no array"),
         (("checkpoint",), {"found": {"spots": -1}, "arrays": {}}, "spots must be"),
         (("scene",), "{", "its scene is broken: the text"),
@@ -126,6 +126,12 @@ def changed(place, value):
 def test_made_up_index(place, value, what, path):
     rewrite(path, changed(place, value))
     with pytest.raises(ValueError, match=rf"{REFUSED}.*({what})"):
+        carom.Solution.load(path)
+
+
+def test_no_scene(path):
+    rewrite(path, lambda index: index.pop("scene") and None)
+    with pytest.raises(ValueError, match=REFUSED + "its scene is broken: the text"):
         carom.Solution.load(path)
 
 

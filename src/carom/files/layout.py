@@ -81,13 +81,6 @@ HELD = {
     "vector": (("axis",), "N", "force on the body, world axes"),
 }
 
-#: columns of words, of which there are few
-WORDS = {
-    "impact_law": ("newton", "poisson", "stronge"),
-    "event_kind": ("impact", "held", "slips", "sticks", "opens", "jams"),
-    "interval_mode": ("open", "slipping", "sticking"),
-}
-
 LEDGER = {
     "loads": "work of loads, dampers and motors since the start",
     "impacts": "change by impacts since the start",

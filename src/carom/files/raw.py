@@ -13,6 +13,7 @@ import numpy as np
 from carom.columns import table as new_table
 from carom.system import records as r
 from carom.system.arrays import STATE
+from carom.tables import LAWS
 
 GROUP = "records"
 FIELDS = {
@@ -43,6 +44,10 @@ SAME = {
     "event_time": "event_time", "event_contact": "event_contact",
     **{f"touch_{name}": f"held_{name}" for name in ("saved", "contact", "body", "other", "point")},
     "touch_force": "held_force", "touch_push": "held_vector",
+}  # fmt: skip
+#: variables of words, of which there are ten at most
+WORDS = {
+    "impact_law": LAWS, "event_kind": r.EVENTS, "interval_mode": ("open", "slipping", "sticking"),
 }  # fmt: skip
 
 

@@ -18,7 +18,7 @@ from carom import check
 from carom.files import raw
 from carom.files.checkpoint import from_index
 from carom.files.kept import KeptRun
-from carom.files.layout import EVENT, IMPACT, INTERVAL, LEDGER, WORDS
+from carom.files.layout import EVENT, IMPACT, INTERVAL, LEDGER
 from carom.files.scene_parts import scene_from_text
 from carom.files.sealed import Sealed, refusal, unsealed
 from carom.ledger import Ledger
@@ -39,6 +39,7 @@ DERIVED = {
     "kinetic_energy": ("time",), "potential_energy": ("time",),
 }  # fmt: skip
 LENGTHS = {"axis": 3, "quaternion": 4, "contact_axis": 3, "contact_axis_2": 3}
+TYPES = ("<f8", "<i8", ">f8", ">i8")
 WHOLE = ("contact", "together", "wedged", "feature")  # columns of tables that count something
 
 
@@ -54,7 +55,7 @@ def read(path: Path, functions: Mapping[str, Callable] | None = None) -> dict[st
     """
     file = unsealed(path)
     try:
-        scene, missing = scene_from_text(file.index["scene"], functions)
+        scene, missing = scene_from_text(file.index.get("scene", ""), functions)
     except ValueError as error:
         if str(error).startswith("functions must"):
             raise
@@ -85,7 +86,7 @@ def _fields(file: Sealed, scene, missing: list[str]) -> dict[str, Any]:
         "status": Status[attributes["status"]],
         "warnings": tuple(str(one) for one in json.loads(attributes["warnings"])),
         "stats": {
-            str(name): check.integer(name, n)
+            str(name): check.integer(name, n) if isinstance(n, int) else check.number(name, n)
             for name, n in json.loads(attributes["stats"]).items()
         },
         "scene": scene, "settings": settings, "_run": run, "_touch": records.touch,
@@ -127,24 +128,24 @@ class _Arrays:
     def __contains__(self, name: str) -> bool:
         return name in self.index["arrays"]
 
-    def array(self, name: str, dims: tuple[str, ...], kind: str = "f8") -> np.ndarray:
-        """Return a variable with these dimensions."""
-        return self._placed(name, tuple(self.sizes[dim] for dim in dims), np.dtype(kind))
+    def array(self, name: str, dims: tuple[str, ...], kind: str | None = "f8") -> np.ndarray:
+        """Return a variable with these dimensions, of a kind or (None) of any."""
+        return self._placed(name, tuple(self.sizes[dim] for dim in dims), kind)
 
     def column(self, name: str, same: str, shape: tuple[int, ...], kind) -> np.ndarray:
         """Return a column of the records, or the variable that has the same bits."""
         own = f"{raw.GROUP}/{name}"
-        return self._placed(own if own in self else same, shape, np.dtype(kind))
+        return self._placed(own if own in self else same, shape, kind)
 
     def table(self, prefix: str, columns: dict) -> dict[str, np.ndarray]:
         """Return the columns of a table."""
         out = {}
         for column, (dims, _, _) in columns.items():
             name = f"{prefix}_{column}"
-            kind = "i8" if column in WHOLE else "f8"
+            kind = "i8" if column in WHOLE else None
             out[column] = (
                 self._words(name, self.sizes[prefix])
-                if name in WORDS
+                if name in raw.WORDS
                 else self.array(name, (prefix, *dims), kind)
             )
         return out
@@ -153,16 +154,19 @@ class _Arrays:
         codes = np.frombuffer(self.index["words"][name].encode(), "u1") - ord("0")
         if len(codes) != rows:
             raise ValueError(f"{name} has {len(codes)} rows where {rows} should be")
-        return np.array(WORDS[name])[codes]
+        return np.array(raw.WORDS[name])[codes]
 
-    def _placed(self, name: str, shape: tuple[int, ...], kind: np.dtype) -> np.ndarray:
+    def _placed(self, name: str, shape: tuple[int, ...], kind) -> np.ndarray:
         stored, start = self.index["arrays"][name]
-        if np.dtype(str(stored)).newbyteorder("=") != kind:
-            raise ValueError(f"{name} is of type {stored!r} where {kind.str!r} should be")
+        found = np.dtype(check.choice(f"type of {name}", stored, TYPES))
+        own = found.newbyteorder("=")
+        if kind is not None and own != kind:
+            raise ValueError(f"{name} is of type {stored!r} where {np.dtype(kind).str!r} should be")
         size = math.prod(shape)
-        check.integer(f"place of {name}", start, least=0, most=len(self.data) - 8 * size)
-        flat = np.frombuffer(self.data, np.dtype(stored), size, start) if size else np.zeros(0)
-        return flat.reshape(shape).astype(kind)
+        most = len(self.data) - found.itemsize * size
+        check.integer(f"place of {name}", start, least=0, most=most)
+        flat = np.frombuffer(self.data, found, size, start) if size else np.zeros(0)
+        return flat.reshape(shape).astype(own)
 
 
 def check_numbers(records: r.Records, contacts: int) -> None:

@@ -58,6 +58,7 @@ def scene_from_text(
         name of `functions` is none that the scene knows.
     """
     with told("the text"):
+        check.instance("a scene", text, (str,))
         data = json.loads(text, parse_constant=_no_number)
         check.instance("a scene", data, (dict,))
         known = [str(name) for name in data["functions"]]

@@ -14,7 +14,7 @@ import numpy as np
 from carom.files import raw
 from carom.files.checkpoint import Checkpoint, packed
 from carom.files.disk import put
-from carom.files.layout import WORDS, Variable
+from carom.files.layout import Variable
 from carom.files.needs import need
 from carom.files.sealed import seal
 from carom.files.variables import attributes, labelled
@@ -64,7 +64,7 @@ def file_of(solution, checkpoint: Checkpoint | None = None, whole: bool = True) 
             dim: n for one in variables for dim, n in zip(one.dims, one.data.shape)
         } | {dim: len(getattr(records, dim)) for dim in ("snapshot",)},
         "arrays": arrays,
-        "words": {name: _coded(known[name], words) for name, words in WORDS.items()},
+        "words": {name: _coded(known[name], words) for name, words in raw.WORDS.items()},
         "checkpoint": None if checkpoint is None else packed(checkpoint, add),
     }  # fmt: skip
     return seal(parts, index)
