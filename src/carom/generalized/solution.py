@@ -225,7 +225,7 @@ class GeneralizedSolution(Drawn):
         check.choice("side", side, ("right", "left"))
         times = check.times("t", t, self.t[0], self.t[-1])
         at, before, after = self._nodes
-        i = np.searchsorted(at, times, side=side) - 1
+        i = np.searchsorted(at, times, side="left" if side == "left" else "right") - 1
         i = np.clip(i, 0, max(len(at) - 2, 0))
         k = np.minimum(i + 1, len(at) - 1)
         n, h = self.q.shape[1], np.maximum(at[k] - at[i], 1e-300)[:, None]

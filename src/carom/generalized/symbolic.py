@@ -117,7 +117,7 @@ class SymbolicModel:
             )
         return result
 
-    def expression(self, name: str, given):
+    def expression(self, name: str, given) -> Any:
         """Return what is given as an expression; refuse texts, which SymPy would evaluate, and no numbers."""
         sp = self.sp
         try:

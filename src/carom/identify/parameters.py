@@ -40,7 +40,7 @@ class Parameter:
         start = check.number("start", self.start)
         if not lower <= start <= upper:
             raise ValueError(
-                f"start must be from lower to upper, {lower:g} to {upper:g}, got {start!r}"
+                f"start must be at least {lower:g} and at most {upper:g} (lower and upper), got {start!r}"
             )
         step = check.number("step", self.step, above=0.0)
         if not step <= upper - lower:
