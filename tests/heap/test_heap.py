@@ -10,6 +10,9 @@ from carom.contact.pairs.api import nearest_points
 from carom.geometry import quaternion
 from carom.system.frames import contact_axes
 
+#: whole steps of heaps are of order 1: friction that rises by 1e-3 of the energy in a step, and says so
+pytestmark = pytest.mark.filterwarnings("ignore::carom.AccuracyWarning")
+
 G = 9.81
 WHOLE = carom.Options(heap=2)
 
@@ -202,7 +205,10 @@ def test_rolling_friction_in_a_heap():
 def test_a_step_that_does_not_get_on_is_taken_whole():
     """Two halvings do not do for an impact of two turning boxes: the run goes on, and says so."""
     scene = poured([carom.Box(0.02, 0.02, 0.02)] * 8, seed=2, restitution=0.4, friction=0.4)
-    s = carom.simulate(scene, 0.4, step=2e-3, options=carom.Options(max_cuts=1))
+    rough = carom.Options(
+        max_cuts=1, energy_tolerance=1e-3
+    )  # its whole steps give 2e-2 of the energy
+    s = carom.simulate(scene, 0.4, step=2e-3, options=rough)
     assert s.status is carom.Status.SUCCESS
     assert s.stats["whole_steps"] > 0
     assert carom.simulate(scene, 0.1, step=1e-3).stats["whole_steps"] == 0

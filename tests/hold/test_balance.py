@@ -24,6 +24,8 @@ def two_boxes(seed):
     return scene
 
 
+# where slip ends in a step of 5 ms friction may give 1e-3 of the energy
+@pytest.mark.filterwarnings("ignore::carom.AccuracyWarning")
 @pytest.mark.parametrize("seed", [54, 86, 100, 129])
 def test_edges_that_push_each_other_lose_what_is_named(seed):
     # Whole steps over such pushes lost 5e-5, 2e-4, 2e-4 and 3e-2 of the energy. What is left is that of order

@@ -76,6 +76,8 @@ def pivot(step):
     return carom.simulate(scene, 0.25, step=step)
 
 
+# order 2: 4e-4 of the energy at the longest step
+@pytest.mark.filterwarnings("ignore::carom.AccuracyWarning")
 def test_pivots_about_an_edge_at_order_2():
     # theta'' = -m g l sin(theta - alpha)/J_edge, from rest: at .25 s theta = .16203883, w = 4.81399394.
     errors = []

@@ -5,6 +5,9 @@ q'' = 0, found for all that stick at once,
 
     (J P J^T) F = -q''_free.
 
+Where a motor moves the coordinate nothing that friction does can keep it: J P J^T is round-off of J M^-1 J^T.
+Sticking ends there as soon as it moves, or is about to; the force is then put beyond its bound.
+
 A mode ends where d q' or bound - |F| crosses zero; the loop locates that instant as it does an impact
 (`carom.hold.joint_events`).
 """
@@ -14,12 +17,15 @@ from __future__ import annotations
 from carom.dispatch import only_with_coordinates
 from carom.jit import kernel
 from carom.motion.contact_point import clear_wrenches, gain
-from carom.motion.coordinate import drift, motion_along, push, rate
+from carom.motion.coordinate import drift, motion_along, push, rate, speeds_of
 from carom.motion.forces import applied_wrenches
 from carom.motion.several import factor, substitute
-from carom.motion.solve import solve
+from carom.motion.solve import free_body, solve
 
 DEPENDENT = 1e-10  # of a diagonal: what sticks already through others takes no force
+ROUND_OFF = 1e-13  # of J M^-1 J^T: what joints and motors leave of it where they leave no freedom
+STILL = 1e-12  # of the speeds of both sides: no speed
+BEYOND = 2.0  # of its bound: the force of what cannot stick
 
 
 @kernel
@@ -47,15 +53,19 @@ def push_all(system, state, work):
 def stick(system, state, x, work):
     """Solve (J P J^T) F = x over those that stick: x becomes F, 0 of the others.
 
-    Dependent ones are left out.
+    Dependent ones are left out; those that depend on joints and motors are noted.
     """
     relations = system.relations
     count, W = relations.frictions.shape[0], relations.friction_matrix
     for j in range(count):
-        sticks = relations.frictions[j].mode == 0
+        sticks, own = relations.frictions[j].mode == 0, 0.0
         if sticks:
+            c = relations.coordinates[relations.frictions[j].coordinate]
             clear_wrenches(work)
-            push(relations.coordinates[relations.frictions[j].coordinate], state, 1.0, work)
+            push(c, state, 1.0, work)
+            for b in range(state.shape[0]):
+                free_body(system.bodies[b], state[b].Q, work.body[b])
+            own = motion_along(c, state, work)
             solve(system, state, False, work)
         else:
             x[j] = 0.0
@@ -64,8 +74,23 @@ def stick(system, state, x, work):
             if sticks and relations.frictions[i].mode == 0:
                 c = relations.coordinates[relations.frictions[i].coordinate]
                 W[i, j] = motion_along(c, state, work)
+        relations.frictions[j].driven = 1 if sticks and not W[j, j] > ROUND_OFF * own else 0
+        if relations.frictions[j].driven == 1:
+            W[j, j] = 0.0
     factor(count, DEPENDENT, W)
     substitute(count, W, x)
+
+
+@kernel
+def drive(system, one, state):
+    """Put the force of what cannot stick beyond its bound, if its coordinate moves or is about to."""
+    c = system.relations.coordinates[one.coordinate]
+    speed = rate(c, state)
+    still = abs(speed) <= STILL * speeds_of(system, c, state)
+    towards = one.change if still else speed
+    one.force = 0.0
+    if towards != 0.0:
+        one.force = -BEYOND * one.bound if towards > 0.0 else BEYOND * one.bound
 
 
 @kernel
@@ -87,10 +112,13 @@ def _joint_friction(system, state, work):
         for i in range(relations.frictions.shape[0]):
             c = relations.coordinates[relations.frictions[i].coordinate]
             x[i] = -motion_along(c, state, work) - drift(c, state, relations.write)
+            relations.frictions[i].change = -x[i]
         stick(system, state, x, work)
         for i in range(relations.frictions.shape[0]):
             if relations.frictions[i].mode == 0:
                 relations.frictions[i].force = x[i]
+            if relations.frictions[i].driven == 1:
+                drive(system, relations.frictions[i], state)
         applied_wrenches(system, state, True, work)
     return push_all(system, state, work)
 

@@ -137,6 +137,8 @@ FRICTION = [
     ("bound", "f8"),
     ("mode", "i8"),  # 1 or -1: slips in this direction; 0 sticks
     ("force", "f8"),  # of the last solve
+    ("change", "f8"),  # of q' by all other forces
+    ("driven", "i8"),  # 1 while it sticks where joints and motors leave its coordinate no freedom
 ]
 
 #: forces by a function of the user's: t, (bodies, 13) -> (bodies, 6)
