@@ -57,7 +57,7 @@ class Solution(Portable, Drawn):
         Counts: steps, trial steps, rejected ones (``step="auto"``), cuts, located events, impacts, holds;
         steps of held points and their rounds (of a heap: sweeps); `explicit_steps`, those that a symplectic
         method left to the explicit one in singular positions; and `whole_steps`, how often bodies that could
-        not go from event to event took steps as a heap.
+        not go from event to event took a step whole, or in parts.
 
     Examples
     --------
