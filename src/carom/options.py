@@ -47,7 +47,8 @@ class Options:
         With False, a bouncing body that comes to rest stops the run with a status.
     rest_tolerance : float
         Bodies held at several points come to rest, exactly, when their speed is below this part of the speed
-        that applied forces would give them in one step; slip below it has stopped. Default 1e-9.
+        that applied forces would give them in one step, or below what their contacts are solved to where that
+        is more (up to ten times); slip below it has stopped. Default 1e-9.
     energy_tolerance : float
         Energy that may come or go without a name in the ledger, as a part of the largest energy exchanged in
         the run: the greatest of kinetic energy, change of the potential, and each of the sums of loads,
@@ -76,10 +77,11 @@ class Options:
     max_iterations : int
         Most block iterations in one step of the paper's methods. Default 100.
     max_impacts_per_step : int
-        Most impacts in one step before the run stops with a status. Default 1000. (More than 200 at one
-        instant stop it too.)
+        Most impacts in one step; with more the step is taken whole, or in parts where there are joints or loads
+        (mathematics page, VI.9), and without `hold`, or with impacts that are not located, the run stops with a
+        status. Default 1000. (More than 1000 events at one instant count as too many, too.)
     max_cuts : int
-        Most halvings of one step while an impact cannot be excluded. Default 40.
+        Most halvings of one step while an impact cannot be excluded; then the same. Default 40.
     max_step : float or None
         Longest step of ``step="auto"`` [s]. Default None: duration / 50.
     """

@@ -64,7 +64,7 @@ class Solution(Portable, Drawn):
         steps of held points and their rounds (of a heap: sweeps); `explicit_steps`, those that a symplectic
         method left to the explicit one in singular positions; `parts`, by how many those outnumber the (trial)
         steps that were made in parts, as a body turned far; and `whole_steps`, how often bodies that could
-        not go from event to event took steps as a heap.
+        not go from event to event took a step whole, or in parts.
 
     Examples
     --------

@@ -92,7 +92,8 @@ def test_energy_and_forces_of_poured_dice(dice):
     forces = s.contact_force[-1, : 16 * 5].reshape(16, 5, 3)
     axes = [contact_axes(plane.normal) for plane in scene.half_spaces]
     up = sum(np.sum(forces[:, k] @ E[:, 2]) for k, E in enumerate(axes))
-    assert up == pytest.approx(16 * 0.01 * G, rel=1e-8)
+    # rest is what moves by less than ten times `rest_tolerance` of g h in a step: forces are as good
+    assert up == pytest.approx(16 * 0.01 * G, rel=1e-7)
     assert s.held_residual[-1] < 1e-12
 
 

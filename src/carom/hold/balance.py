@@ -25,7 +25,7 @@ TURN = 0.5
 # there is nothing to take whole, and the run stops
 UNSOLVED, USELESS = 0.01, 10.0
 # what is solved so much worse than rest asks for is not rest
-POORLY = 1e3
+POORLY = 10.0
 # of the step: what is no longer is cut no more, for what it loses and for a solution
 SHORTEST, RETRIED = 1e-4, 1e-2
 # how much more work a step may take where it cannot be taken whole: in parts, or not in another way
@@ -135,7 +135,7 @@ def rest_speed(controls, gained, residual, k):
     """Return the speed [m/s] below which bodies rest that are held at k points.
 
     `Options.rest_tolerance` of the speed that applied forces give them in the step, or what k contacts that are
-    solved to a residual may leave of it, up to a thousand times the former.
+    solved to a residual may leave of it, up to ten times the former.
     """
     least = controls.rest * gained
     return max(least, min(k * residual, POORLY * least))
