@@ -60,7 +60,7 @@ def draw(vary: Mapping, runs: int | None, seed: int, sampling: str) -> dict[str,
             )
         if runs is not None and len(values) != runs:
             raise ValueError(
-                f"vary[{name!r}] must have {runs} values, one a run (runs), got {len(values)}"
+                f"vary[{name!r}] must have {runs} values, one a run, got {len(values)} with runs={runs}"
             )
         runs = len(values)
     if runs is None:
