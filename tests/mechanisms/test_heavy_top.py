@@ -53,10 +53,10 @@ def test_default_method_has_order_four():
 
 @pytest.mark.parametrize(
     ("method", "steps", "order", "last"),
-    [("rk5", (1e-3, 5e-4), 5.0, 2e-10), ("rk8", (1e-2, 5e-3), 8.0, 3e-9)],
+    [("rk5", (1e-3, 5e-4), 5.0, 2e-10), ("rk8", (5e-3, 2.5e-3), 8.0, 3e-11)],
 )
 def test_methods_of_higher_order(method, steps, order, last):
-    """The reference itself is good to 4e-13."""
+    """The reference itself is good to 4e-13. Steps below 0.45 and 0.9 rad, where they are made in parts."""
     found = np.array([errors(simulate(0.2, h, method)) for h in steps])
     assert np.all(orders(found) > order - 0.35)
     assert np.all(found[-1] < last)
