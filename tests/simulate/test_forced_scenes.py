@@ -38,7 +38,7 @@ def test_a_scene_is_the_same_for_the_same_seed():
 
 def test_friction_of_a_joint_that_a_motor_moves():
     # A wheel on a motor that starts from rest and turns back, with dry friction M: the motor gives M |q'|
-    # besides what the wheel needs. (J P J^T is 0 where the motor holds the coordinate: friction cannot keep it.)
+    # besides what the wheel needs. (J P J^T is 0 where the motor has the coordinate: nothing can keep it.)
     bound, a, w = 0.3, 0.5, 4.0
     scene = carom.Scene(gravity=(0, 0, 0))
     wheel = scene.add_body(mass=1.0, inertia=(0.2, 0.2, 0.2))
