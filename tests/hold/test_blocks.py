@@ -76,21 +76,14 @@ def pivot(step):
     return carom.simulate(scene, 0.25, step=step)
 
 
-# order 2: 4e-4 of the energy at the longest step
-@pytest.mark.filterwarnings("ignore::carom.AccuracyWarning")
-def test_pivots_about_an_edge_at_order_2():
-    # theta'' = -m g l sin(theta - alpha)/J_edge, from rest: at .25 s theta = .16203883, w = 4.81399394.
-    errors = []
-    for step in (0.01, 0.005, 0.0025):
+def test_pivots_about_an_edge():
+    # theta'' = -m g l sin(theta - alpha)/J_edge, from rest: at .25 s theta = .16203883, w = 4.81399394. A step
+    # at two points is of order 2: theta would be off by 6.2e-4, 1.54e-4, 3.9e-5. Those that lose 2e-8 of the
+    # energy are cut.
+    for step, most in ((0.01, 6.2e-4), (0.005, 1.54e-4), (0.0025, 3.9e-5)):
         s = pivot(step)
         q = s.orientation[-1, 0]
         assert np.all(s.contact_mode[1:] == 2)
-        errors.append(
-            (
-                abs(abs(2 * np.arctan2(q[2], q[0])) - 0.16203883),
-                abs(abs(s.angular_velocity[-1, 0, 1]) - 4.81399394),
-            )
-        )
-    rates = np.log2(np.array(errors[:-1]) / errors[1:])
-    np.testing.assert_allclose(rates, 2.0, rtol=0, atol=0.05)
-    assert errors[-1][0] < 4e-5
+        assert abs(abs(2 * np.arctan2(q[2], q[0])) - 0.16203883) < min(most, 5e-5)
+        assert abs(abs(s.angular_velocity[-1, 0, 1]) - 4.81399394) < 20 * min(most, 5e-5)
+        assert np.max(np.abs(s.ledger.residual)) < 2e-6 * G * 0.1

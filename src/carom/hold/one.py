@@ -33,15 +33,16 @@ def hold_one(system, controls, held, state, horizon, cluster, work, clock, recor
     contact = system.contacts[seat.contact]
     u, still = contact_velocity(point, state), slow(contact, state)
     acceleration(system, state, held, work, work.stages[0])
-    g = -contact_acceleration(point, state, work.stages[0])[0]
+    a = contact_acceleration(point, state, work.stages[0])
     if contact.touches != 0:
-        g -= drift(system, contact, seat.feature, seat.point, point, state, work)[0]
-    if not bounces_end(contact, u[0], g, still, horizon):
+        d = drift(system, contact, seat.feature, seat.point, point, state, work)
+        a = (a[0] + d[0], a[1] + d[1], a[2] + d[2])
+    if not bounces_end(contact, u[0], -a[0], still, horizon):
         return
     begin_event(system, seat.contact, seat.feature, state, clock, records)
     i = enlist(system, held, seat, STICK, state, work)
     hold = held.points[i]
-    begin_hold(system, contact, hold, state, 0.0, work, clock)
+    begin_hold(system, contact, hold, state, 0.0, a, horizon, work, clock)
     find_mode(system, contact, hold, held, state, work)
     clock.holds += 1
     records.event[clock.event].mode = hold.mode
@@ -56,7 +57,7 @@ def settle_one(system, controls, hold, held, state, work, clock, records):
     hold.heading[0], hold.heading[1] = 0.0, 0.0
     acceleration(system, state, held, work, work.stages[0])
     begin_event(system, hold.contact, hold.feature, state, clock, records)
-    if begin_hold(system, contact, hold, state, stop, work, clock):
+    if begin_hold(system, contact, hold, state, stop, (0.0, 0.0, 0.0), math.inf, work, clock):
         find_mode(system, contact, hold, held, state, work)
     end_event(system, STICKS if hold.mode == STICK else SLIPS, state, clock, records)
 
@@ -71,12 +72,13 @@ def bounces_end(contact, rate, g, still, horizon):
 
 
 @kernel
-def begin_hold(system, contact, hold, state, stop, work, clock):
+def begin_hold(system, contact, hold, state, stop, a, horizon, work, clock):
     """Take out the normal velocity, and slip that has stopped; set the mode to try first.
 
     Slip has stopped when all of it is below `stop` (or round-off). Returns False if a contact that was
-    to settle goes on slipping. Else friction goes with what pulls the normal velocity out: over the bounces
-    that are dropped, t = 2 u_n/(g (1 - e)), the normal impulse is less by that than over as long a hold.
+    to settle goes on slipping. Else, where slip lasts under the acceleration `a` as long as the bounces that
+    are dropped, t = 2 u_n/(g (1 - e)), friction goes with what pulls u_n out: over them the normal impulse is
+    (g t - u_n)/k, over as long a hold g t/k.
     """
     point, still = work.point[0], slow(contact, state)
     place_held(system, hold, state, point, work)
@@ -93,30 +95,46 @@ def begin_hold(system, contact, hold, state, stop, work, clock):
         n, t1, t2 = stick_force(W, u[0], u[1], u[2])
         s1, s2 = 0.0, 0.0
     hold.mode = STICK if stops else SLIP
-    if hold.mode == SLIP and yields(W, contact.friction, u[1], u[2]) > 0.0:
-        p = slip_force(W, u[0], u[1], u[2], u[1], u[2], contact.friction)
-        e1, e2 = u[1] + moved(W, 1, p), u[2] + moved(W, 2, p)
-        if e1 * u[1] + e2 * u[2] > 0.0:
-            n, t1, t2 = p
-            s1, s2 = e1, e2
+    if hold.mode == SLIP and lasts(W, a, u, contact.friction, horizon):
+        n, t1, t2 = slip_force(W, u[0], u[1], u[2], u[1], u[2], contact.friction)
+        s1, s2 = u[1] + moved(W, 1, n, t1, t2), u[2] + moved(W, 2, n, t1, t2)
     spread(system, point, state, n, t1, t2, work)
     add_velocity(system, point, work, state)
     if not alone(system, point):
         clock.loads += driven_power(system, state, work)  # of an impulse: its work
-    # work of the impulse: half of it times the sum of the velocities before and after; that of friction is less
-    # than what the hold takes too much until the bounces would have ended
-    clock.bounces += 0.5 * n * u[0]
-    if stops:
-        clock.bounces += 0.5 * (t1 * u[1] + t2 * u[2])
-    else:
-        clock.friction += 0.5 * (t1 * (u[1] + s1) + t2 * (u[2] + s2))
+    # work of the impulse: half of it times the sum of the velocities before and after
+    name_work(0.5 * n * u[0], 0.5 * (t1 * (u[1] + s1) + t2 * (u[2] + s2)), clock)
     return True
 
 
 @kernel
-def moved(W, r, p):
-    """Return row r of W p."""
-    return W[r, 0] * p[0] + W[r, 1] * p[1] + W[r, 2] * p[2]
+def name_work(normal, tangential, clock):
+    """Put the work of what takes bounces out into the ledger.
+
+    Where that is a gain it is friction's: less than what the hold takes until the bounces would have ended.
+    """
+    if normal + tangential <= 0.0:
+        clock.bounces += normal + tangential
+    else:
+        clock.bounces += normal
+        clock.friction += tangential
+
+
+@kernel
+def lasts(W, a, u, mu, horizon):
+    """Return whether a contact with the velocity u and the free acceleration a slips until then."""
+    speed = math.sqrt(u[1] * u[1] + u[2] * u[2])
+    if not (speed > 0.0 and horizon < math.inf and yields(W, mu, u[1], u[2]) > 0.0):
+        return False
+    n, t1, t2 = slip_force(W, a[0], a[1], a[2], u[1], u[2], mu)
+    rate = u[1] * (a[1] + moved(W, 1, n, t1, t2)) + u[2] * (a[2] + moved(W, 2, n, t1, t2))
+    return speed * speed + rate * horizon > 0.0
+
+
+@kernel
+def moved(W, r, n, t1, t2):
+    """Return what an impulse (n, t1, t2) does to the velocity r."""
+    return W[r, 0] * n + W[r, 1] * t1 + W[r, 2] * t2
 
 
 @kernel

@@ -8,9 +8,9 @@ from carom.contact.closed import gather_held
 from carom.contact.gap import slow
 from carom.contact.groups import members
 from carom.coulomb.layout import CONE, SLIDING
-from carom.hold.forces import pose_forces, solve_forces, take_forces
+from carom.hold.forces import pose_forces, solve_forces, take_forces, time_to_stop
 from carom.hold.jam import jams_among, note_jam
-from carom.hold.one import bounces_end
+from carom.hold.one import bounces_end, name_work
 from carom.hold.roster import enlist, strike_off
 from carom.jit import kernel
 from carom.motion.acceleration import SLIP, STICK
@@ -42,7 +42,7 @@ def hold_several(system, controls, held, k, group, state, horizon, cluster, work
         seat = cluster.seats[new]
         begin_event(system, seat.contact, seat.feature, state, clock, records)
     if stay:
-        drop_bounces(system, controls, k, group, state, cluster, work, clock)
+        drop_bounces(system, controls, k, group, state, horizon, cluster, work, clock)
         set_modes(system, held, k, state, cluster, work, clock, records)
     strike_off_open(system, held, k, group, state, cluster, work, clock, records)
     look_again(system, held, k, state, cluster)
@@ -98,19 +98,22 @@ def speed_of(system, state, count, member):
 
 
 @kernel
-def drop_bounces(system, controls, k, group, state, cluster, work, clock):
+def drop_bounces(system, controls, k, group, state, horizon, cluster, work, clock):
     """Take out the normal velocities of the points that stay, in the kinetic metric.
 
-    A point without slip keeps none: else it would stick with the slip that this gives it. With slip friction
-    goes with the impulse (`carom.hold.one.begin_hold`). Where that leaves nothing but round-off it leaves
-    nothing.
+    A point without slip keeps none: else it would stick with the slip that this gives it. With slip that lasts
+    friction goes with the impulse (`carom.hold.one.begin_hold`). Where that leaves nothing but round-off it
+    leaves nothing.
     """
     count = members(work, group, cluster.member)
     still = 1e-12 * speed_of(system, state, count, cluster.member)
     for i in range(3 * k):
         still = max(still, controls.rest * controls.step * abs(cluster.v[C][i]))
+    for i in range(k):
+        cluster.seats[i].stopped = 0 if time_to_stop(i, cluster) > horizon else 1
     find_pull(k, cluster)
     x, u, W = cluster.v[OLD], cluster.v[U], cluster.m[0]
+    normal, tangential = 0.0, 0.0
     for i in range(3 * k):
         if x[i] == 0.0:
             continue
@@ -121,9 +124,10 @@ def drop_bounces(system, controls, k, group, state, cluster, work, clock):
                 after += W[i, j] * x[j]
         # work of the impulse: half of it times the sum of the velocities before and after
         if i % 3 > 0 and not stops(cluster, i):
-            clock.friction += 0.5 * x[i] * (u[i] + after)
+            tangential += 0.5 * x[i] * (u[i] + after)
         else:
-            clock.bounces += 0.5 * x[i] * (u[i] + after)
+            normal += 0.5 * x[i] * (u[i] + after)
+    name_work(normal, tangential, clock)
     for i in range(k):
         n, t1, t2 = x[3 * i], x[3 * i + 1], x[3 * i + 2]
         if n != 0.0 or t1 != 0.0 or t2 != 0.0:
@@ -168,7 +172,9 @@ def pull_once(k, with_friction, cluster):
     """Solve for the impulses with the friction of those of the last round; return their change and size."""
     n, W, x, last = 3 * k, cluster.m[0], cluster.v[OLD], cluster.v[P]
     for i in range(k):  # friction of the points that slip
-        slides = with_friction == 1 and cluster.seats[i].stays == 1 and cluster.kind[i] == SLIDING
+        slides = (
+            with_friction == 1 and cluster.seats[i].stays == 1 and cluster.seats[i].stopped == 0
+        )
         for r in range(2):
             q = 3 * i + 1 + r
             if not stops(cluster, q):
