@@ -118,11 +118,13 @@ def move_on(system, controls, held, now, begin, h, careful, heap, work, clock, r
     respin(system, heap.flight, work.trial)
     onto_surfaces(system, k, n, work.trial, heap, work)
     clock.now = begin + clock.spent + h
+    impacts, bounces = clock.impacts, clock.bounces
     named = finish(
         system, controls, held, k, h, fall, residual, now, work.trial, heap, work, clock, records
     )
     if n == 1 and k > 0:
-        clock.bounces += balance(system, now[0], heap.flight[0], work.trial[0], named)
+        gained = balance(system, now[0], heap.flight[0], work.trial[0], named)
+        take_over(gained, impacts, bounces, clock)
     for b in range(n):
         keep(work.trial[b], now[b])
     return 0
@@ -130,10 +132,9 @@ def move_on(system, controls, held, now, begin, h, careful, heap, work, clock, r
 
 @kernel
 def balance(system, start, flight, end, named):
-    """Return the energy that a body alone has lost besides what is `named`.
+    """Return the energy that a body alone has gained, or lost, besides what is `named`.
 
-    What it has gained is taken out of its impulses, all by one factor, as far as that is possible: no impulse
-    has another direction then.
+    A gain is taken out of its impulses, all by one factor, if that is possible: each keeps its direction.
     """
     body, g = system.bodies[0], system.gravity
     gained = kinetic(body, end) - kinetic(body, start) - named
@@ -150,12 +151,27 @@ def balance(system, start, flight, end, named):
         a += 0.5 * (body.mass * (v[j] - d[j]) ** 2 + k[j] * (w[j] - t[j]))
         b += body.mass * v[j] * (v[j] - d[j]) + l[j] * (w[j] - t[j])
     if not (b > 0.0 and b * b >= 4.0 * a * gained):
-        return 0.0
+        return gained
     s = -2.0 * gained / (b + math.sqrt(b * b - 4.0 * a * gained))
     for j in range(3):
         v[j] += s * (v[j] - d[j])
         w[j] += s * (w[j] - t[j])
     return 0.0
+
+
+@kernel
+def take_over(gained, impacts, bounces, clock):
+    """Put what is left without a name into the lines of a piece that began with these: none rises by it.
+
+    A body that stops within a piece comes back to the surface from where it would have sunk to: its impact has
+    taken less.
+    """
+    if gained < 0.0:
+        clock.bounces += gained
+        return
+    part = min(gained, impacts - clock.impacts)
+    clock.impacts += part
+    clock.bounces += min(gained - part, bounces - clock.bounces)
 
 
 @kernel
