@@ -4,6 +4,7 @@
 """
 
 import inspect
+import os
 import random
 import re
 import signal
@@ -162,7 +163,9 @@ def main() -> None:
 
     matplotlib.use("agg")
     warnings.simplefilter("error")
-    for name, make in recipes(Path(tempfile.mkdtemp())).items():
+    folder = Path(tempfile.mkdtemp())
+    os.chdir(folder)  # where a word is taken as a path
+    for name, make in recipes(folder).items():
         if sys.argv[1:] and not any(word in name for word in sys.argv[1:]):
             continue
         begin = time.perf_counter()
