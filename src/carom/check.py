@@ -1,31 +1,61 @@
-"""Checks of input: each raises at once, naming the argument, what it was and what is allowed."""
+"""Checks of input: each raises at once, naming the argument, what it was and what is allowed.
+
+A number is what Python takes for one, but for what only looks like it: truth values, texts, dates, and what
+is masked. Where a value has the wrong type or is out of range the error is a `ValueError`; where an object of
+a class of carom or a function is expected it is a `TypeError`.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import os
+from collections.abc import Callable, Iterable, Sequence
 from difflib import get_close_matches
+from pathlib import Path
 
 import numpy as np
+
+#: [m] a length from the first to the second has powers up to the fifth (inertia of a solid) that are numbers
+LENGTHS = (1e-60, 1e60)
+#: [kg] a mass from the first to the second has with such lengths an inertia that is a number
+MASSES = (1e-180, 1e180)
+LONGEST = 300  # characters of a value in a message
+_NO_NUMBERS = (bool, np.bool_, str, bytes, bytearray, np.datetime64, np.timedelta64)
+_ERRORS = (TypeError, ValueError, OverflowError, AttributeError, RecursionError)
 
 
 def finite_array(name: str, value, shape: tuple[int | None, ...], unit: str = "") -> np.ndarray:
     """Return `value` as a float array of `shape` (``None`` is any length); refuse NaN and inf."""
-    try:
-        if np.iscomplexobj(value):
-            raise TypeError
-        array = np.array(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise ValueError(
-            f"{name} must be numbers of shape {_shape(shape)}, got {value!r}"
-        ) from None
+    array = real_array(name, value, _shape(shape))
     same = array.ndim == len(shape) and all(s is None or s == n for s, n in zip(shape, array.shape))
     if not same:
         raise ValueError(
             f"{name} must have shape {_shape(shape)}{_in(unit)}, got shape {array.shape}"
         )
     if not np.all(np.isfinite(array)):
-        raise ValueError(f"{name} must be finite, got {value!r}")
+        raise ValueError(f"{name} must be finite, got {shown(value)}")
     return array
+
+
+def vectors(name: str, value, components: int) -> np.ndarray:
+    """Return `value` as a finite float array (..., components)."""
+    array = real_array(name, value, f"(..., {components})")
+    if array.shape[-1:] != (components,):
+        raise ValueError(f"{name} must have shape (..., {components}), got shape {array.shape}")
+    if not np.all(np.isfinite(array)):
+        raise ValueError(f"{name} must be finite, got {shown(value)}")
+    return array
+
+
+def real_array(name: str, value, shape: str) -> np.ndarray:
+    """Return `value` as a new float array of any shape, NaN and inf included; `shape` is for the message."""
+    try:
+        if _no_number(value) or np.iscomplexobj(value):
+            raise TypeError
+        return np.array(value, dtype=np.float64)
+    except OverflowError:  # a whole number beyond all floats
+        raise ValueError(f"{name} must be finite, got {shown(value)}") from None
+    except _ERRORS:
+        raise ValueError(f"{name} must be numbers of shape {shape}, got {shown(value)}") from None
 
 
 def number(
@@ -40,9 +70,13 @@ def number(
 ) -> float:
     """Return `value` as a float inside the given bounds (`above`, `below` exclude the bound)."""
     try:
+        if _no_number(value) or np.iscomplexobj(value) or np.ndim(value) != 0:
+            raise TypeError
         result = float(value)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} must be a number{_in(unit)}, got {value!r}") from None
+    except OverflowError:  # a whole number beyond all floats
+        result = np.inf
+    except _ERRORS:
+        raise ValueError(f"{name} must be a number{_in(unit)}, got {shown(value)}") from None
     inside = (
         np.isfinite(result)
         and (above is None or result > above)
@@ -59,33 +93,155 @@ def number(
             if bound is not None
         ]  # fmt: skip
         allowed = " and ".join(["finite", *bounds])
-        raise ValueError(f"{name} must be {allowed}{_in(unit)}, got {value!r}")
+        raise ValueError(f"{name} must be {allowed}{_in(unit)}, got {shown(value)}")
+    return result
+
+
+def length(name: str, value, *, zero: bool = False) -> float:
+    """Return a length [m] whose powers are numbers (see `LENGTHS`), above 0; with `zero` from 0 on."""
+    return _within(name, value, LENGTHS, "m", zero)
+
+
+def mass(name: str, value, *, zero: bool = False) -> float:
+    """Return a mass [kg] whose moments are numbers (see `MASSES`), above 0; with `zero` from 0 on."""
+    return _within(name, value, MASSES, "kg", zero)
+
+
+def scale(name: str, value, unit: str = "") -> float:
+    """Return a number above 0 whose square and quotient by another such are numbers (see `LENGTHS`)."""
+    result = number(name, value, above=0.0, unit=unit)
+    if not LENGTHS[0] <= result <= LENGTHS[1]:
+        raise ValueError(
+            f"{name} must be from {LENGTHS[0]:g} to {LENGTHS[1]:g}{_in(unit)}, got {shown(value)}"
+        )
+    return result
+
+
+def steps(duration: float, step: float, most: float) -> int:
+    """Return how many steps a duration takes, at least one; refuse a step that makes more than `most`."""
+    if not duration <= most * step:
+        raise ValueError(
+            f"step must be at least duration / {most:g} = {duration / most:g} s, got step {step!r} and "
+            f"duration {duration!r}"
+        )
+    return int(np.ceil(duration / step * (1.0 - 1e-12)))
+
+
+def call(name: str, function: Callable, *arguments):
+    """Return what a function of the user's gives; an error that it raises is told by which it was."""
+    try:
+        return function(*arguments)
+    except Exception as error:
+        error.add_note(f"This was raised by {name}, a function that carom was given.")
+        raise
+
+
+def _within(name: str, value, bounds: tuple[float, float], unit: str, zero: bool) -> float:
+    result = number(name, value, **{"least" if zero else "above": 0.0}, unit=unit)
+    if not (zero or bounds[0] <= result) or not result <= bounds[1]:
+        raise ValueError(
+            f"{name} must be from {bounds[0]:g} to {bounds[1]:g} [{unit}], where volume and inertia are "
+            f"numbers, got {shown(value)}"
+        )
     return result
 
 
 def integer(name: str, value, *, least: int | None = None, most: int | None = None) -> int:
-    """Return `value` as an int inside the given bounds."""
-    if isinstance(value, bool) or not isinstance(value, (int, np.integer)):
-        raise ValueError(f"{name} must be a whole number, got {value!r}")
-    number(name, value, least=least, most=most)
-    return int(value)
+    """Return `value` as an int of 64 bits inside the given bounds."""
+    try:
+        if isinstance(value, _NO_NUMBERS) or not hasattr(value, "__index__"):
+            raise TypeError
+        result = value.__index__()
+    except TypeError:
+        raise ValueError(f"{name} must be a whole number, got {shown(value)}") from None
+    greatest = 2**63 - 1 if most is None else most
+    if not (least is None or result >= least) or not -(2**63) <= result <= greatest:
+        bounds = [] if least is None else [f"at least {least}"]
+        if most is not None or result > greatest:
+            bounds.append(f"at most {greatest}")
+        raise ValueError(
+            f"{name} must be a whole number of {' and '.join(bounds) or '64 bits'}, got {shown(value)}"
+        )
+    return result
 
 
 def choice(name: str, value, allowed: Iterable[str]) -> str:
     """Return `value` if it is one of `allowed`; suggest the nearest one otherwise."""
     options = sorted(allowed)
+    if not isinstance(value, str):
+        raise ValueError(
+            f"{name} must be one of {', '.join(map(repr, options))}, got {shown(value)}"
+        )
     if value in options:
         return value
-    near = get_close_matches(str(value), options, n=1)
+    near = get_close_matches(value, options, n=1)
     hint = f"; did you mean {near[0]!r}?" if near else ""
-    raise ValueError(f"{name} must be one of {', '.join(map(repr, options))}, got {value!r}{hint}")
+    raise ValueError(
+        f"{name} must be one of {', '.join(map(repr, options))}, got {shown(value)}{hint}"
+    )
 
 
 def flag(name: str, value) -> bool:
     """Return True or False."""
     if not isinstance(value, (bool, np.bool_)):
-        raise ValueError(f"{name} must be True or False, got {value!r}")
+        raise ValueError(f"{name} must be True or False, got {shown(value)}")
     return bool(value)
+
+
+def text(name: str, value) -> str:
+    """Return a text that is not empty."""
+    if not isinstance(value, str) or not value.strip():
+        raise ValueError(f"{name} must be a non-empty string, got {shown(value)}")
+    return value
+
+
+def function(name: str, value, *, optional: bool = False) -> None:
+    """Refuse, by a `TypeError`, what cannot be called; None is allowed where it is `optional`."""
+    if not (callable(value) or (optional and value is None)):
+        raise TypeError(f"{name} must be a function, got {shown(value)}")
+
+
+def path(name: str, value) -> Path:
+    """Return the path of a file or folder, which need not be there."""
+    try:
+        if not isinstance(value, (str, os.PathLike)) or not os.fspath(value):
+            raise TypeError
+        where = Path(value)
+        where.exists()
+        if "\0" in str(where):
+            raise TypeError
+    except (TypeError, ValueError, OSError):  # bytes, a null character, a name that is too long
+        raise ValueError(f"{name} must be a path, got {shown(value)}") from None
+    return where
+
+
+def file_to_write(name: str, value) -> Path:
+    """Return the path of a file in a folder that exists."""
+    where = path(name, value)
+    if where.is_dir() or not where.parent.is_dir():
+        raise ValueError(
+            f"{name} must be the path of a file in a folder that exists, got {shown(str(where))}"
+        )
+    return where
+
+
+def listed(name: str, value, what: str) -> list:
+    """Return the members of a sequence; refuse what is none, and texts."""
+    if isinstance(value, Sequence) and not isinstance(value, (str, bytes, bytearray)):
+        return list(value)
+    if isinstance(value, np.ndarray) and value.ndim > 0:
+        return list(value)
+    raise ValueError(f"{name} must be a sequence of {what}, got {shown(value)}")
+
+
+def times(name: str, value, first: float, last: float) -> np.ndarray:
+    """Return one or several times [s] within a run, as an array (n,)."""
+    array = np.atleast_1d(real_array(name, value, "() or (n,)"))
+    if array.ndim != 1:
+        raise ValueError(f"{name} must have shape () or (n,) [s], got shape {array.shape}")
+    if not np.all((array >= first) & (array <= last)):
+        raise ValueError(f"{name} must be within [{first:g}, {last:g}] s, got {shown(value)}")
+    return array
 
 
 def unit_vector(name: str, value) -> np.ndarray:
@@ -93,7 +249,7 @@ def unit_vector(name: str, value) -> np.ndarray:
     vector = finite_array(name, value, (3,))
     largest = float(np.max(np.abs(vector)))
     if not largest > 0.0:
-        raise ValueError(f"{name} must not be the zero vector, got {value!r}")
+        raise ValueError(f"{name} must not be the zero vector, got {shown(value)}")
     vector /= largest  # so that neither a tiny nor a huge vector under- or overflows its square
     return vector / np.linalg.norm(vector)
 
@@ -104,7 +260,7 @@ def unit_quaternion(name: str, value) -> np.ndarray:
     length = float(np.linalg.norm(quaternion))
     if not abs(length - 1.0) <= 1e-6:
         raise ValueError(
-            f"{name} must be a unit quaternion (w, x, y, z), got {value!r} of length {length:.9g}"
+            f"{name} must be a unit quaternion (w, x, y, z), got {shown(value)} of length {length:.9g}"
         )
     return quaternion / length
 
@@ -114,7 +270,28 @@ def instance(name: str, value, kinds: tuple[type, ...], hint: str = "") -> None:
     if isinstance(value, kinds):
         return
     allowed = " or ".join(kind.__name__ for kind in kinds)
-    raise TypeError(f"{name} must be a {allowed}, got {value!r}{hint}")
+    raise TypeError(f"{name} must be a {allowed}, got {shown(value)}{hint}")
+
+
+def shown(value) -> str:
+    """Return how a value reads in a message, cut where it is long."""
+    try:
+        words = repr(value)
+    except Exception:  # a whole number of more digits than Python writes, or a __repr__ that fails
+        return f"a value of type {type(value).__name__}"
+    return words if len(words) <= LONGEST else f"{words[: LONGEST // 2]} ... {words[-40:]}"
+
+
+def _no_number(value) -> bool:
+    """Return whether a value, or one in nested lists, only looks like a number."""
+    if isinstance(value, (list, tuple)):
+        return any(map(_no_number, value))
+    if hasattr(value, "__array__") and not isinstance(value, np.generic):
+        value = np.asanyarray(value)
+        if value.dtype.kind == "O":
+            return any(map(_no_number, value.flat))
+        return value.dtype.kind not in "iufc" or bool(np.ma.is_masked(value))
+    return value is None or isinstance(value, _NO_NUMBERS)
 
 
 def _shape(shape) -> str:

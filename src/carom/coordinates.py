@@ -69,10 +69,15 @@ def _columns(sides, joint):
 
 def _of_scene(scene, joint) -> Joint:
     if isinstance(joint, str):
-        joint = scene[joint]
+        try:
+            joint = scene[joint]
+        except KeyError as error:
+            raise KeyError(f"joint: {error.args[0]}") from None
     check.instance("joint", joint, (Joint, str))
     if joint.index >= len(scene.joints) or scene.joints[joint.index] is not joint:
-        raise ValueError(f"joint must belong to the scene of this solution, got {joint!r}")
+        raise ValueError(
+            f"joint must belong to the scene of this solution, got {check.shown(joint)}"
+        )
     return joint
 
 

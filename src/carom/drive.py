@@ -6,6 +6,7 @@ import warnings
 from time import perf_counter
 from typing import TYPE_CHECKING
 
+from carom import check
 from carom.status import SimulationError, Status
 
 if TYPE_CHECKING:
@@ -100,5 +101,5 @@ def reporter(progress, total: float, unit: str):
     if progress is True:
         return _Bar(total, unit)
     if callable(progress):
-        return progress
-    raise TypeError(f"progress must be True, False or a function, got {progress!r}")
+        return lambda done, total: check.call("progress", progress, done, total)
+    raise TypeError(f"progress must be True, False or a function, got {check.shown(progress)}")

@@ -122,6 +122,10 @@ class Options:
         check.number("corner_exponent", self.corner_exponent, least=1.0, most=3.0)
         for name in ("add_layer_time", "hold", "project_start"):
             check.flag(name, getattr(self, name))
+        for f in fields(self):  # as Python's own numbers: of their types the loop is compiled
+            value, kind = getattr(self, f.name), float if f.default is None else type(f.default)
+            if value is not None:
+                object.__setattr__(self, f.name, kind(value))
 
     def as_dict(self) -> dict:
         """All settings by name."""

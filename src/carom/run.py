@@ -32,6 +32,7 @@ from carom.scene.scene import Scene
 from carom.solution import Solution
 from carom.status import Status
 from carom.system import records as r
+from carom.system.answers import check_answers
 from carom.system.cluster import new_cluster, new_corner
 from carom.system.compile import compile_scene
 
@@ -126,6 +127,7 @@ class Run:
                     "the start must be one that the joints can be brought to, got one from which Newton's "
                     f"method leaves an error of {error:.3g}; begin nearer to it"
                 )
+        check_answers(scene)
         check_start(scene, self.compiled, self.now, self.work, options)
         check_stops(scene, self.compiled, self.now, self.work, options)
         if system.contacts.size:

@@ -142,8 +142,7 @@ def simulate(
         raise TypeError(
             f"scene must be a carom.Scene or a carom.GeneralizedSystem, got {type(scene).__name__}"
         )
-    if not isinstance(throw, bool):
-        raise TypeError(f"throw must be True or False, got {throw!r}")
+    check_handling(progress, throw, save_seconds)
     settings = checked_settings(
         duration, step, method, impact_location, rtol, atol, save_every, options
     )
@@ -153,7 +152,9 @@ def simulate(
         if adapts:
             raise ValueError('step of a system in coordinates must be a number [s], got "auto"')
         if save is not None:
-            raise ValueError(f"save must be left out with a system in coordinates, got {save!r}")
+            raise ValueError(
+                f"save must be left out with a system in coordinates, got {check.shown(save)}"
+            )
         check.choice("method of a system in coordinates", method, METHODS[:3])
         check.choice("impact_location of a system in coordinates", impact_location, LOCATIONS[:1])
 
@@ -174,13 +175,24 @@ def simulate(
     return finish(run, progress, keeper, throw)
 
 
+def check_handling(progress, throw, save_seconds) -> None:
+    """Refuse what is wrong with how a run is watched, saved and ended."""
+    if not (progress is None or isinstance(progress, bool) or callable(progress)):
+        raise TypeError(f"progress must be True, False or a function, got {check.shown(progress)}")
+    if not isinstance(throw, bool):
+        raise TypeError(f"throw must be True or False, got {check.shown(throw)}")
+    check.number("save_seconds", save_seconds, least=0.0, unit="s")
+
+
 def spacing(duration: float, step: float | str, options: Options) -> tuple[float, int]:
     """Return the step, or the longest one where steps vary, and the number of steps."""
-    adapts = step == "auto"
+    adapts = isinstance(step, str)
     h = min(duration, options.max_step or duration / 50.0) if adapts else float(step)
-    if not duration / h < 1e12:
-        name = "Options.max_step" if adapts else "step"
-        raise ValueError(f"{name} must be above duration / 1e12 = {duration / 1e12:g} s, got {h!r}")
+    if not duration < 1e12 * h:
+        name = "duration / 50 or Options.max_step" if adapts else "step"
+        raise ValueError(
+            f"{name} must be above duration / 1e12 = {duration / 1e12:g} s, got {check.shown(h)}"
+        )
     return h, max(1, int(np.ceil(duration / h * (1.0 - 1e-12))))
 
 
@@ -192,13 +204,13 @@ def checked_settings(
     adapts = isinstance(step, str) and step == "auto"
     if not adapts:
         if isinstance(step, str):
-            raise ValueError(f'step must be a number [s] or "auto", got {step!r}')
+            raise ValueError(f'step must be a number [s] or "auto", got {check.shown(step)}')
         step = check.number("step", step, above=0.0, unit="s")
     method = ("rk5" if adapts else "rk4") if method is None else method
     check.choice("method", method, METHODS)
     check.choice("impact_location", impact_location, LOCATIONS)
     tolerances = check_tolerances(adapts, method, impact_location, rtol, atol)
-    check.integer("save_every", save_every, least=1)
+    save_every = check.integer("save_every", save_every, least=1)
     options = _DEFAULT if options is None else options
     if not isinstance(options, Options):
         raise TypeError(f"options must be carom.Options, got {type(options).__name__}")
@@ -218,15 +230,19 @@ def check_tolerances(adapts: bool, method: str, location: str, rtol, atol):
     if not adapts:
         for name, value in (("rtol", rtol), ("atol", atol)):
             if value is not None:
-                raise ValueError(f'{name} is for step="auto", got {value!r} with a given step')
+                raise ValueError(
+                    f'{name} is for step="auto", got {check.shown(value)} with a given step'
+                )
         return None
     if method not in ADAPTIVE:
         raise ValueError(
             f'method must be {" or ".join(map(repr, ADAPTIVE))} for step="auto" (they estimate their error), '
-            f"got {method!r}"
+            f"got {check.shown(method)}"
         )
     if location != "locate":
-        raise ValueError(f"impact_location must be 'locate' for step=\"auto\", got {location!r}")
+        raise ValueError(
+            f"impact_location must be 'locate' for step=\"auto\", got {check.shown(location)}"
+        )
     return (
         check.number("rtol", 1e-6 if rtol is None else rtol, least=1e-13, most=0.1),
         check.number("atol", 1e-9 if atol is None else atol, least=0.0, unit="m"),

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from carom import check
 from carom.files.portable import Portable
 from carom.geometry import quaternion, spline
 from carom.ledger import Ledger
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
     from carom.assemble import Written
     from carom.run import Run
     from carom.scene.scene import Scene
+
+SIDES = ("right", "left")
 
 
 @dataclass(frozen=True, eq=False)
@@ -266,11 +269,8 @@ class Solution(Portable, Drawn):
         ValueError
             If a time is outside the run, or `side` is another word.
         """
-        if side not in ("right", "left"):
-            raise ValueError(f"side must be 'right' or 'left', got {side!r}")
-        times = np.atleast_1d(np.asarray(t, dtype=float))
-        if not np.all((times >= self.t[0]) & (times <= self.t[-1])):
-            raise ValueError(f"t must be within [{self.t[0]:g}, {self.t[-1]:g}] s, got {t!r}")
+        check.choice("side", side, SIDES)
+        times = check.times("t", t, self.t[0], self.t[-1])
         bodies = [_between(node, times, side) for node in self._nodes]
         x, Q, v, w = (np.stack(column, axis=1) for column in zip(*bodies))
         Q = quaternion.multiply(Q, quaternion.conjugate(self._run.to_principal))
@@ -327,6 +327,9 @@ class Solution(Portable, Drawn):
         """
         from carom.impact.history import impact_layer
 
+        count, k = len(self.impacts), check.integer("k", k)
+        if not -count <= k < count:
+            raise IndexError(f"k must be the number of an impact, got impact {k} of {count}")
         record = self.impacts[k]
         if record.together > 1:
             raise ValueError(

@@ -102,7 +102,7 @@ BAD_BODIES = [
     ({"inertia": 5.0}, "inertia must have shape (3,) or (3, 3) [kg m^2], got 5.0"),
     (
         {"inertia": [[1, 2], [3]]},
-        "inertia must have shape (3,) or (3, 3) [kg m^2], got [[1, 2], [3]]",
+        "inertia must be numbers of shape (3,) or (3, 3), got [[1, 2], [3]]",
     ),
     (
         {"orientation": (0, 0, 0, 0)},

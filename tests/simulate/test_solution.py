@@ -79,7 +79,7 @@ def test_evaluate_one_time_and_bad_input(bounce):
     for t in (-0.1, 2.1, np.nan, [0.1, 3.0]):
         with pytest.raises(ValueError, match=r"t must be within \[0, 2\]"):
             bounce.evaluate(t)
-    with pytest.raises(ValueError, match=r"side must be 'right' or 'left', got 'both'"):
+    with pytest.raises(ValueError, match=r"side must be one of 'left', 'right', got 'both'"):
         bounce.evaluate(0.1, side="both")
 
 

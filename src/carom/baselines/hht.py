@@ -21,6 +21,8 @@ import numpy as np
 
 from carom import check
 
+MOST_STEPS = 1e6  # of a run in plain Python
+
 
 @dataclass(frozen=True)
 class HHTRun:
@@ -71,13 +73,14 @@ def hht_alpha(
     position, velocity : array_like, shape (n,)
         State at t = 0.
     duration, step : float
-        Time to cover and time step [s]; the last step is shortened to end at `duration`.
+        Time to cover and time step [s], at most a million steps; the last is shortened to end at `duration`.
     alpha : float
         Parameter in [0, 1/3]; default 0 (trapezoidal rule, no numerical damping).
     jacobian : callable, optional
         ``jacobian(t, q, v)`` returns ``(df/dq, df/dv)``, each (n, n); default central differences.
     tolerance, max_iterations : float, int
-        Newton stops when the last change of every velocity is below `tolerance` of the fastest.
+        In (0, 1), and at most 10 000. Newton stops when the last change of every velocity is below
+        `tolerance` of the fastest.
 
     Returns
     -------
@@ -90,29 +93,52 @@ def hht_alpha(
         If an argument is out of range or of the wrong shape.
     """
     q = check.finite_array("position", position, (None,))
-    v = check.finite_array("velocity", velocity, (q.size,))
-    M = check.finite_array("mass", mass, (q.size, q.size), "kg")
+    if not q.size:
+        raise ValueError(f"position must have at least one coordinate, got {check.shown(position)}")
+    n, fit = q.size, f"as position has {q.size} coordinates"
+    v = check.finite_array("velocity", velocity, (None,))
+    M = check.finite_array("mass", mass, (None, None), "kg")
+    if v.shape != (n,) or M.shape != (n, n):
+        raise ValueError(
+            f"velocity and mass must have shapes ({n},) and ({n}, {n}), {fit}, got {v.shape} and {M.shape}"
+        )
+    if not np.linalg.cond(M) < 1e15:
+        raise ValueError(f"mass must be regular, got {check.shown(mass)}")
     end = check.number("duration", duration, least=0.0, unit="s")
     h_all = check.number("step", step, above=0.0, unit="s")
     alpha, beta, gamma = newmark_constants(alpha)
-    f = check.finite_array("force(0, position, velocity)", force(0.0, q, v), (q.size,), "N")
+    count = check.steps(end, h_all, MOST_STEPS)
+    tolerance = check.number("tolerance", tolerance, above=0.0, below=1.0)
+    max_iterations = check.integer("max_iterations", max_iterations, least=1, most=10_000)
+    check.function("force", force)
+    check.function("jacobian", jacobian, optional=True)
+    start = "(0, position, velocity)"
+    f = check.finite_array(f"force{start}", check.call("force", force, 0.0, q, v), (n,), "N")
     slopes = jacobian or (lambda t, q, v: _differences(force, t, q, v))
+    if jacobian is not None:
+        check.finite_array(
+            f"jacobian{start}", check.call("jacobian", jacobian, 0.0, q, v), (2, n, n)
+        )
 
     a = np.linalg.solve(M, f)
     t, message, iterations, saved = 0.0, "The run reached its end.", [], [(0.0, q, v, a)]
-    for number in range(1, int(np.ceil(end / h_all * (1.0 - 1e-12))) + 1):
+    for number in range(1, count + 1):
         t1 = min(number * h_all, end)
         h, a1, change, rounds = t1 - t, a, np.inf, 0
         for _ in range(max_iterations + 1):
             q1 = q + h * v + h * h * ((0.5 - beta) * a + beta * a1)
             v1 = v + h * ((1.0 - gamma) * a + gamma * a1)
-            f1 = np.asarray(force(t1, q1, v1), dtype=np.float64)
+            f1 = np.asarray(check.call("force", force, t1, q1, v1), dtype=np.float64)
             if change <= tolerance:
                 break
             K, C = slopes(t1, q1, v1)
             residual = M @ a1 - (1.0 - alpha) * f1 - alpha * f
             tangent = M - (1.0 - alpha) * (beta * h * h * K + gamma * h * C)
-            delta = np.linalg.solve(tangent, -residual)
+            try:
+                delta = np.linalg.solve(tangent, -residual)
+            except np.linalg.LinAlgError:  # singular: no Newton step
+                change = np.inf
+                break
             a1, rounds = a1 + delta, rounds + 1
             change = h * np.abs(delta).max() / max(np.abs(v1).max(), h * np.abs(a1).max(), 1e-300)
         if not change <= tolerance:

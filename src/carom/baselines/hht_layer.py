@@ -81,11 +81,11 @@ def hht_alpha_layer(
     width, penetration : float
         Width b [m] and greatest penetration delta in (0, 1) of the layer.
     steps : int
-        Steps N over the exact impact interval ``T_c (1 + 1/e)``; the time step is interval / N.
+        Steps N, at most 100 000, over the exact impact interval ``T_c (1 + 1/e)``; the step is interval / N.
     alpha : float
         Parameter of the method in [0, 1/3]; default 0, average acceleration.
     tolerance, max_iterations : float, int
-        Newton stops at ``|change of a| <= tolerance (|a| + v0^2/b)``.
+        In (0, 1), and at most 10 000. Newton stops at ``|change of a| <= tolerance (|a| + v0^2/b)``.
 
     Returns
     -------
@@ -93,8 +93,10 @@ def hht_alpha_layer(
         With ``completed`` False and the reason in ``message`` if the method cannot run.
     """
     v0, e, b, reach, compression = layer_constants(speed, restitution, width, penetration)
-    m = check.number("mass", mass, above=0.0, unit="kg")
-    steps = check.integer("steps", steps, least=1)
+    m = check.scale("mass", mass, "kg")
+    steps = check.integer("steps", steps, least=1, most=100_000)
+    tolerance = check.number("tolerance", tolerance, above=0.0, below=1.0)
+    max_iterations = check.integer("max_iterations", max_iterations, least=1, most=10_000)
     alpha, beta, gamma = newmark_constants(alpha)
     h = compression * (1.0 + 1.0 / e) / steps
     press = v0 * v0 / (2.0 * reach)
@@ -140,14 +142,14 @@ def hht_alpha_layer(
 
 
 def completing_steps(speed, restitution, *, penetration, alpha=0.0, most=20) -> tuple[int, ...]:
-    """Return every number of steps up to `most` with which HHT-alpha gets through the layer.
+    """Return every number of steps up to `most` (1 to 1000) with which HHT-alpha gets through the layer.
 
     Mass and width only scale the equation. The set may have holes: a step so large that it jumps
     over the whole layer (a root of no meaning) also counts as getting through.
     """
     return tuple(
         n
-        for n in range(1, check.integer("most", most, least=1) + 1)
+        for n in range(1, check.integer("most", most, least=1, most=1000) + 1)
         if hht_alpha_layer(
             speed, restitution, mass=1.0, width=1.0, penetration=penetration, steps=n, alpha=alpha
         ).completed

@@ -36,21 +36,28 @@ def layer_motion(time, speed, restitution, *, width, penetration):
     x, velocity : (K,) arrays
         Gap coordinate [m] and its rate xdot [m/s].
     """
-    t = np.asarray(time, dtype=np.float64)
+    t = check.real_array("time", time, "(K,)")
     v0, e, b, reach, compression = layer_constants(speed, restitution, width, penetration)
-    z_c = t / compression
-    z_r = (t - compression) * e / compression
-    s = np.where(z_c < 1.0, -reach * (1.0 - (1.0 - z_c) ** 2), -reach * (1.0 - z_r**2))
-    u = np.where(z_c < 1.0, -v0 * (1.0 - z_c), e * v0 * z_r)
-    x = b * np.exp(s / b)
-    return x, u * x / b
+    with np.errstate(over="ignore", invalid="ignore"):
+        z_c = t / compression
+        z_r = (t - compression) * e / compression
+        s = np.where(z_c < 1.0, -reach * (1.0 - (1.0 - z_c) ** 2), -reach * (1.0 - z_r**2))
+        u = np.where(z_c < 1.0, -v0 * (1.0 - z_c), e * v0 * z_r)
+        x = b * np.exp(s / b)
+        velocity = u * x / b
+    if not np.all(np.isfinite(velocity)):
+        raise ValueError(
+            f"time must be finite and near the impact, which at speed {v0:g} ends after "
+            f"{compression * (1 + 1 / e):g} s, got {check.shown(time)}"
+        )
+    return x, velocity
 
 
 def layer_constants(speed, restitution, width, penetration):
     """Return checked ``v0, e, b``, the reach ``b l`` [m] and the compression time ``T_c`` [s]."""
-    v0 = check.number("speed", speed, above=0.0, unit="m/s")
-    e = check.number("restitution", restitution, above=0.0, most=1.0)
-    b = check.number("width", width, above=0.0, unit="m")
-    delta = check.number("penetration", penetration, above=0.0, below=1.0)
+    v0, b = check.scale("speed", speed, "m/s"), check.scale("width", width, "m")
+    check.number("restitution", restitution, above=0.0, most=1.0)
+    check.number("penetration", penetration, above=0.0, below=1.0)
+    e, delta = check.scale("restitution", restitution), check.scale("penetration", penetration)
     reach = -b * np.log1p(-delta)
     return v0, e, b, float(reach), float(2.0 * reach / v0)

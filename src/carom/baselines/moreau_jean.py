@@ -18,6 +18,7 @@ import numpy as np
 
 from carom import check
 from carom.baselines._body import OneBody, contact_jacobian, lowest_point, read_scene
+from carom.baselines.hht import MOST_STEPS
 from carom.baselines.one_contact import solve_one_contact
 
 
@@ -62,7 +63,7 @@ def moreau_jean(scene, duration, *, step, theta=0.5) -> MoreauJeanRun:
         One body, one half-space, one contact; no joints, no forces but gravity. The contact's
         coefficient of restitution is taken as Newton's, whatever its impact law.
     duration, step : float
-        Time to cover and time step [s]; the last step is shortened to end at `duration`.
+        Time to cover and time step [s], at most a million steps; the last is shortened to end at `duration`.
     theta : float
         Weight of the end of the step, in [0.5, 1]; default 0.5, second order in free motion.
 
@@ -78,6 +79,7 @@ def moreau_jean(scene, duration, *, step, theta=0.5) -> MoreauJeanRun:
     end = check.number("duration", duration, least=0.0, unit="s")
     h_all = check.number("step", step, above=0.0, unit="s")
     theta = check.number("theta", theta, least=0.5, most=1.0)
+    count = check.steps(end, h_all, MOST_STEPS)
     system, body = read_scene(scene)
     x = np.array(body.position, dtype=np.float64)
     Q = np.array(body.orientation, dtype=np.float64)
@@ -88,7 +90,7 @@ def moreau_jean(scene, duration, *, step, theta=0.5) -> MoreauJeanRun:
     inverse[3:, 3:] = np.linalg.inv(system.inertia)
 
     t, saved = 0.0, [(0.0, x, Q, v, np.zeros(3))]
-    for number in range(1, int(np.ceil(end / h_all * (1.0 - 1e-12))) + 1):
+    for number in range(1, count + 1):
         t1 = min(number * h_all, end)
         h = t1 - t
         x, Q, v, p = _step(system, inverse, x, Q, v, h, theta)

@@ -38,7 +38,7 @@ def solve_one_contact(inverse_mass, velocity, friction) -> np.ndarray:
     c = check.finite_array("velocity", velocity, (3,), "m/s")
     mu = check.number("friction", friction, least=0.0)
     if not np.allclose(W, W.T, rtol=0.0, atol=1e-12 * np.abs(W).max()):
-        raise ValueError(f"inverse_mass must be symmetric, got {inverse_mass!r}")
+        raise ValueError(f"inverse_mass must be symmetric, got {check.shown(inverse_mass)}")
     if not W[0, 0] > 0.0:
         raise ValueError(f"inverse_mass[0, 0] must be above 0 [1/kg], got {W[0, 0]!r}")
     if c[0] >= 0.0:
@@ -46,7 +46,9 @@ def solve_one_contact(inverse_mass, velocity, friction) -> np.ndarray:
     coupling = W[1:, 0] / W[0, 0]
     stiffness, axes = np.linalg.eigh(W[1:, 1:] - np.outer(coupling, W[0, 1:]))
     if stiffness[0] < -1e-12 * np.trace(W):
-        raise ValueError(f"inverse_mass must be positive semi-definite, got {inverse_mass!r}")
+        raise ValueError(
+            f"inverse_mass must be positive semi-definite, got {check.shown(inverse_mass)}"
+        )
     b = axes.T @ (c[1:] - coupling * c[0])
     empty = stiffness <= 1e-13 * np.trace(W)
     b[empty], stiffness[empty] = 0.0, W[0, 0]
@@ -65,6 +67,8 @@ def solve_one_contact(inverse_mass, velocity, friction) -> np.ndarray:
         return np.array([-c[0] / W[0, 0], 0.0, 0.0])
     high = stiffness.max()
     while excess(high) > 0.0:
+        if not high < 1e300:  # the cone is so narrow that no number tells it from a line
+            return np.array([-c[0] / W[0, 0], 0.0, 0.0])
         high *= 4.0
     return impulse(brentq(excess, 0.0, high, xtol=1e-16 * high))
 
@@ -79,10 +83,14 @@ def cone_residual(inverse_mass, velocity, friction, impulse) -> float:
     c = check.finite_array("velocity", velocity, (3,), "m/s")
     p = check.finite_array("impulse", impulse, (3,), "N s")
     mu = check.number("friction", friction, least=0.0)
+    if not np.trace(W) > 0.0:
+        raise ValueError(f"inverse_mass must have a trace above 0, got {check.shown(inverse_mass)}")
     w = W @ p + c
     w[0] += mu * np.hypot(w[1], w[2])
     rho = 3.0 / np.trace(W)
-    return float(np.linalg.norm(p - _project(p - rho * w, mu)) / rho)
+    with np.errstate(over="ignore", invalid="ignore"):
+        residual = float(np.linalg.norm(p - _project(p - rho * w, mu)) / rho)
+    return check.number("the residual of impulse", residual)
 
 
 def _project(x, mu):

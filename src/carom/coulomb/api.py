@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from carom import check
+from carom.impact.corner.api import checked_inverse_masses
 
 KINDS = {"coulomb": 0, "sliding": 1, "sticking": 2}
 
@@ -111,23 +112,26 @@ def solve_contacts(
 
     c = _triples("velocity", velocity, None, "m/s")
     k = len(c) // 3
-    W = _inverse_mass(inverse_mass, k)
-    mu = check.finite_array(
-        "friction", np.full(k, friction) if np.ndim(friction) == 0 else friction, (k,)
-    )
+    W = checked_inverse_masses(inverse_mass, k)
+    mu = check.real_array("friction", friction, "() or (k,)")
+    mu = check.finite_array("friction", np.full(k, mu) if mu.ndim == 0 else mu, (k,))
     if np.any(mu < 0.0):
-        raise ValueError(f"friction must be at least 0, got {friction!r}")
-    kinds = [kind] * k if isinstance(kind, str) else list(kind)
+        raise ValueError(f"friction must be at least 0, got {check.shown(friction)}")
+    kinds = [kind] * k if isinstance(kind, str) else check.listed("kind", kind, "names")
     if len(kinds) != k:
         raise ValueError(f"kind must be one for each of {k} contacts, got {len(kinds)}")
     code = np.array([KINDS[check.choice("kind", one, KINDS)] for one in kinds], dtype=np.int64)
     direction = _heading(heading, k)
     p = np.zeros(3 * k) if start is None else _triples("start", start, k, "N s")
-    status, residual, iterations = solve_cones(k, W, c, mu, code, direction, p, new_cone_work(k))
-    _, _, penetration, violation, product = measure(k, W, c, mu, code, direction, p)
+    with np.errstate(over="ignore", invalid="ignore"):  # what does not converge says so itself
+        status, residual, iterations = solve_cones(
+            k, W, c, mu, code, direction, p, new_cone_work(k)
+        )
+        _, _, penetration, violation, product = measure(k, W, c, mu, code, direction, p)
+        velocity = W @ p + c
     return ContactSolution(
         impulse=(p + 0.0).reshape(k, 3),  # no -0
-        velocity=(W @ p + c).reshape(k, 3),
+        velocity=velocity.reshape(k, 3),
         residual=float(residual),
         penetration_speed=float(penetration),
         cone_violation=float(violation),
@@ -140,29 +144,13 @@ def solve_contacts(
 
 def _triples(name: str, value, k: int | None, unit: str) -> np.ndarray:
     """Return (3k,) of either shape."""
-    rows = np.ndim(value) == 2
+    rows = check.real_array(name, value, "(3k,) or (k, 3)").ndim == 2
     array = check.finite_array(
         name, value, (k, 3) if rows else (None if k is None else 3 * k,), unit
     )
     if array.size % 3 or not array.size:
         raise ValueError(f"{name} must have shape (3k,) or (k, 3), got shape {array.shape}")
     return array.reshape(-1)
-
-
-def _inverse_mass(value, k: int) -> np.ndarray:
-    """Return W (3k, 3k), symmetric; raise ValueError unless it is so and W >= 0."""
-    shape = (k, 3, k, 3) if np.ndim(value) == 4 else (3 * k, 3 * k)
-    W = check.finite_array("inverse_mass", value, shape, "1/kg").reshape(3 * k, 3 * k)
-    if np.max(np.abs(W - W.T)) > 1e-9 * np.max(np.abs(W)):
-        raise ValueError("inverse_mass must be symmetric")
-    W = np.ascontiguousarray(0.5 * (W + W.T))
-    spectrum = np.linalg.eigvalsh(W)
-    if spectrum[0] < -1e-9 * spectrum[-1]:
-        raise ValueError(
-            "inverse_mass must be positive semidefinite, got eigenvalues from "
-            f"{spectrum[0]:.6g} to {spectrum[-1]:.6g} [1/kg]"
-        )
-    return W
 
 
 def _heading(value, k: int) -> np.ndarray:

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Iterator, Mapping
-from pathlib import Path
 
 import numpy as np
 
 from carom import check
 from carom.drive import reporter
+from carom.ensembles.engines import check_engine
 from carom.ensembles.result import Ensemble
 from carom.ensembles.sampling import draw
 from carom.options import Options
 from carom.scene.scene import Scene
-from carom.simulate import check_scene, checked_settings
+from carom.simulate import check_handling, check_scene, checked_settings
 
 CHUNK = 64  # runs in a part
 
@@ -116,12 +116,20 @@ def ensemble(
             f"scene must be a carom.Scene or a function that returns one, got {type(scene).__name__}"
         )
     if not isinstance(vary, Mapping) or not vary:
-        raise ValueError(f"vary must have at least one name and its values, got {vary!r}")
+        raise ValueError(
+            f"vary must have at least one name and its values, got {check.shown(vary)}"
+        )
+    for name in vary:
+        if not isinstance(name, str):
+            raise ValueError(f"vary must have names as its keys, got {check.shown(name)}")
     if observe is not None and not callable(observe):
-        raise TypeError(f"observe must be a function of a Solution, got {observe!r}")
-    check.integer("chunk", chunk, least=1)
+        raise TypeError(f"observe must be a function of a Solution, got {check.shown(observe)}")
+    check_engine(executor)
+    check_handling(progress, True, 0.0)
+    save = None if save is None else check.path("save", save)
+    chunk = check.integer("chunk", chunk, least=1)
     if workers is not None:
-        check.integer("workers", workers, least=1)
+        workers = check.integer("workers", workers, least=1)
     settings = checked_settings(duration, step, method, "locate", rtol, atol, 1, options)
     if observe is None:  # nothing is read but the end
         settings = (*settings[:5], settings[2], *settings[6:])
@@ -160,7 +168,8 @@ def _plan(scene, settings: tuple, inputs: dict[str, np.ndarray], observe):
         check_scene(scene, settings[3], settings[4])
         return Plan(scene, settings, find_targets(scene, inputs), len(scene.bodies), observe)
     values = {name: array[0] for name, array in inputs.items()}
-    first = scene(**{name: float(v) if np.ndim(v) == 0 else v for name, v in values.items()})
+    plain = {name: float(v) if np.ndim(v) == 0 else v for name, v in values.items()}
+    first = check.call("scene", lambda: scene(**plain))
     check.instance("what scene returns", first, (Scene,))
     return Plan(scene, settings, [], len(first.bodies), observe)
 
@@ -171,8 +180,11 @@ def _store(save, plan, inputs, chunk):
     from carom.ensembles.store import Store
 
     mark = digest(plan, inputs)
-    if Path(save).exists() and any(Path(save).iterdir()):
-        store = Store.open(save)
+    if save.exists() and (not save.is_dir() or any(save.iterdir())):
+        try:
+            store = Store.open(save)
+        except ValueError as error:
+            raise ValueError(f"save: {error}") from None
         if store.about.get("digest") != mark:
             raise ValueError(
                 f"save: {save} holds another ensemble (other scene, settings or inputs); give another path, or "

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from carom import check
 from carom.geometry import quaternion
 
 #: faces by the axis of the body that points up: +x, -x, +y, -y, +z, -z; opposite ones make seven
@@ -20,7 +21,9 @@ def face_up(orientation: ArrayLike) -> np.ndarray:
 
     Faces +x, -x, +y, -y, +z, -z of the body bear 5, 2, 4, 3, 6, 1.
     """
-    Q = np.asarray(orientation, dtype=float)
+    Q = check.real_array("orientation", orientation, "(..., 4)")
+    if Q.shape[-1:] != (4,):
+        raise ValueError(f"orientation must have shape (..., 4), got shape {Q.shape}")
     with np.errstate(invalid="ignore"):
         up = quaternion.rotate_back(Q, np.broadcast_to([0.0, 0.0, 1.0], (*Q.shape[:-1], 3)))
         axis = np.argmax(np.nan_to_num(np.abs(up)), axis=-1)
@@ -50,7 +53,7 @@ def fairness(faces: ArrayLike) -> Fairness:
     """
     from scipy.stats import binomtest, chisquare
 
-    faces = np.asarray(faces)
+    faces = check.real_array("faces", faces, "(n,)")
     counts = np.array([int(np.sum(faces == face)) for face in range(1, 7)])
     total = int(counts.sum())
     if total == 0:

@@ -17,6 +17,19 @@ NAMES = ("threads", "processes", "serial")
 TRIES = 5  # of a part whose worker is lost
 
 
+def check_engine(executor) -> None:
+    """Refuse what is neither the name of an engine nor another's executor."""
+    if isinstance(executor, str):
+        check.choice("executor", executor, NAMES)
+    elif isinstance(executor, type) or not (
+        hasattr(executor, "get_executor") or hasattr(executor, "submit")
+    ):
+        raise TypeError(
+            f"executor must be one of {', '.join(map(repr, NAMES))}, a concurrent.futures.Executor or a "
+            f"dask.distributed.Client, got {check.shown(executor)}"
+        )
+
+
 @contextmanager
 def engine(executor, workers: int | None):
     """Yield (submit, wait for the first, how many parts to hand out at once)."""
@@ -44,10 +57,7 @@ def engine(executor, workers: int | None):
     elif hasattr(executor, "submit"):
         yield executor.submit, 2 * (workers or os.cpu_count() or 1)
     else:
-        raise TypeError(
-            f"executor must be one of {', '.join(map(repr, NAMES))}, a concurrent.futures.Executor or a "
-            f"dask.distributed.Client, got {executor!r}"
-        )
+        check_engine(executor)
 
 
 def _at_once(function, *arguments) -> futures.Future:

@@ -57,7 +57,11 @@ class Ensemble:
         """
         from carom.ensembles.store import Store
 
-        store = Store.open(path)
+        where = check.path("path", path)
+        try:
+            store = Store.open(where)
+        except ValueError as error:
+            raise ValueError(f"path: {error}") from None
         return cls(
             store.inputs(), store.outcomes(), store.observed(), store.failures(), store.about
         )

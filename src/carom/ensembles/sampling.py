@@ -21,6 +21,9 @@ class UniformOrientation:
 
     def ppf(self, u: np.ndarray) -> np.ndarray:
         """Return the quaternions (n, 4) of points `u` (n, 3) of the unit cube."""
+        u = check.finite_array("u", u, (None, self.columns))
+        if not np.all((u >= 0.0) & (u <= 1.0)):
+            raise ValueError(f"u must be points of the unit cube, got {check.shown(u)}")
         near, far = np.sqrt(1.0 - u[:, 0]), np.sqrt(u[:, 0])
         a, b = 2.0 * np.pi * u[:, 1], 2.0 * np.pi * u[:, 2]
         Q = np.stack([far * np.cos(b), near * np.sin(a), near * np.cos(a), far * np.sin(b)], axis=1)
@@ -47,18 +50,23 @@ def draw(vary: Mapping, runs: int | None, seed: int, sampling: str) -> dict[str,
     """
     check.choice("sampling", sampling, SAMPLING)
     drawn = {name: _columns(name, spec) for name, spec in vary.items()}
-    given = {name: np.asarray(spec, dtype=float) for name, spec in vary.items() if not drawn[name]}
+    if runs is not None:
+        runs = check.integer("runs", runs, least=1)
+    given = {name: _given(name, spec) for name, spec in vary.items() if not drawn[name]}
     for name, values in given.items():
         if values.ndim == 0:
-            raise ValueError(f"vary[{name!r}] must have an axis over the runs, got {vary[name]!r}")
+            raise ValueError(
+                f"vary[{name!r}] must have an axis over the runs, got {check.shown(vary[name])}"
+            )
         if runs is not None and len(values) != runs:
             raise ValueError(
-                f"vary[{name!r}] must have {runs} values, one a run, got {len(values)}"
+                f"vary[{name!r}] must have {runs} values, one a run, got {len(values)} with runs={runs}"
             )
         runs = len(values)
     if runs is None:
         raise ValueError("runs must be given where nothing in vary is an array, got None")
-    check.integer("runs", runs, least=1)
+    if runs < 1:
+        raise ValueError(f"vary must have at least one run, got arrays of length {runs}")
     total = sum(drawn.values())
     points = _points(runs, total, seed, sampling) if total else np.zeros((runs, 0))
     found, first = {}, 0
@@ -78,14 +86,18 @@ def _columns(name: str, spec) -> int:
             if not hasattr(part, "ppf"):
                 check.number(f"a number in vary[{name!r}]", part)
         return sum(hasattr(part, "ppf") for part in spec)
+    return 0
+
+
+def _given(name: str, spec) -> np.ndarray:
+    """Return the values of an array that was given."""
     try:
-        np.asarray(spec, dtype=float)
-    except (TypeError, ValueError):
+        return check.real_array("values", spec, "")
+    except ValueError:
         raise ValueError(
             f"vary[{name!r}] must be an array with an axis over the runs, a SciPy distribution, or a list of "
-            f"distributions and numbers, got {spec!r}"
+            f"distributions and numbers, got {check.shown(spec)}"
         ) from None
-    return 0
 
 
 def _points(runs: int, total: int, seed: int, sampling: str) -> np.ndarray:
@@ -110,7 +122,10 @@ def _through(spec, u: np.ndarray) -> np.ndarray:
     if isinstance(spec, (list, tuple)):
         columns = iter(u.T)
         return np.stack(
-            [p.ppf(next(columns)) if hasattr(p, "ppf") else np.full(len(u), p) for p in spec],
+            [
+                p.ppf(next(columns)) if hasattr(p, "ppf") else np.full(len(u), float(p))
+                for p in spec
+            ],
             axis=1,
         )
     return np.asarray(spec.ppf(u if getattr(spec, "columns", 1) > 1 else u[:, 0]), dtype=float)

@@ -66,7 +66,4 @@ class Keeper:
 def checked_path(path: str | os.PathLike, name: str = "save") -> Path:
     """Return the path of a file to be written; refuse one whose folder is not there, before anything runs."""
     need("h5netcdf", "saving a run")
-    where = Path(path)
-    if where.is_dir() or not where.parent.is_dir():
-        raise ValueError(f"{name} must be the path of a file in a folder that exists, got {path!r}")
-    return where
+    return check.file_to_write(name, path)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Self
 
 if TYPE_CHECKING:
@@ -67,9 +66,15 @@ class Portable:
         ValueError
             If the file is foreign, broken, or newer than this carom; if a function is none of the scene's.
         """
+        from carom import check
         from carom.files.reading import read
 
-        fields = read(Path(path), functions)
+        where = check.path("path", path)
+        if functions is not None and not isinstance(functions, Mapping):
+            raise ValueError(
+                f"functions must be a mapping from names, got {check.shown(functions)}"
+            )
+        fields = read(where, functions)
         cached = fields.pop("cached")
         solution = cls(**fields)
         vars(solution).update(cached)

@@ -48,6 +48,9 @@ def resume(
     """
     from carom.drive import finish
     from carom.files.keeper import Keeper
+    from carom.simulate import check_handling
+
+    check_handling(progress, throw, save_seconds)
 
     solution = Solution.load(path, functions=functions)
     if solution.success:

@@ -14,6 +14,7 @@ from carom.films.stage import Stage, pillow
 from carom.plots.figure import need_bodies
 
 SUFFIXES = (".gif", ".mp4")
+MOST = 100_000  # pictures of a film: an hour
 
 
 def film(
@@ -35,9 +36,11 @@ def film(
     path : str or path
         ``.mp4`` or ``.gif``, in a folder that exists.
     fps : float
-        Pictures a second, above 0. Default 30. A GIF keeps whole hundredths of a second: at most 50.
+        Pictures a second, above 0, at most 1000. Default 30. A GIF keeps whole hundredths of a second: at
+        most 50.
     speed : float
-        Seconds of the motion in one of the film: below 1 slow motion. Default 1.
+        Seconds of the motion in one of the film: below 1 slow motion. Default 1. A film has at most 100 000
+        pictures.
     size : (int, int)
         Width and height in pixels, even. Default (1280, 720).
     view : str or (float, float)
@@ -46,7 +49,7 @@ def film(
     follow : str or Body, optional
         A body that stays in the middle. Default None: the camera stands still and sees the whole motion.
     zoom : float
-        Above 1 nearer. Default 1.
+        Above 1 nearer, 0.001 to 1000. Default 1.
     start, end : float, optional
         Part of the run to show [s]. Default: all of it.
     progress : callable, optional
@@ -65,14 +68,16 @@ def film(
         If an argument is not as above.
     """
     need_bodies(solution, "film")
-    path = Path(path)
+    path = check.path("path", path)
     if path.suffix.lower() not in SUFFIXES:
         raise ValueError(f"path must end in {' or '.join(SUFFIXES)}, got {str(path)!r}")
     if not path.parent.is_dir():
         raise ValueError(f"path must be in a folder that exists, got {str(path)!r}")
     gif = path.suffix.lower() == ".gif"
-    fps = check.number("fps", fps, above=0.0, most=50.0 if gif else None)
-    speed = check.number("speed", speed, above=0.0)
+    fps = check.number("fps", fps, above=0.0, most=50.0 if gif else 1000.0)
+    check.scale("fps", fps)
+    speed = check.scale("speed", speed)
+    check.function("progress", progress, optional=True)
     first, last = float(solution.t[0]), float(solution.t[-1])
     begin = (
         first if start is None else check.number("start", start, least=first, most=last, unit="s")
@@ -87,7 +92,7 @@ def film(
         for k, t in enumerate(times):
             yield stage.draw(t)
             if progress is not None:
-                progress(k + 1, len(times))
+                check.call("progress", progress, k + 1, len(times))
 
     (_write_gif if gif else _write_mp4)(path, pictures(), fps)
     return path
@@ -95,6 +100,11 @@ def film(
 
 def frame_times(begin: float, end: float, fps: float, speed: float) -> np.ndarray:
     """Return the times of the pictures [s], the first at `begin`."""
+    if not (end - begin) * fps <= MOST * speed:
+        raise ValueError(
+            f"speed and fps must give at most {MOST} pictures, got {(end - begin):g} s with "
+            f"speed={speed:g} and fps={fps:g}"
+        )
     count = math.floor((end - begin) * fps / speed + 1e-9) + 1
     return np.minimum(begin + speed / fps * np.arange(count), end)
 

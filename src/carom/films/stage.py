@@ -36,10 +36,10 @@ class Stage:
         need_bodies(solution, "film")
         self.solution, scene = solution, solution.scene
         self.size = checked_size(size)
-        self.zoom = check.number("zoom", zoom, above=0.0)
+        self.zoom = check.number("zoom", zoom, least=1e-3, most=1e3)
         self.followed = None if follow is None else named_bodies(solution, follow, "follow")
         if self.followed is not None and len(self.followed) != 1:
-            raise ValueError(f"follow must be one body or None, got {follow!r}")
+            raise ValueError(f"follow must be one body or None, got {check.shown(follow)}")
         begin, end = span or (float(solution.t[0]), float(solution.t[-1]))
         times = np.linspace(begin, end, SAMPLES)
         places = solution.evaluate(times)[0]
@@ -215,6 +215,7 @@ def still(
     need_bodies(solution, "still")
     last = float(solution.t[-1])
     t = last if t is None else check.number("t", t, least=float(solution.t[0]), most=last, unit="s")
+    check.flag("clock", clock)
     stage = Stage(solution, size, view, follow, zoom=zoom)
     stage.marks.linger = RECENT * (last - float(solution.t[0]))
     return stage.draw(t, clock)
@@ -222,12 +223,15 @@ def still(
 
 def checked_size(size) -> tuple[int, int]:
     """Return width and height, even: a rule of the films' code."""
-    if np.shape(size) != (2,):
-        raise ValueError(f"size must be (width, height) in pixels, got {size!r}")
+    if (
+        not isinstance(size, (list, tuple, np.ndarray))
+        or len(check.listed("size", size, "two")) != 2
+    ):
+        raise ValueError(f"size must be (width, height) in pixels, got {check.shown(size)}")
     for name, n in zip(("width", "height"), size):
         check.integer(f"size, {name},", n, least=16, most=8192)
         if n % 2:
-            raise ValueError(f"size must be even numbers of pixels, got {size!r}")
+            raise ValueError(f"size must be even numbers of pixels, got {check.shown(size)}")
     return int(size[0]), int(size[1])
 
 

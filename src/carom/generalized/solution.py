@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from carom import check
 from carom.ledger import Ledger
 from carom.plots.drawn import Drawn
 from carom.status import Status
@@ -192,13 +193,10 @@ class GeneralizedSolution(Drawn):
         ValueError
             If a time is outside the run, or `side` is another word.
         """
-        if side not in ("right", "left"):
-            raise ValueError(f"side must be 'right' or 'left', got {side!r}")
-        times = np.atleast_1d(np.asarray(t, dtype=float))
-        if not np.all((times >= self.t[0]) & (times <= self.t[-1])):
-            raise ValueError(f"t must be within [{self.t[0]:g}, {self.t[-1]:g}] s, got {t!r}")
+        check.choice("side", side, ("right", "left"))
+        times = check.times("t", t, self.t[0], self.t[-1])
         at, before, after = self._nodes
-        i = np.searchsorted(at, times, side=side) - 1
+        i = np.searchsorted(at, times, side="left" if side == "left" else "right") - 1
         i = np.clip(i, 0, max(len(at) - 2, 0))
         k = np.minimum(i + 1, len(at) - 1)
         n, h = self.q.shape[1], np.maximum(at[k] - at[i], 1e-300)[:, None]

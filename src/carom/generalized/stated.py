@@ -31,10 +31,12 @@ def checked_contact(
     mu = check.number("friction", friction, least=0.0)
     check.choice("impact_law", impact_law, LAWS)
     if mu > 0.0 and tangent is None:
-        raise ValueError(f"friction needs a tangent, got friction {friction!r} without one")
-    name = f"contact {len(others)}" if name is None else name
+        raise ValueError(
+            f"friction needs a tangent, got friction {check.shown(friction)} without one"
+        )
+    name = f"contact {len(others)}" if name is None else check.text("name", name)
     if any(name == other.name for other in others):
-        raise ValueError(f"name must be new, got {name!r} twice")
+        raise ValueError(f"name must be new, got {check.shown(name)} twice")
     return CoordinateContact(name, e, mu, impact_law, len(others))
 
 
@@ -42,14 +44,16 @@ def checked_functions(q: np.ndarray, gap, gradient, tangent) -> int:
     """Refuse functions of a contact that are none or give another shape; return how many tangents."""
     n = len(q)
     for what, one in (("gap", gap), ("gap_gradient", gradient), ("tangent", tangent)):
-        if not callable(one) and (one is not None or what == "gap"):
-            raise TypeError(f"{what} must be a function, got {one!r}")
+        check.function(what, one, optional=what != "gap")
     answer("gap(q)", gap, (), q)
     if gradient is not None:
         answer("gap_gradient(q)", gradient, (n,), q)
     if tangent is None:
         return 0
-    rows = np.asarray(tangent(q.copy()), dtype=float)
+    rows = check.call("tangent(q)", tangent, q.copy())
+    rows = check.real_array("tangent(q)", rows, f"({n},) or (2, {n})")
+    if not np.all(np.isfinite(rows)):
+        raise ValueError(f"tangent(q) must be finite, got {rows.tolist()}")
     if rows.shape not in ((n,), (1, n), (2, n)):
         raise ValueError(f"tangent(q) must have shape ({n},) or (2, {n}), got shape {rows.shape}")
     return rows.size // n
@@ -57,5 +61,18 @@ def checked_functions(q: np.ndarray, gap, gradient, tangent) -> int:
 
 def answer(name: str, function: Callable, shape: tuple, *arguments) -> np.ndarray:
     """Return what a function gives at the start; refuse another shape than `shape`."""
-    result = function(*(np.copy(a) if np.ndim(a) else a for a in arguments))
+    given = [np.copy(a) if np.ndim(a) else a for a in arguments]
+    result = check.real_array(
+        name, check.call(name, function, *given), "(" + ", ".join(map(str, shape)) + ")"
+    )
+    wrong = result.ndim != len(shape) or any(
+        s not in (None, k) for s, k in zip(shape, result.shape)
+    )
+    if wrong:
+        wanted = ", ".join("k" if s is None else str(s) for s in shape)
+        n = next(len(a) for a in given if np.ndim(a))
+        raise ValueError(
+            f"{name} must have shape ({wanted}{',' * (len(shape) == 1)}), as position has {n} coordinates, "
+            f"got shape {result.shape}"
+        )
     return check.finite_array(name, result, shape)

@@ -6,7 +6,7 @@ SymPy is imported here and nowhere else.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -33,19 +33,31 @@ class SymbolicModel:
         parameters, time,
     ):  # fmt: skip
         sp = self.sp = sympy()
-        self.coordinates = [sp.sympify(q) for q in coordinates]
+        self.coordinates = self.symbols("coordinates", coordinates)
         n = self.n = len(self.coordinates)
         if n == 0:
             raise ValueError("coordinates must name at least one coordinate, got none")
         functions = all(isinstance(q, sp.core.function.AppliedUndef) for q in self.coordinates)
         if velocities is None and functions:
             velocities = [q.diff(q.args[0]) for q in self.coordinates]
-        self.velocities = [sp.sympify(v) for v in velocities or ()]
+        self.velocities = [] if velocities is None else self.symbols("velocities", velocities)
         if velocities is not None and len(self.velocities) != n:
-            raise ValueError(f"velocities must be {n}, one a coordinate, got {velocities!r}")
+            raise ValueError(
+                f"velocities must be {n}, one a coordinate, got {check.shown(velocities)}"
+            )
+        if not (parameters is None or isinstance(parameters, Mapping)):
+            raise ValueError(
+                f"parameters must be a mapping from symbols to numbers, got {check.shown(parameters)}"
+            )
         self.parameters = dict(parameters or {})
         for symbol, value in self.parameters.items():
+            if not isinstance(symbol, (str, sp.Basic)):
+                raise ValueError(
+                    f"parameters must have symbols as its keys, got {check.shown(symbol)}"
+                )
             check.number(f"parameters[{symbol}]", value)
+        if not (time is None or isinstance(time, sp.Symbol)):
+            raise ValueError(f"time must be a symbol, got {check.shown(time)}")
         self.time = time if time is not None or not functions else self.coordinates[0].args[0]
         self.q = sp.symbols(f"q:{n}", real=True, cls=sp.Dummy)
         self.v = sp.symbols(f"v:{n}", real=True, cls=sp.Dummy)
@@ -61,21 +73,21 @@ class SymbolicModel:
             if self.M.has(*v) or not self.is_zero(rest):
                 raise ValueError(
                     "kinetic_energy must be a quadratic form of the velocities (no term without "
-                    f"velocities, none linear in them), got {kinetic_energy}"
+                    f"velocities, none linear in them), got {check.shown(kinetic_energy)}"
                 )
         else:
-            M = sp.Matrix(metric)
-            if M.shape != (n, n):
-                raise ValueError(f"metric must have shape ({n}, {n}), got {M.shape}")
-            self.M = M.applyfunc(lambda one: self.take("metric", one, "q"))
+            entries = self.table("metric", metric, n)
+            self.M = sp.Matrix(n, n, [self.take("metric", one, "q") for one in entries])
             if not all(self.is_zero(one) for one in self.M - self.M.T):
-                raise ValueError(f"metric must be symmetric, got {metric}")
+                raise ValueError(f"metric must be symmetric, got {check.shown(metric)}")
         self.V = self.take("potential", potential, "q")
-        given = [0] * n if forces is None else list(forces)
+        given = [0] * n if forces is None else check.listed("forces", forces, "expressions")
         if len(given) != n:
-            raise ValueError(f"forces must be {n}, one a coordinate, got {forces!r}")
+            raise ValueError(f"forces must be {n}, one a coordinate, got {check.shown(forces)}")
         self.forces = [self.take("forces", one, "tqv") for one in given]
+        constraints = check.listed("constraints", constraints, "expressions")
         self.phi = [self.take("constraints", one, "q") for one in constraints]
+        rates = check.listed("rates", rates, "expressions")
         speeds = [self.linear("rates", one) for one in rates]
         self.holonomic = len(self.phi)
         self.A = [[sp.diff(one, x) for x in q] for one in self.phi] + speeds
@@ -85,10 +97,7 @@ class SymbolicModel:
     def take(self, name: str, expression, allowed: str):
         """Return an expression in the symbols of this model; refuse others than `allowed` (of t, q, v)."""
         sp = self.sp
-        try:
-            result = sp.sympify(expression)
-        except (sp.SympifyError, TypeError):
-            raise ValueError(f"{name} must be a SymPy expression, got {expression!r}") from None
+        result = self.expression(name, expression)
         result = result.subs(list(zip(self.velocities, self.v)))  # first: they may be derivatives
         result = result.subs(list(zip(self.coordinates, self.q)))
         result = result.subs(list(self.parameters.items()))
@@ -104,9 +113,40 @@ class SymbolicModel:
             what = {"t": "the time", "q": "coordinates", "v": "velocities"}
             raise ValueError(
                 f"{name} must be in terms of {' and '.join(what[a] for a in allowed)} and parameters "
-                f"with a value, got {expression} with {', '.join(unknown) or 'derivatives'}"
+                f"with a value, got {check.shown(expression)} with {', '.join(unknown) or 'derivatives'}"
             )
         return result
+
+    def expression(self, name: str, given) -> Any:
+        """Return what is given as an expression; refuse texts, which SymPy would evaluate, and no numbers."""
+        sp = self.sp
+        try:
+            result = sp.sympify(given, strict=True)
+        except Exception:  # whatever the conversion of a foreign object raises
+            result = None
+        bad = (sp.nan, sp.zoo, sp.oo, -sp.oo)
+        if not isinstance(result, sp.Expr) or result.has(*bad) or isinstance(given, np.ndarray):
+            raise ValueError(f"{name} must be a SymPy expression, got {check.shown(given)}")
+        return result
+
+    def symbols(self, name: str, given) -> list:
+        """Return a list of different symbols, functions or derivatives."""
+        found = [self.expression(name, one) for one in check.listed(name, given, "symbols")]
+        if any(one.is_number for one in found) or len(set(found)) != len(found):
+            raise ValueError(f"{name} must be symbols, each once, got {check.shown(given)}")
+        return found
+
+    def table(self, name: str, given, n: int) -> list:
+        """Return the entries of a square matrix, row by row."""
+        if isinstance(given, self.sp.MatrixBase):
+            rows = given.tolist()
+        else:
+            rows = [list(one) if isinstance(one, (list, tuple)) or getattr(one, "ndim", 0) else [one]
+                    for one in check.listed(name, given, "rows")]  # fmt: skip
+        if len(rows) != n or any(len(row) != n for row in rows):
+            width = len(rows[0]) if rows else 0
+            raise ValueError(f"{name} must have shape ({n}, {n}), got {(len(rows), width)}")
+        return [one for row in rows for one in row]
 
     def linear(self, name: str, expression) -> list:
         """Return the row of an expression that is linear in the velocities."""
@@ -115,7 +155,8 @@ class SymbolicModel:
         rest = taken - sum(a * v for a, v in zip(row, self.v))
         if any(a.has(*self.v) for a in row) or not self.is_zero(rest):
             raise ValueError(
-                f"{name} must be linear in the velocities, without a term that has none, got {expression}"
+                f"{name} must be linear in the velocities, without a term that has none, got "
+                f"{check.shown(expression)}"
             )
         return row
 
@@ -139,7 +180,7 @@ class SymbolicModel:
         rows = [self.linear("tangent", one) for one in given]
         normal = [self.sp.diff(rho, q) for q in self.q]
         if all(one == 0 for one in normal):
-            raise ValueError(f"gap must depend on the coordinates, got {gap}")
+            raise ValueError(f"gap must depend on the coordinates, got {check.shown(gap)}")
         empty = [[self.sp.Integer(0)] * self.n] * (2 - len(rows))
         self.contacts.append((rho, [normal, *rows, *empty]))
 

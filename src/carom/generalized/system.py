@@ -80,11 +80,20 @@ class GeneralizedSystem:
             "potential_gradient": potential_gradient, "constraint_jacobian": constraint_jacobian,
         }  # fmt: skip
         for name, one in given.items():
-            if not (callable(one) or (one is None and name != "metric")):
-                raise TypeError(f"{name} must be a function, got {one!r}")
+            check.function(name, one, optional=name != "metric")
         q = check.finite_array("position", position, (None,))
         n = len(q)
-        v = check.finite_array("velocity", velocity, (n,))
+        if n == 0:
+            raise ValueError(
+                f"position must have at least one coordinate, got {check.shown(position)}"
+            )
+        for name, of in (("metric_derivative", "metric"), ("potential_gradient", "potential"),
+                         ("constraint_jacobian", "constraint")):  # fmt: skip
+            if given[name] is not None and given[of] is None:
+                raise ValueError(
+                    f"{name} must be left out without {of}, got {check.shown(given[name])}"
+                )
+        v = _rates(velocity, n)
         answers = {"metric": (n, n), "potential": (), "metric_derivative": (n, n, n)}
         answers["potential_gradient"] = (n,)
         h = 0 if constraint is None else answer("constraint(q)", constraint, (None,), q).size
@@ -149,11 +158,11 @@ class GeneralizedSystem:
         from carom.generalized.symbolic import SymbolicModel
 
         model = SymbolicModel(
-            coordinates, velocities, kinetic_energy, metric, potential, forces, tuple(constraints),
-            tuple(rates), parameters, time,
+            coordinates, velocities, kinetic_energy, metric, potential, forces, constraints, rates,
+            parameters, time,
         )  # fmt: skip
         q = check.finite_array("position", position, (model.n,))
-        v = check.finite_array("velocity", velocity, (model.n,))
+        v = _rates(velocity, model.n)
         system = cls.__new__(cls)
         system._start(model, q, v)
         return system
@@ -163,7 +172,7 @@ class GeneralizedSystem:
         self._contacts: list[CoordinateContact] = []
         self._made: Evaluation | None = None
         self.position, self.velocity = q, v
-        M = check.finite_array("metric at the start", model.metric_at(q), (model.n, model.n))
+        M = check.finite_array("metric at position", model.metric_at(q), (model.n, model.n))
         if not np.allclose(M, M.T, rtol=0, atol=1e-12 * np.max(np.abs(M))):
             raise ValueError(f"metric must be symmetric, got {M.tolist()} at the start")
         if not np.linalg.eigvalsh(M)[0] > 0.0:
@@ -171,8 +180,8 @@ class GeneralizedSystem:
 
     def set_state(self, position, velocity) -> None:
         """Start from other coordinates and velocities, each (n,)."""
-        self.position = check.finite_array("position", position, (self.coordinates,))
-        self.velocity = check.finite_array("velocity", velocity, (self.coordinates,))
+        q = check.finite_array("position", position, (self.coordinates,))
+        self.position, self.velocity = q, _rates(velocity, self.coordinates)
 
     @property
     def coordinates(self) -> int:
@@ -256,7 +265,8 @@ class GeneralizedSystem:
     def autoparallel(self, position, velocity, parts: int = 100) -> tuple[np.ndarray, np.ndarray]:
         """Return the end (q, v) of the autoparallel from `position` with `velocity`, after a time of 1.
 
-        A geodesic of the metric: ``q'' + Gamma(q', q') = 0``. In `parts` Runge-Kutta steps of order 4.
+        A geodesic of the metric: ``q'' + Gamma(q', q') = 0``. In `parts` (1 to 100 000) Runge-Kutta steps of
+        order 4.
 
         Raises
         ------
@@ -264,7 +274,7 @@ class GeneralizedSystem:
             If an argument is not as above, or the metric is singular on the way.
         """
         v = check.finite_array("velocity", velocity, (self.coordinates,))
-        parts = check.integer("parts", parts, least=1)
+        parts = check.integer("parts", parts, least=1, most=100_000)
         return self.evaluation().autoparallel(self._at(position), v, parts)
 
     def return_map(self, position, contact: CoordinateContact | str) -> np.ndarray:
@@ -283,11 +293,15 @@ class GeneralizedSystem:
         return self.evaluation().return_map(self._at(position), index)
 
     def _contact(self, contact) -> CoordinateContact:
-        name = getattr(contact, "name", contact)
-        for one in self._contacts:
-            if one.name == name:
-                return one
-        raise KeyError(f"no contact is called {name!r}")
+        if isinstance(contact, str):
+            for one in self._contacts:
+                if one.name == contact:
+                    return one
+            raise KeyError(f"no contact is called {check.shown(contact)}")
+        check.instance("contact", contact, (CoordinateContact, str))
+        if not any(one is contact for one in self._contacts):
+            raise ValueError(f"contact must belong to this system, got {contact!r} of another one")
+        return contact
 
     def _at(self, position) -> np.ndarray:
         return check.finite_array("position", position, (self.coordinates,))
@@ -297,3 +311,13 @@ class GeneralizedSystem:
             f"<GeneralizedSystem: {self.coordinates} coordinates, {self._model.rows} constraints, "
             f"{len(self._contacts)} contacts>"
         )
+
+
+def _rates(velocity, n: int) -> np.ndarray:
+    """Return the velocities (n,) of n coordinates."""
+    v = check.finite_array("velocity", velocity, (None,))
+    if len(v) != n:
+        raise ValueError(
+            f"velocity must have shape ({n},), as position has {n} coordinates, got shape {v.shape}"
+        )
+    return v

@@ -58,14 +58,16 @@ def make_parameters(scene, names, contacts: int, to_principal: np.ndarray) -> Pa
     """
     if isinstance(names, str):
         names = (names,)
-    names = tuple(names)
+    names = tuple(check.listed("with_respect_to", names, "names"))
     if not names:
         raise ValueError("with_respect_to must name at least one parameter, got none")
     parts = [_parts(scene, name) for name in names]
     labels, columns = [], {}
     for name, (_, _, components) in zip(names, parts):
         if name in columns:
-            raise ValueError(f"with_respect_to must name each parameter once, got {name!r} twice")
+            raise ValueError(
+                f"with_respect_to must name each parameter once, got {check.shown(name)} twice"
+            )
         at = len(labels)
         labels += [f"{name}.{c}" for c in components] or [name]
         columns[name] = slice(at, len(labels)) if components else at
@@ -81,14 +83,15 @@ def make_parameters(scene, names, contacts: int, to_principal: np.ndarray) -> Pa
 
 def _parts(scene, name: str):
     """Return (part of the scene or None, field, components) of a name."""
-    part, _, field = str(name).rpartition(".")
+    check.text("each name in with_respect_to", name)
+    part, _, field = name.rpartition(".")
     if not part:
         check.choice("a name in with_respect_to", field, OF_SCENE)
         return None, field, AXES if field == "gravity" else ()
     try:
         found = scene[part]
     except KeyError as error:
-        raise ValueError(f"with_respect_to: {error.args[0]}, got {name!r}") from None
+        raise ValueError(f"with_respect_to: {error.args[0]}, got {check.shown(name)}") from None
     if isinstance(found, Body):
         check.choice(f"what follows {part!r} in with_respect_to", field, OF_BODY)
         components = AXES if field in VECTORS else tuple(MOMENTS) if field == "inertia" else ()
@@ -98,7 +101,7 @@ def _parts(scene, name: str):
         return found, field, ()
     raise ValueError(
         "with_respect_to must name fields of bodies or contacts, as in 'die.velocity', "
-        f"'die-ground.friction', or one of {', '.join(OF_SCENE)}, got {name!r}"
+        f"'die-ground.friction', or one of {', '.join(OF_SCENE)}, got {check.shown(name)}"
     )
 
 

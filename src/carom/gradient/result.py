@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom import check
 from carom.gradient.tangents import Tangents
 
 NEAR = 0.05  # margins below this part of their scale are shown as near
@@ -147,11 +148,7 @@ class Sensitivities:
         ValueError
             If a time is outside the run.
         """
-        times = np.atleast_1d(np.asarray(t, dtype=float))
-        begin, end = self._motion.begin, self._motion.end
-        if not np.all((times >= begin) & (times <= end)):
-            raise ValueError(f"t must be within [{begin:g}, {end:g}] s, got {t!r}")
-        X = self._motion.at(times)
+        X = self._motion.at(check.times("t", t, self._motion.begin, self._motion.end))
         X = X[0] if np.ndim(t) == 0 else X
         return Derivative(*(X[..., 3 * k : 3 * k + 3, :] for k in range(4)))
 

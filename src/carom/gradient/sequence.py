@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from carom import check
 from carom.columns import Columns
 from carom.impact.api import phase_names
 from carom.solution import Solution
@@ -72,6 +73,7 @@ def contact_sequence(solution: Solution) -> tuple[ImpactKind, ...]:
     ----------
     solution : Solution
     """
+    check.instance("solution", solution, (Solution,))
     found = []
     for step in steps_of(solution):
         row, event = step.row, step.event

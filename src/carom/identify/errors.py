@@ -47,6 +47,14 @@ def trajectory_error(simulated, recorded, length: float = 1.0) -> TrajectoryErro
         angle ``2 asin(|R_sim - R_rec|_F / sqrt(8))`` [rad].
     """
     length = check.number("length", length, above=0.0, unit="m")
+    for name, given in (("simulated", simulated), ("recorded", recorded)):
+        if not (hasattr(given, "position") and hasattr(given, "orientation")):
+            raise TypeError(f"{name} must be a RollOut or a Recording, got {check.shown(given)}")
+    if np.shape(simulated.position) != np.shape(recorded.position):
+        raise ValueError(
+            f"simulated and recorded must have the same shape, got {np.shape(simulated.position)} and "
+            f"{np.shape(recorded.position)}"
+        )
     distance, angle = distances(simulated, recorded), angles(simulated, recorded)
     return TrajectoryError(float(np.mean(distance)) / length, float(np.mean(angle)))
 
@@ -105,5 +113,6 @@ def face_up(orientation: ArrayLike, up: ArrayLike = (0.0, 0.0, 1.0)) -> np.ndarr
     -------
     ndarray of int (...)
     """
-    seen = quaternion.rotate_back(orientation, check.unit_vector("up", up))
+    Q = check.vectors("orientation", orientation, 4)
+    seen = quaternion.rotate_back(Q, check.unit_vector("up", up))
     return np.argmax(np.concatenate([seen, -seen], axis=-1), axis=-1)

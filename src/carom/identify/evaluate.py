@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from carom import check
 from carom.identify.parameters import Space
 from carom.identify.recording import Recording
 from carom.identify.rollout import RollOut, roll_outs
@@ -31,7 +32,9 @@ class Evaluator:
         named = self.space.named(point)
         if isinstance(self.scene, Scene):
             return varied(self.scene, **named, start=recording.start)
-        return self.scene(named, recording)
+        scene = check.call("scene", self.scene, named, recording)
+        check.instance("what scene returns", scene, (Scene,))
+        return scene
 
     def runs(self, point: np.ndarray) -> list[RollOut]:
         """Return the simulated motion of each recording."""
@@ -47,13 +50,17 @@ class Evaluator:
         key = point.tobytes()
         if key not in self._known:
             runs = self.runs(point)
-            values = [self.objective(*pair) for pair in zip(runs, self.recordings)]
+            values = [
+                check.call("objective", self.objective, *pair)
+                for pair in zip(runs, self.recordings)
+            ]
             self.values.append(checked(values, self.recordings))
             self.points.append(point)
             self.failed.append(sum(bool(run.message) for run in runs))
             self._known[key] = len(self.points) - 1
             if self.progress is not None:
-                self.progress(len(self.points), self.space.named(point), self.mean(-1))
+                named = self.space.named(point)
+                check.call("progress", self.progress, len(self.points), named, self.mean(-1))
         return self._known[key]
 
     def mean(self, number: int) -> float:
@@ -72,14 +79,22 @@ class Evaluator:
 
 def checked(values: list, recordings: Sequence[Recording]) -> np.ndarray:
     """Return the objective of each recording (K,); refuse what is no number."""
-    array = np.array([np.nan if np.ndim(v) else v for v in values], dtype=np.float64)
+    array = np.array([_number(v) for v in values])
     if not np.all(np.isfinite(array)):
         k = int(np.argmax(~np.isfinite(array)))
         raise ValueError(
-            f"objective must return one finite number, got {values[k]!r} for recording {k} "
-            f"{recordings[k].name!r}"
+            f"objective must return one finite number, got {check.shown(values[k])} for recording {k} "
+            f"{check.shown(recordings[k].name)}"
         )
     return array
+
+
+def _number(value) -> float:
+    """Return a number that a function gave; NaN for what is none."""
+    try:
+        return check.number("objective", value)
+    except ValueError:
+        return np.nan
 
 
 Objective = Callable[[RollOut, Recording], float]

@@ -9,7 +9,7 @@ import numpy as np
 from carom import check
 from carom.identify.evaluate import Evaluator
 from carom.identify.parameters import Space
-from carom.identify.recording import Recording
+from carom.identify.recording import Recording, checked_recordings
 from carom.identify.result import Identification
 from carom.identify.search import search
 from carom.identify.uncertainty import bootstrap
@@ -68,9 +68,9 @@ def identify(
         No search begins or goes on after this many evaluations, each a simulation of all recordings. Default
         400.
     resamples : int
-        Sets of recordings drawn anew for the uncertainty, 0 for none. Default 200. They cost a design of
-        2 p^2 + 1 evaluations, at most six times; should it come upon a point that is better by 2 %, the
-        search goes on from there.
+        Sets of recordings drawn anew for the uncertainty, 0 for none, at most 100 000. Default 200. They cost a
+        design of 2 p^2 + 1 evaluations, at most six times; should it come upon a point that is better by 2 %,
+        the search goes on from there.
     seed : int
         Of the drawing. Default 0.
     step, options, threads
@@ -92,19 +92,19 @@ def identify(
         raise TypeError(
             f"scene must be a carom.Scene or a function that makes one, got {type(scene).__name__}"
         )
-    recordings = _recordings(recordings)
-    if not callable(objective):
-        raise TypeError(f"objective must be a function, got {type(objective).__name__}")
+    recordings = checked_recordings(recordings)
+    check.function("objective", objective)
+    check.function("progress", progress, optional=True)
     check.choice("method", method, METHODS)
-    check.integer("restarts", restarts, least=0)
+    restarts = check.integer("restarts", restarts, least=0)
     tolerance = check.number("tolerance", tolerance, above=0.0, below=1.0)
-    check.integer("max_evaluations", max_evaluations, least=1)
-    check.integer("resamples", resamples, least=0)
-    check.integer("seed", seed, least=0)
+    max_evaluations = check.integer("max_evaluations", max_evaluations, least=1)
+    resamples = check.integer("resamples", resamples, least=0, most=100_000)
+    seed = check.integer("seed", seed, least=0)
     if step is not None:
         step = check.number("step", step, above=0.0, unit="s")
     if threads is not None:
-        check.integer("threads", threads, least=1)
+        threads = check.integer("threads", threads, least=1)
     space = Space(parameters, known=isinstance(scene, Scene))
     settings = {"step": step, "options": options, "threads": threads}
     evaluate = Evaluator(scene, recordings, space, objective, progress, **settings)
@@ -133,12 +133,3 @@ def identify(
         message=message,
         uncertainty=uncertainty,
     )
-
-
-def _recordings(recordings) -> list[Recording]:
-    found = list(recordings)
-    if not found:
-        raise ValueError("recordings must be at least one Recording, got none")
-    for k, recording in enumerate(found):
-        check.instance(f"recordings[{k}]", recording, (Recording,))
-    return found

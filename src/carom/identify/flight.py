@@ -11,6 +11,7 @@ from carom import check
 from carom.geometry import quaternion
 from carom.identify.attitude import fit_attitude
 from carom.identify.recording import State, poses, times, unit
+from carom.scene.shapes import SHAPES
 
 _ROOM = "a fit needs one sample more than it has unknowns"
 
@@ -148,7 +149,9 @@ def _fit_positions(t, x, gravity) -> dict:
     solution, *_ = np.linalg.lstsq(fitted, x - known, rcond=None)
     residual = x - known - fitted @ solution
     spread = np.sqrt(np.diag(np.linalg.inv(fitted.T @ fitted)))
-    noise = float(np.sqrt(np.sum(residual**2) / (residual.size - solution.size)))
+    with np.errstate(over="ignore"):
+        noise = float(np.sqrt(np.sum(residual**2) / (residual.size - solution.size)))
+    check.number("the residual of gravity and position", noise, unit="m")
     state, error = np.zeros((3, 3)), np.zeros((3, 3))
     count = len(solution)
     state[:count] = solution / scale[:count, None]
@@ -185,9 +188,15 @@ def free_samples(
     int
         Number of samples before the first whose gap is below `clearance`; n if there is none.
     """
-    x = np.asarray(position, dtype=np.float64)
-    x = poses("position", position, len(x), 3)[:, 0]
-    q = unit("orientation", poses("orientation", orientation, len(x), 4))[:, 0]
+    check.instance("shape", shape, SHAPES, "; a shape is needed")
+    count = len(np.atleast_1d(check.real_array("position", position, "(n, 3)")))
+    x = poses("position", position, count, 3)[:, 0]
+    turns = check.vectors("orientation", orientation, 4)
+    if len(turns) != len(x):
+        raise ValueError(
+            f"orientation must have as many samples as position, got {len(turns)} and {len(x)}"
+        )
+    q = unit("orientation", poses("orientation", turns, len(x), 4))[:, 0]
     on_plane = check.finite_array("point", point, (3,), "m")
     n = check.unit_vector("normal", normal)
     clearance = check.number("clearance", clearance, unit="m")

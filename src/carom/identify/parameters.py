@@ -33,13 +33,27 @@ class Parameter:
     upper: float = np.inf
 
     def __post_init__(self):
-        if np.isnan(self.lower) or np.isnan(self.upper) or not self.lower < self.upper:
-            raise ValueError(f"lower must be below upper, got {self.lower!r} and {self.upper!r}")
-        keep(
-            self,
-            start=check.number("start", self.start, least=self.lower, most=self.upper),
-            step=check.number("step", self.step, above=0.0, most=self.upper - self.lower),
-        )
+        lower, upper = _bound("lower", self.lower), _bound("upper", self.upper)
+        keep(self, lower=lower, upper=upper)
+        if not lower < upper:
+            raise ValueError(f"lower must be below upper, got {lower!r} and {upper!r}")
+        start = check.number("start", self.start)
+        if not lower <= start <= upper:
+            raise ValueError(
+                f"start must be at least {lower:g} and at most {upper:g} (lower and upper), got {start!r}"
+            )
+        step = check.number("step", self.step, above=0.0)
+        if not step <= upper - lower:
+            raise ValueError(
+                f"step must be at most upper - lower = {upper - lower:g}, got {step!r}"
+            )
+        keep(self, start=start, step=step)
+
+
+def _bound(name: str, value) -> float:
+    """Return a bound: a number, or infinite."""
+    infinite = isinstance(value, (float, np.floating)) and np.isinf(value)
+    return float(value) if infinite else check.number(name, value)
 
 
 class Space:
@@ -48,7 +62,7 @@ class Space:
     def __init__(self, parameters: Mapping, known: bool):
         if not isinstance(parameters, Mapping) or not parameters:
             raise ValueError(
-                f"parameters must be a dict of names and Parameters, got {parameters!r}"
+                f"parameters must be a dict of names and Parameters, got {check.shown(parameters)}"
             )
         self.names = tuple(parameters)
         all_of_them = [_parameter(name, parameters[name], known) for name in self.names]
@@ -75,10 +89,10 @@ def _parameter(name: str, value, known: bool) -> Parameter:
         return Parameter(value.start, value.step, low, high)
     if isinstance(value, tuple) and len(value) == 2:
         return Parameter(value[0], value[1], bounds[0], bounds[1])
-    if isinstance(value, (int, float)) and bounds[2] > 0.0:
-        return Parameter(float(value), bounds[2], bounds[0], bounds[1])
+    if not isinstance(value, bool) and isinstance(value, (int, float)) and bounds[2] > 0.0:
+        return Parameter(value, bounds[2], bounds[0], bounds[1])
     raise ValueError(
         f"parameters[{name!r}] must be a Parameter or (start, step)"
         + (", or a number to start from" if bounds[2] > 0.0 else "")
-        + f", got {value!r}"
+        + f", got {check.shown(value)}"
     )

@@ -61,6 +61,8 @@ class Recording:
                 f"orientation must be of as many bodies as position, got {q.shape[1]} and {x.shape[1]}"
             )
         keep(self, t=t, position=x, orientation=q)
+        if not isinstance(self.name, str):
+            raise ValueError(f"name must be a string, got {check.shown(self.name)}")
         if self.start is not None:
             keep(self, start=checked_state(self.start, x.shape[1]))
 
@@ -69,6 +71,16 @@ class Recording:
             f"<Recording {self.name!r}: {self.position.shape[1]} bodies, {self.t.size} samples, "
             f"{self.t[-1] - self.t[0]:g} s>"
         )
+
+
+def checked_recordings(recordings) -> list[Recording]:
+    """Return at least one recording."""
+    found = check.listed("recordings", recordings, "Recording")
+    if not found:
+        raise ValueError("recordings must be at least one Recording, got none")
+    for k, recording in enumerate(found):
+        check.instance(f"recordings[{k}]", recording, (Recording,))
+    return found
 
 
 def times(t: ArrayLike) -> np.ndarray:
@@ -84,13 +96,14 @@ def times(t: ArrayLike) -> np.ndarray:
 
 def poses(name: str, value: ArrayLike, n: int, components: int) -> np.ndarray:
     """Return `value` as a finite array (n, N, components)."""
-    array = np.array(value, dtype=np.float64)
+    array = check.real_array(name, value, f"({n}, {components}) or ({n}, N, {components})")
+    shape = array.shape
     if array.ndim == 2:
         array = array[:, None, :]
     if array.ndim != 3 or array.shape[0] != n or array.shape[2] != components:
         raise ValueError(
             f"{name} must have shape ({n}, {components}) or ({n}, N, {components}), as t has {n} times, "
-            f"got shape {np.shape(value)}"
+            f"got shape {shape}"
         )
     if not np.all(np.isfinite(array)):
         k = int(np.argmax(~np.all(np.isfinite(array), axis=(1, 2))))
@@ -119,7 +132,7 @@ def checked_state(start, count: int) -> State:
         )
     fields = {}
     for name, value, size in zip(State._fields, start, (3, 4, 3, 3)):
-        array = np.array(value, dtype=np.float64)
+        array = check.real_array(f"start.{name}", value, f"({count}, {size})")
         array = array[None] if array.ndim == 1 else array
         fields[name] = check.finite_array(f"start.{name}", array, (count, size))
     fields["orientation"] = unit("start.orientation", fields["orientation"])

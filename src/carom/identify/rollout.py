@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom.identify.recording import Recording
+from carom import check
+from carom.identify.recording import Recording, checked_recordings
 from carom.options import Options
 from carom.scene.scene import Scene
 
@@ -48,10 +49,19 @@ def roll_out(
     """
     from carom.simulate import simulate
 
+    check.instance("scene", scene, (Scene,))
+    check.instance("recording", recording, (Recording,))
+    if recording.position.shape[1] > len(scene.bodies):
+        raise ValueError(
+            f"scene must have the {recording.position.shape[1]} bodies of the recording, got {scene!r}"
+        )
+    if step is not None:
+        step = check.number("step", step, above=0.0, unit="s")
     since = recording.t - recording.t[0]
     n, length = since.size, float(since[-1])
     sampling = length / (n - 1)
     longest = 0.25 * sampling if step is None else step
+    check.steps(length, longest, 1e12)
     uniform = np.max(np.abs(since - sampling * np.arange(n))) <= UNIFORM * sampling
     parts = int(np.ceil(sampling / longest * (1.0 - 1e-9))) if uniform else 1
     used = sampling / parts if uniform else longest
@@ -92,9 +102,15 @@ def roll_outs(
     threads : int, optional
         Default: the number of cores that the process may use. The compiled loop lets other threads run.
     """
+    check.function("make", make)
+    recordings = checked_recordings(recordings)
+    if threads is not None:
+        threads = check.integer("threads", threads, least=1)
 
     def one(recording: Recording) -> RollOut:
-        return roll_out(make(recording), recording, step=step, options=options)
+        scene = check.call("make", make, recording)
+        check.instance("what make returns", scene, (Scene,))
+        return roll_out(scene, recording, step=step, options=options)
 
     threads = cores() if threads is None else threads
     first = [one(recording) for recording in recordings[:1]]  # what is to be compiled is, once

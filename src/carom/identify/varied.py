@@ -63,11 +63,13 @@ def varied(
     if start is not None and (scene.joints or scene.forces):
         raise ValueError(
             "start cannot replace the state of a scene with joints or forces, whose places are those of the "
-            f"start, got {scene!r}; give a function that makes the scene instead"
+            f"start, got {check.shown(scene)}; give a function that makes the scene instead"
         )
+    if not scene.bodies:
+        raise ValueError(f"scene must have at least one body, got {scene!r}")
     if start is not None:
         start = checked_state(start, len(scene.bodies))
-    factor = check.number("inertia_factor", inertia_factor, above=0.0)
+    factor = check.scale("inertia_factor", inertia_factor)
     copy = Scene(gravity=scene.gravity)
     parts: dict = {}
     for plane in scene.half_spaces:
@@ -101,6 +103,8 @@ def _state(body) -> State:
 
 def _rounded(shape, radius):
     """Return a box with another radius of its rounding; any other shape as it is."""
+    if radius is not None:
+        radius = check.length("corner_radius", radius, zero=True)
     if radius is None or not isinstance(shape, Box):
         return shape
     return replace(shape, radius=radius)

@@ -123,7 +123,7 @@ def checked_inverse_mass(inverse_mass) -> np.ndarray:
     """Return W as a symmetric array; raise ValueError unless W >= 0 and W_nn > 0."""
     W = check.finite_array("inverse_mass", inverse_mass, (3, 3), "1/kg")
     if np.max(np.abs(W - W.T)) > 1e-9 * np.max(np.abs(W)):
-        raise ValueError(f"inverse_mass must be symmetric, got {inverse_mass!r}")
+        raise ValueError(f"inverse_mass must be symmetric, got {check.shown(inverse_mass)}")
     W = np.ascontiguousarray(0.5 * (W + W.T))
     check.number("inverse_mass[0, 0] (normal)", W[0, 0], above=0.0, unit="1/kg")
     least, *_, most = np.linalg.eigvalsh(W)

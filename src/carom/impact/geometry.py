@@ -10,6 +10,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from carom import check
+from carom.impact.api import checked_inverse_mass
+
 
 def flat_coordinate(x, width):
     """Return s = b ln(x/b) of the normal coordinate x; 0 at entry, -infinity at the boundary."""
@@ -116,9 +119,11 @@ def diagonal_form(inverse_mass, velocity, force):
     g, velocity, force : ndarray, shape (3,)
         Diagonal metric [kg], vtil [m/s], f [N].
     """
-    W = np.asarray(inverse_mass, dtype=np.float64)
-    u = np.asarray(velocity, dtype=np.float64)
-    f = np.asarray(force, dtype=np.float64)
+    W = checked_inverse_mass(inverse_mass)
+    if not np.linalg.cond(W) < 1e15:
+        raise ValueError(f"inverse_mass must be regular, got {check.shown(inverse_mass)}")
+    u = check.finite_array("velocity", velocity, (3,), "m/s")
+    f = check.finite_array("force", force, (3,), "N")
     ratio = W[1:, 0] / W[0, 0]
     reduced, axes = np.linalg.eigh(W[1:, 1:] - np.outer(W[1:, 0], ratio))
     g = np.array([1.0 / W[0, 0], *(1.0 / reduced)])

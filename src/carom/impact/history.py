@@ -9,6 +9,8 @@ import numpy as np
 from carom import check
 from carom.impact.api import checked_impact, phase_names, raise_for
 
+MOST_STEPS = 100_000  # of one passage: more would only add round-off
+
 
 @dataclass(frozen=True)
 class LayerHistory:
@@ -71,9 +73,11 @@ class LayerHistory:
         x : ndarray, shape of t
         velocity : ndarray, shape of t + (3,)
         """
-        t = np.asarray(t, dtype=np.float64)
+        given, t = t, check.real_array("t", t, "(...,)")
         if not np.all((t >= 0.0) & (t <= self.duration)):
-            raise ValueError(f"t must be within [0, duration = {self.duration:.9g}] [s], got {t!r}")
+            raise ValueError(
+                f"t must be within [0, duration = {self.duration:.9g}] [s], got {check.shown(given)}"
+            )
         i = np.clip(np.searchsorted(self.t, t, side="right") - 1, 0, len(self.t) - 2)
         d = (self.t[i + 1] - self.t[i])[..., None]
         z = ((t - self.t[i])[..., None]) / d
@@ -108,7 +112,7 @@ def impact_layer(
     width : float
         Width b of the layer [m]. Neither it nor delta changes the velocity after the impact.
     steps : int
-        Steps of the spline, shared equally by compression and restitution; at least 2. A step is
+        Steps of the spline, shared equally by compression and restitution; from 2 to 100 000. A step is
         split where slip ends, and halved where slip turns sharply. Default 2, the paper's: exact
         where the direction of slip is constant, of order 4 otherwise.
 
@@ -141,7 +145,7 @@ def impact_layer(
     W, u, mu, e, number = checked_impact(inverse_mass, velocity, friction, restitution, law)
     delta = check.number("penetration", penetration, above=0.0, below=1.0)
     b = check.number("width", width, above=0.0, unit="m")
-    steps = check.integer("steps", steps, least=2)
+    steps = check.integer("steps", steps, least=2, most=MOST_STEPS)
     out = np.zeros(o.SIZE)
     rows = np.zeros((steps + 32, COLUMNS))
     raise_for(traverse(W, u, mu, e, number, b, delta, steps, rows, out))

@@ -6,10 +6,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
+from carom import check
 from carom.models.report import Report
 from carom.scene.bodies import GROUND, Body, Ground, HalfSpace
 from carom.scene.joints import Joint
 from carom.scene.scene import Scene
+from carom.solution import Solution
 
 
 class Names:
@@ -50,6 +52,7 @@ class Coordinate(NamedTuple):
 
     def of(self, solution) -> tuple[Any, Any]:
         """Return q and its rate, each (T,), at the saved times of a solution: in the terms of the model."""
+        check.instance("solution", solution, (Solution,))
         q, rate = solution.joint_coordinates(self.joint)
         return self.start + self.sign * q[:, self.index], self.sign * rate[:, self.index]
 

@@ -114,6 +114,12 @@ def load_model(
     check.choice("overlaps", overlaps, ("repair", "refuse"))
     for name, value in (("free_root", free_root), ("contacts", contacts), ("armature", armature)):
         check.flag(name, value)
+    if isinstance(source, os.PathLike) or (isinstance(source, str) and "<" not in source):
+        check.path("source", source)
+    package_dirs = [
+        check.path("each of package_dirs", one)
+        for one in check.listed("package_dirs", package_dirs, "paths")
+    ]
     report = Report()
     model = compiled_model(source, free_root, package_dirs, report)
     loops = bool(np.any(model.eq_active0)) or (armature and bool(np.any(model.dof_armature)))

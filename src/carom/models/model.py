@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from carom import check
 from carom.geometry import quaternion
 from carom.models.build import Coordinate
 from carom.models.links import Link
@@ -14,6 +15,7 @@ from carom.models.report import Report
 from carom.scene.bodies import Body, Ground, HalfSpace
 from carom.scene.joints import Joint
 from carom.scene.scene import Scene
+from carom.solution import Solution
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -57,6 +59,10 @@ class Model:
         Set ``data.qpos`` to a row and call ``mujoco.mj_forward`` to draw the motion, or to ask for sites and
         sensors.
         """
+        check.instance("solution", solution, (Solution,))
+        names = [[body.name for body in scene.bodies] for scene in (solution.scene, self.scene)]
+        if names[0] != names[1]:
+            raise ValueError(f"solution must be one of the scene of this model, got {solution!r}")
         m = self.mujoco
         q = np.tile(self._start, (len(solution.t), 1))
         for j, coordinate in self._coordinates.items():

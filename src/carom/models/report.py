@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
+from carom import check
+
 SHOWN = 4  # names of elements that are printed before "and 17 more"
 
 
@@ -37,6 +39,8 @@ class Report(Sequence[Entry]):
 
     def add(self, element: str, what: str, instead: str) -> None:
         """Add an entry."""
+        for name, given in (("element", element), ("what", what), ("instead", instead)):
+            check.text(name, given)
         self._entries.append(Entry(element, what, instead))
 
     def __getitem__(self, index):
@@ -50,6 +54,7 @@ class Report(Sequence[Entry]):
 
     def of(self, element: str) -> list[Entry]:
         """Return the entries whose element has this text in it: a name, or a kind such as ``"actuator"``."""
+        check.text("element", element)
         return [entry for entry in self._entries if element in entry.element]
 
     def __str__(self) -> str:

@@ -55,7 +55,7 @@ def key_number(model, keyframe) -> int:
     named = ", ".join(repr(name) for name in names if name) or "without names"
     raise ValueError(
         f"keyframe must be a name or a number below {model.nkey}, the number of keyframes of the model "
-        f"({named}), got {keyframe!r}"
+        f"({named}), got {check.shown(keyframe)}"
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from difflib import get_close_matches
 from itertools import cycle
@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from carom import check
 from carom.plots import style
 
 #: of lines that are told apart, in their order
@@ -40,9 +41,17 @@ def drawing(
             if layout.get("sharex") and count > 1:
                 figure.align_ylabels(parts)
         else:
-            parts = np.array([ax], dtype=object) if isinstance(ax, Axes) else np.ravel(ax)
+            parts = np.empty(1, dtype=object)
+            parts[0] = ax
+            if isinstance(ax, (list, tuple, np.ndarray)):
+                try:
+                    parts = np.ravel(np.array(ax, dtype=object))
+                except ValueError:
+                    parts = np.empty(0, dtype=object)
             if len(parts) != count or not all(isinstance(one, Axes) for one in parts):
-                raise ValueError(f"ax must be {count} matplotlib Axes or None, got {ax!r}")
+                raise ValueError(
+                    f"ax must be {count} matplotlib Axes or None, got {check.shown(ax)}"
+                )
         try:
             yield parts[0] if count == 1 else parts
         except Exception:
@@ -78,7 +87,7 @@ def is_bodies(solution) -> bool:
     if isinstance(solution, (Solution, GeneralizedSolution)):
         return isinstance(solution, Solution)
     raise TypeError(
-        f"solution must be a Solution or a GeneralizedSolution, got {solution!r}; from a file: "
+        f"solution must be a Solution or a GeneralizedSolution, got {check.shown(solution)}; from a file: "
         "carom.Solution.load(path)"
     )
 
@@ -86,23 +95,28 @@ def is_bodies(solution) -> bool:
 def need_bodies(solution, what: str) -> None:
     """Refuse a solution in coordinates."""
     if not is_bodies(solution):
-        raise ValueError(f"{what} needs the Solution of a scene of bodies, got {solution!r}")
+        raise ValueError(
+            f"{what} needs the Solution of a scene of bodies, got {check.shown(solution)}"
+        )
 
 
 def named(argument: str, wanted, parts: list[str]) -> list[int]:
     """Return the indices of `wanted`, names or handles with a name or one of them; None is all."""
     if wanted is None:
         return list(range(len(parts)))
-    if isinstance(wanted, str) or not isinstance(wanted, Iterable):
+    if isinstance(wanted, str) or not isinstance(wanted, (list, tuple, set, np.ndarray)):
         wanted = [wanted]
+    wanted = wanted.ravel() if isinstance(wanted, np.ndarray) else wanted
     found = []
     for one in wanted:
-        name = getattr(one, "name", one)
-        if name not in parts:
-            near = get_close_matches(str(name), parts, n=1)
+        name = one if isinstance(one, (str, type)) else getattr(one, "name", one)
+        if not isinstance(name, str) or name not in parts:
+            near = get_close_matches(check.shown(name), parts, n=1)
             hint = f"; did you mean {near[0]!r}?" if near else ""
             shown = ", ".join(map(repr, parts[:12])) + (", ..." if len(parts) > 12 else "")
-            raise ValueError(f"{argument} must be among {shown or 'none'}, got {name!r}{hint}")
+            raise ValueError(
+                f"{argument} must be among {shown or 'none'}, got {check.shown(name)}{hint}"
+            )
         found.append(parts.index(name))
     if not found:
         raise ValueError(f"{argument} must be at least one of {len(parts)}, got none")
@@ -127,13 +141,11 @@ def contact_names(solution) -> list[str]:
 def need_impacts(solution) -> None:
     """Refuse a solution without impacts."""
     if not len(solution.impacts):
-        raise ValueError(f"there must be an impact to draw, got {solution!r}")
+        raise ValueError(f"there must be an impact to draw, got {check.shown(solution)}")
 
 
 def impact(solution, k):
     """Return the record of impact k."""
-    from carom import check
-
     need_impacts(solution)
     count = len(solution.impacts)
     return solution.impacts[

@@ -9,6 +9,7 @@ from carom.geometry import quaternion
 from carom.plots import figure, style
 
 GROUND = "#ececec"
+MOST = 200  # outlines: more would cover each other
 
 
 def trajectory(
@@ -28,8 +29,8 @@ def trajectory(
         Two of "x", "y", "z": the axis to the right and the axis up. Default: up against gravity, and to the
         right the other axis along which there is more motion.
     outlines : (m,) or int, optional
-        Times [s] at which the outlines of the bodies are drawn, or how many, spread evenly over the run.
-        Default: none.
+        Times [s] at which the outlines of the bodies are drawn, or how many, spread evenly over the run; at
+        most 200. Default: none.
     ground : bool
         Whether to draw half-spaces. Default True.
     ax : Axes, optional
@@ -45,6 +46,7 @@ def trajectory(
         If there is no body of that name, or the plane is none.
     """
     figure.need_bodies(solution, "trajectory")
+    check.flag("ground", ground)
     chosen = figure.bodies(solution, bodies)
     t = figure.with_impacts(solution)
     x = solution.evaluate(t)[0]
@@ -99,16 +101,20 @@ def _times(outlines, solution) -> np.ndarray:
     """Return the times of outlines."""
     if outlines is None:
         return np.zeros(0)
-    if np.ndim(outlines) == 0:
+    if check.real_array("outlines", outlines, "() or (m,)").ndim == 0:
         return np.linspace(
-            solution.t[0], solution.t[-1], check.integer("outlines", outlines, least=1)
+            solution.t[0], solution.t[-1], check.integer("outlines", outlines, least=1, most=MOST)
         )
     times, (first, last) = (
         check.finite_array("outlines", outlines, (None,), "s"),
         solution.t[[0, -1]],
     )
+    if len(times) > MOST:
+        raise ValueError(f"outlines must be at most {MOST} times, got {len(times)}")
     if not np.all((times >= first) & (times <= last)):
-        raise ValueError(f"outlines must be times within [{first:g}, {last:g}] s, got {outlines!r}")
+        raise ValueError(
+            f"outlines must be times within [{first:g}, {last:g}] s, got {check.shown(outlines)}"
+        )
     return times
 
 

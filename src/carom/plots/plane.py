@@ -34,13 +34,14 @@ def phase(solution, of=None, *, axis: str = "z", number: int = 0, ax=None):
     if not figure.is_bodies(solution):
         if of is not None:
             raise ValueError(
-                f"of must be left out for a system in coordinates, got {of!r}; give number"
+                f"of must be left out for a system in coordinates, got {check.shown(of)}; give number"
             )
         count = solution.q.shape[1]
         k = check.integer("number", number, least=0, most=count - 1)
         _, (q, v) = _course(solution, lambda states: (states[0][:, k], states[1][:, k]))
         words = f"$q_{{{k}}}$", f"$\\dot q_{{{k}}}$ [1/s]"
     else:
+        check.integer("number", number, least=0)
         q, v, words = _of_scene(solution, of, check.choice("axis", axis, "xyz"), number)
     with figure.drawing(ax, 1, (style.COLUMN, 2.6)) as axes:
         axes.plot(q, v, color=style.BLUE, lw=0.9)
@@ -57,10 +58,10 @@ def _of_scene(solution, of, axis: str, number: int):
     scene = solution.scene
     joints = {joint.name: joint for joint in scene.joints if coordinate_units(joint)}
     every = [body.name for body in scene.bodies]
-    name = getattr(of, "name", of)
+    name = of if isinstance(of, type) else getattr(of, "name", of)
     if name is None:
         name = next(iter(joints), every[0])
-    if name in joints:
+    if isinstance(name, str) and name in joints:
         units = coordinate_units(joints[name])
         k = check.integer("number", number, least=0, most=len(units) - 1)
         q, rate = solution.joint_coordinates(name)

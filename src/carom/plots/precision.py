@@ -30,7 +30,10 @@ def work_precision(series: Mapping, *, error: str = "error", ax=None):
     Axes
     """
     if not isinstance(series, Mapping) or not series:
-        raise ValueError(f"series must be a mapping of names to (times, errors), got {series!r}")
+        raise ValueError(
+            f"series must be a mapping of names to (times, errors), got {check.shown(series)}"
+        )
+    check.text("error", error)
     checked = {name: _checked(name, pair) for name, pair in series.items()}
     figure.pyplot()
     from matplotlib.ticker import LogFormatterSciNotation, LogLocator
@@ -53,15 +56,15 @@ def work_precision(series: Mapping, *, error: str = "error", ax=None):
 
 def _checked(name, pair) -> tuple[np.ndarray, np.ndarray]:
     """Return times and errors, sorted by time."""
-    try:
-        times, errors = pair
-    except (TypeError, ValueError):
-        raise ValueError(f"series[{name!r}] must be (times, errors), got {pair!r}") from None
+    two = check.listed(f"series[{name!r}]", pair, "two: times and errors")
+    if len(two) != 2:
+        raise ValueError(f"series[{name!r}] must be (times, errors), got {check.shown(pair)}")
+    times, errors = two
     times = check.finite_array(f"series[{name!r}] times", times, (None,), "s")
     errors = check.finite_array(f"series[{name!r}] errors", errors, (None,))
     if len(times) != len(errors) or not np.all(times > 0.0) or not np.all(errors >= 0.0):
         raise ValueError(
-            f"series[{name!r}] must be as many times above 0 as errors of at least 0, got {pair!r}"
+            f"series[{name!r}] must be as many times above 0 as errors of at least 0, got {check.shown(pair)}"
         )
     order = np.argsort(times)
     return times[order], np.where(errors > 0.0, errors, np.nan)[order]

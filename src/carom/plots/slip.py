@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from carom import check
 from carom.plots import figure, style
 
 STEPS = 128  # of the spline through the impact
@@ -39,6 +40,7 @@ def hodograph(solution, k: int = 0, *, flow: bool = True, ax=None):
         If there is no such impact, it was resolved together with others, or it has no tangents.
     """
     figure.is_bodies(solution)
+    check.flag("flow", flow)
     record = figure.impact(solution, k)
     W, mu = record.inverse_mass, record.friction
     if record.together > 1:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from carom import check
 from carom.plots import figure, style
 
 MODES = (("slipping", style.ORANGE, 0.62), ("sticking", style.BLUE, 0.34))  # width of the bar
@@ -35,6 +36,7 @@ def contacts(solution, *, contacts=None, most: int = 40, ax=None):
         If there is no contact of that name, or none ever touches.
     """
     names = figure.contact_names(solution)
+    most = check.integer("most", most, least=1)
     chosen = figure.named("contacts", contacts, names)
     held = intervals(solution)
     struck = solution.impacts

@@ -154,13 +154,18 @@ def _material(material) -> Material | None:
 def _mass(shape: Shape | None, mass, density) -> float:
     if (mass is None) == (density is None):
         raise ValueError(
-            f"exactly one of mass and density must be given, got mass={mass!r}, density={density!r}"
+            f"exactly one of mass and density must be given, got mass={check.shown(mass)}, "
+            f"density={check.shown(density)}"
         )
     if density is None:
-        return check.number("mass", mass, above=0, unit="kg")
+        return check.mass("mass", mass)
     density = check.number("density", density, above=0, unit="kg/m^3")
     if shape is None:
-        raise ValueError(f"density needs a shape, got density={density!r} without one; give mass")
+        raise ValueError(
+            f"density needs a shape, got density={check.shown(density)} without one; give mass"
+        )
     if not shape.volume > 0.0:
-        raise ValueError(f"density needs a shape with a volume, got {shape!r}; give mass")
-    return density * shape.volume
+        raise ValueError(
+            f"density needs a shape with a volume, got {check.shown(shape)}; give mass"
+        )
+    return check.mass("density times the volume", density * shape.volume)

@@ -72,7 +72,9 @@ class Compound(Touching):
             spread = _spread_of(placed, positions - middle, weights)
         else:
             if masses is not None:
-                raise ValueError(f"masses must be left out where centroid is given, got {masses!r}")
+                raise ValueError(
+                    f"masses must be left out where centroid is given, got {check.shown(masses)}"
+                )
             middle, spread = point("centroid", centroid), None
         arms = positions - middle
         size = max(float(np.linalg.norm(a)) + s.size for a, s in zip(arms, shapes))
@@ -105,7 +107,7 @@ class Compound(Touching):
             raise ValueError(
                 f"inertia must be given with {self!r} whose centroid was given: how its mass lies is not known"
             )
-        return mass * self._spread
+        return check.mass("mass", mass, zero=True) * self._spread
 
 
 def _spread_of(placed, arms, weights) -> np.ndarray:
@@ -119,9 +121,10 @@ def _spread_of(placed, arms, weights) -> np.ndarray:
 
 
 def _sequence(parts) -> Sequence:
-    if not isinstance(parts, Sequence) or isinstance(parts, str) or len(parts) == 0:
+    """Return the parts, as a sequence that is not empty."""
+    if not isinstance(parts, Sequence) or isinstance(parts, (str, bytes)) or len(parts) == 0:
         raise ValueError(
-            f"parts must be a sequence of at least one (shape, position, orientation), got {parts!r}"
+            f"parts must be a sequence of at least one (shape, position, orientation), got {check.shown(parts)}"
         )
     return parts
 
@@ -131,7 +134,7 @@ def _part(number: int, part) -> tuple:
     name = f"parts[{number}]"
     if not isinstance(part, Sequence) or len(part) not in (2, 3):
         raise ValueError(
-            f"{name} must be (shape, position) or (shape, position, orientation), got {part!r}"
+            f"{name} must be (shape, position) or (shape, position, orientation), got {check.shown(part)}"
         )
     shape, position, *turn = part
     check.instance(f"{name}[0]", shape, (Touching,), "; a shape is needed")
@@ -148,10 +151,10 @@ def _weights(shapes, volumes, masses) -> np.ndarray:
         if not np.all(volumes > 0.0):
             flat = shapes[int(np.argmin(volumes))]
             raise ValueError(
-                f"masses must be given where a part has no volume, got None and {flat!r}"
+                f"masses must be given where a part has no volume, got None and {check.shown(flat)}"
             )
         return volumes / volumes.sum()
     weights = check.finite_array("masses", masses, (len(shapes),))
     if not (np.all(weights >= 0.0) and weights.sum() > 0.0):
-        raise ValueError(f"masses must be at least 0 and not all 0, got {masses!r}")
+        raise ValueError(f"masses must be at least 0 and not all 0, got {check.shown(masses)}")
     return weights / weights.sum()

@@ -27,13 +27,13 @@ COORDINATES = {
 }
 
 
-def coordinate_kind(joint: Joint, coordinate: int) -> str:
+def coordinate_kind(joint: Joint, coordinate: int, name: str = "joint") -> str:
     """Return "turn" or "slide"; refuse a coordinate that the joint does not have."""
-    check.instance("joint", joint, (Joint,))
+    check.instance(name, joint, (Joint,))
     own = COORDINATES.get(type(joint.definition), ())
     if not own:
         raise ValueError(
-            f"joint must have coordinates of its own (Revolute, Prismatic, ...), got {joint!r}"
+            f"{name} must have coordinates of its own (Revolute, Prismatic, ...), got {check.shown(joint)}"
         )
     check.integer("coordinate", coordinate, least=0)
     if coordinate >= len(own):
@@ -45,9 +45,9 @@ def coordinate_kind(joint: Joint, coordinate: int) -> str:
 
 def distinct_bodies(bodies: Body | Sequence[Body]) -> tuple[Body, ...]:
     """Return at least one body, each once."""
-    listed = tuple([bodies] if isinstance(bodies, Body) else bodies)
+    listed = tuple([bodies] if isinstance(bodies, Body) else check.listed("bodies", bodies, "Body"))
     if not listed or len(set(map(id, listed))) != len(listed):
-        raise ValueError(f"bodies must be at least one body, each once, got {bodies!r}")
+        raise ValueError(f"bodies must be at least one body, each once, got {check.shown(bodies)}")
     for body in listed:
         check.instance("bodies", body, (Body,))
     return listed
@@ -55,9 +55,9 @@ def distinct_bodies(bodies: Body | Sequence[Body]) -> tuple[Body, ...]:
 
 def check_functions(function, **optional) -> None:
     """Refuse what cannot be called; None is allowed for those that are `optional`."""
-    for name, given in {"function": function, **optional}.items():
-        if not callable(given) and not (name in optional and given is None):
-            raise TypeError(f"{name} must be a function, got {given!r}")
+    check.function("function", function)
+    for name, given in optional.items():
+        check.function(name, given, optional=True)
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -76,14 +76,17 @@ class Coupling:
 
     def __init__(self, factors: Mapping[Joint | tuple[Joint, int], float]):
         if not isinstance(factors, Mapping) or not factors:
-            raise ValueError(f"factors must be a mapping from joints to numbers, got {factors!r}")
+            raise ValueError(
+                f"factors must be a mapping from joints to numbers, got {check.shown(factors)}"
+            )
         terms = []
         for key, factor in factors.items():
-            joint, coordinate = key if isinstance(key, tuple) else (key, 0)
-            coordinate_kind(joint, coordinate)
-            factor = check.number("factor", factor)
+            pair = key if isinstance(key, tuple) and len(key) == 2 else (key, 0)
+            joint, coordinate = pair
+            coordinate_kind(joint, coordinate, "each key of factors")
+            factor = check.number(f"factors[{joint!r}]", factor)
             if factor == 0.0:
-                raise ValueError(f"factor of {joint!r} must not be 0, got {factor!r}")
+                raise ValueError(f"factors[{joint!r}] must not be 0, got {factor!r}")
             terms.append((joint, coordinate, factor))
         keep(self, terms=tuple(terms))
 
@@ -103,7 +106,11 @@ class Gear(Coupling):
     def __init__(self, first: Joint, second: Joint, ratio: float):
         ratio = check.number("ratio", ratio)
         if ratio == 0.0:
-            raise ValueError(f"ratio must not be 0, got {ratio!r}")
+            raise ValueError(f"ratio must not be 0, got {check.shown(ratio)}")
+        for name, joint in (("first", first), ("second", second)):
+            coordinate_kind(joint, 0, name)
+        if first is second:
+            raise ValueError(f"first and second must be two joints, got {first!r} for both")
         super().__init__({first: ratio, second: -1.0})
 
 
@@ -142,12 +149,12 @@ class Driver:
         coordinate_kind(joint, coordinate)
         if (rate is None) == (motion is None):
             raise ValueError(
-                f"rate or motion must be given, and not both, got {rate!r} and {motion!r}"
+                f"rate or motion must be given, and not both, got {check.shown(rate)} and {check.shown(motion)}"
             )
         if rate is not None:
             rate = check.number("rate", rate)
         elif not callable(motion):
-            raise TypeError(f"motion must be a function or a PPoly, got {motion!r}")
+            raise TypeError(f"motion must be a function or a PPoly, got {check.shown(motion)}")
         keep(self, joint=joint, coordinate=int(coordinate), rate=rate, motion=motion)
 
 

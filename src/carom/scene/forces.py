@@ -20,7 +20,7 @@ from carom.scene.more_forces import (
     JointSpring,
     UserForce,
 )
-from carom.scene.values import keep, optional_point, point
+from carom.scene.values import apart, keep, optional_point
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -57,11 +57,10 @@ class Spring:
         rest_length: float | None = None,
         damping: float = 0.0,
     ):
-        start, end = point("anchor_parent", anchor_parent), point("anchor_child", anchor_child)
-        distance = float(np.linalg.norm(end - start))
+        start, end, distance = apart(anchor_parent, anchor_child)
         if not distance > 0.0:
             raise ValueError(
-                f"anchor_child must differ from anchor_parent, got {anchor_child!r} for both"
+                f"anchor_child must differ from anchor_parent, got {check.shown(anchor_child)} for both"
             )
         rest = distance if rest_length is None else rest_length
         keep(
@@ -164,10 +163,12 @@ class Bushing:
 
 def _along_across(name: str, value: ArrayLike, unit: str) -> np.ndarray:
     """Return (along, across, across) from one number or a pair, at least 0."""
-    pair = np.full(2, value) if np.ndim(value) == 0 else value
-    pair = check.finite_array(name, pair, (2,), unit=unit)
+    given = check.real_array(name, value, "() or (2,)")
+    pair = check.finite_array(
+        name, np.full(2, given) if given.ndim == 0 else given, (2,), unit=unit
+    )
     if np.any(pair < 0.0):
-        raise ValueError(f"{name} must be at least 0, got {value!r} [{unit}]")
+        raise ValueError(f"{name} must be at least 0, got {check.shown(value)} [{unit}]")
     return np.array([pair[0], pair[1], pair[1]])
 
 
@@ -228,7 +229,7 @@ def make_force(index, name, definition, parent, child) -> AppliedForce:
     """Return a checked `AppliedForce`; the arguments are those of `Scene.add_force`."""
     if isinstance(definition, Force) and not isinstance(parent, Ground):
         raise ValueError(
-            f"parent of a Force must be carom.GROUND, got {parent!r}; "
+            f"parent of a Force must be carom.GROUND, got {check.shown(parent)}; "
             "for a force between two bodies use Spring, or two Forces"
         )
     return AppliedForce(index, name, definition, parent, child)

@@ -18,18 +18,17 @@ def inertia_matrix(value) -> np.ndarray:
         If it is not symmetric, not positive definite, or one principal moment exceeds the sum of
         the other two: no distribution of mass has such an inertia.
     """
-    try:
-        shape = np.shape(value)
-    except ValueError:
-        shape = ()
+    shape = check.real_array("inertia", value, "(3,) or (3, 3)").shape
     if len(shape) == 2:
         matrix = check.finite_array("inertia", value, (3, 3), unit="kg m^2")
     elif len(shape) == 1:
         matrix = np.diag(check.finite_array("inertia", value, (3,), unit="kg m^2"))
     else:
-        raise ValueError(f"inertia must have shape (3,) or (3, 3) [kg m^2], got {value!r}")
+        raise ValueError(
+            f"inertia must have shape (3,) or (3, 3) [kg m^2], got {check.shown(value)}"
+        )
     if not np.max(np.abs(matrix - matrix.T)) <= SLACK * np.max(np.abs(matrix)):
-        raise ValueError(f"inertia must be symmetric, got {value!r}")
+        raise ValueError(f"inertia must be symmetric, got {check.shown(value)}")
     matrix = 0.5 * (matrix + matrix.T)
     small, middle, large = np.linalg.eigvalsh(matrix)
     positive, possible = small > SLACK * large, large <= (small + middle) * (1 + SLACK)

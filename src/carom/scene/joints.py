@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom.check import number, unit_quaternion, unit_vector
+from carom.check import listed, number, shown, unit_quaternion, unit_vector
 from carom.scene.bodies import Body, Ground
-from carom.scene.values import keep, optional_point, point
+from carom.scene.values import apart, keep, optional_point, point
 
 PARALLEL = 1e-9  # sine of the angle between two directions below which they count as parallel
 ACROSS = 1e-9  # cosine below which they count as perpendicular
@@ -93,7 +93,7 @@ class Screw:
     def __init__(self, anchor: ArrayLike, axis: ArrayLike, pitch: float):
         pitch = number("pitch", pitch, unit="m")
         if pitch == 0.0:
-            raise ValueError(f"pitch must not be 0, got {pitch!r}; for no slide use Revolute")
+            raise ValueError(f"pitch must not be 0, got {shown(pitch)}; for no slide use Revolute")
         keep(self, anchor=point("anchor", anchor), axis=unit_vector("axis", axis), pitch=pitch)
 
 
@@ -122,8 +122,8 @@ class Universal:
         cosine = float(first @ second)
         if not abs(cosine) < ACROSS:
             raise ValueError(
-                f"axis_child must be perpendicular to axis_parent, got {axis_child!r} and "
-                f"{axis_parent!r}, with an angle of {np.degrees(np.arccos(cosine)):.6g} degrees"
+                f"axis_child must be perpendicular to axis_parent, got {shown(axis_child)} and "
+                f"{shown(axis_parent)}, with an angle of {np.degrees(np.arccos(cosine)):.6g} degrees"
             )
         second = unit_vector("axis_child", second - cosine * first)
         keep(self, anchor=point("anchor", anchor), axis_parent=first, axis_child=second)
@@ -180,11 +180,10 @@ class Distance:
     length: float
 
     def __init__(self, anchor_parent: ArrayLike, anchor_child: ArrayLike):
-        start, end = point("anchor_parent", anchor_parent), point("anchor_child", anchor_child)
-        length = float(np.linalg.norm(end - start))
+        start, end, length = apart(anchor_parent, anchor_child)
         if not length > 0.0:
             raise ValueError(
-                f"anchor_child must differ from anchor_parent, got {anchor_child!r} for both; "
+                f"anchor_child must differ from anchor_parent, got {shown(anchor_child)} for both; "
                 "for a shared point use Spherical"
             )
         keep(self, anchor_parent=start, anchor_child=end, length=length)
@@ -219,7 +218,7 @@ class KnifeEdge:
         across = np.cross(up, along)
         if not np.linalg.norm(across) > PARALLEL:
             raise ValueError(
-                f"direction must not be parallel to normal, got {direction!r} and {normal!r}"
+                f"direction must not be parallel to normal, got {shown(direction)} and {shown(normal)}"
             )
         keep(self, anchor=point("anchor", anchor), direction=along, normal=up)
         keep(self, lateral=unit_vector("lateral", across))
@@ -244,9 +243,9 @@ class RollingSphere:
         radius = number("radius", radius, above=0.0, unit="m")
         keep(self, radius=radius, normal=unit_vector("normal", normal))
 
-    def contact(self, centre: np.ndarray) -> np.ndarray:
+    def contact(self, centre: ArrayLike) -> np.ndarray:
         """Return the point (3,) where it touches, with the centre at `centre`."""
-        return centre - self.radius * self.normal
+        return point("centre", centre) - self.radius * self.normal
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -276,14 +275,14 @@ class RollingDisc:
         if not np.linalg.norm(np.cross(along, up)) > PARALLEL:
             raise ValueError(
                 f"axis must not be parallel to normal (a disc that lies flat has no lowest point), got "
-                f"{axis!r} and {normal!r}"
+                f"{shown(axis)} and {shown(normal)}"
             )
         keep(self, radius=radius, axis=along, normal=up)
 
-    def contact(self, centre: np.ndarray) -> np.ndarray:
+    def contact(self, centre: ArrayLike) -> np.ndarray:
         """Return the point (3,) where it touches, with the centre at `centre`."""
         down = self.normal - (self.normal @ self.axis) * self.axis
-        return centre - self.radius * down / np.linalg.norm(down)
+        return point("centre", centre) - self.radius * down / np.linalg.norm(down)
 
 
 JointDefinition = (
@@ -341,17 +340,18 @@ class Joint:
 def make_joint(index, name, definition, parent, child, parent_frame, child_frame) -> Joint:
     """Return a checked `Joint`; the arguments are those of `Scene.add_joint`."""
     if isinstance(definition, KnifeEdge) and not isinstance(parent, Ground):
-        raise ValueError(f"parent of a KnifeEdge must be carom.GROUND, got {parent!r}")
+        raise ValueError(f"parent of a KnifeEdge must be carom.GROUND, got {shown(parent)}")
     if (parent_frame is None) != (child_frame is None):
         raise ValueError(
-            f"parent_frame and child_frame must be given together, got {parent_frame!r} and {child_frame!r}"
+            f"parent_frame and child_frame must be given together, got {shown(parent_frame)} and "
+            f"{shown(child_frame)}"
         )
     if parent_frame is None:
         return Joint(index, name, definition, parent, child)
     if isinstance(definition, (RollingSphere, RollingDisc)):
         raise ValueError(
             f"parent_frame must be left out of a {type(definition).__name__}, which is placed in the world, "
-            f"got {parent_frame!r}"
+            f"got {shown(parent_frame)}"
         )
     frames = (frame("parent_frame", parent_frame), frame("child_frame", child_frame))
     return Joint(index, name, definition, parent, child, frames)
@@ -359,12 +359,12 @@ def make_joint(index, name, definition, parent, child, parent_frame, child_frame
 
 def frame(name: str, value) -> tuple[np.ndarray, np.ndarray]:
     """Return a frame of a body: position (3,) and unit quaternion (4,)."""
-    try:
-        position, orientation = value
-    except (TypeError, ValueError):
+    pair = listed(name, value, "two, (position (3,), orientation (4,))")
+    if len(pair) != 2:
         raise ValueError(
-            f"{name} must be a pair (position (3,), orientation (4,)), got {value!r}"
-        ) from None
+            f"{name} must be a pair (position (3,), orientation (4,)), got {shown(value)}"
+        )
+    position, orientation = pair
     position = point(f"{name} position", position)
     orientation = unit_quaternion(f"{name} orientation", orientation)
     for array in (position, orientation):

@@ -112,7 +112,7 @@ def checked_rule(combine) -> dict[str, str]:
     if not isinstance(combine, Mapping):
         raise ValueError(
             f"combine must be one of {', '.join(map(repr, sorted(RULES)))} or a dict of these by property, "
-            f"got {combine!r}"
+            f"got {check.shown(combine)}"
         )
     return {
         check.choice("a key of combine", key, COMBINED): check.choice(

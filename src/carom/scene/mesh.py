@@ -71,6 +71,7 @@ class Mesh(Touching):
 
     def __init__(self, vertices: ArrayLike, faces: ArrayLike, parts: Sequence | str | None = None):
         points = check.finite_array("vertices", vertices, (None, 3), unit="m")
+        check.length("the greatest of vertices", np.max(np.abs(points), initial=0.0), zero=True)
         triangles = _checked_faces(faces, points)
 
         def integrals(origin):
@@ -105,14 +106,16 @@ class Mesh(Touching):
 
     def inertia(self, mass: float) -> np.ndarray:
         """Return the inertia (3,3) [kg m^2] about the centroid, for a `mass` [kg]."""
+        mass = check.mass("mass", mass, zero=True)
         return mass * (np.trace(self._spread) * np.eye(3) - self._spread)
 
 
 def _checked_faces(faces, points: np.ndarray) -> np.ndarray:
     """Return the triangles (k,3) of a closed, oriented surface without degenerate ones."""
+    check.real_array("faces", faces, "(k, 3)")
     given = np.asarray(faces)
     if given.ndim != 2 or given.shape[1] != 3 or not np.issubdtype(given.dtype, np.integer):
-        raise ValueError(f"faces must be whole numbers of shape (k, 3), got {faces!r}")
+        raise ValueError(f"faces must be whole numbers of shape (k, 3), got {check.shown(faces)}")
     triangles = given.astype(np.int64)
     if len(triangles) < 4:
         raise ValueError(f"faces must be at least 4 to enclose a volume, got {len(triangles)}")
@@ -174,7 +177,7 @@ def _pieces(points, triangles, centroid, convex, parts) -> tuple[Piece, ...]:
         check.choice("parts", parts, ("coacd",))
         corners = _decomposed(points, triangles)
     else:
-        corners = list(parts)
+        corners = check.listed("parts", parts, "corners (m, 3) of convex parts")
         if not corners:
             raise ValueError("parts must be at least one set of corners (m, 3), got none")
     pieces = []

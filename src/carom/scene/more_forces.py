@@ -12,7 +12,7 @@ from carom import check
 from carom.scene.bodies import Body
 from carom.scene.constraints import check_functions, coordinate_kind, distinct_bodies
 from carom.scene.joints import Joint
-from carom.scene.values import keep, point
+from carom.scene.values import apart, keep
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -136,10 +136,10 @@ class CurveSpring:
         tension: ArrayLike,
         damping: float = 0.0,
     ):
-        start, end = point("anchor_parent", anchor_parent), point("anchor_child", anchor_child)
-        if not np.linalg.norm(end - start) > 0.0:
+        start, end, distance = apart(anchor_parent, anchor_child)
+        if not distance > 0.0:
             raise ValueError(
-                f"anchor_child must differ from anchor_parent, got {anchor_child!r} for both"
+                f"anchor_child must differ from anchor_parent, got {check.shown(anchor_child)} for both"
             )
         keep(
             self,
@@ -151,12 +151,12 @@ class CurveSpring:
 
 
 def _curve(given):
-    if hasattr(given, "c") and hasattr(given, "x"):
+    if hasattr(given, "c") and hasattr(given, "x") and not isinstance(given, type):
         return given
     table = check.finite_array("tension", given, (2, None))
     if table.shape[1] < 2 or not np.all(np.diff(table[0]) > 0.0):
         raise ValueError(
-            f"tension must have two distances or more, each above the one before, got {given!r}"
+            f"tension must have two distances or more, each above the one before, got {check.shown(given)}"
         )
     from scipy.interpolate import PchipInterpolator
 

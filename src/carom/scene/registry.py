@@ -30,10 +30,9 @@ class Registry:
         return f"{default}{number}"
 
     def _free(self, name: str) -> str:
-        if not isinstance(name, str) or not name.strip():
-            raise ValueError(f"name must be a non-empty string, got {name!r}")
+        check.text("name", name)
         if name in self._parts:
-            raise ValueError(f"name must be unique in the scene, got {name!r} once more")
+            raise ValueError(f"name must be unique in the scene, got {check.shown(name)} once more")
         return name
 
     def add(self, part):
@@ -55,17 +54,19 @@ class Registry:
         return len(self._kinds.get(kind, ()))
 
     def __getitem__(self, name: str):
-        if name in self._parts:
+        if isinstance(name, str) and name in self._parts:
             return self._parts[name]
-        near = get_close_matches(str(name), self._parts, n=1)
+        near = get_close_matches(check.shown(name).strip("'"), self._parts, n=1)
         hint = f"did you mean {near[0]!r}?" if near else f"it has {len(self._parts)} named parts"
-        raise KeyError(f"the scene has no part called {name!r}; {hint}")
+        raise KeyError(f"the scene has no part called {check.shown(name)}; {hint}")
 
     def member(self, argument: str, part, kinds: tuple[type, ...], hint: str = "") -> None:
         """Refuse a `part` that is of none of `kinds`, or of another scene."""
         check.instance(argument, part, kinds, hint)
         if not isinstance(part, Ground) and self._parts.get(part.name) is not part:
-            raise ValueError(f"{argument} must belong to this scene, got {part!r} of another one")
+            raise ValueError(
+                f"{argument} must belong to this scene, got {check.shown(part)} of another one"
+            )
 
     def pair(self, parent, child) -> None:
         """Refuse a `parent` and a `child` that cannot be joined."""
@@ -73,4 +74,6 @@ class Registry:
         self.member("parent", parent, (Body, Ground), hint)
         self.member("child", child, (Body,))
         if parent is child:
-            raise ValueError(f"parent and child must be two bodies, got {child!r} for both")
+            raise ValueError(
+                f"parent and child must be two bodies, got {check.shown(child)} for both"
+            )

@@ -30,8 +30,8 @@ class Capsule(Touching):
     length: float
 
     def __post_init__(self):
-        keep(self, radius=check.number("radius", self.radius, above=0, unit="m"))
-        keep(self, length=check.number("length", self.length, above=0, unit="m"))
+        keep(self, radius=check.length("radius", self.radius))
+        keep(self, length=check.length("length", self.length))
 
     @property
     def volume(self) -> float:
@@ -51,6 +51,7 @@ class Capsule(Touching):
 
     def inertia(self, mass: float) -> np.ndarray:
         """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
+        mass = check.mass("mass", mass, zero=True)
         r, l = self.radius, self.length
         straight = mass * l / (l + 4 / 3 * r)
         ends = mass - straight
@@ -67,8 +68,8 @@ class Cylinder(Touching):
     length: float
 
     def __post_init__(self):
-        keep(self, radius=check.number("radius", self.radius, above=0, unit="m"))
-        keep(self, length=check.number("length", self.length, above=0, unit="m"))
+        keep(self, radius=check.length("radius", self.radius))
+        keep(self, length=check.length("length", self.length))
 
     @property
     def volume(self) -> float:
@@ -88,6 +89,7 @@ class Cylinder(Touching):
 
     def inertia(self, mass: float) -> np.ndarray:
         """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
+        mass = check.mass("mass", mass, zero=True)
         r, l = self.radius, self.length
         across = l**2 / 12 + r**2 / 4
         return mass * np.diag([across, across, r**2 / 2])
@@ -113,8 +115,13 @@ class Disc(Touching):
     volume: ClassVar[float] = 0.0  # [m^3]
 
     def __post_init__(self):
-        keep(self, radius=check.number("radius", self.radius, above=0, unit="m"))
-        inner = check.number("inner_radius", self.inner_radius, least=0, most=self.radius, unit="m")
+        keep(self, radius=check.length("radius", self.radius))
+        inner = check.length("inner_radius", self.inner_radius, zero=True)
+        if not inner <= self.radius:
+            raise ValueError(
+                f"inner_radius must be finite and at least 0 and at most {self.radius:g} [m], the radius, "
+                f"got {check.shown(self.inner_radius)}"
+            )
         keep(self, inner_radius=inner)
 
     @property
@@ -129,5 +136,6 @@ class Disc(Touching):
 
     def inertia(self, mass: float) -> np.ndarray:
         """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
+        mass = check.mass("mass", mass, zero=True)
         across = mass * (self.radius**2 + self.inner_radius**2) / 4
         return np.diag([across, across, 2 * across])

@@ -207,7 +207,7 @@ class Scene(TouchingPairs):
             if child is not None or parent is not GROUND:
                 raise ValueError(
                     f"parent and child must be left out with {type(definition).__name__}, which names "
-                    f"its own, got {parent!r} and {child!r}"
+                    f"its own, got {check.shown(parent)} and {check.shown(child)}"
                 )
             for part in named:
                 self._parts.member("definition", part, (Joint, Body))

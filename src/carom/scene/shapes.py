@@ -28,7 +28,7 @@ class Sphere(Touching):
     radius: float
 
     def __post_init__(self):
-        keep(self, radius=check.number("radius", self.radius, above=0, unit="m"))
+        keep(self, radius=check.length("radius", self.radius))
 
     @property
     def volume(self) -> float:
@@ -47,6 +47,7 @@ class Sphere(Touching):
 
     def inertia(self, mass: float) -> np.ndarray:
         """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
+        mass = check.mass("mass", mass, zero=True)
         return np.eye(3) * (0.4 * mass * self.radius**2)
 
 
@@ -70,9 +71,15 @@ class Box(Touching):
 
     def __post_init__(self):
         edges = {"lx": self.lx, "ly": self.ly, "lz": self.lz}
-        keep(self, **{k: check.number(k, edge, above=0, unit="m") for k, edge in edges.items()})
-        least = min(self.lx, self.ly, self.lz)
-        keep(self, radius=check.number("radius", self.radius, least=0, most=least / 2, unit="m"))
+        keep(self, **{k: check.length(k, edge) for k, edge in edges.items()})
+        least = min(("lx", "ly", "lz"), key=lambda k: getattr(self, k))
+        radius, most = check.length("radius", self.radius, zero=True), getattr(self, least) / 2
+        if not radius <= most:
+            raise ValueError(
+                f"radius must be finite and at least 0 and at most {most:g} [m], half of {least}, "
+                f"got {check.shown(self.radius)}"
+            )
+        keep(self, radius=radius)
 
     def __repr__(self) -> str:
         radius = f", radius={self.radius!r}" if self.radius else ""
@@ -106,6 +113,7 @@ class Box(Touching):
 
     def inertia(self, mass: float) -> np.ndarray:
         """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
+        mass = check.mass("mass", mass, zero=True)
         if not self.radius:
             x, y, z = self.lx**2 / 12, self.ly**2 / 12, self.lz**2 / 12
         else:
@@ -125,7 +133,7 @@ class Ellipsoid(Touching):
 
     def __post_init__(self):
         axes = {"a": self.a, "b": self.b, "c": self.c}
-        keep(self, **{k: check.number(k, axis, above=0, unit="m") for k, axis in axes.items()})
+        keep(self, **{k: check.length(k, axis) for k, axis in axes.items()})
 
     @property
     def volume(self) -> float:
@@ -146,6 +154,7 @@ class Ellipsoid(Touching):
 
     def inertia(self, mass: float) -> np.ndarray:
         """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
+        mass = check.mass("mass", mass, zero=True)
         x, y, z = self.a**2, self.b**2, self.c**2
         return np.diag([y + z, x + z, x + y]) * (mass / 5)
 

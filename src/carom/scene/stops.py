@@ -58,8 +58,8 @@ def make_stop(index, name, joint, lower, upper, restitution, impact_law, coordin
     coordinate_kind(joint, coordinate)
     if (lower is None) == (upper is None):
         raise ValueError(
-            f"lower or upper must be given, and not both (add two stops for two ends), got {lower!r} "
-            f"and {upper!r}"
+            "lower or upper must be given, and not both (add two stops for two ends), got "
+            f"{check.shown(lower)} and {check.shown(upper)}"
         )
     lower = None if lower is None else check.number("lower", lower)
     upper = None if upper is None else check.number("upper", upper)

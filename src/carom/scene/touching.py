@@ -150,6 +150,8 @@ class TouchingPairs:
         ValueError
             If materials are given that no rule combines.
         """
+        self._parts.member("body", body, (Body,))
+        self._parts.member("other", other, (HalfSpace, Body))
         return self._pairs.default_law(body, other)
 
     def pairs_by_default(self) -> PairTable:

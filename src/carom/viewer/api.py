@@ -79,7 +79,14 @@ def view(
     from carom.viewer.show import body_number, show_of
 
     if speed is not None:
-        speed = check.number("speed", speed, above=0.0)
+        speed = check.scale("speed", speed)
+    if title is not None:
+        check.text("title", title)
+    if port is not None:
+        port = check.integer("port", port, least=1, most=65535)
+    check.text("host", host)
+    check.flag("open", open)
+    check.flag("block", block)
     if export is not None:
         from carom.viewer.page import write_page
 
@@ -87,10 +94,6 @@ def view(
         return write_page(show, export, follow, speed)
     from carom.viewer.live import LiveView, need_viser
 
-    if port is not None:
-        port = check.integer("port", port, least=1, most=65535)
-    check.flag("open", open)
-    check.flag("block", block)
     need_viser()
     show = show_of(solution, title, frames)
     live = LiveView(show, body_number(show, follow), speed, host, port)

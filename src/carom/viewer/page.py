@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 import carom
+from carom import check
 from carom.viewer.pack import Packer, header_text
 from carom.viewer.show import COLOURS, FORCE, IMPULSE, Show, body_number, playing_speed
 from carom.viewer.strikes import Inside, insides_of
@@ -40,11 +41,7 @@ def write_page(
     show: Show, path: str | os.PathLike, follow: str | None, speed: float | None
 ) -> Exported:
     """Write the page of a run."""
-    where = Path(path)
-    if where.is_dir() or not where.parent.is_dir():
-        raise ValueError(
-            f"export must be the path of a file in a folder that exists, got {str(path)!r}"
-        )
+    where = check.file_to_write("export", path)
     text = page_text(show, follow, speed)
     where.write_text(text, encoding="utf-8")
     return Exported(where, len(text.encode("utf-8")), show.left_out)

@@ -85,7 +85,7 @@ def solution_of(what) -> Solution:
             "not say where bodies are; plot them, or state the system as a Scene"
         )
     if isinstance(what, (str, os.PathLike)):
-        return Solution.load(what)
+        return Solution.load(check.path("solution", what))
     check.instance("solution", what, (Solution,), "; a path to the file of one is allowed too")
     return what
 

@@ -134,14 +134,14 @@ def resolve_impacts(
     u = check.finite_array("velocity", velocity, (None, 3), "m/s")
     k = len(u)
     if k == 0:
-        raise ValueError(f"velocity must have at least one contact, got {velocity!r}")
+        raise ValueError(f"velocity must have at least one contact, got {check.shown(velocity)}")
     W = checked_inverse_masses(inverse_mass, k)
     mu = per_contact("friction", friction, k, least=0.0)
     e = per_contact("restitution", restitution, k, least=0.0, most=1.0)
     kappa = per_contact("stiffness", 1.0 if stiffness is None else stiffness, k, above=0.0)
-    names = [law] * k if isinstance(law, str) else list(law)
+    names = [law] * k if isinstance(law, str) else check.listed("law", law, "names")
     if len(names) != k:
-        raise ValueError(f"law must be one name or {k} of them, got {law!r}")
+        raise ValueError(f"law must be one name or {k} of them, got {check.shown(law)}")
     numbers = np.array([NUMBERS[check.choice("law", name, NUMBERS)] for name in names])
     settings = CornerSettings(
         multiple=MULTIPLE[check.choice("multiple", multiple, MULTIPLE)],
@@ -174,15 +174,19 @@ def resolve_impacts(
 
 def checked_inverse_masses(inverse_mass, k: int) -> np.ndarray:
     """Return W (3k, 3k), symmetric; raise ValueError unless it is positive semidefinite."""
-    given = np.asarray(inverse_mass, dtype=object)
-    if given.ndim == 4:
-        W = check.finite_array("inverse_mass", inverse_mass, (k, 3, k, 3), "1/kg")
-        W = W.reshape(3 * k, 3 * k)
+    if check.real_array("inverse_mass", inverse_mass, "(3k, 3k) or (k, 3, k, 3)").ndim == 4:
+        W = check.finite_array("inverse_mass", inverse_mass, (None, 3, None, 3), "1/kg")
+        W = W.reshape(3 * len(W), -1)
     else:
-        W = check.finite_array("inverse_mass", inverse_mass, (3 * k, 3 * k), "1/kg")
+        W = check.finite_array("inverse_mass", inverse_mass, (None, None), "1/kg")
+    if W.shape != (3 * k, 3 * k):
+        raise ValueError(
+            f"inverse_mass must have shape {(3 * k, 3 * k)} [1/kg], as velocity is of {k} contacts, got shape "
+            f"{np.shape(inverse_mass)}"
+        )
     size = np.max(np.abs(W))
     if not np.max(np.abs(W - W.T)) <= 1e-9 * size:
-        raise ValueError(f"inverse_mass must be symmetric, got {inverse_mass!r}")
+        raise ValueError(f"inverse_mass must be symmetric, got {check.shown(inverse_mass)}")
     W = np.ascontiguousarray(0.5 * (W + W.T))
     least, *_, most = np.linalg.eigvalsh(W)
     if not least >= -1e-9 * most:
@@ -194,7 +198,7 @@ def checked_inverse_masses(inverse_mass, k: int) -> np.ndarray:
 
 def per_contact(name: str, value, k: int, **bounds) -> np.ndarray:
     """Return `value`, one number or k of them, as an array (k,); each within `bounds`."""
-    if np.ndim(value) == 0:
+    if check.real_array(name, value, "() or (k,)").ndim == 0:
         return np.full(k, check.number(name, value, **bounds))
     array = check.finite_array(name, value, (k,))
     for i, item in enumerate(array):

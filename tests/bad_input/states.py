@@ -1,0 +1,170 @@
+"""Calls that state something: shapes, scenes, joints, forces, constraints."""
+
+import carom
+from bad_input.things import FACES, TETRAHEDRON, of_nothing, parts
+from carom import constraints, forces, joints
+
+
+def stated():
+    """Return functions of (callable, arguments) by name."""
+
+    def of_scene(method, /, **given):
+        """A method of a scene; a text is the name of a part."""
+
+        def make():
+            p = parts()
+            return getattr(p.scene, method), {
+                k: getattr(p, v[1:]) if isinstance(v, str) and v[:1] == "@" else v
+                for k, v in given.items()
+            }
+
+        return make
+
+    def with_part(kind, /, **given):
+        def make():
+            p = parts()
+            got = {
+                k: getattr(p, v[1:]) if isinstance(v, str) and v[:1] == "@" else v
+                for k, v in given.items()
+            }
+            return kind, got
+
+        return make
+
+    def joined(definition):
+        p = parts()
+        return p.scene.add_constraint, dict(definition=definition(p), name="mine")
+
+    three = (1.0, 0.0, 0.0)
+    number = dict(restitution=0.5, friction=0.1, friction_held=0.1, stiffness=1.0, rolling_friction=0.0,
+                  pivoting_friction=0.0)  # fmt: skip
+    shapes = {
+        "Sphere": (carom.Sphere, dict(radius=0.1)),
+        "Box": (carom.Box, dict(lx=1.0, ly=2.0, lz=3.0, radius=0.1)),
+        "Capsule": (carom.Capsule, dict(radius=0.1, length=1.0)),
+        "Cylinder": (carom.Cylinder, dict(radius=0.1, length=1.0)),
+        "Disc": (carom.Disc, dict(radius=0.1, inner_radius=0.05)),
+        "Ellipsoid": (carom.Ellipsoid, dict(a=1.0, b=2.0, c=3.0)),
+        "Convex": (carom.Convex, dict(points=TETRAHEDRON, radius=0.1)),
+        "Mesh": (carom.Mesh, dict(vertices=TETRAHEDRON, faces=FACES, parts=[TETRAHEDRON])),
+        "Compound": (
+            carom.Compound,
+            dict(parts=[(carom.Sphere(0.1), three), (carom.Sphere(0.1), (-1.0, 0, 0))], masses=[1.0, 2.0],
+                 centroid=None),
+        ),
+    }  # fmt: skip
+    found = {}
+    for name, (kind, given) in shapes.items():
+        found[name] = lambda kind=kind, given=given: (kind, given)
+        found[f"{name}.inertia"] = lambda kind=kind, given=given: (
+            kind(**given).inertia,
+            dict(mass=1.0),
+        )
+        found[f"{name}.support"] = lambda kind=kind, given=given: (
+            kind(**given).support, dict(direction=three),
+        )  # fmt: skip
+    found |= {
+        "Material": lambda: (carom.Material, number),
+        "ContactLaw": lambda: (carom.scene.ContactLaw, {**number, "impact_law": "newton"}),
+        "Options": lambda: (carom.Options, {**carom.Options(layer_width=1e-6, max_step=0.1).as_dict()}),
+        "Scene": lambda: (carom.Scene, dict(gravity=(0, 0, -9.81))),
+        "Scene.add_half_space": of_scene(
+            "add_half_space", point=(0, 0, 0), normal=(0, 0, 1), material=carom.Material(0.5, 0.1), name="wall"
+        ),
+        "Scene.add_body": of_scene(
+            "add_body", shape=carom.Sphere(0.1), mass=1.0, density=None, inertia=(1.0, 1.0, 1.0),
+            position=three, orientation=(1.0, 0, 0, 0), velocity=three, angular_velocity=three,
+            material=carom.Material(0.5, 0.1), name="new",
+        ),
+        "Scene.add_body of a density": of_scene(
+            "add_body", shape=carom.Sphere(0.1), mass=None, density=1.0, inertia=None,
+            position=three, orientation=(1.0, 0, 0, 0), velocity=three, angular_velocity=three,
+            material=None, name=None,
+        ),
+        "Scene.add_joint": of_scene(
+            "add_joint", definition=joints.Spherical((0, 0, 0)), parent="@ball", child="@box",
+            parent_frame=(three, (1.0, 0, 0, 0)), child_frame=(three, (1.0, 0, 0, 0)), name="new",
+        ),
+        "Scene.add_force": of_scene(
+            "add_force", definition=forces.Torque(three), parent="@ball", child="@box", name="new"
+        ),
+        "Scene.add_constraint": lambda: joined(lambda p: constraints.Gear(p.hinge, p.slide, 2.0)),
+        "Scene.add_stop": of_scene(
+            "add_stop", joint="@hinge", lower=-1.0, upper=None, restitution=0.5, impact_law="newton",
+            coordinate=0, name="new",
+        ),
+        "Scene.add_contact": of_scene(
+            "add_contact", body="@box", other="@floor", **number, impact_law="newton", name="new"
+        ),
+        "Scene.set_contact_default": of_scene(
+            "set_contact_default", **number, impact_law="newton", combine="average", all_pairs=True
+        ),
+        "Scene.ignore_contact": of_scene("ignore_contact", body="@ball", other="@box"),
+        "Scene.contact_law": of_scene("contact_law", body="@ball", other="@box"),
+        "Scene.pairs_by_default": of_scene("pairs_by_default"),
+        "Scene.validate": of_scene("validate"),
+        "Scene.check": of_scene("check"),
+    }  # fmt: skip
+
+    placed = dict(anchor=three, axis=(0, 0, 1.0))
+    found |= {
+        "joints.Revolute": lambda: (joints.Revolute, placed),
+        "joints.Spherical": lambda: (joints.Spherical, dict(anchor=three)),
+        "joints.Fixed": lambda: (joints.Fixed, dict(anchor=three)),
+        "joints.Prismatic": lambda: (joints.Prismatic, placed),
+        "joints.Cylindrical": lambda: (joints.Cylindrical, placed),
+        "joints.Screw": lambda: (joints.Screw, dict(**placed, pitch=0.1)),
+        "joints.Universal": lambda: (
+            joints.Universal, dict(anchor=three, axis_parent=three, axis_child=(0, 1.0, 0)),
+        ),
+        "joints.Planar": lambda: (joints.Planar, dict(normal=(0, 0, 1.0), anchor=three)),
+        "joints.PointOnLine": lambda: (joints.PointOnLine, dict(anchor=three, direction=three)),
+        "joints.PointOnPlane": lambda: (joints.PointOnPlane, dict(anchor=three, normal=three)),
+        "joints.Distance": lambda: (joints.Distance, dict(anchor_parent=three, anchor_child=(0, 0, 0.0))),
+        "joints.KnifeEdge": lambda: (
+            joints.KnifeEdge, dict(anchor=three, direction=three, normal=(0, 0, 1.0)),
+        ),
+        "joints.RollingSphere": lambda: (joints.RollingSphere, dict(radius=1.0, normal=(0, 0, 1.0))),
+        "joints.RollingSphere.contact": lambda: (joints.RollingSphere(1.0).contact, dict(centre=three)),
+        "joints.RollingDisc": lambda: (
+            joints.RollingDisc, dict(radius=1.0, axis=three, normal=(0, 0, 1.0)),
+        ),
+        "joints.RollingDisc.contact": lambda: (
+            joints.RollingDisc(1.0, three).contact, dict(centre=three),
+        ),
+        "forces.Spring": lambda: (
+            forces.Spring,
+            dict(stiffness=1.0, anchor_parent=three, anchor_child=(0, 0, 0.0), rest_length=1.0, damping=1.0),
+        ),
+        "forces.Force": lambda: (forces.Force, dict(vector=three, anchor=three, follow=True)),
+        "forces.Torque": lambda: (forces.Torque, dict(vector=three, follow=True)),
+        "forces.Bushing": lambda: (
+            forces.Bushing,
+            dict(stiffness=1.0, turn_stiffness=1.0, damping=(1.0, 2.0), turn_damping=(1.0, 2.0), axis=three,
+                 anchor=three),
+        ),
+        "forces.CurveSpring": lambda: (
+            forces.CurveSpring,
+            dict(anchor_parent=three, anchor_child=(0, 0, 0.0), tension=[[0.0, 1.0], [0.0, 2.0]], damping=1.0),
+        ),
+        "forces.JointSpring": with_part(
+            forces.JointSpring, joint="@hinge", stiffness=1.0, damping=1.0, rest=0.1, coordinate=0
+        ),
+        "forces.JointForce": with_part(forces.JointForce, joint="@hinge", force=1.0, coordinate=0),
+        "forces.JointFriction": with_part(forces.JointFriction, joint="@hinge", bound=1.0, coordinate=0),
+        "forces.UserForce": lambda: (
+            forces.UserForce, dict(bodies=[parts().ball], function=of_nothing, potential=of_nothing),
+        ),
+        "constraints.Coupling": lambda: (constraints.Coupling, dict(factors={parts().hinge: 1.0})),
+        "constraints.Gear": with_part(constraints.Gear, first="@hinge", second="@slide", ratio=2.0),
+        "constraints.Driver": with_part(
+            constraints.Driver, joint="@hinge", rate=1.0, motion=None, coordinate=0
+        ),
+        "constraints.Driver of a motion": with_part(
+            constraints.Driver, joint="@hinge", rate=None, motion=of_nothing, coordinate=0
+        ),
+        "constraints.Rows": lambda: (
+            constraints.Rows, dict(bodies=[parts().ball], function=of_nothing, rows=1, position=of_nothing),
+        ),
+    }  # fmt: skip
+    return found

@@ -1,0 +1,120 @@
+"""No public callable takes a wrong value in silence, dies of it, or fails to say which argument it was."""
+
+import inspect
+import re
+import sys
+from pathlib import Path
+
+import pytest
+
+import carom
+from bad_input import walk
+
+pytest.importorskip("matplotlib")
+pytest.importorskip("mujoco")
+pytest.importorskip("sympy")
+pytest.importorskip("h5netcdf")
+pytest.importorskip("zarr")
+pytest.importorskip("PIL")
+
+API = Path(__file__).parents[2] / "docs" / "api.rst"
+ENTRY = r"^   (?:scene\.)?(?:more_)?([a-z]\w*(?:\.\w+)+|[A-Za-z]\w*)$"  # of a list in that page
+SOME = 12  # kinds of wrong values for each parameter, half of them as look like numbers
+FEW = 4  # of calls that take a tenth of a second
+DEAR = (
+    "simulate to",
+    "resume",
+    "ensemble",
+    "identify.identify",
+    "plots.",
+    "film",
+    "view",
+    "Solution.plot",
+)
+MODULES = (
+    "baselines",
+    "constraints",
+    "films",
+    "forces",
+    "gradient",
+    "identify",
+    "joints",
+    "models",
+    "plots",
+)
+
+#: what the library hands back, and nobody makes
+HANDED_BACK = {
+    "GROUND", "ContactSolution", "CornerImpact", "Ensemble", "Impact", "LayerHistory", "Model", "Sensitivities",
+    "SimulationError", "Solution", "Solution.from_run", "Status", "generalized.CoordinateContact",
+    "generalized.solution.GeneralizedSolution", "generalized.solution.CoordinateImpactTable",
+    "generalized.solution.CoordinateImpact", "system.mobility.Mobility", "tables.ImpactTable",
+    "tables.ImpactRecord", "tables.EventTable", "tables.ContactTable", "tables.ForceTable", "ledger.Ledger",
+    "files.convert.Frames", "viewer.live.LiveView", "viewer.page.Exported", "models.Coordinate", "models.Model",
+    "models.Report", "models.Entry", "impact.directions.InvariantDirections", "impact.geometry.NormalMotion",
+    "gradient.Sensitivities", "gradient.Derivative", "gradient.Margin", "gradient.ImpactKind",
+    "gradient.ImpactDerivative", "gradient.ByInputs", "identify.Identification", "identify.State",
+    "identify.FreeFlight", "identify.RollOut", "identify.TrajectoryError", "identify.Uncertainty",
+    "baselines.HHTRun", "baselines.LayerRun", "baselines.MoreauJeanRun", "joints.Joint", "joints.Joint.anchor",
+    "forces.AppliedForce", "constraints.Constraint", "Options.as_dict",
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def recipes(tmp_path_factory):
+    return walk.recipes(tmp_path_factory.mktemp("calls"))
+
+
+NAMES = list(walk.recipes(Path()))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_wrong_values_are_refused_by_name(recipes, name, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)  # where a word is taken as a path
+    call, arguments = recipes[name]()
+    missing = walk.parameters(call) - arguments.keys()
+    assert not missing, f"the recipe of {name} must have a value for {missing}"
+    call(**arguments)  # what the recipe says works
+    few = FEW if name.startswith(DEAR) else SOME
+    assert walk.complaints(name, recipes[name], few) == []
+    if "matplotlib.pyplot" in sys.modules:
+        sys.modules["matplotlib.pyplot"].close("all")
+
+
+def members(prefix, one):
+    """Yield a function, or a class and its public methods."""
+    yield prefix
+    if inspect.isclass(one) and not issubclass(one, (tuple, int, BaseException)):
+        for name, _ in inspect.getmembers(one, callable):
+            own = any(
+                name in vars(base) and base.__module__.startswith("carom") for base in one.__mro__
+            )
+            if own and not name.startswith("_"):
+                yield f"{prefix}.{name}"
+
+
+def public():
+    """Yield the names of all public callables."""
+    for name in carom.__all__:
+        one = getattr(carom, name)
+        if not inspect.ismodule(one):
+            yield from members(name, one)
+    for name in MODULES:
+        module = getattr(carom, name)
+        listed = getattr(module, "__all__", None) or [
+            k
+            for k, v in vars(module).items()
+            if inspect.isclass(v) and v.__module__ == module.__name__
+        ]
+        for own in listed:
+            if own not in carom.__all__:
+                yield from members(f"{name}.{own}", getattr(module, own))
+    yield from re.findall(ENTRY, API.read_text(), re.MULTILINE)
+
+
+@pytest.mark.skipif(not API.exists(), reason="the pages are not here")
+def test_every_public_callable_is_tried():
+    """A new function needs a recipe in `states.py`, `runs.py` or `reads.py`."""
+    # arithmetic on arrays that results are worked with is not checked: it is called for each number
+    tried = {walk.plain(name) for name in NAMES} | HANDED_BACK
+    assert sorted({n for n in public() if n not in tried and not n.startswith("geometry.")}) == []
