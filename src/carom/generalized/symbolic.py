@@ -121,7 +121,7 @@ class SymbolicModel:
         """Return what is given as an expression; refuse texts, which SymPy would evaluate, and no numbers."""
         sp = self.sp
         try:
-            result = sp.sympify(given, strict=True)
+            result: Any = sp.sympify(given, strict=True)
         except Exception:  # whatever the conversion of a foreign object raises
             result = None
         bad = (sp.nan, sp.zoo, sp.oo, -sp.oo)
