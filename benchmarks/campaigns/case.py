@@ -11,8 +11,9 @@ import numpy as np
 import carom
 from carom.geometry import quaternion
 
-#: what a run may break at most: depth by size; energy gained, and without a name, by the energy exchanged
-DEPTH, GAIN, UNNAMED = 1e-9, 1e-6, 1e-4
+#: what a run may break at most: depth by size; energy gained, and without a name, by the energy exchanged;
+#: an impulse by that which throws a free mass back
+DEPTH, GAIN, UNNAMED, IMPULSE = 1e-9, 1e-6, 1e-4, 1e4
 
 
 @dataclass
@@ -36,17 +37,23 @@ class Outcome:
     gained: float  # greatest rise of a line of the ledger that must not rise
     depth: float  # greatest penetration of the ground at a saved time, by size of the body
     slip_residual: float  # greatest held_residual by the greatest speed
+    impulse: float  # greatest normal impulse, by that which throws a free mass 1/W_nn back
     impacts: int
+    wedged: int  # impacts that ended so
     whole: int  # steps taken whole
-    warned: int  # sentences in `solution.warnings`, where there are
+    warned: int  # sentences in `solution.warnings`
 
 
 def wrong(row: dict) -> list[str]:
     """Return what is wrong with an outcome, in words."""
     found = [] if row["status"] == "SUCCESS" else [row["status"]]
     found += [] if row["depth"] <= DEPTH else ["penetrates"]
-    found += [] if row["gained"] <= GAIN else ["gains"]
-    return found + ([] if row["residual"] <= UNNAMED else ["unnamed energy"])
+    if not row["gained"] <= GAIN:
+        found.append("gains, said" if row["warned"] else "gains, silent")
+    found += [] if row["impulse"] <= IMPULSE else ["absurd impulse"]
+    if not row["residual"] <= UNNAMED:
+        found.append("unnamed energy, said" if row["warned"] else "unnamed energy, silent")
+    return found
 
 
 def run(case: Case) -> Outcome:
@@ -73,19 +80,31 @@ def run(case: Case) -> Outcome:
         gained=max((rise(line) for line in energies.values()), default=0.0) / scale,
         depth=depth(case.scene, s),
         slip_residual=float(np.max(s.held_residual)) / max(speed, 1e-300),
+        impulse=impulse(s),
         impacts=len(s.impacts),
+        wedged=int(np.sum(s.impacts.wedged)),
         whole=int(s.stats.get("whole_steps", 0)),
-        warned=len(getattr(s, "warnings", ())),
+        warned=len(s.warnings),
     )
 
 
 def exchanged(s: carom.Solution) -> float:
-    """Return the largest energy that a run exchanged: kinetic, potential against the start, loads [J]."""
+    """Return the largest energy exchanged [J]: kinetic, potential against the start, a line of the ledger."""
     potential = s.potential_energy - s.potential_energy[0]
     largest = max(
         np.max(s.kinetic_energy), np.max(np.abs(potential)), np.max(np.abs(s.ledger.loads))
     )
     return max(float(largest), 1e-300)
+
+
+def impulse(s: carom.Solution) -> float:
+    """Return the greatest normal impulse of one point, by that which would throw a free mass 1/W_nn back."""
+    worst = 0.0
+    for row in s.impacts:
+        speed = float(np.linalg.norm(row.relative_velocity_before))
+        if speed > 0.0 and row.together == 1:
+            worst = max(worst, float(row.impulse[0] * row.inverse_mass[0, 0] / (2.0 * speed)))
+    return worst
 
 
 def rise(line: np.ndarray) -> float:

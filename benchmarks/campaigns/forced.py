@@ -1,24 +1,16 @@
-"""Random scenes with springs, dampers, motors, forces and stops: is every loss of energy said?
+"""Springs, dampers, motors, loads and stops, softer and stiffer than any step: is every loss of energy said?
 
-    python benchmarks/campaigns/forced.py [FIRST LAST]
-
-`scene(seed)` makes one: a chain of one to four bodies on joints of any kind, or free, with masses over four
-orders and shapes from needles to plates; springs from soft to stiffer than any step, dampers, mounts, constant
-loads that may turn with their body, dry friction, motors and stops; with and without a floor. The table says
-how each run ended, and the worst energy without a name as a part of the largest that was exchanged: one that
-ends in `SUCCESS` must be below a hundred times `Options.energy_tolerance`, and say so above it.
+A chain of one to four bodies on joints of any kind, or free, with masses over four orders and shapes from
+needles to plates; springs from soft to stiffer than any step, dampers, mounts, constant loads that may turn with
+their body, dry friction, motors and stops; with and without a floor.
 """
 
 from __future__ import annotations
 
-import collections
-import sys
-import time
-import warnings
-
 import numpy as np
 
 import carom
+from campaigns.case import Case
 from carom import GROUND, constraints, forces, joints
 
 STEPS = (1e-3, 5e-3, 20e-3)
@@ -74,8 +66,8 @@ def _motor(rng, joint):
     return constraints.Driver(joint, motion=motion)
 
 
-def scene(seed: int) -> tuple[carom.Scene, float, float]:
-    """Return a random scene, a duration and a step [s]; the same for the same seed."""
+def case(seed: int) -> Case:
+    """Return scene number `seed`, at one of three steps."""
     rng = np.random.default_rng(seed)
     made = carom.Scene(gravity=(0, 0, -9.81) if rng.random() < 0.8 else (0, 0, 0))
     step = float(rng.choice(STEPS))
@@ -144,54 +136,10 @@ def scene(seed: int) -> tuple[carom.Scene, float, float]:
                 body, floor, restitution=float(rng.uniform(0, 0.9)), friction=float(rng.uniform(0, 1)),
                 impact_law=str(rng.choice(["newton", "poisson", "stronge"])),
             )  # fmt: skip
-    return made, 0.5, step
-
-
-def try_one(seed: int, **settings) -> dict:
-    """Run one scene; return how it ended, its worst error, and the time that it took."""
-    made, duration, step = scene(seed)
-    begin = time.process_time()
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", carom.AccuracyWarning)
-        solution = carom.simulate(made, duration, step=step, throw=False, **settings)
-    ledger = solution.ledger
-    rows = (ledger.kinetic, ledger.potential - ledger.potential[0], ledger.loads, ledger.impacts)
-    most = max(float(np.max(np.abs(row))) for row in (*rows, ledger.friction, ledger.bounces))
-    off = float(np.max(np.abs(ledger.residual)))
-    return {
-        "seed": seed, "step": step, "status": solution.status.name, "warned": bool(solution.warnings),
-        "error": off / most if most > 0.0 else 0.0, "seconds": time.process_time() - begin,
-        "impacts": len(solution.impacts), "held": len(solution.contacts.start),
-        "message": solution.message,
-    }  # fmt: skip
-
-
-def main(first: int, last: int) -> None:
-    """Try the seeds from `first` to before `last`, and print what came of them."""
-    found = []
-    for seed in range(first, last):
-        try:
-            found.append(try_one(seed))
-        except Exception as error:  # a scene that cannot start is told, and left out
-            found.append(
-                {"seed": seed, "step": 0.0, "status": type(error).__name__, "error": 0.0, "warned": False,
-                 "seconds": 0.0, "impacts": 0, "held": 0, "message": str(error)}
-            )  # fmt: skip
-    print(dict(collections.Counter(one["status"] for one in found)))
-    tolerance = carom.Options().energy_tolerance
-    good = [one for one in found if one["status"] == "SUCCESS"]
-    for limit in (1e-9, 1e-6, tolerance, 100.0 * tolerance):
-        share = sum(one["error"] > limit for one in good)
-        print(f"SUCCESS with an error above {limit:g}: {share} of {len(good)}")
-    silent = [one for one in good if one["error"] > tolerance and not one["warned"]]
-    print("without a word:", [one["seed"] for one in silent])
-    print(f"longest: {max(one['seconds'] for one in found):.1f} s")
-    for one in sorted(good, key=lambda one: -one["error"])[:10]:
-        print(one)
-    for one in found:
-        if one["status"] not in ("SUCCESS", "INACCURATE"):
-            print(one)
-
-
-if __name__ == "__main__":
-    main(*(map(int, sys.argv[1:3] if len(sys.argv) > 2 else ("0", "200"))))
+    kinds = sorted({type(force.definition).__name__ for force in made.forces})
+    return Case(
+        made,
+        0.5,
+        step,
+        {"kind": "floor" if made.contacts else "free", "step": step, "loads": kinds},
+    )

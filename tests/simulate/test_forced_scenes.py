@@ -3,18 +3,13 @@
 The short form of benchmarks/campaigns/forced.py.
 """
 
-import importlib.util
 from math import cos, pi, sin
-from pathlib import Path
 
 import pytest
 
 import carom
-
-_PATH = Path(__file__).parents[2] / "benchmarks" / "campaigns" / "forced.py"
-_SPEC = importlib.util.spec_from_file_location("forced", _PATH)
-forced = importlib.util.module_from_spec(_SPEC)
-_SPEC.loader.exec_module(forced)
+from campaigns import forced
+from campaigns.case import run
 
 TOLERANCE = carom.Options().energy_tolerance
 
@@ -24,15 +19,15 @@ def test_what_ends_in_success_has_its_energy_or_says_so(first):
     # Worked out from the ledger at saved times, and so never above what the loop has seen after each step. That
     # holds for any motion; scenes that are too stiff, or whose motor comes to a dead end, may fail by name.
     for seed in range(first, first + 8):
-        found = forced.try_one(seed)
-        if found["status"] == "SUCCESS":
-            assert found["error"] <= 100.0 * TOLERANCE, seed
-        if found["status"] in ("SUCCESS", "INACCURATE") and found["error"] > TOLERANCE:
-            assert found["warned"], seed
+        found = run(forced.case(seed))
+        if found.status == "SUCCESS":
+            assert found.residual <= 100.0 * TOLERANCE, seed
+        if found.status in ("SUCCESS", "INACCURATE") and found.residual > TOLERANCE:
+            assert found.warned, seed
 
 
 def test_a_scene_is_the_same_for_the_same_seed():
-    once, again = (forced.scene(7)[0] for _ in range(2))
+    once, again = (forced.case(7).scene for _ in range(2))
     assert str(once) == str(again)
 
 

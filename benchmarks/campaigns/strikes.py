@@ -3,20 +3,14 @@
 A body with few freedoms has an inverse mass W of rank 1 or 2 where it touches: slip and approach stop together,
 and friction may hold it wedged (mathematics page, II.9). What must be: the run ends at its time, the ledger
 closes, no line of it gains energy (but impacts by Newton's law), and no impulse is absurd.
-
-    python benchmarks/campaign_joints.py [number of scenes] [first seed]
 """
 
 from __future__ import annotations
 
-import sys
-import time
-from collections import Counter
-from dataclasses import dataclass, field
-
 import numpy as np
 
 import carom
+from campaigns.case import Case
 from carom import GROUND, joints
 
 LAWS = ("newton", "poisson", "stronge")
@@ -29,16 +23,8 @@ DURATION, STEP = 0.4, 5e-3
 SIZE = 0.1  # of the bodies, about [m]
 
 
-@dataclass
-class JointScene:
-    """A scene, and a line that says what it is."""
-
-    scene: carom.Scene
-    label: dict = field(default_factory=dict)
-
-
-def scene(seed: int) -> JointScene:
-    """Return the random scene of that number."""
+def case(seed: int) -> Case:
+    """Return strike number `seed`."""
     rng = np.random.default_rng([16, 2, seed])
     kind = KINDS[rng.integers(len(KINDS))]
     law = LAWS[rng.integers(3)]
@@ -57,10 +43,10 @@ def scene(seed: int) -> JointScene:
     s.add_joint(_joint(kind, centre, size, rng), GROUND, body, name="joint")
     s.add_contact(body, floor, friction=friction, restitution=restitution, impact_law=law)
     label = {
-        "seed": seed, "joint": kind, "shape": form, "law": law, "friction": friction,
+        "kind": kind, "shape": form, "step": STEP, "impact_law": law, "friction": friction,
         "restitution": restitution,
     }  # fmt: skip
-    return JointScene(s, label)
+    return Case(s, DURATION, STEP, label)
 
 
 def _shape(form: str, size: float, rng):
@@ -110,68 +96,3 @@ def _joint(kind: str, centre, size: float, rng):
     if kind == "distance":
         return joints.Distance(near + 3.0 * size * axis, near)
     return joints.KnifeEdge(near, axis, across)
-
-
-@dataclass
-class Found:
-    """What a run gave; energies are parts of the largest that it exchanged."""
-
-    status: str
-    seconds: float
-    residual: float  # greatest energy without a name
-    gained: float  # greatest rise of impacts, friction or bounces
-    impulse: float  # greatest normal impulse, by that of a free mass 1/W_nn that is thrown back
-    impacts: int
-    wedged: int
-
-
-def run(one: JointScene, step: float = STEP) -> Found:
-    """Run a scene and measure the result."""
-    begin = time.process_time()
-    s = carom.simulate(one.scene, DURATION, step=step, throw=False)
-    spent = time.process_time() - begin
-    ledger, lines = s.ledger, []
-    lines += [] if one.label["law"] == "newton" else [ledger.impacts]
-    lines += [ledger.friction, ledger.bounces]
-    scale = float(np.ptp(s.kinetic_energy)) + float(np.ptp(s.potential_energy)) + 1e-300
-    worst = 0.0
-    for row in s.impacts:
-        speed = float(np.linalg.norm(row.relative_velocity_before))
-        if speed > 0.0 and row.together == 1:
-            worst = max(worst, float(row.impulse[0] * row.inverse_mass[0, 0] / (2.0 * speed)))
-    return Found(
-        status=s.status.name,
-        seconds=spent,
-        residual=float(np.max(np.abs(ledger.residual))) / scale,
-        gained=max(float(np.max(np.diff(line), initial=0.0)) for line in lines) / scale,
-        impulse=worst,
-        impacts=len(s.impacts),
-        wedged=int(np.sum(s.impacts.wedged)),
-    )
-
-
-def main() -> None:
-    """Run the scenes; print what they gave, and those that are worst."""
-    count = int(sys.argv[1]) if len(sys.argv) > 1 else 900
-    first = int(sys.argv[2]) if len(sys.argv) > 2 else 0
-    found = []
-    for seed in range(first, first + count):
-        one = scene(seed)
-        found.append((one.label, run(one)))
-    print(count, "scenes:", dict(Counter(f.status for _, f in found)))
-    wedges = sum(f.wedged for _, f in found), sum(f.impacts for _, f in found)
-    print(
-        f"impacts that wedged {wedges[0]} of {wedges[1]}; slowest {max(f.seconds for _, f in found):.2f} s"
-    )
-    for name in ("residual", "gained", "impulse", "seconds"):
-        found.sort(key=lambda pair: -getattr(pair[1], name))
-        print(name, "worst:")
-        for label, f in found[:5]:
-            print(f"    {getattr(f, name):.3g}  {label}  {f.status}")
-    for label, f in found:
-        if f.status != "SUCCESS":
-            print(f.status, label)
-
-
-if __name__ == "__main__":
-    main()
