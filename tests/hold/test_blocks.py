@@ -84,6 +84,6 @@ def test_pivots_about_an_edge():
         s = pivot(step)
         q = s.orientation[-1, 0]
         assert np.all(s.contact_mode[1:] == 2)
-        assert abs(abs(2 * np.arctan2(q[2], q[0])) - 0.16203883) < min(most, 5e-5)
-        assert abs(abs(s.angular_velocity[-1, 0, 1]) - 4.81399394) < 20 * min(most, 5e-5)
+        assert abs(abs(2 * np.arctan2(q[2], q[0])) - 0.16203883) < min(most, 1e-4)
+        assert abs(abs(s.angular_velocity[-1, 0, 1]) - 4.81399394) < 10 * min(most, 1e-4)
         assert np.max(np.abs(s.ledger.residual)) < 2e-6 * G * 0.1

@@ -147,9 +147,10 @@ def rolling_in_a_circle(step):
 
 
 def test_a_disc_rolls_in_a_circle_at_order_4():
-    errors = np.array([rolling_in_a_circle(step) for step in (0.01, 0.005, 0.0025)])
+    # a step of 10 ms would lose 1e-9 of the energy, and is cut
+    errors = np.array([rolling_in_a_circle(step) for step in (0.005, 0.0025, 0.00125)])
     np.testing.assert_allclose(np.log2(errors[:-1] / errors[1:]), 4.0, rtol=0, atol=0.15)
-    assert errors[-1] < 1e-7
+    assert errors[-1] < 1e-10
 
 
 @pytest.mark.parametrize("step", [1e-3, 20e-3])
