@@ -1,8 +1,8 @@
 """Springs, dampers, motors, loads and stops, softer and stiffer than any step: is every loss of energy said?
 
 A chain of one to four bodies on joints of any kind, or free, with masses over four orders and shapes from
-needles to plates; springs from soft to stiffer than any step, dampers, mounts, constant loads that may turn with
-their body, dry friction, motors and stops; with and without a floor.
+needles to plates; springs from soft to stiffer than any step, dampers, mounts, constant loads that may turn
+with their body, dry friction, motors and stops; with and without a floor.
 """
 
 from __future__ import annotations
