@@ -148,9 +148,10 @@ class GeneralizedSolution(Drawn):
         failed, run.made.functions.failed = run.made.functions.failed, None
         energies(run.system, t, states, kinetic, potential, run.work)
         some = slice(None, None, max(1, saved // 8))
-        later = np.zeros((2, len(t[some])))
-        energies(run.system, t[some] + 0.4321 * run.plan.duration, states[some], *later, run.work)
-        steady = np.array_equal(later, [kinetic[some], potential[some]])
+        later, below = np.zeros((2, len(t[some])))
+        at = t[some] + 0.4321 * run.plan.duration
+        energies(run.system, at, states[some], later, below, run.work)
+        steady = np.array_equal([later, below], [kinetic[some], potential[some]])
         run.made.functions.failed = failed
         names = ("loads", "impacts", "friction", "bounces")
         ledger = Ledger(kinetic, potential, *(np.array(series[one]) for one in names))

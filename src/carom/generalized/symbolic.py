@@ -117,6 +117,11 @@ class SymbolicModel:
             )
         return result
 
+    def _is_finite(self, result: Any) -> bool:
+        """Return whether it is an expression without infinities in it."""
+        sp = self.sp
+        return isinstance(result, sp.Expr) and not result.has(sp.nan, sp.zoo, sp.oo, -sp.oo)
+
     def expression(self, name: str, given) -> Any:
         """Return what is given as an expression; refuse texts, which SymPy would evaluate, and no numbers."""
         sp = self.sp
@@ -124,8 +129,7 @@ class SymbolicModel:
             result = sp.sympify(given, strict=True)
         except Exception:  # whatever the conversion of a foreign object raises
             result = None
-        bad = (sp.nan, sp.zoo, sp.oo, -sp.oo)
-        if not isinstance(result, sp.Expr) or result.has(*bad) or isinstance(given, np.ndarray):
+        if isinstance(given, np.ndarray) or not self._is_finite(result):
             raise ValueError(f"{name} must be a SymPy expression, got {check.shown(given)}")
         return result
 

@@ -216,7 +216,7 @@ class Pieces:
 
     def base_step(self, start: Checkpoint) -> int:
         """Return the number of the step that a checkpoint was taken after."""
-        return int(start.arrays["clock"]["step"][0])
+        return int(np.asarray(start.arrays["clock"])["step"][0])
 
     def pair(self, start: Checkpoint, e: float, p: int, last: int, what, struck: int, event: int):
         """Return central differences of states and impacts of a piece; None if contacts do otherwise."""
