@@ -151,19 +151,20 @@ def find_pull(k, cluster):
             both = stops(cluster, i) and stops(cluster, j)
             L[i, j] = cluster.m[0][i, j] if both else 1.0 if i == j else 0.0
     factor(n, DROP, L)
-    largest = 0.0
+    first = 0.0
     for with_friction in range(1, -1, -1):
         for i in range(n):
             last[i] = 0.0
         before = math.inf
-        for _ in range(ROUNDS):
+        for turn in range(ROUNDS):
             change, largest = pull_once(k, with_friction, cluster)
             for i in range(n):
                 last[i] = x[i]
+            first = largest if turn == 0 else first  # without friction
             if not change < before:
                 break
             before = change
-        if with_friction == 0 or before <= 1e-9 * largest:
+        if with_friction == 0 or before <= 1e-9 * first:
             return
 
 
