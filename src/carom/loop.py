@@ -106,9 +106,11 @@ def advance(
     late = controls.retry == 2 and is_whole(
         clock.step, work
     )  # events at the ends of parts of the step
-    pace = search.pace if clock.paused == 1 else math.inf
+    goes_on = clock.spent > 0.0 or clock.paused == 1 or search.pending != NOTHING
+    pace = search.pace if goes_on else math.inf
     while clock.spent < length:
-        if clock.since > r.LONG and clock.paused == 0 and not pace < math.inf:
+        search.pace = pace  # wherever the loop is left, it goes on as if it had not been
+        if clock.since > r.LONG and clock.paused == 0:
             return r.PAUSE
         if full(system, held, clock, records):
             return r.FULL
@@ -190,8 +192,8 @@ def advance(
                         dt = propose(search)
                         continue
                 verdict, kind, other, low, d1, d2 = UNSURE, GAP, -1, 0.0, 0.0, 0.0
-                loses = not late and too_long(
-                    system, controls, held, now, trial, dt, alone, pace < math.inf, work
+                loses = too_long(
+                    system, controls, held, now, trial, dt, alone, pace < math.inf, late, work
                 )
                 if not loses and controls.order == 0 and search.active == 0:
                     named = applied + friction
@@ -217,7 +219,7 @@ def advance(
                 if verdict == AGAIN:
                     search.active = 0
                     continue
-                if late and verdict != CLEAR and verdict != AGAIN:  # at the end of this part
+                if late and not loses:  # at the end of this part
                     search.kind, search.contact, found = kind, other, other >= 0
                     break
                 if verdict == UNSURE:
@@ -248,7 +250,7 @@ def advance(
             if held.count[0] > 0 and unsolved(system, controls, work, bearable):
                 return NO_CONVERGENCE
             accept(now, trial, dt, applied, friction, begin, clock)
-            pace = next_pace(pace, work)
+            pace = search.pace = next_pace(pace, work)
             if strayed(system, now, dt, work):
                 return r.STRAYED
             if dt == remaining:

@@ -105,12 +105,17 @@ def unsolved(system, controls, work, part):
 
 
 @inlined
-def too_long(system, controls, held, start, end, dt, friction, careful, work):
-    """Return whether a step with held points is to be cut: for what it loses, or for want of a solution."""
+def too_long(system, controls, held, start, end, dt, friction, careful, late, work):
+    """Return whether a step with held points is to be cut: for want of a solution, or for what it loses.
+
+    The latter not where events wait for the end of a part of the step (`late`).
+    """
     if held.count[0] == 0 or dt <= SHORTEST * controls.step:
         return False
     if dt > RETRIED * controls.step and unsolved(system, controls, work, UNSOLVED):
         return True
+    if late:
+        return False
     if turns_far(system, held, start, end, dt):
         return True
     result = work.result[0]
