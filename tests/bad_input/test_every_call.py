@@ -45,7 +45,8 @@ MODULES = (
 
 #: what the library hands back, and nobody makes
 HANDED_BACK = {
-    "AccuracyWarning", "GROUND", "ContactSolution", "CornerImpact", "Ensemble", "Impact", "LayerHistory", "Model", "Sensitivities",
+    "AccuracyWarning",
+    "GROUND", "ContactSolution", "CornerImpact", "Ensemble", "Impact", "LayerHistory", "Model", "Sensitivities",
     "SimulationError", "Solution", "Solution.from_run", "Status", "generalized.CoordinateContact",
     "generalized.solution.GeneralizedSolution", "generalized.solution.CoordinateImpactTable",
     "generalized.solution.CoordinateImpact", "system.mobility.Mobility", "tables.ImpactTable",
