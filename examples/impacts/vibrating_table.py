@@ -34,7 +34,9 @@ def phases(gamma):  # of the impacts in the last periods
     high, up = (0, 0, 0.01), (0, 0, 0.65 * g * period)
     ball = scene.add_body(carom.Sphere(0.01), mass=0.01, position=high, velocity=up)
     scene.add_contact(ball, table, restitution=e)
-    t = carom.simulate(scene, 60 * period, step=period / 6, save_every=600).impacts.time
+    rough = carom.Options(energy_tolerance=0.1)  # the work of the motor, in six steps a period
+    s = carom.simulate(scene, 60 * period, step=period / 6, save_every=600, options=rough)
+    t = s.impacts.time
     return np.mod(omega * t[t > 36 * period], 2 * np.pi)
 
 

@@ -17,6 +17,8 @@ from carom.plots import style
 mass, edge, e, mu, T = 0.016, 0.02, 0.5, 0.05, 0.21
 STEPS = 2e-3 / 2.0 ** np.arange(6)
 
+ROUGH = carom.Options(energy_tolerance=0.1)  # a return to the surface gives energy
+
 
 def throw():
     scene = carom.Scene(gravity=(0, 0, -9.81))
@@ -43,7 +45,9 @@ def main(out="out/examples"):
     for h in STEPS:
         runs = {
             "Moreau-Jean": moreau_jean(throw(), T, step=h),
-            "paper, projected": carom.simulate(throw(), T, step=h, method="paper", impact_location="project"),
+            "paper, projected": carom.simulate(
+                throw(), T, step=h, method="paper", impact_location="project", options=ROUGH
+            ),
             "located": carom.simulate(throw(), T, step=h),
         }  # fmt: skip
         for name, run in runs.items():

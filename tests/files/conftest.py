@@ -21,8 +21,9 @@ def slid():
 
 @pytest.fixture(scope="session")
 def swung():
-    """A chain that strikes its stop."""
-    return carom.simulate(pendulum(), 1.0, step=2e-2)
+    """A chain that strikes its stop; held there with order 2, it loses .3 % at this step."""
+    allowed = carom.Options(energy_tolerance=0.01)
+    return carom.simulate(pendulum(), 1.0, step=2e-2, options=allowed)
 
 
 @pytest.fixture(params=["thrown", "slid", "swung"])

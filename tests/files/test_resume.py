@@ -88,13 +88,17 @@ def test_killed_process(name, late, tmp_path):
     assert list(tmp_path.iterdir()) == [path]  # whatever the killed process had begun to write
 
 
+#: a stop that is held is stepped with order 2 and loses .3 % here, a heap with order 1
+ALLOWED = carom.Options(energy_tolerance=0.01)
+
+
 @pytest.mark.parametrize("fraction", [0.2, 0.8])
 @pytest.mark.parametrize(
     "settings",
     [
-        {"step": 2e-2},
-        {"step": "auto", "rtol": 1e-6},
-        {"step": 2e-2, "save_every": 7},
+        {"step": 2e-2, "options": ALLOWED},
+        {"step": "auto", "rtol": 1e-6, "options": ALLOWED},
+        {"step": 2e-2, "save_every": 7, "options": ALLOWED},
     ],
     ids=["steps", "auto", "seldom"],
 )
@@ -123,8 +127,9 @@ def test_interrupted_run_works_out_the_same(tmp_path):
 def test_heap(fraction, tmp_path):
     # ten balls: islands that come and go, impacts of several points, a heap with all its memory
     path = tmp_path / "run.nc"
-    interrupted(pile(), 0.5, fraction, path, step=5e-3)
-    assert differences(carom.resume(path), carom.simulate(pile(), 0.5, step=5e-3)) == []
+    settings = {"step": 5e-3, "options": ALLOWED}
+    interrupted(pile(), 0.5, fraction, path, **settings)
+    assert differences(carom.resume(path), carom.simulate(pile(), 0.5, **settings)) == []
 
 
 def test_stopped_twice(tmp_path):

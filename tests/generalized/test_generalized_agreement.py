@@ -25,6 +25,8 @@ def pendulum():
     return double_pendulum(*START)[0]
 
 
+# 3e-4 of the energy at the longest step
+@pytest.mark.filterwarnings("ignore::carom.AccuracyWarning")
 def test_double_pendulum_converges_with_order_four(pendulum):
     # Against rk8 in steps of 1 ms, whose error is below 1e-13.
     exact = carom.simulate(pendulum, 1.0, step=1e-3, method="rk8").q[-1]
@@ -108,12 +110,13 @@ def test_rod_bounces_to_rest_on_the_floor(law):
     here = carom.simulate(falling_rod(*given), 1.5, step=1e-3)
     scene = carom.simulate(falling_rod_scene(*given), 1.5, step=1e-3)
     count = 25  # those before bounces end within one step
-    ours, theirs = here.impacts, scene.impacts
-    np.testing.assert_allclose(ours.time[:count], theirs.time[:count], rtol=0, atol=1e-11)
-    np.testing.assert_allclose(
-        ours.impulse[:count, 0], theirs.impulse[:count, 0], rtol=0, atol=1e-10
-    )
-    friction = np.abs(theirs.impulse[:count, 1:]).max(axis=1)
+    ours = here.impacts
+    # the two corners of an end are one row, or two where round-off parts them
+    time, first = np.unique(scene.impacts.time, return_index=True)
+    impulse = np.add.reduceat(scene.impacts.impulse, first)
+    np.testing.assert_allclose(ours.time[:count], time[:count], rtol=0, atol=1e-11)
+    np.testing.assert_allclose(ours.impulse[:count, 0], impulse[:count, 0], rtol=0, atol=1e-10)
+    friction = np.abs(impulse[:count, 1:]).max(axis=1)
     np.testing.assert_allclose(np.abs(ours.impulse[:count, 1]), friction, rtol=0, atol=1e-10)
     np.testing.assert_allclose(here.q[-1, :2], scene.position[-1, 0, ::2], rtol=0, atol=1e-10)
     np.testing.assert_allclose(here.v[-1], 0.0, atol=1e-15)

@@ -127,7 +127,8 @@ def test_jam_is_resolved_by_an_impact():
     )  # fmt: skip
     tangent = sum(sp.diff(foot[0], one) * rate for one, rate in zip(q, v))
     system.add_contact(foot[1], tangent=tangent, restitution=0.0, friction=1.6)
-    run = carom.simulate(system, 0.01, step=1e-3)
+    # a rod that stands on a point and falls about it: 1 ms is too long for it, and the run says so
+    run = carom.simulate(system, 0.01, step=1e-3, throw=False)
     first = run.impacts[0]
     assert first.time == 0.0
     np.testing.assert_allclose(first.inverse_mass[0, 1], -1.299038105677, rtol=0, atol=1e-12)

@@ -212,4 +212,5 @@ def test_a_step_that_does_not_get_on_is_taken_whole():
     s = carom.simulate(scene, 0.4, step=2e-3, options=rough)
     assert s.status is carom.Status.SUCCESS
     assert s.stats["whole_steps"] > 0
-    assert carom.simulate(scene, 0.1, step=1e-3).stats["whole_steps"] == 0
+    allowed = carom.Options(energy_tolerance=0.02)  # a heap of order 1
+    assert carom.simulate(scene, 0.1, step=1e-3, options=allowed).stats["whole_steps"] == 0

@@ -8,7 +8,10 @@ import pytest
 
 import carom
 from carom.geometry import quaternion
+from carom.jit import entry
 from carom.motion.flown import torque_free
+from carom.motion.free import point_bound
+from carom.system.arrays import BODY, BODY_WORK, table
 from references.free_rotation import angle_between, free_rotation
 
 CASES = json.loads((Path(__file__).parents[1] / "data/free_flight/free_flight.json").read_text())
@@ -151,16 +154,13 @@ def test_steps_of_many_turns():
     assert angle_between(*ends) < 1e-12
 
 
+@entry
+def bound(bodies, Q, w, memory):
+    return point_bound(bodies[0], Q, w, memory[0])
+
+
 def test_no_point_is_accelerated_more_than_the_bound():
     # II.6 rests on it. And it is sharp: no more than four times what occurs
-    from carom.jit import entry
-    from carom.motion.free import point_bound
-    from carom.system.arrays import BODY, BODY_WORK, table
-
-    @entry
-    def bound(bodies, Q, w, memory):
-        return point_bound(bodies[0], Q, w, memory[0])
-
     rng = np.random.default_rng(3)
     body, memory = table(BODY, 1), table(BODY_WORK, 1)
     for kind in KINDS:

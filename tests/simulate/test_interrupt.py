@@ -16,7 +16,9 @@ from simulate.scenes import die, turn
 
 #: A run says when it begins in earnest, and at its end how far it came. Longer than anybody waits.
 RUN = """
+import signal
 import numpy as np, carom
+signal.signal(signal.SIGINT, signal.default_int_handler)  # ignored by what begins in the background
 carom.simulate({scene}, 3.0, step=1e-3)  # compiled
 print("begins", flush=True)
 s = carom.simulate({scene}, 1e6, step=1e-3, save_every=10**8, throw=False)
