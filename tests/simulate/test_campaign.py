@@ -1,0 +1,20 @@
+"""A short form of `benchmarks/campaign.py`: every kind of shape, law and step, thrown on a floor."""
+
+import pytest
+
+from campaigns import throws
+from campaigns.case import run
+
+
+@pytest.mark.processors
+@pytest.mark.parametrize("first", range(2000, 2090, 15))
+def test_throws_end_and_lose_nothing_without_a_name(first):
+    # Bounds that all of ten thousand others met, chaotic as they are: the end is reached, nothing sinks, and
+    # energy without a name beyond 1e-3 of what was exchanged is not kept silent.
+    for seed in range(first, first + 15):
+        found = run(throws.case(seed))
+        assert found.status in ("SUCCESS", "INACCURATE"), seed
+        assert found.reached == 1.0, seed
+        assert found.depth <= 1e-9, seed
+        assert found.residual <= 1e-3 or found.warned, seed
+        assert found.gained <= 1e-2, seed
