@@ -22,14 +22,13 @@ def pour(count, width):
     for k, half in ((0, width / 2), (1, 1.05 * radius)):
         for side in (-1, 1):
             scene.add_half_space(side * half * np.eye(3)[k], -side * np.eye(3)[k])
-    row = int(width / (2.4 * radius))
+    row, rough = int(width / (2.4 * radius)), carom.Options(energy_tolerance=0.01)  # of order 1
     for i in range(count):
         r, x = radius * rng.uniform(0.75, 1.0), (i % row + 0.5) * width / row - width / 2
         place = (x + rng.uniform(-0.1, 0.1) * radius, 0, (1.2 + 2.4 * (i // row)) * radius)
         mass = density * 4 / 3 * np.pi * r**3
         scene.add_body(carom.Sphere(r), mass=mass, position=place, velocity=(0, 0, -0.5))
     scene.set_contact_default(restitution=0.3, friction=0.4, rolling_friction=1e-4)
-    rough = carom.Options(energy_tolerance=0.01)  # a heap of order 1
     return carom.simulate(scene, 1.5, step=1e-3, save_every=10, options=rough)
 
 

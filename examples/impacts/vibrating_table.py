@@ -17,6 +17,7 @@ from carom.plots import style
 
 e, period, A = 0.5, 0.05, 1e-3
 omega, loss = 2 * np.pi / period, np.pi * (1 - e) / (1 + e)
+rough = carom.Options(energy_tolerance=0.1)  # the motor's work, in six steps a period
 doubling = np.sqrt(loss**2 + (2 * (1 + e**2) / (1 + e) ** 2) ** 2)
 
 
@@ -27,17 +28,15 @@ def motion(t):
 
 def phases(gamma):  # of the impacts in the last periods
     scene = carom.Scene(gravity=(0, 0, -(g := A * omega**2 / gamma)))
-    low, fast = (0, 0, -0.01), (0, 0, A * omega)
+    low, high, fast = (0, 0, -0.01), (0, 0, 0.01), (0, 0, A * omega)
+    up = (0, 0, 0.65 * g * period)
     table = scene.add_body(carom.Box(0.2, 0.2, 0.02), mass=1.0, position=low, velocity=fast)
     slide = scene.add_joint(carom.joints.Prismatic((0, 0, 1)), carom.GROUND, table)
     scene.add_constraint(carom.constraints.Driver(slide, motion=motion))
-    high, up = (0, 0, 0.01), (0, 0, 0.65 * g * period)
     ball = scene.add_body(carom.Sphere(0.01), mass=0.01, position=high, velocity=up)
     scene.add_contact(ball, table, restitution=e)
-    rough = carom.Options(energy_tolerance=0.1)  # the work of the motor, in six steps a period
     s = carom.simulate(scene, 60 * period, step=period / 6, save_every=600, options=rough)
-    t = s.impacts.time
-    return np.mod(omega * t[t > 36 * period], 2 * np.pi)
+    return np.mod(omega * s.impacts.time[s.impacts.time > 36 * period], 2 * np.pi)
 
 
 def main(out="out/examples"):
@@ -46,8 +45,9 @@ def main(out="out/examples"):
     once = [abs(p[-1] - np.arccos(loss / gamma)) for gamma, p in zip(gammas[:3], found)]
     split = np.array([np.ptp(p[-2:]) > 0.05 for p in found])
     last, first = gammas[np.argmax(split) - 1], gammas[np.argmax(split)]
-    print(f"regular motion: error of its phase {max(once):.1e} rad")
-    print(f"the period doubles between Gamma = {last:.3f} and {first:.3f}, exact {doubling:.4f}")
+    print(
+        f"regular motion: error {max(once):.1e} rad; doubles between {last:.3f}, {first:.3f}: {doubling:.4f}"
+    )
     with style.style():
         figure, axes = style.new(style.PAGE, 2.8)
         for gamma, p in zip(gammas, found):

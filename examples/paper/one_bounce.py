@@ -16,8 +16,8 @@ from carom.plots import style
 
 mass, edge, e, mu, T = 0.016, 0.02, 0.5, 0.05, 0.21
 STEPS = 2e-3 / 2.0 ** np.arange(6)
-
 ROUGH = carom.Options(energy_tolerance=0.1)  # a return to the surface gives energy
+PAPER = {"method": "paper", "impact_location": "project", "options": ROUGH}
 
 
 def throw():
@@ -45,15 +45,12 @@ def main(out="out/examples"):
     for h in STEPS:
         runs = {
             "Moreau-Jean": moreau_jean(throw(), T, step=h),
-            "paper, projected": carom.simulate(
-                throw(), T, step=h, method="paper", impact_location="project", options=ROUGH
-            ),
+            "paper, projected": carom.simulate(throw(), T, step=h, **PAPER),
             "located": carom.simulate(throw(), T, step=h),
-        }  # fmt: skip
+        }
         for name, run in runs.items():
             errors.setdefault(name, []).append(np.linalg.norm(run.position[-1, 0, [0, 2]] - true))
-    for name, error in errors.items():
-        print(f"{name:17}", *(f"{one:.1e}" for one in error), "m")
+    print(*(f"{name}: {np.array(error)} m" for name, error in errors.items()), sep="\n")
     with style.style():
         figure, axes = style.new(style.PAGE, 2.9)
         for (name, error), colour in zip(errors.items(), (style.RED, style.PURPLE, style.BLUE)):
