@@ -9,8 +9,8 @@ from campaigns.case import run
 @pytest.mark.processors
 @pytest.mark.parametrize("first", range(2000, 2090, 15))
 def test_throws_end_and_lose_nothing_without_a_name(first):
-    # Bounds that all of ten thousand others met, chaotic as they are: the end is reached, nothing sinks, and
-    # energy without a name beyond 1e-3 of what was exchanged is not kept silent.
+    # Bounds that 4673 others met, chaotic as they are: the end is reached, nothing sinks, and energy without a
+    # name beyond 1e-3 of what was exchanged is not kept silent.
     for seed in range(first, first + 15):
         found = run(throws.case(seed))
         assert found.status in ("SUCCESS", "INACCURATE"), seed
