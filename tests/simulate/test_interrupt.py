@@ -57,7 +57,10 @@ def test_an_interrupt_ends_a_run(scene):
     assert child.poll() is None
     child.send_signal(signal.SIGINT)
     begin = time.monotonic()
-    said = child.communicate(timeout=60)[0]
+    try:
+        said = child.communicate(timeout=60)[0]
+    finally:
+        child.kill()
     assert time.monotonic() - begin < 5.0
     assert said.split() == ["INTERRUPTED", "True", "True"]
 
