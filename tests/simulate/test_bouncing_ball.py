@@ -107,7 +107,10 @@ def test_every_ball_comes_to_rest(e, height, step, radius, mass):
         ball(e, height=height, radius=radius, mass=mass), end + step, step=step, save_every=1000
     )
     expected = bounce_times(len(a.impacts), e, height)
-    np.testing.assert_allclose(a.impacts.time, expected, rtol=0, atol=1e-10 * end)
+    # a gap is known to the round-off of the coordinates, its time to that by the speed of the impact
+    speed = np.sqrt(2.0 * G * height) * e ** np.arange(len(a.impacts))
+    known = 8.0 * np.finfo(float).eps * (radius + height) / np.maximum(speed, 1e-300)
+    assert np.all(np.abs(a.impacts.time - expected) <= 1e-10 * end + known)
     (held,) = event_times(a, "held")
     assert end - step <= held <= end * (1 + 1e-10)
     assert np.all(a.velocity[-1] == 0.0)

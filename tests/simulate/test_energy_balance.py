@@ -12,6 +12,7 @@ from carom.ledger import Ledger
 from simulate.scenes import G
 
 TOLERANCE = carom.Options().energy_tolerance
+AS_THEY_ARE = carom.Options(energy_tolerance=1.0)  # steps are not cut for what they lose
 
 
 def spring(stiffness, damping=0.0, height=0.0, gravity=0.0):
@@ -40,15 +41,15 @@ def exchanged(solution):
 @pytest.mark.parametrize(
     ("h_omega", "status", "warns"),
     [
-        # RK4 multiplies the energy of an oscillator by 1 - (h w)^6/72 + ... a step: 100 steps lose a part
-        # of 1.4e-6, of 1e-3, nearly all
+        # RK4 multiplies the energy of an oscillator by 1 - (h w)^6/72 + ... a step, and beyond 2 sqrt(2) it
+        # grows: steps are cut until each has less than 1e-7
         (0.1, Status.SUCCESS, False),
-        (0.3, Status.SUCCESS, True),
-        (1.0, Status.INACCURATE, True),
-        # beyond 2 sqrt(2) it grows: each step is cut until it does not
-        (10.0, Status.INACCURATE, True),
-        (300.0, Status.INACCURATE, True),
-        # no more where 1/1024 of the step is not enough
+        (0.3, Status.SUCCESS, False),
+        (1.0, Status.SUCCESS, False),
+        (10.0, Status.SUCCESS, False),
+        # ... but where 1/1024 of the step is not enough: 1e5 steps lose 1e-3 at h w = 100/1024, then all
+        (100.0, Status.SUCCESS, True),
+        (1000.0, Status.INACCURATE, True),
         (1e6, Status.UNSTABLE, True),
     ],
 )
@@ -57,7 +58,7 @@ def test_an_oscillator(h_omega, status, warns):
     assert solution.status is status
     assert bool(solution.warnings) == warns or status is Status.UNSTABLE
     if status is not Status.UNSTABLE:
-        # a step may gain a quarter of what it exchanges, and no more than that
+        # the shortest step may gain a quarter of what it exchanges, and no more than that
         assert np.max(solution.total_energy) < 2.0 * solution.total_energy[0]
 
 
@@ -71,13 +72,12 @@ def test_a_stiff_spring_and_damper_is_no_success(h_omega, h_lambda):
         off = np.max(np.abs(solution.ledger.residual))
         assert off <= 100.0 * TOLERANCE * exchanged(solution)
         assert bool(solution.warnings) == (off > TOLERANCE * exchanged(solution))
-        assert h_omega <= 1.0
-        assert h_lambda <= 3.0
+    assert solution.success == (h_omega <= 10.0 and h_lambda <= 100.0)
 
 
 def test_it_is_told_once_and_says_what_to_do():
     with pytest.warns(carom.AccuracyWarning, match="Options.energy_tolerance") as found:
-        solution = carom.simulate(spring(60.0**2), 0.5, step=5e-3)
+        solution = carom.simulate(spring(60.0**2), 0.5, step=5e-3, method="implicit")
     assert len(found) == 1
     assert solution.success
     (said,) = solution.warnings
@@ -87,14 +87,15 @@ def test_it_is_told_once_and_says_what_to_do():
     assert "smaller step" in said
     # allowed for, nothing is said
     fine = carom.simulate(
-        spring(60.0**2), 0.5, step=5e-3, options=carom.Options(energy_tolerance=0.01)
-    )
+        spring(60.0**2), 0.5, step=5e-3, method="implicit",
+        options=carom.Options(energy_tolerance=0.01),
+    )  # fmt: skip
     assert fine.warnings == ()
 
 
 def test_a_run_that_is_inaccurate_is_whole_and_raises():
     with pytest.raises(carom.SimulationError, match="energy is off") as found:
-        carom.simulate(spring(200.0**2), 0.5, step=5e-3)
+        carom.simulate(spring(200.0**2), 0.5, step=5e-3, method="implicit")
     solution = found.value.solution
     assert solution.t[-1] == 0.5
     assert solution.status is Status.INACCURATE
@@ -105,7 +106,9 @@ def test_a_run_that_is_inaccurate_is_whole_and_raises():
 
 def test_the_zero_of_the_potential_does_not_matter():
     # The same motion 1000 km higher: the same words, up to the round-off of m g z, 1e-9 of what is exchanged.
-    low, high = (quiet(spring(60.0**2, 0, z, G), 0.5, step=5e-3) for z in (0.0, 1e6))
+    low, high = (
+        quiet(spring(60.0**2, 0, z, G), 0.5, step=5e-3, method="implicit") for z in (0.0, 1e6)
+    )
     assert low.success
     assert high.success
     assert len(low.warnings) == len(high.warnings) == 1
@@ -115,8 +118,7 @@ def test_the_zero_of_the_potential_does_not_matter():
 def test_save_every_hides_nothing():
     # The step is watched, not the row: what is given back until the next row was gone before.
     every, seldom = (
-        quiet(spring(60.0**2), 0.5, step=5e-3, save_every=k, options=carom.Options())
-        for k in (1, 100)
+        quiet(spring(60.0**2), 0.5, step=5e-3, save_every=k, method="implicit") for k in (1, 100)
     )
     assert every.warnings == seldom.warnings
 
@@ -205,7 +207,7 @@ def test_work_of_a_motor_against_friction():
 def test_the_ledger_closes_with_motors_and_held_contact(shape, height, order, least):
     off = []
     for step in (0.01, 0.005, 0.0025):
-        solution = quiet(slide(shape, uneven, height), 0.4, step=step)
+        solution = quiet(slide(shape, uneven, height), 0.4, step=step, options=AS_THEY_ARE)
         off.append(np.max(np.abs(solution.ledger.residual)) / exchanged(solution))
     assert off[-1] < least
     slopes = np.log2(np.array(off[:-1]) / off[1:])
@@ -228,12 +230,12 @@ def test_an_ensemble_has_it():
     stiff = [20.0, 60.0, 200.0]
     made = carom.ensemble(
         lambda stiffness: spring(stiffness**2), 0.5, step=5e-3, vary={"stiffness": np.array(stiff)},
-        executor="serial",
+        method="implicit", executor="serial",
     )  # fmt: skip
     assert [Status(s).name for s in made.status] == ["SUCCESS", "SUCCESS", "INACCURATE"]
     assert list(made.failures) == [2]
     for k, w in enumerate(stiff):
-        alone = quiet(spring(w**2), 0.5, step=5e-3)
+        alone = quiet(spring(w**2), 0.5, step=5e-3, method="implicit")
         off = np.max(np.abs(alone.ledger.residual)) / exchanged(alone)
         assert made.energy_error[k] == pytest.approx(off, rel=1e-9, abs=1e-12)
 
