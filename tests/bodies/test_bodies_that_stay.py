@@ -58,11 +58,10 @@ def leaving(step):
     small = scene.add_body(carom.Sphere(0.1), mass=1.0, position=at)
     scene.add_joint(joints.Fixed((0, 0, 0)), carom.GROUND, big)
     scene.add_contact(small, big, restitution=0.0)
-    return carom.simulate(scene, 1.0, step=step)
+    as_they_are = carom.Options(energy_tolerance=1.0)  # steps are not cut for what they lose
+    return carom.simulate(scene, 1.0, step=step, options=as_they_are)
 
 
-# order 2: 2e-4 of the energy at the longest step
-@pytest.mark.filterwarnings("ignore::carom.AccuracyWarning")
 def test_a_ball_leaves_a_ball():
     # cos th = 2/3 cos .1: th = .8455282018568607, at t = .9071101110440 (R = 1). Order 2.
     errors = []

@@ -7,7 +7,6 @@ import carom
 from carom import joints
 
 #: order 2 on a spring of which the other end is on a car: up to 2e-3 of the energy at 10 ms, and that is said
-pytestmark = pytest.mark.filterwarnings("ignore::carom.AccuracyWarning")
 
 G = 9.81
 B, H, M = 0.05, 0.1, 1.3  # half width, half height, mass of a box

@@ -84,7 +84,6 @@ def uneven():
 
 
 # 2e-4 of the energy in the whole run, at a loose tolerance
-@pytest.mark.filterwarnings("ignore::carom.AccuracyWarning")
 def test_fewer_evaluations_where_motion_is_uneven():
     known = carom.simulate(uneven(), 3.0, step=2e-5, method="rk8").position[-1]
     s = auto(uneven(), 3.0, 1e-6)

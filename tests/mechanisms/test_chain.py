@@ -20,7 +20,6 @@ def gaps(solution, count):
 
 
 # forty links whip about: 6e-4 of the energy in ten seconds
-@pytest.mark.filterwarnings("ignore::carom.AccuracyWarning")
 @pytest.mark.parametrize("count", [1, 10, 40])
 def test_joints_hold_for_ten_seconds(count):
     s = carom.simulate(chain(count), 10.0, step=0.002, save_every=250)

@@ -47,7 +47,6 @@ def test_bounces_end_and_the_stop_carries_the_weight():
 
 
 # the force jumps in a step of 20 ms: 7e-4 of the energy
-@pytest.mark.filterwarnings("ignore::carom.AccuracyWarning")
 def test_a_held_stop_lets_go_when_it_is_pulled():
     # a plastic stop holds the block from sqrt(2/g) on; a force 10 t lifts it off at t = .981
     scene = sliding_block(0.0)
