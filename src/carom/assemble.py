@@ -8,16 +8,13 @@ import numpy as np
 
 from carom.accuracy import sentences
 from carom.columns import Columns
-from carom.coordinates import Motion, coordinates_of
 from carom.geometry import quaternion
 from carom.impact.layout import WEDGED
 from carom.ledger import Ledger
-from carom.motion.mounts import mounted
 from carom.scene.forces import AppliedForce
-from carom.scene.more_forces import JointSpring, UserForce
 from carom.status import Status
 from carom.system import records as r
-from carom.system.arrays import STOP, Relations
+from carom.system.arrays import STOP
 from carom.tables import LAWS, ContactTable, EventTable, ImpactTable, contact_table
 
 #: what tables say of contacts (an ensemble changes them from run to run)
@@ -78,12 +75,9 @@ def orientation(solution) -> np.ndarray:
     return to_scene_axes(solution._written.attitude, solution._run.compiled.to_principal)
 
 
-def potential_and_kinetic(solution) -> tuple[np.ndarray, np.ndarray]:
-    """Return potential and kinetic energy (T,) of all bodies, springs and forces with a potential."""
-    system, Q = solution._run.compiled.system, solution._written.attitude
-    x, v, w = solution.position, solution.velocity, solution.angular_velocity
-    kinetic, potential = energies(system, x, Q, v, w)
-    return potential + more_energies(solution), kinetic
+def energy(solution, name: str) -> np.ndarray:
+    """Return the kinetic or the potential energy (T,) of all that has one."""
+    return np.array(solution._written.series[name])
 
 
 def ledger(solution) -> Ledger:
@@ -105,66 +99,6 @@ def intervals(solution) -> ContactTable:
     written = solution._written
     end = float(solution.t[-1])
     return contact_table(written.event, r.EVENTS, first_vertices(written.contacts), end)
-
-
-@np.errstate(over="ignore", invalid="ignore")  # of a motion that diverged
-def energies(system, x, Q, v, w) -> tuple[np.ndarray, np.ndarray]:
-    """Return kinetic and potential energy (T,) of states (T, N); Q of the principal axes."""
-    bodies, W = system.bodies, quaternion.rotate_back(Q, w)
-    kinetic = 0.5 * np.einsum("n,tnk->t", bodies.mass, v**2)
-    kinetic += 0.5 * np.einsum("nk,tnk->t", bodies.inertia, W**2)
-    potential = -np.einsum("n,tnk,k->t", bodies.mass, x, system.gravity)
-    for s in system.springs:
-        ends = [
-            anchor if b < 0 else x[:, b] + quaternion.rotate(Q[:, b], anchor)
-            for b, anchor in ((s.parent, s.parent_anchor), (s.child, s.child_anchor))
-        ]
-        length = np.linalg.norm(ends[1] - ends[0], axis=-1)
-        if s.last_piece > s.piece:
-            potential += _curve_energy(system.relations.pieces[s.piece : s.last_piece], length)
-            continue
-        stretch = length - s.rest_length
-        potential += 0.5 * s.stiffness * stretch**2
-    stiff = system.relations.stiff if isinstance(system.relations, Relations) else ()
-    for s in stiff:
-        if s.coordinate < 0:
-            ends = [
-                anchor if b < 0 else x[:, b] + quaternion.rotate(Q[:, b], anchor)
-                for b, anchor in ((s.parent, s.parent_anchor), (s.child, s.child_anchor))
-            ]
-            length = np.linalg.norm(ends[1] - ends[0], axis=-1)
-            potential += 0.5 * s.stiffness * (length - s.rest) ** 2
-    for s in system.bushings:
-        d, turn, *_ = mounted(s, x, Q)
-        potential += 0.5 * (d**2 @ s.stiffness + turn**2 @ s.turn_stiffness)
-    return kinetic, potential
-
-
-def _curve_energy(pieces, length: np.ndarray) -> np.ndarray:
-    """Return the integral of a curve from its first point to each length."""
-    powers = np.arange(1, 7)
-    whole = np.sum(pieces.c / powers * (pieces.end - pieces.start)[:, None] ** powers, axis=1)
-    before = np.concatenate([[0.0], np.cumsum(whole)])
-    i = np.clip(np.searchsorted(pieces.start, length, side="right") - 1, 0, len(pieces) - 1)
-    s = length - pieces.start[i]
-    return before[i] + np.sum(pieces.c[i] / powers * s[:, None] ** powers, axis=1)
-
-
-def more_energies(solution) -> np.ndarray:
-    """Return the potential energy (T,) of springs along coordinates, and of forces of the user's with one."""
-    t, total = solution.t, np.zeros(len(solution.t))
-    for force in solution._written.forces:
-        d = force.definition
-        state = (solution.position, solution.orientation, solution.velocity)
-        if isinstance(d, JointSpring) and d.stiffness > 0.0:
-            motion = Motion(t, *state, solution.angular_velocity)
-            q = coordinates_of(motion, d.joint)[0][:, d.coordinate]
-            total += 0.5 * d.stiffness * (q - d.rest) ** 2
-        elif isinstance(d, UserForce) and d.potential is not None:
-            own = [b.index for b in d.bodies]
-            states = np.concatenate([*state, solution.angular_velocity], axis=2)[:, own]
-            total += [float(d.potential(time, s)) for time, s in zip(t, states)]
-    return total
 
 
 def to_scene_axes(Q: np.ndarray, to_principal: np.ndarray) -> np.ndarray:

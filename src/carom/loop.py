@@ -51,6 +51,7 @@ from carom.motion.acceleration import OPEN, SLIP, STICK
 from carom.motion.adapt import NOTHING_LEFT, plan_next, shorter, step_error
 from carom.motion.contact_point import contact_velocity
 from carom.motion.explicit import CONSTRAINTS_LOST, keep
+from carom.motion.more_forces import note_turns, turns_round
 from carom.motion.step import step
 from carom.save import finite, save_contacts
 from carom.system import records as r
@@ -198,6 +199,8 @@ def advance(
                 loses = too_long(
                     system, controls, held, now, trial, dt, alone, pace < math.inf, late, work
                 )
+                if search.active == 0 and dt > SHORTEST * controls.step:
+                    loses = loses or turns_round(system, now, trial, dt)
                 if not loses and controls.order == 0 and search.active == 0:
                     loses, gains = off_balance(
                         system, controls, held, now, trial, applied + friction, dt, pace < math.inf,
@@ -250,6 +253,7 @@ def advance(
             if held.count[0] > 0 and unsolved(system, controls, work, bearable):
                 return NO_CONVERGENCE
             accept(now, trial, dt, applied, friction, begin, clock)
+            note_turns(system, now)
             pace = search.pace = next_pace(pace, work)
             if strayed(system, now, dt, work):
                 return r.STRAYED

@@ -12,7 +12,6 @@ from carom.islands.layout import Islands, NoIslands
 from carom.jit import entry, inlined, kernel
 from carom.loop import NOT_FINITE, advance, is_whole, strayed
 from carom.motion.adapt import begin_step
-from carom.motion.more_forces import note_turns
 from carom.references import refer
 from carom.save import finite, save, still
 from carom.system import records as r
@@ -71,7 +70,6 @@ def run(
         clock.credit = min(r.SAVED, clock.credit + r.EACH)
         clock.now = begin + length
         clock.still = min(clock.still, clock.now) if still(now) else math.inf
-        note_turns(system, now)
         last = clock.step == controls.last
         if controls.order > 0 and length == controls.duration - begin:
             clock.now, last = controls.duration, True
@@ -86,7 +84,7 @@ def run(
 @kernel
 def _start_all(islands, system, held, now, length, clocks, work):
     """Begin a step of all bodies together."""
-    together.begin_together(held, now, clocks, islands)
+    together.begin_together(system, held, now, clocks, islands)
     return True
 
 

@@ -34,6 +34,7 @@ from carom.solution import Solution
 from carom.status import Status
 from carom.system import records as r
 from carom.system.answers import check_answers
+from carom.system.arrays import Relations
 from carom.system.cluster import new_cluster, new_corner
 from carom.system.compile import compile_scene
 from carom.watch import SHARE, new_watch
@@ -347,6 +348,9 @@ class Run:
             held.count[0] = islands.count[0]
             held.points[: held.count[0]] = islands.points[: held.count[0]]
             islands.begun[0] = 0
+            relations = self.compiled.system.relations
+            if isinstance(relations, Relations):
+                relations.coordinates["reference"] = relations.coordinates["begun"]
         else:
             return
         self.clock[:] = islands.clock

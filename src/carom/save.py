@@ -8,7 +8,7 @@ from carom.contact.place import place_any
 from carom.geometry.rotation import cross
 from carom.jit import entry, inlined, kernel
 from carom.motion.explicit import keep
-from carom.watch import begin_watch
+from carom.watch import begin_watch, note_energies
 
 
 @inlined
@@ -35,6 +35,7 @@ def still(state):
 @entry
 def save_now(system, held, now, clocks, work, records, watch):
     """Write the present state: at the start, and after a failure."""
+    note_energies(system, now, clocks[0])
     if clocks[0].saved == 0:
         begin_watch(system, now, clocks[0].now, watch[0])
     save(system, held, now, clocks[0], work, records)
@@ -45,7 +46,7 @@ def save(system, held, now, clock, work, records):
     """Write the present state into the next row."""
     k = clock.saved
     row = records.series[k]
-    row.t = clock.now
+    row.t, row.kinetic, row.potential = clock.now, clock.kinetic, clock.potential
     row.loads, row.impacts = clock.loads, clock.impacts
     row.friction, row.bounces = clock.friction, clock.bounces
     row.residual, clock.residual = clock.residual, 0.0

@@ -114,20 +114,18 @@ class Solution(Portable, Drawn):
         return orientation(self)
 
     @cached_property
-    def _energies(self) -> tuple[np.ndarray, np.ndarray]:
-        from carom.assemble import potential_and_kinetic
-
-        return potential_and_kinetic(self)
-
-    @cached_property
     def kinetic_energy(self) -> np.ndarray:
         """Of all bodies (T,) [J]."""
-        return self._energies[1]
+        from carom.assemble import energy
+
+        return energy(self, "kinetic")
 
     @cached_property
     def potential_energy(self) -> np.ndarray:
-        """Of gravity and springs (T,) [J]."""
-        return self._energies[0]
+        """Of gravity, springs and forces of your own that have one (T,) [J]."""
+        from carom.assemble import energy
+
+        return energy(self, "potential")
 
     @cached_property
     def impacts(self) -> ImpactTable:

@@ -18,6 +18,7 @@ import math
 import numpy as np
 
 from carom.columns import table
+from carom.geometry.rotation import norm
 from carom.impact import laws
 from carom.jit import inlined, kernel
 from carom.motion.energy import energies
@@ -70,9 +71,17 @@ def begin_watch(system, now, t, watch):
 
 
 @kernel
+def note_energies(system, now, clock):
+    """Note the energies of the present; return the size of what they are made of."""
+    clock.kinetic, clock.potential, size = energies(system, now, clock.now)
+    return size
+
+
+@kernel
 def watch_step(system, now, clock, records, watch):
     """Look at the balance at the end of a step."""
-    kinetic, potential, size = energies(system, now, clock.now)
+    size = note_energies(system, now, clock)
+    kinetic, potential = clock.kinetic, clock.potential
     residual = kinetic + potential - watch.total
     residual -= clock.loads + clock.impacts + clock.friction + clock.bounces
     exchanged = max(watch.exchanged, max(kinetic, abs(potential - watch.potential)))
@@ -132,6 +141,17 @@ def imbalance(system, held, start, end, named, t, h, watch):
 
 
 @kernel
+def speeds_known(system, state, h):
+    """Return the energy [J] of speeds that round-off of places makes in a step."""
+    total = 0.0
+    for b in range(state.shape[0]):
+        body = system.bodies[b]
+        speed = ROUND_OFF * (norm(state[b].x) + body.extent) / h
+        total += body.mass * speed * speed
+    return total
+
+
+@kernel
 def unbalanced(system, held, start, end, named, t, h, watch):
     """Return so of bodies that are joined or loaded; `named` is the work of loads and of friction.
 
@@ -142,10 +162,11 @@ def unbalanced(system, held, start, end, named, t, h, watch):
     after, high, size = energies(system, end, t + h)
     gain = after + high - before - low - named
     exchanged = before + after + abs(high - low) + abs(named)
-    tolerated = watch.tolerance * watch.exchanged + ROUND_OFF * size
+    known = ROUND_OFF * size + speeds_known(system, end, h)
+    tolerated = watch.tolerance * watch.exchanged + known
     grows = not (gain <= GAIN * exchanged + tolerated)
     share = watch.share * (OF_HELD if held.count[0] > 0 else 1.0)
-    may = share * max(watch.exchanged, exchanged) + ROUND_OFF * size
+    may = share * max(watch.exchanged, exchanged) + known
     if not abs(gain) < math.inf:
         return math.inf, grows
     return abs(gain) / may if may > 0.0 else 0.0, grows

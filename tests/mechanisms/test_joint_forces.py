@@ -226,3 +226,26 @@ def test_forces_that_name_their_joint_take_no_bodies():
         scene.add_force(forces.JointFriction(foreign, 1.0))
     with pytest.raises(TypeError, match="function must be a function"):
         forces.UserForce(scene["block"], "pull")  # pyright: ignore[reportArgumentType]
+
+
+@pytest.mark.parametrize("contact", [False, True])
+def test_a_clock_spring_that_turns_far_in_a_step(contact):
+    # q'' = -w^2 q from q = 0, q' = 2000: q = 2000/w sin(w t), 40 rad there and back, 10 rad in a step; the
+    # energy of the spring is k q^2/2 with all turns, at each saved time.
+    w, rate, inertia = 50.0, 2000.0, 1e-4
+    scene = carom.Scene(gravity=(0, 0, 0))
+    wheel = scene.add_body(
+        carom.Sphere(0.1), mass=1.0, inertia=(inertia,) * 3, angular_velocity=(0, 0, rate)
+    )
+    hinge = scene.add_joint(joints.Revolute((0, 0, 0), (0, 0, 1)), carom.GROUND, wheel)
+    scene.add_force(forces.JointSpring(hinge, inertia * w * w))
+    if contact:
+        floor = scene.add_half_space((0, 0, -1), (0, 0, 1))
+        scene.add_contact(wheel, floor)
+    s = carom.simulate(scene, 0.2, step=5e-3)
+    # order 4 in parts of 0.3 rad: 2e-6 of the angle at the end
+    q = rate / w * np.sin(w * s.t)
+    energy = 0.5 * inertia * rate**2
+    assert s.potential_energy == pytest.approx(0.5 * inertia * w * w * q * q, abs=1e-5 * energy)
+    assert s.angular_velocity[:, 0, 2] == pytest.approx(rate * np.cos(w * s.t), abs=1e-5 * rate)
+    assert np.max(np.abs(s.ledger.residual)) < 1e-6 * energy

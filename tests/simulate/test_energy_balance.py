@@ -183,6 +183,31 @@ def slide(shape, motion, height=0.0, friction=0.4):
     return scene
 
 
+def test_friction_in_a_joint_whose_body_rubs_on_the_floor():
+    # The hinge of a free arm brakes with M, four corners of the block at its end with mu m g R: what the block
+    # takes from the speed in a step is taken from the work of M too. Order 2.
+    off = []
+    for step in (0.01, 0.005, 0.0025):
+        scene = carom.Scene(gravity=(0, 0, -G))
+        floor = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1))
+        arm = scene.add_body(
+            carom.Box(0.5, 0.05, 0.05), mass=1.0, position=(0.25, 0, 0.5), velocity=(0, 1.25, 0),
+            angular_velocity=(0, 0, 5.0),
+        )  # fmt: skip
+        hinge = scene.add_joint(joints.Revolute((0, 0, 0.5), axis=(0, 0, 1)), GROUND, arm)
+        block = scene.add_body(
+            carom.Box(0.2, 0.2, 0.2), mass=2.0, position=(0.5, 0, 0.1), velocity=(0, 2.5, 0),
+            angular_velocity=(0, 0, 5.0),
+        )  # fmt: skip
+        scene.add_joint(joints.Prismatic(axis=(0, 0, 1)), arm, block)
+        scene.add_contact(block, floor, restitution=0.3, friction=0.4)
+        scene.add_force(forces.JointFriction(hinge, 2.0))
+        solution = quiet(scene, 0.3, step=step, options=AS_THEY_ARE)
+        off.append(np.max(np.abs(solution.ledger.residual)) / exchanged(solution))
+    assert off[0] < 1e-5  # M a h^2/2 a step would be 3e-3
+    assert np.all(np.log2(np.array(off[:-1]) / off[1:]) > 1.5)
+
+
 def steady(t):
     return 0.7 * t, 0.7, 0.0
 

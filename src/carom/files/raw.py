@@ -29,6 +29,7 @@ TAILS = {(): (), (3,): ("axis",), (4,): ("quaternion",), (3, 3): ("axis", "conta
 #: where a labelled variable may hold a column
 SAME = {
     "series_t": "time", "series_residual": "held_residual",
+    **{f"series_{name}": f"{name}_energy" for name, _ in r.ENERGIES},
     **{f"series_{name}": f"ledger_{name}" for name, _ in r.LEDGER},
     "state_x": "position", "state_Q": "orientation", "state_v": "velocity",
     "state_w": "angular_velocity",

@@ -36,6 +36,7 @@ from carom.motion.contact_point import contact_velocity
 from carom.motion.elements import driven_power
 from carom.motion.explicit import keep
 from carom.motion.forces import applied_wrenches
+from carom.motion.joint_friction import slip_power
 from carom.motion.project import project_velocity, shift
 from carom.motion.several import inverse_masses, of_one_body, spread_all, velocities
 from carom.system.cluster import BACK, OLD, C, P, U
@@ -127,6 +128,8 @@ def press_group(system, controls, held, group, start, h, end, cluster, work, clo
     work.result[0].friction += friction
     if loaded:
         work.result[0].applied += driven + extra_work(system, h, start, end, cluster, work)
+        rubbed = slip_power(system, work.stage) - slip_power(system, work.middle)
+        work.result[0].friction += h * rubbed
     else:
         over = unnamed(system, controls, start, end, friction, count, cluster.member)
         work.result[0].unnamed = max(work.result[0].unnamed, over)

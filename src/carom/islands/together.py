@@ -7,10 +7,11 @@ from carom.hold.roster import regroup
 from carom.islands.parts import tire_body
 from carom.jit import kernel
 from carom.motion.explicit import keep
+from carom.motion.more_forces import begin_turns, forget_turns
 
 
 @kernel
-def begin_together(held, now, clocks, islands):
+def begin_together(system, held, now, clocks, islands):
     """Begin a step, unless it has begun already; without contacts it is not done in another way."""
     if islands.begun[0] == 1:
         return
@@ -25,6 +26,7 @@ def begin_together(held, now, clocks, islands):
         keep(now[b], islands.state[b])
     for i in range(held.count[0]):
         islands.points[i] = held.points[i]
+    begin_turns(system)
     islands.count[0], islands.begun[0] = held.count[0], 1
     islands.clock[0] = clocks[0]
 
@@ -53,6 +55,7 @@ def forget_together(system, held, now, clocks, work, islands):
     mark_vertices(held, 1)
     clocks[0] = islands.clock[0]
     islands.begun[0] = 0
+    forget_turns(system)
     work.search[0].pending = 0
     regroup(system, held, work)
     review_joints(system, held, now, work)

@@ -3,7 +3,8 @@
     q' = t_a . (w_c - w_p) + t_l . (velocity of the child's anchor less that of the parent's there)
 
 An angle is known but for whole turns; these are those nearest to its `reference`, the value at the start of
-the step. Either side may be the ground (the second angle of a universal joint is measured from the child).
+the trial step, which is short enough for that (`carom.motion.more_forces.turns_round`). Either side may be the
+ground (the second angle of a universal joint is measured from the child).
 """
 
 from __future__ import annotations

@@ -152,5 +152,22 @@ def _none_stuck(system, state, work):
     """There is none."""
 
 
+@kernel
+def _slip_power(system, state):
+    """Return the power of friction in those joints that slip."""
+    relations, power = system.relations, 0.0
+    for i in range(relations.frictions.shape[0]):
+        one = relations.frictions[i]
+        power -= one.bound * one.mode * rate(relations.coordinates[one.coordinate], state)
+    return power
+
+
+@kernel
+def _no_power(system, state):
+    """There is none."""
+    return 0.0
+
+
+slip_power = only_with_coordinates(_slip_power, _no_power)
 joint_friction = only_with_coordinates(_joint_friction, _no_friction)
 stay_stuck = only_with_coordinates(_stay_stuck, _none_stuck)

@@ -13,6 +13,9 @@ from carom.geometry.rotation import multiply
 from carom.jit import kernel
 from carom.motion.coordinate import push, rate, value
 from carom.motion.curve import curve, find_piece
+from carom.system.arrays import PRISMATIC
+
+FAR = 1.5  # turn [rad] in a trial step, by the rates at its ends: less than half a turn on the way
 
 
 @kernel
@@ -142,7 +145,7 @@ def _energy(system, spring, length):
 
 @kernel
 def _note_turns(system, state):
-    """Keep the whole turns of all angles, at the end of a step."""
+    """Keep the whole turns of all angles, where a trial step has become the present."""
     for i in range(system.relations.coordinates.shape[0]):
         c = system.relations.coordinates[i]
         c.reference = value(c, state)
@@ -153,8 +156,46 @@ def _no_turns(system, state):
     """There are none."""
 
 
+@kernel
+def _begin_turns(system):
+    """Keep the angles of the start of a step."""
+    for i in range(system.relations.coordinates.shape[0]):
+        system.relations.coordinates[i].begun = system.relations.coordinates[i].reference
+
+
+@kernel
+def _forget_turns(system):
+    """Go back to them."""
+    for i in range(system.relations.coordinates.shape[0]):
+        system.relations.coordinates[i].reference = system.relations.coordinates[i].begun
+
+
+@kernel
+def _none_begun(system):
+    """There are none."""
+
+
+@kernel
+def _turns_round(system, start, end, h):
+    """Return whether an angle may turn so far in a step that its whole turns are not known."""
+    for i in range(system.relations.coordinates.shape[0]):
+        c = system.relations.coordinates[i]
+        if c.kind != PRISMATIC and not h * max(abs(rate(c, start)), abs(rate(c, end))) <= FAR:
+            return True
+    return False
+
+
+@kernel
+def _never_round(system, start, end, h):
+    """There are none."""
+    return False
+
+
 add_more_forces = only_with_coordinates(_add_more_forces, _no_more_forces)
 more_energy = only_with_coordinates(_more_energy, _no_more_energy)
 tension = only_with_coordinates(_curve_tension, _tension)
 spring_energy = only_with_coordinates(_curve_energy, _energy)
 note_turns = only_with_coordinates(_note_turns, _no_turns)
+begin_turns = only_with_coordinates(_begin_turns, _none_begun)
+forget_turns = only_with_coordinates(_forget_turns, _none_begun)
+turns_round = only_with_coordinates(_turns_round, _never_round)

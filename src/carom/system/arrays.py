@@ -71,7 +71,8 @@ JOINT = [
     (
         "reference",
         "f8",
-    ),  # of a coordinate: the angle at the start of the step, with its whole turns
+    ),  # of a coordinate: the angle at the start of the trial step, with its whole turns
+    ("begun", "f8"),  # the same at the start of the step
 ]
 
 #: a coordinate of a joint: an angle about (kind REVOLUTE), or a way along (PRISMATIC), the first axis of the

@@ -29,7 +29,8 @@ from carom.system.arrays import (
 EVENTS = ("impact", "held", "slips", "sticks", "opens", "jams")
 IMPACT, HOLD, SLIPS, STICKS, OPENS, JAMS = range(6)
 
-#: energy, summed since the start
+#: energies of the present, and energy summed since the start
+ENERGIES = [("kinetic", "f8"), ("potential", "f8")]
 LEDGER = [("loads", "f8"), ("impacts", "f8"), ("friction", "f8"), ("bounces", "f8")]
 
 #: where a run stands; kept between calls of the loop
@@ -42,6 +43,7 @@ CLOCK = [
     ),  # start and length of the present step, and length of the next, where it varies
     ("length", "f8"),
     ("ahead", "f8"),
+    *ENERGIES,
     *LEDGER,
     ("step", "i8"),  # finished steps
     ("saved", "i8"),
@@ -76,7 +78,7 @@ CLOCK = [
     ),  # end of the first step from which on nothing has moved; infinite while something does
 ]
 
-SERIES = [("t", "f8"), *LEDGER, ("residual", "f8")]
+SERIES = [("t", "f8"), *ENERGIES, *LEDGER, ("residual", "f8")]
 #: a held point at a saved time; moments about the mass centres (world axes)
 TOUCH = [
     ("saved", "i8"),
