@@ -37,10 +37,10 @@ def finish(system, controls, held, k, h, fall, residual, start, end, heap, work,
         else:
             pressing += normal
             rubbing += tangential
-    # where slip has turned within the step friction has done less than these products say
-    pressing, rubbing = pressing + max(0.0, rubbing), min(0.0, rubbing)
-    if end.shape[0] == 1:  # what they gain is taken out again (`carom.heap.step.balance`)
-        blows, pressing = min(0.0, blows), min(0.0, pressing)
+    # none gains: where slip has turned within the step friction has done less than these products say, and where
+    # rows turn what presses has; what there is besides is seen to by the caller (`carom.heap.step.take_over`)
+    pressing, rubbing = min(0.0, pressing + max(0.0, rubbing)), min(0.0, rubbing)
+    blows = min(0.0, blows)
     clock.impacts += blows
     clock.friction += rubbing
     clock.bounces += pressing

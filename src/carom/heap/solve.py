@@ -20,21 +20,22 @@ from carom.references import refer
 FIRST, MOST = 40, 200  # sweeps before Newton, and in all
 SWEEP, UPDATE, CONTACT = 60.0, 130.0, 1000.0  # cost [ns] of a contact in a sweep, of factors
 SHARE = 2.0  # of what all sweeps cost: for Newton
+PATIENT = 10  # times as many of both, for a few bodies that stand on each other
 
 
 @kernel
-def solve(system, heap, k, n, tolerance, clock):
-    """Solve for the impulses `heap.p`; return a factor, and the residual [m/s].
+def solve(system, heap, k, n, tolerance, few, clock):
+    """Solve for the impulses `heap.p`; return a factor, and the residual [m/s]. For `few` bodies with patience.
 
     The motion that they cause, over the factor, goes to the bodies of the problem.
     """
-    work = heap.problem
+    work, most = heap.problem, MOST * (PATIENT if few else 1)
     gamma = scale_vectors(work, k, heap.c, heap.p)
     r, goal, done = sweep_until(system, heap, k, tolerance / gamma, FIRST)
     if r > max(tolerance / gamma, goal) and not_turning(heap, k):
-        r = newton_on_graph(heap, k, n, r)
+        r = newton_on_graph(heap, k, n, r, most)
     if r > max(tolerance / gamma, goal):
-        r, _, more = sweep_until(system, heap, k, tolerance / gamma, MOST - FIRST)
+        r, _, more = sweep_until(system, heap, k, tolerance / gamma, most - FIRST)
         done += more
     impart(work, k)
     for i in range(3 * k):
@@ -54,12 +55,12 @@ def not_turning(heap, k):
 
 
 @kernel
-def newton_on_graph(heap, k, n, before):
-    """Improve the scaled impulses at hand; return the residual of what is better."""
+def newton_on_graph(heap, k, n, before, most):
+    """Improve the scaled impulses at hand, as far as so many sweeps pay; return the residual of what is better."""
     if not find_order(n, k, heap):
         return before
     pairs, updates = heap.graph.count[3], heap.graph.count[2]
-    factors = SHARE * MOST * SWEEP * k / (UPDATE * updates + CONTACT * k)
+    factors = SHARE * most * SWEEP * k / (UPDATE * updates + CONTACT * k)
     if factors < 3.0:
         return before
     work = refer(part(heap.problem, n, pairs, updates))
