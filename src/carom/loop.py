@@ -252,6 +252,7 @@ def advance(
                 if not late:
                     return NO_CONVERGENCE
                 let_go(held)
+                regroup(system, held, work)
                 continue
             if held.count[0] > 0 and controls.retry == 1 and goes_wild(work):
                 return NO_CONVERGENCE

@@ -229,7 +229,6 @@ def _island_lost(islands, system, controls, code, held, now, clocks, work):
         islands.plan[0].widen *= 2.0
     elif controls.hold == 1:
         again = parts.tire(islands, clocks[0].step, work)
-    work.result[0].time = code * 1e9 + clocks[0].effort
     spent = clocks[0].effort
     parts.forget_step(held, clocks, islands)
     clocks[0].credit = max(0.0, clocks[0].credit - spent)

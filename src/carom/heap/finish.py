@@ -37,8 +37,8 @@ def finish(system, controls, held, k, h, fall, residual, start, end, heap, work,
         else:
             pressing += normal
             rubbing += tangential
-    # none gains: where slip has turned within the step friction has done less than these products say, and where
-    # rows turn what presses has; what there is besides is seen to by the caller (`carom.heap.step.take_over`)
+    # none gains: where slip has turned within the step friction has done less than these products, and where
+    # rows turn what presses has; the caller sees to the rest (`carom.heap.step.take_over`)
     pressing, rubbing = min(0.0, pressing + max(0.0, rubbing)), min(0.0, rubbing)
     blows = min(0.0, blows)
     clock.impacts += blows

@@ -20,16 +20,17 @@ from carom.references import refer
 FIRST, MOST = 40, 200  # sweeps before Newton, and in all
 SWEEP, UPDATE, CONTACT = 60.0, 130.0, 1000.0  # cost [ns] of a contact in a sweep, of factors
 SHARE = 2.0  # of what all sweeps cost: for Newton
-PATIENT = 10  # times as many of both, for a few bodies that stand on each other
+PATIENT = 10  # times as many of both, for a few bodies that stand on each other, while the step can afford it
 
 
 @kernel
-def solve(system, heap, k, n, tolerance, few, clock):
-    """Solve for the impulses `heap.p`; return a factor, and the residual [m/s]. For `few` bodies with patience.
+def solve(system, heap, k, n, tolerance, patient, clock):
+    """Solve for the impulses `heap.p`; return a factor, and the residual [m/s].
 
     The motion that they cause, over the factor, goes to the bodies of the problem.
     """
-    work, most = heap.problem, MOST * (PATIENT if few else 1)
+    work, most = heap.problem, MOST * (PATIENT if patient else 1)
+    work.count[o.ITERATIONS] = 0
     gamma = scale_vectors(work, k, heap.c, heap.p)
     r, goal, done = sweep_until(system, heap, k, tolerance / gamma, FIRST)
     if r > max(tolerance / gamma, goal) and not_turning(heap, k):
@@ -42,6 +43,8 @@ def solve(system, heap, k, n, tolerance, few, clock):
         heap.p[i] = gamma * work.contact[i // 3].scale * work.vector[o.P, i]
     clock.rounds += done
     clock.since += 2e-3 * SWEEP * done * k
+    factors = work.count[o.ITERATIONS] * (UPDATE * heap.graph.count[2] + CONTACT * k)
+    clock.effort += 1e-3 * (SWEEP * done * k + factors)
     return gamma, gamma * r
 
 
@@ -56,7 +59,7 @@ def not_turning(heap, k):
 
 @kernel
 def newton_on_graph(heap, k, n, before, most):
-    """Improve the scaled impulses at hand, as far as so many sweeps pay; return the residual of what is better."""
+    """Improve the scaled impulses at hand, for about as much as `most` sweeps; return the residual."""
     if not find_order(n, k, heap):
         return before
     pairs, updates = heap.graph.count[3], heap.graph.count[2]

@@ -21,7 +21,7 @@ from carom.heap.pose import pose
 from carom.heap.solve import solve
 from carom.heap.spots import gather, place_all
 from carom.heap.surface import move, onto_surfaces
-from carom.hold.balance import kinetic, lost_by, weigh
+from carom.hold.balance import affordable, kinetic, lost_by, weigh
 from carom.hold.middle import halfway, spin_momentum
 from carom.jit import kernel, unit
 from carom.motion.contact_point import contact_velocity
@@ -30,15 +30,15 @@ from carom.motion.free import free_flight
 from carom.system import records as r
 
 FINE = 0.1  # of the speed below which bodies rest: to be reached, or they never would
-# of its ball: a body goes no further in a piece of the step; alone it turns no more [rad]. Bodies of a group also go
-# no further than this part of their thickness, of which THIN of that way is the least
+# of its ball: a body goes no further in a piece of the step; alone it turns no more [rad]. Bodies of a group go
+# no further than this part of their thickness either, or THIN of the way before where that is more
 FAR, THIN = 0.25, 1.0 / 32.0
 MISSED = -1  # a piece that is too long
-# pieces of a step that may be cut for that; of the step: none is shorter
+# pieces of a step that may be cut for that, where it can afford them; of the step: none is shorter
 CAREFUL, SHORTEST = 300, 1e-4
 ALONE = 16  # pieces of a step of a body that is alone: they cost little
-# of a group: what a piece may gain, and what it may be off by besides, as parts of the kinetic energy and of m g
-# times the size of its bodies
+# of a group: what a piece may gain, and what it may be off by besides, as parts of the kinetic energy and of
+# m g times the size of its bodies
 GAINS, OFF = 1e-7, 1e-4
 
 
@@ -60,10 +60,12 @@ def heap_unit(system, controls, held, now, begin, length, heap, work, clocks, re
         dt = min(piece(system, now, controls.step, length - clock.spent, few), search.pace)
         while True:
             clock.tries += 1
-            careful = few and clock.tries <= CAREFUL and dt > SHORTEST * controls.step
+            patient = few and clock.tries <= CAREFUL and clock.effort <= affordable(controls, clock)
+            careful = patient and dt > SHORTEST * controls.step
             result.code = move_on(
-                system, controls, held, now, begin, dt, few, careful, heap, work, clock, records
-            )
+                system, controls, held, now, begin, dt, patient, careful, heap, work, clock,
+                records,
+            )  # fmt: skip
             if result.code != MISSED:
                 break
             dt *= 0.5
@@ -106,7 +108,9 @@ def thickness(body):
 
 
 @kernel
-def move_on(system, controls, held, now, begin, h, few, careful, heap, work, clock, records):
+def move_on(
+    system, controls, held, now, begin, h, patient, careful, heap, work, clock, records
+):  # fmt: skip
     """Make one piece of the step; return 0 or a code: MISSED if it was to be `careful` and is too long."""
     n, fall = now.shape[0], norm(system.gravity)
     k = gather(system, held, h, fall, now, heap, work)
@@ -125,7 +129,7 @@ def move_on(system, controls, held, now, begin, h, few, careful, heap, work, clo
     place_all(system, k, work.stage, heap, heap.points[0], work)
     pose(system, held, k, h, fall, now, heap)
     gamma, residual = solve(
-        system, heap, k, n, FINE * controls.rest * fall * h, few and n > 1, clock
+        system, heap, k, n, FINE * controls.rest * fall * h, patient and n > 1, clock
     )
     for i in range(k):
         for j in range(3):
@@ -133,6 +137,7 @@ def move_on(system, controls, held, now, begin, h, few, careful, heap, work, clo
     clock.trials += 1
     clock.pressed += 1
     clock.since += 10.0 * (k + n)
+    clock.effort += 10.0 * (k + n)
     if careful and misses_bounce(system, k, h, fall, heap):
         return MISSED
     gain(system, gamma, heap, work.trial)
@@ -149,14 +154,10 @@ def move_on(system, controls, held, now, begin, h, few, careful, heap, work, clo
     )
     if k > 0:
         gained = energy_gained(system, now, work.trial)
-        if n == 1:
-            gained -= named
-            gained -= take_out(system, gained, heap.flight, work.trial)
-        elif few and gained > 0.0:
-            gained -= named + take_out(system, gained, heap.flight, work.trial)
-        else:
-            gained -= named
-        take_over(gained, impacts, friction, bounces, clock)
+        if n < controls.heap:  # alone it gains nothing beside what is named, a group nothing at all
+            most = named if n == 1 else 0.0
+            gained -= take_out(system, gained - most, heap.flight, work.trial)
+        take_over(gained - named, impacts, friction, bounces, clock)
     for b in range(n):
         keep(work.trial[b], now[b])
     return 0

@@ -16,8 +16,8 @@ from carom.system.arrays import ONE
 # whole step gains, but no more than of m g times their size, which does not grow with the step; one that is cut
 # is cut on until it loses CAREFUL of that
 OF_MOTION, OF_FALL, OF_SIZE = 1e-6, 1e-2, 1e-6
-# ... of a body that hardly moves not even that: of so many times what it exchanges in the step, and of this part of
-# m g times its size, which is far above round-off
+# ... of a body that hardly moves not even that: of so many times what it exchanges in the step, and of this
+# part of m g times its size, which is far above round-off
 MUCH, LEAST = 1e3, 1e-4
 CAREFUL = 0.01
 SURE = 1.0 / 32.0  # of that: what a step may lose for the next to be twice as long (order 4: 2^5)
@@ -32,7 +32,7 @@ UNSOLVED, USELESS = 0.01, 10.0
 POORLY = 10.0
 # of the step: what is no longer is cut no more, for what it loses and for a solution
 SHORTEST, RETRIED = 1e-4, 1e-2
-# what is lost so many times more than may be, in a step that is cut no more, is lost by something else than its length
+# what is so many times more than may be lost, in a step that is cut no more, is not lost by its length
 WILD = 100.0
 # how much more work a step may take where it cannot be taken whole: in parts, or not in another way
 PATIENCE = 10.0
@@ -64,7 +64,7 @@ def may_lose(system, b, start, part):
 
 @kernel
 def weigh(system, b, start, end):
-    """Return the weight of a body times its size; of one that hardly moves, less: it is not what is looked at."""
+    """Return the weight of a body times its size; less where it hardly moves: it is not what is looked at."""
     body, g, fallen = system.bodies[b], system.gravity, 0.0
     for k in range(3):
         fallen += body.mass * g[k] * (end[b].x[k] - start[b].x[k])
