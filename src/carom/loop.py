@@ -167,6 +167,8 @@ def advance(
                     )  # fmt: skip
                     if work.result[0].code != 0:
                         return work.result[0].code
+                    if controls.retry == 1 and clock.effort > affordable(controls, clock):
+                        return TOO_MANY  # and its rounds were not all made
                     applied += work.result[0].applied
                     friction += work.result[0].friction
                 if controls.order > 0 and search.active == 0:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from carom.coulomb import layout as o
 from carom.coulomb.arrays import IslandWork
 from carom.coulomb.island import impart
-from carom.coulomb.search import polished
+from carom.coulomb.search import polished, release
 from carom.coulomb.solve import scale_vectors
 from carom.heap.graph import find_order
 from carom.heap.sweeps import sweep_until
@@ -34,7 +34,7 @@ def solve(system, heap, k, n, tolerance, patient, clock):
     gamma = scale_vectors(work, k, heap.c, heap.p)
     r, goal, done = sweep_until(system, heap, k, tolerance / gamma, FIRST)
     if r > max(tolerance / gamma, goal) and not_turning(heap, k):
-        r = newton_on_graph(heap, k, n, r, most)
+        r = newton_on_graph(heap, k, n, r, max(tolerance / gamma, goal), most)
     if r > max(tolerance / gamma, goal):
         r, _, more = sweep_until(system, heap, k, tolerance / gamma, most - FIRST)
         done += more
@@ -58,25 +58,38 @@ def not_turning(heap, k):
 
 
 @kernel
-def newton_on_graph(heap, k, n, before, most):
-    """Improve the scaled impulses at hand, for about as much as `most` sweeps; return the residual."""
+def newton_on_graph(heap, k, n, least, enough, most):
+    """Improve the scaled impulses at hand, for about as much as `most` sweeps; return the residual.
+
+    With patience (more than `MOST`) where that is not enough by a release of the proximal term, too.
+    """
     if not find_order(n, k, heap):
-        return before
+        return least
     pairs, updates = heap.graph.count[3], heap.graph.count[2]
     factors = SHARE * most * SWEEP * k / (UPDATE * updates + CONTACT * k)
     if factors < 3.0:
-        return before
+        return least
     work = refer(part(heap.problem, n, pairs, updates))
     p, best = work.vector[o.P], work.vector[o.BEST]
     for i in range(3 * k):
         best[i] = p[i]
-    work.count[o.LIMIT], work.mismatch[o.ENOUGH] = int(factors), 0.0
-    r, _, _ = polished(work, k, False, True)
-    if not r < before:
-        for i in range(3 * k):
-            p[i] = best[i]
-        return before
-    return r
+    work.count[o.LIMIT], work.count[o.BUDGET] = int(factors), 0
+    work.mismatch[o.ENOUGH] = 0.0
+    for turn in range(2 if most > MOST else 1):
+        if turn == 1:
+            work.count[o.LIMIT] = 0
+            work.count[o.BUDGET] = work.count[o.ITERATIONS] + int(factors)
+            release(work, k)
+        r, _, _ = polished(work, k, False, True)
+        if r < least:
+            least = r
+            for i in range(3 * k):
+                best[i] = p[i]
+        if least <= enough:
+            break
+    for i in range(3 * k):
+        p[i] = best[i]
+    return least
 
 
 @kernel

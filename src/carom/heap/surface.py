@@ -11,7 +11,11 @@ from carom.jit import kernel
 from carom.motion.project import shift
 
 TINY = 1e-11  # of the smaller body
-PASSES, SWEEPS, WORK = 8, (100, 1000), 20000  # sweeps: least and most, and how many times a point in a pass
+PASSES, SWEEPS, WORK = (
+    8,
+    (100, 1000),
+    20000,
+)  # sweeps: least and most, and how many times a point in a pass
 BETTER = 0.01  # in one pass: gaps are not linear, more would be lost
 
 
