@@ -94,6 +94,7 @@ def list_held(system, held, k, h, tolerance, end, heap, clock, records):
         spot.place = count
         hold = heap.held[count]
         _, w1, w2 = contact_velocity(heap.points[0][i], end)
+        w1, w2 = w1 + spot.drift[1], w2 + spot.drift[2]
         slips = math.sqrt(w1 * w1 + w2 * w2) > max(tolerance, 10.0 * slow(contact, end))
         mode = SLIP if slips else STICK
         if spot.held < 0:

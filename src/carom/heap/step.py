@@ -17,7 +17,7 @@ import math
 from carom.dispatch import by_address
 from carom.geometry.rotation import norm, rotate, rotate_back
 from carom.heap.finish import finish
-from carom.heap.pose import pose
+from carom.heap.pose import note_drift, pose
 from carom.heap.solve import solve
 from carom.heap.spots import gather, place_all
 from carom.heap.surface import move, onto_surfaces
@@ -127,6 +127,9 @@ def move_on(
     for i in range(k):
         heap.spots[i].left = heap.points[1][i].gap
     place_all(system, k, work.stage, heap, heap.points[0], work)
+    if 1 < n < controls.heap:
+        place_all(system, k, now, heap, heap.points[1], work)
+    note_drift(held, k, 1 < n < controls.heap, now, heap)
     pose(system, held, k, h, fall, now, heap)
     gamma, residual = solve(
         system, heap, k, n, FINE * controls.rest * fall * h, patient and n > 1, clock

@@ -15,7 +15,7 @@ from carom.system.arrays import ONE
 # what a step of several bodies may lose: this part of the kinetic energy at its start, and of what a fall of a
 # whole step gains, but no more than of m g times their size, which does not grow with the step; one that is cut
 # is cut on until it loses CAREFUL of that
-OF_MOTION, OF_FALL, OF_SIZE = 1e-6, 1e-2, 1e-6
+OF_MOTION, OF_FALL, OF_SIZE = 1e-6, 1e-2, 1e-7
 # ... of a body that hardly moves not even that: of so many times what it exchanges in the step, and of this
 # part of m g times its size, which is far above round-off
 MUCH, LEAST = 1e3, 1e-4
