@@ -92,8 +92,8 @@ def test_steps_that_are_taken_whole_name_what_they_lose(step):
 
 
 def test_a_stack_on_a_fixed_table_falls_to_the_end():
-    # Contacts of a step of 2 ms at .60 s are not solved, also in parts of it, and the run stopped. Its points are
-    # let go there, and strike again at the end of the part.
+    # Contacts of a step of 2 ms at .60 s are not solved, also in parts of it, and the run stopped. Its
+    # points are let go there, and strike again at the end of the part.
     scene = Scene(gravity=(0, 0, -G))
     table = scene.add_body(Box(0.4, 0.2, 0.1), mass=1.0, position=(-0.2, 0, -0.05))
     scene.add_joint(carom.joints.Fixed(), carom.GROUND, table)
