@@ -9,11 +9,15 @@ from dataclasses import asdict, dataclass, field
 import numpy as np
 
 import carom
+from carom.contact.pairs.api import nearest_points
 from carom.geometry import quaternion
+from carom.system.contact_rows import touching_pairs
 
 #: what a run may break at most: depth by size; energy gained, and without a name, by the energy exchanged;
 #: an impulse by that which throws a free mass back
 DEPTH, GAIN, UNNAMED, IMPULSE = 1e-9, 1e-6, 1e-4, 1e4
+#: of the size of energies: their round-off; saved times at which bodies are looked at that overlap
+ROUND_OFF, LOOKS = 1e-13, 40
 
 
 @dataclass
@@ -35,7 +39,7 @@ class Outcome:
     seconds: float  # processor time
     residual: float  # greatest energy without a name
     gained: float  # greatest rise of a line of the ledger that must not rise
-    depth: float  # greatest penetration of the ground at a saved time, by size of the body
+    depth: float  # greatest penetration at a saved time, by size of the body: of the ground, of each other
     slip_residual: float  # greatest held_residual by the greatest speed
     impulse: float  # greatest normal impulse, by that which throws a free mass 1/W_nn back
     impacts: int
@@ -63,7 +67,7 @@ def run(case: Case) -> Outcome:
         warnings.simplefilter("ignore")
         s = carom.simulate(case.scene, case.duration, step=case.step, throw=False)
     spent = time.process_time() - begin
-    scale = exchanged(s)
+    scale, least = exchanged(s), ROUND_OFF * size(s)
     energies = {
         "impacts": s.ledger.impacts,
         "friction": s.ledger.friction,
@@ -72,13 +76,15 @@ def run(case: Case) -> Outcome:
     if case.label.get("impact_law") == "newton" and case.label["friction"] > 0.0:
         del energies["impacts"]  # Newton's law may gain energy by itself
     speed = float(np.max(np.linalg.norm(s.velocity, axis=2), initial=0.0))
+    speed = max(speed, case.step * float(np.linalg.norm(case.scene.gravity)))
     return Outcome(
         status=s.status.name,
         reached=float(s.t[-1] / case.duration),
         seconds=spent,
-        residual=float(np.max(np.abs(s.ledger.residual))) / scale,
-        gained=max((rise(line) for line in energies.values()), default=0.0) / scale,
-        depth=depth(case.scene, s),
+        residual=max(0.0, float(np.max(np.abs(s.ledger.residual))) - least) / scale,
+        gained=max(0.0, max((rise(line) for line in energies.values()), default=0.0) - least)
+        / scale,
+        depth=max(depth(case.scene, s), overlap(case.scene, s)),
         slip_residual=float(np.max(s.held_residual)) / max(speed, 1e-300),
         impulse=impulse(s),
         impacts=len(s.impacts),
@@ -95,6 +101,13 @@ def exchanged(s: carom.Solution) -> float:
         np.max(s.kinetic_energy), np.max(np.abs(potential)), np.max(np.abs(s.ledger.loads))
     )
     return max(float(largest), 1e-300)
+
+
+def size(s: carom.Solution) -> float:
+    """Return the size of what the energies are made of [J], which their round-off goes with."""
+    weight = np.array([body.mass for body in s.scene.bodies]) * np.linalg.norm(s.scene.gravity)
+    lifted = np.linalg.norm(s.position, axis=2) @ weight
+    return float(np.max(s.kinetic_energy) + np.max(lifted))
 
 
 def impulse(s: carom.Solution) -> float:
@@ -115,16 +128,34 @@ def rise(line: np.ndarray) -> float:
 def depth(scene: carom.Scene, s: carom.Solution) -> float:
     """Return how far bodies get into the half-spaces that they touch, by their size, by their support alone."""
     worst = 0.0
-    bodies = {body.name: k for k, body in enumerate(scene.bodies)}
-    for contact in scene.contacts:
-        plane, body = contact.half_space, contact.body
-        if plane is None or body.shape is None:
+    pairs = touching_pairs(scene)
+    for b, plane in {(b, p) for b, p in zip(pairs.body, pairs.plane) if p >= 0}:
+        shape, ground = scene.bodies[b].shape, scene.half_spaces[plane]
+        if shape is None:
             continue
-        k = bodies[body.name]
-        down = quaternion.rotate_back(s.orientation[:, k], -np.asarray(plane.normal, dtype=float))
-        reach = np.array([body.shape.support(d) @ d for d in down])
-        gap = (s.position[:, k] - plane.point) @ plane.normal - reach
-        worst = max(worst, float(-np.min(gap)) / body.shape.size)
+        down = quaternion.rotate_back(s.orientation[:, b], -np.asarray(ground.normal, dtype=float))
+        reach = np.array([shape.support(d) @ d for d in down])
+        gap = (s.position[:, b] - ground.point) @ ground.normal - reach
+        worst = max(worst, float(-np.min(gap)) / shape.size)
+    return worst
+
+
+def overlap(scene: carom.Scene, s: carom.Solution) -> float:
+    """Return how far bodies get into each other, by the size of the smaller, at up to LOOKS saved times."""
+    worst = 0.0
+    pairs = touching_pairs(scene)
+    rows = np.unique(np.linspace(0, len(s.t) - 1, LOOKS).astype(int))
+    for a, b in {(a, b) for a, b in zip(pairs.body, pairs.other) if b >= 0}:
+        shapes = scene.bodies[a].shape, scene.bodies[b].shape
+        if None in shapes:
+            continue
+        smaller = min(shape.size for shape in shapes)
+        reach = 2.0 * sum(shape.size for shape in shapes)
+        for k in rows:
+            x, q = s.position[k], s.orientation[k]
+            if np.linalg.norm(x[a] - x[b]) < reach:
+                gap = nearest_points(shapes[0], (x[a], q[a]), shapes[1], (x[b], q[b])).gap
+                worst = max(worst, -gap / smaller)
     return worst
 
 

@@ -21,6 +21,7 @@ from carom.hold.balance import (
     UNSOLVED,
     USELESS,
     affordable,
+    goes_wild,
     next_pace,
     too_long,
     unsolved,
@@ -41,7 +42,7 @@ from carom.hold.joint_events import STOPS, review_joints, turn_joint
 from carom.hold.lifecycle import hold_contact, settle
 from carom.hold.margins import meet_due, note_due
 from carom.hold.press import press
-from carom.hold.roster import is_held, refresh_pairs, regroup, set_anchor, strike_off
+from carom.hold.roster import is_held, let_go, refresh_pairs, regroup, set_anchor, strike_off
 from carom.hold.search import begin_search, event_value, examine, narrow, propose
 from carom.impact.collapse import TIRED
 from carom.impact.strike import strike
@@ -166,6 +167,8 @@ def advance(
                     )  # fmt: skip
                     if work.result[0].code != 0:
                         return work.result[0].code
+                    if controls.retry == 1 and clock.effort > affordable(controls, clock):
+                        return TOO_MANY  # and its rounds were not all made
                     applied += work.result[0].applied
                     friction += work.result[0].friction
                 if controls.order > 0 and search.active == 0:
@@ -251,6 +254,12 @@ def advance(
             # an island is taken whole then; where there are none the run goes on as long as it makes sense
             bearable = UNSOLVED if controls.retry == 1 else USELESS
             if held.count[0] > 0 and unsolved(system, controls, work, bearable):
+                if not late:
+                    return NO_CONVERGENCE
+                let_go(held)
+                regroup(system, held, work)
+                continue
+            if held.count[0] > 0 and controls.retry == 1 and goes_wild(work):
                 return NO_CONVERGENCE
             accept(now, trial, dt, applied, friction, begin, clock)
             note_turns(system, now)

@@ -101,11 +101,11 @@ def _approach(work, k, way, again):
         alternate(work, k, sigma, _ALTERNATIONS)
         work.count[o.ITERATIONS] += _ALTERNATIONS
     else:
-        _release(work, k)
+        release(work, k)
 
 
 @kernel
-def _release(work, k):
+def release(work, k):
     """Newton with a strong proximal term, which is weakened while that succeeds."""
     p, kept, centre = work.vector[o.P], work.vector[o.KEPT], work.vector[o.CENTRE]
     for i in range(3 * k):

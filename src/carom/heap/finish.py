@@ -37,10 +37,10 @@ def finish(system, controls, held, k, h, fall, residual, start, end, heap, work,
         else:
             pressing += normal
             rubbing += tangential
-    # where slip has turned within the step friction has done less than these products say
-    pressing, rubbing = pressing + max(0.0, rubbing), min(0.0, rubbing)
-    if end.shape[0] == 1:  # what they gain is taken out again (`carom.heap.step.balance`)
-        blows, pressing = min(0.0, blows), min(0.0, pressing)
+    # none gains: where slip has turned within the step friction has done less than these products, and where
+    # rows turn what presses has; the caller sees to the rest (`carom.heap.step.take_over`)
+    pressing, rubbing = min(0.0, pressing + max(0.0, rubbing)), min(0.0, rubbing)
+    blows = min(0.0, blows)
     clock.impacts += blows
     clock.friction += rubbing
     clock.bounces += pressing
@@ -94,6 +94,7 @@ def list_held(system, held, k, h, tolerance, end, heap, clock, records):
         spot.place = count
         hold = heap.held[count]
         _, w1, w2 = contact_velocity(heap.points[0][i], end)
+        w1, w2 = w1 + spot.drift[1], w2 + spot.drift[2]
         slips = math.sqrt(w1 * w1 + w2 * w2) > max(tolerance, 10.0 * slow(contact, end))
         mode = SLIP if slips else STICK
         if spot.held < 0:

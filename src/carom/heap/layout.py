@@ -24,6 +24,11 @@ SPOT = [
     ("gap", "f8"),  # at the start
     ("left", "f8"),  # at the end, without contacts
     ("before", "f8", 3),  # velocity at the start, by the rows of the middle of the step
+    (
+        "drift",
+        "f8",
+        3,
+    ),  # the part of it that is due to rows that turn, of a held point of few bodies; else 0
     ("bound", "f8"),  # least normal velocity after
     ("impulse", "f8", 3),
     ("strikes", "i8"),  # 1 for an impact, 0 for what stays, or is far

@@ -6,6 +6,7 @@ from carom.coulomb.layout import CONE, DISC
 from carom.coulomb.solve import scale_link
 from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.jit import kernel
+from carom.motion.acceleration import STICK
 from carom.motion.contact_point import contact_velocity
 
 LEAVES = 1e-6  # of what gravity gives in the step: what is slower at the start only trembles
@@ -37,6 +38,8 @@ def pose(system, held, k, h, fall, start, heap):
             continue
         set_bound(spot, contact, h, fall)
         heap.c[3 * i] -= spot.bound
+        heap.c[3 * i + 1] += spot.drift[1]
+        heap.c[3 * i + 2] += spot.drift[2]
         if alone and spot.strikes == 1:
             heap.c[3 * i + 1] += contact.restitution * spot.before[1]
             heap.c[3 * i + 2] += contact.restitution * spot.before[2]
@@ -48,15 +51,34 @@ def pose(system, held, k, h, fall, start, heap):
 
 
 @kernel
+def note_drift(held, k, few, start, heap):
+    """Write what rows that turn give a held point at the start: G_m v_0 - G_0 v_0, tangents where it sticks.
+
+    Of few bodies, whose rows at the start are in `heap.points[1]`. A point that stays at the end has
+    G_1 v_1 = 0, which is G_m v_1 = -(G_m - G_0) v_0 up to terms of the second order, and gains nothing.
+    """
+    for i in range(k):
+        spot = heap.spots[i]
+        spot.drift[0], spot.drift[1], spot.drift[2] = 0.0, 0.0, 0.0
+        if not (few and spot.held >= 0 and spot.turns == 0):
+            continue
+        before = contact_velocity(heap.points[1][i], start)
+        u = contact_velocity(heap.points[0][i], start)
+        for r in range(3 if held.points[spot.held].mode == STICK else 1):
+            spot.drift[r] = u[r] - before[r]
+
+
+@kernel
 def set_bound(spot, contact, h, fall):
     """Write the least normal velocity after the step, and whether the point strikes.
 
     An impact leaves with e times the approach at the start (Moreau 1988), unless all its bounces, which last
     2 e|u|/(g (1 - e)), end within the step: then it stays. What is open at the end without contacts
     may close no faster than its gap allows. What leaves at the start, and is pressed on within the step, comes
-    back as fast as it left: (u + w)/2 = 0, so that it gains nothing.
+    back as fast as it left: (u + w)/2 = 0, so that it gains nothing. All that without what is due to rows that
+    turn.
     """
-    u, e = spot.before[0], contact.restitution
+    u, e = spot.before[0] - spot.drift[0], contact.restitution
     spot.bound, spot.strikes = 0.0, 0
     if spot.gap > 0.0 and spot.left > 0.0:
         spot.bound = min(-spot.gap / h, -u)
@@ -66,6 +88,7 @@ def set_bound(spot, contact, h, fall):
         spot.bound, spot.strikes = -e * u, 1
     elif -u > 2.0 * fall * h + contact.still:
         spot.strikes = 1
+    spot.bound -= spot.drift[0]
 
 
 @kernel

@@ -10,7 +10,7 @@ from __future__ import annotations
 from carom.coulomb import layout as o
 from carom.coulomb.arrays import IslandWork
 from carom.coulomb.island import impart
-from carom.coulomb.search import polished
+from carom.coulomb.search import polished, release
 from carom.coulomb.solve import scale_vectors
 from carom.heap.graph import find_order
 from carom.heap.sweeps import sweep_until
@@ -20,27 +20,31 @@ from carom.references import refer
 FIRST, MOST = 40, 200  # sweeps before Newton, and in all
 SWEEP, UPDATE, CONTACT = 60.0, 130.0, 1000.0  # cost [ns] of a contact in a sweep, of factors
 SHARE = 2.0  # of what all sweeps cost: for Newton
+PATIENT = 10  # times as many of both, for a few bodies that stand on each other, while the step can afford it
 
 
 @kernel
-def solve(system, heap, k, n, tolerance, clock):
+def solve(system, heap, k, n, tolerance, patient, clock):
     """Solve for the impulses `heap.p`; return a factor, and the residual [m/s].
 
     The motion that they cause, over the factor, goes to the bodies of the problem.
     """
-    work = heap.problem
+    work, most = heap.problem, MOST * (PATIENT if patient else 1)
+    work.count[o.ITERATIONS] = 0
     gamma = scale_vectors(work, k, heap.c, heap.p)
     r, goal, done = sweep_until(system, heap, k, tolerance / gamma, FIRST)
     if r > max(tolerance / gamma, goal) and not_turning(heap, k):
-        r = newton_on_graph(heap, k, n, r)
+        r = newton_on_graph(heap, k, n, r, max(tolerance / gamma, goal), most)
     if r > max(tolerance / gamma, goal):
-        r, _, more = sweep_until(system, heap, k, tolerance / gamma, MOST - FIRST)
+        r, _, more = sweep_until(system, heap, k, tolerance / gamma, most - FIRST)
         done += more
     impart(work, k)
     for i in range(3 * k):
         heap.p[i] = gamma * work.contact[i // 3].scale * work.vector[o.P, i]
     clock.rounds += done
     clock.since += 2e-3 * SWEEP * done * k
+    factors = work.count[o.ITERATIONS] * (UPDATE * heap.graph.count[2] + CONTACT * k)
+    clock.effort += 1e-3 * (SWEEP * done * k + factors)
     return gamma, gamma * r
 
 
@@ -54,25 +58,38 @@ def not_turning(heap, k):
 
 
 @kernel
-def newton_on_graph(heap, k, n, before):
-    """Improve the scaled impulses at hand; return the residual of what is better."""
+def newton_on_graph(heap, k, n, least, enough, most):
+    """Improve the scaled impulses at hand, for about as much as `most` sweeps; return the residual.
+
+    With patience (more than `MOST`) where that is not enough by a release of the proximal term, too.
+    """
     if not find_order(n, k, heap):
-        return before
+        return least
     pairs, updates = heap.graph.count[3], heap.graph.count[2]
-    factors = SHARE * MOST * SWEEP * k / (UPDATE * updates + CONTACT * k)
+    factors = SHARE * most * SWEEP * k / (UPDATE * updates + CONTACT * k)
     if factors < 3.0:
-        return before
+        return least
     work = refer(part(heap.problem, n, pairs, updates))
     p, best = work.vector[o.P], work.vector[o.BEST]
     for i in range(3 * k):
         best[i] = p[i]
-    work.count[o.LIMIT], work.mismatch[o.ENOUGH] = int(factors), 0.0
-    r, _, _ = polished(work, k, False, True)
-    if not r < before:
-        for i in range(3 * k):
-            p[i] = best[i]
-        return before
-    return r
+    work.count[o.LIMIT], work.count[o.BUDGET] = int(factors), 0
+    work.mismatch[o.ENOUGH] = 0.0
+    for turn in range(2 if most > MOST else 1):
+        if turn == 1:
+            work.count[o.LIMIT] = 0
+            work.count[o.BUDGET] = work.count[o.ITERATIONS] + int(factors)
+            release(work, k)
+        r, _, _ = polished(work, k, False, True)
+        if r < least:
+            least = r
+            for i in range(3 * k):
+                best[i] = p[i]
+        if least <= enough:
+            break
+    for i in range(3 * k):
+        p[i] = best[i]
+    return least
 
 
 @kernel

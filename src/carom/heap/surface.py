@@ -11,7 +11,11 @@ from carom.jit import kernel
 from carom.motion.project import shift
 
 TINY = 1e-11  # of the smaller body
-PASSES, SWEEPS = 8, 100
+PASSES, SWEEPS, WORK = (
+    8,
+    (100, 1000),
+    20000,
+)  # sweeps: least and most, and how many times a point in a pass
 BETTER = 0.01  # in one pass: gaps are not linear, more would be lost
 
 
@@ -41,7 +45,7 @@ def lift(k, count, tolerance, heap):
             problem.body[b].motion[j] = 0.0
     for i in range(k):
         lam[i] = 0.0
-    for turn in range(SWEEPS):
+    for turn in range(max(SWEEPS[0], min(SWEEPS[1], WORK // max(1, k)))):
         change = 0.0
         for place in range(k):
             i = place if turn % 2 == 0 else k - 1 - place

@@ -13,8 +13,12 @@ from carom.system import records as r
 from carom.system.arrays import ONE
 
 # what a step of several bodies may lose: this part of the kinetic energy at its start, and of what a fall of a
-# whole step gains; one that is cut is cut on until it loses CAREFUL of that
-OF_MOTION, OF_FALL = 1e-6, 1e-2
+# whole step gains, but no more than of m g times their size, which does not grow with the step; one that is cut
+# is cut on until it loses CAREFUL of that
+OF_MOTION, OF_FALL, OF_SIZE = 1e-6, 1e-2, 1e-7
+# ... of a body that hardly moves not even that: of so many times what it exchanges in the step, and of this
+# part of m g times its size, which is far above round-off
+MUCH, LEAST = 1e3, 1e-4
 CAREFUL = 0.01
 SURE = 1.0 / 32.0  # of that: what a step may lose for the next to be twice as long (order 4: 2^5)
 # of one body: these parts of its kinetic energy and of m g times its size, held at one point and at several
@@ -28,6 +32,8 @@ UNSOLVED, USELESS = 0.01, 10.0
 POORLY = 10.0
 # of the step: what is no longer is cut no more, for what it loses and for a solution
 SHORTEST, RETRIED = 1e-4, 1e-2
+# what is so many times more than may be lost, in a step that is cut no more, is not lost by its length
+WILD = 100.0
 # how much more work a step may take where it cannot be taken whole: in parts, or not in another way
 PATIENCE = 10.0
 
@@ -57,15 +63,27 @@ def may_lose(system, b, start, part):
 
 
 @kernel
+def weigh(system, b, start, end):
+    """Return the weight of a body times its size; less where it hardly moves: it is not what is looked at."""
+    body, g, fallen = system.bodies[b], system.gravity, 0.0
+    for k in range(3):
+        fallen += body.mass * g[k] * (end[b].x[k] - start[b].x[k])
+    size = body.mass * norm(g) * body.extent
+    turned = kinetic(body, start[b]) + kinetic(body, end[b]) + abs(fallen)
+    return min(size, MUCH * turned + LEAST * size)
+
+
+@kernel
 def unnamed(system, controls, start, end, friction, count, member):
     """Return what the step has lost or gained besides the work of friction, as a part of what it may."""
     lost, may = friction, 0.0
-    fall = controls.step * norm(system.gravity)
+    fall = 0.5 * OF_FALL * (controls.step * norm(system.gravity)) ** 2
     for m in range(count):
         b = member[m]
         body = system.bodies[b]
         lost += lost_by(system, b, start, end)
-        may += OF_MOTION * kinetic(body, start[b]) + OF_FALL * 0.5 * body.mass * fall * fall
+        may += OF_MOTION * kinetic(body, start[b])
+        may += min(body.mass * fall, OF_SIZE * weigh(system, b, start, end))
     if count == 1:
         may = may_lose(system, member[0], start, OF_SEVERAL)
     return abs(lost) / may if may > 0.0 else 0.0
@@ -121,6 +139,12 @@ def too_long(system, controls, held, start, end, dt, friction, careful, late, wo
     result = work.result[0]
     result.unnamed = max(result.unnamed, unnamed_alone(system, start, end, friction, work))
     return result.unnamed > (CAREFUL if careful else 1.0)
+
+
+@inlined
+def goes_wild(work):
+    """Return whether a step that was cut as far as it may be loses a lot all the same."""
+    return work.result[0].unnamed > WILD
 
 
 @inlined

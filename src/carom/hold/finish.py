@@ -30,7 +30,10 @@ def gained(start, count, cluster):
 
 @kernel
 def finish(system, controls, held, k, start, h, end, count, cluster, work):
-    """Put the bodies to rest if nothing is left to move them; note modes and bounds, return friction's work."""
+    """Put the bodies to rest if nothing is left to move them; note modes and bounds, return friction's work.
+
+    That is never positive: what friction seems to give by rows that turn within the step is an error of it.
+    """
     friction = 0.0
     tolerance = rest_speed(controls, gained(start, count, cluster), work.result[0].residual, k)
     at_rest = settle(system, tolerance, start, end, count, cluster)
@@ -62,7 +65,7 @@ def finish(system, controls, held, k, start, h, end, count, cluster, work):
         bound = work.body[b].bound
         bound[0], bound[1] = 2.0 * math.sqrt(linear) / h, 2.0 * math.sqrt(angular) / h
         bound[2] = math.sqrt(spin)
-    return friction
+    return min(0.0, friction)
 
 
 @kernel

@@ -119,6 +119,8 @@ def press_group(system, controls, held, group, start, h, end, cluster, work, clo
             change = find_impulses(controls, k, 0.0, cluster, clock)
         if change <= SETTLED or (change <= 1e-7 and change >= 0.3 * before):
             break
+        if controls.retry == 1 and clock.effort > affordable(controls, clock):
+            break  # to be given up, where there is another way
         before = change
         clock.rounds += 1
     cluster.cone.count[NEAR], cluster.cone.mismatch[ENOUGH] = 0, 0.0

@@ -17,6 +17,7 @@ from carom.contact.pair_point import (
 from carom.contact.place import place_any
 from carom.contact.rim import same_point
 from carom.dispatch import only_with_pairs
+from carom.impact.collapse import TIRED
 from carom.jit import kernel
 
 
@@ -72,6 +73,17 @@ def strike_off(held, i):
     for j in range(i, last):
         copy(held.points[j + 1], held.points[j])
     held.count[0] = last
+
+
+@kernel
+def let_go(held):
+    """Strike off all points that share bodies: they are struck, and held again, at the end of the next step."""
+    for i in range(held.count[0] - 1, -1, -1):
+        hold = held.points[i]
+        if hold.several == 1:
+            c = hold.contact
+            strike_off(held, i)
+            held.brinks[c].leaving, held.brinks[c].near, held.brinks[c].blows = 0, 0, TIRED
 
 
 @kernel

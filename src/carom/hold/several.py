@@ -11,7 +11,7 @@ from carom.coulomb.layout import CONE, SLIDING
 from carom.hold.forces import pose_forces, solve_forces, take_forces, time_to_stop
 from carom.hold.jam import jams_among, note_jam
 from carom.hold.one import bounces_end, name_work
-from carom.hold.roster import enlist, strike_off
+from carom.hold.roster import enlist, set_anchor, strike_off
 from carom.jit import kernel
 from carom.motion.acceleration import SLIP, STICK
 from carom.motion.contact_point import add_velocity, alone, contact_velocity, spread
@@ -227,6 +227,8 @@ def set_modes(system, held, k, state, cluster, work, clock, records):
         if seat.stays == 0 or seat.held >= before:
             continue
         hold, mode = held.points[seat.held], mode_of(system, i, state, cluster)
+        if mode == STICK:  # from where it has slid to, before the impact
+            set_anchor(system, hold, state, work)
         if hold.mode != mode:
             hold.mode = mode
             begin_event(system, seat.contact, seat.feature, state, clock, records)
