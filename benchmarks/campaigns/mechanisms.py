@@ -126,6 +126,16 @@ def _load(scene, joint, rng, loop: bool) -> str:
     elif not loop:  # a rate that a loop cannot follow would be refused
         rate = rng.uniform(0.2, 3.0)
         scene.add_constraint(
-            carom.constraints.Driver(joint, motion=lambda t: 0.3 * np.sin(rate * t) ** 2)
+            carom.constraints.Driver(joint, motion=lambda t: _wave(rate, t))
         )
     return which
+
+
+def _wave(rate: float, t: float) -> tuple[float, float, float]:
+    """Return 0.3 sin(rate t)^2 with its rate and its acceleration."""
+    turn = 2.0 * rate * t
+    return (
+        0.15 * (1.0 - np.cos(turn)),
+        0.3 * rate * np.sin(turn),
+        0.6 * rate**2 * np.cos(turn),
+    )
