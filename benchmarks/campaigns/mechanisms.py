@@ -125,9 +125,7 @@ def _load(scene, joint, rng, loop: bool) -> str:
         scene.add_stop(joint, upper=rng.uniform(0.1, 1.0), restitution=e)
     elif not loop:  # a rate that a loop cannot follow would be refused
         rate = rng.uniform(0.2, 3.0)
-        scene.add_constraint(
-            carom.constraints.Driver(joint, motion=lambda t: _wave(rate, t))
-        )
+        scene.add_constraint(carom.constraints.Driver(joint, motion=lambda t: _wave(rate, t)))
     return which
 
 
