@@ -17,6 +17,7 @@ from carom.contact.stop import look_at_stop
 from carom.dispatch import only_with_pairs
 from carom.geometry.rotation import norm
 from carom.hold.balance import (
+    CAREFUL,
     UNSOLVED,
     USELESS,
     affordable,
@@ -49,13 +50,13 @@ from carom.loop_codes import HOLD, NOTHING, SETTLE, STRIKE
 from carom.motion.acceleration import OPEN, SLIP, STICK
 from carom.motion.adapt import NOTHING_LEFT, plan_next, shorter, step_error
 from carom.motion.contact_point import contact_velocity
-from carom.motion.explicit import keep
+from carom.motion.explicit import CONSTRAINTS_LOST, keep
 from carom.motion.step import step
 from carom.save import finite, save_contacts
 from carom.system import records as r
 from carom.system.arrays import FREE, STOP
 from carom.system.notes import begin_event, end_event
-from carom.watch import IN_A_ROW, SHORTEST, multiplies
+from carom.watch import IN_A_ROW, SHORTEST, WIDER, imbalance
 
 LOCATE, PROJECT, WORK = range(3)
 STEP_CUT, TOO_MANY, NOT_FINITE = 2, 3, 4
@@ -156,8 +157,6 @@ def advance(
                 if controls.retry > 0 and not late:
                     if clock.tries > TRIES or clock.effort > affordable(controls, clock):
                         return TOO_MANY
-                if code != 0 and controls.order == 0:
-                    return code
                 if held.count[0] > 0 and code == 0:
                     end_forces(system, held, trial, work)
                     press(
@@ -181,6 +180,10 @@ def advance(
                         remaining, length = dt, clock.length
                         continue
                     plan_next(dt, error, again, controls, clock)
+                elif code == CONSTRAINTS_LOST and dt > SHORTEST * controls.step:
+                    search.active, clock.cuts = 0, clock.cuts + 1
+                    pace = dt = 0.5 * dt
+                    continue
                 elif code != 0:
                     return code
                 if search.active == 1:
@@ -196,15 +199,12 @@ def advance(
                     system, controls, held, now, trial, dt, alone, pace < math.inf, late, work
                 )
                 if not loses and controls.order == 0 and search.active == 0:
-                    named = applied + friction
-                    loses = multiplies(system, now, trial, named, clock.now, dt, watch)
-                    if loses and not dt > SHORTEST * controls.step:
-                        watch.gains += 1
-                        if watch.gains == IN_A_ROW:
-                            return UNSTABLE if finite(trial) else NOT_FINITE
-                        loses = False
-                    elif not loses:
-                        watch.gains = 0
+                    loses, gains = off_balance(
+                        system, controls, held, now, trial, applied + friction, dt, pace < math.inf,
+                        clock, work, watch,
+                    )  # fmt: skip
+                    if gains == IN_A_ROW:
+                        return UNSTABLE if finite(trial) else NOT_FINITE
                 if not loses:
                     verdict, kind, other, low, d1, d2 = examine(
                         system, controls, held, now, dt, work
@@ -444,6 +444,27 @@ def until_stop(controls, held, dt, clock):
     # not where they follow each other without end, nor for round-off of the step
     inside = first > controls.rest * dt and first < (1.0 - 1e-12) * dt
     return first if inside and clock.in_step < 20 else dt
+
+
+@kernel
+def off_balance(system, controls, held, start, end, named, dt, careful, clock, work, watch):
+    """Return whether a step is to be cut for energy without a name, and how many gained energy in a row.
+
+    The shortest are taken as they are, and the limit is made wider for those that come: round-off, or a force
+    that jumps, is not to cut all steps of a run.
+    """
+    result = work.result[0]
+    if held.count[0] == 0:
+        result.unnamed = 0.0
+    off, grows = imbalance(system, held, start, end, named, clock.now, dt, watch)
+    result.unnamed = max(result.unnamed, off)
+    cut = grows or off > (CAREFUL if careful else 1.0)
+    if cut and dt > SHORTEST * controls.step:
+        return True, 0
+    if off > 1.0:
+        watch.share *= WIDER
+    watch.gains = watch.gains + 1 if grows else 0
+    return False, watch.gains
 
 
 @kernel

@@ -53,8 +53,9 @@ class Options:
         Energy that may come or go without a name in the ledger, as a part of the largest energy exchanged in
         the run: the greatest of kinetic energy, change of the potential, and each of the sums of loads,
         impacts, friction and bounces. What is beyond it is in `Solution.warnings`, and an `AccuracyWarning`;
-        beyond a hundred times that a run ends as `Status.INACCURATE`. Watched after each step. Default 1e-4.
-        (Mathematics page, II.12.)
+        beyond a hundred times that a run ends as `Status.INACCURATE`. Watched after each step. A step of joined
+        or loaded bodies by an explicit method that has more than 1e-3 of it by itself is taken in shorter
+        ones. Default 1e-4. (Mathematics page, II.12.)
     constraint_tolerance : float
         Greatest error of position (relative to the size of the bodies) and of velocity (relative
         to their speeds) that joints may have at the start. Default 1e-8.

@@ -21,7 +21,7 @@ from carom.islands.layout import Islands, new_islands, no_islands, roomier
 from carom.jit import address
 from carom.methods import FIRST, ORDERS, make_method, time_of_bounces
 from carom.motion.acceleration import acceleration_unit
-from carom.motion.explicit import constrained_unit
+from carom.motion.explicit import EXPLICIT, constrained_unit
 from carom.motion.implicit import Implicit, implicit_unit
 from carom.motion.project import project_start
 from carom.motion.rattle import Rattle, rattle_unit
@@ -36,7 +36,7 @@ from carom.system import records as r
 from carom.system.answers import check_answers
 from carom.system.cluster import new_cluster, new_corner
 from carom.system.compile import compile_scene
-from carom.watch import new_watch
+from carom.watch import SHARE, new_watch
 
 LOCATIONS = {"locate": loop.LOCATE, "project": loop.PROJECT, "work": loop.WORK}
 
@@ -117,7 +117,9 @@ class Run:
         self.cluster = new_cluster(system)
         self.heap = no_heap()  # made when there is one
         self.corner = new_corner(1, corner_settings(options))  # and this
-        self.clock, self.watch = r.new_clock(), new_watch(options.energy_tolerance)
+        self.clock = r.new_clock()
+        share = SHARE * options.energy_tolerance if method in EXPLICIT else np.inf
+        self.watch = new_watch(options.energy_tolerance, share)
         self.clock["ahead"] = FIRST * self.controls.longest
         rows = 256 if tolerances else -(-self.controls.last // self.controls.save_every) + 1
         self.records = r.new_records(system, rows, 512)

@@ -13,6 +13,8 @@ round-off. (Mathematics page, II.12.)
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from carom.columns import table
@@ -26,6 +28,10 @@ ROUND_OFF = 1e-13
 # a step that gains this part of all that it exchanges is cut, down to this part of a whole step; so many of
 # those in a row that gain all the same are the last
 GAIN, SHORTEST, IN_A_ROW = 0.25, 1.0 / 1024.0, 3
+# what a step of an explicit method may have without a name, as a part of `Options.energy_tolerance`: it is cut
+# otherwise; ten times that with points held, where the order is lower. A limit that the shortest step does
+# not keep is made so many times wider
+SHARE, OF_HELD, WIDER = 1e-3, 10.0, 4.0
 
 WATCH = [
     ("tolerance", "f8"),  # `Options.energy_tolerance`
@@ -39,13 +45,14 @@ WATCH = [
     ("amount", "f8", 5),  # greatest without a name, of each kind
     ("time", "f8", 5),  # and when
     ("gains", "i8"),  # shortest steps in a row that gained
+    ("share", "f8"),  # part of what was exchanged that a step may have without a name
 ]
 
 
-def new_watch(tolerance: float) -> np.recarray:
-    """Return the record of a run that has not begun, (1,)."""
+def new_watch(tolerance: float, share: float = np.inf) -> np.recarray:
+    """Return the record of a run that has not begun, (1,); with no limit for a step by itself."""
     watch = table(WATCH, 1)
-    watch["tolerance"] = tolerance
+    watch["tolerance"], watch["share"] = tolerance, share
     return watch
 
 
@@ -112,24 +119,33 @@ def given_by_law(system, clock, records, watch):
 
 
 @inlined
-def multiplies(system, start, end, named, t, h, watch):
-    """Return whether a step gains energy that nobody gave: as much as it exchanges, and more than is tolerated.
+def imbalance(system, held, start, end, named, t, h, watch):
+    """Return the energy of a step that has no name, as a part of what it may have; and if it multiplies energy.
 
-    That is what an explicit method does with springs and dampers that are too stiff for its step. Bodies that
-    only gravity acts on cannot.
+    Bodies that only gravity acts on are exact in flight, and watched where they are held
+    (`carom.hold.balance`).
     """
     loaded = False
     for b in range(start.shape[0]):
         loaded = loaded or system.bodies[b].ballistic == 0
-    return loaded and gains_too_much(system, start, end, named, t, h, watch)
+    return unbalanced(system, held, start, end, named, t, h, watch) if loaded else (0.0, False)
 
 
 @kernel
-def gains_too_much(system, start, end, named, t, h, watch):
-    """Return so for bodies that are joined or loaded; `named` is the work of loads and of friction."""
+def unbalanced(system, held, start, end, named, t, h, watch):
+    """Return so of bodies that are joined or loaded; `named` is the work of loads and of friction.
+
+    A step multiplies energy if it gains as much as it exchanges, and more than is tolerated, from nobody: what
+    explicit methods do with springs and dampers that are too stiff for them.
+    """
     before, low, _ = energies(system, start, t)
     after, high, size = energies(system, end, t + h)
     gain = after + high - before - low - named
     exchanged = before + after + abs(high - low) + abs(named)
     tolerated = watch.tolerance * watch.exchanged + ROUND_OFF * size
-    return not (gain <= GAIN * exchanged + tolerated)
+    grows = not (gain <= GAIN * exchanged + tolerated)
+    share = watch.share * (OF_HELD if held.count[0] > 0 else 1.0)
+    may = share * max(watch.exchanged, exchanged) + ROUND_OFF * size
+    if not abs(gain) < math.inf:
+        return math.inf, grows
+    return abs(gain) / may if may > 0.0 else 0.0, grows
