@@ -7,7 +7,6 @@ import math
 from carom.coulomb.one import solve_one
 from carom.jit import kernel
 
-
 _EMPTY = 1e-13  # of a diagonal of W_tt: pivots below it are round-off, nothing moves that way
 
 
