@@ -11,7 +11,7 @@ from carom.coulomb.layout import CONE, SLIDING
 from carom.hold.forces import pose_forces, solve_forces, take_forces, time_to_stop
 from carom.hold.jam import jams_among, note_jam
 from carom.hold.one import bounces_end, name_work
-from carom.hold.roster import enlist, strike_off
+from carom.hold.roster import enlist, set_anchor, strike_off
 from carom.jit import kernel
 from carom.motion.acceleration import SLIP, STICK
 from carom.motion.contact_point import add_velocity, alone, contact_velocity, spread
@@ -229,6 +229,8 @@ def set_modes(system, held, k, state, cluster, work, clock, records):
         hold, mode = held.points[seat.held], mode_of(system, i, state, cluster)
         if hold.mode != mode:
             hold.mode = mode
+            if mode == STICK:
+                set_anchor(system, hold, state, work)
             begin_event(system, seat.contact, seat.feature, state, clock, records)
             end_event(system, SLIPS if mode == SLIP else STICKS, state, clock, records)
 
