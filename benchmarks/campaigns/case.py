@@ -95,12 +95,16 @@ def run(case: Case) -> Outcome:
 
 
 def exchanged(s: carom.Solution) -> float:
-    """Return the largest energy exchanged [J]: kinetic, potential against the start, a line of the ledger."""
+    """Return the largest energy exchanged [J]: kinetic, potential against the start, a line of the ledger.
+
+    Where nothing moves it is the round-off of the energies.
+    """
     potential = s.potential_energy - s.potential_energy[0]
     largest = max(
         np.max(s.kinetic_energy), np.max(np.abs(potential)), np.max(np.abs(s.ledger.loads))
     )
-    return max(float(largest), 1e-300)
+    size = np.max(s.kinetic_energy + np.abs(s.potential_energy))
+    return max(float(largest), 1e-13 * float(size), 1e-300)
 
 
 def size(s: carom.Solution) -> float:

@@ -161,3 +161,15 @@ def test_motion_that_diverges_ends_with_a_status():
         run = carom.simulate(system, 5.0, step=1e-2, throw=False)
     assert run.status is carom.Status.NOT_FINITE
     assert np.all(np.isfinite(run.q))
+
+
+def test_a_potential_that_is_no_number_is_no_success():
+    # Free fall with its gradient given: the motion is right, its energies are not known.
+    system = carom.GeneralizedSystem(
+        lambda q: np.eye(1), [0.0], [0.0],
+        potential=lambda q: 9.81 * q[0] if q[0] > -0.1 else np.nan,
+        potential_gradient=lambda q: np.array([9.81]),
+    )  # fmt: skip
+    s = carom.simulate(system, 0.2, step=0.01, throw=False)
+    assert s.status is carom.Status.INACCURATE
+    assert "nan J" in s.warnings[0]

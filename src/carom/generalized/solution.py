@@ -151,7 +151,8 @@ class GeneralizedSolution(Drawn):
         later, below = np.zeros((2, len(t[some])))
         at = t[some] + 0.4321 * run.plan.duration
         energies(run.system, at, states[some], later, below, run.work)
-        steady = np.array_equal([later, below], [kinetic[some], potential[some]])
+        now = [kinetic[some], potential[some]]
+        steady = np.array_equal([later, below], now, equal_nan=True)
         run.made.functions.failed = failed
         names = ("loads", "impacts", "friction", "bounces")
         ledger = Ledger(kinetic, potential, *(np.array(series[one]) for one in names))

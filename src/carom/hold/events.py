@@ -20,6 +20,7 @@ from carom.motion.acceleration import OPEN, SLIP, STICK, acceleration
 from carom.motion.contact_point import contact_velocity
 
 GAP, SEPARATE, CONE, REVERSE, JAM = range(5)
+_NO_GRIP = 1e-9  # of the friction that there may be: less is round-off
 
 
 @kernel
@@ -51,8 +52,11 @@ def end_forces(system, held, state, work):
 
 
 @inlined
-def find_held_event(system, held, end, work):
-    """Return (event, place in the list, d1, d2) of the first held point whose mode ends; place -1 if none."""
+def find_held_event(system, held, end, h, work):
+    """Return (event, place in the list, d1, d2) of the first held point whose mode ends; place -1 if none.
+
+    Slip that the step h has turned astray says nothing of k: it is for `turned` to judge.
+    """
     for i in range(held.count[0]):
         hold = held.points[i]
         if hold.mode == OPEN or hold.rest == 1:
@@ -65,8 +69,10 @@ def find_held_event(system, held, end, work):
             continue
         jams = hold.mode == SLIP and held_value(system, hold, JAM, 0.0, 0.0, end, work) <= 0.0
         if jams and not reverses(system, hold, end, work):
+            if strays(system, hold, end, h, work) != 0:
+                continue
             return JAM, i, 0.0, 0.0
-        if hold.force[0] < 0.0 and not jams:
+        if hold.force[0] < 0.0 and not jams and not grips(system, hold):
             return SEPARATE, i, 0.0, 0.0
         if hold.mode == SLIP:
             d1, d2 = hold.heading[0], hold.heading[1]
@@ -76,6 +82,13 @@ def find_held_event(system, held, end, work):
         elif held_value(system, hold, CONE, 0.0, 0.0, end, work) < -1e-12 * hold.force[0]:
             return CONE, i, 0.0, 0.0
     return GAP, -1, 0.0, 0.0
+
+
+@inlined
+def grips(system, hold):
+    """Return whether a point sticks by more friction than round-off: it slips before it lifts off."""
+    f, mu = hold.force, system.contacts[hold.contact].friction_held
+    return hold.mode == STICK and math.sqrt(f[1] * f[1] + f[2] * f[2]) > _NO_GRIP * mu * abs(f[0])
 
 
 @inlined
@@ -101,17 +114,24 @@ def turned(system, held, end, h, work):
     for i in range(held.count[0]):
         hold = held.points[i]
         if hold.mode == SLIP and hold.rest == 0 and hold.several == 0:
-            d1, d2 = hold.heading[0], hold.heading[1]
-            point, contact = work.point[0], system.contacts[hold.contact]
-            place_held(system, hold, end, point, work)
-            _, u1, u2 = contact_velocity(point, end)
-            along, across, square = u1 * d1 + u2 * d2, u1 * d2 - u2 * d1, u1 * u1 + u2 * u2
-            if across * across > 1e-12 * square and braked(contact, hold, h) ** 2 > square:
+            far = strays(system, hold, end, h, work)
+            if far == 2:
                 hold.several, hold.stop = 1, math.inf
-                found = 2
-            elif along < 0.5 * math.sqrt(square * (d1 * d1 + d2 * d2)):
-                found = max(found, 1)
+            found = max(found, far)
     return found
+
+
+@kernel
+def strays(system, hold, end, h, work):
+    """Return the same of one point."""
+    d1, d2 = hold.heading[0], hold.heading[1]
+    point, contact = work.point[0], system.contacts[hold.contact]
+    place_held(system, hold, end, point, work)
+    _, u1, u2 = contact_velocity(point, end)
+    along, across, square = u1 * d1 + u2 * d2, u1 * d2 - u2 * d1, u1 * u1 + u2 * u2
+    if across * across > 1e-12 * square and braked(contact, hold, h) ** 2 > square:
+        return 2
+    return 1 if along < 0.5 * math.sqrt(square * (d1 * d1 + d2 * d2)) else 0
 
 
 @inlined

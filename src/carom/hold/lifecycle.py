@@ -15,7 +15,7 @@ from __future__ import annotations
 from carom.contact.closed import gather_closed
 from carom.dispatch import by_address
 from carom.hold.one import hold_one, settle_one
-from carom.hold.roster import regroup, together
+from carom.hold.roster import regroup, set_anchor, together
 from carom.hold.several import hold_several
 from carom.jit import unit
 
@@ -32,6 +32,8 @@ def hold_unit(system, controls, held, c, state, horizon, cluster, work, clocks, 
     for i in range(held.count[0]):
         hold = held.points[i]
         if work.body[hold.body].group == group:
+            if hold.several == 0:  # from now on it stays where it is
+                set_anchor(system, hold, state, work)
             hold.rest, hold.several = 0, 1  # together with the new one
     if k < 0:
         hit.code = TOO_MANY_POINTS

@@ -89,15 +89,21 @@ def begin_hold(system, contact, hold, state, stop, a, horizon, work, clock):
     s1, s2 = u[1] + W[1, 0] * n, u[2] + W[2, 0] * n  # slip once the normal velocity is out
     slip = math.sqrt(s1 * s1 + s2 * s2)
     stops = slip <= max(stop, 10.0 * still)
+    if math.sqrt(u[1] * u[1] + u[2] * u[2]) <= 10.0 * still:
+        stops = stops or sticks(
+            W, a, contact.friction_held
+        )  # bounces that stick leave no slip either
     if stop > 0.0 and not stops:
         return False
     if stops:
         n, t1, t2 = stick_force(W, u[0], u[1], u[2])
         s1, s2 = 0.0, 0.0
     hold.mode = STICK if stops else SLIP
-    if hold.mode == SLIP and lasts(W, a, u, contact.friction, horizon):
-        n, t1, t2 = slip_force(W, u[0], u[1], u[2], u[1], u[2], contact.friction)
-        s1, s2 = u[1] + moved(W, 1, n, t1, t2), u[2] + moved(W, 2, n, t1, t2)
+    if hold.mode == SLIP and yields(W, contact.friction, u[1], u[2]) > 0.0:
+        f, f1, f2 = slip_force(W, u[0], u[1], u[2], u[1], u[2], contact.friction)
+        v1, v2 = u[1] + moved(W, 1, f, f1, f2), u[2] + moved(W, 2, f, f1, f2)
+        if lasts(W, a, u, v1, v2, contact.friction, horizon):
+            n, t1, t2, s1, s2 = f, f1, f2, v1, v2
     spread(system, point, state, n, t1, t2, work)
     add_velocity(system, point, work, state)
     if not alone(system, point):
@@ -121,14 +127,26 @@ def name_work(normal, tangential, clock):
 
 
 @kernel
-def lasts(W, a, u, mu, horizon):
-    """Return whether a contact with the velocity u and the free acceleration a slips until then."""
+def sticks(W, a, mu):
+    """Return whether friction holds a point without slip under the free acceleration a."""
+    n, t1, t2 = stick_force(W, a[0], a[1], a[2])
+    return math.sqrt(t1 * t1 + t2 * t2) <= mu * n
+
+
+@kernel
+def lasts(W, a, u, v1, v2, mu, horizon):
+    """Return whether a contact with the velocity u and the free acceleration a slips along u_t until then.
+
+    From the slip u_t, and from (v1, v2), what the pull with friction makes of it.
+    """
     speed = math.sqrt(u[1] * u[1] + u[2] * u[2])
-    if not (speed > 0.0 and horizon < math.inf and yields(W, mu, u[1], u[2]) > 0.0):
+    if not (speed > 0.0 and horizon < math.inf):
         return False
-    n, t1, t2 = slip_force(W, a[0], a[1], a[2], u[1], u[2], mu)
-    rate = u[1] * (a[1] + moved(W, 1, n, t1, t2)) + u[2] * (a[2] + moved(W, 2, n, t1, t2))
-    return speed * speed + rate * horizon > 0.0
+    e1, e2 = u[1] / speed, u[2] / speed
+    n, t1, t2 = slip_force(W, a[0], a[1], a[2], e1, e2, mu)
+    rate = e1 * (a[1] + moved(W, 1, n, t1, t2)) + e2 * (a[2] + moved(W, 2, n, t1, t2))
+    least = min(speed, e1 * v1 + e2 * v2)
+    return least > 0.0 and least + rate * horizon > 0.0
 
 
 @kernel

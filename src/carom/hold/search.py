@@ -48,7 +48,7 @@ def examine(system, controls, held, now, dt, work):
             held.brinks[c].leaving = 0
     if found == BELOW:
         return BELOW, GAP, which, low, 0.0, 0.0
-    kind, i, d1, d2 = find_held_event(system, held, work.trial, work)
+    kind, i, d1, d2 = find_held_event(system, held, work.trial, dt, work)
     if i >= 0:
         return BELOW, kind, i, 0.0, d1, d2
     kind, i = find_joint_event(system, held, work.trial, work)

@@ -231,6 +231,8 @@ def set_modes(system, held, k, state, cluster, work, clock, records):
             set_anchor(system, hold, state, work)
         if hold.mode != mode:
             hold.mode = mode
+            if mode == STICK:
+                set_anchor(system, hold, state, work)
             begin_event(system, seat.contact, seat.feature, state, clock, records)
             end_event(system, SLIPS if mode == SLIP else STICKS, state, clock, records)
 

@@ -7,23 +7,40 @@ import math
 from carom.coulomb.one import solve_one
 from carom.jit import kernel
 
+_EMPTY = 1e-13  # of a diagonal of W_tt: pivots below it are round-off, nothing moves that way
+
 
 @kernel
 def stick_force(W, an, a1, a2):
-    """Return lam with W lam = -a. A tangent direction of no compliance (W_ii = 0) gets no force."""
-    # symmetric elimination, normal first; a pivot at round-off of its diagonal is left out
-    l10, l20 = W[1, 0] / W[0, 0], W[2, 0] / W[0, 0]
-    d1 = W[1, 1] - l10 * W[1, 0]
-    c21 = W[2, 1] - l20 * W[1, 0]
-    y0, y1, y2 = -an, -a1 + l10 * an, -a2 + l20 * an
-    free1 = d1 > 1e-13 * W[1, 1]
-    l21 = c21 / d1 if free1 else 0.0
-    d2 = W[2, 2] - l20 * W[2, 0] - l21 * c21
-    y2 -= l21 * y1
-    t2 = y2 / d2 if d2 > 1e-13 * W[2, 2] else 0.0
-    t1 = y1 / d1 - l21 * t2 if free1 else 0.0
-    n = y0 / W[0, 0] - l10 * t1 - l20 * t2
-    return n, t1, t2
+    """Return lam with W lam = -a; of those that do so the one of least friction.
+
+    A tangent direction in which nothing moves by itself gets no force. Where W is singular, as joints leave the
+    point one direction of slip, any other choice would ask for more friction than it takes to hold the point.
+    """
+    # symmetric elimination, normal first: what is left is B t = r, B = W_tt - W_tn W_nt/W_nn
+    l1, l2 = W[1, 0] / W[0, 0], W[2, 0] / W[0, 0]
+    b11, b12, b22 = W[1, 1] - l1 * W[1, 0], W[2, 1] - l2 * W[1, 0], W[2, 2] - l2 * W[2, 0]
+    r1, r2 = l1 * an - a1, l2 * an - a2
+    if b11 * W[2, 2] >= b22 * W[1, 1]:  # the less cancelled first
+        t1, t2 = least(b11, b12, b22, r1, r2, _EMPTY * W[1, 1], _EMPTY * W[2, 2])
+    else:
+        t2, t1 = least(b22, b12, b11, r2, r1, _EMPTY * W[2, 2], _EMPTY * W[1, 1])
+    return -an / W[0, 0] - l1 * t1 - l2 * t2, t1, t2
+
+
+@kernel
+def least(b11, b12, b22, r1, r2, none1, none2):
+    """Return the least (t1, t2) with B t = r; pivots below `none` are none."""
+    if not b11 > none1:
+        return 0.0, 0.0
+    ratio = b12 / b11
+    left = b22 - ratio * b12
+    if left > none2:
+        t2 = (r2 - ratio * r1) / left
+        return (r1 - b12 * t2) / b11, t2
+    # rank one, B = b11 (1, ratio)^T (1, ratio)
+    t1 = r1 / (b11 * (1.0 + ratio * ratio))
+    return t1, ratio * t1
 
 
 @kernel
