@@ -111,7 +111,8 @@ def drop_bounces(system, controls, k, group, state, horizon, cluster, work, cloc
         still = max(still, controls.rest * controls.step * abs(cluster.v[C][i]))
     for i in range(k):
         cluster.seats[i].stopped = 0 if time_to_stop(i, cluster) > horizon else 1
-    find_pull(k, cluster)
+    friction = 1 if leaves(system, k, state, cluster) and clock.plain == 0 else 0
+    find_pull(k, friction, cluster)
     x, u, W = cluster.v[OLD], cluster.v[U], cluster.m[0]
     normal, tangential = 0.0, 0.0
     for i in range(3 * k):
@@ -143,8 +144,18 @@ def drop_bounces(system, controls, k, group, state, horizon, cluster, work, cloc
 
 
 @kernel
-def find_pull(k, cluster):
-    """Write the impulses that take the velocities out into `old`: with friction, if rounds find that."""
+def leaves(system, k, state, cluster):
+    """Return whether a point that stays bounces still."""
+    for i in range(k):
+        contact = system.contacts[cluster.seats[i].contact]
+        if cluster.seats[i].stays == 1 and cluster.v[U][3 * i] > slow(contact, state):
+            return True
+    return False
+
+
+@kernel
+def find_pull(k, friction, cluster):
+    """Write the impulses that take the velocities out into `old`: with friction (1), if rounds find that."""
     n, L, x, last = 3 * k, cluster.m[1], cluster.v[OLD], cluster.v[P]
     for i in range(n):
         for j in range(n):
@@ -152,7 +163,7 @@ def find_pull(k, cluster):
             L[i, j] = cluster.m[0][i, j] if both else 1.0 if i == j else 0.0
     factor(n, DROP, L)
     first = 0.0
-    for with_friction in range(1, -1, -1):
+    for with_friction in range(friction, -1, -1):
         for i in range(n):
             last[i] = 0.0
         before = math.inf
