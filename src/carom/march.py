@@ -71,7 +71,7 @@ def run(
         clock.plain, clock.owed = 0, 0.0
         clock.step += 1
         clock.in_step = 0
-        clock.credit = min(r.SAVED, clock.credit + r.EACH)
+        earn(now, clock, work)
         clock.now = begin + length
         clock.still = min(clock.still, clock.now) if still(now) else math.inf
         note_turns(system, now)
@@ -84,6 +84,15 @@ def run(
         if clock.step % controls.save_every == 0 or last:
             save(system, held, now, clock, work, records)
     return 0
+
+
+@kernel
+def earn(now, clock, work):
+    """Note that later steps may take more work, as this one was allowed some: not where it was given up."""
+    for b in range(now.shape[0]):
+        if work.body[b].whole_until >= clock.step:
+            return
+    clock.credit = min(min(r.SAVED, r.OWN * now.shape[0]), clock.credit + r.EACH)
 
 
 @kernel

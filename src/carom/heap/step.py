@@ -124,7 +124,7 @@ def move_on(system, controls, held, now, begin, h, careful, heap, work, clock, r
     )
     if n == 1 and k > 0:
         gained = balance(system, now[0], heap.flight[0], work.trial[0], named)
-        take_over(gained, impacts, bounces, clock)
+        slow_down(system, take_over(gained, impacts, bounces, clock), work.trial[0])
     for b in range(n):
         keep(work.trial[b], now[b])
     return 0
@@ -161,17 +161,34 @@ def balance(system, start, flight, end, named):
 
 @kernel
 def take_over(gained, impacts, bounces, clock):
-    """Put what is left without a name into the lines of a piece that began with these: none rises by it.
+    """Put what has no name into the lines of a piece that began with these: none rises by it; return the rest.
 
     A body that stops within a piece comes back to the surface from where it would have sunk to: its impact has
     taken less.
     """
     if gained < 0.0:
         clock.bounces += gained
-        return
+        return 0.0
     part = min(gained, impacts - clock.impacts)
     clock.impacts += part
-    clock.bounces += min(gained - part, bounces - clock.bounces)
+    other = min(gained - part, bounces - clock.bounces)
+    clock.bounces += other
+    return gained - part - other
+
+
+@kernel
+def slow_down(system, gained, end):
+    """Take energy out of the motion of a body, all of it by one factor: points keep sticking and sliding so.
+
+    What a body gains that turns far within a piece, as it comes back to the surface.
+    """
+    energy = kinetic(system.bodies[0], end)
+    if not gained > 0.0 or not energy > 0.0:
+        return
+    factor = math.sqrt(max(0.0, 1.0 - gained / energy))
+    for j in range(3):
+        end.v[j] *= factor
+        end.w[j] *= factor
 
 
 @kernel

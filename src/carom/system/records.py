@@ -147,8 +147,9 @@ OVERPAID = 109  # friction has given energy: the step is done again, bounces dro
 PAUSE = 108  # much was done: the caller looks for Ctrl-C and goes on
 
 LONG = 5e4  # work after which the loop is left for a moment, about [us]
-# work for contacts, about [us]: what a step may take on the average, and one after others that took less
-EACH, SAVED = 1e4, 1e6
+# work for contacts, about [us]: what a step may take on the average, one after others that took less, and that
+# as many times as there are bodies
+EACH, SAVED, OWN = 1e4, 1e6, 2e5
 
 
 class Records(NamedTuple):
