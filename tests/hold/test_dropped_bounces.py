@@ -57,8 +57,8 @@ def test_friction_takes_no_energy_back():
             assert np.all(np.diff(line) <= 1e-12)
 
 
-# of 1000 drawn at random those whose line rose most, by 1e-2 to 1e-1 of all energy: tilt [rad], slip [m/s], mu, e
-# and the height of the lower edge [m]
+# of 1000 drawn at random those whose line rose most, by 1e-2 to 1e-1 of all energy: tilt [rad], slip [m/s], mu,
+# e and the height of the lower edge [m]
 SLABS = [
     (8.341e-5, 0.1058, 0.9152, 0.4941, 2.019e-4),
     (3.540e-4, 0.1182, 0.7693, 0.3500, 3.159e-4),
@@ -83,8 +83,8 @@ def drop_slab(scene, ground, place, tilt, slip, mu, e, height):
 
 @pytest.mark.parametrize("islands", [False, True])
 def test_friction_gives_nothing_where_the_other_edge_strikes_first(islands):
-    # One edge is held with the friction of bounces that the blow at the other edge ends: what that gave the hold
-    # has not taken back by the end of the step. With the slabs beside each other each is an island.
+    # One edge is held with the friction of bounces that the blow at the other edge ends: what that gave the
+    # hold has not taken back by the end of the step. Slabs beside each other are islands.
     for k, values in enumerate(SLABS):
         scene = carom.Scene(gravity=(0, 0, -G))
         ground = scene.add_half_space((0, 0, 0), (0, 0, 1))

@@ -43,7 +43,10 @@ CLOCK = [
     ("length", "f8"),
     ("ahead", "f8"),
     *LEDGER,
-    ("owed", "f8"),  # what the dropping of bounces gave in this step, and friction has not taken back
+    (
+        "owed",
+        "f8",
+    ),  # what the dropping of bounces gave in this step, and friction has not taken back
     ("plain", "i8"),  # 1 in a step in which they are dropped without friction
     ("step", "i8"),  # finished steps
     ("saved", "i8"),
