@@ -55,8 +55,6 @@ def run(
             )  # fmt: skip
             if controls.order > 0:
                 length = clock.length
-            if code == 0 and clock.owed > 0.0 and clock.plain == 0:
-                code = r.OVERPAID
             if code == 0:
                 leave(islands, own)
                 clock.credit, clock.effort = max(0.0, clock.credit - clock.effort), 0.0
@@ -68,7 +66,7 @@ def run(
             return r.FULL
         end(islands, system, held, now, length, clock, work)
         clock.spent = 0.0
-        clock.plain, clock.owed = 0, 0.0
+        settle_up(clock)
         clock.step += 1
         clock.in_step = 0
         earn(now, clock, work)
@@ -84,6 +82,19 @@ def run(
         if clock.step % controls.save_every == 0 or last:
             save(system, held, now, clock, work, records)
     return 0
+
+
+@kernel
+def settle_up(clock):
+    """Put down to the impacts of a step what friction gave as bounces were dropped, and has not taken back.
+
+    Impacts, bounces and hold together have mu times their normal impulse of friction: where the hold ends early
+    it is the impacts that took less.
+    """
+    part = min(clock.owed, max(0.0, clock.before - clock.impacts))
+    clock.impacts += part
+    clock.friction -= part
+    clock.owed = 0.0
 
 
 @kernel
@@ -215,22 +226,14 @@ def _leave_island(islands, own):
 
 @kernel
 def _all_lost(islands, system, controls, code, held, now, clocks, work):
-    """Go back to the start of a step that is to be done again; return whether so.
-
-    Bounces dropped without friction where that gave energy; whole where it could not be taken from event to
-    event.
-    """
-    plain = code == r.OVERPAID
-    if not plain and (code >= r.FULL or controls.retry == 0):
+    """Go back to the start of a step that could not be taken from event to event; return whether so."""
+    if code >= r.FULL or controls.retry == 0:
         return False
-    if not plain and not together.tire_together(clocks[0].step, work):
+    if not together.tire_together(clocks[0].step, work):
         return False
     spent = clocks[0].effort
     together.forget_together(system, held, now, clocks, work, islands)
-    if plain:
-        clocks[0].plain = 1
-    else:
-        clocks[0].whole += 1
+    clocks[0].whole += 1
     clocks[0].credit = max(0.0, clocks[0].credit - spent)
     return True
 
@@ -239,23 +242,20 @@ def _all_lost(islands, system, controls, code, held, now, clocks, work):
 def _island_lost(islands, system, controls, code, held, now, clocks, work):
     """Go back to the start of the step; return whether it is to be done again.
 
-    With more room for bodies that have left theirs; bounces dropped without friction where that gave energy;
-    with islands as heaps where one could not go from event to event.
+    With more room for bodies that have left theirs; with islands as heaps where one could not go from event
+    to event.
     """
-    wider, plain = code == r.STRAYED, code == r.OVERPAID
-    if code >= r.FULL and not wider and not plain:
+    if code >= r.FULL and code != r.STRAYED:
         return False  # the caller sees to it, and comes back
-    again = wider or plain
-    if wider:
+    again = code == r.STRAYED
+    if again:
         islands.plan[0].widen *= 2.0
-    elif controls.hold == 1 and not plain:
+    elif controls.hold == 1:
         again = parts.tire(islands, clocks[0].step, work)
     spent = clocks[0].effort
     parts.forget_step(held, clocks, islands)
     clocks[0].credit = max(0.0, clocks[0].credit - spent)
-    if plain:
-        clocks[0].plain = 1
-    elif again and not wider:
+    if again and code != r.STRAYED:
         clocks[0].whole += 1
     return again
 

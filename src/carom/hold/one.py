@@ -78,7 +78,7 @@ def begin_hold(system, contact, hold, state, stop, a, horizon, work, clock):
     Slip has stopped when all of it is below `stop` (or round-off). Returns False if a contact that was
     to settle goes on slipping. Else, where slip lasts under the acceleration `a` as long as the bounces that
     are dropped, t = 2 u_n/(g (1 - e)), friction goes with what pulls u_n out: over them the normal impulse is
-    (g t - u_n)/k, over as long a hold g t/k. Not where the step is done again for that (`clock.plain`).
+    (g t - u_n)/k, over as long a hold g t/k.
     """
     point, still = work.point[0], slow(contact, state)
     place_held(system, hold, state, point, work)
@@ -95,10 +95,12 @@ def begin_hold(system, contact, hold, state, stop, a, horizon, work, clock):
         n, t1, t2 = stick_force(W, u[0], u[1], u[2])
         s1, s2 = 0.0, 0.0
     hold.mode = STICK if stops else SLIP
-    bounces = hold.mode == SLIP and u[0] > still and clock.plain == 0
-    if bounces and lasts(W, a, u, contact.friction, horizon):
-        n, t1, t2 = slip_force(W, u[0], u[1], u[2], u[1], u[2], contact.friction)
-        s1, s2 = u[1] + moved(W, 1, n, t1, t2), u[2] + moved(W, 2, n, t1, t2)
+    if hold.mode == SLIP and lasts(W, a, u, contact.friction, horizon):
+        f = slip_force(W, u[0], u[1], u[2], u[1], u[2], contact.friction)
+        r1, r2 = u[1] + moved(W, 1, f[0], f[1], f[2]), u[2] + moved(W, 2, f[0], f[1], f[2])
+        if 0.5 * (f[0] * u[0] + f[1] * (u[1] + r1) + f[2] * (u[2] + r2)) <= spare(clock):
+            n, t1, t2 = f
+            s1, s2 = r1, r2
     spread(system, point, state, n, t1, t2, work)
     add_velocity(system, point, work, state)
     if not alone(system, point):
@@ -109,11 +111,17 @@ def begin_hold(system, contact, hold, state, stop, a, horizon, work, clock):
 
 
 @kernel
+def spare(clock):
+    """Return what dropped bounces may give: what the impacts of the step have taken, less what is owed."""
+    return max(0.0, clock.before - clock.impacts - clock.owed)
+
+
+@kernel
 def name_work(normal, tangential, clock):
     """Put the work of what takes bounces out into the ledger.
 
-    Where that is a gain it is friction's: less than what the hold takes until the bounces would have ended,
-    which it owes until then.
+    Where that is a gain it is friction's: less than what the hold takes until the bounces would have ended. Until
+    then it is owed (`carom.march.settle_up`).
     """
     if normal + tangential <= 0.0:
         clock.bounces += normal + tangential

@@ -10,7 +10,7 @@ from carom.contact.groups import members
 from carom.coulomb.layout import CONE, SLIDING
 from carom.hold.forces import pose_forces, solve_forces, take_forces, time_to_stop
 from carom.hold.jam import jams_among, note_jam
-from carom.hold.one import bounces_end, name_work
+from carom.hold.one import bounces_end, name_work, spare
 from carom.hold.roster import enlist, strike_off
 from carom.jit import kernel
 from carom.motion.acceleration import SLIP, STICK
@@ -111,23 +111,14 @@ def drop_bounces(system, controls, k, group, state, horizon, cluster, work, cloc
         still = max(still, controls.rest * controls.step * abs(cluster.v[C][i]))
     for i in range(k):
         cluster.seats[i].stopped = 0 if time_to_stop(i, cluster) > horizon else 1
-    friction = 1 if leaves(system, k, state, cluster) and clock.plain == 0 else 0
-    find_pull(k, friction, cluster)
-    x, u, W = cluster.v[OLD], cluster.v[U], cluster.m[0]
-    normal, tangential = 0.0, 0.0
-    for i in range(3 * k):
-        if x[i] == 0.0:
-            continue
-        after = 0.0
-        if not stops(cluster, i):
-            after = u[i]
-            for j in range(3 * k):
-                after += W[i, j] * x[j]
-        # work of the impulse: half of it times the sum of the velocities before and after
-        if i % 3 > 0 and not stops(cluster, i):
-            tangential += 0.5 * x[i] * (u[i] + after)
-        else:
-            normal += 0.5 * x[i] * (u[i] + after)
+    x = cluster.v[OLD]
+    find_pull(k, 1, cluster)
+    normal, tangential = work_of_pull(k, cluster)
+    if not normal + tangential <= spare(
+        clock
+    ):  # points that are next to each other push each other out
+        find_pull(k, 0, cluster)
+        normal, tangential = work_of_pull(k, cluster)
     name_work(normal, tangential, clock)
     for i in range(k):
         n, t1, t2 = x[3 * i], x[3 * i + 1], x[3 * i + 2]
@@ -144,13 +135,23 @@ def drop_bounces(system, controls, k, group, state, horizon, cluster, work, cloc
 
 
 @kernel
-def leaves(system, k, state, cluster):
-    """Return whether a point that stays bounces still."""
-    for i in range(k):
-        contact = system.contacts[cluster.seats[i].contact]
-        if cluster.seats[i].stays == 1 and cluster.v[U][3 * i] > slow(contact, state):
-            return True
-    return False
+def work_of_pull(k, cluster):
+    """Return the work of the impulses in `old`: half of each times its velocities before and after."""
+    x, u, W = cluster.v[OLD], cluster.v[U], cluster.m[0]
+    normal, tangential = 0.0, 0.0
+    for i in range(3 * k):
+        if x[i] == 0.0:
+            continue
+        after = 0.0
+        if not stops(cluster, i):
+            after = u[i]
+            for j in range(3 * k):
+                after += W[i, j] * x[j]
+        if i % 3 > 0 and not stops(cluster, i):
+            tangential += 0.5 * x[i] * (u[i] + after)
+        else:
+            normal += 0.5 * x[i] * (u[i] + after)
+    return normal, tangential
 
 
 @kernel

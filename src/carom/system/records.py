@@ -43,11 +43,8 @@ CLOCK = [
     ("length", "f8"),
     ("ahead", "f8"),
     *LEDGER,
-    (
-        "owed",
-        "f8",
-    ),  # what the dropping of bounces gave in this step, and friction has not taken back
-    ("plain", "i8"),  # 1 in a step in which they are dropped without friction
+    ("before", "f8"),  # line of the impacts when the step began
+    ("owed", "f8"),  # what friction gave since, as bounces were dropped, and has not taken back
     ("step", "i8"),  # finished steps
     ("saved", "i8"),
     ("struck", "i8"),
@@ -146,7 +143,6 @@ NEEDS_HEAP = 104  # an island is a heap: the caller compiles its step and goes o
 NEEDS_SPOTS = 105  # more points may touch in a heap than there is room for: the caller makes more
 NEEDS_ROWS = 107  # more steps are to be saved than there is room for: the same
 STRAYED = 106  # a body has left the ball that its island gave it
-OVERPAID = 109  # friction has given energy: the step is done again, bounces dropped without it
 PAUSE = 108  # much was done: the caller looks for Ctrl-C and goes on
 
 LONG = 5e4  # work after which the loop is left for a moment, about [us]
