@@ -120,8 +120,8 @@ def spare(clock):
 def name_work(normal, tangential, clock):
     """Put the work of what takes bounces out into the ledger.
 
-    Where that is a gain it is friction's: less than what the hold takes until the bounces would have ended. Until
-    then it is owed (`carom.march.settle_up`).
+    Where that is a gain it is friction's: less than what the hold takes until the bounces would have ended, and
+    owed until then (`carom.march.settle_up`).
     """
     if normal + tangential <= 0.0:
         clock.bounces += normal + tangential
