@@ -20,7 +20,8 @@ class Ledger:
     loads
         Work of forces and torques without potential, of dampers (negative), and of motors.
     impacts
-        Change by impacts: not above zero, but where Newton's law with friction gives energy.
+        Change by impacts: not above zero, but where Newton's law with friction gives energy. Friction takes
+        less in impacts and bounces together than in the impacts alone where these bounces are not resolved.
     friction
         Work of friction in held contacts, not above zero.
     bounces

@@ -546,5 +546,6 @@ def accept(now, end, tau, applied, friction, begin, clock):
     clock.now = begin + clock.spent
     clock.loads += applied
     clock.friction += friction
+    clock.owed = max(0.0, clock.owed + friction)
     if clock.now > before:
         clock.at_once = 0

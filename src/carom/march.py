@@ -65,9 +65,10 @@ def run(
             return r.FULL
         end(islands, system, held, now, length, clock, work)
         clock.spent = 0.0
+        settle_up(clock)
         clock.step += 1
         clock.in_step = 0
-        clock.credit = min(r.SAVED, clock.credit + r.EACH)
+        earn(now, clock, work)
         clock.now = begin + length
         clock.still = min(clock.still, clock.now) if still(now) else math.inf
         last = clock.step == controls.last
@@ -79,6 +80,28 @@ def run(
         if clock.step % controls.save_every == 0 or last:
             save(system, held, now, clock, work, records)
     return 0
+
+
+@kernel
+def settle_up(clock):
+    """Put down to the impacts of a step what friction gave as bounces were dropped, and has not taken back.
+
+    Impacts, bounces and hold together have mu times their normal impulse of friction: where the hold ends early
+    it is the impacts that took less.
+    """
+    part = min(clock.owed, max(0.0, clock.before - clock.impacts))
+    clock.impacts += part
+    clock.friction -= part
+    clock.owed = 0.0
+
+
+@kernel
+def earn(now, clock, work):
+    """Note that later steps may take more work, as this one was allowed some: not where it was given up."""
+    for b in range(now.shape[0]):
+        if work.body[b].whole_until >= clock.step:
+            return
+    clock.credit = min(min(r.SAVED, r.OWN * now.shape[0]), clock.credit + r.EACH)
 
 
 @kernel

@@ -30,3 +30,12 @@ def test_piles_end_and_lose_nothing_without_a_name(first):
         assert found.reached == 1.0, seed
         assert found.depth <= 1e-5, seed
         assert found.residual <= 1e-3 or found.warned, seed
+
+
+@pytest.mark.parametrize("seed", [1266, 201976, 204977])
+def test_a_rim_that_becomes_flat_gives_no_energy(seed):
+    # Forces grow without bound there: the shortest step gained up to 6 times what the run exchanged.
+    found = run(throws.case(seed))
+    assert found.status == "SUCCESS"
+    assert found.residual <= 1e-4
+    assert found.gained <= 1e-6

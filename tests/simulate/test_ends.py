@@ -64,6 +64,35 @@ def test_a_plate_that_rattles_ends(law, e, mu):
     assert whole > 0
 
 
+CAPSULE, CYLINDER = carom.Capsule(0.005, 0.03), carom.Cylinder(0.01, 0.03)
+
+
+@pytest.mark.parametrize(
+    ("shape", "spin", "angle", "e", "mu"),
+    [
+        (CAPSULE, (0, 80.0, 799.7), 1.298, 0.0, 0.4),
+        (CAPSULE, (0, 56.2, 561.9), 1.569, 0.0, 1.0),
+        (CAPSULE, (678.6, 0, 0), 1.474, 0.3, 0.1),
+        (CYLINDER, (0, 122.6, 408.7), 1.513, 0.0, 0.4),
+        (CYLINDER, (0, 35.7, 119.0), 1.547, 0.3, 1.0),
+    ],
+)
+def test_a_body_that_turns_far_within_a_piece_gains_nothing(shape, spin, angle, e, mu):
+    """It spins nearly flat on a floor; what the return to the floor would give it has been up to 0.3 of all."""
+    body = {
+        "shape": shape, "mass": 0.1, "position": (0, 0, 0.022), "velocity": (0.5, 0.2, -0.3),
+        "orientation": turn((0, 1, 0), angle), "angular_velocity": spin,
+    }  # fmt: skip
+    scene = on_plane(body, gravity=(0, 0, -G), contact={"restitution": e, "friction": mu})
+    s = carom.simulate(scene, 0.2, step=5e-3, options=SOON)
+    assert s.stats["whole_steps"] > 0
+    start = np.max(s.kinetic_energy)
+    for line in (s.ledger.friction, s.ledger.bounces, s.ledger.impacts):
+        assert np.all(np.diff(line) <= 1e-12 * start)
+    # what is left is of steps that are not taken whole
+    np.testing.assert_allclose(s.ledger.residual, 0.0, atol=1e-6 * start)
+
+
 def test_an_impact_that_cannot_be_excluded():
     """A cube spins a hair above the plane, and two halvings cannot exclude a touch: it goes on as it is."""
     cube = {

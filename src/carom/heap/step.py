@@ -160,7 +160,9 @@ def move_on(
         if n < controls.heap:  # alone it gains nothing beside what is named, a group nothing at all
             most = named if n == 1 else 0.0
             gained -= take_out(system, gained - most, heap.flight, work.trial)
-        take_over(gained - named, impacts, friction, bounces, clock)
+        left = take_over(gained - named, impacts, friction, bounces, clock)
+        if n == 1:
+            slow_down(system, left, work.trial[0])
     for b in range(n):
         keep(work.trial[b], now[b])
     return 0
@@ -227,19 +229,36 @@ def moves(state):
 
 @kernel
 def take_over(gained, impacts, friction, bounces, clock):
-    """Put what is left without a name into the lines of a piece that began with these: none rises by it.
+    """Put what has no name into the lines of a piece that began with these: none rises by it; return the rest.
 
     A body that stops within a piece comes back to the surface from where it would have sunk to: its impact has
     taken less.
     """
     if gained < 0.0:
         clock.bounces += gained
-        return
+        return 0.0
     part = min(gained, impacts - clock.impacts)
     clock.impacts += part
-    rest = min(gained - part, bounces - clock.bounces)
-    clock.bounces += rest
-    clock.friction += min(gained - part - rest, friction - clock.friction)
+    other = min(gained - part, bounces - clock.bounces)
+    clock.bounces += other
+    last = min(gained - part - other, friction - clock.friction)
+    clock.friction += last
+    return gained - part - other - last
+
+
+@kernel
+def slow_down(system, gained, end):
+    """Take energy out of the motion of a body, all of it by one factor: points keep sticking and sliding so.
+
+    What a body gains that turns far within a piece, as it comes back to the surface.
+    """
+    energy = kinetic(system.bodies[0], end)
+    if not gained > 0.0 or not energy > 0.0:
+        return
+    factor = math.sqrt(max(0.0, 1.0 - gained / energy))
+    for j in range(3):
+        end.v[j] *= factor
+        end.w[j] *= factor
 
 
 @kernel

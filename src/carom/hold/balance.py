@@ -32,8 +32,10 @@ UNSOLVED, USELESS = 0.01, 10.0
 POORLY = 10.0
 # of the step: what is no longer is cut no more, for what it loses and for a solution
 SHORTEST, RETRIED = 1e-4, 1e-2
-# what is so many times more than may be lost, in a step that is cut no more, is not lost by its length
-WILD = 100.0
+# what is so many times more than may be lost, in a step that is cut no more, is not lost by its length: where a
+# force grows without bound (near a jam, or as a rim becomes flat) no step is short enough, and it is taken
+# whole in the end. Of groups, and of one body
+WILD, GROSS = 100.0, 1e4
 # how much more work a step may take where it cannot be taken whole: in parts, or not in another way
 PATIENCE = 10.0
 
@@ -128,22 +130,26 @@ def too_long(system, controls, held, start, end, dt, friction, careful, late, wo
 
     The latter not where events wait for the end of a part of the step (`late`).
     """
-    if held.count[0] == 0 or dt <= SHORTEST * controls.step:
+    if held.count[0] == 0:
         return False
     if dt > RETRIED * controls.step and unsolved(system, controls, work, UNSOLVED):
         return True
     if late:
         return False
-    if turns_far(system, held, start, end, dt):
+    shortest = dt <= SHORTEST * controls.step
+    if not shortest and turns_far(system, held, start, end, dt):
         return True
     result = work.result[0]
-    result.unnamed = max(result.unnamed, unnamed_alone(system, start, end, friction, work))
-    return result.unnamed > (CAREFUL if careful else 1.0)
+    alone = unnamed_alone(system, start, end, friction, work)
+    if shortest:
+        return not (alone <= GROSS)
+    result.unnamed = max(result.unnamed, alone)
+    return not (result.unnamed <= (CAREFUL if careful else 1.0))
 
 
 @inlined
 def goes_wild(work):
-    """Return whether a step that was cut as far as it may be loses a lot all the same."""
+    """Return whether a step of a group that was cut as far as it may be loses a lot all the same."""
     return work.result[0].unnamed > WILD
 
 

@@ -102,7 +102,8 @@ def begin_hold(system, contact, hold, state, stop, a, horizon, work, clock):
     if hold.mode == SLIP and yields(W, contact.friction, u[1], u[2]) > 0.0:
         f, f1, f2 = slip_force(W, u[0], u[1], u[2], u[1], u[2], contact.friction)
         v1, v2 = u[1] + moved(W, 1, f, f1, f2), u[2] + moved(W, 2, f, f1, f2)
-        if lasts(W, a, u, v1, v2, contact.friction, horizon):
+        given = 0.5 * (f * u[0] + f1 * (u[1] + v1) + f2 * (u[2] + v2))
+        if given <= spare(clock) and lasts(W, a, u, v1, v2, contact.friction, horizon):
             n, t1, t2, s1, s2 = f, f1, f2, v1, v2
     spread(system, point, state, n, t1, t2, work)
     add_velocity(system, point, work, state)
@@ -114,16 +115,24 @@ def begin_hold(system, contact, hold, state, stop, a, horizon, work, clock):
 
 
 @kernel
+def spare(clock):
+    """Return what dropped bounces may give: what the impacts of the step have taken, less what is owed."""
+    return max(0.0, clock.before - clock.impacts - clock.owed)
+
+
+@kernel
 def name_work(normal, tangential, clock):
     """Put the work of what takes bounces out into the ledger.
 
-    Where that is a gain it is friction's: less than what the hold takes until the bounces would have ended.
+    Where that is a gain it is friction's: less than what the hold takes until the bounces would have ended, and
+    owed until then (`carom.march.settle_up`).
     """
     if normal + tangential <= 0.0:
         clock.bounces += normal + tangential
     else:
         clock.bounces += normal
         clock.friction += tangential
+        clock.owed += tangential
 
 
 @kernel

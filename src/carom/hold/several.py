@@ -10,7 +10,7 @@ from carom.contact.groups import members
 from carom.coulomb.layout import CONE, SLIDING
 from carom.hold.forces import pose_forces, solve_forces, take_forces, time_to_stop
 from carom.hold.jam import jams_among, note_jam
-from carom.hold.one import bounces_end, name_work
+from carom.hold.one import bounces_end, name_work, spare
 from carom.hold.roster import enlist, set_anchor, strike_off
 from carom.jit import kernel
 from carom.motion.acceleration import SLIP, STICK
@@ -111,22 +111,14 @@ def drop_bounces(system, controls, k, group, state, horizon, cluster, work, cloc
         still = max(still, controls.rest * controls.step * abs(cluster.v[C][i]))
     for i in range(k):
         cluster.seats[i].stopped = 0 if time_to_stop(i, cluster) > horizon else 1
-    find_pull(k, cluster)
-    x, u, W = cluster.v[OLD], cluster.v[U], cluster.m[0]
-    normal, tangential = 0.0, 0.0
-    for i in range(3 * k):
-        if x[i] == 0.0:
-            continue
-        after = 0.0
-        if not stops(cluster, i):
-            after = u[i]
-            for j in range(3 * k):
-                after += W[i, j] * x[j]
-        # work of the impulse: half of it times the sum of the velocities before and after
-        if i % 3 > 0 and not stops(cluster, i):
-            tangential += 0.5 * x[i] * (u[i] + after)
-        else:
-            normal += 0.5 * x[i] * (u[i] + after)
+    x = cluster.v[OLD]
+    find_pull(k, 1, cluster)
+    normal, tangential = work_of_pull(k, cluster)
+    if not normal + tangential <= spare(
+        clock
+    ):  # points that are next to each other push each other out
+        find_pull(k, 0, cluster)
+        normal, tangential = work_of_pull(k, cluster)
     name_work(normal, tangential, clock)
     for i in range(k):
         n, t1, t2 = x[3 * i], x[3 * i + 1], x[3 * i + 2]
@@ -143,8 +135,28 @@ def drop_bounces(system, controls, k, group, state, horizon, cluster, work, cloc
 
 
 @kernel
-def find_pull(k, cluster):
-    """Write the impulses that take the velocities out into `old`: with friction, if rounds find that."""
+def work_of_pull(k, cluster):
+    """Return the work of the impulses in `old`: half of each times its velocities before and after."""
+    x, u, W = cluster.v[OLD], cluster.v[U], cluster.m[0]
+    normal, tangential = 0.0, 0.0
+    for i in range(3 * k):
+        if x[i] == 0.0:
+            continue
+        after = 0.0
+        if not stops(cluster, i):
+            after = u[i]
+            for j in range(3 * k):
+                after += W[i, j] * x[j]
+        if i % 3 > 0 and not stops(cluster, i):
+            tangential += 0.5 * x[i] * (u[i] + after)
+        else:
+            normal += 0.5 * x[i] * (u[i] + after)
+    return normal, tangential
+
+
+@kernel
+def find_pull(k, friction, cluster):
+    """Write the impulses that take the velocities out into `old`: with friction (1), if rounds find that."""
     n, L, x, last = 3 * k, cluster.m[1], cluster.v[OLD], cluster.v[P]
     for i in range(n):
         for j in range(n):
@@ -152,7 +164,7 @@ def find_pull(k, cluster):
             L[i, j] = cluster.m[0][i, j] if both else 1.0 if i == j else 0.0
     factor(n, DROP, L)
     first = 0.0
-    for with_friction in range(1, -1, -1):
+    for with_friction in range(friction, -1, -1):
         for i in range(n):
             last[i] = 0.0
         before = math.inf
@@ -231,8 +243,6 @@ def set_modes(system, held, k, state, cluster, work, clock, records):
             set_anchor(system, hold, state, work)
         if hold.mode != mode:
             hold.mode = mode
-            if mode == STICK:
-                set_anchor(system, hold, state, work)
             begin_event(system, seat.contact, seat.feature, state, clock, records)
             end_event(system, SLIPS if mode == SLIP else STICKS, state, clock, records)
 

@@ -18,7 +18,7 @@ from carom.system.records import NEEDS_CORNER
 
 IMPACT_FAILED = 6
 SEED = 1e-7  # of the slip
-STEP = 10.0  # cost of a step through the layers, of a point [us]
+STEP = 30.0  # cost of a step through the layers, of a point [us]
 
 
 @unit

@@ -44,6 +44,7 @@ def begin_step(system, held, now, length, clocks, work, islands):
             islands.points[1, plan.kept] = held.points[i]
             plan.kept += 1
     plan.at, plan.entered, plan.planned = 0, 0, 1
+    clocks[0].before = clocks[0].impacts
     islands.clock[0] = clocks[0]
     return True
 

@@ -17,6 +17,7 @@ def begin_together(system, held, now, clocks, islands):
         return
     clock = clocks[0]
     clock.first_touch, clock.tries, clock.effort = 0, 0, 0.0
+    clock.before = clock.impacts
     if held.brinks.shape[0] == 0:
         return
     for c in range(held.brinks.shape[0]):

@@ -45,6 +45,8 @@ CLOCK = [
     ("ahead", "f8"),
     *ENERGIES,
     *LEDGER,
+    ("before", "f8"),  # line of the impacts when the step began
+    ("owed", "f8"),  # what friction gave since, as bounces were dropped, and has not taken back
     ("step", "i8"),  # finished steps
     ("saved", "i8"),
     ("struck", "i8"),
@@ -146,8 +148,9 @@ STRAYED = 106  # a body has left the ball that its island gave it
 PAUSE = 108  # much was done: the caller looks for Ctrl-C and goes on
 
 LONG = 5e4  # work after which the loop is left for a moment, about [us]
-# work for contacts, about [us]: what a step may take on the average, and one after others that took less
-EACH, SAVED = 1e4, 1e6
+# work for contacts, about [us]: what a step may take on the average, one after others that took less, and that
+# as many times as there are bodies
+EACH, SAVED, OWN = 1e4, 1e6, 2e5
 
 
 class Records(NamedTuple):
