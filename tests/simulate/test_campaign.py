@@ -1,8 +1,8 @@
-"""A short form of `benchmarks/campaign.py`: every kind of shape, law and step, thrown on a floor; piles."""
+"""A short form of `benchmarks/campaign.py`: every kind of shape, law and step, thrown on a floor."""
 
 import pytest
 
-from campaigns import piles, throws
+from campaigns import throws
 from campaigns.case import run
 
 
@@ -18,15 +18,3 @@ def test_throws_end_and_lose_nothing_without_a_name(first):
         assert found.depth <= 1e-9, seed
         assert found.residual <= 1e-3 or found.warned, seed
         assert found.gained <= 1e-2, seed
-
-
-@pytest.mark.processors
-@pytest.mark.parametrize("first", range(3000, 3048, 12))
-def test_piles_end_and_lose_nothing_without_a_name(first):
-    # Bounds far above what 300 others met (residual 2e-4, depth 1e-9), as these are chaotic too.
-    for seed in range(first, first + 12):
-        found = run(piles.case(seed))
-        assert found.status in ("SUCCESS", "INACCURATE"), seed
-        assert found.reached == 1.0, seed
-        assert found.depth <= 1e-5, seed
-        assert found.residual <= 1e-3 or found.warned, seed
