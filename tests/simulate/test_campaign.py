@@ -1,8 +1,8 @@
-"""A short form of `benchmarks/campaign.py`: every kind of shape, law and step, thrown on a floor; piles."""
+"""A short form of `benchmarks/campaign.py`: every kind of shape, law and step, thrown on a floor."""
 
 import pytest
 
-from campaigns import piles, throws
+from campaigns import throws
 from campaigns.case import run
 
 
