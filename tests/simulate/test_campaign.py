@@ -2,7 +2,7 @@
 
 import pytest
 
-from campaigns import throws
+from campaigns import piles, throws
 from campaigns.case import run
 
 
