@@ -256,7 +256,8 @@ def test_json_has_no_nan(capsys):
 def test_warmup_knows_contact_that_stays():
     """Bodies come to rest in each, and one is a heap."""
     for kind, (scene, duration) in warmup.contact_scenes().items():
-        solution = carom.simulate(scene, duration, step=5e-3, throw=False)  # too long for the heap
+        rough = carom.Options(energy_tolerance=0.01)  # the step is too long for the heap
+        solution = carom.simulate(scene, duration, step=5e-3, throw=False, options=rough)
         assert solution.stats["holds"] > 0 or kind == "heap"
         assert np.max(np.abs(solution.velocity[-1])) < 1e-3
 
