@@ -41,7 +41,7 @@ def test_dropped_tilted_it_comes_to_rest_flat_or_on_its_side(length, tilt, heigh
     s = on_ground(shape, 1.2, 1e-3, position=(0, 0, 0.25), orientation=turn)
     assert np.all(s.velocity[-1] == 0.0)
     assert np.all(s.angular_velocity[-1] == 0.0)
-    # a rim that strikes flat may cost more work than a step is allowed; taken whole, gaps close to 1e-6 of the size
+    # a rim that strikes flat may cost more work than a step may take; whole, gaps close to 1e-6 of the size
     assert s.position[-1, 0, 2] == pytest.approx(height, abs=1e-6 * R)
     assert s.contact_force[-1, 0] == pytest.approx([G, 0, 0], abs=1e-9)
     assert np.min(gaps(shape, s)) > -1e-9
@@ -56,7 +56,7 @@ def test_a_puck_that_wobbles_comes_to_rest():
     turn = quaternion.exp(0.1 * np.array([np.sin(0.2), np.cos(0.2), 0]))
     s = on_ground(shape, 0.6, 1e-3, position=(0, 0, 0.25), orientation=turn)
     assert np.all(s.velocity[-1] == 0.0)
-    # a rim that strikes flat may cost more work than a step is allowed; taken whole, gaps close to 1e-6 of the size
+    # a rim that strikes flat may cost more work than a step may take; whole, gaps close to 1e-6 of the size
     assert s.position[-1, 0, 2] == pytest.approx(0.02, abs=1e-6 * R)
     assert np.min(gaps(shape, s)) > -1e-9
     assert np.max(np.abs(s.ledger.residual)) < 1e-4 * s.total_energy[0]
