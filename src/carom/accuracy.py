@@ -1,14 +1,17 @@
-"""What is said of a run whose balance of energy is off."""
+"""What is said of a run whose balance of energy is off, or in which a body gets into a surface."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from carom.geometry import quaternion
 from carom.ledger import Ledger
 from carom.status import Status
 from carom.watch import ALL, BOUNCES, FRICTION, IMPACTS, RESIDUAL, ROUND_OFF, new_watch
 
 INACCURATE = 100.0  # times the tolerance: what is no success any more
+DEEP, TOO_DEEP = 1e-8, 1e-4  # parts of its size that a body is in a surface: said, and no success
+VERTICES = 0  # a contact of the vertices of a body
 
 _WHAT = {
     RESIDUAL: (
@@ -48,6 +51,41 @@ def sentences(watch: np.record) -> tuple[str, ...]:
     if not kinds and beyond(ALL, watch):
         kinds = [ALL]
     return tuple(_sentence(i, watch) for i in kinds)
+
+
+def deepest(run) -> tuple[float, float]:
+    """Return how far a body of vertices is in a half-space at a saved time, as a part of its size, and when.
+
+    Only steps that were taken whole or in parts may end so.
+    """
+    rec, clock, most = run.records, run.clock[0], (0.0, 0.0)
+    if clock.whole == 0:
+        return most
+    state, vertices = rec.state[: clock.saved], run.compiled.system.vertices
+    for contact in run.compiled.system.contacts:
+        if contact.touches != VERTICES or contact.other >= 0:
+            continue
+        body, normal = state[:, contact.body], contact.axes[0]
+        down = quaternion.rotate_back(body["Q"], normal)
+        gap = body["x"] @ normal - contact.offset - contact.radius
+        lowest = np.full(len(gap), np.inf)
+        for point in vertices[contact.first : contact.last]:
+            lowest = np.minimum(lowest, down @ point)
+        k = int(np.argmin(gap + lowest))
+        depth = -float(gap[k] + lowest[k]) / float(contact.extent)
+        if depth > most[0]:
+            most = depth, float(rec.series.t[k])
+    return most
+
+
+def of_depth(depth: float, when: float) -> tuple[str, ...]:
+    """Return what is said of it."""
+    if depth <= DEEP:
+        return ()
+    return (
+        f"A body is in the surface that it touches by {depth:.2g} of its size at t = {when:.6g} s, where "
+        "events followed each other too fast to be located. Take a smaller step.",
+    )
 
 
 def _sentence(i: int, watch: np.record) -> str:

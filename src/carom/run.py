@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from carom import loop, march, save
-from carom.accuracy import judge
+from carom.accuracy import TOO_DEEP, deepest, judge
 from carom.addresses import Addresses
 from carom.contact.stop import write_stop_gaps
 from carom.coulomb.newton import newton_unit
@@ -332,8 +332,11 @@ class Run:
                 return Status(code)
 
     def judged(self, status: Status) -> Status:
-        """Return how the run ended, with its balance of energy."""
-        return judge(self.watch[0]) if status is Status.SUCCESS else status
+        """Return how the run ended, with its balance of energy and its gaps."""
+        if status is Status.SUCCESS:
+            status = judge(self.watch[0])
+        deep = status is Status.SUCCESS and deepest(self)[0] > TOO_DEEP
+        return Status.INACCURATE if deep else status
 
     def go_back(self) -> None:
         """Go back to the start of a step in the middle of which the run was interrupted."""

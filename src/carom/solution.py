@@ -58,7 +58,8 @@ class Solution(Portable, Drawn):
     status : Status
         How the run ended; `success` and `message` say it shorter and longer.
     warnings : tuple of str
-        What has gone beyond `Options.energy_tolerance`: when, how much, what to change. Empty if all is well.
+        What has gone beyond `Options.energy_tolerance`, and bodies that are in a surface: when, how much, what
+        to change. Empty if all is well.
     stats : dict
         Counts: steps, trial steps, rejected ones (``step="auto"``), cuts, located events, impacts, holds;
         steps of held points and their rounds (of a heap: sweeps); `explicit_steps`, those that a symplectic

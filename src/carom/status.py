@@ -82,7 +82,8 @@ _MESSAGES = {
     ),
     Status.INACCURATE: (
         "The run reached its end, but its energy is off by more than a hundred times "
-        "Options.energy_tolerance. The solution is whole; do not trust it before a smaller step agrees."
+        "Options.energy_tolerance, or a body is in a surface by more than 1e-4 of its size. The solution is "
+        "whole; do not trust it before a smaller step agrees."
     ),
     Status.UNSTABLE: (
         "Each step, however short it was cut, gained as much energy as it exchanged: springs, dampers or loads "
@@ -93,7 +94,7 @@ _MESSAGES = {
 
 
 class AccuracyWarning(UserWarning):
-    """A run has energy without a name beyond `Options.energy_tolerance`; `Solution.warnings` says more."""
+    """A run has energy without a name, or a body in a surface; `Solution.warnings` says how much."""
 
 
 class SimulationError(RuntimeError):

@@ -7,7 +7,7 @@ import pytest
 
 import carom
 from carom import GROUND, Status, constraints, forces, joints
-from carom.accuracy import judge, sentences, watched
+from carom.accuracy import deepest, judge, of_depth, sentences, watched
 from carom.ledger import Ledger
 from simulate.scenes import G
 
@@ -269,3 +269,20 @@ def test_an_ensemble_has_it():
 def test_bad_tolerance(value):
     with pytest.raises(ValueError, match="energy_tolerance"):
         carom.Options(energy_tolerance=value)
+
+
+def test_a_body_in_a_surface_is_said():
+    # Only steps that are taken whole or in parts may end so: the state of one is put 1e-3 and 1e-6 deeper.
+    scene = carom.Scene(gravity=(0, 0, -G))
+    floor = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1))
+    box = scene.add_body(carom.Box(0.2, 0.2, 0.2), mass=1.0, position=(0, 0, 0.1))
+    scene.add_contact(box, floor)
+    for depth, status in ((1e-3, Status.INACCURATE), (1e-6, Status.SUCCESS), (0.0, Status.SUCCESS)):
+        run = carom.simulate(scene, 0.1, step=0.01)._run
+        run.records.state["x"][5, 0, 2] -= depth
+        assert deepest(run) == (0.0, 0.0)
+        run.clock["whole"] = 1
+        size = 0.1 * np.sqrt(3.0)
+        assert deepest(run) == (pytest.approx(depth / size, abs=1e-15), 0.05 if depth else 0.0)
+        assert run.judged(Status.SUCCESS) is status
+        assert bool(of_depth(*deepest(run))) == (depth > 0.0)
