@@ -97,14 +97,16 @@ def run(case: Case) -> Outcome:
 def exchanged(s: carom.Solution) -> float:
     """Return the largest energy exchanged [J]: kinetic, potential against the start, a line of the ledger.
 
-    Where nothing moves it is the round-off of the energies.
+    Where nothing moves it is the round-off of the energies, and of speeds: 1e-11 m in a step.
     """
     potential = s.potential_energy - s.potential_energy[0]
     largest = max(
         np.max(s.kinetic_energy), np.max(np.abs(potential)), np.max(np.abs(s.ledger.loads))
     )
     size = np.max(s.kinetic_energy + np.abs(s.potential_energy))
-    return max(float(largest), 1e-13 * float(size), 1e-300)
+    mass = sum(float(body.mass) for body in s.scene.bodies)
+    still = 0.5 * mass * (1e-11 / s.settings["step"]) ** 2
+    return max(float(largest), 1e-13 * float(size), still)
 
 
 def size(s: carom.Solution) -> float:
