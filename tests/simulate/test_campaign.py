@@ -9,21 +9,21 @@ from campaigns.case import run
 @pytest.mark.processors
 @pytest.mark.parametrize("first", range(2000, 2090, 15))
 def test_throws_end_and_lose_nothing_without_a_name(first):
-    # Bounds that 4673 others met, chaotic as they are: the end is reached, nothing sinks, and energy without a
-    # name beyond 1e-3 of what was exchanged is not kept silent.
+    # What 30 000 others met but one, chaotic as they are: the end is reached, nothing sinks, no line of the
+    # ledger rises, and no more than 1e-4 of what was exchanged has no name (3e-6 at most there).
     for seed in range(first, first + 15):
         found = run(throws.case(seed))
-        assert found.status in ("SUCCESS", "INACCURATE"), seed
+        assert found.status == "SUCCESS", seed
         assert found.reached == 1.0, seed
         assert found.depth <= 1e-9, seed
-        assert found.residual <= 1e-3 or found.warned, seed
-        assert found.gained <= 1e-2, seed
+        assert found.residual <= 1e-4, seed
+        assert found.gained <= 1e-6, seed
 
 
 @pytest.mark.processors
 @pytest.mark.parametrize("first", range(3000, 3048, 12))
 def test_piles_end_and_lose_nothing_without_a_name(first):
-    # Bounds far above what 300 others met (residual 2e-4, depth 1e-9), as these are chaotic too.
+    # Bounds far above what 1500 others met (8 beyond 1e-4 and 1e-9), as these are chaotic too.
     for seed in range(first, first + 12):
         found = run(piles.case(seed))
         assert found.status in ("SUCCESS", "INACCURATE"), seed
