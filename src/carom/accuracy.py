@@ -56,7 +56,7 @@ def sentences(watch: np.record) -> tuple[str, ...]:
 def deepest(run) -> tuple[float, float]:
     """Return how far a body of vertices is in a half-space at a saved time, as a part of its size, and when.
 
-    Only steps that were taken whole or in parts may end so.
+    Looked at where steps were taken whole or in parts; elsewhere it is rare, and small.
     """
     rec, clock, most = run.records, run.clock[0], (0.0, 0.0)
     if clock.whole == 0:
@@ -79,7 +79,7 @@ def deepest(run) -> tuple[float, float]:
 
 
 def of_depth(depth: float, when: float) -> tuple[str, ...]:
-    """Return what is said of it."""
+    """Return the sentence about a body that is so far in a surface; none up to `DEEP`."""
     if depth <= DEEP:
         return ()
     return (

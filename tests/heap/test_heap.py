@@ -213,5 +213,5 @@ def test_a_step_that_does_not_get_on_is_taken_whole():
     assert s.status is carom.Status.SUCCESS
     assert s.stats["whole_steps"] > 0
     allowed = carom.Options(energy_tolerance=0.02)  # a heap of order 1
-    # hardly ever without that: a step in a hundred may lose too much at any length
+    # hardly ever without that
     assert carom.simulate(scene, 0.1, step=1e-3, options=allowed).stats["whole_steps"] <= 1

@@ -272,7 +272,7 @@ def test_bad_tolerance(value):
 
 
 def test_a_body_in_a_surface_is_said():
-    # Only steps that are taken whole or in parts may end so: the state of one is put 1e-3 and 1e-6 deeper.
+    # Looked at where steps were taken whole or in parts: the state of one is put 1e-3 and 1e-6 deeper.
     scene = carom.Scene(gravity=(0, 0, -G))
     floor = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1))
     box = scene.add_body(carom.Box(0.2, 0.2, 0.2), mass=1.0, position=(0, 0, 0.1))
