@@ -1,17 +1,24 @@
-"""What is said of a run whose balance of energy is off, or in which a body gets into a surface."""
+"""What is said of a run whose balance of energy is off, or in which a body gets into what it touches."""
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
-from carom.geometry import quaternion
 from carom.ledger import Ledger
 from carom.status import Status
+from carom.system.contact_rows import touching_pairs
 from carom.watch import ALL, BOUNCES, FRICTION, IMPACTS, RESIDUAL, ROUND_OFF, new_watch
 
+if TYPE_CHECKING:
+    from carom.scene.scene import Scene
+
 INACCURATE = 100.0  # times the tolerance: what is no success any more
-DEEP, TOO_DEEP = 1e-8, 1e-4  # parts of its size that a body is in a surface: said, and no success
-VERTICES = 0  # a contact of the vertices of a body
+DEEP, TOO_DEEP = (
+    1e-8,
+    1e-4,
+)  # parts of its size that a body is in what it touches: said, and no success
 
 _WHAT = {
     RESIDUAL: (
@@ -41,50 +48,37 @@ def beyond(i: int, watch: np.record, times: float = 1.0) -> bool:
 
 
 def judge(watch: np.record) -> Status:
-    """Return whether a run that has reached its end has kept the balance of energy."""
-    return Status.INACCURATE if beyond(ALL, watch, INACCURATE) else Status.SUCCESS
+    """Return whether a run that has reached its end has kept the balance of energy, and its gaps."""
+    off = beyond(ALL, watch, INACCURATE) or not watch.depth <= TOO_DEEP
+    return Status.INACCURATE if off else Status.SUCCESS
 
 
-def sentences(watch: np.record) -> tuple[str, ...]:
-    """Return what has gone beyond `Options.energy_tolerance`: when, how much, and what to change."""
+def sentences(watch: np.record, scene: Scene | None = None) -> tuple[str, ...]:
+    """Return what has gone beyond `Options.energy_tolerance`, or into a surface: when, and what to change."""
     kinds = [i for i in (RESIDUAL, IMPACTS, FRICTION, BOUNCES) if beyond(i, watch)]
     if not kinds and beyond(ALL, watch):
         kinds = [ALL]
-    return tuple(_sentence(i, watch) for i in kinds)
+    deep = [_of_depth(watch, scene)] if scene is not None and watch.depth > DEEP else []
+    return (*(_sentence(i, watch) for i in kinds), *deep)
 
 
-def deepest(run) -> tuple[float, float]:
-    """Return how far a body of vertices is in a half-space at a saved time, as a part of its size, and when.
-
-    Looked at where steps were taken whole or in parts; elsewhere it is rare, and small.
-    """
-    rec, clock, most = run.records, run.clock[0], (0.0, 0.0)
-    if clock.whole == 0:
-        return most
-    state, vertices = rec.state[: clock.saved], run.compiled.system.vertices
-    for contact in run.compiled.system.contacts:
-        if contact.touches != VERTICES or contact.other >= 0:
-            continue
-        body, normal = state[:, contact.body], contact.axes[0]
-        down = quaternion.rotate_back(body["Q"], normal)
-        gap = body["x"] @ normal - contact.offset - contact.radius
-        lowest = np.full(len(gap), np.inf)
-        for point in vertices[contact.first : contact.last]:
-            lowest = np.minimum(lowest, down @ point)
-        k = int(np.argmin(gap + lowest))
-        depth = -float(gap[k] + lowest[k]) / float(contact.extent)
-        if depth > most[0]:
-            most = depth, float(rec.series.t[k])
-    return most
-
-
-def of_depth(depth: float, when: float) -> tuple[str, ...]:
-    """Return the sentence about a body that is so far in a surface; none up to `DEEP`."""
-    if depth <= DEEP:
-        return ()
+def _of_depth(watch: np.record, scene: Scene) -> str:
+    """Return the sentence about a body that is in what it touches."""
+    number, pairs = int(watch.deep_contact), touching_pairs(scene)
+    if number < len(pairs.body):
+        what, where = (
+            scene.bodies[pairs.body[number]].name,
+            scene.half_spaces[pairs.plane[number]].name,
+        )
+        if pairs.other[number] >= 0:
+            where = scene.bodies[pairs.other[number]].name
+        said = f"Body {what!r} is in {where!r} by {watch.depth:.2g} of its size"
+    else:
+        stop = scene.stops[number - len(pairs.body)]
+        said = f"Joint {stop.joint.name!r} is beyond its stop by {watch.depth:.2g} of the size of its body"
     return (
-        f"A body is in the surface that it touches by {depth:.2g} of its size at t = {when:.6g} s, where "
-        "events followed each other too fast to be located. Take a smaller step.",
+        f"{said} at t = {watch.deep_at:.6g} s: events follow each other too fast to be located. Take a "
+        "smaller step."
     )
 
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom.accuracy import deepest, of_depth, sentences
+from carom.accuracy import sentences
 from carom.columns import Columns
 from carom.geometry import quaternion
 from carom.impact.layout import WEDGED
@@ -45,7 +45,7 @@ def assemble(run, status: Status) -> dict:
         "angular_velocity": np.array(state["w"]),
         "held_residual": np.array(series["residual"]),
         "status": status,
-        "warnings": sentences(run.watch[0]) + of_depth(*deepest(run)),
+        "warnings": sentences(run.watch[0], run.scene),
         "stats": {
             "steps": clock["step"], "trial_steps": clock["trials"], "rejected": clock["rejected"],
             "cuts": clock["cuts"], "located": clock["located"], "impacts": clock["struck"],

@@ -37,7 +37,7 @@ from carom.hold.events import (
     residual,
     slides_on,
 )
-from carom.hold.jam import note_jam, presses
+from carom.hold.jam import JAMMED, note_jam, presses
 from carom.hold.joint_events import STOPS, review_joints, turn_joint
 from carom.hold.lifecycle import hold_contact, settle
 from carom.hold.margins import meet_due, note_due
@@ -204,7 +204,7 @@ def advance(
                 )
                 if search.active == 0 and dt > SHORTEST * controls.step:
                     loses = loses or turns_round(system, now, trial, dt)
-                if not loses and controls.order == 0 and search.active == 0:
+                if not loses and controls.order == 0:
                     loses, gains = off_balance(
                         system, controls, held, now, trial, applied + friction, dt, pace < math.inf,
                         clock, work, watch,
@@ -261,6 +261,8 @@ def advance(
                 continue
             if held.count[0] > 0 and controls.retry == 1 and goes_wild(work):
                 return NO_CONVERGENCE
+            if not finite(trial):
+                return NOT_FINITE
             accept(now, trial, dt, applied, friction, begin, clock)
             note_turns(system, now)
             pace = search.pace = next_pace(pace, work)
@@ -464,15 +466,19 @@ def off_balance(system, controls, held, start, end, named, dt, careful, clock, w
     """Return whether a step is to be cut for energy without a name, and how many gained energy in a row.
 
     The shortest are taken as they are, and the limit is made wider for those that come: round-off, or a force
-    that jumps, is not to cut all steps of a run.
+    that jumps, is not to cut all steps of a run. On the way to a jam forces have no bound: it is come to by
+    halves, however short.
     """
-    result = work.result[0]
+    result, search, shortest = work.result[0], work.search[0], dt <= SHORTEST * controls.step
+    jams = search.active == 1 and search.kind == JAM
+    if search.active == 1 and shortest and not jams:
+        return False, 0
     if held.count[0] == 0:
         result.unnamed = 0.0
     off, grows = imbalance(system, held, start, end, named, clock.now, dt, watch)
     result.unnamed = max(result.unnamed, off)
     cut = grows or off > (CAREFUL if careful else 1.0)
-    if cut and dt > SHORTEST * controls.step:
+    if (cut and not shortest) or (grows and jams):
         return True, 0
     if off > 1.0:
         watch.share *= WIDER
@@ -487,7 +493,8 @@ def change_mode(system, held, i, kind, now, work, clock, records):
         return SETTLE
     hold = held.points[i]
     if kind == JAM:
-        if presses(hold, held_value(system, hold, JAM, 0.0, 0.0, now, work)):
+        k = held_value(system, hold, JAM, 0.0, 0.0, now, work) + JAMMED * hold.W[0, 0]
+        if presses(hold, k):
             note_jam(held, hold)
             return NOTHING
         kind = SEPARATE

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 
+from carom.contact.depth import watch_depth
 from carom.dispatch import by_method
 from carom.heap.step import step_heap
 from carom.hold.roster import regroup
+from carom.impact.driven import BLOCKED
 from carom.islands import parts, together
 from carom.islands.layout import Islands, NoIslands
 from carom.jit import entry, inlined, kernel
-from carom.loop import NOT_FINITE, advance, is_whole, strayed
+from carom.loop import LOCATE, NOT_FINITE, advance, is_whole, strayed
 from carom.motion.adapt import begin_step
 from carom.references import refer
 from carom.save import finite, save, still
@@ -78,6 +80,8 @@ def run(
             return NOT_FINITE
         watch_step(system, now, clock, records, watch[0])
         if clock.step % controls.save_every == 0 or last:
+            if controls.location == LOCATE:
+                watch_depth(system, now, clock.now, work, watch[0])
             save(system, held, now, clock, work, records)
     return 0
 
@@ -225,7 +229,7 @@ def _leave_island(islands, own):
 @kernel
 def _all_lost(islands, system, controls, code, held, now, clocks, work):
     """Go back to the start of a step that could not be taken from event to event; return whether so."""
-    if code >= r.FULL or controls.retry == 0:
+    if code >= r.FULL or code == BLOCKED or controls.retry == 0:
         return False
     if not together.tire_together(clocks[0].step, work):
         return False

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from carom import loop, march, save
-from carom.accuracy import TOO_DEEP, deepest, judge
+from carom.accuracy import judge
 from carom.addresses import Addresses
 from carom.contact.stop import write_stop_gaps
 from carom.coulomb.newton import newton_unit
@@ -17,7 +17,7 @@ from carom.hold.press import press_unit
 from carom.impact.corner.layout import MULTIPLE, CornerSettings
 from carom.impact.strike import strike_unit
 from carom.impact.strike_several import corner_unit
-from carom.islands.layout import Islands, new_islands, no_islands, roomier
+from carom.islands.layout import Islands, has_events, new_islands, no_islands, roomier
 from carom.jit import address
 from carom.methods import FIRST, ORDERS, make_method, time_of_bounces
 from carom.motion.acceleration import acceleration_unit
@@ -112,7 +112,7 @@ class Run:
         located = self.settings["impact_location"] == "locate"
         apart = located and tolerances is None and not method.startswith("paper")
         self.islands = (new_islands if apart else no_islands)(system, self.held)
-        again = apart and options.hold and system.contacts.size > 0
+        again = apart and options.hold and has_events(system)
         whole = 1 if system.bodies["ballistic"].all() else 2
         self.controls = self.controls._replace(retry=whole if again else 0)
         self.cluster = new_cluster(system)
@@ -333,10 +333,7 @@ class Run:
 
     def judged(self, status: Status) -> Status:
         """Return how the run ended, with its balance of energy and its gaps."""
-        if status is Status.SUCCESS:
-            status = judge(self.watch[0])
-        deep = status is Status.SUCCESS and deepest(self)[0] > TOO_DEEP
-        return Status.INACCURATE if deep else status
+        return judge(self.watch[0]) if status is Status.SUCCESS else status
 
     def go_back(self) -> None:
         """Go back to the start of a step in the middle of which the run was interrupted."""

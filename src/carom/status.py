@@ -23,6 +23,7 @@ class Status(IntEnum):
     STEP_TOO_SMALL = 12
     INACCURATE = 13
     UNSTABLE = 14
+    BLOCKED = 15
 
     @property
     def ended(self) -> bool:
@@ -82,12 +83,16 @@ _MESSAGES = {
     ),
     Status.INACCURATE: (
         "The run reached its end, but its energy is off by more than a hundred times "
-        "Options.energy_tolerance, or a body is in a surface by more than 1e-4 of its size. The solution is "
-        "whole; do not trust it before a smaller step agrees."
+        "Options.energy_tolerance, or a body is in what it touches by more than 1e-4 of its size. The solution "
+        "is whole; do not trust it before a smaller step agrees."
     ),
     Status.UNSTABLE: (
         "Each step, however short it was cut, gained as much energy as it exchanged: springs, dampers or loads "
         'are too stiff for the step. Take a smaller step, or method="implicit".'
+    ),
+    Status.BLOCKED: (
+        "A driver moves a body into what it touches and leaves it no way to yield: no motion meets both. "
+        "Change the motion that is prescribed, or join the body by a spring or a joint that lets it yield."
     ),
     Status.INTERRUPTED: "The run was interrupted; the solution holds what was computed until then.",
 }

@@ -45,6 +45,9 @@ WATCH = [
     ("size", "f8"),  # of what the energies are made of, greatest
     ("amount", "f8", 5),  # greatest without a name, of each kind
     ("time", "f8", 5),  # and when
+    ("depth", "f8"),  # greatest of a contact at a saved time, by the size of the body
+    ("deep_at", "f8"),  # its time, and its contact
+    ("deep_contact", "i8"),
     ("gains", "i8"),  # shortest steps in a row that gained
     ("share", "f8"),  # part of what was exchanged that a step may have without a name
 ]
@@ -63,7 +66,7 @@ def begin_watch(system, now, t, watch):
     kinetic, potential, size = energies(system, now, t)
     watch.total, watch.potential = kinetic + potential, potential
     watch.exchanged, watch.struck, watch.named, watch.gains = kinetic, 0, 0.0, 0
-    watch.size = size
+    watch.size, watch.depth = size, 0.0
     for i in range(5):
         watch.amount[i], watch.time[i] = 0.0, t
     for i in range(4):

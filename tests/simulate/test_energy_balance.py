@@ -7,7 +7,9 @@ import pytest
 
 import carom
 from carom import GROUND, Status, constraints, forces, joints
-from carom.accuracy import deepest, judge, of_depth, sentences, watched
+from carom.accuracy import judge, sentences, watched
+from carom.contact.depth import watch_depth
+from carom.jit import entry
 from carom.ledger import Ledger
 from simulate.scenes import G
 
@@ -271,18 +273,33 @@ def test_bad_tolerance(value):
         carom.Options(energy_tolerance=value)
 
 
-def test_a_body_in_a_surface_is_said():
-    # Looked at where steps were taken whole or in parts: the state of one is put 1e-3 and 1e-6 deeper.
+@entry
+def look_at_depth(system, state, t, work, watch):
+    """Look at a state as the loop does at a saved one."""
+    watch_depth(system, state, t, work, watch[0])
+
+
+def test_a_body_in_what_it_touches_is_said():
+    # Boxes on each other, on a floor; the state is put deeper and looked at again: exactly that depth, by the
+    # distance of the corners from the centre, sqrt(3)/10.
     scene = carom.Scene(gravity=(0, 0, -G))
-    floor = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1))
-    box = scene.add_body(carom.Box(0.2, 0.2, 0.2), mass=1.0, position=(0, 0, 0.1))
-    scene.add_contact(box, floor)
-    for depth, status in ((1e-3, Status.INACCURATE), (1e-6, Status.SUCCESS), (0.0, Status.SUCCESS)):
+    floor = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1), name="floor")
+    low, high = (
+        scene.add_body(carom.Box(0.2, 0.2, 0.2), mass=1.0, position=(0, 0, z), name=name)
+        for z, name in ((0.1, "low"), (0.3, "high"))
+    )
+    scene.add_contact(low, floor)
+    scene.add_contact(high, low)
+    size = 0.1 * np.sqrt(3.0)
+    for body, words in ((0, "Body 'low' is in 'floor'"), (1, "Body 'high' is in 'low'")):
         run = carom.simulate(scene, 0.1, step=0.01)._run
-        run.records.state["x"][5, 0, 2] -= depth
-        assert deepest(run) == (0.0, 0.0)
-        run.clock["whole"] = 1
-        size = 0.1 * np.sqrt(3.0)
-        assert deepest(run) == (pytest.approx(depth / size, abs=1e-15), 0.05 if depth else 0.0)
-        assert run.judged(Status.SUCCESS) is status
-        assert bool(of_depth(*deepest(run))) == (depth > 0.0)
+        assert sentences(run.watch[0], scene) == ()
+        for depth, status in ((1e-6, Status.SUCCESS), (1e-3, Status.INACCURATE)):
+            state = run.now.copy()
+            state["x"][body:, 2] -= depth
+            look_at_depth(run.compiled.system, state, 0.07, run.work, run.watch)
+            assert run.watch["depth"][0] == pytest.approx(depth / size, abs=1e-12)
+            assert run.judged(Status.SUCCESS) is status
+            (said,) = sentences(run.watch[0], scene)
+            assert said.startswith(words)
+            assert "t = 0.07 s" in said

@@ -71,7 +71,9 @@ def one(plan: Plan, values: dict[str, np.ndarray], k: int, part: Part) -> None:
     if status != 0:
         part.failures[part.first + k] = f"{status.message} (reached t = {run.reached:.9g} s)"
         if status.ended:
-            part.failures[part.first + k] = " ".join((status.message, *sentences(run.watch[0])))
+            part.failures[part.first + k] = " ".join(
+                (status.message, *sentences(run.watch[0], run.scene))
+            )
     if plan.observe is None:
         return
     for name, value in plan.observe(run.solution(status)).items():

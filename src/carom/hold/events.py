@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 
 from carom.contact.place import place_held
-from carom.hold.jam import yields
+from carom.hold.jam import JAMMED, yields
 from carom.jit import inlined, kernel
 from carom.motion.acceleration import OPEN, SLIP, STICK, acceleration
 from carom.motion.contact_point import contact_velocity
@@ -37,7 +37,7 @@ def held_value(system, hold, kind, d1, d2, state, work):
     place_held(system, hold, state, point, work)
     _, u1, u2 = contact_velocity(point, state)
     if kind == JAM:
-        return yields(hold.W, contact.friction_held, u1, u2)
+        return yields(hold.W, contact.friction_held, u1, u2) - JAMMED * hold.W[0, 0]
     return u1 * d1 + u2 * d2
 
 

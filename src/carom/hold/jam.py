@@ -5,7 +5,8 @@ While a point slips along e its force is N (1, -mu e), and its normal accelerati
     k = W_nn - mu W_nt.e.
 
 k > 0: N = -a_n/k. k <= 0: where a_n < 0 no force is enough, the slip ends in an impact without collision;
-where a_n >= 0 the point opens.
+where a_n >= 0 the point opens. Slip that comes to k = 0 with a_n < 0 has a force that grows without bound on
+its way, which no step follows: it jams a little before, at k = `JAMMED` W_nn.
 """
 
 from __future__ import annotations
@@ -14,6 +15,8 @@ import math
 
 from carom.coulomb.layout import SLIDING, SOLVED
 from carom.jit import kernel
+
+JAMMED = 1e-6
 
 
 @kernel

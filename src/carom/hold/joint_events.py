@@ -9,7 +9,7 @@ from __future__ import annotations
 from carom.dispatch import only_with_coordinates
 from carom.jit import entry, kernel
 from carom.motion.acceleration import acceleration
-from carom.motion.coordinate import rate, speeds_of
+from carom.motion.coordinate import drift, motion_along, rate, speeds_of
 from carom.motion.joint_friction import any_sticks, stay_stuck
 
 STOPS, BREAKS = 5, 6  # events, after those of held contacts
@@ -64,9 +64,27 @@ def _turn_joint(system, kind, i, held, now, work):
         acceleration(system, now, held, work, work.stages[0])
         one.mode = -1 if one.force > 0.0 else 1
     else:
-        one.mode = 0
-        stay_stuck(system, now, work)
+        one.mode = -one.mode
+        if not one.mode * change(system, one, held, now, work) > 0.0:
+            one.mode = 0
+            stay_stuck(system, now, work)
     let_go(system, held, now, work)
+
+
+@kernel
+def change(system, one, held, state, work):
+    """Return q'' of the coordinate of a friction, in its present mode.
+
+    Where q'' goes the way of the mode that slip would turn to, slip turns, and nothing sticks. The force of
+    stick would say so too, but not where a loop passes its dead centre: there J P J^T and what friction can do
+    are nothing, and q' = 0 in the metric of J would stop all that moves.
+    """
+    acceleration(system, state, held, work, work.stages[0])
+    for b in range(state.shape[0]):
+        for k in range(6):
+            work.body[b].motion[k] = work.stages[0][b].rate[k]
+    c = system.relations.coordinates[one.coordinate]
+    return motion_along(c, state, work) + drift(c, state, system.relations.write)
 
 
 @kernel

@@ -8,7 +8,7 @@ from carom.contact.gap import slow
 from carom.contact.pair_point import drift
 from carom.contact.place import place_held
 from carom.hold.events import braked
-from carom.hold.jam import note_jam, presses, yields
+from carom.hold.jam import JAMMED, note_jam, presses, yields
 from carom.hold.roster import enlist
 from carom.jit import kernel
 from carom.motion.acceleration import SLIP, STICK, acceleration
@@ -177,7 +177,7 @@ def find_mode(system, contact, hold, held, state, work):
     if hold.mode == SLIP:
         _, u1, u2 = contact_velocity(work.point[0], state)
         k = yields(hold.W, contact.friction_held, u1, u2)
-        if k <= 0.0 and presses(hold, k):
+        if k <= JAMMED * hold.W[0, 0] and presses(hold, k):
             note_jam(held, hold)
     body = system.bodies[contact.body]
     if hold.mode == STICK and body.isolated == 1:

@@ -1,4 +1,4 @@
-"""What motors give in an impact.
+"""What motors give in an impact, and impacts that they leave no way out of.
 
 Where rows prescribe a speed, a v = b, their impulses Lambda do work, Lambda . b with b = a v before the impact:
 
@@ -10,6 +10,9 @@ from __future__ import annotations
 from carom.dispatch import only_with_relations
 from carom.geometry.rotation import rotate_back
 from carom.jit import kernel
+
+BLOCKED = 15  # Status
+ROUND_OFF = 1e-13
 
 
 @kernel
@@ -36,4 +39,20 @@ def _none(system, state, first, clock, records):
     return 0.0
 
 
+@kernel
+def _blocked(system, point, inverse_mass):
+    """Return whether what is prescribed leaves a point no way along its normal: W_nn is round-off of 1/m."""
+    free = 1.0 / system.bodies[point.a].mass
+    if point.b >= 0:
+        free += 1.0 / system.bodies[point.b].mass
+    return inverse_mass <= ROUND_OFF * free
+
+
+@kernel
+def _never(system, point, inverse_mass):
+    """Joints alone leave a point that moves a way."""
+    return False
+
+
 driven_work = only_with_relations(_driven_work, _none)
+blocked = only_with_relations(_blocked, _never)

@@ -13,7 +13,7 @@ from carom.dispatch import by_address, by_method
 from carom.impact import layout
 from carom.impact.alike import as_one
 from carom.impact.collapse import what_is_left
-from carom.impact.driven import driven_work
+from carom.impact.driven import BLOCKED, blocked, driven_work
 from carom.impact.layer import traverse
 from carom.impact.resolve import resolve_one
 from carom.impact.strike_several import strike_several
@@ -143,6 +143,9 @@ def strike_one(method, system, controls, held, c, state, work, clock, records):
         what_is_left(contact, held.brinks[c]),
         slow(contact, state),
     )
+    if blocked(system, point, hit.W[0, 0]):
+        hit.code = BLOCKED
+        return
     held.brinks[c].blows += 1
     if collide(method, controls, contact, hit, work.history) != layout.OK:
         hit.code = IMPACT_FAILED

@@ -9,6 +9,7 @@ from carom.dispatch import by_address
 from carom.impact.collapse import what_is_left
 from carom.impact.corner.layout import NEEDS_UNITS, OK
 from carom.impact.corner.resolve import resolve_contacts
+from carom.impact.driven import BLOCKED, blocked
 from carom.impact.layout import WEDGED
 from carom.jit import kernel, unit
 from carom.motion.contact_point import add_velocity, spread
@@ -47,6 +48,9 @@ def strike_several(system, controls, held, c, k, state, cluster, corner, work, c
         contact = system.contacts[cluster.seats[i].contact]
         if abs(u[3 * i]) <= slow(contact, state):
             u[3 * i] = 0.0  # touching, not striking
+        if u[3 * i] < 0.0 and blocked(system, cluster.points[0][i], cluster.m[0][3 * i, 3 * i]):
+            hit.code = BLOCKED
+            return
         j, brink = cluster.seats[i].held, held.brinks[cluster.seats[i].contact]
         cluster.mu[i], corner.e[i] = contact.friction, what_is_left(contact, brink)
         if j >= 0 and held.points[j].jams == 1:

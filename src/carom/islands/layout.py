@@ -7,7 +7,18 @@ from typing import NamedTuple
 import numpy as np
 
 from carom.contact.pairs.sweep import SweepWork, new_sweep_work
-from carom.system.arrays import BODY, BODY_WORK, BRINK, CONTACT, HELD, STATE, Held, System, table
+from carom.system.arrays import (
+    BODY,
+    BODY_WORK,
+    BRINK,
+    CONTACT,
+    HELD,
+    STATE,
+    Held,
+    Relations,
+    System,
+    table,
+)
 from carom.system.records import CLOCK
 
 #: what a body does in a step: nothing, flies with nothing near, or takes part in an island
@@ -64,7 +75,10 @@ class Islands(NamedTuple):
 
 
 class NoIslands(NamedTuple):
-    """All bodies together: one of them, or joined. What a step begins with is kept, to go back to."""
+    """All bodies together: one of them, or joined. What a step begins with is kept, to go back to.
+
+    No state is kept where a step is not done in another way: nothing touches, and no joint sticks.
+    """
 
     free: int  # 1 where gravity and contacts alone act
     begun: np.ndarray  # (1,) 1 while a step is going on
@@ -75,12 +89,20 @@ class NoIslands(NamedTuple):
     clock: np.recarray  # (1,) CLOCK
 
 
+def has_events(system: System) -> bool:
+    """Return whether steps may have events, which could follow each other too fast: contacts, dry friction."""
+    relations = system.relations
+    frictions = relations.frictions if isinstance(relations, Relations) else ()
+    return system.contacts.size > 0 or len(frictions) > 0
+
+
 def no_islands(system: System, held: Held) -> NoIslands:
     """Return the scratch for bodies that are stepped together."""
+    keeps = has_events(system)
     return NoIslands(
         free=int(system.bodies["ballistic"].all()),
         begun=np.zeros(1, dtype=np.int64),
-        state=table(STATE, system.bodies.size),
+        state=table(STATE, system.bodies.size if keeps else 0),
         brinks=table(BRINK, len(held.brinks)),
         points=table(HELD, len(held.points)),
         count=np.zeros(1, dtype=np.int64),

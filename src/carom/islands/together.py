@@ -12,13 +12,13 @@ from carom.motion.more_forces import begin_turns, forget_turns
 
 @kernel
 def begin_together(system, held, now, clocks, islands):
-    """Begin a step, unless it has begun already; without contacts it is not done in another way."""
+    """Begin a step, unless it has begun already."""
     if islands.begun[0] == 1:
         return
     clock = clocks[0]
     clock.first_touch, clock.tries, clock.effort = 0, 0, 0.0
     clock.before = clock.impacts
-    if held.brinks.shape[0] == 0:
+    if islands.state.shape[0] == 0:  # it is not done in another way
         return
     for c in range(held.brinks.shape[0]):
         held.brinks[c].blows = 0
