@@ -1,0 +1,52 @@
+"""How far bodies are in each other or in a half-space, and joints beyond their stops."""
+
+from __future__ import annotations
+
+from carom.contact.closed import apart, round_off_of_both
+from carom.contact.gap import lowest
+from carom.contact.pair_point import find_touches, smaller
+from carom.contact.stop import stop_gap
+from carom.dispatch import only_with_pairs
+from carom.jit import kernel
+from carom.system.arrays import STOP
+
+
+@kernel
+def watch_depth(system, state, t, work, watch):
+    """Note the greatest depth of a contact so far, by the size of the (smaller) body, and its time."""
+    for c in range(system.contacts.shape[0]):
+        contact = system.contacts[c]
+        if contact.touches != STOP and apart(contact, state, 0.0):
+            continue
+        depth = -least_gap(system, contact, state, work) - 4.0 * round_off_of_both(contact, state)
+        depth /= smaller(contact)
+        if depth > watch.depth:
+            watch.depth, watch.deep_at, watch.deep_contact = depth, t, contact.number
+
+
+@kernel
+def least_gap(system, contact, state, work):
+    """Return the least gap of a contact [m], negative inside."""
+    if contact.touches == STOP:
+        return stop_gap(system, contact, state, work)[0]
+    if contact.touches == 1:
+        return least_of_touches(system, contact, state, work)
+    return lowest(contact, system.vertices, state)[0]
+
+
+@kernel
+def _least_of_touches(system, contact, state, work):
+    """Return the least gap of the points of two solids."""
+    least = 0.0
+    for i in range(find_touches(system, contact, state, 0.0, work)):
+        least = min(least, work.touches[i].gap)
+    return least
+
+
+@kernel
+def _none_touch(system, contact, state, work):
+    """No kernels of pairs are needed."""
+    return 0.0
+
+
+least_of_touches = only_with_pairs(_least_of_touches, _none_touch)
