@@ -213,6 +213,39 @@ def test_friction_in_an_arm_comes_to_rest_and_closes_the_ledger():
     assert solution.ledger.friction[-1] == pytest.approx(lost, rel=1e-6)
 
 
+def test_slip_turns_where_a_loop_passes_its_dead_centres():
+    # A crank (r = .1 m) turns a slider on a dry way by a rod of .3 m, which sees its own way end, twice a turn,
+    # where the crank is in line with it. Friction can do nothing there (J P J^T = 0), and slip turns: work of
+    # friction is -F times the way of the slider, here 3 whole turns and more. The last bit of a passage, of the
+    # order of F times what the slider goes in the time to which its turn is located, is all that is off.
+    scene, force = carom.Scene(gravity=(0, 0, 0)), 0.5
+    spin, inertia = 20.0, (1e-3, 0.05, 0.05)
+    crank = scene.add_body(
+        mass=1.0, inertia=inertia, position=(0, 0, 0), angular_velocity=(0, 0, spin), name="crank"
+    )
+    along = np.sqrt(0.3**2 - 0.1**2)
+    rod = scene.add_body(
+        mass=0.2, inertia=(1e-4, 1e-3, 1e-3), position=(0.5 * along, 0.05, 0), velocity=(-2, 0, 0)
+    )
+    slider = scene.add_body(
+        mass=0.5, inertia=(1e-3,) * 3, position=(along, 0, 0), velocity=(-2, 0, 0)
+    )
+    scene.add_joint(joints.Revolute((0, 0, 0), (0, 0, 1)), GROUND, crank)
+    scene.add_joint(joints.Revolute((0, 0.1, 0), (0, 0, 1)), crank, rod)
+    scene.add_joint(joints.Revolute((along, 0, 0), (0, 0, 1)), rod, slider)
+    way = scene.add_joint(joints.Prismatic((1, 0, 0)), GROUND, slider)
+    scene.add_force(forces.JointFriction(way, force))
+    solution = carom.simulate(scene, 1.5, step=5e-4)
+    x = solution.position[:, 2, 0]
+    turns = np.count_nonzero(np.diff(np.sign(np.diff(x))))
+    assert turns >= 6
+    assert solution.stats["whole_steps"] == 0
+    gone = solution.evaluate(np.linspace(0.0, 1.5, 200_001)).position[:, 2, 0]
+    way_gone = np.sum(np.abs(np.diff(gone)))
+    assert solution.ledger.friction[-1] == pytest.approx(-force * way_gone, rel=1e-6)
+    assert np.max(np.abs(solution.ledger.residual)) < 1e-8 * solution.kinetic_energy[0]
+
+
 def test_forces_that_name_their_joint_take_no_bodies():
     scene, joint = block()
     with pytest.raises(ValueError, match="parent and child must be left out"):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from campaigns import piles, throws
+from campaigns import piles, strikes, throws
 from campaigns.case import run
 
 
@@ -39,3 +39,19 @@ def test_a_rim_that_becomes_flat_gives_no_energy(seed):
     assert found.status == "SUCCESS"
     assert found.residual <= 1e-4
     assert found.gained <= 1e-6
+
+
+def test_a_trial_step_that_is_no_number_is_given_up():
+    # A cylinder at 20 ms: the velocity of one trial was infinite, and it was taken.
+    found = run(throws.case(338995))
+    assert found.status == "SUCCESS"
+    assert found.depth <= 1e-9
+    assert found.residual <= 1e-4
+
+
+def test_slip_that_comes_to_a_jam_keeps_its_energy():
+    # The force of a point that slips grows as 1/(t* - t): one step went beyond t*, and gained 1e14 times the
+    # energy of the body.
+    found = run(strikes.case(50527))
+    assert found.reached == 1.0
+    assert found.residual <= 1e-2

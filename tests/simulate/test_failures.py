@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import carom
-from carom import SimulationError, Status
+from carom import SimulationError, Status, joints
 from simulate.scenes import ball, die, on_plane, turn, zeno_time
 
 
@@ -38,6 +38,21 @@ def test_bounces_without_hold(method):
     assert abs(a.t[-1] - zeno_time(0.5)) <= 0.01
     # before the Zeno time the run is whole
     assert carom.simulate(ball(0.5), 0.8, step=0.01, options=options, method=method).success
+
+
+@pytest.mark.parametrize("shape", [carom.Sphere(0.1), carom.Box(0.2, 0.2, 0.2)])
+def test_a_driver_that_moves_a_body_into_the_floor(shape):
+    # At 0.2 m/s from 0.1 m above it: nothing can yield at .5 s, when the body is there.
+    scene = carom.Scene()
+    floor = scene.add_half_space((0, 0, 0), (0, 0, 1))
+    body = scene.add_body(shape, mass=1.0, position=(0, 0, 0.2), velocity=(0, 0, -0.2))
+    way = scene.add_joint(joints.Prismatic((0, 0, 1)), carom.GROUND, body)
+    scene.add_constraint(carom.constraints.Driver(way, rate=-0.2))
+    scene.add_contact(body, floor, restitution=0.5, friction=0.3)
+    a = check_failure(Status.BLOCKED, scene, 1.0, step=0.01)
+    assert a.t[-1] == pytest.approx(0.5, abs=1e-12)
+    assert len(a.impacts) == 0
+    assert np.max(np.abs(a.ledger.residual)) < 1e-12
 
 
 def test_no_convergence():
