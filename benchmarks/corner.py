@@ -64,8 +64,8 @@ class Case:
     """One impact, with scratch, called in a compiled loop."""
 
     def __init__(self, problem, mu=0.0, e=0.5, law=STRONGE, kappa=None, repeat=200, **settings):
-        from carom.impact.corner.layout import CornerSettings, new_corner_result
-        from carom.impact.corner.work import new_corner_work
+        from carom.impact.multiple.layout import CornerSettings, new_corner_result
+        from carom.impact.multiple.work import new_corner_work
 
         W, u = problem
         k = len(u) // 3
@@ -91,7 +91,7 @@ class Case:
 
 def compiled_loop():
     """Return a compiled loop over one impact."""
-    from carom.impact.corner.resolve import resolve_corner
+    from carom.impact.multiple.resolve import resolve_corner
 
     @numba.njit
     def loop(count, k, W, u, mu, e, law, kappa, settings, scratch, out):

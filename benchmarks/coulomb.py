@@ -8,11 +8,11 @@ from pathlib import Path
 import numba
 import numpy as np
 
-from carom.coulomb.arrays import new_island_work
-from carom.coulomb.graph import island_graph
-from carom.coulomb.layout import new_cone_work
-from carom.coulomb.solve import solve_cones
-from carom.coulomb.solve_island import solve_island
+from carom.friction.arrays import new_island_work
+from carom.friction.graph import island_graph
+from carom.friction.layout import new_cone_work
+from carom.friction.solve import solve_cones
+from carom.friction.solve_island import solve_island
 from common import clock, report, seconds, spread
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "coulomb"))

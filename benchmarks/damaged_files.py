@@ -26,8 +26,8 @@ import pandas  # noqa: F401  (so that each child has them)
 import xarray  # noqa: F401
 
 import carom
-from carom.files import sealed
-from carom.files.scene_parts import scene_from_text, scene_to_text
+from carom.io.files import sealed
+from carom.io.files.scene_parts import scene_from_text, scene_to_text
 
 SECONDS, WAIT = 5, 300.0  # of processor time, and on the clock, for one file
 MEMORY, PART = 4 << 30, 20

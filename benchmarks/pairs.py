@@ -7,9 +7,9 @@ import itertools
 import numba
 import numpy as np
 
-from carom.contact.pairs.layout import new_pair_work, new_points, solid_table
-from carom.contact.pairs.sweep import new_sweep_work, sweep
-from carom.contact.pairs.touch import touch
+from carom.collision.layout import new_pair_work, new_points, solid_table
+from carom.collision.sweep import new_sweep_work, sweep
+from carom.collision.touch import touch
 from carom.scene import Box, Capsule, Convex, Cylinder, Disc, Ellipsoid, Sphere
 from common import report, seconds
 

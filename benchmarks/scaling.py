@@ -130,7 +130,7 @@ PANELS = (
 
 def draw(results: dict[str, dict[str, Curve]]) -> None:
     """Draw one small picture for each of what grows; dotted: proportional."""
-    from carom.plots import style as look
+    from carom.visual.plots import style as look
 
     colours = (look.BLUE, look.GREEN, look.ORANGE)
     with look.style():

@@ -44,7 +44,7 @@ def measured(problem: ModuleType, mujoco) -> dict[str, list[dict]]:
 
 def draw(results: dict[str, dict[str, list[dict]]]) -> None:
     """Draw one small picture a problem, with the same colours in all."""
-    from carom.plots import style as look
+    from carom.visual.plots import style as look
 
     colours = {
         "carom rk4": look.BLUE, "carom rk5": look.SKY, "carom rk8": look.GREEN, "MuJoCo": look.RED,

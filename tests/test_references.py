@@ -4,11 +4,11 @@ import numba
 import numpy as np
 import pytest
 
-from carom.contact.pairs.layout import FACE, Hulls
-from carom.dispatch import by_address
-from carom.jit import address, entry, kernel, unit
-from carom.references import Reference, refer
-from carom.system.arrays import table
+from carom._compiled.by_reference import Reference, refer
+from carom._compiled.choice import by_address
+from carom._compiled.decorators import address, entry, kernel, unit
+from carom._compiled.record_arrays import table
+from carom.collision.layout import FACE, Hulls
 
 
 def hulls(n):

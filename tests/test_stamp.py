@@ -4,8 +4,8 @@ import types
 
 import pytest
 
-from carom import dispatch
-from carom.stamp import stamp
+from carom._compiled.cache_key import stamp
+from carom.model import choice
 
 LEAF = """
 def leaf(x):
@@ -13,7 +13,7 @@ def leaf(x):
     return {factor} * x + SHIFT
 
 def caller(x):
-    return leaf(x) + module.deep(x) + chosen(x)
+    return leaf(x) + cache_key.deep(x) + chosen(x)
 """
 
 
@@ -48,16 +48,16 @@ def test_change_of_a_part_changes_the_stamp(change):
 
 def test_what_is_reached_through_an_address_is_left_out():
     assert stamp(made(unit="2.0 * x")) == stamp(made())
-    assert dispatch.by_address(made()).parts == ()
+    assert choice.by_address(made()).parts == ()
 
 
 def test_the_whole_loop_is_reached():
     """A unit and what it calls, over several files."""
-    from carom import stamp as module
-    from carom.hold.press import press_unit
+    from carom._compiled import cache_key
+    from carom.persistent.contact_step import press_unit
 
     if not hasattr(press_unit, "py_func"):
         pytest.skip("not compiled: there is no cache")
-    names = list(module._reached(press_unit.py_func, set()))
+    names = list(cache_key._reached(press_unit.py_func, set()))
     for name in ("hold.press.impose", "motion.several.spread_all", "coulomb.solve.solve_cones"):
         assert f"carom.{name}" in names

@@ -9,9 +9,9 @@ from dataclasses import asdict, dataclass, field
 import numpy as np
 
 import carom
-from carom.contact.pairs.api import nearest_points
+from carom.collision.api import nearest_points
 from carom.geometry import quaternion
-from carom.system.contact_rows import touching_pairs
+from carom.model.contact_rows import touching_pairs
 
 #: what a run may break at most: depth by size; energy gained, and without a name, by the energy exchanged;
 #: an impulse by that which throws a free mass back

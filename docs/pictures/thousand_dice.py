@@ -13,7 +13,7 @@ from matplotlib.collections import PolyCollection
 from scipy.spatial.transform import Rotation
 
 import carom
-from carom.ensembles.dice import face_up, fairness
+from carom.studies.ensembles.dice import face_up, fairness
 
 EDGE = 0.02  # [m]
 COLOURS = np.array(["#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#56B4E9"])

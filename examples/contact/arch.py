@@ -16,7 +16,7 @@ from scipy.spatial import ConvexHull
 
 import carom
 from carom.geometry import quaternion
-from carom.plots import style
+from carom.visual.plots import style
 
 g, R, count, mu, LIMIT = 9.81, 1.0, 11, 0.9, 0.104589
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 import carom
-from carom.plots import style
+from carom.visual.plots import style
 
 g, r, mu, v_0 = 9.81, 0.028, 0.2, 1.5
 SHOTS = (("follow", 3.0, style.GREEN), ("stun", 0.0, style.BLUE), ("draw", -7.0, style.RED))

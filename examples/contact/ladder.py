@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 import carom
-from carom.plots import style
+from carom.visual.plots import style
 
 g, length, radius, theta_0 = 9.81, 2.0, 0.02, np.radians(65)
 

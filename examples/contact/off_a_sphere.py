@@ -12,7 +12,7 @@ import numpy as np
 from matplotlib.patches import Circle
 
 import carom
-from carom.plots import style
+from carom.visual.plots import style
 
 g, R, r, m, theta_0 = 9.81, 1.0, 0.05, 0.1, 0.05
 

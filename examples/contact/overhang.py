@@ -13,7 +13,7 @@ from matplotlib.patches import Polygon
 
 import carom
 from carom.geometry import quaternion
-from carom.plots import style
+from carom.visual.plots import style
 
 g, length, thick, count = 9.81, 0.2, 0.03, 4
 SIGNS = np.array([(-1, 0, -1), (1, 0, -1), (1, 0, 1), (-1, 0, 1)])

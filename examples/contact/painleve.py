@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 import carom
-from carom.plots import style
+from carom.visual.plots import style
 
 g, length, m, v, radius = 9.81, 1.0, 1.0, 3.0, 1e-9
 LOOK = dict(color=style.BLUE, marker="."), dict(color=style.RED, marker="x")

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 import carom
-from carom.plots import style
+from carom.visual.plots import style
 
 m, (a, b, c), skew, spin = 0.1, (0.1, 0.02, 0.015), np.radians(10), 5.0
 

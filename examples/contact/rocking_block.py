@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 import carom
-from carom.plots import style
+from carom.visual.plots import style
 
 g, b, h, tilt = 9.81, 0.1, 0.4, 0.5  # half width, half height, start as a part of alpha
 alpha, R = np.arctan2(b, h), np.hypot(b, h)

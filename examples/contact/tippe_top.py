@@ -12,7 +12,7 @@ import numpy as np
 
 import carom
 from carom.geometry import quaternion
-from carom.plots import style
+from carom.visual.plots import style
 
 g, radius, mass, offset = 9.81, 0.02, 0.02, 0.004
 I = np.array([3.1e-6, 3.1e-6, 3.2e-6])  # about the mass centre

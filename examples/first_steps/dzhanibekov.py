@@ -16,7 +16,7 @@ from scipy.special import ellipj, ellipkinc
 
 import carom
 from carom.geometry import quaternion
-from carom.plots import style
+from carom.visual.plots import style
 
 I = np.array([1.0, 2.0, 3.0])
 w = np.array([0.01, 1.0, 0.01])  # nearly about the middle axis

@@ -13,7 +13,7 @@ import numba
 import numpy as np
 
 import carom
-from carom.plots import style
+from carom.visual.plots import style
 
 g, mass, drag, lift = 9.81, 0.0027, 0.7, 0.03  # a table tennis ball; [1/s], and by spin [1]
 start = 14 * np.exp(0.3j)  # [m/s]

@@ -12,7 +12,7 @@ import numpy as np
 from matplotlib.patches import Circle
 
 import carom
-from carom.plots import style
+from carom.visual.plots import style
 
 r, m, e, size = 0.0286, 0.17, 0.95, np.array([1.27, 0.635])  # half the table
 

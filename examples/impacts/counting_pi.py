@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 import carom
-from carom.plots import style
+from carom.visual.plots import style
 
 m = 1.0
 

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 import carom
-from carom.plots import style
+from carom.visual.plots import style
 
 g, radius, length, angle = 9.81, 0.02, 0.2, np.radians(20)
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 import carom
-from carom.plots import style
+from carom.visual.plots import style
 
 W = np.array([[2.5, -1.5, 0.0], [-1.5, 2.5, 0.0], [0.0, 0.0, 1.0]])  # uniform rod, 1 kg, 1 m
 before, e = np.array([-1.0, 0.6]), 0.9

@@ -13,7 +13,7 @@ import numba
 import numpy as np
 
 import carom
-from carom.plots import style
+from carom.visual.plots import style
 
 e, period, A = 0.5, 0.05, 1e-3
 omega, loss = 2 * np.pi / period, np.pi * (1 - e) / (1 + e)

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from carom.paper import tosses, tosses_figure
-from carom.plots import style
+from carom.visual.plots import style
 
 
 def main(out="out/examples", data=None, start="B", parameters=5, fit=False, most=24, halve=False):

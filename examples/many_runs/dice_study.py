@@ -14,8 +14,8 @@ from scipy.spatial.transform import Rotation
 from scipy.stats import binomtest, norm, uniform
 
 import carom
-from carom.ensembles.dice import face_up
-from carom.plots import style
+from carom.studies.ensembles.dice import face_up
+from carom.visual.plots import style
 
 COLOURS = (style.BLUE, style.ORANGE, style.GREEN, style.PURPLE, style.RED, style.SKY)
 HEIGHTS = np.array([0.005, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32, 0.64])

@@ -15,7 +15,7 @@ import numpy as np
 
 import carom
 from carom.geometry import quaternion
-from carom.plots import style
+from carom.visual.plots import style
 
 g, L, count, half, link = 9.81, 1.0, 41, 20, 1.0 / 41
 

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.integrate import quad
 
 import carom
-from carom.plots import style
+from carom.visual.plots import style
 
 g, m, arm, spin, C = 9.81, 1.0, 0.1, 180.0, 2e-3
 A = C + m * arm**2  # moment about the foot, across the axle

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 import carom
-from carom.plots import style
+from carom.visual.plots import style
 
 z_s, z_p, z_r = 20, 16, 52  # teeth
 module, m, torque = 2e-3, 0.05, 5e-3  # radius = module z / 2

@@ -16,7 +16,7 @@ import numpy as np
 
 import carom
 from carom.geometry import quaternion
-from carom.plots import style
+from carom.visual.plots import style
 
 g, r, m, alpha, rho = 9.81, 0.3, 1.0, np.radians(25), 0.6
 up = np.array([0.0, 0.0, 1.0])

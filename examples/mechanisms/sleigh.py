@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 import carom
-from carom.plots import style
+from carom.visual.plots import style
 
 m, I, a, spin = 1.0, 1.0, 1.0, 1.0
 

@@ -12,7 +12,7 @@ import numpy as np
 
 import carom
 from carom.geometry import quaternion
-from carom.plots import style
+from carom.visual.plots import style
 
 m, l, rate = 1.0, 1.0, 2.0
 PARTS = np.array([-0.25, 0.0, 0.2, 0.5, 0.8])  # along the rod, from the end in the groove along x

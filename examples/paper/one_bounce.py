@@ -12,7 +12,7 @@ import numpy as np
 
 import carom
 from carom.baselines import moreau_jean
-from carom.plots import style
+from carom.visual.plots import style
 
 mass, edge, e, mu, T = 0.016, 0.02, 0.5, 0.05, 0.21
 STEPS = 2e-3 / 2.0 ** np.arange(6)

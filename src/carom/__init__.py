@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from carom.generalized import GeneralizedSystem
 from carom.options import Options
+from carom.results.solution import Solution
 from carom.scene import (
     GROUND,
     Box,
@@ -29,20 +30,22 @@ from carom.scene import (
     joints,
 )
 from carom.simulate import simulate
-from carom.solution import Solution
 from carom.status import AccuracyWarning, SimulationError, Status
 
 if TYPE_CHECKING:
-    from carom import baselines, identify, models, plots
-    from carom.coulomb import ContactSolution, solve_contacts
-    from carom.ensembles import Ensemble, UniformOrientation, ensemble
-    from carom.files.resume import resume
-    from carom.films import film
-    from carom.gradient import Sensitivities, contact_sequence, sensitivities
+    from carom import baselines
+    from carom.friction import ContactSolution, solve_contacts
     from carom.impact import Impact, LayerHistory, impact_layer, resolve_impact
-    from carom.impact.corner.api import CornerImpact, resolve_impacts
-    from carom.models import Model, load_model
-    from carom.viewer.api import view
+    from carom.impact.multiple.api import CornerImpact, resolve_impacts
+    from carom.io import models
+    from carom.io.files.resume import resume
+    from carom.io.models import Model, load_model
+    from carom.studies import identify
+    from carom.studies.ensembles import Ensemble, UniformOrientation, ensemble
+    from carom.studies.gradient import Sensitivities, contact_sequence, sensitivities
+    from carom.visual import plots
+    from carom.visual.films import film
+    from carom.visual.viewer.api import view
 
 __version__ = "0.1.0"
 
@@ -95,31 +98,42 @@ __all__ = [
 ]
 
 _LAZY = {
-    "ContactSolution": "carom.coulomb",
-    "CornerImpact": "carom.impact.corner.api",
-    "Ensemble": "carom.ensembles",
+    "ContactSolution": "carom.friction",
+    "CornerImpact": "carom.impact.multiple.api",
+    "Ensemble": "carom.studies.ensembles",
     "Impact": "carom.impact",
     "LayerHistory": "carom.impact",
-    "Model": "carom.models",
-    "load_model": "carom.models",
-    "UniformOrientation": "carom.ensembles",
-    "ensemble": "carom.ensembles",
-    "Sensitivities": "carom.gradient",
-    "contact_sequence": "carom.gradient",
-    "film": "carom.films",
+    "Model": "carom.io.models",
+    "load_model": "carom.io.models",
+    "UniformOrientation": "carom.studies.ensembles",
+    "ensemble": "carom.studies.ensembles",
+    "Sensitivities": "carom.studies.gradient",
+    "contact_sequence": "carom.studies.gradient",
+    "film": "carom.visual.films",
     "impact_layer": "carom.impact",
     "resolve_impact": "carom.impact",
-    "resolve_impacts": "carom.impact.corner.api",
-    "sensitivities": "carom.gradient",
-    "resume": "carom.files.resume",
-    "solve_contacts": "carom.coulomb",
-    "view": "carom.viewer.api",
+    "resolve_impacts": "carom.impact.multiple.api",
+    "sensitivities": "carom.studies.gradient",
+    "resume": "carom.io.files.resume",
+    "solve_contacts": "carom.friction",
+    "view": "carom.visual.viewer.api",
+}
+
+#: packages that users reach by a short name: `carom.plots.energy`
+_PACKAGES = {
+    "baselines": "carom.baselines",
+    "films": "carom.visual.films",
+    "geometry": "carom.geometry",
+    "gradient": "carom.studies.gradient",
+    "identify": "carom.studies.identify",
+    "models": "carom.io.models",
+    "plots": "carom.visual.plots",
 }
 
 
 def __getattr__(name: str):
     if name in _LAZY:
         return getattr(importlib.import_module(_LAZY[name]), name)
-    if name in ("baselines", "films", "geometry", "gradient", "identify", "models", "plots"):
-        return importlib.import_module(f"carom.{name}")
+    if name in _PACKAGES:
+        return importlib.import_module(_PACKAGES[name])
     raise AttributeError(f"module 'carom' has no attribute {name!r}")

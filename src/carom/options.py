@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 
-from carom import check
+from carom import checks
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -114,26 +114,26 @@ class Options:
 
     def __post_init__(self):
         if self.layer_width is not None:
-            check.number("layer_width", self.layer_width, above=0.0, unit="m")
+            checks.number("layer_width", self.layer_width, above=0.0, unit="m")
         if self.max_step is not None:
-            check.number("max_step", self.max_step, above=0.0, unit="s")
-        check.number("penetration", self.penetration, above=0.0, below=1.0)
+            checks.number("max_step", self.max_step, above=0.0, unit="s")
+        checks.number("penetration", self.penetration, above=0.0, below=1.0)
         for name in ("gap_tolerance", "tie_tolerance", "constraint_tolerance", "drop_tolerance"):
-            check.number(name, getattr(self, name), above=0.0, below=1.0)
+            checks.number(name, getattr(self, name), above=0.0, below=1.0)
         for name in ("rest_tolerance", "augmentation", "residual_tolerance"):
-            check.number(name, getattr(self, name), above=0.0, below=1.0)
-        check.number("energy_tolerance", self.energy_tolerance, above=0.0)
+            checks.number(name, getattr(self, name), above=0.0, below=1.0)
+        checks.number("energy_tolerance", self.energy_tolerance, above=0.0)
         for name in ("natural_frequency", "damping_ratio"):
-            check.number(name, getattr(self, name), least=0.0)
-        check.integer("heap", self.heap, least=2)
-        check.integer("layer_steps", self.layer_steps, least=1)
+            checks.number(name, getattr(self, name), least=0.0)
+        checks.integer("heap", self.heap, least=2)
+        checks.integer("layer_steps", self.layer_steps, least=1)
         for name in ("max_iterations", "max_impacts_per_step", "max_cuts"):
-            check.integer(name, getattr(self, name), least=1)
-        check.choice("multiple", self.multiple, ("simultaneous", "sequential", "newton"))
-        check.number("corner_tolerance", self.corner_tolerance, above=0.0, below=1.0)
-        check.number("corner_exponent", self.corner_exponent, least=1.0, most=3.0)
+            checks.integer(name, getattr(self, name), least=1)
+        checks.choice("multiple", self.multiple, ("simultaneous", "sequential", "newton"))
+        checks.number("corner_tolerance", self.corner_tolerance, above=0.0, below=1.0)
+        checks.number("corner_exponent", self.corner_exponent, least=1.0, most=3.0)
         for name in ("add_layer_time", "hold", "project_start"):
-            check.flag(name, getattr(self, name))
+            checks.flag(name, getattr(self, name))
         for f in fields(self):  # as Python's own numbers: of their types the loop is compiled
             value, kind = getattr(self, f.name), float if f.default is None else type(f.default)
             if value is not None:

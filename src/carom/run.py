@@ -4,42 +4,42 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom import loop, march, save
-from carom.accuracy import judge
-from carom.addresses import Addresses
+from carom._compiled.decorators import address
+from carom._compiled.units import Addresses
 from carom.contact.stop import write_stop_gaps
-from carom.coulomb.newton import newton_unit
-from carom.heap.layout import new_heap, no_heap, roomier_heap
-from carom.heap.step import heap_unit
-from carom.hold.joint_events import first_modes
-from carom.hold.lifecycle import hold_unit, settle_unit
-from carom.hold.press import press_unit
-from carom.impact.corner.layout import MULTIPLE, CornerSettings
+from carom.dynamics.acceleration import acceleration_unit
+from carom.dynamics.explicit import EXPLICIT, constrained_unit
+from carom.dynamics.implicit import Implicit, implicit_unit
+from carom.dynamics.methods import FIRST, ORDERS, make_method, time_of_bounces
+from carom.dynamics.project import project_start
+from carom.dynamics.rattle import Rattle, rattle_unit
+from carom.dynamics.reactions import start_errors, start_speeds
+from carom.dynamics.solve import with_address
+from carom.friction.newton import newton_unit
+from carom.impact.multiple.layout import MULTIPLE, CornerSettings
 from carom.impact.strike import strike_unit
 from carom.impact.strike_several import corner_unit
-from carom.islands.layout import Islands, has_events, new_islands, no_islands, roomier
-from carom.jit import address
-from carom.methods import FIRST, ORDERS, make_method, time_of_bounces
-from carom.motion.acceleration import acceleration_unit
-from carom.motion.explicit import EXPLICIT, constrained_unit
-from carom.motion.implicit import Implicit, implicit_unit
-from carom.motion.project import project_start
-from carom.motion.rattle import Rattle, rattle_unit
-from carom.motion.reactions import start_errors, start_speeds
-from carom.motion.solve import with_address
+from carom.impact.workspace import new_cluster, new_corner
+from carom.model import records as r
+from carom.model.answers import check_answers
+from carom.model.arrays import Relations
+from carom.model.compile import compile_scene
 from carom.options import Options
+from carom.persistent.contact_step import press_unit
+from carom.persistent.joint_events import first_modes
+from carom.persistent.lifecycle import hold_unit, settle_unit
+from carom.results.accuracy import judge
+from carom.results.solution import Solution
 from carom.scene.joints import Joint
 from carom.scene.scene import Scene
-from carom.solution import Solution
 from carom.status import Status
-from carom.system import records as r
-from carom.system.answers import check_answers
-from carom.system.arrays import Relations
-from carom.system.cluster import new_cluster, new_corner
-from carom.system.compile import compile_scene
-from carom.watch import SHARE, new_watch
+from carom.stepping import event_step, record, time_loop
+from carom.stepping.crowd.layout import new_heap, no_heap, roomier_heap
+from carom.stepping.crowd.step import heap_unit
+from carom.stepping.energy_balance import SHARE, new_watch
+from carom.stepping.islands.layout import Islands, has_events, new_islands, no_islands, roomier
 
-LOCATIONS = {"locate": loop.LOCATE, "project": loop.PROJECT, "work": loop.WORK}
+LOCATIONS = {"locate": event_step.LOCATE, "project": event_step.PROJECT, "work": event_step.WORK}
 
 
 def corner_settings(options: Options) -> CornerSettings:
@@ -70,7 +70,7 @@ class Run:
         if tolerances is not None:
             self.settings.update(step="auto", rtol=tolerances[0], atol=tolerances[1])
             longest, step = step, time_of_bounces(system, tolerances, step)
-        self.controls = loop.Controls(
+        self.controls = event_step.Controls(
             step=step,
             duration=duration,
             location=LOCATIONS[impact_location],
@@ -170,13 +170,13 @@ class Run:
             self.compiled.system, self.held, self.now, self.clock, self.work, self.records,
             self.watch,
         )  # fmt: skip
-        self.address.entry(save.save_now, *state)(*state)
+        self.address.entry(record.save_now, *state)(*state)
 
     def find_touches(self, system):
         """Compile what finds the points of two solids; return the system with its addresses."""
-        from carom.contact.pairs.layout import new_pair_work
-        from carom.contact.pairs.plane import plane_unit
-        from carom.contact.pairs.touch import touch_unit
+        from carom.collision.layout import new_pair_work
+        from carom.collision.plane import plane_unit
+        from carom.collision.touch import touch_unit
 
         contacts = system.contacts[system.contacts.touches == 1]
         solid, pose, out = system.solids[0], self.work.solid_pose, self.work.touches
@@ -228,7 +228,7 @@ class Run:
 
     def find_hold(self) -> None:
         """Compile what a held contact needs: only when the first one is to be held."""
-        from carom.coulomb.search import with_address as with_search
+        from carom.friction.strategy import with_address as with_search
 
         system, held, now = self.compiled.system, self.held, self.now
         self.cluster = self.cluster._replace(cone=with_search(self.cluster.cone, self.address))
@@ -257,7 +257,7 @@ class Run:
 
     def find_corner(self) -> None:
         """Compile the impact of several points: only when the first one is to be resolved."""
-        from carom.impact.corner.work import with_units
+        from carom.impact.multiple.work import with_units
 
         made = new_corner(len(self.cluster.mu), self.corner.settings)
         known = made.scratch._replace(units=self.corner.scratch.units)  # the second time: the rest
@@ -304,7 +304,7 @@ class Run:
                 self.islands, self.cluster, self.corner, self.heap, self.clock, self.records,
                 self.watch, float(until),
             )  # fmt: skip
-            code = self.address.entry(march.run, *state)(*state)
+            code = self.address.entry(time_loop.run, *state)(*state)
             if code == r.FULL:
                 self.records = r.longer(self.records)
             elif code == r.PAUSE and self.failure is None:

@@ -6,23 +6,20 @@ import os
 from collections.abc import Callable
 from typing import overload
 
-import numpy as np
-
-from carom import check
-from carom.drive import finish
+from carom import checks
 from carom.generalized.solution import GeneralizedSolution
 from carom.generalized.system import GeneralizedSystem
 from carom.options import Options
-from carom.scene.limits import check_location, check_method
+from carom.results.solution import Solution
 from carom.scene.scene import Scene
-from carom.solution import Solution
-
-METHODS = (
-    "rk4", "rk5", "rk8", "rattle", "rattle4", "rattle6", "implicit", "paper", "paper-ode",
-)  # fmt: skip
-ADAPTIVE = ("rk5", "rk8")  # methods with an estimate of their error
-LOCATIONS = ("locate", "project", "work")
-_DEFAULT = Options()
+from carom.stepping.run_to_end import finish
+from carom.stepping.settings import (
+    LOCATIONS,
+    METHODS,
+    check_handling,
+    check_scene,
+    checked_settings,
+)
 
 
 @overload
@@ -154,10 +151,10 @@ def simulate(
             raise ValueError('step of a system in coordinates must be a number [s], got "auto"')
         if save is not None:
             raise ValueError(
-                f"save must be left out with a system in coordinates, got {check.shown(save)}"
+                f"save must be left out with a system in coordinates, got {checks.shown(save)}"
             )
-        check.choice("method of a system in coordinates", method, METHODS[:3])
-        check.choice("impact_location of a system in coordinates", impact_location, LOCATIONS[:1])
+        checks.choice("method of a system in coordinates", method, METHODS[:3])
+        checks.choice("impact_location of a system in coordinates", impact_location, LOCATIONS[:1])
 
         from carom.generalized.run import GeneralizedRun
 
@@ -170,81 +167,7 @@ def simulate(
         run = Run(scene, *settings)
     keeper = None
     if save is not None:
-        from carom.files.keeper import Keeper
+        from carom.io.files.keeper import Keeper
 
         keeper = Keeper(run, save, save_seconds)
     return finish(run, progress, keeper, throw)
-
-
-def check_handling(progress, throw, save_seconds) -> None:
-    """Refuse what is wrong with how a run is watched, saved and ended."""
-    if not (progress is None or isinstance(progress, bool) or callable(progress)):
-        raise TypeError(f"progress must be True, False or a function, got {check.shown(progress)}")
-    if not isinstance(throw, bool):
-        raise TypeError(f"throw must be True or False, got {check.shown(throw)}")
-    check.number("save_seconds", save_seconds, least=0.0, unit="s")
-
-
-def spacing(duration: float, step: float | str, options: Options) -> tuple[float, int]:
-    """Return the step, or the longest one where steps vary, and the number of steps."""
-    adapts = isinstance(step, str)
-    h = min(duration, options.max_step or duration / 50.0) if adapts else float(step)
-    if not duration < 1e12 * h:
-        name = "duration / 50 or Options.max_step" if adapts else "step"
-        raise ValueError(
-            f"{name} must be above duration / 1e12 = {duration / 1e12:g} s, got {check.shown(h)}"
-        )
-    return h, max(1, int(np.ceil(duration / h * (1.0 - 1e-12))))
-
-
-def checked_settings(
-    duration, step, method, impact_location, rtol, atol, save_every, options
-) -> tuple[float, float, int, str, str, int, Options, tuple[float, float] | None]:
-    """Return the settings of a `carom.run.Run`, checked: those of `simulate`, and what follows from them."""
-    duration = check.number("duration", duration, above=0.0, unit="s")
-    adapts = isinstance(step, str) and step == "auto"
-    if not adapts:
-        if isinstance(step, str):
-            raise ValueError(f'step must be a number [s] or "auto", got {check.shown(step)}')
-        step = check.number("step", step, above=0.0, unit="s")
-    method = ("rk5" if adapts else "rk4") if method is None else method
-    check.choice("method", method, METHODS)
-    check.choice("impact_location", impact_location, LOCATIONS)
-    tolerances = check_tolerances(adapts, method, impact_location, rtol, atol)
-    save_every = check.integer("save_every", save_every, least=1)
-    options = _DEFAULT if options is None else options
-    if not isinstance(options, Options):
-        raise TypeError(f"options must be carom.Options, got {type(options).__name__}")
-    h, steps = spacing(duration, step, options)
-    return duration, h, steps, method, impact_location, save_every, options, tolerances
-
-
-def check_scene(scene: Scene, method: str, location: str) -> None:
-    """Refuse a scene that cannot start, or not by this method."""
-    scene.validate()
-    check_location(scene, location)
-    check_method(scene, method)
-
-
-def check_tolerances(adapts: bool, method: str, location: str, rtol, atol):
-    """Return the tolerances (rtol, atol) of steps of varying length, or None for steps of one length."""
-    if not adapts:
-        for name, value in (("rtol", rtol), ("atol", atol)):
-            if value is not None:
-                raise ValueError(
-                    f'{name} is for step="auto", got {check.shown(value)} with a given step'
-                )
-        return None
-    if method not in ADAPTIVE:
-        raise ValueError(
-            f'method must be {" or ".join(map(repr, ADAPTIVE))} for step="auto" (they estimate their error), '
-            f"got {check.shown(method)}"
-        )
-    if location != "locate":
-        raise ValueError(
-            f"impact_location must be 'locate' for step=\"auto\", got {check.shown(location)}"
-        )
-    return (
-        check.number("rtol", 1e-6 if rtol is None else rtol, least=1e-13, most=0.1),
-        check.number("atol", 1e-9 if atol is None else atol, least=0.0, unit="m"),
-    )

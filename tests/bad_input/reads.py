@@ -4,7 +4,10 @@ import numpy as np
 
 import carom
 from bad_input.things import XML, W, model, recording, samples, solution, swing, thrown
-from carom import baselines, films, identify, models, plots, surfaces
+from carom import baselines
+from carom.io import models
+from carom.studies import identify
+from carom.visual import films, plots, surfaces
 
 
 def read(folder):

@@ -16,9 +16,9 @@ from bad_input.things import (
     swing,
     thrown,
 )
-from carom import gradient
-from carom.ensembles import dice
-from carom.impact import directions, geometry
+from carom.impact import geometry, slip_directions
+from carom.studies import gradient
+from carom.studies.ensembles import dice
 
 
 def symbolic():
@@ -128,10 +128,10 @@ def run(folder):
                  heading=[(1.0, 0.0)], start=(0.0, 0.0, 0.0)),
         ),
         "impact.directions.invariant_directions": lambda: (
-            directions.invariant_directions, dict(inverse_mass=W, friction=0.1),
+            slip_directions.invariant_directions, dict(inverse_mass=W, friction=0.1),
         ),
         "impact.directions.critical_friction": lambda: (
-            directions.critical_friction, dict(inverse_mass=W),
+            slip_directions.critical_friction, dict(inverse_mass=W),
         ),
         "impact.geometry.diagonal_form": lambda: (
             geometry.diagonal_form, dict(inverse_mass=W, velocity=(-1.0, 1.0, 0.0), force=(1.0, 0.0, 0.0)),

@@ -6,7 +6,8 @@ import types
 import numpy as np
 
 import carom
-from carom import identify, joints
+from carom import joints
+from carom.studies import identify
 
 W = np.diag([1.0, 3.5, 3.5])
 TETRAHEDRON = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)]

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from hypothesis import strategies as st
 
-from carom.contact.pairs.layout import new_pair_work, new_points, solid_table
-from carom.contact.pairs.touch import touch
+from carom.collision.layout import new_pair_work, new_points, solid_table
+from carom.collision.touch import touch
 from carom.geometry import quaternion
 from carom.scene import Box, Capsule, Convex, Cylinder, Disc, Ellipsoid, Sphere
 

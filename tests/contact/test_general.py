@@ -5,8 +5,8 @@ import itertools
 import numpy as np
 import pytest
 
-from carom.contact.pairs import general
-from carom.contact.pairs.api import nearest_points
+from carom.collision import general
+from carom.collision.api import nearest_points
 from carom.scene import Box, Compound, Sphere
 from contact.pair_cases import NAMES, SHAPES, unit
 

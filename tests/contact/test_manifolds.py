@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from carom.contact.pairs.api import contact_points, nearest_points
+from carom.collision.api import contact_points, nearest_points
 from carom.geometry import quaternion
 from carom.scene import Box, Capsule, Compound, Convex, Cylinder, Sphere
 from contact.pair_cases import ORIGIN, Pose, support, touching, unit

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from carom.contact.pairs.layout import new_pair_work, new_points, solid_table
-from carom.contact.pairs.plane import plane_gap, touch_plane
+from carom.collision.layout import new_pair_work, new_points, solid_table
+from carom.collision.plane import plane_gap, touch_plane
 from carom.geometry import quaternion
 from carom.scene import Box, Capsule, Convex, Cylinder, Disc, Ellipsoid, Sphere
 from contact.pair_cases import DIRECTIONS, NAMES, SHAPES, Pose, directions, rotations, support

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
-from carom.contact.pairs.sweep import new_sweep_work, sweep
+from carom.collision.sweep import new_sweep_work, sweep
 
 
 def swept(centres, radii, room=None):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from contact_problems import STEP, G, dense, solve, stack
 
-from carom.coulomb.layout import SOLVED
+from carom.friction.layout import SOLVED
 
 ROUND_OFF = 1e-13  # of |c|: some 100 roundings
 

@@ -8,7 +8,7 @@ from contact_problems import solve
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from carom.coulomb.layout import SOLVED
+from carom.friction.layout import SOLVED
 
 seeds = st.integers(0, 10**6)
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from contact_problems import STEP, G, dense, pile, solve, solve_sparse, stack, wall
 
-from carom.coulomb.graph import island_graph
-from carom.coulomb.layout import NOT_SOLVED, SOLVED
+from carom.friction.graph import island_graph
+from carom.friction.layout import NOT_SOLVED, SOLVED
 
 
 @pytest.mark.plain

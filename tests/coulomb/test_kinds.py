@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from contact_problems import STEP, G, dense, random_singular, solve, stack
 
-from carom.coulomb.layout import CONE, NOT_SOLVED, SLIDING, SOLVED, STICKING
+from carom.friction.layout import CONE, NOT_SOLVED, SLIDING, SOLVED, STICKING
 
 
 def test_box_held_by_known_slip():

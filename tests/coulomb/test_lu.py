@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from carom.coulomb.lu import factor, substitute
-from carom.jit import entry
+from carom._compiled.decorators import entry
+from carom.friction.lu import factor, substitute
 
 
 @entry

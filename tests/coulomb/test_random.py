@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from contact_problems import random_singular, solve
 
-from carom.coulomb.layout import BAD_INPUT, NOT_SOLVED, SOLVED
+from carom.friction.layout import BAD_INPUT, NOT_SOLVED, SOLVED
 
 HARD = np.load(Path(__file__).parents[1] / "data" / "coulomb" / "hard.npz")
 

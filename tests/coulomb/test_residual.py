@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from carom.coulomb.residual import measure
+from carom.friction.residual import measure
 
 EYE, NONE = np.eye(3), np.zeros((1, 2))
 

@@ -6,7 +6,7 @@ from contact_problems import solve
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from carom.coulomb.layout import NOT_SOLVED, SOLVED
+from carom.friction.layout import NOT_SOLVED, SOLVED
 
 # Rod at 60 degrees (m = L = 1), planar: what moves in t2 is nothing.
 ROD = np.array([[1.75, 1.299038105677, 0], [1.299038105677, 3.25, 0], [0, 0, 0]])

@@ -8,7 +8,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from carom.cli import main
-from carom.ensembles.dice import face_up, fairness
+from carom.studies.ensembles.dice import face_up, fairness
 
 
 def test_faces_of_known_orientations():

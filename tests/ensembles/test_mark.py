@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import carom
-from carom.ensembles.api import _plan
-from carom.ensembles.mark import digest, mark_of
+from carom.studies.ensembles.api import _plan
+from carom.studies.ensembles.mark import digest, mark_of
 
 VALUES = {"die.position": np.zeros((2, 3))}
 

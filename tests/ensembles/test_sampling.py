@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import norm, uniform
 
-from carom.ensembles.sampling import SAMPLING, UniformOrientation, draw
+from carom.studies.ensembles.sampling import SAMPLING, UniformOrientation, draw
 
 
 def test_orientations_prefer_none():

@@ -1,6 +1,6 @@
 """Files that somebody makes up: with a right digest, and something else inside."""
 
-from carom.files import sealed
+from carom.io.files import sealed
 
 
 def parts_of(path):

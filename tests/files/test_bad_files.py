@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import carom
-from carom.files import disk, sealed, writing
-from carom.files.scene_data import Encoder
+from carom.io.files import disk, sealed, writing
+from carom.io.files.scene_data import Encoder
 from files.compare import differences
 from files.made_up import rewrite
 from simulate.scenes import die

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import carom
-from carom.files import sealed
+from carom.io.files import sealed
 from files.compare import differences
 from files.made_up import parts_of, rewrite
 from files.scenes import everything
@@ -174,7 +174,7 @@ def places(data, place=()):
 @pytest.mark.plain
 def test_made_up_scenes():
     """One value in a scene is another one: it is refused by a ValueError, or it is a scene still."""
-    from carom.files.scene_parts import scene_from_text, scene_to_text
+    from carom.io.files.scene_parts import scene_from_text, scene_to_text
 
     rng, text = random.Random(5), scene_to_text(everything())
     where, told = list(places(json.loads(text))), []
@@ -204,7 +204,7 @@ def test_made_up_scenes():
     ],
 )  # fmt: skip
 def test_a_scene_says_where_it_is_wrong(change, what):
-    from carom.files.scene_parts import scene_from_text, scene_to_text
+    from carom.io.files.scene_parts import scene_from_text, scene_to_text
 
     data = json.loads(scene_to_text(everything()))
     change(data)

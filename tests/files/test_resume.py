@@ -12,9 +12,9 @@ import pytest
 
 import carom
 from carom import forces, joints
-from carom.files.checkpoint import capture, restore
-from carom.files.kept import run_again
-from carom.system import records as r
+from carom.io.files.checkpoint import capture, restore
+from carom.io.files.kept import run_again
+from carom.model import records as r
 from files.compare import derived_differences, differences
 from files.made_up import rewrite
 from files.scenes import pendulum, pile, push, slider

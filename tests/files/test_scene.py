@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import carom
-from carom.files.scene_data import Decoder, Encoder
-from carom.files.scene_parts import scene_from_text, scene_to_text
-from carom.system.compile import compile_scene
+from carom.io.files.scene_data import Decoder, Encoder
+from carom.io.files.scene_parts import scene_from_text, scene_to_text
+from carom.model.compile import compile_scene
 from files.compare import same_bits
 from files.scenes import everything, pile, pull, push
 

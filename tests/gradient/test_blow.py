@@ -6,8 +6,8 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from carom import resolve_impact
-from carom.gradient import impact_derivative
-from carom.gradient.blow import UPPER, blow
+from carom.studies.gradient import impact_derivative
+from carom.studies.gradient.blow import UPPER, blow
 
 coordinate = st.floats(-1.0, 1.0)
 

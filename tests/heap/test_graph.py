@@ -1,11 +1,11 @@
-"""The order of elimination that the loop finds is that of `carom.coulomb.graph`."""
+"""The order of elimination that the loop finds is that of `carom.friction.graph`."""
 
 import numpy as np
 import pytest
 
-from carom.coulomb.graph import island_graph
-from carom.heap.graph import find_order
-from carom.heap.layout import new_heap
+from carom.friction.graph import island_graph
+from carom.stepping.crowd.graph import find_order
+from carom.stepping.crowd.layout import new_heap
 
 
 @pytest.mark.plain

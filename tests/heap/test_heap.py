@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import carom
-from carom.contact.pairs.api import nearest_points
+from carom.collision.api import nearest_points
 from carom.geometry import quaternion
-from carom.system.frames import contact_axes
+from carom.model.frames import contact_axes
 
 #: whole steps of heaps are of order 1: friction that rises by 1e-3 of the energy in a step, and says so
 pytestmark = pytest.mark.filterwarnings("ignore::carom.AccuracyWarning")

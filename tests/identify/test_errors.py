@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from carom.geometry import quaternion
-from carom.identify import Recording, face_up, mean_error, squared_error, trajectory_error
+from carom.studies.identify import Recording, face_up, mean_error, squared_error, trajectory_error
 
 T = np.arange(5) / 10
 Q = quaternion.exp(np.outer(T, [3.0, 1.0, -2.0]))

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 import carom
 from carom.geometry import quaternion
-from carom.identify import fit_free_flight, free_samples
+from carom.studies.identify import fit_free_flight, free_samples
 
 G = np.array([0.3, -0.2, -9.7])
 X0, V0, W0 = np.array([0.1, 0.2, 1.5]), np.array([0.5, -1.0, 2.0]), np.array([3.0, -8.0, 5.0])

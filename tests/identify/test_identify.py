@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import carom
-from carom.identify import Parameter, Recording, identify, mean_error, squared_error
+from carom.studies.identify import Parameter, Recording, identify, mean_error, squared_error
 from identify.tossed import POSITION_NOISE, ROTATION_NOISE, box, tosses
 
 TRUE = {"restitution": 0.35, "friction": 0.22}

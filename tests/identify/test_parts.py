@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 import carom
-from carom.identify import Parameter, Recording, State, roll_out, roll_outs, varied
-from carom.identify.evaluate import Evaluator
-from carom.identify.parameters import Space
-from carom.identify.search import search, simplex
-from carom.identify.uncertainty import bootstrap, design, minimum, quadratic_terms
+from carom.studies.identify import Parameter, Recording, State, roll_out, roll_outs, varied
+from carom.studies.identify.evaluate import Evaluator
+from carom.studies.identify.parameters import Space
+from carom.studies.identify.search import search, simplex
+from carom.studies.identify.uncertainty import bootstrap, design, minimum, quadratic_terms
 from identify.tossed import HALF, G, box
 
 

@@ -4,7 +4,7 @@ import numpy as np
 
 import carom
 from carom.geometry import quaternion
-from carom.identify import Recording, State, roll_outs, varied
+from carom.studies.identify import Recording, State, roll_outs, varied
 
 G, HALF, MASS = 9.81, 0.05, 0.4
 POSITION_NOISE, ROTATION_NOISE = 1e-4, 1e-3

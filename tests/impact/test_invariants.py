@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from carom.impact.api import resolve_impact
-from carom.impact.directions import critical_friction, invariant_directions
+from carom.impact.slip_directions import critical_friction, invariant_directions
 
 laws = st.sampled_from(LAWS)
 few = settings(max_examples=40, deadline=None)

@@ -5,7 +5,7 @@ import pytest
 from cases import LAWS, U_SPACE, W_SPACE, planar
 
 from carom.impact.api import resolve_impact
-from carom.impact.directions import critical_friction, invariant_directions
+from carom.impact.slip_directions import critical_friction, invariant_directions
 
 DIGITS = 1e-11  # twelve decimals are printed; the last ones are off by up to five units
 

@@ -13,7 +13,7 @@ from test_forests import wrench_on_centre
 
 import carom
 from carom import GROUND, Scene, joints
-from carom.system.arrays import LoopSolver, TreeSolver
+from carom.model.arrays import LoopSolver, TreeSolver
 
 BOTH = pytest.mark.parametrize("looped", [False, True], ids=["tree", "loop"])
 UP = (0, 0, 1)

@@ -6,7 +6,7 @@ from mechanism_scenes import orders
 
 import carom
 from carom import Scene, forces
-from carom.motion.multipliers import applied_force
+from carom.dynamics.multipliers import applied_force
 
 
 def mounted(**given):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import carom
-from carom.models.links import possible_inertia
+from carom.io.models.links import possible_inertia
 
 from .agreement import DATA
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import carom
-from carom.models.touching import Filter
+from carom.io.models.touching import Filter
 
 RULES = """
 <mujoco>

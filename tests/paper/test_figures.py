@@ -4,7 +4,7 @@ import matplotlib as mpl
 import pytest
 
 from carom.paper import book
-from carom.plots import style
+from carom.visual.plots import style
 
 
 @pytest.fixture(scope="module")

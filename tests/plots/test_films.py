@@ -7,12 +7,12 @@ import pytest
 from PIL import Image
 
 import carom
-from carom.films import still
-from carom.films.camera import axes_of, fitted
-from carom.films.film import frame_times
-from carom.films.marks import pair_axes
-from carom.films.raster import paint
-from carom.films.stage import Stage
+from carom.visual.films import still
+from carom.visual.films.camera import axes_of, fitted
+from carom.visual.films.film import frame_times
+from carom.visual.films.marks import pair_axes
+from carom.visual.films.raster import paint
+from carom.visual.films.stage import Stage
 
 ffmpeg = pytest.importorskip("imageio_ffmpeg")
 SMALL = (160, 96)

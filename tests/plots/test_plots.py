@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import carom
-from carom import plots
-from carom.plots import figure, style
+from carom.visual import plots
+from carom.visual.plots import figure, style
 
 
 def line(ax, label):

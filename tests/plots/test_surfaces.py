@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import carom
-from carom.surfaces import surface
+from carom.visual.surfaces import surface
 
 TURN = (np.cos(0.4), 0.0, np.sin(0.4), 0.0)
 RANDOM = np.random.default_rng(5).normal(size=(30, 3))

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from carom.geometry import quaternion
+from carom.model.compile import compile_scene
 from carom.options import Options
 from carom.scene import Box, Capsule, Compound, Cylinder, Material, Scene, Sphere, joints
-from carom.system.compile import compile_scene
 
 TURN = quaternion.exp(np.array([0.3, -0.5, 1.1]))
 L_SHAPE = Compound([(Box(0.2, 0.2, 0.6), (0, 0, 0)), (Box(0.4, 0.2, 0.2), (0.3, 0, 0.2), TURN)])

@@ -5,7 +5,7 @@ import pytest
 
 import carom
 from carom import GROUND, joints
-from carom.contact.pairs.api import nearest_points
+from carom.collision.api import nearest_points
 from carom.geometry import quaternion
 from carom.scene import Box, Capsule, Compound, Cylinder, Disc, Ellipsoid, Scene, Sphere
 

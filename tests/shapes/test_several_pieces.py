@@ -116,8 +116,8 @@ def test_all_pairs_of_a_scene_with_all_kinds_of_shapes(step, moved):
     assert s.contact_mode.shape == (len(s.t), 6)
     assert np.all(s.impacts.contact < 6)
     # Edges that are nearly parallel push each other for 1e-4 s: steps over all of that lost up to 1.3e-3, by
-    # the path that last digits of an early impact decide (`carom.hold.balance`). What is left, 1e-7 to 3e-6,
-    # hangs on that path too.
+    # the path that last digits of an early impact decide (`carom.persistent.step_control`). What is left, 1e-7
+    # to 3e-6, hangs on that path too.
     assert np.max(np.abs(s.ledger.residual)) < 1e-5 * s.total_energy[0]
 
 

@@ -7,10 +7,10 @@ import pytest
 
 import carom
 from carom import GROUND, Status, constraints, forces, joints
-from carom.accuracy import judge, sentences, watched
+from carom._compiled.decorators import entry
 from carom.contact.depth import watch_depth
-from carom.jit import entry
-from carom.ledger import Ledger
+from carom.results.accuracy import judge, sentences, watched
+from carom.results.ledger import Ledger
 from simulate.scenes import G
 
 TOLERANCE = carom.Options().energy_tolerance

@@ -7,11 +7,15 @@ import numpy as np
 import pytest
 
 import carom
+from carom._compiled.decorators import entry
+from carom._compiled.record_arrays import table
 from carom.geometry import quaternion
-from carom.jit import entry
-from carom.motion.flown import torque_free
-from carom.motion.free import point_bound
-from carom.system.arrays import BODY, BODY_WORK, table
+from carom.kinematics.flight import point_bound
+from carom.kinematics.flight_arrays import torque_free
+from carom.model.arrays import (
+    BODY,
+    BODY_WORK,
+)
 from references.free_rotation import angle_between, free_rotation
 
 CASES = json.loads((Path(__file__).parents[1] / "data/free_flight/free_flight.json").read_text())

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import carom
-from carom import march
-from carom.system import records
+from carom.model import records
+from carom.stepping import time_loop
 from simulate.scenes import die, turn
 
 #: A run says when it begins in earnest, and at its end how far it came. Longer than anybody waits.
@@ -101,7 +101,7 @@ def test_leaving_the_loop_changes_nothing(paused, count):
 @pytest.mark.parametrize("last", [7, 20, 41])
 def test_a_run_that_is_interrupted_goes_back_to_the_end_of_a_step(paused, count, last):
     """Wherever in a step that happens."""
-    whole, run, left = carom.simulate(thrown(count), 0.15, step=5e-3), march.run, []
+    whole, run, left = carom.simulate(thrown(count), 0.15, step=5e-3), time_loop.run, []
 
     def entered(*arguments):
         code = run(*arguments)
@@ -110,7 +110,7 @@ def test_a_run_that_is_interrupted_goes_back_to_the_end_of_a_step(paused, count,
             raise KeyboardInterrupt
         return code
 
-    paused.setattr(march, "run", entered)
+    paused.setattr(time_loop, "run", entered)
     a = carom.simulate(thrown(count), 0.15, step=5e-3, throw=False)
     assert a.status is carom.Status.INTERRUPTED
     assert 0.0 < a.t[-1] < 0.15

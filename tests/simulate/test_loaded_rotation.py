@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import carom
-from carom.motion.flown import torque_free
+from carom.kinematics.flight_arrays import torque_free
 from references.free_rotation import angle_between
 
 START = np.array([[1.0, 0, 0, 0]])

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import carom
-from carom.addresses import kind
-from carom.columns import Columns, table
-from carom.system import records
+from carom._compiled.record_arrays import Columns, table
+from carom._compiled.units import kind
+from carom.model import records
 from ensembles.ensemble_scenes import pendulum
 from files.compare import differences
 from simulate.scenes import ball, die
@@ -79,7 +79,7 @@ def test_columns_of_a_solution_are_plain_arrays():
 
 
 def test_scratch_is_of_the_same_types_in_every_run():
-    # Units and entries are found by the types of system, method and settings alone (carom.addresses).
+    # Units and entries are found by the types of system, method and settings alone (carom._compiled.units).
     makers = (ball, die, pendulum)
     runs = [carom.simulate(make(), 0.5, step=0.01)._run for make in makers]
     for name in ("held", "now", "work", "cluster", "corner", "heap", "clock", "records"):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import carom
-from carom.viewer.pack import header_text
+from carom.visual.viewer.pack import header_text
 from viewer.browser import needs_browser
 
 

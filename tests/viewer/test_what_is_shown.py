@@ -7,9 +7,9 @@ from hypothesis import strategies as st
 
 import carom
 from carom.geometry import quaternion
-from carom.viewer import frames, solids, strikes
-from carom.viewer.grids import grid_lines, round_length
-from carom.viewer.show import playing_speed, show_of
+from carom.visual.viewer import frames, solids, strikes
+from carom.visual.viewer.grids import grid_lines, round_length
+from carom.visual.viewer.show import playing_speed, show_of
 from files.scenes import pile
 from simulate.scenes import G
 

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from carom import check
+from carom import checks
 
 _TIE = 1e-9  # points that differ in height by less than this part of the size strike as one
 
@@ -28,7 +28,7 @@ class OneBody(NamedTuple):
 def read_scene(scene) -> tuple[OneBody, Any]:
     """Return the arrays of a scene of one body and one contact, and the body; refuse any other."""
     if isinstance(scene, type) or not (hasattr(scene, "bodies") and hasattr(scene, "contacts")):
-        raise TypeError(f"scene must be a Scene, got {check.shown(scene)}")
+        raise TypeError(f"scene must be a Scene, got {checks.shown(scene)}")
     if hasattr(scene, "validate"):
         scene.validate()
     bodies, contacts = list(scene.bodies), list(scene.contacts)

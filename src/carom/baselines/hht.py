@@ -19,7 +19,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from carom import check
+from carom import checks
 
 MOST_STEPS = 1e6  # of a run in plain Python
 
@@ -54,7 +54,7 @@ class HHTRun:
 
 def newmark_constants(alpha) -> tuple[float, float, float]:
     """Return the checked ``alpha``, ``beta = (1 + alpha)^2/4`` and ``gamma = 1/2 + alpha``."""
-    alpha = check.number("alpha", alpha, least=0.0, most=1.0 / 3.0)
+    alpha = checks.number("alpha", alpha, least=0.0, most=1.0 / 3.0)
     return alpha, 0.25 * (1.0 + alpha) ** 2, 0.5 + alpha
 
 
@@ -92,32 +92,34 @@ def hht_alpha(
     ValueError
         If an argument is out of range or of the wrong shape.
     """
-    q = check.finite_array("position", position, (None,))
+    q = checks.finite_array("position", position, (None,))
     if not q.size:
-        raise ValueError(f"position must have at least one coordinate, got {check.shown(position)}")
+        raise ValueError(
+            f"position must have at least one coordinate, got {checks.shown(position)}"
+        )
     n, fit = q.size, f"as position has {q.size} coordinates"
-    v = check.finite_array("velocity", velocity, (None,))
-    M = check.finite_array("mass", mass, (None, None), "kg")
+    v = checks.finite_array("velocity", velocity, (None,))
+    M = checks.finite_array("mass", mass, (None, None), "kg")
     if v.shape != (n,) or M.shape != (n, n):
         raise ValueError(
             f"velocity and mass must have shapes ({n},) and ({n}, {n}), {fit}, got {v.shape} and {M.shape}"
         )
     if not np.linalg.cond(M) < 1e15:
-        raise ValueError(f"mass must be regular, got {check.shown(mass)}")
-    end = check.number("duration", duration, least=0.0, unit="s")
-    h_all = check.number("step", step, above=0.0, unit="s")
+        raise ValueError(f"mass must be regular, got {checks.shown(mass)}")
+    end = checks.number("duration", duration, least=0.0, unit="s")
+    h_all = checks.number("step", step, above=0.0, unit="s")
     alpha, beta, gamma = newmark_constants(alpha)
-    count = check.steps(end, h_all, MOST_STEPS)
-    tolerance = check.number("tolerance", tolerance, above=0.0, below=1.0)
-    max_iterations = check.integer("max_iterations", max_iterations, least=1, most=10_000)
-    check.function("force", force)
-    check.function("jacobian", jacobian, optional=True)
+    count = checks.steps(end, h_all, MOST_STEPS)
+    tolerance = checks.number("tolerance", tolerance, above=0.0, below=1.0)
+    max_iterations = checks.integer("max_iterations", max_iterations, least=1, most=10_000)
+    checks.function("force", force)
+    checks.function("jacobian", jacobian, optional=True)
     start = "(0, position, velocity)"
-    f = check.finite_array(f"force{start}", check.call("force", force, 0.0, q, v), (n,), "N")
+    f = checks.finite_array(f"force{start}", checks.call("force", force, 0.0, q, v), (n,), "N")
     slopes = jacobian or (lambda t, q, v: _differences(force, t, q, v))
     if jacobian is not None:
-        check.finite_array(
-            f"jacobian{start}", check.call("jacobian", jacobian, 0.0, q, v), (2, n, n)
+        checks.finite_array(
+            f"jacobian{start}", checks.call("jacobian", jacobian, 0.0, q, v), (2, n, n)
         )
 
     a = np.linalg.solve(M, f)
@@ -128,7 +130,7 @@ def hht_alpha(
         for _ in range(max_iterations + 1):
             q1 = q + h * v + h * h * ((0.5 - beta) * a + beta * a1)
             v1 = v + h * ((1.0 - gamma) * a + gamma * a1)
-            f1 = np.asarray(check.call("force", force, t1, q1, v1), dtype=np.float64)
+            f1 = np.asarray(checks.call("force", force, t1, q1, v1), dtype=np.float64)
             if change <= tolerance:
                 break
             K, C = slopes(t1, q1, v1)

@@ -19,7 +19,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from carom import check
+from carom import checks
 from carom.baselines.hht import newmark_constants
 from carom.baselines.layer_exact import layer_constants, layer_motion
 
@@ -93,10 +93,10 @@ def hht_alpha_layer(
         With ``completed`` False and the reason in ``message`` if the method cannot run.
     """
     v0, e, b, reach, compression = layer_constants(speed, restitution, width, penetration)
-    m = check.scale("mass", mass, "kg")
-    steps = check.integer("steps", steps, least=1, most=100_000)
-    tolerance = check.number("tolerance", tolerance, above=0.0, below=1.0)
-    max_iterations = check.integer("max_iterations", max_iterations, least=1, most=10_000)
+    m = checks.scale("mass", mass, "kg")
+    steps = checks.integer("steps", steps, least=1, most=100_000)
+    tolerance = checks.number("tolerance", tolerance, above=0.0, below=1.0)
+    max_iterations = checks.integer("max_iterations", max_iterations, least=1, most=10_000)
     alpha, beta, gamma = newmark_constants(alpha)
     h = compression * (1.0 + 1.0 / e) / steps
     press = v0 * v0 / (2.0 * reach)
@@ -149,7 +149,7 @@ def completing_steps(speed, restitution, *, penetration, alpha=0.0, most=20) -> 
     """
     return tuple(
         n
-        for n in range(1, check.integer("most", most, least=1, most=1000) + 1)
+        for n in range(1, checks.integer("most", most, least=1, most=1000) + 1)
         if hht_alpha_layer(
             speed, restitution, mass=1.0, width=1.0, penetration=penetration, steps=n, alpha=alpha
         ).completed

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom import check
+from carom import checks
 
 
 def layer_motion(time, speed, restitution, *, width, penetration):
@@ -36,7 +36,7 @@ def layer_motion(time, speed, restitution, *, width, penetration):
     x, velocity : (K,) arrays
         Gap coordinate [m] and its rate xdot [m/s].
     """
-    t = check.real_array("time", time, "(K,)")
+    t = checks.real_array("time", time, "(K,)")
     v0, e, b, reach, compression = layer_constants(speed, restitution, width, penetration)
     with np.errstate(over="ignore", invalid="ignore"):
         z_c = t / compression
@@ -48,16 +48,16 @@ def layer_motion(time, speed, restitution, *, width, penetration):
     if not np.all(np.isfinite(velocity)):
         raise ValueError(
             f"time must be finite and near the impact, which at speed {v0:g} ends after "
-            f"{compression * (1 + 1 / e):g} s, got {check.shown(time)}"
+            f"{compression * (1 + 1 / e):g} s, got {checks.shown(time)}"
         )
     return x, velocity
 
 
 def layer_constants(speed, restitution, width, penetration):
     """Return checked ``v0, e, b``, the reach ``b l`` [m] and the compression time ``T_c`` [s]."""
-    v0, b = check.scale("speed", speed, "m/s"), check.scale("width", width, "m")
-    check.number("restitution", restitution, above=0.0, most=1.0)
-    check.number("penetration", penetration, above=0.0, below=1.0)
-    e, delta = check.scale("restitution", restitution), check.scale("penetration", penetration)
+    v0, b = checks.scale("speed", speed, "m/s"), checks.scale("width", width, "m")
+    checks.number("restitution", restitution, above=0.0, most=1.0)
+    checks.number("penetration", penetration, above=0.0, below=1.0)
+    e, delta = checks.scale("restitution", restitution), checks.scale("penetration", penetration)
     reach = -b * np.log1p(-delta)
     return v0, e, b, float(reach), float(2.0 * reach / v0)

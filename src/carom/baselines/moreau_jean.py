@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from carom import check
+from carom import checks
 from carom.baselines._body import OneBody, contact_jacobian, lowest_point, read_scene
 from carom.baselines.hht import MOST_STEPS
 from carom.baselines.one_contact import solve_one_contact
@@ -76,10 +76,10 @@ def moreau_jean(scene, duration, *, step, theta=0.5) -> MoreauJeanRun:
     ValueError
         If the scene has more than one body or contact, or an argument is out of range.
     """
-    end = check.number("duration", duration, least=0.0, unit="s")
-    h_all = check.number("step", step, above=0.0, unit="s")
-    theta = check.number("theta", theta, least=0.5, most=1.0)
-    count = check.steps(end, h_all, MOST_STEPS)
+    end = checks.number("duration", duration, least=0.0, unit="s")
+    h_all = checks.number("step", step, above=0.0, unit="s")
+    theta = checks.number("theta", theta, least=0.5, most=1.0)
+    count = checks.steps(end, h_all, MOST_STEPS)
     system, body = read_scene(scene)
     x = np.array(body.position, dtype=np.float64)
     Q = np.array(body.orientation, dtype=np.float64)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import brentq
 
-from carom import check
+from carom import checks
 
 
 def solve_one_contact(inverse_mass, velocity, friction) -> np.ndarray:
@@ -34,11 +34,11 @@ def solve_one_contact(inverse_mass, velocity, friction) -> np.ndarray:
     friction : float
         Coefficient mu >= 0.
     """
-    W = check.finite_array("inverse_mass", inverse_mass, (3, 3), "1/kg")
-    c = check.finite_array("velocity", velocity, (3,), "m/s")
-    mu = check.number("friction", friction, least=0.0)
+    W = checks.finite_array("inverse_mass", inverse_mass, (3, 3), "1/kg")
+    c = checks.finite_array("velocity", velocity, (3,), "m/s")
+    mu = checks.number("friction", friction, least=0.0)
     if not np.allclose(W, W.T, rtol=0.0, atol=1e-12 * np.abs(W).max()):
-        raise ValueError(f"inverse_mass must be symmetric, got {check.shown(inverse_mass)}")
+        raise ValueError(f"inverse_mass must be symmetric, got {checks.shown(inverse_mass)}")
     if not W[0, 0] > 0.0:
         raise ValueError(f"inverse_mass[0, 0] must be above 0 [1/kg], got {W[0, 0]!r}")
     if c[0] >= 0.0:
@@ -47,7 +47,7 @@ def solve_one_contact(inverse_mass, velocity, friction) -> np.ndarray:
     stiffness, axes = np.linalg.eigh(W[1:, 1:] - np.outer(coupling, W[0, 1:]))
     if stiffness[0] < -1e-12 * np.trace(W):
         raise ValueError(
-            f"inverse_mass must be positive semi-definite, got {check.shown(inverse_mass)}"
+            f"inverse_mass must be positive semi-definite, got {checks.shown(inverse_mass)}"
         )
     b = axes.T @ (c[1:] - coupling * c[0])
     empty = stiffness <= 1e-13 * np.trace(W)
@@ -79,18 +79,20 @@ def cone_residual(inverse_mass, velocity, friction, impulse) -> float:
     The natural map ``|p - P_K(p - rho (w + mu |w_t| e_n))| / rho`` with ``rho = 3 / trace W``; P_K
     is the projection onto the friction cone, ``w + mu |w_t| e_n`` the velocity in De Saxce's form.
     """
-    W = check.finite_array("inverse_mass", inverse_mass, (3, 3), "1/kg")
-    c = check.finite_array("velocity", velocity, (3,), "m/s")
-    p = check.finite_array("impulse", impulse, (3,), "N s")
-    mu = check.number("friction", friction, least=0.0)
+    W = checks.finite_array("inverse_mass", inverse_mass, (3, 3), "1/kg")
+    c = checks.finite_array("velocity", velocity, (3,), "m/s")
+    p = checks.finite_array("impulse", impulse, (3,), "N s")
+    mu = checks.number("friction", friction, least=0.0)
     if not np.trace(W) > 0.0:
-        raise ValueError(f"inverse_mass must have a trace above 0, got {check.shown(inverse_mass)}")
+        raise ValueError(
+            f"inverse_mass must have a trace above 0, got {checks.shown(inverse_mass)}"
+        )
     w = W @ p + c
     w[0] += mu * np.hypot(w[1], w[2])
     rho = 3.0 / np.trace(W)
     with np.errstate(over="ignore", invalid="ignore"):
         residual = float(np.linalg.norm(p - _project(p - rho * w, mu)) / rho)
-    return check.number("the residual of impulse", residual)
+    return checks.number("the residual of impulse", residual)
 
 
 def _project(x, mu):

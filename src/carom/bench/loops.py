@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from carom._compiled.decorators import entry
 from carom.impact.layer import traverse
 from carom.impact.resolve import resolve
-from carom.jit import entry
 
 
 @entry

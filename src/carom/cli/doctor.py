@@ -78,9 +78,9 @@ def _cache() -> tuple[dict[str, Any], list[str]]:
     if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
         why = "NUMBA_DISABLE_JIT is set: everything runs uncompiled, a thousand times slower"
         return {"folder": None, "megabytes": 0.0}, [why]
-    from carom import march
+    from carom.stepping import time_loop
 
-    folder = getattr(getattr(march.run, "_cache", None), "cache_path", None)
+    folder = getattr(getattr(time_loop.run, "_cache", None), "cache_path", None)
     if not folder:
         why = "no place for compiled code: set NUMBA_CACHE_DIR to a folder that can be written"
         return {"folder": None, "megabytes": 0.0}, [why]

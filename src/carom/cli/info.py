@@ -37,7 +37,7 @@ def run(
 
     solution = carom.Solution.load(file)
     if scene:
-        from carom.files.scene_parts import scene_to_text
+        from carom.io.files.scene_parts import scene_to_text
 
         print(scene_to_text(solution.scene))
         return 0

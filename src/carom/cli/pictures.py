@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from carom.cli import show
-from carom.plots.drawn import KINDS
+from carom.results.drawn import KINDS
 
 _File = Annotated[
     Path,

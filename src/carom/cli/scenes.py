@@ -54,7 +54,7 @@ def load(path: Path, **model: Any) -> Found:
 
 def functions(scene) -> dict[str, Callable]:
     """Return the functions of the user's in a scene, by the names that a result file has for them."""
-    from carom.files.scene_data import Encoder
+    from carom.io.files.scene_data import Encoder
 
     class Collector(Encoder):
         def __init__(self):
@@ -85,7 +85,7 @@ def _model(path: Path, given: dict[str, Any]):
 
 
 def _json(path: Path):
-    from carom.files.scene_parts import scene_from_text
+    from carom.io.files.scene_parts import scene_from_text
 
     try:
         scene, _ = scene_from_text(path.read_text(encoding="utf-8"))

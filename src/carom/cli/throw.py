@@ -70,12 +70,12 @@ def run(
 def scene(given):
     """Return a die above a table."""
     import carom
-    from carom import check
+    from carom import checks
 
-    check.number("--load", given.load, least=0.0, below=1.0)
+    checks.number("--load", given.load, least=0.0, below=1.0)
     made = carom.Scene(gravity=(0, 0, -9.81))
     table = made.add_half_space(point=(0, 0, 0), normal=(0, 0, 1), name="table")
-    edge = check.number("--edge", given.edge, above=0.0, unit="m")
+    edge = checks.number("--edge", given.edge, above=0.0, unit="m")
     shape = carom.Box(edge, edge, edge)
     if given.load > 0.0:  # a weight inside, under the face that bears 1
         weight = carom.Sphere(0.1 * edge)
@@ -95,7 +95,7 @@ def summary(thrown, seconds: float) -> dict:
     """Return what came of the throws, as plain numbers."""
     import numpy as np
 
-    from carom.ensembles.dice import face_up, fairness
+    from carom.studies.ensembles.dice import face_up, fairness
 
     faces = face_up(thrown.orientation[:, 0])
     faces = np.where(np.isfinite(thrown.rest_time), faces, 0)

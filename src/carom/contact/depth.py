@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from carom.contact.closed import apart, round_off_of_both
+from carom._compiled.decorators import kernel
+from carom.contact.closed_points import apart, round_off_of_both
 from carom.contact.gap import lowest
 from carom.contact.pair_point import find_touches, smaller
 from carom.contact.stop import stop_gap
-from carom.dispatch import only_with_pairs
-from carom.jit import kernel
-from carom.system.arrays import STOP
+from carom.model.arrays import STOP
+from carom.model.choice import only_with_pairs
 
 
 @kernel

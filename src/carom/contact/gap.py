@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
+from carom._compiled.decorators import inlined, kernel
 from carom.geometry.rotation import cross, rotate_back
-from carom.jit import inlined, kernel
 
 
 @inlined

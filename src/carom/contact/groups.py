@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from carom.jit import kernel
+from carom._compiled.decorators import kernel
 
 
 @kernel

@@ -7,14 +7,14 @@ from __future__ import annotations
 
 import math
 
-from carom.contact.pairs.plane import touch_plane_at
-from carom.contact.pairs.touch import touch_at
+from carom._compiled.decorators import kernel
+from carom.collision.plane import touch_plane_at
+from carom.collision.touch import touch_at
 from carom.contact.rim import same_point
 from carom.contact.roll import roll_on_plane
-from carom.dispatch import only_with_pairs
 from carom.geometry.rotation import exp, multiply, normalize, rotate, rotate_back
-from carom.jit import kernel
-from carom.motion.wrench import point_velocity
+from carom.kinematics.wrench import point_velocity
+from carom.model.choice import only_with_pairs
 
 REACH = 1e-3  # of the smaller body: points that are looked for beyond the nearest
 HELD_REACH = 0.2  # the same for points that are held, which stay so while a step is found in rounds

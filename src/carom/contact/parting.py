@@ -17,9 +17,9 @@ from __future__ import annotations
 
 import math
 
-from carom.contact.pairs.layout import BOX, CYLINDER, ELLIPSOID, HULL, SEGMENT
+from carom._compiled.decorators import kernel
+from carom.collision.layout import BOX, CYLINDER, ELLIPSOID, HULL, SEGMENT
 from carom.geometry.rotation import cross, rotate_back
-from carom.jit import kernel
 
 HALVES = 30  # of the step, until the bound is above zero
 CHORDS = 4  # each comes nearer to the root

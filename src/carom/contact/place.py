@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from carom._compiled.decorators import kernel
 from carom.contact.pair_point import drift, place_pair
 from carom.contact.stop import place_stop, stop_drift
-from carom.jit import kernel
-from carom.motion.contact_point import place
-from carom.system.arrays import STOP
+from carom.kinematics.contact_point import place
+from carom.model.arrays import STOP
 
 
 @kernel

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import math
 
-from carom.contact.pairs.layout import CYLINDER
+from carom._compiled.decorators import kernel
+from carom.collision.layout import CYLINDER
 from carom.geometry.rotation import rotate, rotate_back
-from carom.jit import kernel
 
 FLAT = 0.2  # sine of the tilt below which a rim is looked at here
 OTHER_SIDE = 1.5  # square of the way, relative to r, from which on a point is another one

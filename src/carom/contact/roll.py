@@ -12,11 +12,11 @@ The velocity there, v + w x r, changes by w x r' as the body goes on as it does,
 
 from __future__ import annotations
 
-from carom.contact.pairs.features import vertex_a
-from carom.contact.pairs.layout import CYLINDER, ELLIPSOID
-from carom.contact.pairs.plane import LOWEST
+from carom._compiled.decorators import kernel
+from carom.collision.features import vertex_a
+from carom.collision.layout import CYLINDER, ELLIPSOID
+from carom.collision.plane import LOWEST
 from carom.geometry.rotation import cross, rotate, rotate_back
-from carom.jit import kernel
 
 
 @kernel

@@ -2,21 +2,21 @@
 
 They strike through the same boundary layer as any contact and may be held like one. Where the coordinate is
 an angle the gap is the way at the distance of the body's size, so that all contacts have the same units; a
-solution gives angles and torques (`carom.assemble`).
+solution gives angles and torques (`carom.results.assemble`).
 """
 
 from __future__ import annotations
 
-from carom.contact.exclude import BELOW, CLEAR, MISSED, UNSURE, cubic_clears
+from carom._compiled.decorators import entry, kernel
+from carom.contact.continuous_detection import BELOW, CLEAR, MISSED, UNSURE, cubic_clears
 from carom.contact.gap import round_off, slow
 from carom.contact.pair_point import tangents
-from carom.dispatch import only_with_coordinates
-from carom.jit import entry, kernel
-from carom.loop_codes import HOLD, NOTHING, STRIKE
-from carom.motion.contact_point import contact_velocity
-from carom.motion.coordinate import drift, value
-from carom.motion.joints import arm, axis, parent_arm
-from carom.system.arrays import PRISMATIC, STOP
+from carom.kinematics.contact_point import contact_velocity
+from carom.kinematics.coordinate import drift, value
+from carom.kinematics.joints import arm, axis, parent_arm
+from carom.model.actions import HOLD, NOTHING, STRIKE
+from carom.model.arrays import PRISMATIC, STOP
+from carom.model.choice import only_with_coordinates
 
 
 @kernel

@@ -7,6 +7,7 @@
 
 from __future__ import annotations
 
+from carom._compiled.decorators import entry, kernel
 from carom.generalized.layout import ALL_ROWS, N
 from carom.generalized.linear import solve_metric
 from carom.generalized.motion import (
@@ -17,7 +18,6 @@ from carom.generalized.motion import (
     find_rows,
     react,
 )
-from carom.jit import entry, kernel
 
 _STRAIGHT = 1e-4  # Gamma(xi, xi)/2 below this part of xi: two terms of the series do
 _PARTS = 8  # steps of order 4 for longer arcs

@@ -194,9 +194,9 @@ class Contacts:
 
     def settle(self, chosen, closed, kind: int, marked: int, free: np.ndarray) -> int:
         """Hold `chosen`: find stick or slip of each from the accelerations; return a status."""
-        from carom.coulomb.layout import CONE as FREE
-        from carom.coulomb.layout import SLIDING, SOLVED, new_cone_work
-        from carom.coulomb.solve import solve_cones
+        from carom.friction.layout import CONE as FREE
+        from carom.friction.layout import SLIDING, SOLVED, new_cone_work
+        from carom.friction.solve import solve_cones
 
         run, n, held = self.run, self.run.n, self.run.held
         old = {c: held.heading[i].copy() for i, c in enumerate(self.held())}

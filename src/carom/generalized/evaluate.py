@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from carom.functions import Functions
+from carom._compiled.user_functions import Functions
 from carom.generalized.autoparallel import return_map, run_along
 from carom.generalized.layout import Coordinates, Held, new_held, new_work
 from carom.generalized.motion import look

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import math
 
+from carom._compiled.decorators import kernel
 from carom.generalized.layout import (
     CONE,
     GAP,
@@ -27,7 +28,6 @@ from carom.generalized.layout import (
 )
 from carom.generalized.motion import NOT_FINITE, acceleration, copy_row, find_contacts, slip_of
 from carom.generalized.step import take
-from carom.jit import kernel
 
 ROUND_OFF = 1e-15  # of the gap's own terms
 

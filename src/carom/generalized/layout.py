@@ -1,7 +1,7 @@
 """The arrays of a system in the user's own coordinates: what it is, what is held, and scratch.
 
 A state is one array ``x = (q, v)`` of 2n numbers. Everything that the user states reaches the kernels as four
-functions ``f(t, x, out)`` (`carom.functions`), whose answers are laid out here.
+functions ``f(t, x, out)`` (`carom._compiled.user_functions`), whose answers are laid out here.
 """
 
 from __future__ import annotations

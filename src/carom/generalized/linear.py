@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from carom.jit import kernel
+from carom._compiled.decorators import kernel
 
 
 @kernel

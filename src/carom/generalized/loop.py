@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from carom.functions import call_function
+from carom._compiled.decorators import entry, kernel
+from carom._compiled.user_functions import call_function
 from carom.generalized.events import keep, locate, note_start, turned
 from carom.generalized.layout import DONE, EVENT, LOADS, NOTHING, PAUSE, TOUCHES, N
 from carom.generalized.motion import find_metric
 from carom.generalized.step import take
-from carom.jit import entry, kernel
 
 CUTS = 12  # most halvings of a step in which slip turns
 LONG = 20_000  # trial steps, times the square of the coordinates, after which the loop is left for a moment

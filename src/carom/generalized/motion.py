@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import math
 
-from carom.functions import call_function
+from carom._compiled.decorators import entry, kernel
+from carom._compiled.user_functions import call_function
 from carom.generalized.layout import (
     ALL_ROWS,
     CONTACTS,
@@ -22,7 +23,6 @@ from carom.generalized.layout import (
     N,
 )
 from carom.generalized.linear import cholesky, factor, solve_metric, substitute
-from carom.jit import entry, kernel
 
 SINGULAR_METRIC, NOT_FINITE = 11, 4  # as in `carom.status.Status`
 

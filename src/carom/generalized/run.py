@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from carom._compiled.record_arrays import table
+from carom.dynamics.explicit import tableau
 from carom.generalized.contacts import Contacts
 from carom.generalized.evaluate import Evaluation
 from carom.generalized.layout import (
@@ -20,9 +22,7 @@ from carom.generalized.layout import (
 )  # fmt: skip
 from carom.generalized.loop import march, save_now
 from carom.generalized.step import settle_rates
-from carom.motion.explicit import tableau
 from carom.status import Status
-from carom.system.arrays import table
 
 if TYPE_CHECKING:
     from carom.generalized.system import GeneralizedSystem

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from carom import check
-from carom.ledger import Ledger
-from carom.plots.drawn import Drawn
+from carom import checks
+from carom.results.drawn import Drawn
+from carom.results.event_tables import EventTable
+from carom.results.ledger import Ledger
 from carom.status import Status
-from carom.tables import EventTable
 
 if TYPE_CHECKING:
     from carom.generalized.run import GeneralizedRun
@@ -137,8 +137,8 @@ class GeneralizedSolution(Drawn):
     @classmethod
     def from_run(cls, run: GeneralizedRun, status: Status) -> GeneralizedSolution:
         """Collect what a run has written down."""
-        from carom.accuracy import judge, sentences, watched
         from carom.generalized.loop import energies
+        from carom.results.accuracy import judge, sentences, watched
 
         saved, n = int(run.clock[0].saved), run.n
         series: Any = run.series[:saved]
@@ -224,8 +224,8 @@ class GeneralizedSolution(Drawn):
         ValueError
             If a time is outside the run, or `side` is another word.
         """
-        check.choice("side", side, ("right", "left"))
-        times = check.times("t", t, self.t[0], self.t[-1])
+        checks.choice("side", side, ("right", "left"))
+        times = checks.times("t", t, self.t[0], self.t[-1])
         at, before, after = self._nodes
         i = np.searchsorted(at, times, side="left" if side == "left" else "right") - 1
         i = np.clip(i, 0, max(len(at) - 2, 0))

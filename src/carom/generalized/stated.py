@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from carom import check
+from carom import checks
 
 LAWS = ("newton", "poisson", "stronge")
 
@@ -27,16 +27,16 @@ def checked_contact(
     others: Sequence[CoordinateContact], tangent, restitution, friction, impact_law, name
 ) -> CoordinateContact:
     """Return a contact; refuse numbers out of range and a name that `others` have."""
-    e = check.number("restitution", restitution, least=0.0, most=1.0)
-    mu = check.number("friction", friction, least=0.0)
-    check.choice("impact_law", impact_law, LAWS)
+    e = checks.number("restitution", restitution, least=0.0, most=1.0)
+    mu = checks.number("friction", friction, least=0.0)
+    checks.choice("impact_law", impact_law, LAWS)
     if mu > 0.0 and tangent is None:
         raise ValueError(
-            f"friction needs a tangent, got friction {check.shown(friction)} without one"
+            f"friction needs a tangent, got friction {checks.shown(friction)} without one"
         )
-    name = f"contact {len(others)}" if name is None else check.text("name", name)
+    name = f"contact {len(others)}" if name is None else checks.text("name", name)
     if any(name == other.name for other in others):
-        raise ValueError(f"name must be new, got {check.shown(name)} twice")
+        raise ValueError(f"name must be new, got {checks.shown(name)} twice")
     return CoordinateContact(name, e, mu, impact_law, len(others))
 
 
@@ -44,14 +44,14 @@ def checked_functions(q: np.ndarray, gap, gradient, tangent) -> int:
     """Refuse functions of a contact that are none or give another shape; return how many tangents."""
     n = len(q)
     for what, one in (("gap", gap), ("gap_gradient", gradient), ("tangent", tangent)):
-        check.function(what, one, optional=what != "gap")
+        checks.function(what, one, optional=what != "gap")
     answer("gap(q)", gap, (), q)
     if gradient is not None:
         answer("gap_gradient(q)", gradient, (n,), q)
     if tangent is None:
         return 0
-    rows = check.call("tangent(q)", tangent, q.copy())
-    rows = check.real_array("tangent(q)", rows, f"({n},) or (2, {n})")
+    rows = checks.call("tangent(q)", tangent, q.copy())
+    rows = checks.real_array("tangent(q)", rows, f"({n},) or (2, {n})")
     if not np.all(np.isfinite(rows)):
         raise ValueError(f"tangent(q) must be finite, got {rows.tolist()}")
     if rows.shape not in ((n,), (1, n), (2, n)):
@@ -62,8 +62,8 @@ def checked_functions(q: np.ndarray, gap, gradient, tangent) -> int:
 def answer(name: str, function: Callable, shape: tuple, *arguments) -> np.ndarray:
     """Return what a function gives at the start; refuse another shape than `shape`."""
     given = [np.copy(a) if np.ndim(a) else a for a in arguments]
-    result = check.real_array(
-        name, check.call(name, function, *given), "(" + ", ".join(map(str, shape)) + ")"
+    result = checks.real_array(
+        name, checks.call(name, function, *given), "(" + ", ".join(map(str, shape)) + ")"
     )
     wrong = result.ndim != len(shape) or any(
         s not in (None, k) for s, k in zip(shape, result.shape)
@@ -75,4 +75,4 @@ def answer(name: str, function: Callable, shape: tuple, *arguments) -> np.ndarra
             f"{name} must have shape ({wanted}{',' * (len(shape) == 1)}), as position has {n} coordinates, "
             f"got shape {result.shape}"
         )
-    return check.finite_array(name, result, shape)
+    return checks.finite_array(name, result, shape)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from carom._compiled.decorators import entry, kernel
 from carom.generalized.autoparallel import correct
 from carom.generalized.layout import ALL_ROWS, HOLONOMIC, STICK, N
 from carom.generalized.motion import (
@@ -16,7 +17,6 @@ from carom.generalized.motion import (
     react,
     slip_of,
 )
-from carom.jit import entry, kernel
 
 CONSTRAINTS_LOST = 7
 _NONE = 4e-16  # of its terms: error of a row that cannot be smaller

@@ -75,14 +75,9 @@ class Strike:
 
     def several(self, closed: list[int], now: float, jams: int) -> int:
         """Resolve the impact of all closed contacts together (mathematics page, V)."""
-        from carom.impact.corner.layout import (
-            MULTIPLE,
-            OK,
-            CornerSettings,
-            new_corner_result,
-        )
-        from carom.impact.corner.resolve import resolve_corner
-        from carom.impact.corner.work import new_corner_work
+        from carom.impact.multiple.layout import MULTIPLE, OK, CornerSettings, new_corner_result
+        from carom.impact.multiple.resolve import resolve_corner
+        from carom.impact.multiple.work import new_corner_work
 
         here, k = self.contacts, len(closed)
         options, n = here.run.options, here.run.n

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from carom import check
+from carom import checks
 
 
 def sympy() -> Any:
@@ -43,21 +43,21 @@ class SymbolicModel:
         self.velocities = [] if velocities is None else self.symbols("velocities", velocities)
         if velocities is not None and len(self.velocities) != n:
             raise ValueError(
-                f"velocities must be {n}, one a coordinate, got {check.shown(velocities)}"
+                f"velocities must be {n}, one a coordinate, got {checks.shown(velocities)}"
             )
         if not (parameters is None or isinstance(parameters, Mapping)):
             raise ValueError(
-                f"parameters must be a mapping from symbols to numbers, got {check.shown(parameters)}"
+                f"parameters must be a mapping from symbols to numbers, got {checks.shown(parameters)}"
             )
         self.parameters = dict(parameters or {})
         for symbol, value in self.parameters.items():
             if not isinstance(symbol, (str, sp.Basic)):
                 raise ValueError(
-                    f"parameters must have symbols as its keys, got {check.shown(symbol)}"
+                    f"parameters must have symbols as its keys, got {checks.shown(symbol)}"
                 )
-            check.number(f"parameters[{symbol}]", value)
+            checks.number(f"parameters[{symbol}]", value)
         if not (time is None or isinstance(time, sp.Symbol)):
-            raise ValueError(f"time must be a symbol, got {check.shown(time)}")
+            raise ValueError(f"time must be a symbol, got {checks.shown(time)}")
         self.time = time if time is not None or not functions else self.coordinates[0].args[0]
         self.q = sp.symbols(f"q:{n}", real=True, cls=sp.Dummy)
         self.v = sp.symbols(f"v:{n}", real=True, cls=sp.Dummy)
@@ -73,21 +73,21 @@ class SymbolicModel:
             if self.M.has(*v) or not self.is_zero(rest):
                 raise ValueError(
                     "kinetic_energy must be a quadratic form of the velocities (no term without "
-                    f"velocities, none linear in them), got {check.shown(kinetic_energy)}"
+                    f"velocities, none linear in them), got {checks.shown(kinetic_energy)}"
                 )
         else:
             entries = self.table("metric", metric, n)
             self.M = sp.Matrix(n, n, [self.take("metric", one, "q") for one in entries])
             if not all(self.is_zero(one) for one in self.M - self.M.T):
-                raise ValueError(f"metric must be symmetric, got {check.shown(metric)}")
+                raise ValueError(f"metric must be symmetric, got {checks.shown(metric)}")
         self.V = self.take("potential", potential, "q")
-        given = [0] * n if forces is None else check.listed("forces", forces, "expressions")
+        given = [0] * n if forces is None else checks.listed("forces", forces, "expressions")
         if len(given) != n:
-            raise ValueError(f"forces must be {n}, one a coordinate, got {check.shown(forces)}")
+            raise ValueError(f"forces must be {n}, one a coordinate, got {checks.shown(forces)}")
         self.forces = [self.take("forces", one, "tqv") for one in given]
-        constraints = check.listed("constraints", constraints, "expressions")
+        constraints = checks.listed("constraints", constraints, "expressions")
         self.phi = [self.take("constraints", one, "q") for one in constraints]
-        rates = check.listed("rates", rates, "expressions")
+        rates = checks.listed("rates", rates, "expressions")
         speeds = [self.linear("rates", one) for one in rates]
         self.holonomic = len(self.phi)
         self.A = [[sp.diff(one, x) for x in q] for one in self.phi] + speeds
@@ -113,7 +113,7 @@ class SymbolicModel:
             what = {"t": "the time", "q": "coordinates", "v": "velocities"}
             raise ValueError(
                 f"{name} must be in terms of {' and '.join(what[a] for a in allowed)} and parameters "
-                f"with a value, got {check.shown(expression)} with {', '.join(unknown) or 'derivatives'}"
+                f"with a value, got {checks.shown(expression)} with {', '.join(unknown) or 'derivatives'}"
             )
         return result
 
@@ -130,14 +130,14 @@ class SymbolicModel:
         except Exception:  # whatever the conversion of a foreign object raises
             result = None
         if isinstance(given, np.ndarray) or not self._is_finite(result):
-            raise ValueError(f"{name} must be a SymPy expression, got {check.shown(given)}")
+            raise ValueError(f"{name} must be a SymPy expression, got {checks.shown(given)}")
         return result
 
     def symbols(self, name: str, given) -> list:
         """Return a list of different symbols, functions or derivatives."""
-        found = [self.expression(name, one) for one in check.listed(name, given, "symbols")]
+        found = [self.expression(name, one) for one in checks.listed(name, given, "symbols")]
         if any(one.is_number for one in found) or len(set(found)) != len(found):
-            raise ValueError(f"{name} must be symbols, each once, got {check.shown(given)}")
+            raise ValueError(f"{name} must be symbols, each once, got {checks.shown(given)}")
         return found
 
     def table(self, name: str, given, n: int) -> list:
@@ -146,7 +146,7 @@ class SymbolicModel:
             rows = given.tolist()
         else:
             rows = [list(one) if isinstance(one, (list, tuple)) or getattr(one, "ndim", 0) else [one]
-                    for one in check.listed(name, given, "rows")]  # fmt: skip
+                    for one in checks.listed(name, given, "rows")]  # fmt: skip
         if len(rows) != n or any(len(row) != n for row in rows):
             width = len(rows[0]) if rows else 0
             raise ValueError(f"{name} must have shape ({n}, {n}), got {(len(rows), width)}")
@@ -160,7 +160,7 @@ class SymbolicModel:
         if any(a.has(*self.v) for a in row) or not self.is_zero(rest):
             raise ValueError(
                 f"{name} must be linear in the velocities, without a term that has none, got "
-                f"{check.shown(expression)}"
+                f"{checks.shown(expression)}"
             )
         return row
 
@@ -184,7 +184,7 @@ class SymbolicModel:
         rows = [self.linear("tangent", one) for one in given]
         normal = [self.sp.diff(rho, q) for q in self.q]
         if all(one == 0 for one in normal):
-            raise ValueError(f"gap must depend on the coordinates, got {check.shown(gap)}")
+            raise ValueError(f"gap must depend on the coordinates, got {checks.shown(gap)}")
         empty = [[self.sp.Integer(0)] * self.n] * (2 - len(rows))
         self.contacts.append((rho, [normal, *rows, *empty]))
 

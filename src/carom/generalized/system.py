@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom import check
+from carom import checks
 from carom.generalized.stated import CoordinateContact, answer, checked_contact, checked_functions
 
 if TYPE_CHECKING:
@@ -80,18 +80,18 @@ class GeneralizedSystem:
             "potential_gradient": potential_gradient, "constraint_jacobian": constraint_jacobian,
         }  # fmt: skip
         for name, one in given.items():
-            check.function(name, one, optional=name != "metric")
-        q = check.finite_array("position", position, (None,))
+            checks.function(name, one, optional=name != "metric")
+        q = checks.finite_array("position", position, (None,))
         n = len(q)
         if n == 0:
             raise ValueError(
-                f"position must have at least one coordinate, got {check.shown(position)}"
+                f"position must have at least one coordinate, got {checks.shown(position)}"
             )
         for name, of in (("metric_derivative", "metric"), ("potential_gradient", "potential"),
                          ("constraint_jacobian", "constraint")):  # fmt: skip
             if given[name] is not None and given[of] is None:
                 raise ValueError(
-                    f"{name} must be left out without {of}, got {check.shown(given[name])}"
+                    f"{name} must be left out without {of}, got {checks.shown(given[name])}"
                 )
         v = _rates(velocity, n)
         answers = {"metric": (n, n), "potential": (), "metric_derivative": (n, n, n)}
@@ -161,7 +161,7 @@ class GeneralizedSystem:
             coordinates, velocities, kinetic_energy, metric, potential, forces, constraints, rates,
             parameters, time,
         )  # fmt: skip
-        q = check.finite_array("position", position, (model.n,))
+        q = checks.finite_array("position", position, (model.n,))
         v = _rates(velocity, model.n)
         system = cls.__new__(cls)
         system._start(model, q, v)
@@ -172,7 +172,7 @@ class GeneralizedSystem:
         self._contacts: list[CoordinateContact] = []
         self._made: Evaluation | None = None
         self.position, self.velocity = q, v
-        M = check.finite_array("metric at position", model.metric_at(q), (model.n, model.n))
+        M = checks.finite_array("metric at position", model.metric_at(q), (model.n, model.n))
         if not np.allclose(M, M.T, rtol=0, atol=1e-12 * np.max(np.abs(M))):
             raise ValueError(f"metric must be symmetric, got {M.tolist()} at the start")
         if not np.linalg.eigvalsh(M)[0] > 0.0:
@@ -180,7 +180,7 @@ class GeneralizedSystem:
 
     def set_state(self, position, velocity) -> None:
         """Start from other coordinates and velocities, each (n,)."""
-        q = check.finite_array("position", position, (self.coordinates,))
+        q = checks.finite_array("position", position, (self.coordinates,))
         self.position, self.velocity = q, _rates(velocity, self.coordinates)
 
     @property
@@ -273,8 +273,8 @@ class GeneralizedSystem:
         ValueError
             If an argument is not as above, or the metric is singular on the way.
         """
-        v = check.finite_array("velocity", velocity, (self.coordinates,))
-        parts = check.integer("parts", parts, least=1, most=100_000)
+        v = checks.finite_array("velocity", velocity, (self.coordinates,))
+        parts = checks.integer("parts", parts, least=1, most=100_000)
         return self.evaluation().autoparallel(self._at(position), v, parts)
 
     def return_map(self, position, contact: CoordinateContact | str) -> np.ndarray:
@@ -297,14 +297,14 @@ class GeneralizedSystem:
             for one in self._contacts:
                 if one.name == contact:
                     return one
-            raise KeyError(f"no contact is called {check.shown(contact)}")
-        check.instance("contact", contact, (CoordinateContact, str))
+            raise KeyError(f"no contact is called {checks.shown(contact)}")
+        checks.instance("contact", contact, (CoordinateContact, str))
         if not any(one is contact for one in self._contacts):
             raise ValueError(f"contact must belong to this system, got {contact!r} of another one")
         return contact
 
     def _at(self, position) -> np.ndarray:
-        return check.finite_array("position", position, (self.coordinates,))
+        return checks.finite_array("position", position, (self.coordinates,))
 
     def __repr__(self) -> str:
         return (
@@ -315,7 +315,7 @@ class GeneralizedSystem:
 
 def _rates(velocity, n: int) -> np.ndarray:
     """Return the velocities (n,) of n coordinates."""
-    v = check.finite_array("velocity", velocity, (None,))
+    v = checks.finite_array("velocity", velocity, (None,))
     if len(v) != n:
         raise ValueError(
             f"velocity must have shape ({n},), as position has {n} coordinates, got shape {v.shape}"

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import math
 
+from carom._compiled.decorators import entry
 from carom.geometry import rotation, tangent
-from carom.jit import entry
 
 
 @entry

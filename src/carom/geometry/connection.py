@@ -19,7 +19,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from carom.check import finite_array, integer, number
+from carom.checks import finite_array, integer, number
 
 Array = NDArray[np.float64]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from carom.check import finite_array
+from carom.checks import finite_array
 
 Array = NDArray[np.float64]
 

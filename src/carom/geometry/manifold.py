@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from carom.check import finite_array
+from carom.checks import finite_array
 from carom.geometry.inertia import mass_and_inertia
 
 Array = NDArray[np.float64]

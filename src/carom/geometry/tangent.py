@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import math
 
+from carom._compiled.decorators import entry
 from carom.geometry.rotation import cross
-from carom.jit import entry
 
 
 @entry

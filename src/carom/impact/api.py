@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from carom import check
+from carom import checks
 
 
 @dataclass(frozen=True)
@@ -119,20 +119,22 @@ def checked_impact(inverse_mass, velocity, friction, restitution, law):
     from carom.impact.laws import NUMBERS
 
     W = checked_inverse_mass(inverse_mass)
-    u = check.finite_array("velocity", velocity, (3,), "m/s")
-    check.number("velocity[0] (normal velocity, approach is negative)", u[0], below=0.0, unit="m/s")
-    mu = check.number("friction", friction, least=0.0)
-    e = check.number("restitution", restitution, least=0.0, most=1.0)
-    return W, u, mu, e, NUMBERS[check.choice("law", law, NUMBERS)]
+    u = checks.finite_array("velocity", velocity, (3,), "m/s")
+    checks.number(
+        "velocity[0] (normal velocity, approach is negative)", u[0], below=0.0, unit="m/s"
+    )
+    mu = checks.number("friction", friction, least=0.0)
+    e = checks.number("restitution", restitution, least=0.0, most=1.0)
+    return W, u, mu, e, NUMBERS[checks.choice("law", law, NUMBERS)]
 
 
 def checked_inverse_mass(inverse_mass) -> np.ndarray:
     """Return W as a symmetric array; raise ValueError unless W >= 0 and W_nn > 0."""
-    W = check.finite_array("inverse_mass", inverse_mass, (3, 3), "1/kg")
+    W = checks.finite_array("inverse_mass", inverse_mass, (3, 3), "1/kg")
     if np.max(np.abs(W - W.T)) > 1e-9 * np.max(np.abs(W)):
-        raise ValueError(f"inverse_mass must be symmetric, got {check.shown(inverse_mass)}")
+        raise ValueError(f"inverse_mass must be symmetric, got {checks.shown(inverse_mass)}")
     W = np.ascontiguousarray(0.5 * (W + W.T))
-    check.number("inverse_mass[0, 0] (normal)", W[0, 0], above=0.0, unit="1/kg")
+    checks.number("inverse_mass[0, 0] (normal)", W[0, 0], above=0.0, unit="1/kg")
     least, *_, most = np.linalg.eigvalsh(W)
     if least < -1e-9 * most:
         raise ValueError(

@@ -7,9 +7,9 @@ Where rows prescribe a speed, a v = b, their impulses Lambda do work, Lambda . b
 
 from __future__ import annotations
 
-from carom.dispatch import only_with_relations
+from carom._compiled.decorators import kernel
 from carom.geometry.rotation import rotate_back
-from carom.jit import kernel
+from carom.model.choice import only_with_relations
 
 BLOCKED = 15  # Status
 ROUND_OFF = 1e-13

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from carom import check
+from carom import checks
 from carom.impact.api import checked_inverse_mass
 
 
@@ -121,9 +121,9 @@ def diagonal_form(inverse_mass, velocity, force):
     """
     W = checked_inverse_mass(inverse_mass)
     if not np.linalg.cond(W) < 1e15:
-        raise ValueError(f"inverse_mass must be regular, got {check.shown(inverse_mass)}")
-    u = check.finite_array("velocity", velocity, (3,), "m/s")
-    f = check.finite_array("force", force, (3,), "N")
+        raise ValueError(f"inverse_mass must be regular, got {checks.shown(inverse_mass)}")
+    u = checks.finite_array("velocity", velocity, (3,), "m/s")
+    f = checks.finite_array("force", force, (3,), "N")
     ratio = W[1:, 0] / W[0, 0]
     reduced, axes = np.linalg.eigh(W[1:, 1:] - np.outer(W[1:, 0], ratio))
     g = np.array([1.0 / W[0, 0], *(1.0 / reduced)])

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from carom import check
+from carom import checks
 from carom.impact.api import checked_impact, phase_names, raise_for
 
 MOST_STEPS = 100_000  # of one passage: more would only add round-off
@@ -73,10 +73,10 @@ class LayerHistory:
         x : ndarray, shape of t
         velocity : ndarray, shape of t + (3,)
         """
-        given, t = t, check.real_array("t", t, "(...,)")
+        given, t = t, checks.real_array("t", t, "(...,)")
         if not np.all((t >= 0.0) & (t <= self.duration)):
             raise ValueError(
-                f"t must be within [0, duration = {self.duration:.9g}] [s], got {check.shown(given)}"
+                f"t must be within [0, duration = {self.duration:.9g}] [s], got {checks.shown(given)}"
             )
         i = np.clip(np.searchsorted(self.t, t, side="right") - 1, 0, len(self.t) - 2)
         d = (self.t[i + 1] - self.t[i])[..., None]
@@ -143,9 +143,9 @@ def impact_layer(
     from carom.impact.phase import COLUMNS
 
     W, u, mu, e, number = checked_impact(inverse_mass, velocity, friction, restitution, law)
-    delta = check.number("penetration", penetration, above=0.0, below=1.0)
-    b = check.number("width", width, above=0.0, unit="m")
-    steps = check.integer("steps", steps, least=2, most=MOST_STEPS)
+    delta = checks.number("penetration", penetration, above=0.0, below=1.0)
+    b = checks.number("width", width, above=0.0, unit="m")
+    steps = checks.integer("steps", steps, least=2, most=MOST_STEPS)
     out = np.zeros(o.SIZE)
     rows = np.zeros((steps + 32, COLUMNS))
     raise_for(traverse(W, u, mu, e, number, b, delta, steps, rows, out))

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from carom._compiled.decorators import kernel
 from carom.impact import newton, poisson, stronge
-from carom.jit import kernel
 
 NEWTON = 0
 POISSON = 1

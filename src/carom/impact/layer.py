@@ -16,13 +16,13 @@ from __future__ import annotations
 
 import math
 
+from carom._compiled.decorators import entry, kernel
+from carom.friction.rays import outgoing, stick_ratio
 from carom.impact import laws
 from carom.impact import layout as o
 from carom.impact.phase import replay, run, shoot, write
-from carom.impact.rays import outgoing, stick_ratio
 from carom.impact.resolve import resolve_one
 from carom.impact.spline import force, slip_ratio
-from carom.jit import entry, kernel
 
 _AT_REST = 1e-12  # as in `resolve`
 _DOUBLINGS = 8  # of the steps, if a phase was not solved

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import math
 
+from carom._compiled.decorators import kernel
+from carom.friction.rays import solve_tangential
 from carom.impact import laws
-from carom.impact.rays import solve_tangential
 from carom.impact.spline import force, quadratures, slip_ratio, solve_slip
-from carom.jit import kernel
 
 # Columns of `history`, a row a knot: time, s, velocity, tangential displacement, force right of it.
 COLUMNS = 10

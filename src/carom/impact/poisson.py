@@ -7,7 +7,7 @@ S. D. Poisson, Traite de mecanique (1833), and E. J. Routh, Dynamics of a System
 
 from __future__ import annotations
 
-from carom.jit import kernel
+from carom._compiled.decorators import kernel
 
 
 @kernel

@@ -10,13 +10,13 @@ from __future__ import annotations
 
 import math
 
+from carom._compiled.decorators import entry, kernel
+from carom.friction.rays import outgoing, solve_tangential, stick_ratio
 from carom.impact import laws
 from carom.impact import layout as o
-from carom.impact.rays import outgoing, solve_tangential, stick_ratio
-from carom.impact.slip import expand, land, moved, normal_rate
+from carom.impact.slip_step import expand, land, moved, normal_rate
 from carom.impact.taylor import reach
 from carom.impact.wedge import drowned, moves_nothing, power_of_two, pushed
-from carom.jit import entry, kernel
 
 _ACCURACY = 1e-14  # last term of the series of slip, relative to the root of |u_t| |u|
 _AT_REST = 1e-12  # slip is over below this part of the speed of impact

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 
-from carom.jit import kernel
+from carom._compiled.decorators import kernel
 
 _X1, _X2, _X3 = 0.5 - 0.5 * math.sqrt(0.6), 0.5, 0.5 + 0.5 * math.sqrt(0.6)
 _W1, _W2, _W3 = 5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0

@@ -4,30 +4,37 @@ from __future__ import annotations
 
 import math
 
-from carom.contact.closed import concerns, gather_closed
+from carom._compiled.choice import (
+    by_address,
+    by_method,
+)
+from carom._compiled.decorators import kernel, unit
+from carom.contact.closed_points import concerns, gather_closed
 from carom.contact.gap import round_off, slow, strike_point
 from carom.contact.groups import label_groups
-from carom.contact.return_map import return_map
-from carom.contact.work_mode import restore_work
-from carom.dispatch import by_address, by_method
+from carom.dynamics.contact_impulse import (
+    add_velocity,
+    spread,
+)
+from carom.dynamics.explicit import Explicit
+from carom.dynamics.forces import potential_energy
+from carom.dynamics.implicit import Implicit
+from carom.dynamics.project import project_velocity
+from carom.dynamics.rattle import Rattle
+from carom.dynamics.three_field import ThreeField
 from carom.impact import layout
-from carom.impact.alike import as_one
-from carom.impact.collapse import what_is_left
 from carom.impact.driven import BLOCKED, blocked, driven_work
+from carom.impact.effective_restitution import what_is_left
+from carom.impact.equal_contacts import as_one
 from carom.impact.layer import traverse
+from carom.impact.record import write_impact
 from carom.impact.resolve import resolve_one
+from carom.impact.return_map import return_map
 from carom.impact.strike_several import strike_several
-from carom.impact.write import write_impact
-from carom.jit import kernel, unit
-from carom.motion.contact_point import add_velocity, contact_velocity, spread
-from carom.motion.explicit import Explicit
-from carom.motion.forces import potential_energy
-from carom.motion.implicit import Implicit
-from carom.motion.project import project_velocity
-from carom.motion.rattle import Rattle
-from carom.motion.three_field import ThreeField
-from carom.system.notes import begin_event, end_event
-from carom.system.records import IMPACT, JAMS, NEEDS_CORNER
+from carom.impact.work_mode import restore_work
+from carom.kinematics.contact_point import contact_velocity
+from carom.model.event_rows import begin_event, end_event
+from carom.model.records import IMPACT, JAMS, NEEDS_CORNER
 
 LOCATE, WORK = 0, 2
 RETURN_MAP_FAILED, IMPACT_FAILED, TOO_MANY_POINTS = 5, 6, 10

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import math
 
+from carom._compiled.choice import by_address
+from carom._compiled.decorators import kernel, unit
 from carom.contact.gap import slow
-from carom.dispatch import by_address
-from carom.impact.collapse import what_is_left
-from carom.impact.corner.layout import NEEDS_UNITS, OK
-from carom.impact.corner.resolve import resolve_contacts
+from carom.dynamics.contact_impulse import add_velocity, spread
+from carom.dynamics.several_points import inverse_masses, velocities
 from carom.impact.driven import BLOCKED, blocked
+from carom.impact.effective_restitution import what_is_left
 from carom.impact.layout import WEDGED
-from carom.jit import kernel, unit
-from carom.motion.contact_point import add_velocity, spread
-from carom.motion.several import inverse_masses, velocities
-from carom.system.cluster import U
-from carom.system.records import NEEDS_CORNER
+from carom.impact.multiple.layout import NEEDS_UNITS, OK
+from carom.impact.multiple.resolve import resolve_contacts
+from carom.impact.workspace import U
+from carom.model.records import NEEDS_CORNER
 
 IMPACT_FAILED = 6
 SEED = 1e-7  # of the slip

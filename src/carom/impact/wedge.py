@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from carom.jit import kernel
+from carom._compiled.decorators import kernel
 
 #: a sum of products counts as none below this part of them: their errors are some 1e-15, and what is left is
 #: known to a thousandth at least

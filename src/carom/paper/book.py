@@ -63,7 +63,7 @@ def make(
     list of Path
         The files written.
     """
-    from carom.plots.style import save, style
+    from carom.visual.plots.style import save, style
 
     folder.mkdir(parents=True, exist_ok=True)
     known = figures()

@@ -10,7 +10,7 @@ from carom.baselines import first_completing_steps, hht_alpha_layer
 from carom.impact.geometry import NormalMotion
 from carom.paper.figure import FigureOfPaper
 from carom.paper.runs import SPHERE_DELTA, sphere_run
-from carom.plots import style
+from carom.visual.plots import style
 
 _MORE = ((10, style.GREEN), (20, style.ORANGE), (40, style.PURPLE))
 

@@ -7,7 +7,7 @@ import numpy as np
 from carom.paper.figure import FigureOfPaper
 from carom.paper.references import die_after
 from carom.paper.runs import EDGE, FRICTIONS, die_run, with_jumps
-from carom.plots import style
+from carom.visual.plots import style
 
 COLOURS = dict(zip(FRICTIONS, (style.BLUE, style.RED)))
 END = 0.42  # [s]

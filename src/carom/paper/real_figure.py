@@ -10,7 +10,7 @@ import numpy as np
 
 from carom.paper import real
 from carom.paper.figure import FigureOfPaper
-from carom.plots import style
+from carom.visual.plots import style
 
 _LAW_COLOURS = dict(zip(real.LAWS, (style.BLUE, style.GREEN, style.RED)))
 

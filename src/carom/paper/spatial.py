@@ -11,7 +11,7 @@ from carom.geometry import quaternion
 from carom.paper.figure import FigureOfPaper
 from carom.paper.references import die_after, root
 from carom.paper.runs import DIE_DELTA, DIE_E, EDGE, FRICTIONS, die_run, with_jumps
-from carom.plots import style
+from carom.visual.plots import style
 
 COLOURS = dict(zip(FRICTIONS, (style.BLUE, style.RED)))
 END = 0.4  # [s]

@@ -7,7 +7,7 @@ import numpy as np
 from carom.paper.figure import FigureOfPaper
 from carom.paper.references import Bounce
 from carom.paper.runs import sphere_run, with_jumps
-from carom.plots import style
+from carom.visual.plots import style
 
 CASES = ((1.0, style.BLUE), (0.8, style.RED))
 _MARKS = np.linspace(0.0, 3.0, 61)

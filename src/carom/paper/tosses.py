@@ -24,7 +24,7 @@ import numpy as np
 
 import carom
 from carom.geometry import quaternion
-from carom.identify import (
+from carom.studies.identify import (
     Identification,
     Recording,
     State,

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from carom.geometry import quaternion
-from carom.identify.errors import angles, distances
 from carom.paper import tosses
-from carom.plots import style
+from carom.studies.identify.errors import angles, distances
+from carom.visual.plots import style
 
 FACES = (
     style.BLUE,

@@ -7,7 +7,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from carom import check
+from carom import checks
 from carom.scene.inertia import inertia_matrix
 from carom.scene.materials import Material
 from carom.scene.shapes import SHAPES, Shape
@@ -115,7 +115,7 @@ def make_body(
 ) -> Body:
     """Return a checked `Body`; the arguments are those of `Scene.add_body`."""
     if shape is not None:
-        check.instance("shape", shape, SHAPES)
+        checks.instance("shape", shape, SHAPES)
     mass = _mass(shape, mass, density)
     if inertia is None:
         if shape is None:
@@ -128,7 +128,7 @@ def make_body(
         mass=mass,
         inertia=inertia_matrix(inertia),
         position=point("position", position),
-        orientation=check.unit_quaternion("orientation", orientation),
+        orientation=checks.unit_quaternion("orientation", orientation),
         velocity=point("velocity", velocity),
         angular_velocity=point("angular_velocity", angular_velocity),
         material=_material(material),
@@ -139,7 +139,7 @@ def make_body(
 
 def make_half_space(index, name, on_plane, normal, material=None) -> HalfSpace:
     """Return a checked `HalfSpace`; the arguments are those of `Scene.add_half_space`."""
-    place = point("point", on_plane), check.unit_vector("normal", normal)
+    place = point("point", on_plane), checks.unit_vector("normal", normal)
     plane = HalfSpace(index, name, *place, _material(material))
     keep(plane, **vars(plane))
     return plane
@@ -147,25 +147,25 @@ def make_half_space(index, name, on_plane, normal, material=None) -> HalfSpace:
 
 def _material(material) -> Material | None:
     if material is not None:
-        check.instance("material", material, (Material,))
+        checks.instance("material", material, (Material,))
     return material
 
 
 def _mass(shape: Shape | None, mass, density) -> float:
     if (mass is None) == (density is None):
         raise ValueError(
-            f"exactly one of mass and density must be given, got mass={check.shown(mass)}, "
-            f"density={check.shown(density)}"
+            f"exactly one of mass and density must be given, got mass={checks.shown(mass)}, "
+            f"density={checks.shown(density)}"
         )
     if density is None:
-        return check.mass("mass", mass)
-    density = check.number("density", density, above=0, unit="kg/m^3")
+        return checks.mass("mass", mass)
+    density = checks.number("density", density, above=0, unit="kg/m^3")
     if shape is None:
         raise ValueError(
-            f"density needs a shape, got density={check.shown(density)} without one; give mass"
+            f"density needs a shape, got density={checks.shown(density)} without one; give mass"
         )
     if not shape.volume > 0.0:
         raise ValueError(
-            f"density needs a shape with a volume, got {check.shown(shape)}; give mass"
+            f"density needs a shape with a volume, got {checks.shown(shape)}; give mass"
         )
-    return check.mass("density times the volume", density * shape.volume)
+    return checks.mass("density times the volume", density * shape.volume)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom import check
+from carom import checks
 from carom.geometry import quaternion
 from carom.scene.pieces import IDENTITY, Piece, Touching
 from carom.scene.values import keep, point
@@ -73,7 +73,7 @@ class Compound(Touching):
         else:
             if masses is not None:
                 raise ValueError(
-                    f"masses must be left out where centroid is given, got {check.shown(masses)}"
+                    f"masses must be left out where centroid is given, got {checks.shown(masses)}"
                 )
             middle, spread = point("centroid", centroid), None
         arms = positions - middle
@@ -107,7 +107,7 @@ class Compound(Touching):
             raise ValueError(
                 f"inertia must be given with {self!r} whose centroid was given: how its mass lies is not known"
             )
-        return check.mass("mass", mass, zero=True) * self._spread
+        return checks.mass("mass", mass, zero=True) * self._spread
 
 
 def _spread_of(placed, arms, weights) -> np.ndarray:
@@ -124,7 +124,8 @@ def _sequence(parts) -> Sequence:
     """Return the parts, as a sequence that is not empty."""
     if not isinstance(parts, Sequence) or isinstance(parts, (str, bytes)) or len(parts) == 0:
         raise ValueError(
-            f"parts must be a sequence of at least one (shape, position, orientation), got {check.shown(parts)}"
+            "parts must be a sequence of at least one (shape, position, orientation), got "
+            f"{checks.shown(parts)}"
         )
     return parts
 
@@ -134,12 +135,12 @@ def _part(number: int, part) -> tuple:
     name = f"parts[{number}]"
     if not isinstance(part, Sequence) or len(part) not in (2, 3):
         raise ValueError(
-            f"{name} must be (shape, position) or (shape, position, orientation), got {check.shown(part)}"
+            f"{name} must be (shape, position) or (shape, position, orientation), got {checks.shown(part)}"
         )
     shape, position, *turn = part
-    check.instance(f"{name}[0]", shape, (Touching,), "; a shape is needed")
+    checks.instance(f"{name}[0]", shape, (Touching,), "; a shape is needed")
     position = point(f"{name}[1]", position)
-    orientation = check.unit_quaternion(f"{name}[2]", turn[0] if turn else IDENTITY)
+    orientation = checks.unit_quaternion(f"{name}[2]", turn[0] if turn else IDENTITY)
     for array in (position, orientation):
         array.setflags(write=False)
     return shape, position, orientation
@@ -151,10 +152,10 @@ def _weights(shapes, volumes, masses) -> np.ndarray:
         if not np.all(volumes > 0.0):
             flat = shapes[int(np.argmin(volumes))]
             raise ValueError(
-                f"masses must be given where a part has no volume, got None and {check.shown(flat)}"
+                f"masses must be given where a part has no volume, got None and {checks.shown(flat)}"
             )
         return volumes / volumes.sum()
-    weights = check.finite_array("masses", masses, (len(shapes),))
+    weights = checks.finite_array("masses", masses, (len(shapes),))
     if not (np.all(weights >= 0.0) and weights.sum() > 0.0):
-        raise ValueError(f"masses must be at least 0 and not all 0, got {check.shown(masses)}")
+        raise ValueError(f"masses must be at least 0 and not all 0, got {checks.shown(masses)}")
     return weights / weights.sum()

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from carom import check
+from carom import checks
 from carom.scene import joints as kinds
 from carom.scene.bodies import Body
 from carom.scene.joints import Joint
@@ -29,13 +29,13 @@ COORDINATES = {
 
 def coordinate_kind(joint: Joint, coordinate: int, name: str = "joint") -> str:
     """Return "turn" or "slide"; refuse a coordinate that the joint does not have."""
-    check.instance(name, joint, (Joint,))
+    checks.instance(name, joint, (Joint,))
     own = COORDINATES.get(type(joint.definition), ())
     if not own:
         raise ValueError(
-            f"{name} must have coordinates of its own (Revolute, Prismatic, ...), got {check.shown(joint)}"
+            f"{name} must have coordinates of its own (Revolute, Prismatic, ...), got {checks.shown(joint)}"
         )
-    check.integer("coordinate", coordinate, least=0)
+    checks.integer("coordinate", coordinate, least=0)
     if coordinate >= len(own):
         raise ValueError(
             f"coordinate must be below {len(own)}, the number of coordinates of {joint!r}, got {coordinate}"
@@ -45,19 +45,21 @@ def coordinate_kind(joint: Joint, coordinate: int, name: str = "joint") -> str:
 
 def distinct_bodies(bodies: Body | Sequence[Body]) -> tuple[Body, ...]:
     """Return at least one body, each once."""
-    listed = tuple([bodies] if isinstance(bodies, Body) else check.listed("bodies", bodies, "Body"))
+    listed = tuple(
+        [bodies] if isinstance(bodies, Body) else checks.listed("bodies", bodies, "Body")
+    )
     if not listed or len(set(map(id, listed))) != len(listed):
-        raise ValueError(f"bodies must be at least one body, each once, got {check.shown(bodies)}")
+        raise ValueError(f"bodies must be at least one body, each once, got {checks.shown(bodies)}")
     for body in listed:
-        check.instance("bodies", body, (Body,))
+        checks.instance("bodies", body, (Body,))
     return listed
 
 
 def check_functions(function, **optional) -> None:
     """Refuse what cannot be called; None is allowed for those that are `optional`."""
-    check.function("function", function)
+    checks.function("function", function)
     for name, given in optional.items():
-        check.function(name, given, optional=True)
+        checks.function(name, given, optional=True)
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -77,14 +79,14 @@ class Coupling:
     def __init__(self, factors: Mapping[Joint | tuple[Joint, int], float]):
         if not isinstance(factors, Mapping) or not factors:
             raise ValueError(
-                f"factors must be a mapping from joints to numbers, got {check.shown(factors)}"
+                f"factors must be a mapping from joints to numbers, got {checks.shown(factors)}"
             )
         terms = []
         for key, factor in factors.items():
             pair = key if isinstance(key, tuple) and len(key) == 2 else (key, 0)
             joint, coordinate = pair
             coordinate_kind(joint, coordinate, "each key of factors")
-            factor = check.number(f"factors[{joint!r}]", factor)
+            factor = checks.number(f"factors[{joint!r}]", factor)
             if factor == 0.0:
                 raise ValueError(f"factors[{joint!r}] must not be 0, got {factor!r}")
             terms.append((joint, coordinate, factor))
@@ -104,9 +106,9 @@ class Gear(Coupling):
     """
 
     def __init__(self, first: Joint, second: Joint, ratio: float):
-        ratio = check.number("ratio", ratio)
+        ratio = checks.number("ratio", ratio)
         if ratio == 0.0:
-            raise ValueError(f"ratio must not be 0, got {check.shown(ratio)}")
+            raise ValueError(f"ratio must not be 0, got {checks.shown(ratio)}")
         for name, joint in (("first", first), ("second", second)):
             coordinate_kind(joint, 0, name)
         if first is second:
@@ -149,12 +151,13 @@ class Driver:
         coordinate_kind(joint, coordinate)
         if (rate is None) == (motion is None):
             raise ValueError(
-                f"rate or motion must be given, and not both, got {check.shown(rate)} and {check.shown(motion)}"
+                f"rate or motion must be given, and not both, got {checks.shown(rate)} and "
+                f"{checks.shown(motion)}"
             )
         if rate is not None:
-            rate = check.number("rate", rate)
+            rate = checks.number("rate", rate)
         elif not callable(motion):
-            raise TypeError(f"motion must be a function or a PPoly, got {check.shown(motion)}")
+            raise TypeError(f"motion must be a function or a PPoly, got {checks.shown(motion)}")
         keep(self, joint=joint, coordinate=int(coordinate), rate=rate, motion=motion)
 
 
@@ -192,7 +195,7 @@ class Rows:
         position: Callable | None = None,
     ):
         bodies = distinct_bodies(bodies)
-        check.integer("rows", rows, least=1, most=6)
+        checks.integer("rows", rows, least=1, most=6)
         check_functions(function, position=position)
         keep(self, bodies=bodies, function=function, rows=int(rows), position=position)
 

@@ -118,7 +118,7 @@ def _gap(body: Body, other: HalfSpace | Body) -> tuple[float, np.ndarray]:
         down = quaternion.rotate_back(body.orientation, -other.normal)
         depth = float(body.shape.support(down) @ down)
         return float((body.position - other.point) @ other.normal) - depth, other.normal
-    from carom.contact.pairs.api import nearest_points  # compiled code, only where bodies meet
+    from carom.collision.api import nearest_points  # compiled code, only where bodies meet
 
     assert other.shape is not None
     here, there = (body.position, body.orientation), (other.position, other.orientation)

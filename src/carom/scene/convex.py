@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom import check
+from carom import checks
 from carom.scene.moments import about_centroid, of_swollen
 from carom.scene.pieces import Piece, Touching
 from carom.scene.values import keep
@@ -66,8 +66,8 @@ class Convex(Touching):
     _spread: np.ndarray  # integral of x x^T over the solid, by volume [m^2]
 
     def __init__(self, points: ArrayLike, radius: float = 0.0):
-        given = check.finite_array("points", points, (None, 3), unit="m")
-        radius = check.length("radius", radius, zero=True)
+        given = checks.finite_array("points", points, (None, 3), unit="m")
+        radius = checks.length("radius", radius, zero=True)
         corners, simplices = hull_of(given)
 
         def integrals(origin):
@@ -98,7 +98,7 @@ class Convex(Touching):
 
     def inertia(self, mass: float) -> np.ndarray:
         """Return the inertia (3,3) [kg m^2] about the centroid, for a `mass` [kg]."""
-        mass = check.mass("mass", mass, zero=True)
+        mass = checks.mass("mass", mass, zero=True)
         return mass * (np.trace(self._spread) * np.eye(3) - self._spread)
 
 
@@ -106,7 +106,7 @@ def hull_of(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the vertices (m,3) of the hull and its outward triangles (k,3), as numbers of vertices."""
     if len(points) < 4:
         raise ValueError(f"points must be at least 4 to enclose a volume, got {len(points)}")
-    check.length("the greatest coordinate of points", np.max(np.abs(points)), zero=True)
+    checks.length("the greatest coordinate of points", np.max(np.abs(points)), zero=True)
     middle = points.mean(axis=0)
     extents = np.linalg.svd(points - middle, compute_uv=False)
     if not extents[2] > FLAT * extents[0]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom import check
+from carom import checks
 from carom.scene.bodies import Body, Ground
 from carom.scene.more_forces import (
     CurveSpring,
@@ -60,16 +60,16 @@ class Spring:
         start, end, distance = apart(anchor_parent, anchor_child)
         if not distance > 0.0:
             raise ValueError(
-                f"anchor_child must differ from anchor_parent, got {check.shown(anchor_child)} for both"
+                f"anchor_child must differ from anchor_parent, got {checks.shown(anchor_child)} for both"
             )
         rest = distance if rest_length is None else rest_length
         keep(
             self,
-            stiffness=check.number("stiffness", stiffness, least=0, unit="N/m"),
+            stiffness=checks.number("stiffness", stiffness, least=0, unit="N/m"),
             anchor_parent=start,
             anchor_child=end,
-            rest_length=check.number("rest_length", rest, least=0, unit="m"),
-            damping=check.number("damping", damping, least=0, unit="N s/m"),
+            rest_length=checks.number("rest_length", rest, least=0, unit="m"),
+            damping=checks.number("damping", damping, least=0, unit="N s/m"),
         )
 
 
@@ -85,8 +85,8 @@ class Torque:
     follow: bool
 
     def __init__(self, vector: ArrayLike, follow: bool = False):
-        vector = check.finite_array("vector", vector, (3,), unit="N m")
-        keep(self, vector=vector, follow=check.flag("follow", follow))
+        vector = checks.finite_array("vector", vector, (3,), unit="N m")
+        keep(self, vector=vector, follow=checks.flag("follow", follow))
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -102,9 +102,9 @@ class Force:
     follow: bool
 
     def __init__(self, vector: ArrayLike, anchor: ArrayLike | None = None, follow: bool = False):
-        vector = check.finite_array("vector", vector, (3,), unit="N")
+        vector = checks.finite_array("vector", vector, (3,), unit="N")
         anchor = optional_point("anchor", anchor)
-        keep(self, vector=vector, anchor=anchor, follow=check.flag("follow", follow))
+        keep(self, vector=vector, anchor=anchor, follow=checks.flag("follow", follow))
 
 
 @dataclass(frozen=True, init=False, eq=False)
@@ -156,19 +156,19 @@ class Bushing:
             turn_stiffness=_along_across("turn_stiffness", turn_stiffness, "N m/rad"),
             damping=_along_across("damping", damping, "N s/m"),
             turn_damping=_along_across("turn_damping", turn_damping, "N m s/rad"),
-            axis=check.unit_vector("axis", axis),
+            axis=checks.unit_vector("axis", axis),
             anchor=optional_point("anchor", anchor),
         )
 
 
 def _along_across(name: str, value: ArrayLike, unit: str) -> np.ndarray:
     """Return (along, across, across) from one number or a pair, at least 0."""
-    given = check.real_array(name, value, "() or (2,)")
-    pair = check.finite_array(
+    given = checks.real_array(name, value, "() or (2,)")
+    pair = checks.finite_array(
         name, np.full(2, given) if given.ndim == 0 else given, (2,), unit=unit
     )
     if np.any(pair < 0.0):
-        raise ValueError(f"{name} must be at least 0, got {check.shown(value)} [{unit}]")
+        raise ValueError(f"{name} must be at least 0, got {checks.shown(value)} [{unit}]")
     return np.array([pair[0], pair[1], pair[1]])
 
 
@@ -229,7 +229,7 @@ def make_force(index, name, definition, parent, child) -> AppliedForce:
     """Return a checked `AppliedForce`; the arguments are those of `Scene.add_force`."""
     if isinstance(definition, Force) and not isinstance(parent, Ground):
         raise ValueError(
-            f"parent of a Force must be carom.GROUND, got {check.shown(parent)}; "
+            f"parent of a Force must be carom.GROUND, got {checks.shown(parent)}; "
             "for a force between two bodies use Spring, or two Forces"
         )
     return AppliedForce(index, name, definition, parent, child)

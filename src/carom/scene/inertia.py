@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom import check
+from carom import checks
 
 SLACK = 1e-12  # relative to the largest entry or moment: rounding, not physics
 
@@ -18,17 +18,17 @@ def inertia_matrix(value) -> np.ndarray:
         If it is not symmetric, not positive definite, or one principal moment exceeds the sum of
         the other two: no distribution of mass has such an inertia.
     """
-    shape = check.real_array("inertia", value, "(3,) or (3, 3)").shape
+    shape = checks.real_array("inertia", value, "(3,) or (3, 3)").shape
     if len(shape) == 2:
-        matrix = check.finite_array("inertia", value, (3, 3), unit="kg m^2")
+        matrix = checks.finite_array("inertia", value, (3, 3), unit="kg m^2")
     elif len(shape) == 1:
-        matrix = np.diag(check.finite_array("inertia", value, (3,), unit="kg m^2"))
+        matrix = np.diag(checks.finite_array("inertia", value, (3,), unit="kg m^2"))
     else:
         raise ValueError(
-            f"inertia must have shape (3,) or (3, 3) [kg m^2], got {check.shown(value)}"
+            f"inertia must have shape (3,) or (3, 3) [kg m^2], got {checks.shown(value)}"
         )
     if not np.max(np.abs(matrix - matrix.T)) <= SLACK * np.max(np.abs(matrix)):
-        raise ValueError(f"inertia must be symmetric, got {check.shown(value)}")
+        raise ValueError(f"inertia must be symmetric, got {checks.shown(value)}")
     matrix = 0.5 * (matrix + matrix.T)
     small, middle, large = np.linalg.eigvalsh(matrix)
     positive, possible = small > SLACK * large, large <= (small + middle) * (1 + SLACK)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom.check import listed, number, shown, unit_quaternion, unit_vector
+from carom.checks import listed, number, shown, unit_quaternion, unit_vector
 from carom.scene.bodies import Body, Ground
 from carom.scene.values import apart, keep, optional_point, point
 

@@ -12,7 +12,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 
-from carom import check
+from carom import checks
 from carom.scene.values import keep
 
 IMPACT_LAWS = ("newton", "poisson", "stronge")
@@ -60,7 +60,7 @@ class ContactLaw:
         check_surface(self)
         if self.friction_held is None:
             keep(self, friction_held=self.friction)
-        check.choice("impact_law", self.impact_law, IMPACT_LAWS)
+        checks.choice("impact_law", self.impact_law, IMPACT_LAWS)
 
 
 @dataclass(frozen=True)
@@ -92,12 +92,12 @@ class Material:
 
 def check_surface(record) -> None:
     """Check the numbers that a law and a material share, and keep them as floats."""
-    keep(record, restitution=check.number("restitution", record.restitution, least=0, most=1))
+    keep(record, restitution=checks.number("restitution", record.restitution, least=0, most=1))
     for name in ("friction", "rolling_friction", "pivoting_friction"):
-        keep(record, **{name: check.number(name, getattr(record, name), least=0)})
+        keep(record, **{name: checks.number(name, getattr(record, name), least=0)})
     if record.friction_held is not None:
-        keep(record, friction_held=check.number("friction_held", record.friction_held, least=0))
-    keep(record, stiffness=check.number("stiffness", record.stiffness, above=0))
+        keep(record, friction_held=checks.number("friction_held", record.friction_held, least=0))
+    keep(record, stiffness=checks.number("stiffness", record.stiffness, above=0))
 
 
 Rule = str | Mapping[str, str] | None
@@ -108,14 +108,14 @@ def checked_rule(combine) -> dict[str, str]:
     if combine is None:
         return {}
     if isinstance(combine, str):
-        return dict.fromkeys(COMBINED, check.choice("combine", combine, RULES))
+        return dict.fromkeys(COMBINED, checks.choice("combine", combine, RULES))
     if not isinstance(combine, Mapping):
         raise ValueError(
             f"combine must be one of {', '.join(map(repr, sorted(RULES)))} or a dict of these by property, "
-            f"got {check.shown(combine)}"
+            f"got {checks.shown(combine)}"
         )
     return {
-        check.choice("a key of combine", key, COMBINED): check.choice(
+        checks.choice("a key of combine", key, COMBINED): checks.choice(
             f"combine[{key!r}]", rule, RULES
         )
         for key, rule in combine.items()

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom import check
+from carom import checks
 from carom.scene.convex import Convex, hull_of
 from carom.scene.moments import about_centroid, of_triangles
 from carom.scene.pieces import Piece, Touching
@@ -70,8 +70,8 @@ class Mesh(Touching):
     radius = 0.0
 
     def __init__(self, vertices: ArrayLike, faces: ArrayLike, parts: Sequence | str | None = None):
-        points = check.finite_array("vertices", vertices, (None, 3), unit="m")
-        check.length("the greatest of vertices", np.max(np.abs(points), initial=0.0), zero=True)
+        points = checks.finite_array("vertices", vertices, (None, 3), unit="m")
+        checks.length("the greatest of vertices", np.max(np.abs(points), initial=0.0), zero=True)
         triangles = _checked_faces(faces, points)
 
         def integrals(origin):
@@ -106,16 +106,16 @@ class Mesh(Touching):
 
     def inertia(self, mass: float) -> np.ndarray:
         """Return the inertia (3,3) [kg m^2] about the centroid, for a `mass` [kg]."""
-        mass = check.mass("mass", mass, zero=True)
+        mass = checks.mass("mass", mass, zero=True)
         return mass * (np.trace(self._spread) * np.eye(3) - self._spread)
 
 
 def _checked_faces(faces, points: np.ndarray) -> np.ndarray:
     """Return the triangles (k,3) of a closed, oriented surface without degenerate ones."""
-    check.real_array("faces", faces, "(k, 3)")
+    checks.real_array("faces", faces, "(k, 3)")
     given = np.asarray(faces)
     if given.ndim != 2 or given.shape[1] != 3 or not np.issubdtype(given.dtype, np.integer):
-        raise ValueError(f"faces must be whole numbers of shape (k, 3), got {check.shown(faces)}")
+        raise ValueError(f"faces must be whole numbers of shape (k, 3), got {checks.shown(faces)}")
     triangles = given.astype(np.int64)
     if len(triangles) < 4:
         raise ValueError(f"faces must be at least 4 to enclose a volume, got {len(triangles)}")
@@ -174,10 +174,10 @@ def _pieces(points, triangles, centroid, convex, parts) -> tuple[Piece, ...]:
     if parts is None:
         corners = [hull_of(points[np.unique(triangles)])[0]] if convex else []
     elif isinstance(parts, str):
-        check.choice("parts", parts, ("coacd",))
+        checks.choice("parts", parts, ("coacd",))
         corners = _decomposed(points, triangles)
     else:
-        corners = check.listed("parts", parts, "corners (m, 3) of convex parts")
+        corners = checks.listed("parts", parts, "corners (m, 3) of convex parts")
         if not corners:
             raise ValueError("parts must be at least one set of corners (m, 3), got none")
     pieces = []

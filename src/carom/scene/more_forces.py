@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom import check
+from carom import checks
 from carom.scene.bodies import Body
 from carom.scene.constraints import check_functions, coordinate_kind, distinct_bodies
 from carom.scene.joints import Joint
@@ -50,9 +50,9 @@ class JointSpring:
         keep(
             self,
             joint=joint,
-            stiffness=check.number("stiffness", stiffness, least=0.0),
-            damping=check.number("damping", damping, least=0.0),
-            rest=check.number("rest", rest),
+            stiffness=checks.number("stiffness", stiffness, least=0.0),
+            damping=checks.number("damping", damping, least=0.0),
+            rest=checks.number("rest", rest),
             coordinate=int(coordinate),
         )
 
@@ -77,7 +77,7 @@ class JointForce:
 
     def __init__(self, joint: Joint, force: float | Callable, coordinate: int = 0):
         coordinate_kind(joint, coordinate)
-        given = force if callable(force) else check.number("force", force)
+        given = force if callable(force) else checks.number("force", force)
         keep(self, joint=joint, force=given, coordinate=int(coordinate))
 
 
@@ -104,7 +104,7 @@ class JointFriction:
 
     def __init__(self, joint: Joint, bound: float, coordinate: int = 0):
         coordinate_kind(joint, coordinate)
-        bound = check.number("bound", bound, least=0.0)
+        bound = checks.number("bound", bound, least=0.0)
         keep(self, joint=joint, bound=bound, coordinate=int(coordinate))
 
 
@@ -139,24 +139,24 @@ class CurveSpring:
         start, end, distance = apart(anchor_parent, anchor_child)
         if not distance > 0.0:
             raise ValueError(
-                f"anchor_child must differ from anchor_parent, got {check.shown(anchor_child)} for both"
+                f"anchor_child must differ from anchor_parent, got {checks.shown(anchor_child)} for both"
             )
         keep(
             self,
             anchor_parent=start,
             anchor_child=end,
             tension=_curve(tension),
-            damping=check.number("damping", damping, least=0.0, unit="N s/m"),
+            damping=checks.number("damping", damping, least=0.0, unit="N s/m"),
         )
 
 
 def _curve(given):
     if hasattr(given, "c") and hasattr(given, "x") and not isinstance(given, type):
         return given
-    table = check.finite_array("tension", given, (2, None))
+    table = checks.finite_array("tension", given, (2, None))
     if table.shape[1] < 2 or not np.all(np.diff(table[0]) > 0.0):
         raise ValueError(
-            f"tension must have two distances or more, each above the one before, got {check.shown(given)}"
+            f"tension must have two distances or more, each above the one before, got {checks.shown(given)}"
         )
     from scipy.interpolate import PchipInterpolator
 

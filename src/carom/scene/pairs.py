@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom import check
+from carom import checks
 from carom.scene.all_pairs import PairTable, all_pairs, near, no_pairs
 from carom.scene.bodies import Body, HalfSpace
 from carom.scene.contacts import check_overlap
@@ -46,7 +46,7 @@ class Pairs:
 
     def set_default(self, law: ContactLaw, combine, all_pairs: bool) -> None:
         """Keep the values of pairs that have none of their own."""
-        all_pairs = check.flag("all_pairs", all_pairs)
+        all_pairs = checks.flag("all_pairs", all_pairs)
         self._rules = checked_rule(combine)
         self._values = law
         self.default = law if all_pairs else None

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom import check
+from carom import checks
 from carom.geometry import quaternion
 from carom.scene.values import keep
 
@@ -106,7 +106,7 @@ class Touching(ABC):
 
     def support(self, direction: ArrayLike) -> np.ndarray:
         """Return the point (3,) of the shape [m] farthest along `direction` (3,), in body axes."""
-        d = check.unit_vector("direction", direction)
+        d = checks.unit_vector("direction", direction)
         points = np.array([piece.support(d) for piece in self.pieces])
         return points[np.argmax(points @ d)]
 

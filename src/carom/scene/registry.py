@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from difflib import get_close_matches
 
-from carom import check
+from carom import checks
 from carom.scene.bodies import Body, Ground
 
 
@@ -30,9 +30,11 @@ class Registry:
         return f"{default}{number}"
 
     def _free(self, name: str) -> str:
-        check.text("name", name)
+        checks.text("name", name)
         if name in self._parts:
-            raise ValueError(f"name must be unique in the scene, got {check.shown(name)} once more")
+            raise ValueError(
+                f"name must be unique in the scene, got {checks.shown(name)} once more"
+            )
         return name
 
     def add(self, part):
@@ -56,16 +58,16 @@ class Registry:
     def __getitem__(self, name: str):
         if isinstance(name, str) and name in self._parts:
             return self._parts[name]
-        near = get_close_matches(check.shown(name).strip("'"), self._parts, n=1)
+        near = get_close_matches(checks.shown(name).strip("'"), self._parts, n=1)
         hint = f"did you mean {near[0]!r}?" if near else f"it has {len(self._parts)} named parts"
-        raise KeyError(f"the scene has no part called {check.shown(name)}; {hint}")
+        raise KeyError(f"the scene has no part called {checks.shown(name)}; {hint}")
 
     def member(self, argument: str, part, kinds: tuple[type, ...], hint: str = "") -> None:
         """Refuse a `part` that is of none of `kinds`, or of another scene."""
-        check.instance(argument, part, kinds, hint)
+        checks.instance(argument, part, kinds, hint)
         if not isinstance(part, Ground) and self._parts.get(part.name) is not part:
             raise ValueError(
-                f"{argument} must belong to this scene, got {check.shown(part)} of another one"
+                f"{argument} must belong to this scene, got {checks.shown(part)} of another one"
             )
 
     def pair(self, parent, child) -> None:
@@ -75,5 +77,5 @@ class Registry:
         self.member("child", child, (Body,))
         if parent is child:
             raise ValueError(
-                f"parent and child must be two bodies, got {check.shown(child)} for both"
+                f"parent and child must be two bodies, got {checks.shown(child)} for both"
             )

@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from carom import check
+from carom import checks
 from carom.scene.pieces import Piece, Touching
 from carom.scene.values import keep
 
@@ -30,8 +30,8 @@ class Capsule(Touching):
     length: float
 
     def __post_init__(self):
-        keep(self, radius=check.length("radius", self.radius))
-        keep(self, length=check.length("length", self.length))
+        keep(self, radius=checks.length("radius", self.radius))
+        keep(self, length=checks.length("length", self.length))
 
     @property
     def volume(self) -> float:
@@ -51,7 +51,7 @@ class Capsule(Touching):
 
     def inertia(self, mass: float) -> np.ndarray:
         """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
-        mass = check.mass("mass", mass, zero=True)
+        mass = checks.mass("mass", mass, zero=True)
         r, l = self.radius, self.length
         straight = mass * l / (l + 4 / 3 * r)
         ends = mass - straight
@@ -68,8 +68,8 @@ class Cylinder(Touching):
     length: float
 
     def __post_init__(self):
-        keep(self, radius=check.length("radius", self.radius))
-        keep(self, length=check.length("length", self.length))
+        keep(self, radius=checks.length("radius", self.radius))
+        keep(self, length=checks.length("length", self.length))
 
     @property
     def volume(self) -> float:
@@ -89,7 +89,7 @@ class Cylinder(Touching):
 
     def inertia(self, mass: float) -> np.ndarray:
         """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
-        mass = check.mass("mass", mass, zero=True)
+        mass = checks.mass("mass", mass, zero=True)
         r, l = self.radius, self.length
         across = l**2 / 12 + r**2 / 4
         return mass * np.diag([across, across, r**2 / 2])
@@ -115,12 +115,12 @@ class Disc(Touching):
     volume: ClassVar[float] = 0.0  # [m^3]
 
     def __post_init__(self):
-        keep(self, radius=check.length("radius", self.radius))
-        inner = check.length("inner_radius", self.inner_radius, zero=True)
+        keep(self, radius=checks.length("radius", self.radius))
+        inner = checks.length("inner_radius", self.inner_radius, zero=True)
         if not inner <= self.radius:
             raise ValueError(
                 f"inner_radius must be finite and at least 0 and at most {self.radius:g} [m], the radius, "
-                f"got {check.shown(self.inner_radius)}"
+                f"got {checks.shown(self.inner_radius)}"
             )
         keep(self, inner_radius=inner)
 
@@ -136,6 +136,6 @@ class Disc(Touching):
 
     def inertia(self, mass: float) -> np.ndarray:
         """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
-        mass = check.mass("mass", mass, zero=True)
+        mass = checks.mass("mass", mass, zero=True)
         across = mass * (self.radius**2 + self.inner_radius**2) / 4
         return np.diag([across, across, 2 * across])

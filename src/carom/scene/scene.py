@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from numpy.typing import ArrayLike
 
-from carom import check
+from carom import checks
 from carom.scene.bodies import GROUND, Body, Ground, HalfSpace, make_body, make_half_space
 from carom.scene.constraints import CONSTRAINTS, Constraint, ConstraintDefinition
 from carom.scene.contacts import check_gap
@@ -41,7 +41,7 @@ class Scene(TouchingPairs):
     """
 
     def __init__(self, gravity: ArrayLike = (0.0, 0.0, -9.81)):
-        self._gravity = check.finite_array("gravity", gravity, (3,), unit="m/s^2")
+        self._gravity = checks.finite_array("gravity", gravity, (3,), unit="m/s^2")
         self._gravity.setflags(write=False)
         self._parts = Registry()
         self._pairs = Pairs()
@@ -168,7 +168,7 @@ class Scene(TouchingPairs):
         >>> scene.add_joint(hinge, carom.GROUND, rod, name="hinge")
         Joint('hinge', Revolute, 'GROUND' -> 'rod')
         """
-        check.instance("definition", definition, JOINTS)
+        checks.instance("definition", definition, JOINTS)
         self._parts.pair(parent, child)
         index, name = self._parts.new(Joint, name, "joint")
         self._pairs.join(parent, child)
@@ -201,13 +201,13 @@ class Scene(TouchingPairs):
         name
             Default ``"force1"``, ``"force2"``, ...
         """
-        check.instance("definition", definition, FORCES)
+        checks.instance("definition", definition, FORCES)
         named = force_on(definition)
         if named is not None:
             if child is not None or parent is not GROUND:
                 raise ValueError(
                     f"parent and child must be left out with {type(definition).__name__}, which names "
-                    f"its own, got {check.shown(parent)} and {check.shown(child)}"
+                    f"its own, got {checks.shown(parent)} and {checks.shown(child)}"
                 )
             for part in named:
                 self._parts.member("definition", part, (Joint, Body))
@@ -233,7 +233,7 @@ class Scene(TouchingPairs):
         name
             Default ``"constraint1"``, ``"constraint2"``, ...
         """
-        check.instance("definition", definition, CONSTRAINTS)
+        checks.instance("definition", definition, CONSTRAINTS)
         index, name = self._parts.new(Constraint, name, "constraint")
         constraint = Constraint(index, name, definition)
         for part in constraint.parts:
@@ -339,7 +339,7 @@ class Scene(TouchingPairs):
 
         Returns
         -------
-        carom.system.mobility.Mobility
+        carom.dynamics.mobility.Mobility
             At the start: a mechanism may have more freedom in singular positions. Print it for a summary.
 
         Raises
@@ -360,7 +360,7 @@ class Scene(TouchingPairs):
         1 bodies, 10 constraint rows: 1 degrees of freedom
         5 redundant rows, among lower, upper
         """
-        from carom.system.mobility import mobility
+        from carom.dynamics.mobility import mobility
 
         self.validate()
         return mobility(self)

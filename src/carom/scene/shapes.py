@@ -12,7 +12,7 @@ from functools import cached_property
 
 import numpy as np
 
-from carom import check
+from carom import checks
 from carom.scene.compound import Compound
 from carom.scene.convex import Convex
 from carom.scene.mesh import Mesh
@@ -28,7 +28,7 @@ class Sphere(Touching):
     radius: float
 
     def __post_init__(self):
-        keep(self, radius=check.length("radius", self.radius))
+        keep(self, radius=checks.length("radius", self.radius))
 
     @property
     def volume(self) -> float:
@@ -47,7 +47,7 @@ class Sphere(Touching):
 
     def inertia(self, mass: float) -> np.ndarray:
         """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
-        mass = check.mass("mass", mass, zero=True)
+        mass = checks.mass("mass", mass, zero=True)
         return np.eye(3) * (0.4 * mass * self.radius**2)
 
 
@@ -71,13 +71,13 @@ class Box(Touching):
 
     def __post_init__(self):
         edges = {"lx": self.lx, "ly": self.ly, "lz": self.lz}
-        keep(self, **{k: check.length(k, edge) for k, edge in edges.items()})
+        keep(self, **{k: checks.length(k, edge) for k, edge in edges.items()})
         least = min(("lx", "ly", "lz"), key=lambda k: getattr(self, k))
-        radius, most = check.length("radius", self.radius, zero=True), getattr(self, least) / 2
+        radius, most = checks.length("radius", self.radius, zero=True), getattr(self, least) / 2
         if not radius <= most:
             raise ValueError(
                 f"radius must be finite and at least 0 and at most {most:g} [m], half of {least}, "
-                f"got {check.shown(self.radius)}"
+                f"got {checks.shown(self.radius)}"
             )
         keep(self, radius=radius)
 
@@ -113,7 +113,7 @@ class Box(Touching):
 
     def inertia(self, mass: float) -> np.ndarray:
         """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
-        mass = check.mass("mass", mass, zero=True)
+        mass = checks.mass("mass", mass, zero=True)
         if not self.radius:
             x, y, z = self.lx**2 / 12, self.ly**2 / 12, self.lz**2 / 12
         else:
@@ -133,7 +133,7 @@ class Ellipsoid(Touching):
 
     def __post_init__(self):
         axes = {"a": self.a, "b": self.b, "c": self.c}
-        keep(self, **{k: check.length(k, axis) for k, axis in axes.items()})
+        keep(self, **{k: checks.length(k, axis) for k, axis in axes.items()})
 
     @property
     def volume(self) -> float:
@@ -154,7 +154,7 @@ class Ellipsoid(Touching):
 
     def inertia(self, mass: float) -> np.ndarray:
         """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
-        mass = check.mass("mass", mass, zero=True)
+        mass = checks.mass("mass", mass, zero=True)
         x, y, z = self.a**2, self.b**2, self.c**2
         return np.diag([y + z, x + z, x + y]) * (mass / 5)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from carom import check
+from carom import checks
 from carom.scene.constraints import coordinate_kind
 from carom.scene.joints import Joint
 from carom.scene.materials import IMPACT_LAWS
@@ -59,10 +59,10 @@ def make_stop(index, name, joint, lower, upper, restitution, impact_law, coordin
     if (lower is None) == (upper is None):
         raise ValueError(
             "lower or upper must be given, and not both (add two stops for two ends), got "
-            f"{check.shown(lower)} and {check.shown(upper)}"
+            f"{checks.shown(lower)} and {checks.shown(upper)}"
         )
-    lower = None if lower is None else check.number("lower", lower)
-    upper = None if upper is None else check.number("upper", upper)
-    restitution = check.number("restitution", restitution, least=0.0, most=1.0)
-    law = check.choice("impact_law", impact_law, IMPACT_LAWS)
+    lower = None if lower is None else checks.number("lower", lower)
+    upper = None if upper is None else checks.number("upper", upper)
+    restitution = checks.number("restitution", restitution, least=0.0, most=1.0)
+    law = checks.choice("impact_law", impact_law, IMPACT_LAWS)
     return Stop(index, name, joint, int(coordinate), lower, upper, restitution, law)

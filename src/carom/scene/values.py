@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from carom import check
+from carom import checks
 
 
 def keep(record, **fields) -> None:
@@ -19,14 +19,14 @@ def keep(record, **fields) -> None:
 
 def point(name: str, value) -> np.ndarray:
     """Return `value` as a point or vector (3,)."""
-    return check.finite_array(name, value, (3,))
+    return checks.finite_array(name, value, (3,))
 
 
 def apart(anchor_parent, anchor_child) -> tuple[np.ndarray, np.ndarray, float]:
     """Return two points (3,), and their distance [m], 0 where they are one."""
     start, end = point("anchor_parent", anchor_parent), point("anchor_child", anchor_child)
     distance = math.dist(start, end)
-    return start, end, check.number("the distance of anchor_parent and anchor_child", distance)
+    return start, end, checks.number("the distance of anchor_parent and anchor_child", distance)
 
 
 def optional_point(name: str, value) -> np.ndarray | None:

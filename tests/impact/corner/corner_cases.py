@@ -3,7 +3,7 @@
 import numpy as np
 from hypothesis import strategies as st
 
-from carom.impact.corner.api import resolve_impacts
+from carom.impact.multiple.api import resolve_impacts
 
 MASS, EDGE = 0.016, 0.02  # the die of the paper
 INERTIA = MASS * EDGE**2 / 6

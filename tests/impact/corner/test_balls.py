@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from corner_cases import strike_row
 
-from carom.impact.corner.api import resolve_impacts
+from carom.impact.multiple.api import resolve_impacts
 
 # e, velocities after of n unit masses, ball 1 at v = 1, equal linear stiffness.
 LINEAR = [

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from carom.impact.api import resolve_impact
-from carom.impact.corner.api import resolve_impacts
-from carom.impact.corner.layout import CornerSettings, new_corner_result
-from carom.impact.corner.painleve import impact_without_collision
-from carom.impact.corner.work import new_corner_work
+from carom.impact.multiple.api import resolve_impacts
+from carom.impact.multiple.layout import CornerSettings, new_corner_result
+from carom.impact.multiple.painleve import impact_without_collision
+from carom.impact.multiple.work import new_corner_work
 
 
 def rock(b, h, e, mu):

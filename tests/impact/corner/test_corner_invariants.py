@@ -6,7 +6,7 @@ from corner_cases import problems, strike_row
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from carom.impact.corner.api import resolve_impacts
+from carom.impact.multiple.api import resolve_impacts
 
 few = settings(max_examples=60, deadline=None, derandomize=True)
 

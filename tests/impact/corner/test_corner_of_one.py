@@ -8,7 +8,7 @@ import pytest
 from cases import LAWS, U_SPACE, W_SPACE, planar
 
 from carom.impact.api import resolve_impact
-from carom.impact.corner.api import resolve_impacts
+from carom.impact.multiple.api import resolve_impacts
 
 # mathematics page, W1: V4 with mu below, at and above stick, V6 (reversal), V8 (stick from slip).
 ONE = {

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from corner_cases import CORNERS, DIE, Body
 
-from carom.impact.corner import work as corner_work
-from carom.impact.corner.api import resolve_impacts
-from carom.impact.corner.layout import (
+from carom.impact.multiple import work as corner_work
+from carom.impact.multiple.api import resolve_impacts
+from carom.impact.multiple.layout import (
     MISSING,
     NEEDS_UNITS,
     OK,
@@ -14,7 +14,7 @@ from carom.impact.corner.layout import (
     corner_arrays,
     new_corner_result,
 )
-from carom.impact.corner.resolve import resolve_corner
+from carom.impact.multiple.resolve import resolve_corner
 
 EDGE = Body(
     CORNERS[:2]

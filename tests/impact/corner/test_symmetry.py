@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from corner_cases import CORNERS, DIE, Body
 
-from carom.impact.corner.api import resolve_impacts
+from carom.impact.multiple.api import resolve_impacts
 
 FALL = np.array([0.3, 0.1, -2, 3, 1, 5])
 TIGHT = 1e-10

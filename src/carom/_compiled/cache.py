@@ -1,0 +1,57 @@
+"""Compiled code on disk: valid for one state of a function and of all that is linked into it.
+
+What goes wrong with it (a full disk, a folder that is no longer writable, a file cut short) costs a recompile
+and nothing else.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import warnings
+from functools import cached_property
+
+from numba.core.caching import FunctionCache, IndexDataCacheFile
+
+from carom._compiled.cache_key import stamp
+
+
+class StampedCache(FunctionCache):
+    """A function cache that is valid as long as the stamp of its function."""
+
+    told = False  # that nothing can be kept
+
+    def __init__(self, py_func):
+        super().__init__(py_func)
+        self._kept = py_func
+        del self._cache_file  # made when it is first asked for: what is called may be defined later
+
+    def load_overload(self, sig, target_context):
+        """Load a compiled function; a file that is broken is as good as none, and is written anew."""
+        try:
+            return super().load_overload(sig, target_context)
+        except Exception:  # cut short by a crash or a full disk: whatever unpickling makes of it
+            with contextlib.suppress(OSError):
+                self.flush()
+            return None
+
+    def save_overload(self, sig, data):
+        """Keep a compiled function; where that fails say so, once."""
+        try:
+            super().save_overload(sig, data)
+        except OSError as error:
+            if not StampedCache.told:
+                StampedCache.told = True
+                warnings.warn(
+                    f"compiled code cannot be kept in {self._cache_path!r} and is compiled again in each "
+                    f"process: {error}",
+                    RuntimeWarning,
+                    stacklevel=2,
+                )
+
+    @cached_property
+    def _cache_file(self):
+        return IndexDataCacheFile(
+            cache_path=self._cache_path,
+            filename_base=self._impl.filename_base,
+            source_stamp=stamp(self._kept),
+        )

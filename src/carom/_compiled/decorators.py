@@ -1,0 +1,130 @@
+"""The decorators for compiled code: `kernel`, `unit`, and `entry` where Python calls it.
+
+Kernels are plain functions on scalars and arrays. They call only other kernels, and also run
+uncompiled (``NUMBA_DISABLE_JIT=1``). They are compiled without Numba's memory manager: a kernel that
+would allocate does not compile, and no array is counted when it is passed on (which cost 8 microseconds a
+step). Kernels are parts of what calls them (`carom._compiled.link_only`); units and entries are compiled as a
+whole, and kept on disk until something in them changes (`carom._compiled.cache`).
+"""
+
+from __future__ import annotations
+
+import contextlib
+from typing import Any
+
+import numba
+import numpy as np
+
+from carom._compiled import (
+    by_reference as references,
+)
+from carom._compiled import (
+    compile_speed as hasten,
+)
+from carom._compiled import (
+    symbol_names as symbols,
+)
+from carom._compiled.cache import StampedCache
+from carom._compiled.link_only import PartCompiler
+
+hasten.install()
+references.install()
+symbols.install()
+
+_RULES: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
+_INSIDE: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_OUTSIDE: dict[str, Any] = {"no_cfunc_wrapper": True}
+_PART: dict[str, Any] = {**_RULES, **_INSIDE, "pipeline_class": PartCompiler}
+
+#: for `numba.extending.overload`, whose functions are compiled by these rules
+OPTIONS: dict[str, Any] = {"jit_options": {**_PART, "forceinline": True}}
+
+
+def kernel(function):
+    """Compile `function` for calls from other kernels only, as a part of them.
+
+    Division follows IEEE (``error_model="numpy"``), no fast-math: results are the same on every run.
+    """
+    return _of_plain_types(numba.njit(**_PART)(function))
+
+
+def inlined(function):
+    """Compile `function` as `kernel` does, always inlined: for what every step passes."""
+    return _of_plain_types(numba.njit(**_PART, forceinline=True)(function))
+
+
+def _of_plain_types(compiled):
+    """Let callers ask for a function of plain types only.
+
+    A variable that begins as a constant (``n = 0``) has a type of its own until all that is assigned to it is
+    known. Numba compiles what is called meanwhile for that type, with all that this calls, and uses none of it:
+    a quarter of all functions that a thrown die needs.
+    """
+    if not hasattr(compiled, "get_call_template"):  # NUMBA_DISABLE_JIT=1
+        return compiled
+    asked = compiled.get_call_template
+
+    def get_call_template(args, kws):
+        plain = {name: numba.types.unliteral(kind) for name, kind in kws.items()}
+        return asked(tuple(map(numba.types.unliteral, args)), plain)
+
+    compiled.get_call_template = get_call_template
+    return compiled
+
+
+def unit(function):
+    """Compile `function` on its own, to be called through its address (`carom.model.choice.by_address`).
+
+    What is called directly is compiled again into each of its callers, and theirs; a solve that is
+    reached from twenty places cost a minute that way.
+    """
+    compiled = numba.njit(**_RULES, **_INSIDE)(function)
+    return _keep_on_disk(compiled, function)
+
+
+def address(function, *arguments) -> int:
+    """Return the address of a unit for arguments of these types, compiled if need be; 0 without the JIT."""
+    if not hasattr(function, "get_compile_result"):  # NUMBA_DISABLE_JIT=1
+        return 0
+    key = (function, *map(_alike, arguments))
+    if key not in _ADDRESSES:
+        given = numba.types.void(*(numba.typeof(a) for a in arguments))
+        compiled = function.get_compile_result(given)
+        name = compiled.fndesc.llvm_func_name
+        _ADDRESSES[key] = compiled.library.get_pointer_to_function(name)
+    return _ADDRESSES[key]
+
+
+_ADDRESSES: dict[tuple, int] = {}
+_flags, _dtype, _ndim = (getattr(np.ndarray, name).__get__ for name in ("flags", "dtype", "ndim"))
+
+
+def _alike(value):
+    """Return what is the same for values of one Numba type.
+
+    `numba.typeof` spells out each structured array: 60 ms a run, twice what the tosses of a cube take in all.
+    """
+    if isinstance(value, tuple):
+        return (type(value), *map(_alike, value))
+    if isinstance(value, np.ndarray):
+        flags = _flags(value)  # the attributes of record arrays are looked up in Python
+        layout = flags.c_contiguous, flags.f_contiguous, flags.writeable, flags.aligned
+        return _dtype(value), _ndim(value), layout
+    return value.dtype if isinstance(value, np.void) else type(value)
+
+
+def entry(function):
+    """Compile `function` for calls from Python as well, and keep it on disk with all that it calls.
+
+    Where no directory can be written (a read-only install without a user cache) it is compiled in each
+    process.
+    """
+    compiled = numba.njit(**_RULES, **_OUTSIDE)(function)
+    return _keep_on_disk(compiled, function)
+
+
+def _keep_on_disk(compiled, function):
+    if compiled is not function:  # it is with NUMBA_DISABLE_JIT=1
+        with contextlib.suppress(RuntimeError):  # no writable place for a cache
+            compiled._cache = StampedCache(function)
+    return compiled

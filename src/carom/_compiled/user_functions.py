@@ -1,0 +1,121 @@
+"""Functions of the user's, called from compiled code through an address.
+
+One form for all: ``f(t, x, out)`` reads a time and an array of numbers and writes an array of numbers. What
+Numba has compiled is called directly (50 ns with an array made for the answer); a plain Python function through
+`ctypes`, with the interpreter's lock taken for the call (13 microseconds). The address is a number among
+the data of a run, so that no function of the user's makes the loop compile again.
+
+An error in a plain function cannot pass through compiled code: it is kept, the result is NaN, the run stops
+and the error is raised then (`Functions.failed`).
+"""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numba import carray, cfunc, njit  # pyright: ignore[reportPrivateImportUsage]
+from numba.core import types
+from numba.core.dispatcher import Dispatcher
+from numba.extending import intrinsic, overload
+
+from carom._compiled.decorators import OPTIONS
+
+_NUMBERS = ctypes.POINTER(ctypes.c_double)
+_FORM = ctypes.CFUNCTYPE(None, ctypes.c_double, _NUMBERS, _NUMBERS)
+_SIGNATURE = types.void(types.float64, types.CPointer(types.float64), types.CPointer(types.float64))
+
+
+class Functions:
+    """The functions of one run: keeps them alive, and the first error that one of them raised."""
+
+    def __init__(self):
+        self._kept: list[Any] = []
+        self.failed: BaseException | None = None
+
+    def address(self, function: Callable, inside: tuple[int, ...], outside: tuple[int, ...]):
+        """Return the address of ``function(t, x) -> y``, x and y arrays of the given shapes."""
+        if isinstance(function, Dispatcher):
+            made = _compiled(function, inside, outside)
+            self._kept.append(made)
+            return made.address
+        made = _FORM(self._plain(function, inside, outside))
+        self._kept.append(made)
+        return ctypes.cast(made, ctypes.c_void_p).value
+
+    def written(self, function: Callable, inside: tuple[int, ...], outside: tuple[int, ...]):
+        """Return the address of ``function(t, x, out)`` that only reads and writes numbers of its arguments.
+
+        Compiled as it stands, without arrays: for code that the library itself has written.
+        """
+        if njit(function) is function:  # NUMBA_DISABLE_JIT=1
+
+            def answer(t, x):
+                out = np.empty(outside)
+                function(t, x, out)
+                return out
+
+            return self.address(answer, inside, outside)
+        made: Any = cfunc(_SIGNATURE)(function)
+        self._kept.append(made)
+        return made.address
+
+    def _plain(self, function, inside, outside):
+        def call(t, read, write):
+            out = np.ctypeslib.as_array(write, outside)
+            out[...] = np.nan
+            if self.failed is not None:
+                return
+            x = np.ctypeslib.as_array(read, inside)
+            try:
+                out[...] = function(t, x)
+            except BaseException as error:  # it has no way through the compiled loop
+                self.failed = error
+
+        return call
+
+
+def _compiled(function, inside, outside):
+    """Compile the wrapper of a function that Numba has compiled."""
+
+    def call(t, read, write):
+        out = carray(write, outside)
+        out[...] = function(t, carray(read, inside))
+
+    return cfunc(_SIGNATURE)(call)
+
+
+def call_function(address, t, x, out):
+    """Call the function at `address` from a kernel: out = f(t, x), both arrays contiguous."""
+    _FORM(int(address))(t, x.ctypes.data_as(_NUMBERS), out.ctypes.data_as(_NUMBERS))
+
+
+_options: Any = OPTIONS
+
+
+@overload(call_function, **_options)
+def _call_function(address, t, x, out):
+    call: Any = _call
+    return lambda address, t, x, out: call(address, t, x, out)
+
+
+@intrinsic
+def _call(typing, address, t, x, out):
+    """Call a C function with the data of two arrays."""
+    signature = types.none(types.intp, types.float64, x, out)
+
+    def generate(context, builder, signature, values):
+        from llvmlite import ir
+
+        number, numbers = ir.DoubleType(), ir.DoubleType().as_pointer()
+        form = ir.FunctionType(ir.VoidType(), [number, numbers, numbers])
+        data = []
+        for kind, value in zip(signature.args[2:], values[2:]):
+            array = context.make_array(kind)(context, builder, value)
+            data.append(builder.bitcast(array.data, numbers))
+        builder.call(builder.inttoptr(values[0], form.as_pointer()), [values[1], *data])
+        return context.get_dummy_value()
+
+    return signature, generate

@@ -1,0 +1,99 @@
+"""Nearest points of two shapes, for Python."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from carom import checks
+from carom._compiled.record_arrays import Columns
+
+
+@dataclass(frozen=True)
+class PairPoint:
+    """Nearest points of two shapes.
+
+    Attributes
+    ----------
+    gap : float
+        Distance [m]; negative where they overlap: by so much one has to be moved along `normal`.
+    normal : (3,)
+        Unit, from B to A, in the world.
+    on_a, on_b : (3,)
+        The points on the surfaces, in the world [m].
+    """
+
+    gap: float
+    normal: np.ndarray
+    on_a: np.ndarray
+    on_b: np.ndarray
+
+
+def nearest_points(shape_a, pose_a, shape_b, pose_b) -> PairPoint:
+    """Return the nearest points of two shapes of `carom.scene`.
+
+    Parameters
+    ----------
+    shape_a, shape_b
+        Of one or several convex pieces.
+    pose_a, pose_b : ((3,), (4,))
+        Position [m] and orientation (w, x, y, z) in the world.
+    """
+    best = None
+    for points in _touches(shape_a, pose_a, shape_b, pose_b, 0.0):
+        k = int(np.argmin(points["gap"]))
+        if best is None or points["gap"][k] < best.gap:
+            best = PairPoint(
+                float(points["gap"][k]), *(points[f][k].copy() for f in ("normal", "on_a", "on_b"))
+            )
+    assert best is not None
+    return best
+
+
+def contact_points(shape_a, pose_a, shape_b, pose_b, reach: float) -> np.recarray:
+    """Return the points (k,) TOUCH_POINT that carry a contact of two shapes, of all their pieces.
+
+    Arguments as of `nearest_points`; points with gaps up to the least gap of their pieces plus `reach` [m].
+    """
+    reach = checks.number("reach", reach, least=0, unit="m")
+    return np.concatenate(list(_touches(shape_a, pose_a, shape_b, pose_b, reach))).view(Columns)
+
+
+def _touches(shape_a, pose_a, shape_b, pose_b, reach):
+    """Yield the points of each pair of pieces."""
+    from carom.collision.frame import place
+    from carom.collision.touch import touch
+
+    poses = [pair_pose(name, pose) for name, pose in (("pose_a", pose_a), ("pose_b", pose_b))]
+    solids, hulls = _solids(shape_a, shape_b)
+    work, out = _scratch()
+    (xa, qa), (xb, qb) = [(np.zeros(3), np.zeros(4)) for _ in range(2)]
+    for a in solids[solids.body == 0]:
+        place(a, *poses[0], xa, qa)
+        for b in solids[solids.body == 1]:
+            place(b, *poses[1], xb, qb)
+            count = touch(a, b, hulls, xa, qa, xb, qb, reach, work, out)
+            yield out[:count].copy()
+
+
+@lru_cache(maxsize=256)
+def _solids(shape_a, shape_b):
+    from carom.collision.layout import solid_table
+
+    return solid_table([shape_a, shape_b])
+
+
+@lru_cache(maxsize=1)
+def _scratch():
+    from carom.collision.layout import new_pair_work, new_points
+
+    return new_pair_work(), new_points()
+
+
+def pair_pose(name: str, pose: tuple[ArrayLike, ArrayLike]) -> tuple[np.ndarray, np.ndarray]:
+    """Return a checked pose."""
+    x, q = pose
+    return checks.finite_array(f"{name}[0]", x, (3,)), checks.unit_quaternion(f"{name}[1]", q)

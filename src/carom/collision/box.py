@@ -1,0 +1,163 @@
+"""Nearest points of a ball or a capsule and a box, in closed form, in axes of the box (B)."""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import inlined, kernel
+from carom.collision.features import of_edges, of_vertex_a, of_vertex_b
+from carom.collision.found import put
+from carom.collision.frame import from_a
+
+TOUCHING = 1e-9  # distance of the cores, relative to their size, below which it has no direction
+
+
+@inlined
+def clamp(x, h):
+    """Return x, brought into [-h, h]."""
+    return max(-h, min(h, x))
+
+
+@kernel
+def point_box(s, a, b, found):
+    """Find the points of a ball and a box; inside it the nearest face counts."""
+    p, g = s.p, b.half
+    px, py, pz = p[0], p[1], p[2]
+    qx, qy, qz = clamp(px, g[0]), clamp(py, g[1]), clamp(pz, g[2])
+    nx, ny, nz = px - qx, py - qy, pz - qz
+    d = math.sqrt(nx * nx + ny * ny + nz * nz)
+    if d > 0.0:
+        nx, ny, nz = nx / d, ny / d, nz / d
+    else:
+        d, axis = -math.inf, 0
+        for i in range(3):
+            if abs(p[i]) - g[i] > d:
+                d, axis = abs(p[i]) - g[i], i
+        sense = 1.0 if p[axis] > 0.0 else -1.0
+        nx, ny, nz = (
+            sense if axis == 0 else 0.0,
+            sense if axis == 1 else 0.0,
+            sense if axis == 2 else 0.0,
+        )
+        qx, qy, qz = px - d * nx, py - d * ny, pz - d * nz
+    gap = d - a.radius - b.radius
+    put(found, 0, gap, nx, ny, nz, px, py, pz, qx, qy, qz, of_vertex_a(0))
+    return gap
+
+
+@kernel
+def _slope(c, u, g, t):
+    """Return d/dt of half the square of the distance of c + t u from the box."""
+    total = 0.0
+    for i in range(3):
+        x = c[i] + t * u[i]
+        total += u[i] * (x - clamp(x, g[i]))
+    return total
+
+
+@kernel
+def nearest_on_line(c, u, g, h):
+    """Return t in [-h, h] where c + t u is nearest to the box of half sizes g.
+
+    The square of the distance is convex in t, with a derivative that is linear between the at most six
+    t at which the line crosses a plane of a face: these bracket its zero, which is then exact.
+    """
+    low, high = -h, h
+    f_low, f_high = _slope(c, u, g, low), _slope(c, u, g, high)
+    if not f_low < 0.0:
+        return low
+    if not f_high > 0.0:
+        return high
+    for i in range(6):
+        axis, side = i >> 1, 2.0 * (i & 1) - 1.0
+        if abs(u[axis]) > 0.0:
+            t = (side * g[axis] - c[axis]) / u[axis]
+            if low < t < high:
+                f = _slope(c, u, g, t)
+                if f < 0.0:
+                    low, f_low = t, f
+                else:
+                    high, f_high = t, f
+    span = f_high - f_low
+    return max(low, min(high, low - f_low * (high - low) / span)) if span > 0.0 else low
+
+
+@kernel
+def segment_box(s, a, b, found):
+    """Find the nearest points of a capsule and a box."""
+    c, g, h = s.p, b.half, a.half[2]
+    u = s.w[0]  # a row that nobody else uses here
+    u[0], u[1], u[2] = from_a(s, 0.0, 0.0, 1.0)
+    radii = a.radius + b.radius
+    t = nearest_on_line(c, u, g, h)
+    ax, ay, az = c[0] + t * u[0], c[1] + t * u[1], c[2] + t * u[2]
+    bx, by, bz = clamp(ax, g[0]), clamp(ay, g[1]), clamp(az, g[2])
+    nx, ny, nz = ax - bx, ay - by, az - bz
+    d = math.sqrt(nx * nx + ny * ny + nz * nz)
+    if d > TOUCHING * (h + g[0] + g[1] + g[2]):
+        nx, ny, nz = nx / d, ny / d, nz / d
+        feature = _feature(ax, ay, az, g, t, h)
+        put(found, 0, d - radii, nx, ny, nz, ax, ay, az, bx, by, bz, feature)
+        return d - radii
+    return _through(c, u, g, h, radii, found)
+
+
+@inlined
+def _outside(x, g):
+    """Return -1, 0 or 1: below, within or above [-g, g]."""
+    return (1 if x > g else 0) - (1 if x < -g else 0)
+
+
+@kernel
+def _feature(x, y, z, g, t, h):
+    """Return the feature of the nearest points: by the end of the segment and the faces it is beyond."""
+    i, j, k = _outside(x, g[0]), _outside(y, g[1]), _outside(z, g[2])
+    if abs(t) == h:
+        return of_vertex_a(1 if t > 0.0 else 0)
+    corner = 4 * (i > 0) + 2 * (j > 0) + (k > 0)
+    beyond = abs(i) + abs(j) + abs(k)
+    if beyond == 3:
+        return of_vertex_b(corner)
+    if beyond == 2:
+        other = corner + (4 if i == 0 else 2 if j == 0 else 1)
+        return of_edges(0, 1, corner, other)
+    return 0
+
+
+@kernel
+def _through(c, u, g, h, radii, found):
+    """Find the way out of a segment that touches or passes the box: the least of six directions.
+
+    Separating axes: the faces, and the cross products of the segment with the edges.
+    """
+    best, axis, cross = -math.inf, 0, False
+    for i in range(3):
+        gap = abs(c[i]) - g[i] - h * abs(u[i])
+        if gap > best:
+            best, axis = gap, i
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        size = math.sqrt(u[j] * u[j] + u[k] * u[k])  # of e_i x u = u_j e_k - u_k e_j
+        if size > 1e-7:
+            off = abs(u[j] * c[k] - u[k] * c[j]) - g[j] * abs(u[k]) - g[k] * abs(u[j])
+            if off / size > best + 1e-13 * (h + g[0] + g[1] + g[2]):
+                best, axis, cross = off / size, i, True
+    n = found[0].normal
+    n[0], n[1], n[2] = 0.0, 0.0, 0.0
+    if cross:
+        j, k = (axis + 1) % 3, (axis + 2) % 3
+        sense = 1.0 if u[j] * c[k] - u[k] * c[j] > 0.0 else -1.0
+        size = math.sqrt(u[j] * u[j] + u[k] * u[k])
+        n[k], n[j] = sense * u[j] / size, -sense * u[k] / size
+        # Where the segment passes the edge: b = a - best n is on it in the two coordinates j and k.
+        bj, bk = math.copysign(g[j], n[j]), math.copysign(g[k], n[k])
+        t = u[j] * (bj + best * n[j] - c[j]) + u[k] * (bk + best * n[k] - c[k])
+        t = clamp(t / (size * size), h)
+    else:
+        n[axis] = 1.0 if c[axis] > 0.0 else -1.0
+        t = -h if u[axis] * n[axis] > 0.0 else h
+    ax, ay, az = c[0] + t * u[0], c[1] + t * u[1], c[2] + t * u[2]
+    gap = best - radii
+    put(found, 0, gap, n[0], n[1], n[2], ax, ay, az, ax - best * n[0], ay - best * n[1],
+        az - best * n[2], 0 if cross else of_vertex_a(1 if t > 0.0 else 0))  # fmt: skip
+    return gap

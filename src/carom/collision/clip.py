@@ -1,0 +1,108 @@
+"""Two faces that look at each other: the polygon in which they overlap, seen along a normal.
+
+Sutherland and Hodgman: the corners of one face (the incident one) are cut by the planes that stand on the
+sides of the other (the reference) along its normal. Every corner of the result lies on the incident face;
+its gap is its height above the reference face. It knows which features made it: a corner of
+either face, or a side of each.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import inlined, kernel
+from carom.collision.features import of_edges, of_vertex_a, of_vertex_b
+from carom.collision.found import known, put
+from carom.collision.layout import MOST_CORNERS
+
+ROUNDING = 1e-12  # relative to the size of the faces: a corner that lies on a side is kept
+
+
+@inlined
+def _vertex(side, i):
+    """Return the feature of corner i of the face of A (side 0) or of B (side 1)."""
+    return of_vertex_a(i) if side == 0 else of_vertex_b(i)
+
+
+@kernel
+def _crossing(s, inc, k, ref, j):
+    """Return the feature of side k of the incident face and side j of the reference face."""
+    a1, a2 = s.number[inc, k], s.number[inc, (k + 1) % s.count[inc]]
+    b1, b2 = s.number[ref, j], s.number[ref, (j + 1) % s.count[ref]]
+    return of_edges(a1, a2, b1, b2) if inc == 0 else of_edges(b1, b2, a1, a2)
+
+
+@kernel
+def _cut(s, ref, source, count, j, tolerance):
+    """Cut polygon `source` by side j of the reference face; return the new number of corners."""
+    inc, target = 1 - ref, 1 - source
+    n, p = s.normal[ref], s.corner[ref, j]
+    q = s.corner[ref, (j + 1) % s.count[ref]]
+    ex, ey, ez = q[0] - p[0], q[1] - p[1], q[2] - p[2]
+    mx, my, mz = n[1] * ez - n[2] * ey, n[2] * ex - n[0] * ez, n[0] * ey - n[1] * ex
+    size = math.sqrt(mx * mx + my * my + mz * mz)
+    if not size > 0.0:  # two corners in one place
+        size = 1.0
+    mx, my, mz = mx / size, my / size, mz / size
+    old, new = s.ring[source], s.ring[target]
+    made = 0
+    for k in range(count):
+        nxt = k + 1 if k + 1 < count else 0
+        u, v = old[k], old[nxt]
+        f = (u[0] - p[0]) * mx + (u[1] - p[1]) * my + (u[2] - p[2]) * mz
+        g = (v[0] - p[0]) * mx + (v[1] - p[1]) * my + (v[2] - p[2]) * mz
+        inside, goes_on = f >= -tolerance, g >= -tolerance
+        if inside and made < 2 * MOST_CORNERS:
+            new[made, 0], new[made, 1], new[made, 2] = u[0], u[1], u[2]
+            s.label[target, made], s.side[target, made] = s.label[source, k], s.side[source, k]
+            made += 1
+        if inside != goes_on and made < 2 * MOST_CORNERS:
+            t = max(0.0, min(1.0, f / (f - g)))
+            for i in range(3):
+                new[made, i] = u[i] + t * (v[i] - u[i])
+            origin = s.side[source, k]
+            if origin >= 0:
+                label = _crossing(s, inc, origin, ref, j)
+            else:  # on a side of the reference already: two of its sides meet in a corner
+                i = -1 - origin
+                label = _vertex(ref, s.number[ref, j if (i + 1) % s.count[ref] == j else i])
+            s.label[target, made] = label
+            s.side[target, made] = -1 - j if inside else origin
+            made += 1
+    return made
+
+
+@kernel
+def overlap(s, ref, radii, least, most, found, count):
+    """Add the corners of the overlap with gaps from `least` to `most`; return the new count.
+
+    `ref`: 0 if the face of A is the reference, 1 if that of B.
+    """
+    inc = 1 - ref
+    corners = s.count[inc]
+    scale = 0.0
+    for k in range(corners):
+        for i in range(3):
+            s.ring[0, k, i] = s.corner[inc, k, i]
+        s.label[0, k], s.side[0, k] = _vertex(inc, s.number[inc, k]), k
+    p = s.corner[ref, 0]
+    for k in range(s.count[ref]):
+        q = s.corner[ref, k]
+        scale = max(scale, abs(q[0] - p[0]) + abs(q[1] - p[1]) + abs(q[2] - p[2]))
+    source = 0
+    for j in range(s.count[ref]):
+        corners = _cut(s, ref, source, corners, j, ROUNDING * scale)
+        source = 1 - source
+    n = s.normal[ref]
+    for k in range(corners):
+        x = s.ring[source, k]
+        height = (x[0] - p[0]) * n[0] + (x[1] - p[1]) * n[1] + (x[2] - p[2]) * n[2]
+        gap, label = height - radii, s.label[source, k]
+        if least <= gap <= most and count < len(found) and not known(found, count, label):
+            fx, fy, fz = x[0] - height * n[0], x[1] - height * n[1], x[2] - height * n[2]
+            if ref == 1:
+                put(found, count, gap, n[0], n[1], n[2], x[0], x[1], x[2], fx, fy, fz, label)
+            else:
+                put(found, count, gap, -n[0], -n[1], -n[2], fx, fy, fz, x[0], x[1], x[2], label)
+            count += 1
+    return count

@@ -1,0 +1,217 @@
+"""Nearest points of any two convex solids: the distance of the cores, or how deep they overlap.
+
+The normal n is the maximum of the separation sigma(n) = min_A a.n - max_B b.n over unit vectors. Apart,
+the distance of the cores gives it. Where they touch or overlap slightly, A is moved out along the best n
+so far until it is clear, and the normal of that distance is the next n: the proximal point method for
+sigma on the sphere, for moving by d adds d n.n0 = d - d |n - n0|^2 / 2. Each step raises sigma. No
+margin stays in the result.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.choice import by_address
+from carom._compiled.decorators import kernel, unit
+from carom.collision.faces import load_face
+from carom.collision.features import of_edges, of_vertex_a, of_vertex_b
+from carom.collision.found import put
+from carom.collision.gjk import EXACT, distance, point_on_b
+from carom.collision.layout import CYLINDER
+from carom.collision.polish import polish
+from carom.collision.support import separation
+
+CLEAR = 1e-3  # distance of the cores, relative to the smaller, that gives a direction to round-off
+DIRECTED = 1e-9  # relative to the smaller, from which on the distance has a direction at all
+CLIMBS = (
+    9  # starts from which the way out of an overlap is sought; all sharp hulls tried need no more
+)
+CLIMBS_CURVED = 3  # each takes longer there
+ELSEWHERE = 0.95  # cosine below which a start is another one
+NEARER = 30.0  # clearance relative to the depth
+LEAST = 1e-3  # relative to the usual clearance: below, the direction would be no better
+ROUNDS = 30
+ROUGH = 1e-6  # accuracy of the search that Newton's method ends, for curved cores
+FACE = 1e-12  # relative to the size: by so much a face's normal may be worse and is taken
+
+
+@unit
+def closest_unit(s, a, b, hulls, found):
+    """Write the nearest points of two convex solids as the first point.
+
+    Overlap must be slight, less than about half of either core: deeper, the way out may not be the least.
+    """
+    size = min(a.extent, b.extent)
+    curved = a.kind >= CYLINDER or b.kind >= CYLINDER
+    best, nx, ny, nz = _search(s, a, b, hulls, size, ROUGH if curved else EXACT)
+    feature = _feature(s)
+    value, x, y, z, polished = polish(s, a, b, hulls, nx, ny, nz)
+    bx, by, bz = s.on_b[4, 0], s.on_b[4, 1], s.on_b[4, 2]
+    if polished == 1:
+        best, nx, ny, nz = value, x, y, z
+    # A face's own normal is exact; it is taken where it is as good.
+    flat = False
+    for side in (1, 0):
+        f = 1.0 if side == 1 else -1.0
+        aligned = load_face(s, side, b if side == 1 else a, hulls, f * nx, f * ny, f * nz)
+        n = s.normal[side]
+        if not flat and aligned > 1.0 - 1e-6:
+            value = separation(s, a, b, hulls, f * n[0], f * n[1], f * n[2])
+            if value >= best - FACE * size:
+                best, nx, ny, nz, flat = value, f * n[0], f * n[1], f * n[2], True
+    if flat or polished == 0:
+        if curved:  # not where the method above ends: a point inside a face, or parallel edges
+            value, x, y, z = _search(s, a, b, hulls, size, EXACT)
+            feature = _feature(s)
+            if not flat:
+                best, nx, ny, nz = value, x, y, z
+        bx, by, bz = point_on_b(s)
+    if flat and curved:  # somewhere on a face
+        feature = 0
+    # The two points are `best` apart along n; what else they differ by is rounding along a face.
+    e = b.inner
+    bx, by, bz = bx + e * nx, by + e * ny, bz + e * nz
+    core = best - a.inner - b.inner
+    ax, ay, az = bx + core * nx, by + core * ny, bz + core * nz
+    gap = core - a.radius - b.radius
+    put(found, 0, gap, nx, ny, nz, ax, ay, az, bx, by, bz, feature)
+
+
+closest = by_address(closest_unit)  # (address, s, a, b, hulls, found)
+
+
+@kernel
+def _search(s, a, b, hulls, size, accuracy):
+    """Return separation and normal of the cores; the simplex is that of the end, where A may be moved."""
+    clear = CLEAR * size
+    p = s.p
+    x, y, z = p[0], p[1], p[2]
+    if x * x + y * y + z * z == 0.0:
+        z = 1.0
+    d, nx, ny, nz = distance(s, a, b, hulls, accuracy, x, y, z)
+    if d > clear:
+        return d, nx / d, ny / d, nz / d
+    if d > DIRECTED * size:
+        best, nx, ny, nz = _climb(s, a, b, hulls, accuracy, nx / d, ny / d, nz / d, clear)
+    else:
+        best, nx, ny, nz = _way_out(s, a, b, hulls, accuracy, clear)
+    s.shift[0], s.shift[1], s.shift[2] = 0.0, 0.0, 0.0
+    return best, nx, ny, nz
+
+
+@kernel
+def _candidate(s, k):
+    """Return direction k of a few in which two overlapping cores may part, of any length.
+
+    The line of centres, the normals of the simplex, the axes of both.
+    """
+    x, y, z = 0.0, 0.0, 0.0
+    i = k % 3
+    if k == 0:
+        return s.p[0], s.p[1], s.p[2]
+    if k < 9:
+        j = (k - 1) >> 1  # the corner that is left out
+        if s.points == 4 or (s.points == 3 and j == 3):
+            o, u, v = s.w[0 if j > 0 else 1], s.w[1 if j > 1 else 2], s.w[2 if j > 2 else 3]
+            e0, e1, e2 = u[0] - o[0], u[1] - o[1], u[2] - o[2]
+            f0, f1, f2 = v[0] - o[0], v[1] - o[1], v[2] - o[2]
+            x, y, z = e1 * f2 - e2 * f1, e2 * f0 - e0 * f2, e0 * f1 - e1 * f0
+            if k & 1:
+                x, y, z = -x, -y, -z
+        return x, y, z
+    if k < 12:
+        x = 1.0 if i == 0 else 0.0
+        y = 1.0 if i == 1 else 0.0
+        z = 1.0 if i == 2 else 0.0
+    else:
+        x, y, z = s.R[0, i], s.R[1, i], s.R[2, i]
+    if x * s.p[0] + y * s.p[1] + z * s.p[2] < 0.0:
+        x, y, z = -x, -y, -z
+    return x, y, z
+
+
+@kernel
+def _way_out(s, a, b, hulls, accuracy, clear):
+    """Return the greatest separation, and its direction, that the best few of 15 candidates lead to."""
+    start = s.start
+    for k in range(15):
+        x, y, z = _candidate(s, k)
+        size = math.sqrt(x * x + y * y + z * z)
+        start[k, 3] = -math.inf
+        if size > 0.0:
+            start[k, 0], start[k, 1], start[k, 2] = x / size, y / size, z / size
+            start[k, 3] = separation(s, a, b, hulls, x / size, y / size, z / size)
+    best, nx, ny, nz = -math.inf, 0.0, 0.0, 1.0
+    curved = a.kind >= CYLINDER or b.kind >= CYLINDER
+    for _ in range(CLIMBS_CURVED if curved else CLIMBS):
+        chosen = 0
+        for k in range(1, 15):
+            if start[k, 3] > start[chosen, 3]:
+                chosen = k
+        if start[chosen, 3] == -math.inf:
+            break
+        x, y, z = start[chosen, 0], start[chosen, 1], start[chosen, 2]
+        start[chosen, 3] = -math.inf
+        if best == -math.inf or x * nx + y * ny + z * nz < ELSEWHERE:
+            value, x, y, z = _climb(s, a, b, hulls, accuracy, x, y, z, clear)
+            if value > best:
+                best, nx, ny, nz = value, x, y, z
+    # The simplex is to be that of the best.
+    return _climb(s, a, b, hulls, accuracy, nx, ny, nz, clear)
+
+
+@kernel
+def _climb(s, a, b, hulls, accuracy, nx, ny, nz, clear):
+    """Return the greatest separation near a direction, and its direction; the simplex is that of the end.
+
+    A step turns the normal by about the depth over the clearance; where the depth is small the clearance
+    is too for a while.
+    """
+    s.shift[0], s.shift[1], s.shift[2] = 0.0, 0.0, 0.0
+    best = separation(s, a, b, hulls, nx, ny, nz)
+    for phase in range(3):
+        gap = clear
+        if phase == 1:
+            gap = -NEARER * best
+            if not LEAST * clear < gap < clear:
+                continue
+        if phase == 2 and not LEAST * clear < -NEARER * best < clear:
+            continue
+        for _ in range(ROUNDS):
+            move = gap - best
+            s.shift[0], s.shift[1], s.shift[2] = move * nx, move * ny, move * nz
+            d, x, y, z = distance(s, a, b, hulls, accuracy, nx, ny, nz)
+            if not d > 0.0:
+                break
+            x, y, z = x / d, y / d, z / d
+            # The row of proposals holds points of A as moved.
+            value = separation(s, a, b, hulls, x, y, z) - move * (nx * x + ny * y + nz * z)
+            if not value > best:
+                break
+            last, best = best, value
+            nx, ny, nz = x, y, z
+            if not best - last > 10.0 * accuracy * clear:
+                break
+    return best, nx, ny, nz
+
+
+@kernel
+def _feature(s):
+    """Return the feature of the nearest points: by how many vertices of each make the simplex."""
+    ids = s.ids
+    a2, b2, more_a, more_b = ids[0, 0], ids[0, 1], False, False
+    for k in range(1, s.points):
+        i, j = ids[k, 0], ids[k, 1]
+        if i != ids[0, 0]:
+            more_a = more_a or a2 not in (ids[0, 0], i)
+            a2 = i
+        if j != ids[0, 1]:
+            more_b = more_b or b2 not in (ids[0, 1], j)
+            b2 = j
+    if a2 == ids[0, 0] and not more_a:
+        return of_vertex_a(a2)
+    if b2 == ids[0, 1] and not more_b:
+        return of_vertex_b(b2)
+    if not more_a and not more_b:
+        return of_edges(ids[0, 0], a2, ids[0, 1], b2)
+    return 0

@@ -1,0 +1,141 @@
+"""The face of a solid that looks most in a given direction, as a ring of corners.
+
+Segments and the mantle of a cylinder have two corners, points and ellipsoids one. A cap of a cylinder
+is stood for by eight points of its rim, fixed in the body.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import inlined, kernel
+from carom.collision.frame import from_a, to_a
+from carom.collision.layout import BOX, CYLINDER, HULL, MOST_CORNERS, POINT, SEGMENT
+
+RIM = 8  # points of a rim
+HALF_ROOT = math.sqrt(0.5)
+
+
+@inlined
+def rim_point(k):
+    """Return cosine and sine of k/8 of a turn, exactly zero or one where they are."""
+    i = k % 8
+    c = 1.0 if i == 0 else -1.0 if i == 4 else 0.0 if i == 2 or i == 6 else HALF_ROOT
+    z = 1.0 if i == 2 else -1.0 if i == 6 else 0.0 if i == 0 or i == 4 else HALF_ROOT
+    return -c if 2 < i < 6 and i != 4 else c, -z if i > 4 and i != 6 else z
+
+
+@kernel
+def _corner(s, side, k, number, x, y, z):
+    """Write corner k of the face of a side, given in the solid's own axes."""
+    if side == 0:
+        x, y, z = from_a(s, x, y, z)
+        x, y, z = x + s.p[0] + s.shift[0], y + s.p[1] + s.shift[1], z + s.p[2] + s.shift[2]
+    row = s.corner[side, k]
+    row[0], row[1], row[2] = x, y, z
+    s.number[side, k] = number
+
+
+@kernel
+def _set_normal(s, side, x, y, z):
+    """Write the outward normal of the face of a side, given in the solid's own axes."""
+    if side == 0:
+        x, y, z = from_a(s, x, y, z)
+    s.normal[side, 0], s.normal[side, 1], s.normal[side, 2] = x, y, z
+
+
+@kernel
+def _box_face(s, side, half, axis, sense):
+    """Write a face of a box; its corners are numbered as in `carom.scene.Box.vertices`."""
+    j = (axis + 1) % 3
+    for n in range(4):  # counter-clockwise about +axis, turned round for -axis
+        v = 1.0 if n == 1 or n == 2 else -1.0
+        w = 1.0 if n >= 2 else -1.0
+        if sense < 0.0:
+            v, w = w, v
+        x = sense if axis == 0 else v if j == 0 else w
+        y = sense if axis == 1 else v if j == 1 else w
+        z = sense if axis == 2 else v if j == 2 else w
+        number = 4 * (x > 0.0) + 2 * (y > 0.0) + 1 * (z > 0.0)
+        _corner(s, side, n, number, x * half[0], y * half[1], z * half[2])
+    _set_normal(
+        s,
+        side,
+        sense if axis == 0 else 0.0,
+        sense if axis == 1 else 0.0,
+        sense if axis == 2 else 0.0,
+    )
+    s.count[side] = 4
+
+
+@kernel
+def _hull_face(s, side, solid, hulls, x, y, z):
+    """Write the face of a hull whose normal is nearest to (x, y, z); return the cosine."""
+    best, chosen = -2.0, solid.first_face
+    for f in range(solid.first_face, solid.last_face):
+        n = hulls.faces[f].normal
+        c = n[0] * x + n[1] * y + n[2] * z
+        if c > best:
+            best, chosen = c, f
+    face = hulls.faces[chosen]
+    total = face.last - face.first
+    count = min(total, MOST_CORNERS)
+    for k in range(count):
+        i = hulls.corners[face.first + (k * total) // count]
+        p = hulls.vertices[solid.first + i]
+        _corner(s, side, k, i, p[0], p[1], p[2])
+    _set_normal(s, side, face.normal[0], face.normal[1], face.normal[2])
+    s.count[side] = count
+    return best
+
+
+@kernel
+def _cylinder_face(s, side, half, x, y, z):
+    """Write a cap of a cylinder, or the line of its mantle; return the cosine, 0 for the mantle."""
+    across = math.sqrt(x * x + y * y)
+    if abs(z) >= HALF_ROOT or not across > 0.0 or half[2] == 0.0:
+        sense = 1.0 if z > 0.0 else -1.0
+        for k in range(RIM):
+            c, v = rim_point(k)
+            cap = RIM if sense > 0.0 else 0
+            _corner(s, side, k, cap + k, half[0] * c, sense * half[0] * v, sense * half[2])
+        _set_normal(s, side, 0.0, 0.0, sense)
+        s.count[side] = RIM
+        return abs(z)
+    c, v = half[0] * x / across, half[0] * y / across
+    _corner(s, side, 0, 2 * RIM, c, v, -half[2])
+    _corner(s, side, 1, 2 * RIM + 1, c, v, half[2])
+    s.count[side] = 2
+    return 0.0
+
+
+@kernel
+def load_face(s, side, solid, hulls, x, y, z):
+    """Write the face of a solid that looks most along (x, y, z), axes of B; return the cosine.
+
+    `side` is 0 for A, 1 for B. The cosine is 0 where there is no face but an edge or a point.
+    """
+    if side == 0:
+        x, y, z = to_a(s, x, y, z)
+    kind, half = solid.kind, solid.half
+    if kind == BOX:
+        axis, largest = 2, abs(z)
+        if abs(y) > largest:
+            axis, largest = 1, abs(y)
+        if abs(x) > largest:
+            axis, largest = 0, abs(x)
+        value = x if axis == 0 else y if axis == 1 else z
+        _box_face(s, side, half, axis, 1.0 if value > 0.0 else -1.0)
+        return largest
+    if kind == HULL:
+        return _hull_face(s, side, solid, hulls, x, y, z)
+    if kind == CYLINDER:
+        return _cylinder_face(s, side, half, x, y, z)
+    s.count[side] = 1
+    if kind == SEGMENT:
+        _corner(s, side, 0, 0, 0.0, 0.0, -half[2])
+        _corner(s, side, 1, 1, 0.0, 0.0, half[2])
+        s.count[side] = 2
+    elif kind == POINT:
+        _corner(s, side, 0, 0, 0.0, 0.0, 0.0)
+    return 0.0

@@ -1,0 +1,45 @@
+"""Names of features: a number that stays while the same features touch.
+
+Bits 60-61: what touches (1 a vertex of A, 2 a vertex of B, 3 an edge of A and one of B, 0 smooth or undecided);
+then 15 bits for each of the vertices a1, a2 of A and b1, b2 of B.
+"""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import inlined, kernel
+
+VERTEX_A, VERTEX_B, EDGES = 1, 2, 3
+
+
+@inlined
+def of_vertex_a(i):
+    """Return the feature of vertex i of A on whatever B has there."""
+    return (1 << 60) | (i << 45)
+
+
+@inlined
+def vertex_a(feature):
+    """Return i of such a feature."""
+    return (feature >> 45) & 0x7FFF
+
+
+@inlined
+def of_vertex_b(i):
+    """Return the feature of vertex i of B on whatever A has there."""
+    return (2 << 60) | (i << 15)
+
+
+@inlined
+def of_edges(a1, a2, b1, b2):
+    """Return the feature of the edge a1 a2 of A on the edge b1 b2 of B, whatever their sense."""
+    return (3 << 60) | (min(a1, a2) << 45) | (max(a1, a2) << 30) | (min(b1, b2) << 15) | max(b1, b2)
+
+
+@kernel
+def exchanged(feature):
+    """Return the feature with A and B exchanged."""
+    kind = feature >> 60
+    a, b = (feature >> 30) & 0x3FFFFFFF, feature & 0x3FFFFFFF
+    if kind == 1 or kind == 2:
+        kind = 3 - kind
+    return (kind << 60) | (b << 30) | a

@@ -1,0 +1,99 @@
+"""The points found for one pair, in axes of B, and the choice of those that are handed on."""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import inlined, kernel
+from carom.collision.features import exchanged
+from carom.collision.frame import to_world
+from carom.collision.layout import MOST_POINTS
+
+
+@inlined
+def put(found, k, gap, nx, ny, nz, ax, ay, az, bx, by, bz, feature):
+    """Write point k: gap, normal from B to A, points of the cores, feature."""
+    row = found[k]
+    row.gap, row.feature = gap, feature
+    row.normal[0], row.normal[1], row.normal[2] = nx, ny, nz
+    row.on_a[0], row.on_a[1], row.on_a[2] = ax, ay, az
+    row.on_b[0], row.on_b[1], row.on_b[2] = bx, by, bz
+
+
+@kernel
+def known(found, count, feature):
+    """Return True if one of the points has this feature."""
+    there = False
+    for k in range(count):
+        there = there or found[k].feature == feature
+    return there
+
+
+@kernel
+def _swap(found, i, j):
+    """Exchange two points."""
+    a, b = found[i], found[j]
+    a.gap, b.gap = b.gap, a.gap
+    a.feature, b.feature = b.feature, a.feature
+    for c in range(3):
+        a.normal[c], b.normal[c] = b.normal[c], a.normal[c]
+        a.on_a[c], b.on_a[c] = b.on_a[c], a.on_a[c]
+        a.on_b[c], b.on_b[c] = b.on_b[c], a.on_b[c]
+
+
+@inlined
+def _apart(found, i, j):
+    """Return the square of the distance of two points."""
+    a, b = found[i].on_b, found[j].on_b
+    x, y, z = a[0] - b[0], a[1] - b[1], a[2] - b[2]
+    return x * x + y * y + z * z
+
+
+@kernel
+def spread(found, count):
+    """Move the points to keep to the front; return how many.
+
+    Of too many: the nearest, then each time the one farthest from those kept, which keeps the corners of
+    the polygon.
+    """
+    if count <= MOST_POINTS:
+        return count
+    least = 0
+    for k in range(1, count):
+        if found[k].gap < found[least].gap:
+            least = k
+    _swap(found, 0, least)
+    for kept in range(1, MOST_POINTS):
+        best, where = -1.0, kept
+        for k in range(kept, count):
+            near = _apart(found, k, 0)
+            for i in range(1, kept):
+                near = min(near, _apart(found, k, i))
+            if near > best:
+                best, where = near, k
+        _swap(found, kept, where)
+    return MOST_POINTS
+
+
+@kernel
+def hand_on(s, found, count, radius_a, radius_b, flip, out):
+    """Write the points to `out` in world axes, on the surfaces; with `flip` A and B are exchanged."""
+    count = spread(found, count)
+    for k in range(count):
+        row, point = found[k], out[k]
+        n = row.normal
+        nx, ny, nz = to_world(s, n[0], n[1], n[2])
+        p, r = row.on_a, radius_a
+        ax, ay, az = to_world(s, p[0] - r * n[0], p[1] - r * n[1], p[2] - r * n[2])
+        p, r = row.on_b, radius_b
+        bx, by, bz = to_world(s, p[0] + r * n[0], p[1] + r * n[1], p[2] + r * n[2])
+        o = s.origin
+        ax, ay, az = ax + o[0], ay + o[1], az + o[2]
+        bx, by, bz = bx + o[0], by + o[1], bz + o[2]
+        point.gap, point.feature = row.gap, row.feature
+        if flip:
+            nx, ny, nz = -nx, -ny, -nz
+            ax, ay, az, bx, by, bz = bx, by, bz, ax, ay, az
+            point.feature = exchanged(row.feature)
+        point.normal[0], point.normal[1], point.normal[2] = nx, ny, nz
+        point.on_a[0], point.on_a[1], point.on_a[2] = ax, ay, az
+        point.on_b[0], point.on_b[1], point.on_b[2] = bx, by, bz
+    return count

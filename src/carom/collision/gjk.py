@@ -1,0 +1,68 @@
+"""Distance of two convex cores by the method of Gilbert, Johnson and Keerthi (IEEE J. Robotics 4, 1988).
+
+The nearest point v of A - B to the origin is sought in simplices of its corners. For polytopes it is
+found in a finite number of steps, to round-off; for smooth cores the error of the distance is of second
+order in that of the direction.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom.collision.simplex import move_corner, nearest_point, reduce_simplex, size_of
+from carom.collision.support import propose
+
+EXACT = 1e-15  # gain of a step, relative to the distance, that is rounding
+INSIDE = 1e-14  # distance relative to the simplex that counts as none
+MOST_STEPS = 100
+
+
+@kernel
+def distance(s, a, b, hulls, accuracy, x, y, z):
+    """Return |v| and v, from B to A, of the cores; 0 where they overlap.
+
+    The search starts in direction (x, y, z), any vector but zero, and ends where a step gains no more than
+    `accuracy` of the distance. The simplex and its weights stay in the scratch: they give the two points.
+    """
+    propose(s, a, b, hulls, x, y, z)
+    move_corner(s, 4, 0)
+    s.points, s.weight[0] = 1, 1.0
+    vx, vy, vz = s.w[0, 0], s.w[0, 1], s.w[0, 2]
+    v2 = vx * vx + vy * vy + vz * vz
+    for _ in range(MOST_STEPS):
+        scale = size_of(s)
+        if not v2 > (INSIDE * scale) ** 2:
+            return 0.0, 0.0, 0.0, 0.0
+        propose(s, a, b, hulls, vx, vy, vz)
+        w = s.w[4]
+        gain = v2 - (vx * w[0] + vy * w[1] + vz * w[2])
+        if not gain > accuracy * v2:
+            break
+        again = False
+        for k in range(s.points):
+            if s.w[k, 0] == w[0] and s.w[k, 1] == w[1] and s.w[k, 2] == w[2]:
+                again = True
+        if again:
+            break
+        # Keep the simplex as it is where the new corner brings nothing but rounding.
+        move_corner(s, 4, s.points)
+        s.points += 1
+        new = reduce_simplex(s)
+        if new == 0.0:
+            return 0.0, 0.0, 0.0, 0.0
+        vx, vy, vz = nearest_point(s)
+        if not new < v2:
+            break
+        v2 = new
+    return math.sqrt(vx * vx + vy * vy + vz * vz), vx, vy, vz
+
+
+@kernel
+def point_on_b(s):
+    """Return the point of B that the weights of the simplex give."""
+    x, y, z = 0.0, 0.0, 0.0
+    for k in range(s.points):
+        f, p = s.weight[k], s.on_b[k]
+        x, y, z = x + f * p[0], y + f * p[1], z + f * p[2]
+    return x, y, z

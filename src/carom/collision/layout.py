@@ -1,0 +1,155 @@
+"""What the kernels of pairs read and write: solids, hulls, points of contact, scratch.
+
+A solid is a convex core in its own axes, swollen by a ball of `radius`. Axes of A and B, x and Q, are
+world poses of the solids: of the bodies, combined with the solid's own place in its body.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from carom._compiled.record_arrays import table
+from carom.geometry import quaternion
+
+#: kinds of cores; a pair is handled with the smaller kind first
+POINT, SEGMENT, BOX, HULL, CYLINDER, ELLIPSOID = range(6)
+KINDS = ("point", "segment", "box", "hull", "cylinder", "ellipsoid")
+
+SOLID = [
+    ("kind", "i8"),
+    # half sizes of the core: segment (0, 0, l/2), box, cylinder (r, r, l/2), ellipsoid semi-axes
+    ("half", "f8", 3),
+    ("radius", "f8"),  # of the ball that swells the core
+    ("inner", "f8"),  # an ellipsoid is also a smaller convex core swollen by this much
+    ("extent", "f8"),  # greatest distance of a point of the solid from its origin
+    ("first", "i8"),  # range of the vertices of a hull
+    ("last", "i8"),
+    ("first_face", "i8"),
+    ("last_face", "i8"),
+    ("body", "i8"),  # number of the shape it is of
+    ("x", "f8", 3),  # place in its body
+    ("Q", "f8", 4),
+]
+
+#: a face of a hull: outward normal and the range of its corners, counter-clockwise from outside
+FACE = [("normal", "f8", 3), ("first", "i8"), ("last", "i8")]
+
+#: one point of a contact; normal from B to A, points on the two surfaces, all in the world
+TOUCH_POINT = [
+    ("gap", "f8"),
+    ("normal", "f8", 3),
+    ("on_a", "f8", 3),
+    ("on_b", "f8", 3),
+    ("feature", "i8"),
+]
+
+MOST_POINTS = 8  # of one pair
+MOST_CORNERS = 48  # of a face that takes part in a clip; more are thinned out
+
+#: scratch of one pair, all in axes of B
+PAIR_STATE = [
+    ("R", "f8", (3, 3)),  # axes of A to axes of B
+    ("p", "f8", 3),  # origin of A
+    ("world", "f8", (3, 3)),  # axes of B to the world
+    ("origin", "f8", 3),  # of B in the world
+    ("shift", "f8", 3),  # A is moved by this while a normal is sought
+    ("corner", "f8", (2, MOST_CORNERS, 3)),  # faces of A and B that look at each other
+    ("number", "i8", (2, MOST_CORNERS)),  # and the numbers of their corners
+    ("count", "i8", 2),
+    ("normal", "f8", (2, 3)),  # their outward normals
+    ("ring", "f8", (2, 2 * MOST_CORNERS, 3)),  # polygon before and after a cut
+    ("side", "i8", (2, 2 * MOST_CORNERS)),  # where the side after each of its corners comes from
+    ("label", "i8", (2, 2 * MOST_CORNERS)),  # feature of each of its corners
+    ("w", "f8", (5, 3)),  # simplex of A - B; the last row is a proposal
+    ("on_a", "f8", (5, 3)),  # its points on A and on B
+    ("on_b", "f8", (5, 3)),
+    ("ids", "i8", (5, 2)),  # their vertices
+    ("weight", "f8", 4),  # of the corners in the point nearest to the origin
+    ("points", "i8"),  # corners in the simplex
+    ("total", "i8"),  # points handed on by `touch_unit`
+    ("start", "f8", (15, 4)),  # directions in which they may part, and their separations
+    ("edge", "f8", (2, 3)),  # directions of the edges that are nearest
+    ("owner", "i8", 2),  # whose they are, 0 of A, 1 of B
+]
+
+
+class Hulls(NamedTuple):
+    """Vertices and faces of all hulls, in the axes of their solids."""
+
+    vertices: np.ndarray  # (V, 3)
+    faces: np.recarray  # (F,) FACE
+    corners: np.ndarray  # (K,) vertices of the faces, counted from the first of the hull
+
+
+class NoHulls(NamedTuple):
+    """Stands for the hulls where no two bodies may touch: kernels of pairs are not compiled then."""
+
+    count: int
+
+
+class PairWork(NamedTuple):
+    """Scratch of one pair at a time."""
+
+    state: np.recarray  # (1,) PAIR_STATE
+    found: np.recarray  # (96,) TOUCH_POINT, in axes of B, points on the cores
+    closest: int  # address of the compiled search that curved cores, hulls and some boxes need
+
+
+def pair_arrays() -> PairWork:
+    """Return the scratch of the kernels of pairs, without the address of the search."""
+    return PairWork(table(PAIR_STATE, 1), table(TOUCH_POINT, 96), 0)
+
+
+def new_pair_work() -> PairWork:
+    """Return the scratch of the kernels of pairs; compiles the search if it is not on disk."""
+    from carom._compiled.decorators import address
+    from carom.collision.convex import closest_unit
+
+    state, found, _ = pair_arrays()
+    solid = table(SOLID, 1)
+    hulls = Hulls(np.zeros((0, 3)), table(FACE, 0), np.zeros(0, dtype=np.int64))
+    found_at = address(closest_unit, state[0], solid[0], solid[0], hulls, found)
+    return PairWork(state, found, found_at)
+
+
+def new_points(count: int = MOST_POINTS) -> np.recarray:
+    """Return a table for the points of a contact, (count,) TOUCH_POINT."""
+    return table(TOUCH_POINT, count)
+
+
+def solid_table(shapes, turns=None) -> tuple[np.recarray, Hulls]:
+    """Return the solids (P,) of `shapes` and the tables of their hulls.
+
+    Parameters
+    ----------
+    shapes : sequence
+        Shapes of `carom.scene`; the solids of one follow each other, `body` is its number.
+    turns : (n, 4), optional
+        For each shape the rotation from the axes that are used (principal axes of inertia) to its
+        own body axes. Default: none.
+    """
+    pieces = [(k, piece) for k, shape in enumerate(shapes) for piece in shape.pieces]
+    solid = table(SOLID, len(pieces))
+    vertices, faces, corners = [np.zeros((0, 3))], [], [np.zeros(0, dtype=np.int64)]
+    count = turned = 0
+    for row, (k, piece) in zip(solid, pieces):
+        row.kind, row.radius, row.body = KINDS.index(piece.kind), piece.radius, k
+        row.half[:], row.inner, row.extent = piece.half, piece.inner, piece.extent
+        turn = np.array([1.0, 0, 0, 0]) if turns is None else quaternion.conjugate(turns[k])
+        row.x[:] = quaternion.rotate(turn, piece.position)
+        row.Q[:] = quaternion.multiply(turn, piece.orientation)
+        row.first, row.first_face = count, len(faces)
+        if piece.kind == "hull":
+            vertices.append(piece.vertices)
+            count += len(piece.vertices)
+            for normal, ring in piece.faces:
+                faces.append((normal, turned, turned + len(ring)))
+                corners.append(np.asarray(ring, dtype=np.int64))
+                turned += len(ring)
+        row.last, row.last_face = count, len(faces)
+    face = table(FACE, len(faces))
+    for row, (normal, first, last) in zip(face, faces):
+        row.normal[:], row.first, row.last = normal, first, last
+    return solid, Hulls(np.concatenate(vertices), face, np.concatenate(corners))

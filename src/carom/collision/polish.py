@@ -1,0 +1,202 @@
+"""The last digits of a normal where a core is curved, by Newton's method on the separation.
+
+With v = a - b of the two farthest points and d = v.n, the separation over the unit sphere has the gradient
+T^T v and the Hessian -(d + T^T H T): T spans the directions in which n may turn, H is the sum of the
+Hessians of the two support functions. Where an edge takes part, n stays across it: T leaves it out.
+Two edges fix n.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom.collision.frame import from_a, to_a
+from carom.collision.layout import CYLINDER, ELLIPSOID
+from carom.collision.support import propose, separation
+
+STEPS = 8
+NEAR = 0.99  # cosine within which the method must stay
+ROUNDING = 1e-15  # relative to the smaller solid
+STRAIGHT = 1e-6  # sine below which two edges are one direction
+
+
+@kernel
+def _normalized(x, y, z):
+    f = math.sqrt(x * x + y * y + z * z)
+    f = 1.0 / f if f > 0.0 else 0.0
+    return f * x, f * y, f * z
+
+
+@kernel
+def _edges(s, a, b):
+    """Write the directions of the edges in the simplex to rows of `edge`, with their owners; return how many.
+
+    -1: a face, or more than two directions.
+    """
+    count = 0
+    for side in range(2):
+        solid = a if side == 0 else b
+        for k in range(1, s.points):
+            if s.ids[k, side] == s.ids[0, side]:
+                continue
+            if solid.kind == CYLINDER:
+                x, y, z = (0.0, 0.0, 1.0) if side == 1 else from_a(s, 0.0, 0.0, 1.0)
+            else:
+                p, q = (s.on_a[0], s.on_a[k]) if side == 0 else (s.on_b[0], s.on_b[k])
+                x, y, z = _normalized(q[0] - p[0], q[1] - p[1], q[2] - p[2])
+            new = True
+            for i in range(count):
+                e = s.edge[i]
+                c = e[0] * x + e[1] * y + e[2] * z
+                if 1.0 - c * c < STRAIGHT * STRAIGHT:
+                    if s.owner[i] != side:
+                        return -1  # parallel edges: the points are not determined
+                    new = False
+            if new and count == 2:
+                return -1
+            if new:
+                s.edge[count, 0], s.edge[count, 1], s.edge[count, 2] = x, y, z
+                s.owner[count] = side
+                count += 1
+    if count == 2 and s.owner[0] == s.owner[1]:
+        return -1
+    return count
+
+
+@kernel
+def _bend(solid, x, y, z, ux, uy, uz, vx, vy, vz):
+    """Return u^T H v of the support function at the unit vector (x, y, z), all in the solid's own axes."""
+    h = solid.half
+    if solid.kind == CYLINDER:
+        across = math.sqrt(x * x + y * y)
+        if not across > 0.0:
+            return 0.0
+        return h[0] / across**3 * (x * uy - y * ux) * (x * vy - y * vx)
+    if solid.kind == ELLIPSOID:
+        p, q, r = h[0] * h[0], h[1] * h[1], h[2] * h[2]
+        f = math.sqrt(p * x * x + q * y * y + r * z * z)
+        mu = p * x * ux + q * y * uy + r * z * uz
+        mv = p * x * vx + q * y * vy + r * z * vz
+        straight = ux * vx + uy * vy + uz * vz
+        return (
+            (p * ux * vx + q * uy * vy + r * uz * vz) / f - mu * mv / f**3 - solid.inner * straight
+        )
+    return 0.0
+
+
+@kernel
+def _curvature(s, a, b, nx, ny, nz, ux, uy, uz, vx, vy, vz):
+    """Return u^T H v of both support functions at the normal n, axes of B."""
+    x, y, z = to_a(s, -nx, -ny, -nz)
+    px, py, pz = to_a(s, ux, uy, uz)
+    qx, qy, qz = to_a(s, vx, vy, vz)
+    total = _bend(a, x, y, z, px, py, pz, qx, qy, qz)
+    return total + _bend(b, nx, ny, nz, ux, uy, uz, vx, vy, vz)
+
+
+@kernel
+def _step(s, a, b, hulls, edges, nx, ny, nz):
+    """Return the normal after one step of Newton's method; zero where it has no peak (sharp corners)."""
+    propose(s, a, b, hulls, nx, ny, nz)
+    vx, vy, vz = s.w[4, 0], s.w[4, 1], s.w[4, 2]
+    d = vx * nx + vy * ny + vz * nz
+    e = s.edge[0]
+    if edges == 1:  # n is across the edge, t across both
+        tx, ty, tz = _normalized(
+            e[1] * nz - e[2] * ny, e[2] * nx - e[0] * nz, e[0] * ny - e[1] * nx
+        )
+        k = d + _curvature(s, a, b, nx, ny, nz, tx, ty, tz, tx, ty, tz)
+        if not k > 0.0:
+            return 0.0, 0.0, 0.0
+        f = (tx * vx + ty * vy + tz * vz) / k
+        return _normalized(nx + f * tx, ny + f * ty, nz + f * tz)
+    if abs(nx) < 0.6:
+        tx, ty, tz = _normalized(0.0, -nz, ny)
+    else:
+        tx, ty, tz = _normalized(nz, 0.0, -nx)
+    ux, uy, uz = ny * tz - nz * ty, nz * tx - nx * tz, nx * ty - ny * tx
+    k11 = d + _curvature(s, a, b, nx, ny, nz, tx, ty, tz, tx, ty, tz)
+    k12 = _curvature(s, a, b, nx, ny, nz, tx, ty, tz, ux, uy, uz)
+    k22 = d + _curvature(s, a, b, nx, ny, nz, ux, uy, uz, ux, uy, uz)
+    r1, r2 = tx * vx + ty * vy + tz * vz, ux * vx + uy * vy + uz * vz
+    determinant = k11 * k22 - k12 * k12
+    if not (determinant > 1e-12 * k11 * k22 and k11 > 0.0):
+        return 0.0, 0.0, 0.0
+    f, g = (k22 * r1 - k12 * r2) / determinant, (k11 * r2 - k12 * r1) / determinant
+    return _normalized(nx + f * tx + g * ux, ny + f * ty + g * uy, nz + f * tz + g * uz)
+
+
+@kernel
+def _iterate(s, a, b, hulls, edges, x, y, z):
+    """Return the normal where Newton's method ends; zero where it does not."""
+    for _ in range(STEPS):
+        px, py, pz = x, y, z
+        x, y, z = _step(s, a, b, hulls, edges, x, y, z)
+        # The step before the last leaves the square of this, times lengths over curvatures.
+        if (x - px) ** 2 + (y - py) ** 2 + (z - pz) ** 2 < 1e-18:
+            return x, y, z
+    return 0.0, 0.0, 0.0
+
+
+@kernel
+def polish(s, a, b, hulls, nx, ny, nz):
+    """Return the greatest separation near n and its direction, and 1 where the points are polished too.
+
+    The two points are then left in row 4 of the simplex.
+    """
+    edges = _edges(s, a, b)
+    best = separation(s, a, b, hulls, nx, ny, nz)
+    if edges < 0:
+        return best, nx, ny, nz, 0
+    if edges == 2:
+        e, g = s.edge[0], s.edge[1]
+        x, y, z = _normalized(
+            e[1] * g[2] - e[2] * g[1], e[2] * g[0] - e[0] * g[2], e[0] * g[1] - e[1] * g[0]
+        )
+        if x * nx + y * ny + z * nz < 0.0:
+            x, y, z = -x, -y, -z
+    elif edges == 1:
+        e = s.edge[0]
+        along = e[0] * nx + e[1] * ny + e[2] * nz
+        x, y, z = _normalized(nx - along * e[0], ny - along * e[1], nz - along * e[2])
+    else:
+        x, y, z = nx, ny, nz
+    if edges < 2:
+        x, y, z = _iterate(s, a, b, hulls, edges, x, y, z)
+    done = 0
+    if x * nx + y * ny + z * nz > NEAR:
+        value = separation(s, a, b, hulls, x, y, z)
+        if value >= best - ROUNDING * min(a.extent, b.extent):
+            nx, ny, nz, done = x, y, z, 1
+    if done == 1:
+        best = separation(s, a, b, hulls, nx, ny, nz)
+        _points(s, edges, best, nx, ny, nz)
+    return best, nx, ny, nz, done
+
+
+@kernel
+def _points(s, edges, best, nx, ny, nz):
+    """Slide the farthest points of row 4 along the edges they are on until they are `best` n apart."""
+    p, q = s.on_a[4], s.on_b[4]
+    rx, ry, rz = (
+        p[0] - q[0] - best * nx,
+        p[1] - q[1] - best * ny,
+        p[2] - q[2] - best * nz,
+    )
+    e, g = s.edge[0], s.edge[1]
+    f1 = f2 = 0.0
+    if edges >= 1:
+        f1 = rx * e[0] + ry * e[1] + rz * e[2]
+    if edges == 2:
+        f2 = rx * g[0] + ry * g[1] + rz * g[2]
+        c = e[0] * g[0] + e[1] * g[1] + e[2] * g[2]
+        across = 1.0 - c * c
+        f1, f2 = (f1 - c * f2) / across, (f2 - c * f1) / across
+    for k in range(edges):
+        u, f = s.edge[k], f1 if k == 0 else f2
+        for i in range(3):
+            if s.owner[k] == 0:
+                p[i] -= f * u[i]
+            else:
+                q[i] += f * u[i]

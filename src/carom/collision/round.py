@@ -1,0 +1,62 @@
+"""Nearest points of balls and capsules, in closed form: cores that are points and segments.
+
+Each function writes the nearest pair as the first of the points `found` and returns its gap.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import inlined, kernel
+from carom.collision.features import of_vertex_a
+from carom.collision.found import put
+from carom.collision.frame import from_a
+from carom.collision.segments import edge_on_edge
+
+
+@inlined
+def direction(x, y, z, ex, ey, ez):
+    """Return the length of a vector and its direction; the second vector where it is zero."""
+    d = math.sqrt(x * x + y * y + z * z)
+    if d > 0.0:
+        return d, x / d, y / d, z / d
+    return 0.0, ex, ey, ez
+
+
+@kernel
+def point_point(s, a, b, found):
+    """Find the points of two balls."""
+    p = s.p
+    d, nx, ny, nz = direction(p[0], p[1], p[2], 0.0, 0.0, 1.0)
+    gap = d - a.radius - b.radius
+    put(found, 0, gap, nx, ny, nz, p[0], p[1], p[2], 0.0, 0.0, 0.0, of_vertex_a(0))
+    return gap
+
+
+@kernel
+def point_segment(s, a, b, found):
+    """Find the points of a ball and a capsule."""
+    p = s.p
+    z = max(-b.half[2], min(b.half[2], p[2]))
+    d, nx, ny, nz = direction(p[0], p[1], p[2] - z, 1.0, 0.0, 0.0)
+    gap = d - a.radius - b.radius
+    put(found, 0, gap, nx, ny, nz, p[0], p[1], p[2], 0.0, 0.0, z, of_vertex_a(0))
+    return gap
+
+
+@kernel
+def segment_segment(s, a, b, found):
+    """Find the nearest points of two capsules."""
+    ux, uy, uz = from_a(s, 0.0, 0.0, 1.0)
+    c = s.p
+    g, h = a.half[2], b.half[2]
+    for k in range(2):
+        t, z = (2 * k - 1) * g, (2 * k - 1) * h
+        s.corner[0, k, 0], s.corner[0, k, 1], s.corner[0, k, 2] = (
+            c[0] + t * ux,
+            c[1] + t * uy,
+            c[2] + t * uz,
+        )
+        s.corner[1, k, 0], s.corner[1, k, 1], s.corner[1, k, 2] = 0.0, 0.0, z
+        s.number[0, k], s.number[1, k] = k, k
+    return edge_on_edge(s, 0, 1, 0, 1, a.radius + b.radius, found)

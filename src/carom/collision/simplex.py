@@ -1,0 +1,143 @@
+"""The point of a simplex that is nearest to the origin, as weights of its corners.
+
+Each face is tried and the nearest point taken, rather than one region found by signs: so a simplex that is
+almost flat gives a point that is no worse than the best of its faces.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import inlined, kernel
+
+
+@inlined
+def _dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@kernel
+def on_edge(a, b):
+    """Return the weight of b in the nearest point of the segment a b, and the square of its distance."""
+    ex, ey, ez = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+    e2 = ex * ex + ey * ey + ez * ez
+    t = -(a[0] * ex + a[1] * ey + a[2] * ez) / e2 if e2 > 0.0 else 0.0
+    t = max(0.0, min(1.0, t))
+    # From the nearer end, for the least rounding.
+    x, y, z = a[0] + t * ex, a[1] + t * ey, a[2] + t * ez
+    return t, x * x + y * y + z * z
+
+
+@kernel
+def on_triangle(a, b, c):
+    """Return the weights of a, b, c in the nearest point of the triangle, and the square of its distance."""
+    t, best = on_edge(a, b)
+    wa, wb, wc = 1.0 - t, t, 0.0
+    t, d2 = on_edge(b, c)
+    if d2 < best:
+        best, wa, wb, wc = d2, 0.0, 1.0 - t, t
+    t, d2 = on_edge(c, a)
+    if d2 < best:
+        best, wa, wb, wc = d2, t, 0.0, 1.0 - t
+    ux, uy, uz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+    vx, vy, vz = c[0] - a[0], c[1] - a[1], c[2] - a[2]
+    nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+    n2 = nx * nx + ny * ny + nz * nz
+    if n2 > 0.0:
+        # Areas that the origin, moved into the plane, spans with the sides: n.(x cross y) / n^2.
+        h = (a[0] * nx + a[1] * ny + a[2] * nz) / n2
+        px, py, pz = h * nx, h * ny, h * nz
+        ax, ay, az = a[0] - px, a[1] - py, a[2] - pz
+        bx, by, bz = b[0] - px, b[1] - py, b[2] - pz
+        cx, cy, cz = c[0] - px, c[1] - py, c[2] - pz
+        fa = (nx * (by * cz - bz * cy) + ny * (bz * cx - bx * cz) + nz * (bx * cy - by * cx)) / n2
+        fb = (nx * (cy * az - cz * ay) + ny * (cz * ax - cx * az) + nz * (cx * ay - cy * ax)) / n2
+        fc = 1.0 - fa - fb
+        if fa > 0.0 and fb > 0.0 and fc > 0.0:
+            d2 = h * h * n2
+            if d2 <= best:
+                return fa, fb, fc, d2
+    return wa, wb, wc, best
+
+
+@kernel
+def _holds_origin(a, b, c, d):
+    """Return True if the origin lies in the tetrahedron: on the inner side of all four faces."""
+    for k in range(4):
+        p, q, r, o = (
+            (a, b, c, d) if k == 0 else (a, c, d, b) if k == 1 else (a, d, b, c) if k == 2 else (b, d, c, a)
+        )  # fmt: skip
+        ux, uy, uz = q[0] - p[0], q[1] - p[1], q[2] - p[2]
+        vx, vy, vz = r[0] - p[0], r[1] - p[1], r[2] - p[2]
+        nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+        apex = nx * (o[0] - p[0]) + ny * (o[1] - p[1]) + nz * (o[2] - p[2])
+        origin = -(nx * p[0] + ny * p[1] + nz * p[2])
+        if not apex * origin > 0.0:
+            return False
+    return True
+
+
+@kernel
+def reduce_simplex(s):
+    """Drop the corners that the nearest point does not need; return the square of its distance."""
+    w, points = s.w, s.points
+    wa, wb, wc, wd, best = 1.0, 0.0, 0.0, 0.0, 0.0
+    if points == 1:
+        best = _dot(w[0], w[0])
+    elif points == 2:
+        wb, best = on_edge(w[0], w[1])
+        wa = 1.0 - wb
+    elif points == 3:
+        wa, wb, wc, best = on_triangle(w[0], w[1], w[2])
+    elif _holds_origin(w[0], w[1], w[2], w[3]):
+        return 0.0
+    else:
+        wa, wb, wd, best = on_triangle(w[0], w[1], w[3])
+        t1, t2, t3, d2 = on_triangle(w[0], w[2], w[3])
+        if d2 < best:
+            wa, wb, wc, wd, best = t1, 0.0, t2, t3, d2
+        t1, t2, t3, d2 = on_triangle(w[1], w[2], w[3])
+        if d2 < best:
+            wa, wb, wc, wd, best = 0.0, t1, t2, t3, d2
+        t1, t2, t3, d2 = on_triangle(w[0], w[1], w[2])
+        if d2 < best:
+            wa, wb, wc, wd, best = t1, t2, t3, 0.0, d2
+    kept = 0
+    for k in range(points):
+        weight = wa if k == 0 else wb if k == 1 else wc if k == 2 else wd
+        if weight > 0.0:
+            move_corner(s, k, kept)
+            s.weight[kept] = weight
+            kept += 1
+    s.points = kept
+    return best
+
+
+@kernel
+def move_corner(s, source, target):
+    """Copy a corner of the simplex to another row."""
+    if source != target:
+        for i in range(3):
+            s.w[target, i] = s.w[source, i]
+            s.on_a[target, i] = s.on_a[source, i]
+            s.on_b[target, i] = s.on_b[source, i]
+        s.ids[target, 0], s.ids[target, 1] = s.ids[source, 0], s.ids[source, 1]
+
+
+@kernel
+def nearest_point(s):
+    """Return the point of the simplex that is nearest to the origin, by its weights."""
+    x, y, z = 0.0, 0.0, 0.0
+    for k in range(s.points):
+        f = s.weight[k]
+        x, y, z = x + f * s.w[k, 0], y + f * s.w[k, 1], z + f * s.w[k, 2]
+    return x, y, z
+
+
+@kernel
+def size_of(s):
+    """Return the greatest distance of a corner from the origin."""
+    most = 0.0
+    for k in range(s.points):
+        most = max(most, _dot(s.w[k], s.w[k]))
+    return math.sqrt(most)

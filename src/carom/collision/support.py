@@ -1,0 +1,74 @@
+"""The point of a core that is farthest in a direction."""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import inlined, kernel
+from carom.collision.frame import from_a, to_a
+from carom.collision.layout import BOX, CYLINDER, ELLIPSOID, HULL, SEGMENT
+
+
+@inlined
+def _end(x, h):
+    return h if x > 0.0 else -h
+
+
+@kernel
+def support(solid, hulls, x, y, z):
+    """Return the farthest point along (x, y, z), in the solid's own axes, and the number of the vertex.
+
+    Of an ellipsoid: of the smaller convex body that gives it when swollen by `inner`. Smooth points
+    have the number 0.
+    """
+    h, kind = solid.half, solid.kind
+    if kind == SEGMENT:
+        return 0.0, 0.0, _end(z, h[2]), 1 if z > 0.0 else 0
+    if kind == BOX:
+        number = 4 * (x > 0.0) + 2 * (y > 0.0) + 1 * (z > 0.0)
+        return _end(x, h[0]), _end(y, h[1]), _end(z, h[2]), number
+    if kind == HULL:
+        best, chosen = -math.inf, solid.first
+        for i in range(solid.first, solid.last):
+            p = hulls.vertices[i]
+            along = p[0] * x + p[1] * y + p[2] * z
+            if along > best:
+                best, chosen = along, i
+        p = hulls.vertices[chosen]
+        return p[0], p[1], p[2], chosen - solid.first
+    if kind == CYLINDER:
+        across = math.sqrt(x * x + y * y)
+        f = h[0] / across if across > 0.0 else 0.0
+        return f * x, f * y, _end(z, h[2]), 1 if z > 0.0 and h[2] > 0.0 else 0
+    if kind == ELLIPSOID:
+        u, v, w = h[0] * x, h[1] * y, h[2] * z
+        f = math.sqrt(u * u + v * v + w * w)
+        f = 1.0 / f if f > 0.0 else 0.0
+        d = math.sqrt(x * x + y * y + z * z)
+        e = solid.inner / d if d > 0.0 else 0.0
+        return f * h[0] * u - e * x, f * h[1] * v - e * y, f * h[2] * w - e * z, 0
+    return 0.0, 0.0, 0.0, 0
+
+
+@kernel
+def propose(s, a, b, hulls, x, y, z):
+    """Write the point of A - B that is farthest along -(x, y, z), axes of B, as row 4 of the simplex."""
+    dx, dy, dz = to_a(s, x, y, z)
+    ax, ay, az, i = support(a, hulls, -dx, -dy, -dz)
+    ax, ay, az = from_a(s, ax, ay, az)
+    p, d = s.p, s.shift
+    ax, ay, az = ax + p[0] + d[0], ay + p[1] + d[1], az + p[2] + d[2]
+    bx, by, bz, j = support(b, hulls, x, y, z)
+    w, on_a, on_b = s.w[4], s.on_a[4], s.on_b[4]
+    on_a[0], on_a[1], on_a[2] = ax, ay, az
+    on_b[0], on_b[1], on_b[2] = bx, by, bz
+    w[0], w[1], w[2] = ax - bx, ay - by, az - bz
+    s.ids[4, 0], s.ids[4, 1] = i, j
+
+
+@kernel
+def separation(s, a, b, hulls, x, y, z):
+    """Return how far the cores are apart along the unit vector (x, y, z): never more than their distance."""
+    propose(s, a, b, hulls, x, y, z)
+    w = s.w[4]
+    return w[0] * x + w[1] * y + w[2] * z

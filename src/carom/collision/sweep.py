@@ -1,0 +1,160 @@
+"""Broad phase: the pairs of balls that overlap, in near linear time.
+
+A hierarchical hashed grid (Mirtich 1996; Eitz and Gu 2007): the cells of the coarsest level are as wide as the
+largest ball, those of each further level half as wide, and a ball lies on the finest level that is wide
+enough for it. It meets balls of its own and coarser levels only in the 27 cells around its
+centre on that level; on its own, half of them do, for each pair is found from one side. Balls are put into
+the cells by a counting sort. The pairs come in an order that depends on the balls only.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from carom._compiled.decorators import entry, kernel
+
+LEVELS = 40  # sizes down to 2^-40 of the largest ball; smaller ones share the last level
+MOST = 2**62  # a coordinate in cells is kept within this
+LOW = 2**28 - 1  # bits of it that are hashed
+
+
+class SweepWork(NamedTuple):
+    """Scratch for up to n balls."""
+
+    first: np.ndarray  # (cells + 1,) where the balls of a cell begin in `ball`
+    ball: np.ndarray  # (n,) balls, cell by cell
+    place: np.ndarray  # (n, 5) level, -1 left out; three whole coordinates; hashed cell
+    used: np.ndarray  # (LEVELS + 2,) balls on each level; then the comparisons made in all
+
+
+def new_sweep_work(count: int) -> SweepWork:
+    """Return the scratch of `sweep` for `count` balls."""
+    cells = 1
+    while cells < 2 * count:
+        cells *= 2
+    sizes = ((cells + 1,), (count,), (count, 5), (LEVELS + 2,))
+    return SweepWork(*(np.zeros(size, dtype=np.int64) for size in sizes))
+
+
+@entry
+def sweep(centres, radii, pairs, work):
+    """Write the pairs i < j of balls that overlap or touch to `pairs`; return how many there are.
+
+    Parameters
+    ----------
+    centres : (n, 3)
+        [m]. A ball is to hold all places of its solid during the step: of its path, with the radius.
+    radii : (n,)
+        At least 0 [m]; a negative one leaves the ball out.
+    pairs : (m, 2) int64
+        Where there is no more room the rest are only counted: a result above m asks for a longer
+        table.
+    work : SweepWork
+
+    Returns
+    -------
+    int
+        Number of pairs.
+    """
+    n = len(radii)
+    mask = len(work.first) - 2
+    widest = 0.0
+    for r in radii:
+        widest = max(widest, r)
+    widest = widest if widest > 0.0 else 1.0
+    for c in range(len(work.first)):
+        work.first[c] = 0
+    for e in range(LEVELS + 2):
+        work.used[e] = 0
+    total = 0
+    for i in range(n):
+        place = work.place[i]
+        place[0] = -1
+        if radii[i] >= 0.0:
+            e = _level(radii[i], widest)
+            width = _width(e, widest)
+            place[0] = e
+            for k in range(3):
+                place[1 + k] = _cell(centres[i, k], width)
+            place[4] = _hash(e, place[1], place[2], place[3], mask)
+            work.first[place[4] + 1] += 1
+            work.used[e] += 1
+            total += 1
+    for c in range(mask + 1):
+        work.first[c + 1] += work.first[c]
+    for i in range(n - 1, -1, -1):  # each cell is filled from its end: its balls rise
+        if work.place[i, 0] >= 0:
+            c = work.place[i, 4] + 1
+            work.first[c] -= 1
+            work.ball[work.first[c]] = i
+    # Now cell c begins at first[c + 1], and ends where the next begins.
+    count = 0
+    for i in range(n):
+        if work.place[i, 0] >= 0:
+            for e in range(work.place[i, 0], LEVELS + 1):
+                if work.used[e] > 0:
+                    width = _width(e, widest)
+                    count = _around(i, e, width, total, mask, centres, radii, pairs, count, work)
+    return count
+
+
+@kernel
+def _level(r, widest):
+    """Return the finest level whose cells are as wide as a ball; LEVELS is the coarsest."""
+    if not r > 0.0:
+        return 0
+    part, power = math.frexp(r / widest)
+    return max(0, LEVELS + power - (part == 0.5))
+
+
+@kernel
+def _width(e, widest):
+    """Return the width of the cells of a level; a little more than that of its balls."""
+    return math.ldexp(2.0 * (1.0 + 1e-9) * widest, e - LEVELS)
+
+
+@kernel
+def _cell(x, width):
+    """Return the whole coordinate of a place."""
+    return int(max(-MOST, min(MOST, math.floor(x / width))))
+
+
+@kernel
+def _hash(e, x, y, z, mask):
+    """Return the cell of a place in the grid: products with large primes (Teschner et al., VMV 2003)."""
+    x, y, z = x & LOW, y & LOW, z & LOW  # so that no product overflows
+    return ((x * 73856093) ^ (y * 19349663) ^ (z * 83492791) ^ (e * 2654435761)) & mask
+
+
+@kernel
+def _around(i, e, width, total, mask, centres, radii, pairs, count, work):
+    """Write the pairs of ball i with those of level e in the 27 cells around it; return the new count."""
+    gx = _cell(centres[i, 0], width)
+    gy = _cell(centres[i, 1], width)
+    gz = _cell(centres[i, 2], width)
+    same = work.place[i, 0] == e
+    for k in range(14 if same else 27):  # k = 13 is the cell of the ball itself
+        x, y, z = gx + k // 9 - 1, gy + (k // 3) % 3 - 1, gz + k % 3 - 1
+        c = _hash(e, x, y, z, mask)
+        begin = work.first[c + 1]
+        end = work.first[c + 2] if c < mask else total
+        work.used[LEVELS + 1] += end - begin
+        for at in range(begin, end):
+            j = work.ball[at]
+            if same and k == 13 and j <= i:
+                continue
+            # Another place of the grid may share the cell: it is not this neighbour.
+            p = work.place[j]
+            if p[0] == e and p[1] == x and p[2] == y and p[3] == z:
+                u = centres[i, 0] - centres[j, 0]
+                v = centres[i, 1] - centres[j, 1]
+                w = centres[i, 2] - centres[j, 2]
+                r = radii[i] + radii[j]
+                if u * u + v * v + w * w <= r * r:
+                    if count < len(pairs):
+                        pairs[count, 0], pairs[count, 1] = min(i, j), max(i, j)
+                    count += 1
+    return count

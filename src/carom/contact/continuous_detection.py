@@ -1,0 +1,109 @@
+"""Can a body have touched the half-space between two states? No impact is missed, however large the step.
+
+Of each vertex the gap z and its rate are known at both ends, and |d2z/dt2| <= a in between. Then
+
+    z(t) >= z0 + z0' t - a t^2/2,      z(t) >= z1 - z1' s - a s^2/2,   s = h - t,
+
+and the path is clear if the times for which either bound is positive, (z0' + sqrt(z0'^2 + 2 a z0))/a
+and the same from the end, together reach h. If not, the caller cuts the step in half. In free flight a is
+exact: |n.g| + (|W|^2 + |W'|) r with the greatest of both on the flight; otherwise it is taken as twice what
+the stages of the step have seen. A held body moves as the cubic does that has the gaps and rates at both ends,
+which is never less than its control points (Bezier): z0, z0 + h z0'/3, z1 - h z1'/3, z1.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import inlined
+from carom.contact.gap import along_normal, gap_and_rate, plane_in_body, round_off
+from carom.kinematics.flight import point_bound
+from carom.model.arrays import FREE, RESTS
+
+#: verdicts on a step: nothing was touched; something is inside at the end; too long to say; a rim that was held
+#: on one side goes through flat; the same once more, by the implicit method
+CLEAR, BELOW, UNSURE, FLAT_RIM, AGAIN = range(5)
+MISSED = 1e-9  # of the body: where no more can be missed, the cubic decides in free flight too
+
+
+@inlined
+def greatest_acceleration(system, contact, state, work):
+    """Return bounds of the normal acceleration of the mass centre and of any point of the body."""
+    body, r = system.bodies[contact.body], contact.core
+    status, bound = work.body[contact.body].status, work.body[contact.body].bound
+    if body.ballistic == 1 and status == FREE:
+        begin = state[contact.body]
+        centre = abs(along_normal(contact, system.gravity))
+        return centre, centre + r * point_bound(body, begin.Q, begin.w, work.body[contact.body])
+    centre = 2.0 * bound[0]
+    return centre, centre + 2.0 * r * (bound[1] + bound[2] * bound[2])
+
+
+@inlined
+def reach(z, rate, a):
+    """Return for how long z + rate t - a t^2/2 stays positive."""
+    z = max(z, 0.0)
+    if a <= 0.0:
+        return math.inf if rate >= 0.0 else -z / rate
+    return (rate + math.sqrt(rate * rate + 2.0 * a * z)) / a
+
+
+@inlined
+def cubic_clears(z0, rate0, z1, rate1, h, tiny):
+    """Return whether the cubic with these ends and rates stays above -tiny: its control points do."""
+    return min(min(z0, z0 + h * rate0 / 3.0), min(z1, z1 - h * rate1 / 3.0)) >= -tiny
+
+
+@inlined
+def ball_clears(system, contact, start, end, h, centre, work):
+    """Return whether the ball around the body keeps clear: the first look, and mostly the last."""
+    b, margin = contact.body, contact.extent + contact.radius + contact.offset
+    z0, z1 = along_normal(contact, start[b].x) - margin, along_normal(contact, end[b].x) - margin
+    if not (z0 > 0.0 and z1 > 0.0):
+        return False
+    s0, s1 = along_normal(contact, start[b].v), along_normal(contact, end[b].v)
+    flying = system.bodies[b].ballistic == 1 and work.body[b].status == FREE
+    if flying and (s1 <= 0.0 or s0 >= 0.0):  # constant acceleration: least at an end
+        return True
+    return reach(z0, s0, centre) + reach(z1, -s1, centre) >= h
+
+
+@inlined
+def passage(system, contact, held, leaving, start, end, h, work, tolerance):
+    """Return CLEAR, BELOW (the end is inside the half-space) or UNSURE, and a time before any contact.
+
+    Vertices that carry a held contact are left out.
+    """
+    if work.body[contact.body].status == RESTS:
+        return CLEAR, h
+    centre, a = greatest_acceleration(system, contact, start, work)
+    if ball_clears(system, contact, start, end, h, centre, work):
+        return CLEAR, h
+    verdict, first, flies = CLEAR, h, work.body[contact.body].status == FREE
+    tiny = max(tolerance * contact.extent, round_off(contact, end))
+    sag = 0.125 * a * h * h  # a path keeps this near its chord
+    smooth = not flies or sag <= MISSED * contact.extent
+    before, after = plane_in_body(contact, start), plane_in_body(contact, end)
+    for i in range(contact.first, contact.last):
+        z0, rate0 = gap_and_rate(before, system.vertices[i])
+        z1, rate1 = gap_and_rate(after, system.vertices[i])
+        if min(z0, z1) > sag:
+            continue
+        if held.carries[i] == 1:
+            continue
+        t0 = reach(z0, rate0, a)
+        first = min(first, t0)
+        if not (z1 >= -tiny):
+            # what touches may be on its way out, or be pushed about by others by no more than can be missed
+            pushed = not flies and z1 >= -MISSED * contact.extent
+            if not (z0 <= tiny and (pushed or (z0 < -tiny and z1 >= z0))):
+                verdict = BELOW
+        elif (
+            verdict == CLEAR
+            and t0 + reach(z1, -rate1, a) < h * (1.0 - 1e-12)
+            and sag > tiny  # what could be missed is more than the tolerance
+            and leaving == 0
+            and not (smooth and cubic_clears(z0, rate0, z1, rate1, h, tiny))
+        ):
+            verdict = UNSURE
+    return verdict, first

@@ -1,0 +1,299 @@
+"""Can two solids have touched between two states? The plane that parts them at either end decides.
+
+Along a fixed normal n the gap of any two core points is z(t) >= z0 + z0' t - a t^2/2, a the bound of their
+relative acceleration; the bodies are apart as long as all pairs of vertices are. With n of the nearest points
+at the start, and the same backwards from the end, the path is clear if the two times together reach the step.
+Cores without vertices: `parting`.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom.contact.closed_points import round_off_of_both
+from carom.contact.continuous_detection import (
+    BELOW,
+    CLEAR,
+    FLAT_RIM,
+    MISSED,
+    UNSURE,
+    ball_clears,
+    cubic_clears,
+    greatest_acceleration,
+    reach,
+)
+from carom.contact.gap import slow
+from carom.contact.pair_point import REACH, find_touches, smaller, touch_rate
+from carom.contact.parting import time_parted
+from carom.contact.rim import OTHER_SIDE, SMOOTH, closed_rim, longest_way, same_point
+from carom.geometry.rotation import cross, rotate, rotate_back
+from carom.kinematics.flight import point_bound
+from carom.kinematics.wrench import point_velocity
+from carom.model.arrays import FREE, RESTS
+from carom.model.choice import only_with_pairs
+
+SHORT = 0.25  # way past each other, as a part of the smaller body, in which no body gets through another
+
+
+@kernel
+def spin_bound(body, extent, state, memory):
+    """Return a bound of the acceleration of a point of a body relative to its centre."""
+    if memory.status == RESTS:
+        return 0.0
+    if body.ballistic == 1 and memory.status == FREE:
+        return extent * point_bound(body, state.Q, state.w, memory)
+    return 2.0 * extent * (memory.bound[1] + memory.bound[2] * memory.bound[2])
+
+
+@kernel
+def core_extent(solid):
+    """Return how far core points may be from the mass centre: the ball that swells them does not turn."""
+    x = solid.x
+    return math.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]) + solid.extent - solid.radius
+
+
+@kernel
+def relative_bound(system, contact, state, work):
+    """Return bounds of the relative acceleration of the two centres, and of any two points."""
+    a, b, g = contact.body, contact.other, system.gravity
+    free_a = system.bodies[a].ballistic == 1 and work.body[a].status == FREE
+    free_b = system.bodies[b].ballistic == 1 and work.body[b].status == FREE
+    fall = math.sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2])
+    centres = 0.0
+    if not (free_a and free_b):  # two in free flight fall alike
+        for body, free in ((a, free_a), (b, free_b)):
+            if work.body[body].status != RESTS:
+                centres += fall if free else 2.0 * work.body[body].bound[0]
+    r = core_extent(system.solids[contact.solid])
+    spin = spin_bound(system.bodies[a], r, state[a], work.body[a])
+    r = core_extent(system.solids[contact.other_solid])
+    spin += spin_bound(system.bodies[b], r, state[b], work.body[b])
+    return centres, centres + spin
+
+
+@kernel
+def balls_apart(s0, s1, s2, u0, u1, u2, radii, sign, a):
+    """Return how long two balls stay apart, centres s apart and moving apart at u; -inf if they overlap."""
+    d = math.sqrt(s0 * s0 + s1 * s1 + s2 * s2)
+    if not d > radii:
+        return -math.inf
+    return reach(d - radii, sign * (s0 * u0 + s1 * u1 + s2 * u2) / d, a)
+
+
+@kernel
+def balls_clear(contact, start, end, h, centres):
+    """Return whether the balls around both keep apart."""
+    a, b, radii = contact.body, contact.other, contact.extent + contact.other_extent
+    time = 0.0
+    for side in range(2):
+        state, sign = (start, 1.0) if side == 0 else (end, -1.0)
+        x, y, v, w = state[a].x, state[b].x, state[a].v, state[b].v
+        time += balls_apart(
+            x[0] - y[0], x[1] - y[1], x[2] - y[2], v[0] - w[0], v[1] - w[1], v[2] - w[2],
+            radii, sign, centres,
+        )  # fmt: skip
+    return time >= h
+
+
+@kernel
+def solids_clear(system, contact, start, end, h, most):
+    """Return whether the balls around two pieces of bodies keep apart."""
+    a, b = contact.body, contact.other
+    p, q = system.solids[contact.solid], system.solids[contact.other_solid]
+    time = 0.0
+    for side in range(2):
+        state, sign = (start, 1.0) if side == 0 else (end, -1.0)
+        ra = rotate_by(state[a], p.x)
+        rb = rotate_by(state[b], q.x)
+        ua = point_velocity(state, a, ra[0], ra[1], ra[2])
+        ub = point_velocity(state, b, rb[0], rb[1], rb[2])
+        x, y = state[a].x, state[b].x
+        time += balls_apart(
+            x[0] - y[0] + (ra[0] - rb[0]), x[1] - y[1] + (ra[1] - rb[1]),
+            x[2] - y[2] + (ra[2] - rb[2]), ua[0] - ub[0], ua[1] - ub[1], ua[2] - ub[2],
+            p.extent + q.extent, sign, most,
+        )  # fmt: skip
+    return time >= h
+
+
+@kernel
+def rotate_by(body, p):
+    """Return a vector of a body in world axes."""
+    q = body.Q
+    return rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
+
+
+@kernel
+def seen_along(n, b, state, p):
+    """Return height along n, and its rate, of the point p (body axes) of body b."""
+    q, w, x, v = state[b].Q, state[b].w, state[b].x, state[b].v
+    nx, ny, nz = rotate_back(q[0], q[1], q[2], q[3], n[0], n[1], n[2])
+    wx, wy, wz = rotate_back(q[0], q[1], q[2], q[3], w[0], w[1], w[2])
+    cx, cy, cz = cross(nx, ny, nz, wx, wy, wz)
+    z = n[0] * x[0] + n[1] * x[1] + n[2] * x[2] + nx * p[0] + ny * p[1] + nz * p[2]
+    rate = n[0] * v[0] + n[1] * v[1] + n[2] * v[2] + cx * p[0] + cy * p[1] + cz * p[2]
+    return z, rate
+
+
+@kernel
+def time_apart(system, contact, n, sign, state, a, h):
+    """Return how long all pairs of core points stay apart along n; backwards in time for sign -1."""
+    if contact.first == contact.last or contact.other_first == contact.other_last:
+        return time_parted(system, contact, n, sign, state, a, h)
+    least = math.inf
+    for i in range(contact.first, contact.last):
+        z, rate = seen_along(n, contact.body, state, system.vertices[i])
+        for j in range(contact.other_first, contact.other_last):
+            y, other = seen_along(n, contact.other, state, system.vertices[j])
+            least = min(least, reach(z - y - contact.radius, sign * (rate - other), a))
+    return least
+
+
+@kernel
+def lowest_open(system, contact, c, count, held, state, work):
+    """Return the least gap of the points in work.touches that are not held, and its rate."""
+    least, rate = math.inf, 0.0
+    for i in range(count):
+        touch = work.touches[i]
+        open_ = True
+        for j in range(held.count[0]):
+            hold = held.points[j]
+            if hold.contact == c and open_:
+                feature, p = hold.feature, hold.point
+                open_ = not same_point(system, contact, touch, feature, p, state)
+        if open_ and touch.gap < least:
+            least, rate = touch.gap, touch_rate(contact, touch, state)
+    return least, rate
+
+
+@kernel
+def flat_rim_strikes(system, contact, state, time, work):
+    """Return whether a point of a rim that is as good as flat approaches the other body."""
+    count = find_touches(system, contact, state, REACH * smaller(contact), work)
+    near = closed_rim(system, contact, work.touches[0].normal, state, time)
+    for i in range(count):
+        touch = work.touches[i]
+        if touch.gap <= near and touch_rate(contact, touch, state) < -slow(contact, state):
+            return True
+    return False
+
+
+@kernel
+def _lowest_pair(system, contact, c, held, state, work):
+    """Return the gap of two solids, of points that are not held, and its rate."""
+    count = find_touches(system, contact, state, REACH * smaller(contact), work)
+    return lowest_open(system, contact, c, count, held, state, work)
+
+
+@kernel
+def far_apart(system, contact, start, end, h, work):
+    """Return a bound of the relative acceleration of any two points; -1 where balls keep the two apart."""
+    a, b = contact.body, contact.other
+    if b < 0:
+        if work.body[a].status == RESTS:
+            return -1.0
+        centre, most = greatest_acceleration(system, contact, start, work)
+        return -1.0 if ball_clears(system, contact, start, end, h, centre, work) else most
+    if work.body[a].status == RESTS and work.body[b].status == RESTS:
+        return -1.0
+    centres, most = relative_bound(system, contact, start, work)
+    if balls_clear(contact, start, end, h, centres):
+        return -1.0
+    if contact.part == 1 and solids_clear(system, contact, start, end, h, most):
+        return -1.0
+    return most
+
+
+@kernel
+def _passage_pair(system, contact, c, held, leaving, start, end, h, work, tolerance, longest):
+    """Return CLEAR, BELOW (they overlap at the end), UNSURE or FLAT_RIM, and a time before any contact.
+
+    Of a rim that wobbles only steps up to `longest` may follow its lowest point far round.
+    """
+    most = far_apart(system, contact, start, end, h, work)
+    if most < 0.0:
+        return CLEAR, h
+    touching = False
+    for j in range(held.count[0]):
+        touching = touching or held.points[j].contact == c
+    tiny = 4.0 * max(tolerance * smaller(contact), round_off_of_both(contact, end))
+    count = find_touches(system, contact, end, REACH * smaller(contact), work)
+    least, rate = lowest_open(system, contact, c, count, held, end, work)
+    nearest = work.touches[0]
+    for i in range(1, count):
+        if work.touches[i].gap < nearest.gap:
+            nearest = work.touches[i]
+    if touching:
+        way = longest_way(system, contact, c, count, held, end, work)
+        if way > SMOOTH and h > longest:
+            return UNSURE, 0.0
+        if way > SMOOTH:
+            if flat_rim_strikes(system, contact, start, longest, work):
+                return FLAT_RIM, 0.0
+            if way > OTHER_SIDE and h > 0.1 * longest:
+                return UNSURE, 0.0
+            find_touches(system, contact, end, REACH * smaller(contact), work)
+    flies = work.body[contact.body].status == FREE
+    if contact.other >= 0:
+        flies = flies and work.body[contact.other].status == FREE
+    if not least >= -(tiny if not touching else MISSED * smaller(contact)):
+        before, _ = _lowest_pair(system, contact, c, held, start, work)
+        if before <= tiny:  # they touch already: on their way apart, or pushed about by others
+            if (before < -tiny and least >= before) or (
+                not flies and least >= -MISSED * smaller(contact)
+            ):
+                return CLEAR, h
+        return BELOW, 0.0
+    if touching:
+        return CLEAR, h
+    last = time_apart(system, contact, nearest.normal, -1.0, end, most, h)
+    feature = nearest.feature
+    if last >= h:
+        return CLEAR, h
+    count = find_touches(system, contact, start, 0.0, work)
+    nearest = work.touches[0]
+    for i in range(1, count):
+        if work.touches[i].gap < nearest.gap:
+            nearest = work.touches[i]
+    first = time_apart(system, contact, nearest.normal, 1.0, start, most, h)
+    sag = 0.125 * most * h * h
+    rate0 = touch_rate(contact, nearest, start)
+    alike = feature == nearest.feature  # the same points are nearest at both ends
+    short = way_past(contact, start, end, h) <= SHORT * smaller(contact)
+    smooth = short and (not flies or sag <= MISSED * smaller(contact))
+    follows = alike and smooth  # the gap, as a function of time, does what its ends and rates say
+    if follows and cubic_clears(nearest.gap, rate0, least, rate, h, tiny):
+        return CLEAR, first
+    bends = sag > tiny or follows or not short
+    if first + last < h * (1.0 - 1e-12) and bends and leaving == 0:
+        return UNSURE, first
+    return CLEAR, first
+
+
+@kernel
+def way_past(contact, start, end, h):
+    """Return how far two bodies may pass each other in a step, by the velocities of their centres."""
+    a, b, most = contact.body, contact.other, 0.0
+    if b < 0:
+        return 0.0
+    for state in (start, end):
+        v, w = state[a].v, state[b].v
+        most = max(most, (v[0] - w[0]) ** 2 + (v[1] - w[1]) ** 2 + (v[2] - w[2]) ** 2)
+    return h * math.sqrt(most)
+
+
+@kernel
+def _no_gap(system, contact, c, held, state, work):
+    """No kernels of pairs are needed."""
+    return 0.0, 0.0
+
+
+@kernel
+def _no_passage(system, contact, c, held, leaving, start, end, h, work, tolerance, longest):
+    """No kernels of pairs are needed."""
+    return CLEAR, h
+
+
+lowest_pair = only_with_pairs(_lowest_pair, _no_gap)
+passage_pair = only_with_pairs(_passage_pair, _no_passage)

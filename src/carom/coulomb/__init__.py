@@ -1,5 +1,0 @@
-"""Many contacts at once: w = W p + c, with Coulomb's cones."""
-
-from carom.coulomb.api import ContactSolution, solve_contacts
-
-__all__ = ["ContactSolution", "solve_contacts"]

@@ -1,0 +1,1 @@
+"""Forces, joints, the constrained solve with its back ends, and the methods, one a file."""

@@ -1,0 +1,160 @@
+"""Accelerations of all bodies: applied forces, joints, and the force of a contact held at one point.
+
+A held contact answers with lam = (N, T). While it slips, T = -mu N u_t/|u_t| and the normal row of
+du/dt vanishes; while it sticks (or rolls) all three rows vanish. Where several points share their bodies
+the step is another one (`carom.persistent.contact_step`), and they are left out here.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.choice import by_address
+from carom._compiled.decorators import inlined, kernel, unit
+from carom.contact.gap import slow
+from carom.contact.pair_point import drift
+from carom.contact.place import place_held
+from carom.dynamics.contact_impulse import (
+    alone,
+    effective_inverse_mass,
+    spread,
+)
+from carom.dynamics.elements import acceleration_bias, driven_power
+from carom.dynamics.forces import applied_wrenches
+from carom.dynamics.friction import slip_force, stick_force
+from carom.dynamics.joint_friction import joint_friction
+from carom.dynamics.solve import solve_directly
+from carom.dynamics.stiff import add_stiff
+from carom.kinematics.contact_point import (
+    contact_acceleration,
+    contact_velocity,
+)
+from carom.model.choice import only_with_joints
+
+OPEN, SLIP, STICK = range(3)
+
+
+@kernel
+def _bias_joints(system, state, work):
+    """Write the bias of the relative acceleration of each joint."""
+    for j in range(system.joints.shape[0]):
+        acceleration_bias(system, j, state, work)
+
+
+@kernel
+def _no_joints(system, state, work):
+    """Without joints there is none."""
+
+
+bias_joints = only_with_joints(_bias_joints, _no_joints)
+
+
+@unit
+def acceleration_unit(system, state, held, work, stage):
+    """Write the accelerations into `rate` of `stage`, the powers of loads and of friction to work.result."""
+    accelerations(system, state, held, work, stage)
+
+
+@kernel
+def accelerations(system, state, held, work, stage):
+    """Do so as part of the caller."""
+    applied = applied_wrenches(system, state, True, work)
+    applied += add_stiff(system, state, work)
+    bias_joints(system, state, work)
+    friction = joint_friction(system, state, work)
+    solve_directly(system, state, work)
+    applied += driven_power(system, state, work)
+    for b in range(system.bodies.shape[0]):
+        motion, rate = work.body[b].motion, stage[b].rate
+        for k in range(6):
+            rate[k] = motion[k]
+    for i in range(held.count[0]):
+        hold = held.points[i]
+        if hold.mode != OPEN and hold.several == 0 and hold.rest == 0:
+            contact, point = system.contacts[hold.contact], work.point[0]
+            place_held(system, hold, state, point, work)
+            effective_inverse_mass(system, point, state, work, hold.W)
+            applied += press_one(system, contact, hold, point, state, work, stage)
+            if hold.mode == SLIP:
+                _, u1, u2 = contact_velocity(point, state)
+                friction += hold.force[1] * u1 + hold.force[2] * u2
+    work.result[0].power, work.result[0].drag = applied, friction
+
+
+_acceleration_at = by_address(acceleration_unit)
+
+
+@inlined
+def acceleration(system, state, held, work, stage):
+    """Write the accelerations into `rate` of `stage`; return the powers of loads and of friction."""
+    _acceleration_at(system.acceleration_at, system, state, held, work, stage)
+    return work.result[0].power, work.result[0].drag
+
+
+@kernel
+def aim(system, held, state, work):
+    """Note directions and speeds of slip at the start of a step."""
+    for i in range(held.count[0]):
+        hold = held.points[i]
+        heading = hold.heading
+        heading[0], heading[1], hold.speed = 0.0, 0.0, 0.0
+        if hold.mode == SLIP:
+            contact, point = system.contacts[hold.contact], work.point[0]
+            place_held(system, hold, state, point, work)
+            u1, u2 = slip_direction(contact, hold, point, state)
+            speed = math.sqrt(u1 * u1 + u2 * u2)
+            if speed > 0.0:
+                heading[0], heading[1], hold.speed = u1 / speed, u2 / speed, speed
+
+
+@kernel
+def slip_direction(contact, hold, point, state):
+    """Return a vector along the slip that friction opposes; 0 where slip has yet to start.
+
+    Once slip has turned against the direction it had at the start of the step, friction goes on as before: a
+    smooth force up to the end of the step, where the reversal is seen and located. (A force that turned with
+    the slip would hold the slip near zero, and the end of the step would show no reversal.)
+    """
+    _, u1, u2 = contact_velocity(point, state)
+    if not math.sqrt(u1 * u1 + u2 * u2) > 10.0 * slow(contact, state):
+        return hold.heading[0], hold.heading[1]
+    if u1 * hold.heading[0] + u2 * hold.heading[1] < 0.0:
+        return -u1, -u2
+    return u1, u2
+
+
+@kernel
+def press_one(system, contact, hold, point, state, work, stage):
+    """Work out the force that meets the rows of one held point; add what it does to the accelerations.
+
+    Returns the power that what is prescribed answers with.
+    """
+    f, W = hold.force, hold.W
+    an, a1, a2 = contact_acceleration(point, state, stage)
+    if contact.touches != 0:
+        d = drift(system, contact, hold.feature, hold.point, point, state, work)
+        an, a1, a2 = an + d[0], a1 + d[1], a2 + d[2]
+    if hold.mode == STICK:
+        n, t1, t2 = stick_force(W, an, a1, a2)
+    else:
+        u1, u2 = slip_direction(contact, hold, point, state)
+        n, t1, t2 = slip_force(W, an, a1, a2, u1, u2, contact.friction_held)
+        if hold.speed == 0.0 and hold.heading[0] == 0.0 and hold.heading[1] == 0.0:
+            size = math.sqrt(t1 * t1 + t2 * t2)
+            if size > 0.0:  # where slip starts
+                hold.heading[0], hold.heading[1] = -t1 / size, -t2 / size
+    f[0], f[1], f[2] = n, t1, t2
+    spread(system, point, state, n, t1, t2, work)
+    if alone(system, point):
+        accelerate(work.body[point.a].motion, stage[point.a].rate)
+        return 0.0
+    for b in range(stage.shape[0]):
+        accelerate(work.body[b].motion, stage[b].rate)
+    return driven_power(system, state, work)
+
+
+@kernel
+def accelerate(motion, rate):
+    """Add a motion to the accelerations of a body."""
+    for k in range(6):
+        rate[k] += motion[k]

@@ -1,0 +1,147 @@
+"""Steps of varying length: the error of a step in metres, and the length of the next.
+
+With e_x, e_theta, e_v, e_w = h sum of E_s times the derivatives of the stages (an embedded pair), a body misses
+by
+
+    miss = max(|e_x|, L |e_theta|, T |e_v|, T L |e_w|),     T = L / max(V, sqrt(L a)),
+
+L its size (`extent`), V its greatest speed and a its greatest acceleration in the step, with what turning does
+at the distance L. So an error of velocity counts as the way it makes while the body moves by its own size. A
+step is good if for all bodies
+
+    miss <= atol + rtol max(L, h V).
+
+Order 8 has two estimates: miss = miss_5^2 / sqrt(miss_5^2 + miss_3^2/100) (Hairer, Norsett and Wanner 1993). Of
+groups held at several points (order 2) the errors of a turn, (h w)^3/12, and of a stop inside the step,
+a h^2/8, are bounded. Free flight has none. The next step is 0.9 times the one whose error would be 1, within
+0.2 and 10 times the last.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom.geometry.rotation import multiply, norm
+from carom.model.arrays import ONE, SEVERAL
+
+SAFETY, LEAST, MOST = 0.9, 0.2, 10.0
+NOTHING_LEFT = 1e-14  # of the time that is left: no step is shorter
+
+
+@kernel
+def forget_misses(work):
+    """Begin anew with the errors of bodies."""
+    for b in range(work.body.shape[0]):
+        miss = work.body[b].miss
+        miss[0], miss[1], miss[2] = 0.0, 0.0, 0.0
+
+
+@kernel
+def note_misses(system, E, h, work):
+    """Keep for each body the greatest of its errors [m] by the rows of E, and its scale max(L, h V)."""
+    for b in range(work.body.shape[0]):
+        if system.bodies[b].ballistic == 1 and work.body[b].status != ONE:
+            continue
+        L, bound, miss = system.bodies[b].extent, work.body[b].bound, work.body[b].miss
+        speed = L * bound[2]
+        for s in range(E.shape[1]):
+            u = work.stages[s, b].speed
+            speed = max(speed, math.sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]) + L * norm(u[3:]))
+        pace = max(speed, math.sqrt(L * (bound[0] + L * bound[1])))
+        T = L / pace if pace > 0.0 else 0.0
+        for e in range(E.shape[0]):
+            m = greatest_error(E[e], h, L, T, b, work)
+            if not m <= miss[e]:  # NaN too
+                miss[e] = m
+        miss[2] = max(miss[2], max(L, abs(h) * speed))
+
+
+@kernel
+def greatest_error(weight, h, L, T, b, work):
+    """Return the error [m] of body b by one row of weights."""
+    x0, x1, x2, v0, v1, v2, w0, w1, w2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    q0, q1, q2, q3 = 0.0, 0.0, 0.0, 0.0
+    for s in range(weight.size):
+        f, u, a, p = (
+            weight[s],
+            work.stages[s, b].speed,
+            work.stages[s, b].rate,
+            work.stages[s, b].attitude,
+        )
+        x0, x1, x2 = x0 + f * u[0], x1 + f * u[1], x2 + f * u[2]
+        v0, v1, v2 = v0 + f * a[0], v1 + f * a[1], v2 + f * a[2]
+        w0, w1, w2 = w0 + f * a[3], w1 + f * a[4], w2 + f * a[5]
+        d = multiply(0.0, f * u[3], f * u[4], f * u[5], p[0], p[1], p[2], p[3])  # 2 f dQ/dt
+        q0, q1, q2, q3 = q0 + d[0], q1 + d[1], q2 + d[2], q3 + d[3]
+    way = max(
+        math.sqrt(x0 * x0 + x1 * x1 + x2 * x2),
+        L * math.sqrt(q0 * q0 + q1 * q1 + q2 * q2 + q3 * q3),
+    )
+    rate = max(math.sqrt(v0 * v0 + v1 * v1 + v2 * v2), L * math.sqrt(w0 * w0 + w1 * w1 + w2 * w2))
+    return abs(h) * (way + T * rate)
+
+
+@kernel
+def step_error(system, rtol, atol, start, h, end, work):
+    """Return the greatest error of the bodies in a step, as a part of what is allowed."""
+    first, second = 0.0, 0.0
+    for b in range(start.shape[0]):
+        body, memory = system.bodies[b], work.body[b]
+        miss, allowed = memory.miss, atol + rtol * max(body.extent, memory.miss[2])
+        a = miss[0] / allowed
+        if not a <= first:
+            first = a
+        second = max(second, miss[1] / allowed)
+        if memory.status == SEVERAL:
+            turn = abs(h) * max(norm(start[b].w), norm(end[b].w))
+            first = max(first, body.extent * turn * turn * turn / (12.0 * allowed))
+            first = max(first, error_of_stop(body.extent, start[b], h, end[b]) / allowed)
+    if second > 0.0:
+        return first * first / math.sqrt(first * first + 0.01 * second * second)
+    return first
+
+
+@kernel
+def error_of_stop(L, start, h, end):
+    """Return a h^2/8 [m] if the body loses half its speed or more, else 0: it may stop inside."""
+    before, after = norm(start.v) + L * norm(start.w), norm(end.v) + L * norm(end.w)
+    return 0.125 * abs(h) * (before - after) if after < 0.5 * before else 0.0
+
+
+@kernel
+def shorter(dt, error, controls, clock):
+    """Return the length to try after a step of too great an error: there the present step ends, too."""
+    factor = LEAST
+    if math.isfinite(error):
+        factor = max(LEAST, SAFETY * error ** (-1.0 / controls.order))
+    clock.rejected += 1
+    clock.ahead = factor * dt
+    clock.length = clock.spent + clock.ahead
+    return clock.ahead
+
+
+@kernel
+def plan_next(dt, error, again, controls, clock):
+    """Note the length of the next step after one of length dt; `again`: one was refused just before.
+
+    A short step (what is left after an event) does not shorten the next.
+    """
+    factor = MOST
+    if error > 0.0:
+        factor = min(MOST, SAFETY * error ** (-1.0 / controls.order))
+    if again:
+        factor = min(1.0, factor)
+    ahead = dt * factor if factor < MOST else max(clock.ahead, MOST * dt)
+    clock.ahead = min(ahead, controls.longest)
+
+
+@kernel
+def begin_step(controls, clock):
+    """Note start and length of a step; what is left of the run, if less than two steps, in equal ones."""
+    if clock.spent != 0.0 or clock.paused == 1:
+        return
+    left = controls.duration - clock.now
+    clock.begin, clock.length = clock.now, min(clock.ahead, left)
+    if clock.length < left < 2.0 * clock.length:
+        clock.length = 0.5 * left

@@ -1,0 +1,116 @@
+"""A point of contact: its velocity, its effective inverse mass W = G P G^T, and what an impulse does.
+
+G maps the velocities of all bodies to u = (u_n, u_t1, u_t2), the velocity of body a relative to body b at
+the point; P is the inverse mass with the joints active. (Paper, change of coordinates at contact.)
+"""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import kernel
+from carom.dynamics.solve import free_body, solve
+from carom.kinematics.contact_point import contact_motion
+from carom.kinematics.wrench import add_force
+
+
+@kernel
+def alone(system, point):
+    """Return whether an impulse at the point moves its own bodies only."""
+    b = point.b
+    return system.bodies[point.a].isolated == 1 and (b < 0 or system.bodies[b].isolated == 1)
+
+
+@kernel
+def spread(system, point, state, ln, l1, l2, work):
+    """Write motion = P G^T (ln, l1, l2): of all bodies, or of the point's own if nothing is joined to them."""
+    if not alone(system, point):
+        clear_wrenches(work)
+        add_impulse(point, ln, l1, l2, work)
+        solve(system, state, False, work)
+        return
+    clear_wrench(work.body[point.a])
+    if point.b >= 0:
+        clear_wrench(work.body[point.b])
+    add_impulse(point, ln, l1, l2, work)
+    free_body(system.bodies[point.a], state[point.a].Q, work.body[point.a])
+    if point.b >= 0:
+        free_body(system.bodies[point.b], state[point.b].Q, work.body[point.b])
+
+
+@kernel
+def add_impulse(point, ln, l1, l2, work):
+    """Add G^T (ln, l1, l2) to the wrenches."""
+    E, r, s = point.axes, point.arm_a, point.arm_b
+    if point.turns == 3:
+        for k in range(3):
+            torque = point.length * ln * E[0, k]
+            work.body[point.a].wrench[3 + k] += torque
+            if point.b >= 0:
+                work.body[point.b].wrench[3 + k] -= torque
+        return
+    if point.turns == 4:
+        l1, l2 = 0.0, 0.0
+    elif point.turns > 0:
+        i, j = (1, 2) if point.turns == 1 else (0, 2)
+        f1, f2 = point.length * l1, point.length * l2 if point.turns == 1 else 0.0
+        for k in range(3):
+            torque = f1 * E[i, k] + f2 * E[j, k]
+            work.body[point.a].wrench[3 + k] += torque
+            if point.b >= 0:
+                work.body[point.b].wrench[3 + k] -= torque
+        return
+    fx = E[0, 0] * ln + E[1, 0] * l1 + E[2, 0] * l2
+    fy = E[0, 1] * ln + E[1, 1] * l1 + E[2, 1] * l2
+    fz = E[0, 2] * ln + E[1, 2] * l1 + E[2, 2] * l2
+    add_force(work, point.a, r[0], r[1], r[2], fx, fy, fz)
+    add_force(work, point.b, s[0], s[1], s[2], -fx, -fy, -fz)
+
+
+@kernel
+def clear_wrench(memory):
+    """Zero the wrench of one body."""
+    for k in range(6):
+        memory.wrench[k] = 0.0
+
+
+@kernel
+def clear_wrenches(work):
+    """Zero the wrench of each body."""
+    for b in range(work.body.shape[0]):
+        clear_wrench(work.body[b])
+
+
+@kernel
+def effective_inverse_mass(system, point, state, work, W):
+    """Write W = G P G^T (3, 3) of one point. Columns are answers to unit impulses."""
+    for k in range(3):
+        e0, e1, e2 = 1.0 if k == 0 else 0.0, 1.0 if k == 1 else 0.0, 1.0 if k == 2 else 0.0
+        spread(system, point, state, e0, e1, e2, work)
+        W[0, k], W[1, k], W[2, k] = contact_motion(point, work)
+    for i in range(3):
+        for k in range(i):
+            m = 0.5 * (W[i, k] + W[k, i])
+            W[i, k], W[k, i] = m, m
+    if (
+        point.turns >= 3
+    ):  # a stop has no tangents; what they are given does not matter, without friction
+        W[1, 1], W[2, 2] = W[0, 0], W[0, 0]
+
+
+@kernel
+def add_velocity(system, point, work, state):
+    """Add the motion that `spread` wrote to the velocities."""
+    if alone(system, point):
+        gain(work.body[point.a].motion, state[point.a])
+        if point.b >= 0:
+            gain(work.body[point.b].motion, state[point.b])
+    else:
+        for b in range(state.shape[0]):
+            gain(work.body[b].motion, state[b])
+
+
+@kernel
+def gain(motion, body):
+    """Add a motion to the velocity of a body."""
+    for k in range(3):
+        body.v[k] += motion[k]
+        body.w[k] += motion[3 + k]

@@ -1,0 +1,31 @@
+"""Piecewise polynomials: what is prescribed over time, and springs with a curve."""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import kernel
+
+
+@kernel
+def find_piece(pieces, first, last, t):
+    """Return the piece that holds t; the first or the last beyond them."""
+    low, high = first, last - 1
+    while low < high:
+        middle = (low + high + 1) // 2
+        if pieces[middle].start <= t:
+            low = middle
+        else:
+            high = middle - 1
+    return low
+
+
+@kernel
+def curve(pieces, first, last, t):
+    """Return value, first and second derivative at t."""
+    piece = pieces[find_piece(pieces, first, last, t)]
+    s, c = t - piece.start, piece.c
+    f, d, e = c[5], 0.0, 0.0
+    for k in range(4, -1, -1):
+        e = e * s + 2.0 * d
+        d = d * s + f
+        f = f * s + c[k]
+    return f, d, e

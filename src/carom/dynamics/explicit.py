@@ -1,0 +1,289 @@
+"""Explicit Runge-Kutta steps in the ambient space (x, Q, v, w), projected at the end. Default: order 4.
+
+Stages are plain linear combinations (Q in R^4, normalised); the end of the step returns to the joints
+in the kinetic metric, so that constraints hold at position and velocity level to round-off. Bodies in
+free flight skip all of it (`carom.kinematics.flight`).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from carom._compiled.choice import by_address
+from carom._compiled.decorators import inlined, kernel, unit
+from carom.dynamics.acceleration import accelerations, aim
+from carom.dynamics.adapt import forget_misses, note_misses
+from carom.dynamics.joint_friction import stay_stuck
+from carom.dynamics.loops import dropped_rows
+from carom.dynamics.project import LOST, project_position, project_velocity
+from carom.dynamics.return_to_surface import return_held, stay_held
+from carom.dynamics.singular_positions import SINGULAR, is_singular, pass_round, return_stage, steps
+from carom.geometry.rotation import multiply, normalize
+from carom.kinematics.flight import free_flight
+from carom.model.arrays import FREE, ONE, RESTS, SEVERAL
+
+CONSTRAINTS_LOST = 7
+MANY = 1 << 30  # rows, more than there are
+#: turn of a body [rad] for each stage of a part of a step (0.3 of `rk4`), and how many parts there are at most
+TURN, MOST_PARTS, TINY = 0.075, 100, 1e-300
+
+
+class Explicit(NamedTuple):
+    """A Runge-Kutta method: strictly lower triangular A, weights b, and those of its errors."""
+
+    A: np.ndarray  # (S, S)
+    b: np.ndarray  # (S,)
+    E: np.ndarray  # (0, S) none; (1, S); (2, S) of orders 5 and 3
+    address: int  # of the step for bodies that are joined, loaded or held; 0 while none is
+
+
+#: names of the explicit methods
+EXPLICIT = ("rk4", "rk5", "rk8")
+
+
+def tableau(name: str) -> Explicit:
+    """Return an explicit method: `"rk4"`, the classical one (Kutta 1901); `"rk5"`, `"rk8"`.
+
+    Order 5 with 6 stages (Dormand and Prince 1980), order 8 with 12 (Hairer, Norsett and Wanner 1993, DOP853).
+    """
+    if name == "rk4":
+        A = np.zeros((4, 4))
+        A[1, 0] = A[2, 1] = 0.5
+        A[3, 2] = 1.0
+        return Explicit(A, np.array([1.0, 2.0, 2.0, 1.0]) / 6.0, np.zeros((0, 4)), 0)
+    from scipy.integrate import DOP853, RK45
+
+    chosen = {"rk5": RK45, "rk8": DOP853}[name]
+    stages = len(chosen.B)
+    A = np.zeros((stages, stages))
+    A[:, : chosen.A.shape[1]] = chosen.A[:stages]
+    return Explicit(A, np.array(chosen.B), np.zeros((0, stages)), 0)
+
+
+def with_error(name: str) -> Explicit:
+    """Return `"rk5"` (with a seventh stage, at the end) or `"rk8"`, and the weights of its error."""
+    from scipy.integrate import DOP853, RK45
+
+    method = tableau(name)
+    if name == "rk8":
+        return method._replace(E=np.array([DOP853.E5[:-1], DOP853.E3[:-1]]))
+    A = np.zeros((7, 7))
+    A[:6, :6], A[6, :6] = method.A, method.b
+    return method._replace(A=A, b=np.append(method.b, 0.0), E=np.array([RK45.E]))
+
+
+@inlined
+def explicit_step(method, system, held, start, h, end, work):
+    """Write the state a time h after `start` into `end`; return work of loads, of friction, a status."""
+    if method.E.shape[0] > 0:
+        forget_misses(work)
+    if not fly(system, held, start, h, end, work):
+        return 0.0, 0.0, 0
+    return constrained(method, system, held, start, h, end, work)
+
+
+@inlined
+def constrained(method, system, held, start, h, end, work):
+    """Step the bodies that are joined, loaded or held; as `explicit_step` gives back."""
+    whole_step(method.address, method.A, method.b, method.E, system, held, start, h, end, work)
+    result = work.result[0]
+    return result.applied, result.friction, result.code
+
+
+@unit
+def constrained_unit(A, weight, E, system, held, start, h, end, work):
+    """Step at once, or in parts in which no body turns far.
+
+    The length of a part depends on where it starts alone, so that the end is a continuous function of h.
+    """
+    result = work.result[0]
+    begin, left, first = result.start, h, start
+    applied, friction = 0.0, 0.0
+    forget_bounds(work)
+    aim(system, held, start, work)
+    for part in range(MOST_PARTS):
+        dt = left
+        if E.shape[0] == 0 and part < MOST_PARTS - 1:
+            dt = min(left, TURN * weight.size / max(fastest_spin(system, first, work), TINY))
+        with_care(A, weight, E, system, held, first, begin + (h - left), dt, end, work)
+        applied, friction = applied + result.applied, friction + result.friction
+        left -= dt
+        if not (left > 0.0 and result.code == 0):
+            break
+        result.parts += 1
+        first = work.first
+        for b in range(start.shape[0]):
+            keep(end[b], first[b])
+    result.applied, result.friction = applied, friction
+
+
+@kernel
+def fastest_spin(system, state, work):
+    """Return the greatest |w| of the bodies that are joined, loaded or held."""
+    most = 0.0
+    for b in range(state.shape[0]):
+        status, w = work.body[b].status, state[b].w
+        if status == ONE or (status != RESTS and system.bodies[b].ballistic == 0):
+            most = max(most, w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
+    return math.sqrt(most)
+
+
+@kernel
+def with_care(A, weight, E, system, held, start, begin, h, end, work):
+    """Step; and again with care, if stages fell into a position that is singular (`singular_positions`)."""
+    result = work.result[0]
+    for care in (False, True):
+        applied, friction, code, least, most = constrained_step(
+            system, A, weight, E, held, start, care, begin, h, end, work
+        )
+        if not is_singular(system, least, most):
+            break
+        if not care:
+            forget_misses(work)  # what was done is void
+    result.applied, result.friction, result.code = applied, friction, code
+
+
+#: whole_step(address, A, weight, E, system, held, start, h, end, work)
+whole_step = by_address(constrained_unit)
+
+
+@inlined
+def fly(system, held, start, h, end, work):
+    """Move the bodies in free flight, keep those at rest; return whether others are left."""
+    mark_held(system, held, work)
+    pending = False
+    for b in range(system.bodies.shape[0]):
+        status = work.body[b].status
+        if status == RESTS:
+            keep(start[b], end[b])
+        elif status != ONE and system.bodies[b].ballistic == 1:
+            free_flight(system.bodies[b], system.gravity, h, start[b], end[b], work.body[b])
+        else:
+            pending = True
+    return pending
+
+
+@inlined
+def keep(start, end):
+    """Write the record of a body unchanged."""
+    for k in range(3):
+        end.x[k], end.v[k], end.w[k] = start.x[k], start.v[k], start.w[k]
+    for k in range(4):
+        end.Q[k] = start.Q[k]
+
+
+@inlined
+def mark_held(system, held, work):
+    """Note for each body whether it is free, held at one point or at several, or at rest."""
+    for b in range(work.body.shape[0]):
+        work.body[b].status = FREE
+    for i in range(held.count[0]):
+        hold = held.points[i]
+        status = RESTS if hold.rest == 1 else SEVERAL if hold.several == 1 else ONE
+        work.body[hold.body].status = status
+        if hold.other >= 0:
+            work.body[hold.other].status = status
+
+
+@kernel
+def constrained_step(system, A, weight, E, held, start, care, t0, h, end, work):
+    """Step the bodies that are joined, loaded or held, from the time t0; the others are in `end` already.
+
+    With `care` the stages return to the joints first, and those in singular positions are passed round. Returns
+    work of loads, of friction, a status, and the least and the most rows that stages left out, or nearly.
+    """
+    stages, stage = weight.size, work.stage
+    applied, friction = 0.0, 0.0
+    least, most = MANY, 0
+    for s in range(stages):
+        combine(A[s], s, h, start, work.stages, stage)
+        work.result[0].time = t0 + h * node(A[s], s)
+        if care:
+            return_stage(system, stage, work)
+        for b in range(stage.shape[0]):
+            speed, attitude = work.stages[s, b].speed, work.stages[s, b].attitude
+            for k in range(3):
+                speed[k], speed[3 + k] = stage[b].v[k], stage[b].w[k]
+            for k in range(4):
+                attitude[k] = stage[b].Q[k]
+        accelerations(system, stage, held, work, work.stages[s])
+        dropped = dropped_rows(system, SINGULAR)
+        least, most = min(least, dropped), max(most, dropped)
+        if care:
+            pass_round(system, stage, held, end, work, work.stages[s])
+        applied += h * weight[s] * work.result[0].power
+        friction += h * weight[s] * work.result[0].drag
+    combine(weight, stages, h, start, work.stages, stage)
+    work.result[0].time = t0 + h
+    if system.contacts.shape[0] > 0 or E.shape[0] > 0:
+        bound_accelerations(work, stages)
+    if E.shape[0] > 0:
+        note_misses(system, E, h, work)
+    for b in range(stage.shape[0]):
+        if steps(system, b, work):
+            keep(stage[b], end[b])
+    if not (project_position(system, end, True, 1e-14, work) <= LOST):
+        return applied, friction, CONSTRAINTS_LOST, least, most
+    return_held(system, held, end, work)
+    project_velocity(system, end, work)
+    stay_stuck(system, end, work)
+    stay_held(system, held, end, work)
+    return applied, friction, 0, least, most
+
+
+@kernel
+def node(weights, count):
+    """Return the place of a stage in the step, from 0 to 1."""
+    total = 0.0
+    for r in range(count):
+        total += weights[r]
+    return total
+
+
+@kernel
+def combine(weight, count, h, start, stages, out):
+    """Write start + h sum of weight[r] * derivative of stage r, r < count."""
+    for b in range(start.shape[0]):
+        x0, v0, w0, q = start[b].x, start[b].v, start[b].w, start[b].Q
+        x, v, w = out[b].x, out[b].v, out[b].w
+        for k in range(3):
+            x[k], v[k], w[k] = x0[k], v0[k], w0[k]
+        q0, q1, q2, q3 = q[0], q[1], q[2], q[3]
+        for r in range(count):
+            a = h * weight[r]
+            if a != 0.0:
+                u, rate, p = stages[r, b].speed, stages[r, b].rate, stages[r, b].attitude
+                for k in range(3):
+                    x[k] += a * u[k]
+                    v[k] += a * rate[k]
+                    w[k] += a * rate[3 + k]
+                f = 0.5 * a  # dQ/dt = 1/2 (0, w) Q
+                d = multiply(0.0, f * u[3], f * u[4], f * u[5], p[0], p[1], p[2], p[3])
+                q0, q1, q2, q3 = q0 + d[0], q1 + d[1], q2 + d[2], q3 + d[3]
+        Q = out[b].Q
+        Q[0], Q[1], Q[2], Q[3] = normalize(q0, q1, q2, q3) if count > 0 else (q0, q1, q2, q3)
+
+
+@kernel
+def forget_bounds(work):
+    """Begin anew with the bounds of accelerations."""
+    for b in range(work.body.shape[0]):
+        bound = work.body[b].bound
+        bound[0], bound[1], bound[2] = 0.0, 0.0, 0.0
+
+
+@kernel
+def bound_accelerations(work, stages):
+    """Raise the bounds of |linear| and |angular| acceleration and |w| of each body to those of the stages."""
+    for b in range(work.body.shape[0]):
+        bound = work.body[b].bound
+        linear, angular, spin = bound[0] * bound[0], bound[1] * bound[1], bound[2] * bound[2]
+        for s in range(stages):
+            a, u = work.stages[s, b].rate, work.stages[s, b].speed
+            linear = max(linear, a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
+            angular = max(angular, a[3] * a[3] + a[4] * a[4] + a[5] * a[5])
+            spin = max(spin, u[3] * u[3] + u[4] * u[4] + u[5] * u[5])
+        bound[0], bound[1], bound[2] = math.sqrt(linear), math.sqrt(angular), math.sqrt(spin)

@@ -1,0 +1,194 @@
+"""Springs and dampers implicitly, all else explicitly: a linearly implicit step of order 2, L-stable.
+
+ROS2 of Verwer, Spee, Blom and Hundsdorfer (1999) in q and v, with g = 1 - 1/sqrt(2),
+
+    (1 - g h J) k1 = F(u0),    (1 - g h J) k2 = F(u0 + h k1) - 2 k1,    u1 = u0 + h (3 k1 + k2)/2,
+
+is of order 2 whatever J. Here J knows the stiffness k and damping c of the springs along their rows, so that
+the step is bounded by what is left to the explicit part. Each stage is one constrained solve in which a spring
+is a row with a compliance: with d = g h c + (g h)^2 k its force mu in the stage obeys
+
+    J a + mu/d = -(k s + c s' + g h k J r)/d,     a the accelerations, r the rates that the stage starts from.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from carom._compiled.choice import by_address
+from carom._compiled.decorators import inlined, kernel, unit
+from carom.dynamics.acceleration import bias_joints
+from carom.dynamics.elements import driven_power
+from carom.dynamics.explicit import bound_accelerations, constrained, fly, forget_bounds, keep
+from carom.dynamics.forces import applied_wrenches
+from carom.dynamics.project import LOST, project_position, project_velocity
+from carom.dynamics.solve import solve
+from carom.dynamics.stiff import along_row, stretch
+from carom.geometry.rotation import exp, multiply, normalize
+from carom.model.arrays import STIFF
+from carom.model.choice import only_with_relations
+
+GAMMA = 1.0 - math.sqrt(0.5)
+CONSTRAINTS_LOST = 7
+
+
+class Implicit(NamedTuple):
+    """The implicit step, and the explicit method for held contacts."""
+
+    at: int  # address of the step; 0 while none is needed
+    A: np.ndarray
+    b: np.ndarray
+    E: np.ndarray
+    address: int
+
+
+@inlined
+def implicit_step(method, system, held, start, h, end, work):
+    """Write the state a time h after `start` into `end`; return work of loads, of friction, a status.
+
+    While contacts are held all goes by the explicit method.
+    """
+    if not fly(system, held, start, h, end, work):
+        return 0.0, 0.0, 0
+    for i in range(held.count[0]):
+        if held.points[i].rest == 0:
+            return constrained(method, system, held, start, h, end, work)
+    whole_step(method.at, system, held, start, h, end, work)
+    return work.result[0].applied, 0.0, work.result[0].code
+
+
+@unit
+def implicit_unit(system, held, start, h, end, work):
+    """Make the two stages, and return to the joints."""
+    result, stage = work.result[0], work.stage
+    result.code = 0
+    result.time = result.start
+    power = accelerate(system, start, h, 0, work)
+    for b in range(start.shape[0]):
+        first = work.stages[0, b]
+        for k in range(3):
+            first.speed[k] = start[b].v[k] + GAMMA * h * first.rate[k]
+            first.speed[3 + k] = start[b].w[k] + GAMMA * h * first.rate[3 + k]
+        move(start[b], h, first.speed, first.rate, stage[b])
+    result.time = result.start + h
+    power += accelerate(system, stage, h, 1, work)
+    for b in range(start.shape[0]):
+        if system.bodies[b].ballistic == 1:
+            continue
+        first, second = work.stages[0, b], work.stages[1, b]
+        # k2 from y = k2 + 2 k1, and the mean of the step into the second
+        for k in range(6):
+            second.rate[k] -= 2.0 * first.rate[k]
+            speed = stage[b].v[k] if k < 3 else stage[b].w[k - 3]
+            second.speed[k] = speed - 2.0 * first.speed[k] + GAMMA * h * second.rate[k]
+            second.speed[k] = 1.5 * first.speed[k] + 0.5 * second.speed[k]
+            second.rate[k] = 1.5 * first.rate[k] + 0.5 * second.rate[k]
+        move(start[b], h, second.speed, second.rate, end[b])
+    forget_bounds(work)
+    bound_accelerations(work, 2)
+    if not (project_position(system, end, False, 1e-14, work) <= LOST):
+        result.code = CONSTRAINTS_LOST
+    project_velocity(system, end, work)
+    result.applied = 0.5 * h * power + damper_work(system, start, h, end)
+
+
+#: whole_step(address, system, held, start, h, end, work)
+whole_step = by_address(implicit_unit)
+
+
+@kernel
+def move(start, h, speed, rate, out):
+    """Move a body for a time h."""
+    keep(start, out)
+    Q = out.Q
+    for k in range(3):
+        out.x[k] += h * speed[k]
+        out.v[k] += h * rate[k]
+        out.w[k] += h * rate[3 + k]
+    r = exp(h * speed[3], h * speed[4], h * speed[5])
+    q = multiply(r[0], r[1], r[2], r[3], Q[0], Q[1], Q[2], Q[3])
+    Q[0], Q[1], Q[2], Q[3] = normalize(q[0], q[1], q[2], q[3])
+
+
+@kernel
+def accelerate(system, state, h, s, work):
+    """Write the accelerations of stage s; return the power of loads and motors, without these dampers."""
+    power = applied_wrenches(system, state, True, work)
+    bias_joints(system, state, work)
+    bias_springs(system, state, h, s, work)
+    solve(system, state, True, work)
+    power += driven_power(system, state, work)
+    for b in range(state.shape[0]):
+        motion, rate = work.body[b].motion, work.stages[s, b].rate
+        for k in range(6):
+            rate[k] = motion[k]
+    release_springs(system, state, h, s, work)
+    return power
+
+
+@kernel
+def _bias_springs(system, state, h, s, work):
+    """Put the springs in as rows."""
+    g = GAMMA * h
+    for j in range(system.joints.shape[0]):
+        if system.joints[j].kind != STIFF:
+            continue
+        one, row = system.relations.stiff[system.joints[j].number], system.solver.rows[j]
+        length, speed = stretch(system, one, state)
+        d = g * one.damping + g * g * one.stiffness
+        start, more = speed, 0.0
+        if s == 1:  # velocities and accelerations of the first stage, twice
+            start, more = speed - 2.0 * (one.speed + g * one.gain), 2.0 * one.gain
+        one.speed = speed
+        force = one.stiffness * length + one.damping * speed + g * one.stiffness * start
+        work.joint[j].bias[0] = more - force / d
+        row.off, row.compliance[0] = 0, 1.0 / d
+
+
+@kernel
+def _release_springs(system, state, h, s, work):
+    """Take the springs out again, and note what the stage does along them."""
+    for j in range(system.joints.shape[0]):
+        if system.joints[j].kind == STIFF:
+            one, row = system.relations.stiff[system.joints[j].number], system.solver.rows[j]
+            gain = along_row(system, one, state, work)
+            if s == 1:  # the sum of the rates that the dampers see in both stages, less the first
+                one.speed += GAMMA * h * (gain - one.gain)
+            one.gain = gain
+            row.off, row.compliance[0] = 1, 0.0
+
+
+@kernel
+def _damper_work(system, start, h, end):
+    """Return the work of the dampers: their impulse in the step times the mean rate of its ends.
+
+    In each stage a damper sees the rate s' + g h J a, so that its impulse is -c h/2 times the sum of both. (The
+    power at the stages would be wrong by any factor where the damper is stiff.)
+    """
+    total = 0.0
+    for j in range(system.joints.shape[0]):
+        if system.joints[j].kind == STIFF:
+            one = system.relations.stiff[system.joints[j].number]
+            _, first = stretch(system, one, start)
+            _, last = stretch(system, one, end)
+            total -= 0.25 * h * one.damping * (one.speed + first) * (first + last)
+    return total
+
+
+@kernel
+def _no_springs(system, state, h, s, work):
+    """There are none."""
+
+
+@kernel
+def _no_work(system, start, h, end):
+    """There is none."""
+    return 0.0
+
+
+bias_springs = only_with_relations(_bias_springs, _no_springs)
+damper_work = only_with_relations(_damper_work, _no_work)
+release_springs = only_with_relations(_release_springs, _no_springs)

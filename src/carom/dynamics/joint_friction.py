@@ -1,0 +1,173 @@
+"""Dry friction along coordinates of joints: |F| <= bound, against the motion where there is any.
+
+Within a step each is in one mode. Slipping in the direction d its force is -bound d; sticking it is what keeps
+q'' = 0, found for all that stick at once,
+
+    (J P J^T) F = -q''_free.
+
+Where a motor moves the coordinate nothing that friction does can keep it: J P J^T is round-off of J M^-1 J^T.
+Sticking ends there as soon as it moves, or is about to; the force is then put beyond its bound.
+
+A mode ends where d q' or bound - |F| crosses zero; the loop locates that instant as it does an impact
+(`carom.persistent.joint_events`).
+"""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import kernel
+from carom.dynamics.contact_impulse import clear_wrenches, gain
+from carom.dynamics.forces import applied_wrenches
+from carom.dynamics.several_points import factor, substitute
+from carom.dynamics.solve import free_body, solve
+from carom.kinematics.coordinate import drift, motion_along, push, rate, speeds_of
+from carom.model.choice import only_with_coordinates
+
+DEPENDENT = 1e-10  # of a diagonal: what sticks already through others takes no force
+ROUND_OFF = 1e-13  # of J M^-1 J^T: what joints and motors leave of it where they leave no freedom
+STILL = 1e-12  # of the speeds of both sides: no speed
+BEYOND = 2.0  # of its bound: the force of what cannot stick
+
+
+@kernel
+def any_sticks(relations):
+    """Return whether one sticks."""
+    for i in range(relations.frictions.shape[0]):
+        if relations.frictions[i].mode == 0:
+            return True
+    return False
+
+
+@kernel
+def push_all(system, state, work):
+    """Add the wrenches of all friction forces; return their power."""
+    relations, power = system.relations, 0.0
+    for i in range(relations.frictions.shape[0]):
+        one = relations.frictions[i]
+        c = relations.coordinates[one.coordinate]
+        push(c, state, one.force, work)
+        power += one.force * rate(c, state)
+    return power
+
+
+@kernel
+def stick(system, state, x, work):
+    """Solve (J P J^T) F = x over those that stick: x becomes F, 0 of the others.
+
+    Dependent ones are left out; those that depend on joints and motors are noted.
+    """
+    relations = system.relations
+    count, W = relations.frictions.shape[0], relations.friction_matrix
+    for j in range(count):
+        sticks, own = relations.frictions[j].mode == 0, 0.0
+        if sticks:
+            c = relations.coordinates[relations.frictions[j].coordinate]
+            clear_wrenches(work)
+            push(c, state, 1.0, work)
+            for b in range(state.shape[0]):
+                free_body(system.bodies[b], state[b].Q, work.body[b])
+            own = motion_along(c, state, work)
+            solve(system, state, False, work)
+        else:
+            x[j] = 0.0
+        for i in range(count):
+            W[i, j] = 1.0 if i == j else 0.0
+            if sticks and relations.frictions[i].mode == 0:
+                c = relations.coordinates[relations.frictions[i].coordinate]
+                W[i, j] = motion_along(c, state, work)
+        relations.frictions[j].driven = 1 if sticks and not W[j, j] > ROUND_OFF * own else 0
+        if relations.frictions[j].driven == 1:
+            W[j, j] = 0.0
+    factor(count, DEPENDENT, W)
+    substitute(count, W, x)
+
+
+@kernel
+def drive(system, one, state):
+    """Put the force of what cannot stick beyond its bound, if its coordinate moves or is about to."""
+    c = system.relations.coordinates[one.coordinate]
+    speed = rate(c, state)
+    still = abs(speed) <= STILL * speeds_of(system, c, state)
+    towards = one.change if still else speed
+    one.force = 0.0
+    if towards != 0.0:
+        one.force = -BEYOND * one.bound if towards > 0.0 else BEYOND * one.bound
+
+
+@kernel
+def _joint_friction(system, state, work):
+    """Add the wrenches of friction in joints; return their power.
+
+    The wrenches of all other forces, and the bias of the joints, are in place.
+    """
+    relations = system.relations
+    if relations.frictions.shape[0] == 0:
+        return 0.0
+    for i in range(relations.frictions.shape[0]):
+        one = relations.frictions[i]
+        one.force = -one.bound * one.mode
+    if any_sticks(relations):
+        push_all(system, state, work)
+        solve(system, state, True, work)
+        x = relations.friction_vector
+        for i in range(relations.frictions.shape[0]):
+            c = relations.coordinates[relations.frictions[i].coordinate]
+            x[i] = -motion_along(c, state, work) - drift(c, state, relations.write)
+            relations.frictions[i].change = -x[i]
+        stick(system, state, x, work)
+        for i in range(relations.frictions.shape[0]):
+            if relations.frictions[i].mode == 0:
+                relations.frictions[i].force = x[i]
+            if relations.frictions[i].driven == 1:
+                drive(system, relations.frictions[i], state)
+        applied_wrenches(system, state, True, work)
+    return push_all(system, state, work)
+
+
+@kernel
+def _no_friction(system, state, work):
+    """There is none."""
+    return 0.0
+
+
+@kernel
+def _stay_stuck(system, state, work):
+    """Take the speeds of those that stick out of a state, in the kinetic metric."""
+    relations = system.relations
+    if not any_sticks(relations):
+        return
+    x = relations.friction_vector
+    for i in range(relations.frictions.shape[0]):
+        x[i] = -rate(relations.coordinates[relations.frictions[i].coordinate], state)
+    stick(system, state, x, work)
+    clear_wrenches(work)
+    for i in range(relations.frictions.shape[0]):
+        push(relations.coordinates[relations.frictions[i].coordinate], state, x[i], work)
+    solve(system, state, False, work)
+    for b in range(state.shape[0]):
+        gain(work.body[b].motion, state[b])
+
+
+@kernel
+def _none_stuck(system, state, work):
+    """There is none."""
+
+
+@kernel
+def _slip_power(system, state):
+    """Return the power of friction in those joints that slip."""
+    relations, power = system.relations, 0.0
+    for i in range(relations.frictions.shape[0]):
+        one = relations.frictions[i]
+        power -= one.bound * one.mode * rate(relations.coordinates[one.coordinate], state)
+    return power
+
+
+@kernel
+def _no_power(system, state):
+    """There is none."""
+    return 0.0
+
+
+slip_power = only_with_coordinates(_slip_power, _no_power)
+joint_friction = only_with_coordinates(_joint_friction, _no_friction)
+stay_stuck = only_with_coordinates(_stay_stuck, _none_stuck)

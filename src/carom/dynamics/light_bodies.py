@@ -1,0 +1,254 @@
+"""Closed loops of bodies whose masses and moments differ by more than `SPREAD`.
+
+A M^-1 A^T is the sum of what all bodies yield. Light bodies yield much, and where one of them stands between
+two heavy ones what the heavy ones yield is a small difference of large numbers: a part (light mass)/(heavy
+mass) of them. So two things change against `carom.dynamics.loops`.
+
+Which rows depend on others is a matter of geometry. It is judged with bodies of equal mass, and of moments
+that are the squares of their sizes: in A D^-1 A^T, whose pivots know nothing of masses.
+
+The rows that stay are solved with 31 digits (`carom.dynamics.double_double`): with U = A M^-1/2 in principal
+axes, of which each product is exact,
+
+    U U^T = L L^T,    L L^T lam = target - U y0,   y = y0 + U^T lam,    y0 = M^-1/2 wrench, motion = M^-1/2 y.
+
+What rounds is U, by a part 1e-16 of each entry: a change of the joints by so much, whatever the masses are.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom.dynamics.double_double import add, add_product, inverse_root, multiply, subtract_product
+from carom.dynamics.elements import build_rows, row_target
+from carom.dynamics.loops import eliminate, forget_pose, gather
+from carom.geometry.rotation import rotate, rotate_back
+
+LEAST = 1e-29  # of a diagonal: pivots below are round-off of 31 digits
+
+
+@kernel
+def geometric_rows(system):
+    """Turn Y of all sides into A D^-1: equal masses, moments that are the squares of the sizes."""
+    for i in range(system.solver.sides.shape[0]):
+        side = system.solver.sides[i]
+        extent = system.bodies[side.body].extent
+        turn = 1.0 / (extent * extent)
+        for r in range(system.joints[side.element].rows):
+            for k in range(3):
+                side.Y[r, k], side.Y[r, 3 + k] = side.A[r, k], turn * side.A[r, 3 + k]
+
+
+@kernel
+def geometric_motion(system, work):
+    """Write motion = D^-1 wrench of each body."""
+    for b in range(system.bodies.shape[0]):
+        f, out, extent = work.body[b].wrench, work.body[b].motion, system.bodies[b].extent
+        for k in range(3):
+            out[k], out[3 + k] = f[k], f[3 + k] / (extent * extent)
+
+
+@kernel
+def factor_geometry(system, state, augment, work):
+    """Factor A D^-1 A^T: its pivots are 0 where rows depend on others."""
+    solver, joints = system.solver, system.joints
+    forget_pose(solver)
+    build_rows(system, state, work)
+    geometric_rows(system)
+    gather(system)
+    for j in range(joints.shape[0]):
+        for r in range(joints[j].rows):
+            d = solver.block[j, r, r]
+            solver.rows[j].weight[r] = d
+            # what yields by itself depends on nothing
+            yields = augment if solver.rows[j].compliance[r] == 0.0 else 1.0
+            solver.block[j, r, r] = d * (1.0 + yields)
+    eliminate(system, solver.drop if augment == 0.0 else 0.0)
+
+
+@kernel
+def factor_light(system, state, work):
+    """Find the rows that stay, and factor U U^T of those."""
+    factor_geometry(system, state, 0.0, work)
+    scaled_rows(system, state)
+    solver, joints, count = system.solver, system.joints, system.joints.shape[0]
+    high, low = solver.fine[0], solver.fine[1]
+    gather_products(system, high, low)
+    for place in range(count):
+        k = solver.order[place]
+        n, root, rest = joints[k].rows, solver.digits[k, 0], solver.digits[k, 1]
+        factor_block(high[k], low[k], solver.rows[k], root, rest, n)
+        for s in range(solver.column[place], solver.column[place + 1]):
+            m, c = joints[solver.row[s]].rows, count + s
+            divide(high[c], low[c], high[k], low[k], root, rest, m, n)
+        for t in range(solver.update[place], solver.update[place + 1]):
+            a, b, c = count + solver.triple[t, 0], count + solver.triple[t, 1], solver.triple[t, 2]
+            m, q = joints[solver.row[a - count]].rows, joints[solver.row[b - count]].rows
+            for i in range(m):
+                for j in range(q):
+                    x, y = high[c, i, j], low[c, i, j]
+                    for s in range(n):
+                        x, y = subtract_product(
+                            x, y, high[a, i, s], low[a, i, s], high[b, j, s], low[b, j, s]
+                        )
+                    high[c, i, j], low[c, i, j] = x, y
+
+
+@kernel
+def scaled_rows(system, state):
+    """Turn Y of all sides into U: rows in principal axes, over roots of masses and moments; keep the axes."""
+    for b in range(system.bodies.shape[0]):
+        for k in range(4):
+            system.solver.scaled[b, 2, k] = state[b].Q[k]
+    for i in range(system.solver.sides.shape[0]):
+        side = system.solver.sides[i]
+        body, q, A, U = system.bodies[side.body], state[side.body].Q, side.A, side.Y
+        root = 1.0 / math.sqrt(body.mass)
+        for r in range(system.joints[side.element].rows):
+            t = rotate_back(q[0], q[1], q[2], q[3], A[r, 3], A[r, 4], A[r, 5])
+            for k in range(3):
+                U[r, k], U[r, 3 + k] = root * A[r, k], t[k] / math.sqrt(body.inertia[k])
+
+
+@kernel
+def gather_products(system, high, low):
+    """Write the blocks of U U^T, and compliances."""
+    solver, joints = system.solver, system.joints
+    for c in range(high.shape[0]):
+        for i in range(6):
+            for j in range(6):
+                high[c, i, j], low[c, i, j] = 0.0, 0.0
+    for t in range(solver.term.shape[0]):
+        c = solver.term[t, 0]
+        one, two = solver.sides[solver.term[t, 1]], solver.sides[solver.term[t, 2]]
+        for i in range(joints[one.element].rows):
+            for j in range(joints[two.element].rows):
+                x, y = high[c, i, j], low[c, i, j]
+                for k in range(6):
+                    x, y = add_product(x, y, one.Y[i, k], two.Y[j, k])
+                high[c, i, j], low[c, i, j] = x, y
+    for j in range(joints.shape[0]):
+        for r in range(joints[j].rows):
+            x, y = high[j, r, r], low[j, r, r]
+            high[j, r, r], low[j, r, r] = add(x, y, solver.rows[j].compliance[r], 0.0)
+
+
+@kernel
+def factor_block(high, low, row, root, rest, n):
+    """Factor a diagonal block in place, L below the diagonal; root + rest = 1/L_kk, 0 where a row is left out.
+
+    A pivot that is round-off makes it NaN: rows that geometry tells apart, and the masses do not.
+    """
+    for k in range(n):
+        d, e = high[k, k], low[k, k]
+        least = LEAST * d
+        for s in range(k):
+            d, e = subtract_product(d, e, high[k, s], low[k, s], high[k, s], low[k, s])
+        root[k], rest[k] = 0.0, 0.0
+        if row.pivot[k] != 0.0:
+            root[k], rest[k] = inverse_root(d, e) if d > least else (math.nan, math.nan)
+        for i in range(k + 1, n):
+            x, y = high[i, k], low[i, k]
+            for s in range(k):
+                x, y = subtract_product(x, y, high[i, s], low[i, s], high[k, s], low[k, s])
+            high[i, k], low[i, k] = multiply(x, y, root[k], rest[k])
+
+
+@kernel
+def divide(Xh, Xl, high, low, root, rest, m, n):
+    """X <- X L^-T for a block below the diagonal block L."""
+    for i in range(m):
+        for k in range(n):
+            x, y = Xh[i, k], Xl[i, k]
+            for s in range(k):
+                x, y = subtract_product(x, y, Xh[i, s], Xl[i, s], high[k, s], low[k, s])
+            Xh[i, k], Xl[i, k] = multiply(x, y, root[k], rest[k])
+
+
+@kernel
+def substitute_light(system):
+    """Turn the right-hand sides into multipliers, high and low parts."""
+    solver, joints = system.solver, system.joints
+    count, high, low, digits = joints.shape[0], solver.fine[0], solver.fine[1], solver.digits
+    for place in range(count):
+        k = solver.order[place]
+        n, root, rest, h, e = joints[k].rows, digits[k, 0], digits[k, 1], digits[k, 2], digits[k, 3]
+        for i in range(n):
+            x, y = h[i], e[i]
+            for s in range(i):
+                x, y = subtract_product(x, y, high[k, i, s], low[k, i, s], h[s], e[s])
+            h[i], e[i] = multiply(x, y, root[i], rest[i])
+        for t in range(solver.column[place], solver.column[place + 1]):
+            i = solver.row[t]
+            for r in range(joints[i].rows):
+                x, y = digits[i, 2, r], digits[i, 3, r]
+                for s in range(n):
+                    a, b = high[count + t, r, s], low[count + t, r, s]
+                    x, y = subtract_product(x, y, a, b, h[s], e[s])
+                digits[i, 2, r], digits[i, 3, r] = x, y
+    for place in range(count - 1, -1, -1):
+        k = solver.order[place]
+        n, root, rest, h, e = joints[k].rows, digits[k, 0], digits[k, 1], digits[k, 2], digits[k, 3]
+        for t in range(solver.column[place], solver.column[place + 1]):
+            i = solver.row[t]
+            for r in range(joints[i].rows):
+                for s in range(n):
+                    a, b = high[count + t, r, s], low[count + t, r, s]
+                    h[s], e[s] = subtract_product(
+                        h[s], e[s], a, b, digits[i, 2, r], digits[i, 3, r]
+                    )
+        for i in range(n - 1, -1, -1):
+            x, y = h[i], e[i]
+            for s in range(i + 1, n):
+                x, y = subtract_product(x, y, high[k, s, i], low[k, s, i], h[s], e[s])
+            h[i], e[i] = multiply(x, y, root[i], rest[i])
+    for k in range(count):
+        for r in range(joints[k].rows):
+            solver.rows[k].rhs[r] = digits[k, 2, r]
+
+
+@kernel
+def solve_light(system, state, biased, work):
+    """Write the motion of all bodies in the position that was last factored; the multipliers stay in rhs."""
+    solver, joints, digits = system.solver, system.joints, system.solver.digits
+    y = solver.scaled
+    for b in range(system.bodies.shape[0]):
+        body, f, q = system.bodies[b], work.body[b].wrench, y[b, 2]
+        t = rotate_back(q[0], q[1], q[2], q[3], f[3], f[4], f[5])
+        for k in range(3):
+            y[b, 0, k], y[b, 0, 3 + k] = (
+                f[k] / math.sqrt(body.mass),
+                t[k] / math.sqrt(body.inertia[k]),
+            )
+            y[b, 1, k], y[b, 1, 3 + k] = 0.0, 0.0
+    for j in range(joints.shape[0]):
+        rhs = solver.rows[j].rhs
+        if biased:
+            row_target(system, j, state, work.joint[j].bias, rhs)
+        for r in range(joints[j].rows):
+            digits[j, 2, r], digits[j, 3, r] = rhs[r] if biased else 0.0, 0.0
+    for i in range(solver.sides.shape[0]):
+        side = solver.sides[i]
+        U, out, own = side.Y, digits[side.element], y[side.body, 0]
+        for r in range(joints[side.element].rows):
+            for k in range(6):
+                out[2, r], out[3, r] = add_product(out[2, r], out[3, r], -U[r, k], own[k])
+    substitute_light(system)
+    for i in range(solver.sides.shape[0]):
+        side = solver.sides[i]
+        U, given, own = side.Y, digits[side.element], y[side.body]
+        for r in range(joints[side.element].rows):
+            for k in range(6):
+                own[0, k], own[1, k] = subtract_product(
+                    own[0, k], own[1, k], -U[r, k], 0.0, given[2, r], given[3, r]
+                )
+    for b in range(system.bodies.shape[0]):
+        body, out, q = system.bodies[b], work.body[b].motion, y[b, 2]
+        J, a = body.inertia, y[b, 0]
+        t = rotate(
+            q[0], q[1], q[2], q[3],
+            a[3] / math.sqrt(J[0]), a[4] / math.sqrt(J[1]), a[5] / math.sqrt(J[2]),
+        )  # fmt: skip
+        for k in range(3):
+            out[k], out[3 + k] = a[k] / math.sqrt(body.mass), t[k]

@@ -1,0 +1,253 @@
+"""Back end for closed loops: block-sparse Cholesky of A M^-1 A^T, dependent pivots dropped.
+
+The same solve as in `carom.dynamics.tree`, through the multipliers: A M^-1 A^T lam = target - A M^-1 wrench,
+motion = M^-1 (wrench + A^T lam). Bodies are eliminated first (that is A M^-1 A^T), then the joints in
+an order of low fill that was chosen when the scene was compiled. A pivot below `drop` times
+its own diagonal belongs to a row that depends on earlier ones and is left out: redundant
+constraints and singular positions need no help. `augment` > 0 adds that part of each diagonal instead:
+one pass of the augmented Lagrangian, repeated by the caller (the paper's way, and the way to reactions of
+minimal norm).
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom.dynamics.elements import build_rows, row_target
+from carom.kinematics.rows import times_inverse_mass
+from carom.model.arrays import FreeSolver, LoopSolver, TreeSolver
+from carom.model.choice import by_solver
+
+
+@kernel
+def factor(system, state, augment, work):
+    """Factor A M^-1 A^T + augment * diag in the position of `state`."""
+    solver, joints = system.solver, system.joints
+    forget_pose(solver)
+    build_rows(system, state, work)
+    gather(system)
+    for j in range(joints.shape[0]):
+        for r in range(joints[j].rows):
+            d = solver.block[j, r, r]
+            solver.rows[j].weight[r] = d
+            solver.block[j, r, r] = d * (1.0 + augment) + solver.rows[j].compliance[r]
+    eliminate(system, solver.drop if augment == 0.0 else 0.0)
+
+
+@kernel
+def forget_pose(solver):
+    """Begin a factor: the caller may say of which pose it is."""
+    for b in range(solver.pose.shape[0]):
+        solver.pose[b, 0] = math.nan
+
+
+@kernel
+def gather(system):
+    """Write the blocks of A Y^T."""
+    solver, joints, block = system.solver, system.joints, system.solver.block
+    for k in range(block.shape[0]):
+        clear(block[k])
+    for t in range(solver.term.shape[0]):
+        one, two = solver.sides[solver.term[t, 1]], solver.sides[solver.term[t, 2]]
+        add_product(
+            block[solver.term[t, 0]],
+            one.Y,
+            two.A,
+            joints[one.element].rows,
+            joints[two.element].rows,
+        )
+
+
+@kernel
+def eliminate(system, drop):
+    """Factor the blocks in place; `weight` has the diagonal that pivots are judged by."""
+    solver, joints, block = system.solver, system.joints, system.solver.block
+    count = joints.shape[0]
+    for place in range(count):
+        k = solver.order[place]
+        n, pivot = joints[k].rows, solver.rows[k].pivot
+        factor_diagonal(block[k], pivot, solver.rows[k].weight, n, drop)
+        if solver.rows[k].off == 1:
+            for r in range(n):
+                pivot[r] = 0.0
+        for s in range(solver.column[place], solver.column[place + 1]):
+            divide(block[count + s], block[k], pivot, joints[solver.row[s]].rows, n)
+        for t in range(solver.update[place], solver.update[place + 1]):
+            i, j = solver.triple[t, 0], solver.triple[t, 1]
+            subtract_product(
+                block[solver.triple[t, 2]], block[count + i], block[count + j], pivot,
+                joints[solver.row[i]].rows, joints[solver.row[j]].rows, n,
+            )  # fmt: skip
+
+
+@kernel
+def clear(S):
+    """Zero a block."""
+    for i in range(6):
+        for j in range(6):
+            S[i, j] = 0.0
+
+
+@kernel
+def add_product(S, Y, A, m, n):
+    """Add Y A^T, m rows of Y and n rows of A, six columns, to S."""
+    for i in range(m):
+        for j in range(n):
+            S[i, j] += (
+                Y[i, 0] * A[j, 0] + Y[i, 1] * A[j, 1] + Y[i, 2] * A[j, 2]
+                + Y[i, 3] * A[j, 3] + Y[i, 4] * A[j, 4] + Y[i, 5] * A[j, 5]
+            )  # fmt: skip
+
+
+@kernel
+def factor_diagonal(S, pivot, diagonal, n, drop):
+    """Factor S = L D L^T in place (unit L below the diagonal); pivot = 1/D, or 0 where dropped."""
+    for k in range(n):
+        d = S[k, k]
+        for s in range(k):
+            if pivot[s] != 0.0:
+                d -= S[k, s] * S[k, s] / pivot[s]
+        pivot[k] = 1.0 / d if d > drop * diagonal[k] else 0.0
+        for i in range(k + 1, n):
+            t = S[i, k]
+            for s in range(k):
+                if pivot[s] != 0.0:
+                    t -= S[i, s] * S[k, s] / pivot[s]
+            S[i, k] = t * pivot[k]
+
+
+@kernel
+def divide(X, L, pivot, m, n):
+    """X <- X L^-T D^-1 for a block below the diagonal block L, so that it holds entries of unit L."""
+    for i in range(m):
+        for k in range(n):
+            t = X[i, k]
+            for s in range(k):
+                if pivot[s] != 0.0:
+                    t -= X[i, s] * L[k, s] / pivot[s]
+            X[i, k] = t * pivot[k]
+
+
+@kernel
+def subtract_product(S, X, Y, pivot, m, n, q):
+    """S <- S - X D Y^T."""
+    for s in range(q):
+        if pivot[s] == 0.0:
+            continue
+        d = 1.0 / pivot[s]
+        for i in range(m):
+            t = d * X[i, s]
+            for j in range(n):
+                S[i, j] -= t * Y[j, s]
+
+
+@kernel
+def substitute(system):
+    """Solve with the factor: rhs of all rows becomes the multipliers."""
+    solver, joints = system.solver, system.joints
+    count = joints.shape[0]
+    for place in range(count):
+        k = solver.order[place]
+        L, y = solver.block[k], solver.rows[k].rhs
+        for i in range(joints[k].rows):
+            for s in range(i):
+                y[i] -= L[i, s] * y[s]
+        for t in range(solver.column[place], solver.column[place + 1]):
+            i = solver.row[t]
+            X, z = solver.block[count + t], solver.rows[i].rhs
+            for r in range(joints[i].rows):
+                for s in range(joints[k].rows):
+                    z[r] -= X[r, s] * y[s]
+    for k in range(count):
+        for r in range(joints[k].rows):
+            solver.rows[k].rhs[r] *= solver.rows[k].pivot[r]
+    for place in range(count - 1, -1, -1):
+        k = solver.order[place]
+        L, y = solver.block[k], solver.rows[k].rhs
+        for t in range(solver.column[place], solver.column[place + 1]):
+            i = solver.row[t]
+            X, z = solver.block[count + t], solver.rows[i].rhs
+            for r in range(joints[i].rows):
+                for s in range(joints[k].rows):
+                    y[s] -= X[r, s] * z[r]
+        for i in range(joints[k].rows - 1, -1, -1):
+            for s in range(i + 1, joints[k].rows):
+                y[i] -= L[s, i] * y[s]
+
+
+@kernel
+def free_motion(system, work):
+    """Write motion = M^-1 wrench of each body."""
+    for b in range(system.bodies.shape[0]):
+        f, out = work.body[b].wrench, work.body[b].motion
+        y = times_inverse_mass(
+            system.bodies[b].mass, work.body[b].inverse, f[0], f[1], f[2], f[3], f[4], f[5]
+        )
+        for k in range(6):
+            out[k] = y[k]
+
+
+@kernel
+def subtract_rows(system, work):
+    """Rhs <- rhs - A motion."""
+    for i in range(system.solver.sides.shape[0]):
+        side = system.solver.sides[i]
+        A, motion, rhs = side.A, work.body[side.body].motion, system.solver.rows[side.element].rhs
+        for r in range(system.joints[side.element].rows):
+            s = 0.0
+            for k in range(6):
+                s += A[r, k] * motion[k]
+            rhs[r] -= s
+
+
+@kernel
+def add_reactions(system, work):
+    """Motion <- motion + M^-1 A^T multipliers, where rhs holds the multipliers."""
+    for i in range(system.solver.sides.shape[0]):
+        side = system.solver.sides[i]
+        Y, motion = side.Y, work.body[side.body].motion
+        multiplier = system.solver.rows[side.element].rhs
+        for r in range(system.joints[side.element].rows):
+            for k in range(6):
+                motion[k] += Y[r, k] * multiplier[r]
+
+
+@kernel
+def solve_factored(system, state, biased, work):
+    """Write the motion of all bodies; the multipliers stay in rhs."""
+    free_motion(system, work)
+    for j in range(system.joints.shape[0]):
+        rhs = system.solver.rows[j].rhs
+        if biased:
+            row_target(system, j, state, work.joint[j].bias, rhs)
+        else:
+            for r in range(6):
+                rhs[r] = 0.0
+    subtract_rows(system, work)
+    substitute(system)
+    add_reactions(system, work)
+
+
+@kernel
+def _dropped_rows(system, part):
+    """Return how many rows the last factor left out, or kept for less than `part` of their diagonal."""
+    count = 0
+    for j in range(system.joints.shape[0]):
+        row = system.solver.rows[j]
+        for r in range(system.joints[j].rows):
+            if row.pivot[r] == 0.0 or part * row.weight[r] * row.pivot[r] > 1.0:
+                count += 1
+    return count
+
+
+@kernel
+def _none_dropped(system, part):
+    """Only the loops' back end leaves rows out."""
+    return 0
+
+
+#: dropped_rows(system, part): how many rows the last solve left out, or all but left out
+dropped_rows = by_solver(
+    {FreeSolver: _none_dropped, TreeSolver: _none_dropped, LoopSolver: _dropped_rows}
+)

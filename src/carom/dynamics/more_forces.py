@@ -1,0 +1,201 @@
+"""Forces along coordinates of joints, by curves, and by functions of the user's.
+
+along a coordinate    Q = -k (q - rest) - c q' + F,       U = k (q - rest)^2 / 2
+a spring with a curve tension F(length),                  U = integral of F from its first point
+of the user's         wrenches = f(t, states),            U if a potential is given
+"""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import kernel
+from carom._compiled.user_functions import call_function
+from carom.dynamics.curve import curve, find_piece
+from carom.geometry.rotation import multiply
+from carom.kinematics.coordinate import push, rate, value
+from carom.model.arrays import PRISMATIC
+from carom.model.choice import only_with_coordinates
+
+FAR = 1.5  # turn [rad] in a trial step, by the rates at its ends: less than half a turn on the way
+
+
+@kernel
+def push_force(relations, one, q, speed, t):
+    """Return the force along a coordinate, and the part of it that has no potential."""
+    free = one.force - one.damping * speed
+    if one.address != 0:
+        relations.read[0], relations.read[1] = q, speed
+        call_function(one.address, t, relations.read, relations.write)
+        free += relations.write[0]
+    return free - one.stiffness * (q - one.rest), free
+
+
+@kernel
+def read_states(system, force, state):
+    """Write x, Q, v, w of the bodies of a user's force, in the axes of the scene."""
+    relations, i = system.relations, 0
+    read = relations.read
+    for n in range(force.first, force.last):
+        b = relations.named[n]
+        Q, a = state[b].Q, system.bodies[b].axes
+        for k in range(3):
+            read[i + k] = state[b].x[k]
+            read[i + 7 + k], read[i + 10 + k] = state[b].v[k], state[b].w[k]
+        q = multiply(Q[0], Q[1], Q[2], Q[3], a[0], -a[1], -a[2], -a[3])
+        read[i + 3], read[i + 4], read[i + 5], read[i + 6] = q
+        i += 13
+
+
+@kernel
+def _add_more_forces(system, state, work):
+    """Add the wrenches; return the power of those without potential."""
+    power, t, relations = 0.0, work.result[0].time, system.relations
+    for i in range(relations.pushes.shape[0]):
+        one = relations.pushes[i]
+        c = relations.coordinates[one.coordinate]
+        speed = rate(c, state)
+        force, free = push_force(relations, one, value(c, state), speed, t)
+        push(c, state, force, work)
+        power += free * speed
+    for i in range(relations.forces.shape[0]):
+        one, at = relations.forces[i], 0
+        read_states(system, one, state)
+        call_function(one.address, t, relations.read, relations.write)
+        for n in range(one.first, one.last):
+            b = relations.named[n]
+            wrench, v, w = work.body[b].wrench, state[b].v, state[b].w
+            for k in range(6):
+                f = relations.write[at + k]
+                wrench[k] += f
+                if one.energy_address == 0:
+                    power += f * (v[k] if k < 3 else w[k - 3])
+            at += 6
+    return power
+
+
+@kernel
+def _no_more_forces(system, state, work):
+    """There are none."""
+    return 0.0
+
+
+@kernel
+def _more_energy(system, state, t):
+    """Return their potential energy [J]."""
+    total, relations = 0.0, system.relations
+    for i in range(relations.pushes.shape[0]):
+        one = relations.pushes[i]
+        stretch = value(relations.coordinates[one.coordinate], state) - one.rest
+        total += 0.5 * one.stiffness * stretch * stretch
+    for i in range(relations.forces.shape[0]):
+        one = relations.forces[i]
+        if one.energy_address != 0:
+            read_states(system, one, state)
+            call_function(one.energy_address, t, relations.read, relations.write)
+            total += relations.write[0]
+    return total
+
+
+@kernel
+def _no_more_energy(system, state, t):
+    """There is none."""
+    return 0.0
+
+
+@kernel
+def _curve_tension(system, spring, length):
+    """Return the tension of a spring, by its curve if it has one."""
+    if spring.last_piece > spring.piece:
+        return curve(system.relations.pieces, spring.piece, spring.last_piece, length)[0]
+    return spring.stiffness * (length - spring.rest_length)
+
+
+@kernel
+def _tension(system, spring, length):
+    """Return the tension of a spring."""
+    return spring.stiffness * (length - spring.rest_length)
+
+
+@kernel
+def integral(pieces, first, last, t):
+    """Return the integral of a curve from its first point to t."""
+    here, total = find_piece(pieces, first, last, t), 0.0
+    for i in range(first, here + 1):
+        piece = pieces[i]
+        s = (t if i == here else piece.end) - piece.start
+        f = 0.0
+        for k in range(5, -1, -1):
+            f = f * s + piece.c[k] / (k + 1.0)
+        total += f * s
+    return total
+
+
+@kernel
+def _curve_energy(system, spring, length):
+    """Return the energy of a spring."""
+    if spring.last_piece > spring.piece:
+        return integral(system.relations.pieces, spring.piece, spring.last_piece, length)
+    return 0.5 * spring.stiffness * (length - spring.rest_length) ** 2
+
+
+@kernel
+def _energy(system, spring, length):
+    """Return the energy of a spring."""
+    return 0.5 * spring.stiffness * (length - spring.rest_length) ** 2
+
+
+@kernel
+def _note_turns(system, state):
+    """Keep the whole turns of all angles, where a trial step has become the present."""
+    for i in range(system.relations.coordinates.shape[0]):
+        c = system.relations.coordinates[i]
+        c.reference = value(c, state)
+
+
+@kernel
+def _no_turns(system, state):
+    """There are none."""
+
+
+@kernel
+def _begin_turns(system):
+    """Keep the angles of the start of a step."""
+    for i in range(system.relations.coordinates.shape[0]):
+        system.relations.coordinates[i].begun = system.relations.coordinates[i].reference
+
+
+@kernel
+def _forget_turns(system):
+    """Go back to them."""
+    for i in range(system.relations.coordinates.shape[0]):
+        system.relations.coordinates[i].reference = system.relations.coordinates[i].begun
+
+
+@kernel
+def _none_begun(system):
+    """There are none."""
+
+
+@kernel
+def _turns_round(system, start, end, h):
+    """Return whether an angle may turn so far in a step that its whole turns are not known."""
+    for i in range(system.relations.coordinates.shape[0]):
+        c = system.relations.coordinates[i]
+        if c.kind != PRISMATIC and not h * max(abs(rate(c, start)), abs(rate(c, end))) <= FAR:
+            return True
+    return False
+
+
+@kernel
+def _never_round(system, start, end, h):
+    """There are none."""
+    return False
+
+
+add_more_forces = only_with_coordinates(_add_more_forces, _no_more_forces)
+more_energy = only_with_coordinates(_more_energy, _no_more_energy)
+tension = only_with_coordinates(_curve_tension, _tension)
+spring_energy = only_with_coordinates(_curve_energy, _energy)
+note_turns = only_with_coordinates(_note_turns, _no_turns)
+begin_turns = only_with_coordinates(_begin_turns, _none_begun)
+forget_turns = only_with_coordinates(_forget_turns, _none_begun)
+turns_round = only_with_coordinates(_turns_round, _never_round)

@@ -1,0 +1,119 @@
+"""Return to the joints: the shortest displacement and the smallest velocity change, in the kinetic metric.
+
+    xi = -M^-1 A^T (A M^-1 A^T)^+ phi,   q <- Exp_q(xi);    v <- v - M^-1 A^T (A M^-1 A^T)^+ A v
+
+both by the one constrained solve with the error as its bias.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import entry, kernel
+from carom.dynamics.contact_impulse import clear_wrenches
+from carom.dynamics.elements import position_error, velocity_error
+from carom.dynamics.solve import solve, solve_near
+from carom.geometry.rotation import exp, multiply, normalize
+from carom.model.choice import only_with_joints
+
+ROUND_OFF = 4.4e-16  # two units in the last place
+LOST = 1e-9  # of a body: an error of position that cannot be returned from
+
+
+@kernel
+def shift(xi, body):
+    """Move one body by a displacement in world axes: x + xi_x, exp(xi_theta) Q."""
+    Q = body.Q
+    for k in range(3):
+        body.x[k] += xi[k]
+    r = exp(xi[3], xi[4], xi[5])
+    q = multiply(r[0], r[1], r[2], r[3], Q[0], Q[1], Q[2], Q[3])
+    Q[0], Q[1], Q[2], Q[3] = normalize(q[0], q[1], q[2], q[3])
+
+
+@kernel
+def largest_position_error(system, state, work):
+    """Bias all joints by minus their error of position; return the largest, relative to its body.
+
+    Of lengths the round-off of the coordinates is taken off: far from the origin nothing is nearer.
+    """
+    largest = 0.0
+    for j in range(system.joints.shape[0]):
+        bias, child = work.joint[j].bias, system.joints[j].child
+        size, x = 1.0 / system.bodies[child].extent, state[child].x
+        near = ROUND_OFF * (abs(x[0]) + abs(x[1]) + abs(x[2]))
+        position_error(system, j, state, work)
+        for k in range(6):
+            e = abs(bias[k]) if k < 3 else (abs(bias[k]) - near) * size
+            if not (e <= largest):
+                largest = e
+            bias[k] = -bias[k]
+    return largest
+
+
+@kernel
+def _project_position(system, state, near, tolerance, work):
+    """Bring the positions back to the joints; return the relative error that is left.
+
+    With `near` the last solve was in a position nearby, and serves for the first correction.
+    """
+    error, before = 0.0, math.inf
+    for _ in range(8):
+        error = largest_position_error(system, state, work)
+        # what no longer falls is round-off of the coordinates, far from the origin
+        if error <= tolerance or (error <= 1e-11 and error >= 0.5 * before):
+            break
+        before = error
+        clear_wrenches(work)
+        if near:
+            solve_near(system, state, work)
+            near, before = False, math.inf  # what falls too slowly gets another chance
+        else:
+            solve(system, state, True, work)
+        for b in range(state.shape[0]):
+            shift(work.body[b].motion, state[b])
+    return error
+
+
+@kernel
+def _project_velocity(system, state, work):
+    """Take from the velocities what the joints forbid."""
+    for j in range(system.joints.shape[0]):
+        bias = work.joint[j].bias
+        velocity_error(system, j, state, work)
+        for k in range(6):
+            bias[k] = -bias[k]
+    clear_wrenches(work)
+    solve(system, state, True, work)
+    for b in range(state.shape[0]):
+        v, w, motion = state[b].v, state[b].w, work.body[b].motion
+        for k in range(3):
+            v[k] += motion[k]
+            w[k] += motion[3 + k]
+
+
+@entry
+def project_start(system, state, work):
+    """Bring an initial state to the joints: what `Options.project_start` asks for. Return what is left."""
+    error = 1.0
+    for _ in range(20):
+        error = _project_position(system, state, False, 1e-14, work)
+        if error <= 1e-13:
+            break
+    _project_velocity(system, state, work)
+    return error
+
+
+@kernel
+def _position_is_free(system, state, near, tolerance, work):
+    """Without joints there is no error of position."""
+    return 0.0
+
+
+@kernel
+def _velocity_is_free(system, state, work):
+    """Without joints nothing is forbidden."""
+
+
+project_position = only_with_joints(_project_position, _position_is_free)
+project_velocity = only_with_joints(_project_velocity, _velocity_is_free)

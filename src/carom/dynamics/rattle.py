@@ -1,0 +1,243 @@
+"""RATTLE: symmetric, symplectic, constraints exact; order 2, and compositions of order 4 and 6.
+
+Half a kick, a move by the rotation group's own discrete Lagrangian, half a kick. With linear momenta m v and
+spatial angular momenta l = R J W as P (Hamilton-Pontryagin form; Bou-Rabee and Marsden 2009, with unit
+quaternions as the map):
+
+    P_h = P_0 + h/2 f(q_0, v_0) + A(q_0)^T Lam     with Lam such that phi(q_1) = 0,
+    x_1 = x_0 + h P_h/m,     Q_1 = Q_0 (a, b),     a J b + b x J b = h/2 R_0^T l_h,   a^2 + |b|^2 = 1,
+    P_1 = P_h + h/2 f(q_1, v_1) + A(q_1)^T Mu      with Mu such that A(q_1) v_1 = 0.
+
+Reactions of a joint do no work on a common motion of all bodies, so momenta of a floating system are kept;
+what turns a body is in the map, no gyroscopic torque is applied. (Mathematics page, II.3.)
+
+Lam by repeated solves in q_0: with no wrench and the bias -phi(q_1)/h the constrained solve gives the motion
+dV with M dV = A(q_0)^T dLam and A dV = -phi/h, so P_h gains M dV. Each turn gains a factor of the order of
+the angle turned in the step, down to round-off. Rows without phi (nonholonomic)
+hold in the mean of both ends for the way from q_0 to q_1. Near a singular position the rows of
+q_0 do not reach those of q_1: where the turns do not converge, or rows are left out at one end and not
+at the other, the explicit method takes the step.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from carom._compiled.choice import by_address
+from carom._compiled.decorators import inlined, kernel, unit
+from carom.dynamics.contact_impulse import clear_wrenches
+from carom.dynamics.discrete_rotation import turn_by_momentum
+from carom.dynamics.elements import driven_power
+from carom.dynamics.explicit import constrained, fly, keep
+from carom.dynamics.kick import add_momentum, first_kick, second_kick
+from carom.dynamics.loops import dropped_rows, solve_factored
+from carom.dynamics.move_error import error_of_move
+from carom.dynamics.solve import joint_wrench, solve, solve_near
+from carom.model.arrays import RELATION, FreeSolver, LoopSolver, TreeSolver
+from carom.model.choice import (
+    by_solver,
+    only_with_joints,
+    only_with_relations,
+)
+
+NO_CONVERGENCE = 1
+DONE, STALLED, TOO_FAR = range(3)  # how a part of a step ended
+MOST = 60  # solves for Lam
+
+
+class Rattle(NamedTuple):
+    """Parts of a step, and the explicit method for held contacts and singular positions."""
+
+    parts: np.ndarray  # (S,) of h, sum 1
+    at: int  # address of the step; 0 while none is needed
+    A: np.ndarray
+    b: np.ndarray
+    E: np.ndarray
+    address: int
+
+
+#: names of the symplectic methods
+SYMPLECTIC = ("rattle", "rattle4", "rattle6")
+
+
+def composition(name: str) -> np.ndarray:
+    """Return the parts of a step: 1; 5 of order 4 (Suzuki 1990); 9 of order 6 (Kahan and Li 1997)."""
+    if name == "rattle":
+        return np.ones(1)
+    if name == "rattle4":
+        g = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
+        return np.array([g, g, 1.0 - 4.0 * g, g, g])
+    half = [
+        0.39216144400731413927925056, 0.33259913678935943859974864, -0.70624617255763935980996482,
+        0.08221359629355080023149045,
+    ]  # fmt: skip
+    return np.array([*half, 1.0 - 2.0 * sum(half), *half[::-1]])
+
+
+@inlined
+def rattle_step(method, system, held, start, h, end, work):
+    """Write the state a time h after `start` into `end`; return work of loads, of friction, a status.
+
+    While contacts are held all goes by the explicit method.
+    """
+    if not fly(system, held, start, h, end, work):
+        return 0.0, 0.0, 0
+    for i in range(held.count[0]):
+        if held.points[i].rest == 0:
+            return constrained(method, system, held, start, h, end, work)
+    result = work.result[0]
+    whole_step(method.at, method.parts, system, start, h, end, work)
+    if result.code == STALLED:
+        result.fallen += 1
+        return constrained(method, system, held, start, h, end, work)
+    return result.applied, 0.0, NO_CONVERGENCE if result.code == TOO_FAR else 0
+
+
+@unit
+def rattle_unit(parts, system, start, h, end, work):
+    """Make the parts of a step, one after the other."""
+    applied, code, result, t = 0.0, DONE, work.result[0], work.result[0].start
+    for b in range(start.shape[0]):
+        bound = work.body[b].bound
+        keep(start[b], work.middle[b])
+        if system.bodies[b].ballistic == 0:
+            bound[0], bound[1], bound[2] = 0.0, 0.0, 0.0
+    for s in range(parts.size):
+        p, code = one_part(system, work.middle, t, parts[s] * h, end, work)
+        applied, t = applied + p, t + parts[s] * h
+        if code != DONE:
+            break
+        for b in range(start.shape[0]):
+            if system.bodies[b].ballistic == 0:
+                bound_changes(work.middle[b], end[b], parts[s] * h, work.body[b].bound)
+                keep(end[b], work.middle[b])
+    result.applied, result.code = applied, code
+
+
+#: whole_step(address, parts, system, start, h, end, work)
+whole_step = by_address(rattle_unit)
+
+
+@kernel
+def bound_changes(start, end, h, bound):
+    """Raise the bounds of accelerations and of spin: means over the part, doubled."""
+    linear, angular, spin = 0.0, 0.0, 0.0
+    for k in range(3):
+        a, c = (end.v[k] - start.v[k]) / h, (end.w[k] - start.w[k]) / h
+        linear += a * a
+        angular += c * c
+        spin += max(end.w[k] ** 2, start.w[k] ** 2)
+    bound[0] = max(bound[0], 2.0 * math.sqrt(linear))
+    bound[1] = max(bound[1], 2.0 * math.sqrt(angular))
+    bound[2] = max(bound[2], math.sqrt(spin))
+
+
+@kernel
+def one_part(system, start, t, h, end, work):
+    """Make one step of order 2 from the time t; return the work of loads and motors, and how it ended."""
+    result = work.result[0]
+    result.time = t
+    total = first_kick(system, start, h, work)
+    lost = dropped_rows(system, 0.0)
+    least, last, fine = math.inf, math.inf, round_off(system, start)
+    for k in range(MOST):
+        if not move_all(system, start, h, end, work):
+            return 0.0, TOO_FAR if k == 0 else STALLED
+        error = error_of_move(system, start, t, h, end, work)
+        if error <= 1e-15 or (error <= 100.0 * fine and not error < 0.5 * last):
+            break
+        if not error < 1e3 * least or k == MOST - 1:
+            return 0.0, STALLED
+        least, last = min(least, error), error
+        result.time = t
+        correct(system, start, h, work)
+        total += driven_power(system, start, work)  # of an impulse: its work
+    result.time = t + h
+    total += second_kick(system, h, end, work)
+    if dropped_rows(system, 0.0) != lost:
+        return 0.0, STALLED
+    return total, DONE
+
+
+@kernel
+def round_off(system, state):
+    """Return the round-off of the coordinates, relative to the body where that is largest."""
+    most = 1.0
+    for b in range(state.shape[0]):
+        x = state[b].x
+        most = max(most, max(abs(x[0]), max(abs(x[1]), abs(x[2]))) / system.bodies[b].extent)
+    return 2e-16 * most
+
+
+@kernel
+def move_all(system, start, h, end, work):
+    """Move all bodies with the momenta of the middle; return False if one turns too far."""
+    for b in range(start.shape[0]):
+        body, push = system.bodies[b], work.body[b].push
+        if body.ballistic == 1:
+            continue
+        for k in range(3):
+            end[b].x[k] = start[b].x[k] + h * push[k] / body.mass
+        if not turn_by_momentum(body, start[b].Q, h, push, end[b].Q):
+            return False
+    return True
+
+
+@inlined
+def _solve(system, state, work):
+    """Solve with biased joints."""
+    solve(system, state, True, work)
+
+
+@kernel
+def _solve_factored(system, state, work):
+    """Do the same with the factor that is there."""
+    if system.solver.scaled.shape[0] > 0:
+        solve_near(system, state, work)
+        return
+    solve_factored(system, state, True, work)
+    keep_multipliers(system, state, work)
+
+
+@kernel
+def _keep_multipliers(system, state, work):
+    """Keep the multipliers of what is no joint: what is prescribed does work."""
+    for j in range(system.joints.shape[0]):
+        if system.joints[j].kind >= RELATION:
+            joint_wrench(system.joints[j], state, system.solver.rows[j].rhs, work.joint[j].reaction)
+
+
+@kernel
+def _none_kept(system, state, work):
+    """Joints do none."""
+
+
+keep_multipliers = only_with_relations(_keep_multipliers, _none_kept)
+
+
+#: solve_again(system, state, work): solve with biased joints in the position of the last solve
+solve_again = by_solver({FreeSolver: _solve, TreeSolver: _solve, LoopSolver: _solve_factored})
+
+
+@kernel
+def _correct(system, start, h, work):
+    """Change the momenta of the middle by reactions at the start that take out the error."""
+    for j in range(system.joints.shape[0]):
+        bias = work.joint[j].bias
+        for k in range(6):
+            bias[k] /= h
+    clear_wrenches(work)
+    solve_again(system, start, work)
+    for b in range(start.shape[0]):
+        add_momentum(system.bodies[b], start[b].Q, 1.0, work.body[b])
+
+
+@kernel
+def _nothing(system, start, h, work):
+    """Nothing is to be corrected."""
+
+
+correct = only_with_joints(_correct, _nothing)

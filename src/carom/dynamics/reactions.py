@@ -1,0 +1,188 @@
+"""Reactions and errors of joints at a given state, for reports: not part of the step loop."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom._compiled.decorators import entry, kernel
+from carom.dynamics.elements import (
+    acceleration_bias,
+    build_rows,
+    position_error,
+    prescribed_speeds,
+    row_target,
+    velocity_error,
+)
+from carom.dynamics.forces import applied_wrenches
+from carom.dynamics.light_bodies import factor_geometry, geometric_motion
+from carom.dynamics.loops import add_reactions, factor, free_motion, substitute, subtract_rows
+from carom.dynamics.solve import joint_wrench, solve
+from carom.dynamics.stiff import add_stiff
+from carom.dynamics.tree import joint_wrenches
+from carom.model.arrays import FreeSolver, LoopSolver, TreeSolver
+from carom.model.choice import by_solver
+
+
+@kernel
+def no_shares(system, augment, state, work):
+    """Without joints there are none."""
+
+
+@kernel
+def of_forest(system, augment, state, work):
+    """Reactions of a forest are unique."""
+    joint_wrenches(system, work)
+
+
+@kernel
+def least_norm(system, augment, state, work):
+    """Share reactions by the augmented Lagrangian, started from zero.
+
+    Each pass adds (A M^-1 A^T + eps)^-1 of what is missing in A a = target; the sum stays in the range of A
+    M^-1 A^T and so converges to the solution of least norm, rows weighed by eps. Where masses are spread the
+    same is done with A D^-1 A^T (`carom.dynamics.light_bodies`) for the multipliers mu that were found: of A^T
+    lam = A^T mu.
+    """
+    spread = system.solver.scaled.shape[0] > 0
+    if spread:
+        push_multipliers(system, work)
+        factor_geometry(system, state, augment, work)
+    else:
+        factor(system, state, augment, work)
+    for j in range(system.joints.shape[0]):
+        for k in range(6):
+            work.joint[j].multiplier[k] = 0.0
+    for _ in range(8):
+        if spread:
+            geometric_motion(system, work)
+        else:
+            free_motion(system, work)
+        swap(system, work)
+        add_reactions(system, work)
+        for j in range(system.joints.shape[0]):
+            rhs = system.solver.rows[j].rhs
+            for k in range(6):
+                rhs[k] = 0.0
+            if not spread:
+                row_target(system, j, state, work.joint[j].bias, rhs)
+        subtract_rows(system, work)
+        substitute(system)
+        for j in range(system.joints.shape[0]):
+            for k in range(6):
+                work.joint[j].multiplier[k] += system.solver.rows[j].rhs[k]
+    for j in range(system.joints.shape[0]):
+        record = work.joint[j]
+        joint_wrench(system.joints[j], state, record.multiplier, record.reaction)
+
+
+@kernel
+def push_multipliers(system, work):
+    """Write minus what the multipliers of the last solve do to each body into its wrench."""
+    for b in range(system.bodies.shape[0]):
+        for k in range(6):
+            work.body[b].wrench[k] = 0.0
+    for i in range(system.solver.sides.shape[0]):
+        side = system.solver.sides[i]
+        A, wrench, multiplier = (
+            side.A,
+            work.body[side.body].wrench,
+            system.solver.rows[side.element].rhs,
+        )
+        for r in range(system.joints[side.element].rows):
+            for k in range(6):
+                wrench[k] -= A[r, k] * multiplier[r]
+
+
+@kernel
+def swap(system, work):
+    """Put the multipliers where the solver takes them."""
+    for j in range(system.joints.shape[0]):
+        for k in range(6):
+            system.solver.rows[j].rhs[k] = work.joint[j].multiplier[k]
+
+
+#: share reactions that are not unique with least norm; wrenches and bias must be in place
+share = by_solver({FreeSolver: no_shares, TreeSolver: of_forest, LoopSolver: least_norm})
+
+
+@kernel
+def add_touch(touch, work):
+    """Add what a contact does to its bodies: force and moment about their centres, world axes."""
+    wrench = work.body[touch.body].wrench
+    for k in range(3):
+        wrench[k] += touch.push[k]
+        wrench[3 + k] += touch.moment[k]
+    if touch.other >= 0:
+        wrench = work.body[touch.other].wrench
+        for k in range(3):
+            wrench[k] -= touch.push[k]
+            wrench[3 + k] += touch.other_moment[k]
+
+
+@entry
+def reactions(system, augment, times, states, touch, work, out):
+    """Write the wrench (T, J, 6) of each joint on its child at saved states."""
+    h = 0
+    for k in range(states.shape[0]):
+        state, work.result[0].time = states[k], times[k]
+        applied_wrenches(system, state, True, work)
+        add_stiff(system, state, work)
+        while h < touch.shape[0] and touch[h].saved == k:
+            add_touch(touch[h], work)
+            h += 1
+        for j in range(system.joints.shape[0]):
+            acceleration_bias(system, j, state, work)
+        solve(system, state, True, work)
+        share(system, augment, state, work)
+        for j in range(system.joints.shape[0]):
+            for i in range(6):
+                out[k, j, i] = work.joint[j].reaction[i]
+
+
+@entry
+def row_errors(system, times, states, work, out):
+    """Write the largest error of position and of velocity over all rows, (T, 2)."""
+    for k in range(states.shape[0]):
+        position, velocity = 0.0, 0.0
+        work.result[0].time = times[k]
+        for j in range(system.joints.shape[0]):
+            joint, record = system.joints[j], work.joint[j]
+            position_error(system, j, states[k], work)
+            row_target(system, j, states[k], record.bias, record.target)
+            for r in range(joint.rows):
+                position = max(position, abs(record.target[r]))
+            velocity_error(system, j, states[k], work)
+            row_target(system, j, states[k], record.bias, record.target)
+            for r in range(joint.rows):
+                velocity = max(velocity, abs(record.target[r]))
+        out[k, 0], out[k, 1] = position, velocity
+
+
+@entry
+def start_errors(system, state, work, position, velocity):
+    """Write the errors of position and velocity of each row of each element, (J, 6) each."""
+    for j in range(system.joints.shape[0]):
+        position_error(system, j, state, work)
+        row_target(system, j, state, work.joint[j].bias, position[j])
+        velocity_error(system, j, state, work)
+        row_target(system, j, state, work.joint[j].bias, velocity[j])
+
+
+@entry
+def write_speeds(system, state, work, out):
+    """Write the speeds that each element prescribes, (J, 6)."""
+    for j in range(system.joints.shape[0]):
+        prescribed_speeds(system, j, state, work, out[j])
+
+
+def start_speeds(system, state, work) -> np.ndarray:
+    """Return the speeds that the elements prescribe, (J, 6)."""
+    out = np.zeros((len(system.joints), 6))
+    write_speeds(system, state, work, out)
+    return out
+
+
+@entry
+def write_rows(system, state, work):
+    """Write the rows of all elements into the solver's sides."""
+    build_rows(system, state, work)

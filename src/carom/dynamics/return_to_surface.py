@@ -1,0 +1,80 @@
+"""Return a body that is held at one point to its surface at the end of a step, as joints are returned to.
+
+The rows of a held contact hold at the level of accelerations and drift at the order of the method; the shortest
+displacement and the smallest change of velocity in the kinetic metric take that out:
+
+    xi = -P G_n^T gap/W_nn,        v <- v - P G^T W^-1 u   (normal row only while it slips).
+"""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import kernel
+from carom.contact.gap import round_off, slow
+from carom.contact.place import place_held
+from carom.dynamics.acceleration import OPEN, STICK
+from carom.dynamics.contact_impulse import (
+    add_velocity,
+    alone,
+    effective_inverse_mass,
+    spread,
+)
+from carom.dynamics.friction import stick_force
+from carom.dynamics.project import shift
+from carom.kinematics.contact_point import (
+    contact_motion,
+    contact_velocity,
+)
+
+
+@kernel
+def shift_reached(system, point, state, work):
+    """Move the bodies that an impulse at the point reaches by the motion of the last solve."""
+    if alone(system, point):
+        shift(work.body[point.a].motion, state[point.a])
+        if point.b >= 0:
+            shift(work.body[point.b].motion, state[point.b])
+    else:
+        for b in range(state.shape[0]):
+            shift(work.body[b].motion, state[b])
+
+
+@kernel
+def return_held(system, held, state, work):
+    """Bring the points that are held one to a body back to the surface."""
+    point = work.point[0]
+    for i in range(held.count[0]):
+        hold = held.points[i]
+        if hold.mode == OPEN or hold.several == 1 or hold.rest == 1:
+            continue
+        contact = system.contacts[hold.contact]
+        for _ in range(4):
+            place_held(system, hold, state, point, work)
+            if not abs(point.gap) > round_off(contact, state):
+                break
+            spread(system, point, state, 1.0, 0.0, 0.0, work)
+            f = -point.gap / contact_motion(point, work)[0]
+            spread(system, point, state, f, 0.0, 0.0, work)
+            shift_reached(system, point, state, work)
+
+
+@kernel
+def stay_held(system, held, state, work):
+    """Take from the velocities what the points that are held one to a body forbid."""
+    point = work.point[0]
+    for i in range(held.count[0]):
+        hold = held.points[i]
+        if hold.mode == OPEN or hold.several == 1 or hold.rest == 1:
+            continue
+        contact = system.contacts[hold.contact]
+        place_held(system, hold, state, point, work)
+        u, still = contact_velocity(point, state), slow(contact, state)
+        sticks = hold.mode == STICK
+        if abs(u[0]) <= still and not (sticks and max(abs(u[1]), abs(u[2])) > still):
+            continue
+        W = work.hit[0].W
+        effective_inverse_mass(system, point, state, work, W)
+        n, t1, t2 = -u[0] / W[0, 0], 0.0, 0.0
+        if sticks:
+            n, t1, t2 = stick_force(W, u[0], u[1], u[2])
+        spread(system, point, state, n, t1, t2, work)
+        add_velocity(system, point, work, state)

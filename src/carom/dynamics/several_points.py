@@ -1,0 +1,155 @@
+"""Several points of contact together: velocities, the full W = G P G^T, and what their impulses do."""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import kernel
+from carom.dynamics.contact_impulse import (
+    add_impulse,
+    clear_wrenches,
+    spread,
+)
+from carom.dynamics.solve import free_body, solve
+from carom.geometry.rotation import cross, rotate, rotate_back
+from carom.kinematics.contact_point import (
+    contact_acceleration,
+    contact_motion,
+    contact_velocity,
+    in_axes,
+)
+
+
+@kernel
+def velocities(k, points, state, u):
+    """Write u = G v of k points."""
+    for i in range(k):
+        u[3 * i], u[3 * i + 1], u[3 * i + 2] = contact_velocity(points[i], state)
+
+
+@kernel
+def accelerations(k, points, state, stage, a):
+    """Write du/dt of k points under the accelerations of a stage."""
+    for i in range(k):
+        a[3 * i], a[3 * i + 1], a[3 * i + 2] = contact_acceleration(points[i], state, stage)
+
+
+@kernel
+def still(motion):
+    """Zero the motion of one body."""
+    for k in range(6):
+        motion[k] = 0.0
+
+
+@kernel
+def inverse_masses(system, k, points, state, work, W):
+    """Write W (3k, 3k) = G P G^T. Columns are answers to unit impulses, then made symmetric."""
+    if of_one_body(system, k, points):
+        inverse_masses_of_one(system.bodies[points[0].a], k, points, state, W)
+        return
+    for i in range(k):
+        still(work.body[points[i].a].motion)
+        if points[i].b >= 0:
+            still(work.body[points[i].b].motion)
+    for j in range(k):
+        for r in range(3):
+            e0, e1, e2 = 1.0 if r == 0 else 0.0, 1.0 if r == 1 else 0.0, 1.0 if r == 2 else 0.0
+            spread(system, points[j], state, e0, e1, e2, work)
+            m = 3 * j + r
+            for i in range(k):
+                W[3 * i, m], W[3 * i + 1, m], W[3 * i + 2, m] = contact_motion(points[i], work)
+        still(work.body[points[j].a].motion)
+        if points[j].b >= 0:
+            still(work.body[points[j].b].motion)
+    for i in range(3 * k):
+        for j in range(i):
+            m = 0.5 * (W[i, j] + W[j, i])
+            W[i, j], W[j, i] = m, m
+    for i in range(k):
+        if points[i].turns >= 3:  # without tangents: what these are given does not matter
+            W[3 * i + 1, 3 * i + 1] = W[3 * i + 2, 3 * i + 2] = W[3 * i, 3 * i]
+
+
+@kernel
+def of_one_body(system, k, points):
+    """Return whether all points are of one body without joints, on half-spaces, and none turns only."""
+    for i in range(k):
+        if points[i].a != points[0].a or points[i].b >= 0 or points[i].turns != 0:
+            return False
+    return system.bodies[points[0].a].isolated == 1
+
+
+@kernel
+def inverse_masses_of_one(body, k, points, state, W):
+    """Write W of points of one body: e.(d/m + (J^-1 (r x d)) x s) of directions d, e at arms r, s."""
+    q, J = state[points[0].a].Q, body.inertia
+    for j in range(k):
+        r, E = points[j].arm_a, points[j].axes
+        for a in range(3):
+            d = (E[a, 0], E[a, 1], E[a, 2])
+            t = cross(r[0], r[1], r[2], d[0], d[1], d[2])
+            t = rotate_back(q[0], q[1], q[2], q[3], t[0], t[1], t[2])
+            w = rotate(q[0], q[1], q[2], q[3], t[0] / J[0], t[1] / J[1], t[2] / J[2])
+            n = 3 * j + a
+            for i in range(j + 1):
+                s = points[i].arm_a
+                v = cross(w[0], w[1], w[2], s[0], s[1], s[2])
+                v = in_axes(
+                    points[i],
+                    v[0] + d[0] / body.mass,
+                    v[1] + d[1] / body.mass,
+                    v[2] + d[2] / body.mass,
+                )
+                for b in range(3):
+                    W[3 * i + b, n] = W[n, 3 * i + b] = v[b]
+
+
+@kernel
+def spread_all(system, k, points, p, count, member, state, work):
+    """Write motion = P G^T p of the bodies of a group, for impulses of all k points at once."""
+    joined = False
+    for m in range(count):
+        joined = joined or system.bodies[member[m]].isolated == 0
+    clear_wrenches(work)
+    for i in range(k):
+        add_impulse(points[i], p[3 * i], p[3 * i + 1], p[3 * i + 2], work)
+    if joined:
+        solve(system, state, False, work)
+    else:
+        for m in range(count):
+            b = member[m]
+            free_body(system.bodies[b], state[b].Q, work.body[b])
+
+
+@kernel
+def factor(n, drop, L):
+    """Turn a matrix (n, n) into its factor L D L^T, L unit below the diagonal and D on it.
+
+    Pivots below `drop` of their row are left out: such a row depends on those before it, and gets no impulse of
+    its own.
+    """
+    for j in range(n):
+        d = L[j, j]
+        most = drop * d
+        for s in range(j):
+            d -= L[j, s] * L[j, s] * L[s, s]
+        kept = d > most
+        L[j, j] = d if kept else 0.0
+        for i in range(j + 1, n):
+            t = L[i, j]
+            for s in range(j):
+                t -= L[i, s] * L[j, s] * L[s, s]
+            L[i, j] = t / d if kept else 0.0
+
+
+@kernel
+def substitute(n, L, x):
+    """Solve L D L^T x = x in place; rows that were left out get 0."""
+    for i in range(n):
+        for s in range(i):
+            x[i] -= L[i, s] * x[s]
+    for i in range(n):
+        x[i] = x[i] / L[i, i] if L[i, i] > 0.0 else 0.0
+    for i in range(n - 1, -1, -1):
+        for s in range(i + 1, n):
+            x[i] -= L[s, i] * x[s]
+        if not L[i, i] > 0.0:
+            x[i] = 0.0

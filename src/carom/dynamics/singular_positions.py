@@ -1,0 +1,145 @@
+"""Stages of a step in singular positions, where rows depend on each other that do not elsewhere.
+
+Such rows are left out there, and the acceleration is not the limit of its neighbours: what the rows would say
+is 0/0, and nearby (at an angle e between them) round-off of the joints over e^3. On a path q(t) in the
+constraints the limit exists, as the acceleration is smooth along it, and comes from what is outside,
+
+    a(0) = sum over k = 2, 3, 4 of c_k (a(k T) + a(-k T))/2 + O(T^6),    c = (12/5, -64/35, 3/7).
+
+The path is that of constant velocities, returned to the joints in position and velocity, which is the same to
+the order that is needed. A stage of a Runge-Kutta step is off the constraints by O(h^2), which rows that all
+but depend on each other multiply by the inverse of their angle; so all stages of the step return to the
+joints first. (With P the projection, F(P(y)) is as good an extension of the motion to all y as F(y): the
+order stays.)
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom.dynamics.acceleration import accelerations
+from carom.dynamics.loops import dropped_rows
+from carom.dynamics.project import project_position, project_velocity
+from carom.geometry.rotation import exp, multiply
+from carom.model.arrays import ONE, RESTS, FreeSolver, LoopSolver, TreeSolver
+from carom.model.choice import by_solver
+
+SINGULAR = 1e-5  # of a row's diagonal: the square of the angle to the rows before it
+NEAR, FARTHER, TRIES = (
+    1e-2,
+    3.0,
+    2,
+)  # T turns bodies by this angle; if rows still depend on each other, by more
+
+
+@kernel
+def steps(system, b, work):
+    """Return whether a body moves by the step, and not by free flight, or not at all."""
+    status = work.body[b].status
+    return status == ONE or (status != RESTS and system.bodies[b].ballistic == 0)
+
+
+@kernel
+def _return_stage(system, stage, work):
+    """Bring a stage to the joints, positions and velocities."""
+    project_position(system, stage, False, 1e-14, work)
+    project_velocity(system, stage, work)
+
+
+@kernel
+def _is_singular(system, least, most):
+    """Return whether a step, whose stages left out so many rows, came near a singular position."""
+    usual = system.solver.usual
+    usual[0] = least if usual[0] < 0 else min(least, usual[0])
+    return most > usual[0]
+
+
+@kernel
+def _pass_round(system, stage, held, sums, work, rates):
+    """Write the accelerations of a stage in a singular position from those before and after it on its way.
+
+    `sums` is scratch: the velocities of the bodies that step. What has no other position on its way stays as
+    it is.
+    """
+    dropped, usual, result, pace = (
+        dropped_rows(system, SINGULAR),
+        system.solver.usual,
+        work.result[0],
+        0.0,
+    )
+    if dropped <= usual[0]:
+        return
+    for b in range(stage.shape[0]):
+        v, w = stage[b].v, stage[b].w
+        speed = math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) / system.bodies[b].extent
+        pace = max(pace, speed + math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]))
+    time, reach = result.time, NEAR
+    for _ in range(TRIES if pace > 0.0 else 0):
+        power, drag, most = 0.0, 0.0, 0
+        for b in range(stage.shape[0]):
+            if steps(system, b, work):
+                for k in range(3):
+                    sums[b].v[k], sums[b].w[k] = 0.0, 0.0
+        for i in range(6):
+            k = 2 + i // 2
+            share = 6.0 / 5.0 if k == 2 else -32.0 / 35.0 if k == 3 else 3.0 / 14.0
+            ahead = (k if i % 2 == 0 else -k) * reach / pace
+            for b in range(stage.shape[0]):
+                go_on(stage[b], ahead, work.middle[b])
+            result.time = time + ahead
+            _return_stage(system, work.middle, work)
+            accelerations(system, work.middle, held, work, rates)
+            most = max(most, dropped_rows(system, SINGULAR))
+            power, drag = power + share * result.power, drag + share * result.drag
+            for b in range(stage.shape[0]):
+                if steps(system, b, work):
+                    rate = rates[b].rate
+                    for j in range(3):
+                        sums[b].v[j] += share * rate[j]
+                        sums[b].w[j] += share * rate[3 + j]
+        if most <= usual[0]:
+            for b in range(stage.shape[0]):
+                if steps(system, b, work):
+                    for k in range(3):
+                        rates[b].rate[k], rates[b].rate[3 + k] = sums[b].v[k], sums[b].w[k]
+            result.time, result.power, result.drag = time, power, drag
+            return
+        reach *= FARTHER
+    usual[0], result.time = dropped, time
+    accelerations(system, stage, held, work, rates)
+
+
+@kernel
+def go_on(start, dt, out):
+    """Write where a body is after a time dt at constant velocity."""
+    x, v, w, p = start.x, start.v, start.w, start.Q
+    for k in range(3):
+        out.x[k], out.v[k], out.w[k] = x[k] + dt * v[k], v[k], w[k]
+    r = exp(dt * w[0], dt * w[1], dt * w[2])
+    Q = out.Q
+    Q[0], Q[1], Q[2], Q[3] = multiply(r[0], r[1], r[2], r[3], p[0], p[1], p[2], p[3])
+
+
+@kernel
+def _never(system, least, most):
+    """Without loops no rows are left out."""
+    return False
+
+
+@kernel
+def _no_stage(system, stage, work):
+    """Without loops there are no such positions."""
+
+
+@kernel
+def _no_round(system, stage, held, sums, work, rates):
+    """Without loops there are no such positions."""
+
+
+#: is_singular(system, least, most)
+is_singular = by_solver({FreeSolver: _never, TreeSolver: _never, LoopSolver: _is_singular})
+#: return_stage(system, stage, work)
+return_stage = by_solver({FreeSolver: _no_stage, TreeSolver: _no_stage, LoopSolver: _return_stage})
+#: pass_round(system, stage, held, sums, work, rates)
+pass_round = by_solver({FreeSolver: _no_round, TreeSolver: _no_round, LoopSolver: _pass_round})

@@ -1,0 +1,130 @@
+"""The one constrained solve, whatever the back end: forces, impulses and displacements alike."""
+
+from __future__ import annotations
+
+from carom._compiled.choice import by_address
+from carom._compiled.decorators import address, inlined, kernel, unit
+from carom.dynamics.light_bodies import factor_light, solve_light
+from carom.dynamics.loops import factor, solve_factored
+from carom.dynamics.tree import solve_tree, walk_tree
+from carom.geometry.rotation import rotate, rotate_back
+from carom.kinematics.pose import keep_pose, same_pose
+from carom.kinematics.rows import direction
+from carom.model.arrays import RELATION, FreeSolver, LoopSolver, TreeSolver
+from carom.model.choice import by_solver
+
+
+@unit
+def solve_free(system, state, biased, near, work):
+    """Without joints: motion = M^-1 wrench."""
+    for b in range(system.bodies.shape[0]):
+        free_body(system.bodies[b], state[b].Q, work.body[b])
+
+
+@kernel
+def free_body(body, q, work):
+    """Write M^-1 wrench of one body into its work record."""
+    wrench, motion, J = work.wrench, work.motion, body.inertia
+    a = rotate_back(q[0], q[1], q[2], q[3], wrench[3], wrench[4], wrench[5])
+    t = rotate(q[0], q[1], q[2], q[3], a[0] / J[0], a[1] / J[1], a[2] / J[2])
+    for k in range(3):
+        motion[k] = wrench[k] / body.mass
+        motion[3 + k] = t[k]
+
+
+@unit
+def solve_loops(system, state, biased, near, work):
+    """With closed loops: factor in this position, and solve; the wrench of each joint from its rows."""
+    poses = system.solver.pose
+    if not near and not same_pose(poses, state):
+        factor(system, state, 0.0, work)
+        for b in range(poses.shape[0]):
+            keep_pose(state[b], poses[b])
+    solve_factored(system, state, biased, work)
+    for j in range(system.joints.shape[0]):
+        joint_wrench(system.joints[j], state, system.solver.rows[j].rhs, work.joint[j].reaction)
+
+
+@unit
+def solve_spread(system, state, biased, near, work):
+    """Do the same where masses differ by many orders."""
+    poses = system.solver.pose
+    if not near and not same_pose(poses, state):
+        factor_light(system, state, work)
+        for b in range(poses.shape[0]):
+            keep_pose(state[b], poses[b])
+    solve_light(system, state, biased, work)
+    for j in range(system.joints.shape[0]):
+        joint_wrench(system.joints[j], state, system.solver.rows[j].rhs, work.joint[j].reaction)
+
+
+@kernel
+def joint_wrench(joint, state, multiplier, reaction):
+    """Write the wrench on the child at its anchor: sum of multiplier times direction.
+
+    Of what is no joint, the multipliers themselves.
+    """
+    for k in range(6):
+        reaction[k] = multiplier[k] if joint.kind >= RELATION and k < joint.rows else 0.0
+    if joint.kind >= RELATION:
+        return
+    for r in range(joint.rows):
+        d = direction(joint, r, state)
+        for k in range(3):
+            reaction[k] += multiplier[r] * d[3 + k]
+            reaction[3 + k] += multiplier[r] * d[k]
+
+
+def back_end(solver):
+    """Return the unit that solves; of closed loops it depends on the masses."""
+    if isinstance(solver, LoopSolver):
+        return solve_spread if len(solver.scaled) else solve_loops
+    return solve_free if isinstance(solver, FreeSolver) else solve_tree
+
+
+_solve_at = by_address(lambda system, *rest: back_end(system.solver)(system, *rest))
+
+
+@inlined
+def solve(system, state, biased, work):
+    """Write the motion of all bodies under their wrenches, all in `work.body`.
+
+    With `biased` the joints move relative to each other as `work.joint` says, else not. See
+    `carom.dynamics.tree` for the meaning.
+    """
+    _solve_at(system.solver.address, system, state, biased, False, work)
+
+
+@inlined
+def _solve_at_once(system, state, work):
+    """Solve with biased joints, as part of the caller."""
+    walk_tree(system, state, True, False, work)
+
+
+@inlined
+def _solve_by_address(system, state, work):
+    """Solve with biased joints."""
+    solve(system, state, True, work)
+
+
+#: solve_directly(system, state, work): solve with biased joints where a run spends its time. A call by address
+#: hands on some 300 numbers, as much as four links of a tree; what is called directly is compiled again.
+solve_directly = by_solver(
+    {
+        FreeSolver: _solve_by_address,
+        TreeSolver: _solve_at_once,
+        LoopSolver: _solve_by_address,
+    }
+)
+
+
+@inlined
+def solve_near(system, state, work):
+    """Do the same, biased, with what was worked out for the last position: a correction from nearby."""
+    _solve_at(system.solver.address, system, state, True, True, work)
+
+
+def with_address(system, state, work, find=address):
+    """Return the system with the address of its back end for arrays like these, which `find` finds."""
+    found = find(back_end(system.solver), system, state, True, False, work)
+    return system._replace(solver=system.solver._replace(address=found))

@@ -1,0 +1,138 @@
+"""Springs and dampers that the implicit step takes as rows: their stretch s, its rate, and forces.
+
+A spring on a line between two points, or along a coordinate of a joint, answers with mu = -(k s + c s') along
+its row J, s' = J v. The implicit step asks for the mu that it will have within the step
+(`carom.dynamics.implicit`); all else (reactions, contact that is held) sees the force that it has now.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom.geometry.rotation import cross
+from carom.kinematics.coordinate import add_rows, motion_along, push, rate, value
+from carom.kinematics.rows import times_inverse_mass
+from carom.kinematics.wrench import add_force, point, point_velocity
+from carom.model.arrays import STIFF
+from carom.model.choice import only_with_relations
+
+
+@kernel
+def line_of(one, state):
+    """Return the unit vector from the parent's point to the child's, their distance, and both arms."""
+    ax, ay, az, px, py, pz = point(state, one.parent, one.parent_anchor)
+    bx, by, bz, qx, qy, qz = point(state, one.child, one.child_anchor)
+    dx, dy, dz = qx - px, qy - py, qz - pz
+    length = math.sqrt(dx * dx + dy * dy + dz * dz)
+    s = 1.0 / length if length > 0.0 else 0.0
+    return s * dx, s * dy, s * dz, length, ax, ay, az, bx, by, bz
+
+
+@kernel
+def stretch(system, one, state):
+    """Return s and s'."""
+    if one.coordinate >= 0:
+        c = system.relations.coordinates[one.coordinate]
+        return value(c, state) - one.rest, rate(c, state)
+    ex, ey, ez, length, ax, ay, az, bx, by, bz = line_of(one, state)
+    ux, uy, uz = point_velocity(state, one.child, bx, by, bz)
+    vx, vy, vz = point_velocity(state, one.parent, ax, ay, az)
+    return length - one.rest, ex * (ux - vx) + ey * (uy - vy) + ez * (uz - vz)
+
+
+@kernel
+def along_row(system, one, state, work):
+    """Return J times the motions of the last solve."""
+    if one.coordinate >= 0:
+        return motion_along(system.relations.coordinates[one.coordinate], state, work)
+    ex, ey, ez, _, ax, ay, az, bx, by, bz = line_of(one, state)
+    total = 0.0
+    for side in range(2):
+        b, s = (one.child, 1.0) if side == 0 else (one.parent, -1.0)
+        if b >= 0:
+            m = work.body[b].motion
+            rx, ry, rz = (bx, by, bz) if side == 0 else (ax, ay, az)
+            tx, ty, tz = cross(m[3], m[4], m[5], rx, ry, rz)
+            total += s * (ex * (m[0] + tx) + ey * (m[1] + ty) + ez * (m[2] + tz))
+    return total
+
+
+@kernel
+def stiff_rows(system, j, state, work):
+    """Write A and A M^-1 of a spring."""
+    solver, one = system.solver, system.relations.stiff[system.joints[j].number]
+    first, last = solver.rows[j].first, solver.rows[j].last
+    for s in range(first, last):
+        for k in range(6):
+            solver.sides[s].A[0, k] = 0.0
+    child = solver.sides[max(0, one.child_side)].A
+    parent = solver.sides[max(0, one.parent_side)].A
+    if one.coordinate >= 0:
+        add_rows(system.relations.coordinates[one.coordinate], state, 1.0, child, parent)
+    else:
+        ex, ey, ez, _, ax, ay, az, bx, by, bz = line_of(one, state)
+        for side in range(2):
+            b, A, s = (one.child, child, 1.0) if side == 0 else (one.parent, parent, -1.0)
+            if b >= 0:
+                rx, ry, rz = (bx, by, bz) if side == 0 else (ax, ay, az)
+                tx, ty, tz = cross(rx, ry, rz, ex, ey, ez)
+                A[0, 0], A[0, 1], A[0, 2] = s * ex, s * ey, s * ez
+                A[0, 3], A[0, 4], A[0, 5] = s * tx, s * ty, s * tz
+    for s in range(first, last):
+        side = solver.sides[s]
+        a = side.A
+        y = times_inverse_mass(
+            system.bodies[side.body].mass, work.body[side.body].inverse,
+            a[0, 0], a[0, 1], a[0, 2], a[0, 3], a[0, 4], a[0, 5],
+        )  # fmt: skip
+        for k in range(6):
+            side.Y[0, k] = y[k]
+
+
+@kernel
+def _add_stiff(system, state, work):
+    """Add the wrenches that these springs have now; return the power of their dampers."""
+    power = 0.0
+    for j in range(system.joints.shape[0]):
+        if system.joints[j].kind != STIFF:
+            continue
+        one = system.relations.stiff[system.joints[j].number]
+        s, speed = stretch(system, one, state)
+        f = -(one.stiffness * s + one.damping * speed)
+        power -= one.damping * speed * speed
+        if one.coordinate >= 0:
+            push(system.relations.coordinates[one.coordinate], state, f, work)
+            continue
+        ex, ey, ez, _, ax, ay, az, bx, by, bz = line_of(one, state)
+        add_force(work, one.child, bx, by, bz, f * ex, f * ey, f * ez)
+        add_force(work, one.parent, ax, ay, az, -f * ex, -f * ey, -f * ez)
+    return power
+
+
+@kernel
+def _stiff_energy(system, state):
+    """Return the potential energy of these springs [J]."""
+    total = 0.0
+    for j in range(system.joints.shape[0]):
+        if system.joints[j].kind == STIFF:
+            one = system.relations.stiff[system.joints[j].number]
+            s, _ = stretch(system, one, state)
+            total += 0.5 * one.stiffness * s * s
+    return total
+
+
+@kernel
+def _none(system, state, work):
+    """There are none."""
+    return 0.0
+
+
+@kernel
+def _no_energy(system, state):
+    """There are none."""
+    return 0.0
+
+
+add_stiff = only_with_relations(_add_stiff, _none)
+stiff_energy = only_with_relations(_stiff_energy, _no_energy)

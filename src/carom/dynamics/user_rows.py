@@ -1,0 +1,127 @@
+"""Rows of the user's own, a(q, t) v = b(q, t): up to six, on any number of bodies.
+
+The function reads the poses (x, Q) of its bodies, in the axes of the scene, and writes rows (6 numbers a body,
+linear then angular, world axes) with b last. What the rows change by as bodies go on,
+
+    a . dv/dt = b' - a' v,
+
+is a central difference along the motion, over a way of 1e-5 of the size of the bodies: its error is of the
+order 1e-10 of what it is, and both levels of the constraint are returned to at the end of each step.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom._compiled.user_functions import call_function
+from carom.geometry.rotation import exp, multiply
+from carom.kinematics.rows import write_row
+
+WAY = 1e-5  # of the size of a body
+
+
+@kernel
+def read_poses(system, j, state, t, ahead):
+    """Write the poses of the bodies as they will be a time `ahead` from now, at constant velocities."""
+    user = system.relations.user[system.joints[j].number]
+    read, i = system.relations.read, 0
+    for s in range(user.first, user.last):
+        b = system.solver.sides[s].body
+        x, Q, v, w, a = state[b].x, state[b].Q, state[b].v, state[b].w, system.bodies[b].axes
+        for k in range(3):
+            read[i + k] = x[k] + ahead * v[k]
+        r = exp(ahead * w[0], ahead * w[1], ahead * w[2])
+        q = multiply(r[0], r[1], r[2], r[3], Q[0], Q[1], Q[2], Q[3])
+        q = multiply(q[0], q[1], q[2], q[3], a[0], -a[1], -a[2], -a[3])
+        read[i + 3], read[i + 4], read[i + 5], read[i + 6] = q
+        i += 7
+    return user
+
+
+@kernel
+def write_speeds(system, j, state, t, ahead, out):
+    """Write a v - b (rows,) with the rows of the poses a time `ahead` from now, and the velocities of now."""
+    user = read_poses(system, j, state, t, ahead)
+    answer, width = system.relations.write, 6 * (user.last - user.first) + 1
+    call_function(user.address, t + ahead, system.relations.read, answer)
+    for r in range(system.joints[j].rows):
+        total = -answer[(r + 1) * width - 1]
+        for s in range(user.first, user.last):
+            body, at = state[system.solver.sides[s].body], r * width + 6 * (s - user.first)
+            for k in range(3):
+                total += answer[at + k] * body.v[k] + answer[at + 3 + k] * body.w[k]
+        out[r] = total
+
+
+@kernel
+def user_rows(system, j, state, t, work):
+    """Write A and A M^-1."""
+    user = read_poses(system, j, state, t, 0.0)
+    answer, width = system.relations.write, 6 * (user.last - user.first) + 1
+    call_function(user.address, t, system.relations.read, answer)
+    for r in range(system.joints[j].rows):
+        for s in range(user.first, user.last):
+            side, i = system.solver.sides[s], r * width + 6 * (s - user.first)
+            write_row(
+                side, system.bodies[side.body].mass, work.body[side.body].inverse, r,
+                answer[i], answer[i + 1], answer[i + 2], answer[i + 3], answer[i + 4], answer[i + 5],
+            )  # fmt: skip
+
+
+@kernel
+def user_speeds(system, j, state, t, out):
+    """Write b (rows,)."""
+    user = read_poses(system, j, state, t, 0.0)
+    answer, width = system.relations.write, 6 * (user.last - user.first) + 1
+    call_function(user.address, t, system.relations.read, answer)
+    for r in range(system.joints[j].rows):
+        out[r] = answer[(r + 1) * width - 1]
+
+
+@kernel
+def user_error(system, j, state, t, out):
+    """Write phi (rows,), 0 of rows that restrict velocities only."""
+    user = read_poses(system, j, state, t, 0.0)
+    for r in range(6):
+        out[r] = 0.0
+    if user.position_address != 0:
+        answer = system.relations.write
+        call_function(user.position_address, t, system.relations.read, answer)
+        for r in range(system.joints[j].rows):
+            out[r] = answer[r]
+
+
+@kernel
+def user_bias(system, j, state, t, out, scratch):
+    """Write what the rows times the accelerations must be."""
+    user = system.relations.user[system.joints[j].number]
+    g = system.gravity
+    fall, ahead = math.sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]), math.inf
+    for s in range(user.first, user.last):
+        b = system.solver.sides[s].body
+        v, w, size = state[b].v, state[b].w, system.bodies[b].extent
+        # where nothing moves: in the time in which the body falls by its size
+        ahead = min(ahead, WAY * (math.sqrt(size / fall) if fall > 0.0 else 1.0))
+        speed = math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
+        speed += size * math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
+        if speed * ahead > WAY * size:
+            ahead = WAY * size / speed
+    write_speeds(system, j, state, t, ahead, out)
+    write_speeds(system, j, state, t, -ahead, scratch)
+    for r in range(system.joints[j].rows):
+        out[r] = -0.5 * (out[r] - scratch[r]) / ahead
+
+
+@kernel
+def push_user_rows(system, j, state, t, multiplier, work):
+    """Add A^T multiplier to the wrenches."""
+    user = read_poses(system, j, state, t, 0.0)
+    answer, width = system.relations.write, 6 * (user.last - user.first) + 1
+    call_function(user.address, t, system.relations.read, answer)
+    for r in range(system.joints[j].rows):
+        for s in range(user.first, user.last):
+            wrench = work.body[system.solver.sides[s].body].wrench
+            at = r * width + 6 * (s - user.first)
+            for k in range(6):
+                wrench[k] += multiplier[r] * answer[at + k]

@@ -1,8 +1,0 @@
-"""Films and still pictures of a motion; needs ``carom[film]``."""
-
-from __future__ import annotations
-
-from carom.films.film import film
-from carom.films.stage import still
-
-__all__ = ["film", "still"]

@@ -1,0 +1,167 @@
+"""Many frictional contacts at once, as a problem of its own: `solve_contacts`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from carom import checks
+from carom.friction.checks import checked_inverse_masses
+
+KINDS = {"coulomb": 0, "sliding": 1, "sticking": 2}
+
+
+@dataclass(frozen=True)
+class ContactSolution:
+    """Impulses of k contacts and how well they solve the problem. Contact axes: normal, tangents 1, 2.
+
+    Parameters
+    ----------
+    impulse : ndarray, shape (k, 3)
+        p [N s].
+    velocity : ndarray, shape (k, 3)
+        w = W p + velocity without impulses [m/s].
+    residual : float
+        Greatest distance of a contact from a solution, in units of velocity [m/s]: the natural map
+        ``|p - P_K(p - rho (w + mu |w_t| e_n))| / rho``, ``rho = 3 / trace W_ii``.
+    penetration_speed : float
+        Greatest ``-w_n``, at least 0 [m/s].
+    cone_violation : float
+        Greatest ``|p_t| - mu p_n`` or ``-p_n``, at least 0 [N s].
+    complementarity : float
+        Greatest ``|p_n w_n|`` [J].
+    iterations : int
+        Steps of Newton, sweeps and alternations. 0 for one contact, which is solved in closed form.
+    converged : bool
+        Whether the residual is below 1e-10 of the greatest entry of the given velocity, plus
+        50 roundings of the greatest ``(|W| |p|)_i``. Mostly it is at round-off.
+    message : str
+        A sentence that says so, or what is wrong.
+    """
+
+    impulse: np.ndarray
+    velocity: np.ndarray
+    residual: float
+    penetration_speed: float
+    cone_violation: float
+    complementarity: float
+    iterations: int
+    converged: bool
+    message: str
+
+
+def solve_contacts(
+    inverse_mass, velocity, friction, *, kind="coulomb", heading=None, start=None
+) -> ContactSolution:
+    r"""Solve for the impulses of k contacts with Coulomb friction: plastic, ``0 <= p_n _|_ w_n >= 0``.
+
+    Parameters
+    ----------
+    inverse_mass : array_like, shape (3k, 3k) or (k, 3, k, 3)
+        W between the contacts [1/kg], symmetric, positive semidefinite, rows (normal, tangent 1,
+        tangent 2) of each contact. It may be singular: four corners of a box have rank 6 of 12.
+    velocity : array_like, shape (3k,) or (k, 3)
+        Relative velocities without the impulses [m/s]; approach is negative.
+    friction : float or array_like, shape (k,)
+        Coulomb's coefficient mu of each contact, at least 0.
+    kind : str or sequence of k str, default "coulomb"
+        "coulomb": ``|p_t| <= mu p_n``, against w_t where the contact slips. "sliding": the direction
+        of slip is known, ``p_t = -mu p_n heading``. "sticking": w_t = 0 whatever impulse that takes.
+    heading : array_like, shape (k, 2), optional
+        Directions for "sliding", unit vectors or zero (no friction). Default: zero.
+    start : array_like, shape (3k,) or (k, 3), optional
+        Impulses of a similar problem to start from [N s]. Default: none, zero.
+
+    Returns
+    -------
+    ContactSolution
+        Where no solution is reached, the best impulses found, with ``converged`` False.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not as above.
+
+    Notes
+    -----
+    Mathematics page, VI.2. Semi-smooth Newton on the equations of Alart and Curnier [1]_ with a proximal
+    term, started from sweeps of Gauss-Seidel or from alternating directions on the form of de Saxce
+    [2]_ where it does not converge; one contact is solved exactly. Impulses are not unique in
+    general. Where Newton converges at once, those of least norm (in units that make contacts equally
+    heavy) are returned: four equal ones for a box at rest on a face. Velocities can also differ between
+    solutions, for large friction; one contact takes the solution that is nearest to stick. With large
+    friction there may be none.
+
+    References
+    ----------
+    .. [1] P. Alart, A. Curnier, Comput. Methods Appl. Mech. Eng. 92 (1991) 353-375.
+    .. [2] G. de Saxce, Z.-Q. Feng, Math. Comput. Model. 28 (1998) 225-245.
+
+    Examples
+    --------
+    A block of 1 kg that slides at 1 m/s and is pressed down by 0.1 N s:
+
+    >>> solution = carom.solve_contacts(np.eye(3), (-0.1, 1.0, 0.0), 0.5)
+    >>> solution.impulse
+    array([[ 0.1 , -0.05,  0.  ]])
+    """
+    from carom.friction.layout import MESSAGES, SOLVED, new_cone_work
+    from carom.friction.residual import measure
+    from carom.friction.solve import solve_cones
+
+    c = _triples("velocity", velocity, None, "m/s")
+    k = len(c) // 3
+    W = checked_inverse_masses(inverse_mass, k)
+    mu = checks.real_array("friction", friction, "() or (k,)")
+    mu = checks.finite_array("friction", np.full(k, mu) if mu.ndim == 0 else mu, (k,))
+    if np.any(mu < 0.0):
+        raise ValueError(f"friction must be at least 0, got {checks.shown(friction)}")
+    kinds = [kind] * k if isinstance(kind, str) else checks.listed("kind", kind, "names")
+    if len(kinds) != k:
+        raise ValueError(f"kind must be one for each of {k} contacts, got {len(kinds)}")
+    code = np.array([KINDS[checks.choice("kind", one, KINDS)] for one in kinds], dtype=np.int64)
+    direction = _heading(heading, k)
+    p = np.zeros(3 * k) if start is None else _triples("start", start, k, "N s")
+    with np.errstate(over="ignore", invalid="ignore"):  # what does not converge says so itself
+        status, residual, iterations = solve_cones(
+            k, W, c, mu, code, direction, p, new_cone_work(k)
+        )
+        _, _, penetration, violation, product = measure(k, W, c, mu, code, direction, p)
+        velocity = W @ p + c
+    return ContactSolution(
+        impulse=(p + 0.0).reshape(k, 3),  # no -0
+        velocity=velocity.reshape(k, 3),
+        residual=float(residual),
+        penetration_speed=float(penetration),
+        cone_violation=float(violation),
+        complementarity=float(product),
+        iterations=int(iterations),
+        converged=bool(status == SOLVED),
+        message=MESSAGES[int(status)],
+    )
+
+
+def _triples(name: str, value, k: int | None, unit: str) -> np.ndarray:
+    """Return (3k,) of either shape."""
+    rows = checks.real_array(name, value, "(3k,) or (k, 3)").ndim == 2
+    array = checks.finite_array(
+        name, value, (k, 3) if rows else (None if k is None else 3 * k,), unit
+    )
+    if array.size % 3 or not array.size:
+        raise ValueError(f"{name} must have shape (3k,) or (k, 3), got shape {array.shape}")
+    return array.reshape(-1)
+
+
+def _heading(value, k: int) -> np.ndarray:
+    if value is None:
+        return np.zeros((k, 2))
+    heading = checks.finite_array("heading", value, (k, 2))
+    length = np.linalg.norm(heading, axis=1)
+    wrong = (length > 0.0) & (np.abs(length - 1.0) > 1e-6)
+    if np.any(wrong):
+        raise ValueError(
+            f"heading must be unit vectors or zero, got {heading[wrong][0]} of length "
+            f"{length[wrong][0]:.9g}"
+        )
+    return heading

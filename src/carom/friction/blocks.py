@@ -1,0 +1,125 @@
+"""Block LU on the graph of bodies: blocks 6x6, rows exchanged inside the diagonal blocks only."""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import kernel
+
+_LEAST = 1e-14  # pivots smaller than this are replaced by it
+
+
+@kernel
+def factor_blocks(work):
+    """Factor in place: right of the diagonal U, below it L with unit diagonal blocks."""
+    block, target = work.block, work.target
+    right = work.body.shape[0]
+    below = right + work.later.shape[0]
+    for n in range(work.place.shape[0]):
+        place = work.place[n]
+        diagonal, pivot = block[place.body], work.body[place.body].pivot
+        _factor_diagonal(diagonal, pivot)
+        for s in range(place.pair, place.pairs_end):
+            _divide(block[below + s], diagonal, pivot)
+        for t in range(place.update, place.updates_end):
+            _subtract_product(
+                block[target[t, 2]], block[below + target[t, 0]], block[right + target[t, 1]]
+            )
+
+
+@kernel
+def substitute_blocks(work):
+    """Solve with the factors: the motion of the bodies becomes the solution."""
+    block, later = work.block, work.later
+    right = work.body.shape[0]
+    below = right + later.shape[0]
+    for n in range(work.place.shape[0]):
+        place = work.place[n]
+        y = work.body[place.body].motion
+        for s in range(place.pair, place.pairs_end):
+            _subtract_image(work.body[later[s]].motion, block[below + s], y)
+    for n in range(work.place.shape[0] - 1, -1, -1):
+        place = work.place[n]
+        body = work.body[place.body]
+        for s in range(place.pair, place.pairs_end):
+            _subtract_image(body.motion, block[right + s], work.body[later[s]].motion)
+        _solve_diagonal(block[place.body], body.pivot, body.motion)
+
+
+@kernel
+def _factor_diagonal(A, pivot):
+    for k in range(6):
+        top, row = abs(A[k, k]), k
+        for i in range(k + 1, 6):
+            if abs(A[i, k]) > top:
+                top, row = abs(A[i, k]), i
+        pivot[k] = row
+        if row != k:
+            for j in range(6):
+                t = A[k, j]
+                A[k, j] = A[row, j]
+                A[row, j] = t
+        if not top > _LEAST:
+            A[k, k] = _LEAST if A[k, k] >= 0.0 else -_LEAST
+        inverse = 1.0 / A[k, k]
+        for i in range(k + 1, 6):
+            m = A[i, k] * inverse
+            A[i, k] = m
+            for j in range(k + 1, 6):
+                A[i, j] -= m * A[k, j]
+
+
+@kernel
+def _solve_diagonal(A, pivot, x):
+    """X <- A^-1 x."""
+    for k in range(6):
+        row = pivot[k]
+        if row != k:
+            t = x[k]
+            x[k] = x[row]
+            x[row] = t
+    for k in range(6):
+        for i in range(k + 1, 6):
+            x[i] -= A[i, k] * x[k]
+    for k in range(5, -1, -1):
+        x[k] /= A[k, k]
+        for i in range(k):
+            x[i] -= A[i, k] * x[k]
+
+
+@kernel
+def _divide(X, A, pivot):
+    """X <- X A^-1, row by row."""
+    for r in range(6):
+        x = X[r]
+        for k in range(6):  # times U^-1
+            x[k] /= A[k, k]
+            for j in range(k + 1, 6):
+                x[j] -= x[k] * A[k, j]
+        for k in range(5, -1, -1):  # times L^-1, then the exchanges
+            for j in range(k):
+                x[j] -= x[k] * A[k, j]
+        for k in range(5, -1, -1):
+            row = pivot[k]
+            if row != k:
+                t = x[k]
+                x[k] = x[row]
+                x[row] = t
+
+
+@kernel
+def _subtract_product(S, X, Y):
+    """S <- S - X Y."""
+    for i in range(6):
+        for k in range(6):
+            t = X[i, k]
+            for j in range(6):
+                S[i, j] -= t * Y[k, j]
+
+
+@kernel
+def _subtract_image(y, A, x):
+    """Y <- y - A x."""
+    for i in range(6):
+        s = 0.0
+        for j in range(6):
+            s += A[i, j] * x[j]
+        y[i] -= s

@@ -1,0 +1,41 @@
+"""Checks of what is given of several contacts: their inverse masses, and numbers of each."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom import checks
+
+
+def checked_inverse_masses(inverse_mass, k: int) -> np.ndarray:
+    """Return W (3k, 3k), symmetric; raise ValueError unless it is positive semidefinite."""
+    if checks.real_array("inverse_mass", inverse_mass, "(3k, 3k) or (k, 3, k, 3)").ndim == 4:
+        W = checks.finite_array("inverse_mass", inverse_mass, (None, 3, None, 3), "1/kg")
+        W = W.reshape(3 * len(W), -1)
+    else:
+        W = checks.finite_array("inverse_mass", inverse_mass, (None, None), "1/kg")
+    if W.shape != (3 * k, 3 * k):
+        raise ValueError(
+            f"inverse_mass must have shape {(3 * k, 3 * k)} [1/kg], as velocity is of {k} contacts, got shape "
+            f"{np.shape(inverse_mass)}"
+        )
+    size = np.max(np.abs(W))
+    if not np.max(np.abs(W - W.T)) <= 1e-9 * size:
+        raise ValueError(f"inverse_mass must be symmetric, got {checks.shown(inverse_mass)}")
+    W = np.ascontiguousarray(0.5 * (W + W.T))
+    least, *_, most = np.linalg.eigvalsh(W)
+    if not least >= -1e-9 * most:
+        raise ValueError(
+            f"inverse_mass must be positive semidefinite, got an eigenvalue {least:.6g} [1/kg]"
+        )
+    return W
+
+
+def per_contact(name: str, value, k: int, **bounds) -> np.ndarray:
+    """Return `value`, one number or k of them, as an array (k,); each within `bounds`."""
+    if checks.real_array(name, value, "() or (k,)").ndim == 0:
+        return np.full(k, checks.number(name, value, **bounds))
+    array = checks.finite_array(name, value, (k,))
+    for i, item in enumerate(array):
+        checks.number(f"{name}[{i}]", item, **bounds)
+    return np.ascontiguousarray(array)

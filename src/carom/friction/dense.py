@@ -1,0 +1,147 @@
+"""W stored whole: products, sweeps, and the linear systems of Newton and of alternating directions."""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import kernel
+from carom.friction import layout as o
+from carom.friction.cone import slope
+from carom.friction.local import solve_local
+from carom.friction.lu import factor, substitute
+
+_LEAST_PIVOT = 1e-14
+
+
+@kernel
+def multiply(work, k, x, out):
+    """Add W x to `out`, column by column (they are the rows of a symmetric W)."""
+    n = 3 * k
+    for j in range(n):
+        q, column = x[j], work.W[j]
+        if q != 0.0:
+            for i in range(n):
+                out[i] += q * column[i]
+
+
+@kernel
+def magnitude(work, k):
+    """Return the greatest (|W| |p|)_i / s_i."""
+    most, p = 0.0, work.vector[o.P]
+    for i in range(3 * k):
+        row, total = work.W[i], 0.0
+        for j in range(3 * k):
+            total += abs(row[j] * p[j])
+        most = max(most, total / work.contact[i // 3].scale)
+    return most
+
+
+@kernel
+def sweep(work, k, backward):
+    """Solve each contact in turn, the others held."""
+    p, c = work.vector[o.P], work.vector[o.C]
+    for place in range(k):
+        i = k - 1 - place if backward else place
+        n = 3 * i
+        r0, r1, r2 = work.W[n], work.W[n + 1], work.W[n + 2]
+        c0, c1, c2 = c[n], c[n + 1], c[n + 2]
+        for j in range(3 * k):
+            q = p[j]
+            c0 += r0[j] * q
+            c1 += r1[j] * q
+            c2 += r2[j] * q
+        q0, q1, q2 = p[n], p[n + 1], p[n + 2]
+        w00, w01, w02, w11, w12, w22 = r0[n], r0[n + 1], r0[n + 2], r1[n + 1], r1[n + 2], r2[n + 2]
+        c0 -= w00 * q0 + w01 * q1 + w02 * q2
+        c1 -= w01 * q0 + w11 * q1 + w12 * q2
+        c2 -= w02 * q0 + w12 * q1 + w22 * q2
+        found, x0, x1, x2 = solve_local(work.contact[i], w00, w01, w02, w11, w12, w22, c0, c1, c2)
+        if found:
+            p[n], p[n + 1], p[n + 2] = x0, x1, x2
+
+
+@kernel
+def factor_newton(work, k, eps):
+    """Factor I - D + D (W + eps); count its rows.
+
+    Where a contact is open D = 0 and the step is -f: those rows are left out.
+    """
+    p, w, active, m = work.vector[o.P], work.vector[o.VELOCITY], work.active, 0
+    for i in range(k):
+        n = 3 * i
+        if p[n] - w[n] > 0.0 or work.contact[i].kind == o.STICKING:
+            active[m], active[m + 1], active[m + 2] = n, n + 1, n + 2
+            m += 3
+    e = 1.0 - eps
+    for place in range(0, m, 3):
+        n = active[place]
+        d00, d10, d11, d12, d20, d21, d22 = slope(
+            work.contact[n // 3], p[n] - w[n], p[n + 1] - w[n + 1], p[n + 2] - w[n + 2]
+        )
+        r0, r1, r2 = work.W[n], work.W[n + 1], work.W[n + 2]
+        j0, j1, j2 = work.matrix[place], work.matrix[place + 1], work.matrix[place + 2]
+        for q in range(m):
+            j = active[q]
+            a, b, c = r0[j], r1[j], r2[j]
+            j0[q] = d00 * a
+            j1[q] = d10 * a + d11 * b + d12 * c
+            j2[q] = d20 * a + d21 * b + d22 * c
+        j0[place] += 1.0 - e * d00
+        j1[place] -= e * d10
+        j1[place + 1] += 1.0 - e * d11
+        j1[place + 2] -= e * d12
+        j2[place] -= e * d20
+        j2[place + 1] -= e * d21
+        j2[place + 2] += 1.0 - e * d22
+    factor(work.matrix, m, work.pivot, _LEAST_PIVOT)
+    work.count[o.ROWS] = m
+
+
+@kernel
+def solve_newton(work, k):
+    """Write the step for the f at p, w with the factors at hand."""
+    p, w, f = work.vector[o.P], work.vector[o.VELOCITY], work.vector[o.F]
+    step, rhs = work.vector[o.STEP], work.vector[o.RHS]
+    opening, rows = False, work.count[o.ROWS]
+    for j in range(3 * k):
+        step[j] = -f[j]
+    for q in range(rows):
+        step[work.active[q]] = 0.0
+    for j in range(3 * k):
+        opening = opening or step[j] != 0.0
+    for place in range(0, rows, 3):
+        n = work.active[place]
+        rhs[place], rhs[place + 1], rhs[place + 2] = -f[n], -f[n + 1], -f[n + 2]
+        if not opening:
+            continue
+        d00, d10, d11, d12, d20, d21, d22 = slope(
+            work.contact[n // 3], p[n] - w[n], p[n + 1] - w[n + 1], p[n + 2] - w[n + 2]
+        )
+        r0, r1, r2 = work.W[n], work.W[n + 1], work.W[n + 2]
+        s0, s1, s2 = 0.0, 0.0, 0.0  # what the opening contacts do
+        for j in range(3 * k):
+            q = step[j]
+            s0 += r0[j] * q
+            s1 += r1[j] * q
+            s2 += r2[j] * q
+        rhs[place] -= d00 * s0
+        rhs[place + 1] -= d10 * s0 + d11 * s1 + d12 * s2
+        rhs[place + 2] -= d20 * s0 + d21 * s1 + d22 * s2
+    substitute(work.matrix, rows, work.pivot, rhs)
+    for q in range(rows):
+        step[work.active[q]] = rhs[q]
+
+
+@kernel
+def factor_shifted(work, k, sigma):
+    """Factor W + sigma."""
+    for i in range(3 * k):
+        row, out = work.W[i], work.matrix[i]
+        for j in range(3 * k):
+            out[j] = row[j]
+        out[i] += sigma
+    factor(work.matrix, 3 * k, work.pivot, 0.0)
+
+
+@kernel
+def solve_shifted(work, k):
+    """Rhs becomes (W + sigma)^-1 rhs."""
+    substitute(work.matrix, 3 * k, work.pivot, work.vector[o.RHS])

@@ -1,0 +1,224 @@
+"""W = G M^-1 G^T through bodies, never formed: products, sweeps, and the linear systems.
+
+Both systems have the form J x + D W x = r with 3x3 blocks J and D of each contact. With the bodies' motion
+y = M^-1 G^T x the contacts are eliminated, x = J^-1 (r - D G y), and
+
+    (I + M^-1 G^T K G) y = M^-1 G^T J^-1 r,   K = J^-1 D,
+
+is a system on the graph of the bodies. It is stiff, K ~ 1/eps where a contact sticks: what is lost to round-off
+comes back in the next iteration, which starts from the true residual.
+"""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import kernel
+from carom.friction import layout as o
+from carom.friction.blocks import factor_blocks, substitute_blocks
+from carom.friction.cone import slope
+from carom.friction.local import solve_local
+
+
+@kernel
+def multiply(work, k, x, out):
+    """Add W x to `out`."""
+    _impart(work, k, x)
+    for i in range(k):
+        u0, u1, u2 = _pull(work, i)
+        out[3 * i] += u0
+        out[3 * i + 1] += u1
+        out[3 * i + 2] += u2
+
+
+@kernel
+def impart(work, k):
+    """Write the motion that the impulses at hand cause."""
+    _impart(work, k, work.vector[o.P])
+
+
+@kernel
+def magnitude(work, k):
+    """Return the greatest (|G| |M^-1 G^T| |p|)_i / s_i, at least (|W| |p|)_i / s_i."""
+    _rest(work)
+    most, p = 0.0, work.vector[o.P]
+    for i in range(k):
+        link = work.link[i]
+        for side in range(2):
+            if link.body[side] >= 0:
+                Y, v = link.response[side], work.body[link.body[side]].motion
+                for r in range(6):
+                    for a in range(3):
+                        v[r] += abs(Y[r, a] * p[3 * i + a])
+    for i in range(k):
+        link = work.link[i]
+        for a in range(3):
+            s = 0.0
+            for side in range(2):
+                if link.body[side] >= 0:
+                    G, v = link.rows[side], work.body[link.body[side]].motion
+                    for j in range(6):
+                        s += abs(G[a, j]) * v[j]
+            most = max(most, s / work.contact[i].scale)
+    return most
+
+
+@kernel
+def sweep(work, k, backward):
+    """Solve each contact in turn, the others held."""
+    p, c = work.vector[o.P], work.vector[o.C]
+    _impart(work, k, p)
+    for place in range(k):
+        i = k - 1 - place if backward else place
+        n = 3 * i
+        W = work.link[i].local
+        q0, q1, q2 = p[n], p[n + 1], p[n + 2]
+        u0, u1, u2 = _pull(work, i)
+        c0 = c[n] + u0 - (W[0] * q0 + W[1] * q1 + W[2] * q2)
+        c1 = c[n + 1] + u1 - (W[1] * q0 + W[3] * q1 + W[4] * q2)
+        c2 = c[n + 2] + u2 - (W[2] * q0 + W[4] * q1 + W[5] * q2)
+        found, x0, x1, x2 = solve_local(
+            work.contact[i], W[0], W[1], W[2], W[3], W[4], W[5], c0, c1, c2
+        )
+        if found:
+            p[n], p[n + 1], p[n + 2] = x0, x1, x2
+            _push(work, i, x0 - q0, x1 - q1, x2 - q2)
+
+
+@kernel
+def factor_newton(work, k, eps):
+    """Factor for J = I - D + eps D, D the slope of the projection at p, w."""
+    p, w = work.vector[o.P], work.vector[o.VELOCITY]
+    e = 1.0 - eps
+    for i in range(k):
+        contact, n = work.contact[i], 3 * i
+        d00, d10, d11, d12, d20, d21, d22 = slope(
+            contact, p[n] - w[n], p[n + 1] - w[n + 1], p[n + 2] - w[n + 2]
+        )
+        # J is lower block-triangular: the normal first.
+        j00, j10, j20 = 1.0 - e * d00, -e * d10, -e * d20
+        j11, j12, j22 = 1.0 - e * d11, -e * d12, 1.0 - e * d22
+        det = j11 * j22 - j12 * j12
+        C, K = work.link[i].compliance, work.link[i].stiffness
+        C[0, 0], C[0, 1], C[0, 2] = 1.0 / j00, 0.0, 0.0
+        C[1, 1], C[1, 2], C[2, 1], C[2, 2] = j22 / det, -j12 / det, -j12 / det, j11 / det
+        C[1, 0] = -(C[1, 1] * j10 + C[1, 2] * j20) / j00
+        C[2, 0] = -(C[2, 1] * j10 + C[2, 2] * j20) / j00
+        for r in range(3):
+            K[r, 0] = C[r, 0] * d00 + C[r, 1] * d10 + C[r, 2] * d20
+            K[r, 1] = C[r, 1] * d11 + C[r, 2] * d21
+            K[r, 2] = C[r, 1] * d12 + C[r, 2] * d22
+    _assemble(work, k)
+    factor_blocks(work)
+    work.count[o.ROWS] = 3 * k
+
+
+@kernel
+def solve_newton(work, k):
+    """Write the step for the f at hand."""
+    f, step, rhs = work.vector[o.F], work.vector[o.STEP], work.vector[o.RHS]
+    for i in range(3 * k):
+        rhs[i] = -f[i]
+    solve_shifted(work, k)
+    for i in range(3 * k):
+        step[i] = rhs[i]
+
+
+@kernel
+def factor_shifted(work, k, sigma):
+    """Factor for W + sigma: J = sigma, D = I."""
+    for i in range(k):
+        C, K = work.link[i].compliance, work.link[i].stiffness
+        for r in range(3):
+            for j in range(3):
+                C[r, j] = K[r, j] = 1.0 / sigma if r == j else 0.0
+    _assemble(work, k)
+    factor_blocks(work)
+
+
+@kernel
+def solve_shifted(work, k):
+    """Rhs r becomes x of J x + D W x = r."""
+    x = work.vector[o.RHS]
+    _rest(work)
+    for i in range(k):
+        n, C = 3 * i, work.link[i].compliance
+        r0, r1, r2 = x[n], x[n + 1], x[n + 2]
+        for r in range(3):
+            x[n + r] = C[r, 0] * r0 + C[r, 1] * r1 + C[r, 2] * r2
+        _push(work, i, x[n], x[n + 1], x[n + 2])
+    substitute_blocks(work)
+    for i in range(k):
+        K = work.link[i].stiffness
+        u0, u1, u2 = _pull(work, i)
+        for r in range(3):
+            x[3 * i + r] -= K[r, 0] * u0 + K[r, 1] * u1 + K[r, 2] * u2
+
+
+@kernel
+def _assemble(work, k):
+    """Write the blocks of I + M^-1 G^T K G."""
+    for b in range(work.block.shape[0]):
+        one = 1.0 if b < work.body.shape[0] else 0.0
+        A = work.block[b]
+        for i in range(6):
+            for j in range(6):
+                A[i, j] = one if i == j else 0.0
+    for i in range(k):
+        link = work.link[i]
+        K = link.stiffness
+        if K[0, 0] == 0.0 and K[1, 1] == 0.0 and K[2, 2] == 0.0:
+            continue  # open
+        for side in range(2):
+            if link.body[side] < 0:
+                continue
+            G = link.rows[side]
+            for j in range(6):
+                a = K[0, 0] * G[0, j] + K[0, 1] * G[1, j] + K[0, 2] * G[2, j]
+                b = K[1, 0] * G[0, j] + K[1, 1] * G[1, j] + K[1, 2] * G[2, j]
+                c = K[2, 0] * G[0, j] + K[2, 1] * G[1, j] + K[2, 2] * G[2, j]
+                for other in range(2):
+                    if link.body[other] < 0:
+                        continue
+                    Y, A = link.response[other], work.block[link.corner[other, side]]
+                    for r in range(6):
+                        A[r, j] += Y[r, 0] * a + Y[r, 1] * b + Y[r, 2] * c
+
+
+@kernel
+def _impart(work, k, x):
+    """Write the motion that impulses x cause."""
+    _rest(work)
+    for i in range(k):
+        _push(work, i, x[3 * i], x[3 * i + 1], x[3 * i + 2])
+
+
+@kernel
+def _rest(work):
+    for b in range(work.body.shape[0]):
+        for j in range(6):
+            work.body[b].motion[j] = 0.0
+
+
+@kernel
+def _push(work, i, p0, p1, p2):
+    """Add the motion that an impulse of contact i causes."""
+    link = work.link[i]
+    for side in range(2):
+        if link.body[side] >= 0:
+            Y, v = link.response[side], work.body[link.body[side]].motion
+            for r in range(6):
+                v[r] += Y[r, 0] * p0 + Y[r, 1] * p1 + Y[r, 2] * p2
+
+
+@kernel
+def _pull(work, i):
+    """Return the velocity of contact i in the motion at hand."""
+    link = work.link[i]
+    u0, u1, u2 = 0.0, 0.0, 0.0
+    for side in range(2):
+        if link.body[side] >= 0:
+            G, v = link.rows[side], work.body[link.body[side]].motion
+            for j in range(6):
+                u0 += G[0, j] * v[j]
+                u1 += G[1, j] * v[j]
+                u2 += G[2, j] * v[j]
+    return u0, u1, u2

@@ -1,0 +1,36 @@
+"""One contact of any kind, the others held: the step of a Gauss-Seidel sweep."""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import kernel
+from carom.friction.layout import CONE, DISC, SLIDING
+from carom.friction.one_contact import solve_one
+from carom.friction.rays import solve_tangential
+
+
+@kernel
+def solve_local(contact, w00, w01, w02, w11, w12, w22, c0, c1, c2):
+    """Return (found, p_n, p_1, p_2) of w = W p + c; W by its upper triangle."""
+    kind, mu = contact.kind, contact.mu
+    if kind == CONE:
+        return solve_one(w00, w01, w02, w11, w12, w22, c0, c1, c2, mu)
+    if kind == DISC:
+        return solve_one(1.0, 0.0, 0.0, w11, w12, w22, -contact.h1, c1, c2, 1.0)
+    if kind == SLIDING:
+        h1, h2 = contact.h1, contact.h2
+        if c0 >= 0.0:
+            return True, 0.0, 0.0, 0.0
+        d = w00 - mu * (w01 * h1 + w02 * h2)
+        if not d > 0.0:  # friction drives the bodies together: a jam
+            return False, 0.0, 0.0, 0.0
+        n = -c0 / d
+        return True, n, -mu * n * h1, -mu * n * h2
+    # Sticking: tangents eliminated, then the normal.
+    a1, a2 = solve_tangential(w11, w12, w22, w01, w02)
+    b1, b2 = solve_tangential(w11, w12, w22, c1, c2)
+    d = w00 - w01 * a1 - w02 * a2
+    g = c0 - w01 * b1 - w02 * b2
+    n = 0.0
+    if g < 0.0 and d > 1e-13 * w00:
+        n = -g / d
+    return True, n, -b1 - a1 * n, -b2 - a2 * n

@@ -1,0 +1,133 @@
+"""Semi-smooth Newton on the equations of Alart and Curnier, with a proximal term.
+
+f(p) = p - project(p - w) = 0 with w = W p + c + eps (p - centre), in scaled variables. W is often singular
+(four corners of a box: rank 6 of 12); eps makes the step unique, and with the centre at 0 the
+solution that of least norm. Mathematics page, VI.2.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.choice import by_address
+from carom._compiled.decorators import kernel, unit
+from carom.friction import layout as o
+from carom.friction.cone import project
+from carom.friction.operators import factor, multiply, solve
+
+_LIMIT = 100
+_FLOOR = 1e-13  # below this part of 1 + |p| the iteration only polishes, while each step halves f
+_SHORTEST = 1e-3  # of the line search
+_CHORD = 0.1  # factors are kept for another step if the last one reduced f by this
+
+
+@unit
+def newton_unit(work, k, eps, patient):
+    """Iterate from p; leave in work how often (added to `ITERATIONS`), and |f|.
+
+    A step must reduce |f|; or, if `patient`, the greatest of the last four: the way past a kink. Factors at
+    hand (work.count[ROWS] >= 0) are tried first.
+    """
+    p, step, change = work.vector[o.P], work.vector[o.STEP], work.vector[o.CHANGE]
+    count, limit = 0, work.count[o.LIMIT] if work.count[o.LIMIT] > 0 else _LIMIT
+    size = _arrive(work, k, eps)
+    before1, before2, before3 = 0.0, 0.0, 0.0
+    while count < limit and size > work.mismatch[o.ENOUGH]:
+        count += 1
+        chord = work.count[o.ROWS] >= 0
+        if not chord:
+            factor(work, k, eps)
+        solve(work, k)
+        for i in range(3 * k):
+            change[i] = eps * step[i]
+        multiply(work, k, step, change)
+        t = 1.0
+        if not chord:
+            bound = max(size, before1, before2, before3) if patient else size
+            t = _search(work, k, bound)
+            if t == 0.0:
+                break
+        elif not _mismatch(work, k, t) < _CHORD * size:
+            work.count[o.ROWS] = -1
+            if size < _FLOOR * _magnitude(work, k):
+                break
+            continue
+        for i in range(3 * k):
+            p[i] += t * step[i]
+        before1, before2, before3 = size, before1, before2
+        size = _arrive(work, k, eps)
+        if size < _FLOOR * _magnitude(work, k) and not size < 0.5 * before1:
+            break
+        if not size < _CHORD * before1:
+            work.count[o.ROWS] = -1
+    work.count[o.ITERATIONS] += count
+    work.mismatch[0] = size
+
+
+#: newton(address, work, k, eps, patient)
+newton = by_address(newton_unit)
+
+
+@kernel
+def _search(work, k, bound):
+    """Return the first of t = 1, 1/2, ... with |f| well below the bound, else the best, 0 if none is below."""
+    t, best_t, best = 1.0, 0.0, bound
+    while t >= _SHORTEST:
+        trial = _mismatch(work, k, t)
+        if trial < best:
+            best_t, best = t, trial
+        if trial < (1.0 - 0.1 * t) * bound:
+            break
+        t *= 0.5
+    return best_t
+
+
+@kernel
+def _arrive(work, k, eps):
+    """Write w and f at p; return |f|."""
+    velocity(work, k)
+    p, w, centre = work.vector[o.P], work.vector[o.VELOCITY], work.vector[o.CENTRE]
+    for i in range(3 * k):
+        w[i] += eps * (p[i] - centre[i])
+    return _mismatch(work, k, 0.0)
+
+
+@kernel
+def velocity(work, k):
+    """Write w = W p + c."""
+    w, c = work.vector[o.VELOCITY], work.vector[o.C]
+    for i in range(3 * k):
+        w[i] = c[i]
+    multiply(work, k, work.vector[o.P], w)
+
+
+@kernel
+def _magnitude(work, k):
+    """Return 1 + the greatest scaled impulse: what round-off is relative to."""
+    most, p = 0.0, work.vector[o.P]
+    for i in range(3 * k):
+        most = max(most, abs(p[i]))
+    return 1.0 + most
+
+
+@kernel
+def _mismatch(work, k, t):
+    """Return |f| at p + t step; f itself is written for t = 0."""
+    total = 0.0
+    p, w, f = work.vector[o.P], work.vector[o.VELOCITY], work.vector[o.F]
+    step, change = work.vector[o.STEP], work.vector[o.CHANGE]
+    for i in range(k):
+        a, b, c = 3 * i, 3 * i + 1, 3 * i + 2
+        p0, p1, p2 = p[a], p[b], p[c]
+        x0, x1, x2 = p0 - w[a], p1 - w[b], p2 - w[c]
+        if t != 0.0:
+            p0, p1, p2 = p0 + t * step[a], p1 + t * step[b], p2 + t * step[c]
+            x0 += t * (step[a] - change[a])
+            x1 += t * (step[b] - change[b])
+            x2 += t * (step[c] - change[c])
+        y0, y1, y2 = project(work.contact[i], x0, x1, x2)
+        f0, f1, f2 = p0 - y0, p1 - y1, p2 - y2
+        total += f0 * f0 + f1 * f1 + f2 * f2
+        if t == 0.0:
+            f[a], f[b], f[c] = f0, f1, f2
+    return math.sqrt(total)

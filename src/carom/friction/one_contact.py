@@ -1,0 +1,107 @@
+"""One contact, exactly: stick where the cone allows it, else the slip that is nearest to stick."""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import entry, kernel
+
+_EMPTY = 1e-13  # of the trace of W_tt: directions in which nothing moves
+
+
+@kernel
+def eigenbasis(a11, a12, a22):
+    """Return (l1, l2, c, s): eigenvalues l1 >= l2 of a symmetric 2x2 matrix, (c, s) belongs to l1."""
+    half = 0.5 * (a11 - a22)
+    r = math.sqrt(half * half + a12 * a12)
+    if not r > 0.0:
+        return a11, a22, 1.0, 0.0
+    if half >= 0.0:
+        c, s = half + r, a12
+    else:
+        c, s = abs(a12), (r - half) if a12 >= 0.0 else (half - r)
+    norm = math.sqrt(c * c + s * s)
+    middle = 0.5 * (a11 + a22)
+    return middle + r, middle - r, c / norm, s / norm
+
+
+@entry
+def one_contact(W, c, mu):
+    """Return (found, p_n, p_1, p_2) that solves w = W p + c in the Coulomb cone; W (3, 3), c (3,)."""
+    return solve_one(W[0, 0], W[0, 1], W[0, 2], W[1, 1], W[1, 2], W[2, 2], c[0], c[1], c[2], mu)
+
+
+@kernel
+def solve_one(wnn, wn1, wn2, w11, w12, w22, cn, c1, c2, mu):
+    """Return (found, p_n, p_1, p_2).
+
+    Slip with w_t = -alpha p_t, alpha > 0: p_t = -(A + alpha)^-1 b, with the normal eliminated. In the
+    eigenbasis of A the condition |p_t| = mu p_n, freed of denominators D_i = a_i + alpha, reads
+    h = |(b_1 D_2, b_2 D_1)| + m (c_n D_1 D_2 - g_1 D_2 - g_2 D_1) = 0: a convex term and a
+    concave quadratic. With the former replaced by its tangent the root of the quadratic lies left of the
+    least root of h: the iteration rises to that root, quadratically, and never passes it.
+    """
+    if cn >= 0.0:
+        return True, 0.0, 0.0, 0.0
+    if not wnn > 0.0:
+        return False, 0.0, 0.0, 0.0
+    if not mu > 0.0:
+        return True, -cn / wnn, 0.0, 0.0
+    a11, a12, a22 = w11 - wn1 * wn1 / wnn, w12 - wn1 * wn2 / wnn, w22 - wn2 * wn2 / wnn
+    b1, b2 = c1 - wn1 * cn / wnn, c2 - wn2 * cn / wnn
+    d1, d2, c, s = eigenbasis(a11, a12, a22)
+    b1, b2 = c * b1 + s * b2, c * b2 - s * b1
+    g1, g2 = c * wn1 + s * wn2, c * wn2 - s * wn1
+    least = _EMPTY * (w11 + w22)
+    tiny = 1e-13 * (abs(c1) + abs(c2) + (abs(wn1) + abs(wn2)) * abs(cn) / wnn)
+    if not d1 > least:
+        d1 = 0.0
+        b1 = b1 if abs(b1) > tiny else 0.0
+    if not d2 > least:
+        d2 = 0.0
+        b2 = b2 if abs(b2) > tiny else 0.0
+    found, p1, p2 = _tangential(d1, d2, b1, b2, g1, g2, cn, wnn, mu)
+    pn = -(cn + g1 * p1 + g2 * p2) / wnn
+    return found, pn, c * p1 - s * p2, s * p1 + c * p2
+
+
+@kernel
+def _tangential(d1, d2, b1, b2, g1, g2, cn, wnn, mu):
+    """Return (found, p_1, p_2) in the eigenbasis."""
+    if (d1 > 0.0 or b1 == 0.0) and (d2 > 0.0 or b2 == 0.0):
+        p1 = -b1 / d1 if d1 > 0.0 else 0.0
+        p2 = -b2 / d2 if d2 > 0.0 else 0.0
+        if math.sqrt(p1 * p1 + p2 * p2) * wnn <= -mu * (cn + g1 * p1 + g2 * p2):
+            return True, p1, p2
+    m = mu / wnn
+    if d1 == 0.0:  # nothing moves in the plane of contact by itself
+        size = math.sqrt(b1 * b1 + b2 * b2)
+        denominator = size - m * (g1 * b1 + g2 * b2)
+        if not denominator > 0.0:
+            return False, 0.0, 0.0
+        alpha = -denominator / (m * cn)
+        return True, -b1 / alpha, -b2 / alpha
+    k1, k2 = m * g1 * b1, m * g2 * b2
+    if d2 == 0.0 and b2 == 0.0:  # planar: D_2 cancels, and h is linear
+        alpha = (abs(b1) - k1) / (-m * cn) - d1
+        return alpha > 0.0, -b1 / (d1 + alpha), 0.0
+    alpha = 0.0
+    for _ in range(100):
+        e1, e2 = d1 + alpha, d2 + alpha
+        x, y = b1 * e2, b2 * e1
+        q = math.sqrt(x * x + y * y)
+        value = q + m * cn * e1 * e2 - k1 * e2 - k2 * e1
+        if not value > 0.0:
+            break
+        rate = (b1 * x + b2 * y) / q if q > 0.0 else 0.0
+        rate += m * cn * (e1 + e2) - k1 - k2
+        # value + rate t + m cn t^2 = 0, the root t > 0, without cancellation
+        root = math.sqrt(rate * rate - 4.0 * m * cn * value)
+        t = (rate + root) / (-2.0 * m * cn) if rate > 0.0 else 2.0 * value / (root - rate)
+        alpha += t
+        if not t > 4e-16 * alpha:
+            break
+    e1, e2 = d1 + alpha, d2 + alpha
+    if not (alpha > 0.0 and e2 > 0.0):
+        return False, 0.0, 0.0
+    return True, -b1 / e1, -b2 / e2

@@ -1,0 +1,79 @@
+"""What becomes of slip at u_t = 0: stick, or a new start along the one ray that leads away.
+
+Impulse form (mathematics page, II.9), a = W_tn, B = W_tt: in slip du_t/dp = a - mu B e with e the
+direction of slip; in stick B tau = -a. Stick needs |tau| <= mu.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import entry, kernel
+
+# Pivots of B below this part of its trace are zero: a rail, or a planar problem in space.
+_EMPTY = 1e-13
+
+
+@kernel
+def solve_tangential(b11, b12, b22, x, y):
+    """Return B^+ (x, y), the least-norm solution, for B symmetric and positive semidefinite."""
+    trace = b11 + b22
+    if not trace > 0.0:
+        return 0.0, 0.0  # nothing moves in the plane of contact
+    # Elimination, the greater pivot first: B times the answer is (x, y) to round-off, however thin B is.
+    if b11 >= b22:
+        ratio = b12 / b11
+        left = b22 - ratio * b12
+        if left > _EMPTY * trace:
+            second = (y - ratio * x) / left
+            return (x - b12 * second) / b11, second
+    else:
+        ratio = b12 / b22
+        left = b11 - ratio * b12
+        if left > _EMPTY * trace:
+            first = (x - ratio * y) / left
+            return first, (y - b12 * first) / b22
+    # Rank one: B = trace d d^T, B^+ = B / trace^2.
+    return (b11 * x + b12 * y) / trace / trace, (b12 * x + b22 * y) / trace / trace
+
+
+@entry
+def stick_ratio(a1, a2, b11, b12, b22):
+    """Return tau = -B^+ a: the friction impulse per normal impulse that keeps u_t = 0."""
+    t1, t2 = solve_tangential(b11, b12, b22, a1, a2)
+    return -t1, -t2
+
+
+@kernel
+def outgoing(a1, a2, b11, b12, b22, mu):
+    """Return (c, s, g): the direction in which slip starts from rest, and its rate d|u_t|/dp > 0.
+
+    The ray satisfies a - mu B e = g e, so e = (mu B + g)^-1 a, and |(mu B + g)^-1 a| falls with g:
+    from |a|_{stick}/mu > 1 at g = 0 to 0. So for mu below the critical value there is exactly one.
+    Newton's iteration on 1/|e(g)| rises to the root from the left without ever passing it. Where mu is the
+    critical value to round-off g is 0, |(c, s)| <= 1, and -mu (c, s) the ratio of stick.
+    """
+    # In the principal axes of B, the greater first: each direction to round-off of its own, and |e| = 1.
+    half = 0.5 * (b11 - b22)
+    root = math.sqrt(half * half + b12 * b12)
+    b1 = 0.5 * (b11 + b22) + root
+    x, y = (half + root, b12) if half >= 0.0 else (b12, root - half)
+    norm = math.sqrt(x * x + y * y)
+    x, y = (x / norm, y / norm) if norm > 0.0 else (1.0, 0.0)
+    p, q = x * a1 + y * a2, x * a2 - y * a1
+    m1, m2 = mu * b1, (mu * max(0.0, (b11 * b22 - b12 * b12) / b1) if b1 > 0.0 else 0.0)
+    size = math.sqrt(a1 * a1 + a2 * a2)
+    least = 1e-30 * (size + m1)
+    g = max(size - m1, least)  # |e(g)| >= size / (m1 + g): a lower bound of the root
+    for _ in range(100):
+        c, s = p / (m1 + g), q / (m2 + g)
+        norm2 = c * c + s * s
+        if not norm2 > 1.0 and g <= least:
+            return x * c - y * s, y * c + x * s, 0.0
+        change = (math.sqrt(norm2) - 1.0) * norm2 / (c * c / (m1 + g) + s * s / (m2 + g))
+        if not change > 1e-15 * g:
+            break
+        g += change
+    norm = math.sqrt(norm2)
+    c, s = c / norm, s / norm
+    return x * c - y * s, y * c + x * s, g

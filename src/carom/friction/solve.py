@@ -1,0 +1,143 @@
+"""The contact problem with W stored whole: `solve_cones`."""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import entry, kernel
+from carom.friction import layout as o
+from carom.friction.layout import BAD_INPUT, NOT_SOLVED, SOLVED
+from carom.friction.local import solve_local
+from carom.friction.residual import measure
+from carom.friction.strategy import search
+
+
+@entry
+def solve_cones(k, W, c, mu, kind, heading, p, scratch):
+    """Solve w = W p + c, 0 <= p_n _|_ w_n >= 0 with Coulomb friction; return (status, residual, iterations).
+
+    Rows (n, t1, t2) of k contacts; arrays for K >= k of them, the leading part is used. `W` (3K, 3K) is
+    symmetric, `c` (3K,) the velocity without impulses, `mu` (K,) the friction, `p` (3K,) the start and then
+    the solution, `scratch` from `layout.new_cone_work(K)`. `kind` (K,) int64: CONE, friction against
+    w_t; SLIDING, p_t = -mu p_n heading, `heading` (K, 2); STICKING, w_t = 0 whatever force that takes, even
+    where p_n = 0. Status: SOLVED; NOT_SOLVED, p is the best that was found; BAD_INPUT, p is 0. The
+    residual is that of `residual.measure`.
+    """
+    if k == 0:
+        return SOLVED, 0.0, 0
+    gamma = _load(scratch, k, W, c, mu, kind, heading, p)
+    if not math.isfinite(gamma):
+        for i in range(3 * k):
+            p[i] = 0.0
+        return BAD_INPUT, math.inf, 0
+    iterations, q = 0, scratch.vector[o.P]
+    if k == 1:
+        w, b = scratch.W, scratch.vector[o.C]
+        _, q[0], q[1], q[2] = solve_local(
+            scratch.contact[0],
+            w[0, 0],
+            w[0, 1],
+            w[0, 2],
+            w[1, 1],
+            w[1, 2],
+            w[2, 2],
+            b[0],
+            b[1],
+            b[2],
+        )
+    else:
+        search(scratch.address, scratch, k)
+        iterations = scratch.count[o.ITERATIONS]
+    for i in range(3 * k):
+        p[i] = gamma * scratch.contact[i // 3].scale * q[i]
+    residual, tolerance, _, _, _ = measure(k, W, c, mu, kind, heading, p)
+    return SOLVED if residual <= tolerance else NOT_SOLVED, residual, iterations
+
+
+@kernel
+def _load(work, k, W, c, mu, kind, heading, p):
+    """Write the problem in scaled variables; return gamma, or NaN if the input is bad.
+
+    p_i = gamma s_i q_i, w_i = gamma v_i / s_i with s_i^2 = 3 / trace W_ii, so that each diagonal block
+    has trace 3, and gamma such that the greatest entry of the scaled c is 1. One number for the three
+    rows of a contact: its cone stays what it is. The solver knows neither units nor ratios of masses.
+    """
+    total = 0.0
+    for i in range(k):
+        n = 3 * i
+        trace = W[n, n] + W[n + 1, n + 1] + W[n + 2, n + 2]
+        if not set_contact(work.contact[i], mu[i], kind[i], heading[i], trace):
+            return math.nan
+    for i in range(3 * k):
+        s = work.contact[i // 3].scale
+        row, out = W[i], work.W[i]
+        for j in range(3 * k):
+            out[j] = s * row[j] * work.contact[j // 3].scale
+            total += out[j]
+    if not math.isfinite(total):
+        return math.nan
+    return scale_vectors(work, k, c, p)
+
+
+@kernel
+def set_contact(contact, mu, kind, heading, trace):
+    """Write what a contact is and its scale; return whether that is sound."""
+    contact.mu, contact.kind, contact.h1, contact.h2 = mu, kind, heading[0], heading[1]
+    contact.scale = math.sqrt(3.0 / trace) if trace > 0.0 else 1.0
+    return mu >= 0.0 and math.isfinite(mu + heading[0] + heading[1] + trace)
+
+
+@kernel
+def scale_link(link, contact, mu, kind, heading):
+    """Write the product of rows and responses, and scale all three; return whether the contact is sound."""
+    local = link.local
+    for r in range(6):
+        local[r] = 0.0
+    for side in range(2):
+        if link.body[side] < 0:
+            continue
+        G, Y, at = link.rows[side], link.response[side], 0
+        for a in range(3):
+            for d in range(a, 3):
+                for j in range(6):
+                    local[at] += G[a, j] * Y[j, d]
+                at += 1
+    if not set_contact(contact, mu, kind, heading, local[0] + local[3] + local[5]):
+        return False
+    for r in range(6):
+        local[r] *= contact.scale * contact.scale
+    for side in range(2):
+        for r in range(6 if link.body[side] >= 0 else 0):
+            for a in range(3):
+                link.rows[side, a, r] *= contact.scale
+                link.response[side, r, a] *= contact.scale
+    return True
+
+
+@kernel
+def inverse_mass_of(link, contact, W):
+    """Write the block W (3, 3) of a contact whose link is scaled."""
+    at = 0
+    for a in range(3):
+        for b in range(a, 3):
+            W[a, b] = W[b, a] = link.local[at] / (contact.scale * contact.scale)
+            at += 1
+
+
+@kernel
+def scale_vectors(work, k, c, p):
+    """Write c and p in scaled variables; return gamma, or NaN if c is not finite."""
+    gamma = 0.0
+    for i in range(3 * k):
+        scaled = work.contact[i // 3].scale * c[i]
+        work.vector[o.C, i] = scaled
+        if not math.isfinite(scaled):
+            return math.nan
+        gamma = max(gamma, abs(scaled))
+    if gamma == 0.0:
+        gamma = 1.0
+    for i in range(3 * k):
+        work.vector[o.C, i] /= gamma
+        q = p[i] / (work.contact[i // 3].scale * gamma)
+        work.vector[o.P, i] = q if math.isfinite(q) else 0.0
+    return gamma

@@ -1,0 +1,185 @@
+"""How the solvers go about it: Newton first; where that fails, from other starting points."""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.choice import by_address
+from carom._compiled.decorators import address, kernel, unit
+from carom.friction import layout as o
+from carom.friction.alternating import alternate
+from carom.friction.cone import nearest, project, shift
+from carom.friction.newton import newton, newton_unit, velocity
+from carom.friction.operators import magnitude, sweep
+from carom.friction.residual import RELATIVE, ROUND_OFF
+
+_EPS = 1e-8  # weight of the proximal term
+_POLISH = 8  # most moves of the proximal centre
+_STARTS = 20  # most starting points
+_EXTRA = 2  # more of them where the tolerance is met, but not to round-off
+_SWEEPS = 25  # at first, twice as many each time, at most
+_MOST_SWEEPS = 200
+_ALTERNATIONS = 300
+_RELEASE_FROM, _RELEASE_BY = 0.1, 0.3  # weights of the proximal term in a release
+_RELEASES = 60
+
+
+@unit
+def search_unit(work, k):
+    """Leave in work the best p that is found from one starting point after the other, and the iterations.
+
+    Start 0: what was given, to the solution of least norm (unless one that is near is wanted). Start 1: what
+    was given, if anything was, to a solution that is near. Then in turn: after sweeps, after alternating
+    directions, after a release.
+    """
+    p, best, given = work.vector[o.P], work.vector[o.BEST], work.vector[o.GIVEN]
+    least, last, cold = math.inf, _STARTS, True
+    work.count[o.ITERATIONS] = 0
+    for i in range(3 * k):
+        best[i] = given[i] = p[i]
+        cold = cold and p[i] == 0.0
+    for start in range(_STARTS):
+        if start >= last:
+            break
+        if start == 1:
+            if cold:
+                continue
+            for i in range(3 * k):
+                p[i] = given[i]
+        elif start > 1:
+            _approach(work, k, (start - 2) % 3, (start - 2) // 3)
+        r, goal, tolerance = polished(
+            work, k, start == 0 and work.count[o.NEAR] == 0, start % 3 == 2
+        )
+        if r < least:
+            least = r
+            for i in range(3 * k):
+                best[i] = p[i]
+        if not r < math.inf:  # overflow: begin anew
+            for i in range(3 * k):
+                p[i] = 0.0
+        if least <= goal:
+            break
+        if spent(work):
+            break
+        if least <= 0.9 * tolerance:
+            last = min(last, start + 1 + _EXTRA)
+    for i in range(3 * k):
+        p[i] = best[i]
+
+
+#: search(address, work, k)
+search = by_address(search_unit)
+
+
+def with_address(work, find=address):
+    """Return the work arrays with the addresses of what is compiled for arrays like these."""
+    work = work._replace(newton=find(newton_unit, work, 1, 1.0, True))
+    return work._replace(address=find(search_unit, work, 1))
+
+
+@kernel
+def spent(work):
+    """Return whether a search has had the iterations that it was given."""
+    return 0 < work.count[o.BUDGET] <= work.count[o.ITERATIONS]
+
+
+@kernel
+def _approach(work, k, way, again):
+    """Move p to another starting point for Newton; `again`: how often this way was gone before."""
+    if way == 0:
+        sweeps = min(_SWEEPS * 2**again, _MOST_SWEEPS)
+        for i in range(sweeps):
+            sweep(work, k, i % 2 == 1)
+        work.count[o.ITERATIONS] += sweeps
+    elif way == 1:
+        p = work.vector[o.P]
+        if again == 0:
+            for i in range(3 * k):
+                p[i] = 0.0
+        sigma = 0.01 * 10.0 ** ((again + 1) % 3)
+        alternate(work, k, sigma, _ALTERNATIONS)
+        work.count[o.ITERATIONS] += _ALTERNATIONS
+    else:
+        release(work, k)
+
+
+@kernel
+def release(work, k):
+    """Newton with a strong proximal term, which is weakened while that succeeds."""
+    p, kept, centre = work.vector[o.P], work.vector[o.KEPT], work.vector[o.CENTRE]
+    for i in range(3 * k):
+        kept[i] = p[i]
+    eps = _RELEASE_FROM
+    for _ in range(_RELEASES):
+        if spent(work):
+            break
+        for i in range(3 * k):
+            centre[i] = p[i] = kept[i]
+        work.count[o.ROWS] = -1
+        newton(work.newton, work, k, eps, True)
+        if work.mismatch[0] < 1e-8:
+            for i in range(3 * k):
+                kept[i] = p[i]
+            eps *= _RELEASE_BY
+        else:
+            eps /= _RELEASE_BY
+        if not 10.0 * _EPS < eps < 10.0 * _RELEASE_FROM:
+            break
+    for i in range(3 * k):
+        p[i] = kept[i]
+
+
+@kernel
+def polished(work, k, least_norm, patient):
+    """Newton until the proximal term has no effect; return (residual, goal, tolerance).
+
+    The term is centred at 0, for the solution of least norm, or at p; then it is moved to each new solution
+    until its bias is gone. p is the best of the rounds.
+    """
+    p, kept, centre = work.vector[o.P], work.vector[o.KEPT], work.vector[o.CENTRE]
+    for i in range(3 * k):
+        centre[i] = 0.0 if least_norm else p[i]
+    least = math.inf
+    work.count[o.ROWS] = -1
+    for i in range(3 * k):
+        kept[i] = p[i]
+    goal, tolerance = 0.0, 0.0
+    for _ in range(_POLISH):
+        newton(work.newton, work, k, _EPS, patient)
+        for i in range(k):
+            n = 3 * i
+            p[n], p[n + 1], p[n + 2] = project(work.contact[i], p[n], p[n + 1], p[n + 2])
+        r, goal, tolerance = residual(work, k)
+        enough = r <= goal or not r < 0.5 * least or spent(work)
+        if r < least:
+            least = r
+            for i in range(3 * k):
+                kept[i] = p[i]
+        if enough:
+            break
+        for i in range(3 * k):
+            centre[i] = p[i]
+    for i in range(3 * k):
+        p[i] = kept[i]
+    return least, goal, tolerance
+
+
+@kernel
+def residual(work, k):
+    """Return (residual, goal, tolerance) of p in velocity; the goal is what round-off allows."""
+    velocity(work, k)
+    p, w, c = work.vector[o.P], work.vector[o.VELOCITY], work.vector[o.C]
+    worst, largest = 0.0, 0.0
+    for i in range(k):
+        t, n = work.contact[i], 3 * i
+        x0 = p[n] - w[n] - shift(t.kind, t.mu, t.h1, t.h2, w[n + 1], w[n + 2])
+        y0, y1, y2 = nearest(t.kind, t.mu, t.h1, t.h2, x0, p[n + 1] - w[n + 1], p[n + 2] - w[n + 2])
+        d0, d1, d2 = p[n] - y0, p[n + 1] - y1, p[n + 2] - y2
+        r = math.sqrt(d0 * d0 + d1 * d1 + d2 * d2) / t.scale
+        if not r <= worst and worst == worst:  # NaN enters, and stays
+            worst = r
+        largest = max(largest, max(abs(c[n]), abs(c[n + 1]), abs(c[n + 2])) / t.scale)
+    size = magnitude(work, k)
+    goal = max(1e-14 * largest + 0.08 * ROUND_OFF * size, work.mismatch[o.ENOUGH] * largest)
+    return worst, goal, RELATIVE * largest + ROUND_OFF * size

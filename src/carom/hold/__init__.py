@@ -1,1 +1,0 @@
-"""Contacts that persist: when a contact is held, how it slips, sticks, rests and opens."""

@@ -1,0 +1,103 @@
+"""Closed points that move alike are one: an edge or a face that strikes evenly is a single contact at its mean.
+
+If all points of a contact have the same velocity u, and an impulse at their mean gives all of them the same
+change as their mean, they stay together all through the boundary layer and share the impulse. In planar
+motion only impulses in the plane count: those along n and along the slip d, as long as neither turns anything
+out of the plane.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom.contact.gap import slow
+from carom.dynamics.contact_impulse import (
+    effective_inverse_mass,
+    spread,
+)
+from carom.dynamics.several_points import inverse_masses_of_one, of_one_body
+from carom.kinematics.contact_point import (
+    contact_motion,
+    contact_velocity,
+    copy_point,
+    place,
+)
+
+SAME = 1e-12  # relative to W_nn: round-off of a difference of two answers
+
+
+@kernel
+def as_one(system, k, state, cluster, work):
+    """Return whether the k closed points are one; if so put its point, W and u into `work`."""
+    hit, point, seats = work.hit[0], work.point[0], cluster.seats
+    c = seats[0].contact
+    contact, core = system.contacts[c], hit.point
+    if contact.touches != 0:
+        if k > 1:
+            return False
+        copy_point(cluster.points[0][0], point)
+        _inverse_mass(system, state, work)
+        hit.u[0], hit.u[1], hit.u[2] = contact_velocity(point, state)
+        return True
+    for r in range(3):
+        core[r] = 0.0
+        for i in range(k):
+            core[r] += seats[i].point[r] / k
+    for i in range(k):
+        if seats[i].contact != c:
+            return False
+    place(contact, core, state, point)
+    _inverse_mass(system, state, work)
+    hit.u[0], hit.u[1], hit.u[2] = contact_velocity(point, state)
+    if k == 1:
+        return True
+    still = 10.0 * slow(contact, state)
+    for i in range(k):
+        u = contact_velocity(cluster.points[0][i], state)
+        for r in range(3):
+            if not abs(u[r] - hit.u[r]) <= still:
+                return False
+    W, tiny = hit.W, SAME * hit.W[0, 0]
+    # directions: the normal; then any tangent, or only the one along which all happens
+    if not answers_alike(system, k, 1.0, 0.0, 0.0, tiny, state, cluster, work):
+        return False
+    if answers_alike(system, k, 0.0, 1.0, 0.0, tiny, state, cluster, work) and answers_alike(
+        system, k, 0.0, 0.0, 1.0, tiny, state, cluster, work
+    ):
+        return True
+    d1, d2 = hit.u[1], hit.u[2]
+    speed = math.sqrt(d1 * d1 + d2 * d2)
+    if not speed > still:
+        d1, d2 = W[1, 0], W[2, 0]  # slip starts along the coupling with the normal
+        speed = math.sqrt(d1 * d1 + d2 * d2)
+        if not speed > tiny:
+            return True  # no slip ever: impulses are normal
+    d1, d2 = d1 / speed, d2 / speed
+    t1, t2 = W[1, 1] * d1 + W[1, 2] * d2, W[2, 1] * d1 + W[2, 2] * d2
+    planar = abs(W[2, 0] * d1 - W[1, 0] * d2) <= tiny and abs(t2 * d1 - t1 * d2) <= tiny
+    return planar and answers_alike(system, k, 0.0, d1, d2, tiny, state, cluster, work)
+
+
+@kernel
+def _inverse_mass(system, state, work):
+    """Write W of the point in `work`; that of one free body in closed form."""
+    points, W = work.point, work.hit[0].W
+    if of_one_body(system, 1, points):
+        inverse_masses_of_one(system.bodies[points[0].a], 1, points, state, W)
+    else:
+        effective_inverse_mass(system, points[0], state, work, W)
+
+
+@kernel
+def answers_alike(system, k, ln, l1, l2, tiny, state, cluster, work):
+    """Return whether an impulse at the mean point changes the velocity of all points equally."""
+    point = work.point[0]
+    spread(system, point, state, ln, l1, l2, work)
+    mean = contact_motion(point, work)
+    for i in range(k):
+        u = contact_motion(cluster.points[0][i], work)
+        for r in range(3):
+            if not abs(u[r] - mean[r]) <= tiny:
+                return False
+    return True

@@ -1,0 +1,83 @@
+"""The whole impact as one contact problem, where the boundary layer could not be passed.
+
+Newton's law at each contact, 0 <= p_n _|_ u_n+ + e u_n- >= 0, with Coulomb's cones at the velocity after
+(Moreau 1988). It has no path, so the order in which contacts load and slip is lost; where it would raise the
+energy it is solved again with e = 0, which never does.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.choice import by_address
+from carom._compiled.decorators import kernel, unit
+from carom.friction.layout import CONE, ENOUGH
+from carom.friction.solve import solve_cones
+from carom.impact.multiple.layout import CLEAN, FACTOR, MISSING, SCRATCH, STACK, TRY
+
+_GROWTH = 1e-9  # of the energy that the greatest velocity stands for
+_MOST = 1e3  # times the greatest velocity before: none is thrown off faster
+
+
+@kernel
+def unsound(k, u, scale, out):
+    """Return whether a result cannot be: speeds without bound, energy that grows, bodies that still meet."""
+    top, gain, bound = 0.0, 0.0, 0.0
+    for a in range(3 * k):
+        top = max(top, abs(out.velocity[a]))
+        gain += 0.5 * out.impulse[a] * (u[a] + out.velocity[a])
+        bound += abs(out.impulse[a]) * scale
+    least = 0.0
+    for i in range(k):
+        least = min(least, out.velocity[3 * i])
+    sound = math.isfinite(gain) and top <= _MOST * scale and least >= -1e-3 * scale
+    return not (sound and gain <= 1e-6 * bound)
+
+
+@unit
+def at_once_unit(k, u, mu, e, scratch, out):
+    """Write impulses and works of all contacts."""
+    work = scratch.work
+    W, c, p = work.matrix[CLEAN], work.vector[SCRATCH], work.vector[TRY]
+    heading, kind = work.matrix[FACTOR], work.index[STACK]
+    for turn in range(2):
+        for i in range(k):
+            kind[i] = CONE
+            heading[i, 0], heading[i, 1] = 0.0, 0.0
+            for r in range(3):
+                c[3 * i + r], p[3 * i + r] = u[3 * i + r], 0.0
+            if turn == 0:
+                c[3 * i] += e[i] * min(0.0, u[3 * i])
+        scratch.cones.mismatch[ENOUGH] = 0.0
+        solve_cones(k, W, c, mu, kind, heading, p, scratch.cones)
+        energy, size = 0.0, 0.0
+        for a in range(3 * k):
+            after = u[a]
+            for b in range(3 * k):
+                after += W[a, b] * p[b]
+            out.velocity[a] = after
+            energy += 0.5 * p[a] * (u[a] + after)
+            size += abs(p[a] * u[a])
+        if energy <= _GROWTH * size:
+            break
+    for i in range(k):
+        a = 3 * i
+        for r in range(3):
+            out.impulse[a + r] = p[a + r]
+        part = 0.5 * p[a] * (u[a] + out.velocity[a])
+        slip = p[a + 1] * (u[a + 1] + out.velocity[a + 1])
+        slip += p[a + 2] * (u[a + 2] + out.velocity[a + 2])
+        out.compression[i], out.restitution[i] = min(0.0, part), max(0.0, part)
+        out.friction[i] = max(0.0, -0.5 * slip)
+
+
+_solve = by_address(at_once_unit)
+
+
+@kernel
+def all_at_once(k, u, mu, e, scratch, out):
+    """Write impulses and works of all contacts."""
+    if scratch.units.at_once == MISSING:
+        scratch.work.clock[0].wants = 1
+        return
+    _solve(scratch.units.at_once, k, u, mu, e, scratch, out)

@@ -1,0 +1,92 @@
+"""One step of the layer by series, cut at the first change of mode or at the end of stick."""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import inlined, kernel
+from carom.impact.multiple import along, events
+from carom.impact.multiple import series as taylor
+from carom.impact.multiple.grip import first_slip, gather_stuck, halt
+from carom.impact.multiple.layout import LANES, S_SIGMA, S_U1, S_U2, WEIGHT, WHEN, U
+
+AT_REST = 1e-10  # slip below this velocity, and below 0.1 rtol, is over
+_MORE = 3  # orders that are added to the series where those at first do not reach a change
+_SAFE = 0.01  # of the tolerance, for a series that is broken off: its last terms are no bound
+_STIFF = 100.0  # rate at which a slow direction relaxes, in units of the fastest contact
+
+
+@inlined
+def series_step(k, work, units, rtol):
+    """One step by series, cut at the first change; return its length, or -1 if stages must do it."""
+    clock, when, u = work.clock[0], work.vector[WHEN], work.vector[U]
+    least = max(AT_REST, 0.1 * rtol)
+    captured = False
+    for i in range(k):
+        c = work.contact[i]
+        if taylor.slips(c) and math.sqrt(u[3 * i + 1] ** 2 + u[3 * i + 2] ** 2) <= least:
+            c.sticks = 1
+            captured = True
+    if captured:
+        for i in range(k):
+            c = work.contact[i]
+            if taylor.slips(c) and math.sqrt(u[3 * i + 1] ** 2 + u[3 * i + 2] ** 2) <= 10.0 * least:
+                c.sticks = 1
+    z = gather_stuck(k, work, units)
+    if clock.wants == 1:
+        return -1.0, False
+    if z > 0:
+        halt(k, z, work)
+    stretched = taylor.stretch_weights(k, work)
+    closed = taylor.begin(k, work, stretched)
+    clock.stretched = 1 if stretched else 0
+    clock.steps += 1
+    most = taylor.degree_for(rtol)
+    known, degree, h = 0, most // 2, 0.0
+    while True:  # no more orders than the next change of mode needs
+        taylor.expand(k, z, closed, work, known, degree, stretched)
+        if known == 0 and stretched and _stiff(k, work):
+            return -1.0, False
+        known = degree
+        h = along.reach(k, work, degree, stretched, _SAFE * rtol if degree < most else 0.1 * rtol)
+        if degree == most or events.any_change(k, work, degree, h):
+            break
+        degree = min(most, degree + _MORE)
+    first = events.find_changes(k, work, degree, h, when)
+    changes, end = first <= h, min(first, h)
+    if z > 0:
+        slip = first_slip(z, work, degree, end)
+        if slip < end:
+            if slip <= 1e-9 or clock.cut == 1:  # once more with forces shared anew, not again
+                clock.cut = 0
+                return -1.0, False
+            clock.cut = 2
+            changes, end = False, slip
+    if clock.cut < 2:
+        turn = along.first_turn(k, work, degree, end)
+        if turn < end:
+            changes, end = False, turn
+    clock.cut = 1 if clock.cut == 2 else 0
+    along.move(k, work, degree, end)
+    return end, changes
+
+
+@kernel
+def _stiff(k, work):
+    """Return whether a contact slips so slowly that its direction is stiff, and does not come to rest.
+
+    With r = |u_t| and c the rate at which friction changes u_t, the direction relaxes in a time r/c.
+    """
+    S, weights = work.series, work.vector[WEIGHT]
+    for i in range(k):
+        if not taylor.slips(work.contact[i]):
+            continue
+        b, l = i // LANES, i % LANES
+        x, y = S[S_U1, 0, b, l], S[S_U2, 0, b, l]
+        r2 = x * x + y * y
+        c = weights[i]
+        if c * c > _STIFF * _STIFF * r2:
+            growth = (x * S[S_U1, 1, b, l] + y * S[S_U2, 1, b, l]) / S[S_SIGMA, 0, 0, 0]
+            if growth > -0.1 * c * math.sqrt(r2):
+                return True
+    return False

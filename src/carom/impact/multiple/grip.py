@@ -1,0 +1,247 @@
+"""Contacts that stick: the friction that keeps them at rest, linear in all other forces.
+
+W_ZZ T = -a has many solutions where contacts are redundant (four corners of a box: rank 3 of 8); all
+act alike. Taken is the one that loads each contact in the measure of mu N a moment ahead: the least
+|D^-1 T|, D = diag(mu N), so that discs are left only about when no solution fits in them.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.choice import by_address
+from carom._compiled.decorators import kernel, unit
+from carom.impact.multiple.law import OPEN
+from carom.impact.multiple.layout import (
+    FACTOR,
+    HOLDING,
+    LANES,
+    LEFT,
+    MASS,
+    MIDDLE,
+    MISSING,
+    S_P,
+    S_P1,
+    S_P2,
+    SCALE,
+    STICK_T,
+    STUCK,
+    D,
+    P,
+    U,
+)
+from carom.impact.multiple.motion import set_velocity
+from carom.impact.multiple.series import stick
+
+_EMPTY = 1e-11  # pivots below this part of the largest: directions that are redundant
+_SAMPLES = 5
+_MOMENT = 0.3  # units of the time of the fastest contact
+
+
+@kernel
+def gather_stuck(k, work, units):
+    """List the closed contacts that stick; return how many. What holds them goes to HOLDING."""
+    z = 0
+    for i in range(k):
+        c = work.contact[i]
+        if c.mode == OPEN:
+            c.sticks = 0
+        elif c.sticks == 1 and c.mu > 0.0:
+            work.index[STUCK, z] = i
+            z += 1
+    if z > 0 and units.hold == MISSING:
+        work.clock[0].wants = 1
+    elif z > 0:
+        find_holding(units.hold, z, work)
+    return z
+
+
+@kernel
+def _bearing(z, work, weight):
+    """Write (mu N)^2 of the sticking contacts, relative to the greatest, at the next opening if near."""
+    d, u, slot = work.vector[D], work.vector[U], work.index[STUCK]
+    moment = _MOMENT
+    for a in range(z):
+        i = slot[a]
+        c = work.contact[i]
+        if u[3 * i] > 0.0:
+            moment = min(moment, max(0.0, (d[i] - c.rest) / u[3 * i]))
+    for turn in range(2):
+        most, now = 0.0, 0.0
+        for a in range(z):
+            i = slot[a]
+            c = work.contact[i]
+            force = c.mu * max(0.0, c.slope * (d[i] - c.rest - moment * u[3 * i]))
+            weight[a] = force * force
+            most = max(most, weight[a])
+            now = max(now, c.mu * c.slope * (d[i] - c.rest))
+        if most > 1e-8 * now * now or turn == 1:
+            break
+        moment = 0.0  # all open together
+    for a in range(z):
+        weight[a] = weight[a] / most if most > 0.0 else 1.0
+
+
+@unit
+def holding_unit(z, work):
+    """Write H = D^2 L (L^T D^2 L)^-1 (L^T L)^-1 L^T, W_ZZ = L L^T by Cholesky with pivots: T = -H a."""
+    n, slot, vector = 2 * z, work.index[STUCK], work.vector
+    L, M, hold = work.matrix[FACTOR], work.matrix[MIDDLE], work.matrix[HOLDING]
+    weight, row = vector[SCALE], vector[STICK_T]
+    rank = _factor(z, slot, work.matrix[MASS], L, vector[LEFT], row)
+    _bearing(z, work, weight)
+    gram(n, rank, L, weight, M)
+    if not cholesky(rank, M):  # those that bear do not hold all that can move
+        for a in range(z):
+            weight[a] += 0.01
+        gram(n, rank, L, weight, M)
+        cholesky(rank, M)
+    for a in range(n):
+        for q in range(rank):
+            row[q] = L[a, q] * weight[a // 2]
+        solve_cholesky(rank, M, row)
+        for q in range(rank):
+            hold[a, q] = row[q]
+    for a in range(z):
+        weight[a] = 1.0
+    gram(n, rank, L, weight, M)
+    cholesky(rank, M)
+    for a in range(n):
+        solve_cholesky(rank, M, L[a])
+    for a in range(n):
+        for q in range(rank):
+            row[q] = hold[a, q]
+        for b in range(n):
+            s = 0.0
+            for q in range(rank):
+                s += row[q] * L[b, q]
+            hold[a, b] = s
+
+
+#: find_holding(address, z, work)
+find_holding = by_address(holding_unit)
+
+
+@kernel
+def _factor(z, slot, W, L, left, column):
+    """Write L with W_ZZ = L L^T; return its rank."""
+    n, largest, rank = 2 * z, 0.0, 0
+    for a in range(n):
+        i = 3 * slot[a // 2] + 1 + a % 2
+        left[a] = W[i, i]
+        largest = max(largest, left[a])
+    while rank < n:
+        top = 0
+        for a in range(n):
+            if left[a] > left[top]:
+                top = a
+        if not left[top] > _EMPTY * largest:
+            break
+        pivot = math.sqrt(left[top])
+        row = W[3 * slot[top // 2] + 1 + top % 2]
+        for a in range(n):
+            s = row[3 * slot[a // 2] + 1 + a % 2]
+            for b in range(rank):
+                s -= L[top, b] * L[a, b]
+            column[a] = s / pivot
+        for a in range(n):
+            L[a, rank] = column[a]
+            left[a] -= column[a] * column[a]
+        left[top] = 0.0
+        rank += 1
+    return rank
+
+
+@kernel
+def gram(n, rank, L, weight, M):
+    """Write M = L^T D^2 L, the lower triangle; `weight` is one number of D^2 for two rows."""
+    for p in range(rank):
+        for q in range(p + 1):
+            s = 0.0
+            for a in range(n):
+                s += L[a, p] * L[a, q] * weight[a // 2]
+            M[p, q] = s
+
+
+@kernel
+def cholesky(n, M):
+    """Factor M in place, the lower triangle; return whether it is positive definite."""
+    largest = 0.0
+    for i in range(n):
+        largest = max(largest, M[i, i])
+    for i in range(n):
+        for j in range(i + 1):
+            s = M[i, j]
+            for c in range(j):
+                s -= M[i, c] * M[j, c]
+            if i == j:
+                if not s > _EMPTY * largest:
+                    return False
+                M[i, i] = math.sqrt(s)
+            else:
+                M[i, j] = s / M[j, j]
+    return True
+
+
+@kernel
+def solve_cholesky(n, M, x):
+    """Solve with the factors, in place."""
+    for i in range(n):
+        s = x[i]
+        for j in range(i):
+            s -= M[i, j] * x[j]
+        x[i] = s / M[i, i]
+    for i in range(n - 1, -1, -1):
+        s = x[i]
+        for j in range(i + 1, n):
+            s -= M[j, i] * x[j]
+        x[i] = s / M[i, i]
+
+
+@kernel
+def halt(k, z, work):
+    """Bring the sticking contacts to rest: what is left of their velocity is taken by an impulse."""
+    stick(k, z, work, work.vector[P], work.vector[U])
+    set_velocity(k, work)
+    for b in range(z):
+        n = 3 * work.index[STUCK, b]
+        work.vector[U, n + 1], work.vector[U, n + 2] = 0.0, 0.0
+
+
+@kernel
+def excess(c, i, S, degree, x):
+    """Return |T|^2 - (mu N)^2 of a sticking contact, from the derivative of its impulse at `x`."""
+    n, t1, t2 = 0.0, 0.0, 0.0
+    b, l = i // LANES, i % LANES
+    for j in range(degree, 0, -1):
+        n = n * x + j * S[S_P, j, b, l]
+        t1 = t1 * x + j * S[S_P1, j, b, l]
+        t2 = t2 * x + j * S[S_P2, j, b, l]
+    room = c.mu * max(0.0, n)
+    return t1 * t1 + t2 * t2 - room * room * (1.0 + 1e-9) - 1e-20
+
+
+@kernel
+def first_slip(z, work, degree, end):
+    """Return the first x in [0, end] where a contact can no longer stick, or 2 end."""
+    first, S = 2.0 * end, work.series
+    for b in range(z):
+        i = work.index[STUCK, b]
+        c = work.contact[i]
+        low = 0.0
+        for s in range(_SAMPLES):
+            high = end * ((s + 1) / _SAMPLES)
+            if excess(c, i, S, degree, high) > 0.0:
+                for _ in range(50):
+                    x = 0.5 * (low + high)
+                    if excess(c, i, S, degree, x) > 0.0:
+                        high = x
+                    else:
+                        low = x
+                    if high - low <= 1e-12 * end:
+                        break
+                first = min(first, low)
+                end = min(end, max(low, 1e-300))
+                break
+            low = high
+    return first

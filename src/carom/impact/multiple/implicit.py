@@ -1,0 +1,198 @@
+"""A step of order four, implicit in friction: the pair ARK4(3)6L[2]SA, depths explicit, impulses implicit.
+
+C. A. Kennedy and M. H. Carpenter, Applied Numerical Mathematics 44 (2003) 139-181. At each stage the depths
+and so the normal forces are known, and friction is the convex problem of V.3 for the velocity at the end
+of the stage. Stick is exact (u_t = 0 at every stage), slip that begins from rest, where the direction is stiff
+(at a rate mu N W/|u_t|), needs no small steps, and no threshold divides stick from slip.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom._compiled.choice import by_address
+from carom._compiled.decorators import kernel, unit
+from carom.impact.multiple.discs import friction
+from carom.impact.multiple.layout import (
+    DISC,
+    DISC_C,
+    DISC_T,
+    DISCS,
+    ERROR,
+    FORCE,
+    JACOBIAN,
+    LANES,
+    MASS,
+    NEW_D,
+    NEW_P,
+    NEW_U,
+    RADIUS,
+    S_D,
+    S_U,
+    SCRATCH,
+    STAGE,
+    D,
+    P,
+    U,
+)
+from carom.impact.multiple.motion import add_velocity, normal_forces
+
+EXPLICIT = np.array([
+    [0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [1 / 2, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [13861 / 62500, 6889 / 62500, 0.0, 0.0, 0.0, 0.0],
+    [-116923316275 / 2393684061468, -2731218467317 / 15368042101831,
+     9408046702089 / 11113171139209, 0.0, 0.0, 0.0],
+    [-451086348788 / 2902428689909, -2682348792572 / 7519795681897,
+     12662868775082 / 11960479115383, 3355817975965 / 11060851509271, 0.0, 0.0],
+    [647845179188 / 3216320057751, 73281519250 / 8382639484533, 552539513391 / 3454668386233,
+     3354512671639 / 8306763924573, 4040 / 17871, 0.0],
+])  # fmt: skip
+GAMMA = 1 / 4
+IMPLICIT = np.array([
+    [0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [1 / 4, GAMMA, 0.0, 0.0, 0.0, 0.0],
+    [8611 / 62500, -1743 / 31250, GAMMA, 0.0, 0.0, 0.0],
+    [5012029 / 34652500, -654441 / 2922500, 174375 / 388108, GAMMA, 0.0, 0.0],
+    [15267082809 / 155376265600, -71443401 / 120774400, 730878875 / 902184768,
+     2285395 / 8070912, GAMMA, 0.0],
+    [82889 / 524892, 0.0, 15625 / 83664, 69875 / 102672, -2260 / 8211, GAMMA],
+])  # fmt: skip
+WEIGHTS = IMPLICIT[5].copy()
+#: weights minus those of the embedded method of order three
+DEFECT = WEIGHTS - np.array([
+    4586570599 / 29645900160, 0.0, 178811875 / 945068544, 814220225 / 1159782912,
+    -3700637 / 11593932, 61727 / 225920,
+])  # fmt: skip
+
+
+@unit
+def step_unit(k, m, work, units, h, p, tolerance):
+    """Step from (d, P, u) by `h` to the new state; the error goes to the clock.
+
+    Forces of this instant are in ``work.stage[FORCE, 0]``; `m` discs are gathered. `tolerance` is for the
+    velocity of friction. At the end ``work.stage[FORCE, 5]`` holds the forces of the new instant.
+    """
+    n = 3 * k
+    force, rate, W = work.stage[FORCE], work.stage[STAGE], work.matrix[MASS]
+    vector = work.vector
+    u, u1, q = vector[U], vector[NEW_U], vector[SCRATCH]
+    for i in range(k):
+        rate[0, i] = -u[3 * i]
+        rate[0, k + i] = -(force[0, 3 * i + 1] * u[3 * i + 1] + force[0, 3 * i + 2] * u[3 * i + 2])
+    for s in range(1, 6):
+        d = vector[NEW_D]
+        for i in range(k):
+            total = 0.0
+            for j in range(s):
+                total += EXPLICIT[s, j] * rate[j, i]
+            d[i] = vector[D, i] + h * total
+        normal_forces(k, work, d, p, force[s])
+        for i in range(n):
+            total = GAMMA * force[s, i]
+            for j in range(s):
+                total += IMPLICIT[s, j] * force[j, i]
+            q[i] = h * total
+            u1[i] = u[i]
+        add_velocity(n, W, q, u1)
+        if m > 0:
+            _friction(k, m, work, units, GAMMA * h, force[s], u1, tolerance)
+        for i in range(k):
+            a = 3 * i
+            rate[s, i] = -u1[a]
+            rate[s, k + i] = -(force[s, a + 1] * u1[a + 1] + force[s, a + 2] * u1[a + 2])
+    p0, p1, error = vector[P], vector[NEW_P], vector[ERROR]
+    for i in range(n):
+        total, wrong = 0.0, 0.0
+        for s in range(6):
+            total += WEIGHTS[s] * force[s, i]
+            wrong += DEFECT[s] * force[s, i]
+        p1[i] = p0[i] + h * total
+        q[i] = h * wrong
+        error[i] = 0.0
+    add_velocity(n, W, q, error)
+    worst = 0.0
+    for i in range(n):
+        worst = max(worst, abs(error[i]))
+    for i in range(k):
+        total, wrong = 0.0, 0.0
+        for s in range(6):
+            total += WEIGHTS[s] * rate[s, i]
+            wrong += DEFECT[s] * rate[s, i]
+        vector[NEW_D, i] = vector[D, i] + h * total
+        worst = max(worst, h * abs(wrong))
+    work.clock[0].error = worst
+
+
+#: implicit_step(address, k, m, work, units, h, p, tolerance)
+implicit_step = by_address(step_unit)
+
+
+@kernel
+def _friction(k, m, work, units, step, force, u, tolerance):
+    """Add friction to `force` and what it does within `step` to `u`."""
+    slot, vector = work.index[DISC], work.vector
+    c, t = vector[DISC_C], vector[DISC_T]
+    largest = 0.0
+    for s in range(m):
+        a = 3 * slot[s]
+        vector[RADIUS, s] = work.contact[slot[s]].mu * force[a]
+        c[2 * s] = u[a + 1] / step
+        c[2 * s + 1] = u[a + 2] / step
+        largest = max(largest, abs(c[2 * s]), abs(c[2 * s + 1]))
+    tolerance = tolerance / step + 1e-14 * largest
+    friction(
+        units.discs, m, work.matrix[DISCS], work.matrix[JACOBIAN], vector, work.index, tolerance
+    )
+    for s in range(m):
+        a = 3 * slot[s]
+        force[a + 1], force[a + 2] = t[2 * s], t[2 * s + 1]
+        x, y = step * t[2 * s], step * t[2 * s + 1]
+        row1, row2 = work.matrix[MASS, a + 1], work.matrix[MASS, a + 2]
+        for i in range(3 * k):
+            u[i] += x * row1[i] + y * row2[i]
+
+
+@kernel
+def advance(k, work, h):
+    """Take over the new state; add what friction has dissipated."""
+    rate, vector = work.stage[STAGE], work.vector
+    for i in range(3 * k):
+        vector[P, i] = vector[NEW_P, i]
+    for i in range(k):
+        vector[D, i] = vector[NEW_D, i]
+        loss = 0.0
+        for s in range(6):
+            loss += WEIGHTS[s] * rate[s, k + i]
+        work.contact[i].loss += max(0.0, h * loss)
+
+
+@kernel
+def interpolate(k, work, h):
+    """Write depths as polynomials of degree five in time, normal velocities as their derivatives.
+
+    Hermite's interpolation: depth, velocity and acceleration at both ends.
+    """
+    vector, W = work.vector, work.matrix[MASS]
+    a0, a1 = vector[SCRATCH], vector[ERROR]
+    for i in range(3 * k):
+        a0[i] = 0.0
+        a1[i] = 0.0
+    add_velocity(3 * k, W, work.stage[FORCE, 0], a0)
+    add_velocity(3 * k, W, work.stage[FORCE, 5], a1)
+    d, u = work.series[S_D], work.series[S_U]
+    for i in range(k):
+        n, b, l = 3 * i, i // LANES, i % LANES
+        y0, v0, w0 = vector[D, i], -vector[U, n], -a0[n]
+        y1, v1, w1 = vector[NEW_D, i], -vector[NEW_U, n], -a1[n]
+        # Remainders at the end after the Taylor polynomial of the start, times powers of h.
+        e0 = y1 - y0 - h * (v0 + 0.5 * h * w0)
+        e1 = h * (v1 - v0 - h * w0)
+        e2 = h * h * (w1 - w0)
+        d[0, b, l], d[1, b, l], d[2, b, l] = y0, v0, 0.5 * w0
+        d[3, b, l] = (10.0 * e0 - 4.0 * e1 + 0.5 * e2) / h**3
+        d[4, b, l] = (-15.0 * e0 + 7.0 * e1 - e2) / h**4
+        d[5, b, l] = (6.0 * e0 - 3.0 * e1 + 0.5 * e2) / h**5
+        for j in range(5):
+            u[j, b, l] = -(j + 1) * d[j + 1, b, l]
+        u[5, b, l] = 0.0

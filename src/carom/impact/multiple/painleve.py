@@ -1,0 +1,47 @@
+"""Impact without collision: a contact that slips and jams (Painleve; mathematics page, VI.6)."""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import entry, kernel
+from carom.impact.multiple.layout import OK, SEEDED
+from carom.impact.multiple.resolve import resolve_corner
+
+_SEED = 1e-7  # speed of approach given to a jammed contact, as a part of its slip
+
+
+@kernel
+def jams(W, u, mu, i):
+    """Return whether contact `i` slips without opening, and its own force presses it together.
+
+    k = W_nn - mu W_nt.u_t/|u_t| <= 0: no finite force holds it, whatever the loads.
+    """
+    n = 3 * i
+    x, y = u[n + 1], u[n + 2]
+    r = math.sqrt(x * x + y * y)
+    if not (r > 0.0 and u[n] <= 0.0):
+        return False
+    return W[n, n] - mu * (W[n, n + 1] * x + W[n, n + 2] * y) / r <= 0.0
+
+
+@entry
+def impact_without_collision(k, W, u, mu, e, law, kappa, settings, scratch, out):
+    """Resolve the impact of held contacts that jam; return (code, number of contacts that jam).
+
+    Arguments as of `resolve_corner`. A jammed contact begins with u_n = -1e-7 |u_t|: its depth grows like
+    an exponential until slip stops, and the result does not depend on that seed (to 1e-7).
+    """
+    v, count = scratch.work.vector[SEEDED], 0
+    for i in range(3 * k):
+        v[i] = u[i]
+    for i in range(k):
+        n = 3 * i
+        if u[n] > -_SEED * (abs(u[n + 1]) + abs(u[n + 2])) and jams(W, u, mu[i], i):
+            v[n] = -_SEED * math.sqrt(u[n + 1] * u[n + 1] + u[n + 2] * u[n + 2])
+            count += 1
+    code = resolve_corner(k, W, v, mu, e, law, kappa, settings, scratch, out)
+    if code == OK:
+        for i in range(3 * k):  # u+ = u + W P holds for what was given
+            out.velocity[i] += u[i] - v[i]
+    return code, count

@@ -1,0 +1,54 @@
+"""One group of contacts, in scaled variables: through the layer, plastically, or blow by blow."""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import kernel
+from carom.impact.multiple import restitution as r
+from carom.impact.multiple.adaptive import ENDED, start
+from carom.impact.multiple.layout import FIXED, PLASTIC, TRY, U
+from carom.impact.multiple.motion import into_lanes
+from carom.impact.multiple.plastic import end_plastically
+from carom.impact.multiple.restitution_iteration import meet_laws, run
+
+
+@kernel
+def all_plastic(k, work):
+    """Return whether no contact gives anything back."""
+    for i in range(k):
+        if work.contact[i].restitution > 0.0:
+            return False
+    return True
+
+
+@kernel
+def pass_group(k, work, cones, units, settings, result):
+    """Resolve the group of `k` contacts in `work`; velocities before are in row U0, impulses go to P."""
+    p = settings.exponent
+    r.energetic(k, work)
+    start(k, work)
+    if all_plastic(k, work):
+        end_plastically(units.plastic, k, work, cones, p)
+        result.plastic_change += work.clock[0].change
+        result.marks |= PLASTIC
+        return
+    into_lanes(k, work)
+    fixed = 0 if k <= settings.adaptive_up_to else settings.fixed_steps
+    ended = run(k, work, units, settings, settings.rtol, fixed, True)
+    if ended != ENDED and fixed == 0 and work.clock[0].steps >= settings.max_steps * k:
+        fixed = settings.fixed_steps
+        ended = run(k, work, units, settings, settings.rtol, fixed, True)
+    if r.any_aims(k, work) and ended == ENDED:
+        ended = meet_laws(k, work, units, settings, fixed, result)
+    if fixed > 0:
+        result.marks |= FIXED
+        for i in range(3 * k):
+            work.vector[TRY, i] = work.vector[U, i]
+        ended = run(k, work, units, settings, settings.rtol, 2 * fixed, True)
+        for i in range(3 * k):
+            result.error = max(result.error, abs(work.vector[TRY, i] - work.vector[U, i]))
+    result.steps += work.clock[0].steps
+    result.events += work.clock[0].events
+    if ended != ENDED:
+        end_plastically(units.plastic, k, work, cones, p)
+        result.plastic_change += work.clock[0].change
+        result.marks |= PLASTIC

@@ -1,0 +1,155 @@
+"""Newton's and Poisson's law for several contacts: an outer iteration on the whole event (V.4).
+
+Each law enters through an energetic coefficient e_* of each contact, with which Newton's target
+u_n+ = e v0, or Poisson's p_r = e p_c, is met. Logarithms x = ln e_* are iterated by Broyden's method, which
+begins as the fixed point e_* <- e_* target/reached. e_* <= 1 always: each contact gives back at most what it
+took, so that energy cannot grow for any law; where that is not enough the target is not met.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom.impact import laws
+from carom.impact.multiple.law import E_MIN
+from carom.impact.multiple.layout import (
+    INVERSE,
+    OUT_BEST,
+    OUT_BEST_F,
+    OUT_DF,
+    OUT_DX,
+    OUT_F,
+    OUT_H,
+    OUT_NEW,
+    OUT_X,
+    U,
+)
+
+_FARTHEST = 1.5  # greatest |ln(target/reached)| and step that is believed
+
+
+@kernel
+def energetic(k, work):
+    """Set e_* = e: Stronge's law, and the first guess for the others."""
+    for i in range(k):
+        c = work.contact[i]
+        c.e = min(1.0, max(E_MIN, c.restitution))
+
+
+@kernel
+def aims(c):
+    """Return whether the contact has a law of its own to meet."""
+    if c.law == laws.STRONGE or not c.restitution > 0.0:
+        return False
+    return c.law == laws.POISSON or c.approach > 0.0
+
+
+@kernel
+def any_aims(k, work):
+    """Return whether any contact has a law of its own to meet."""
+    for i in range(k):
+        if aims(work.contact[i]):
+            return True
+    return False
+
+
+@kernel
+def misses(k, work, out):
+    """Write ln(target/reached) of each contact; return the greatest that counts, and whether one is capped."""
+    worst, capped = 0.0, False
+    for i in range(k):
+        out[i] = 0.0
+        c = work.contact[i]
+        if not aims(c) or c.wedged == 1:  # no e_* would part what friction holds
+            continue
+        if c.law == laws.NEWTON:
+            target, reached = c.restitution * c.approach, work.vector[U, 3 * i]
+        else:
+            target, reached = c.restitution * c.loading, c.unloading
+        if not target > 0.0:
+            continue
+        miss = _FARTHEST
+        if reached > target * math.exp(-_FARTHEST):
+            miss = max(-_FARTHEST, math.log(target / reached))
+        if c.e >= 1.0 - 1e-12 and miss > 0.0:
+            capped = True
+            miss = 0.0
+        elif c.e <= E_MIN * (1.0 + 1e-12) and miss < 0.0:
+            miss = 0.0
+        out[i] = miss
+        worst = max(worst, abs(miss))
+    return worst, capped
+
+
+@kernel
+def begin(k, work, gain):
+    """Begin at the e_* in use, with the inverse Jacobian -gain: the plain fixed point, damped."""
+    for i in range(k):
+        work.vector[OUT_X, i] = math.log(work.contact[i].e)
+        for j in range(k):
+            work.matrix[INVERSE, i, j] = -gain if i == j else 0.0
+
+
+@kernel
+def keep_best(k, work):
+    """Remember the e_* in use and their misses as the best so far."""
+    for i in range(k):
+        work.vector[OUT_BEST, i] = work.vector[OUT_X, i]
+        work.vector[OUT_BEST_F, i] = work.vector[OUT_F, i]
+
+
+@kernel
+def back_to_best(k, work):
+    """Take the best e_* so far."""
+    for i in range(k):
+        work.vector[OUT_X, i] = work.vector[OUT_BEST, i]
+        work.contact[i].e = math.exp(work.vector[OUT_BEST, i])
+        work.vector[OUT_F, i] = work.vector[OUT_BEST_F, i]
+
+
+@kernel
+def improve(k, work):
+    """Step from the misses in row OUT_F: x <- x - J^-1 F, e_* in [e_min, 1]."""
+    o, H = work.vector, work.matrix[INVERSE]
+    for i in range(k):
+        step = 0.0
+        for j in range(k):
+            step -= H[i, j] * o[OUT_F, j]
+        if o[OUT_F, i] == 0.0:  # met, capped, or without an aim
+            step = 0.0
+        step = min(_FARTHEST, max(-_FARTHEST, step))
+        x = min(0.0, max(math.log(E_MIN), o[OUT_X, i] + step))
+        o[OUT_DX, i] = x - o[OUT_X, i]
+        o[OUT_X, i] = x
+        work.contact[i].e = math.exp(x)
+
+
+@kernel
+def learn(k, work):
+    """Broyden's rank-one update of the inverse Jacobian (the good one), from OUT_DX and OUT_NEW - OUT_F."""
+    o, H = work.vector, work.matrix[INVERSE]
+    for i in range(k):
+        o[OUT_DF, i] = o[OUT_NEW, i] - o[OUT_F, i]
+        o[OUT_F, i] = o[OUT_NEW, i]
+    bottom = 0.0
+    for i in range(k):
+        total = 0.0
+        for j in range(k):
+            total += H[i, j] * o[OUT_DF, j]
+        o[OUT_H, i] = total
+        bottom += o[OUT_DX, i] * total
+    size = 0.0
+    for i in range(k):
+        size += o[OUT_DX, i] * o[OUT_DX, i]
+    if not abs(bottom) > 0.05 * size:
+        return
+    for j in range(k):
+        row = 0.0
+        for i in range(k):
+            row += o[OUT_DX, i] * H[i, j]
+        o[OUT_NEW, j] = row / bottom
+    for i in range(k):
+        correction = o[OUT_DX, i] - o[OUT_H, i]
+        for j in range(k):
+            H[i, j] += correction * o[OUT_NEW, j]

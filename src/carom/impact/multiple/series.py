@@ -1,0 +1,266 @@
+"""A step of high order: the Taylor series of the layer between changes of mode, for p = 1.
+
+Normal forces are linear in the depth, friction of sticking contacts is linear in the other forces, and that
+of slipping ones follows order by order from q = u_t.u_t, r r = q, F r = mu N, T = -F u_t. Where slip may
+end soon time is stretched, dt = sigma dtau with 1/sigma = 1 + sum c_i/|u_t,i|: in tau slip fades like an
+exponential, and the series reaches far. Changes of mode are found on the series, without another step.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import inlined, kernel
+from carom.impact.multiple.four import add, load, multiply, same, store, subtract
+from carom.impact.multiple.law import OPEN
+from carom.impact.multiple.layout import (
+    CLOSED,
+    FINE,
+    HOLDING,
+    LANES,
+    MASS,
+    ONE_OVER,
+    ORDER_P,
+    ORDER_U,
+    PULL,
+    ROUGH,
+    S_D,
+    S_F,
+    S_FS,
+    S_G,
+    S_LANE,
+    S_LOSS,
+    S_N,
+    S_P,
+    S_P1,
+    S_P2,
+    S_Q,
+    S_R,
+    S_RATE,
+    S_SIGMA,
+    S_U,
+    S_U1,
+    S_U2,
+    SLIPPING,
+    SLOPE,
+    STICK_T,
+    STUCK,
+    WEIGHT,
+    D,
+    P,
+    U,
+)
+from carom.impact.multiple.simd import blocks, product, square
+
+_NEAR = 0.3  # slip may end within this time: stretch
+
+
+@kernel
+def degree_for(rtol):
+    """Return the degree at which a step costs least per length."""
+    return min(24, max(9, int(4.0 - 0.55 * math.log(rtol))))
+
+
+@kernel
+def slips(c):
+    """Return whether the friction of contact `c` is that of slip."""
+    return c.mode != OPEN and c.mu > 0.0 and c.sticks == 0
+
+
+@kernel
+def likely_force(c, d, u_n):
+    """Return the normal force of contact `c`, or of a moment later where it is only closing."""
+    force = c.slope * (d - c.rest)
+    return max(force, max(0.0, force) + _NEAR * c.slope * max(0.0, -u_n))
+
+
+@inlined
+def stretch_weights(k, work):
+    """Write c_i, the rate at which a contact's own friction can change its slip; return if it matters."""
+    stretched = False
+    u, d, weights = work.vector[U], work.vector[D], work.vector[WEIGHT]
+    for i in range(k):
+        weights[i] = 0.0
+        c = work.contact[i]
+        if slips(c):
+            n = 3 * i
+            r = math.sqrt(u[n + 1] * u[n + 1] + u[n + 2] * u[n + 2])
+            weights[i] = c.grip * likely_force(c, d[i], u[n])
+            if weights[i] * 2.0 > r:
+                stretched = True
+    return stretched
+
+
+@inlined
+def begin(k, work, stretched):
+    """Write order 0 of the series, and the numbers of each contact; return how many are closed."""
+    S, vector, closed = work.series, work.vector, 0
+    lane = S[S_LANE]
+    for b in range(blocks(k)):
+        for l in range(LANES):
+            i = LANES * b + l
+            slope, rest, rough, inverse, fine, r = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+            pull = 0.0
+            for s in range(3):
+                S[S_U + s, 0, b, l] = vector[U, 3 * i + s] if i < k else 0.0
+                S[S_P + s, 0, b, l] = vector[P, 3 * i + s] if i < k else 0.0
+            S[S_D, 0, b, l] = vector[D, i] if i < k else 0.0
+            S[S_LOSS, 0, b, l] = 0.0
+            if i < k:
+                c = work.contact[i]
+                if c.mode != OPEN:
+                    slope, rest = c.slope, c.rest
+                    work.index[CLOSED, closed] = i
+                    closed += 1
+                if slips(c):
+                    x, y = S[S_U1, 0, b, l], S[S_U2, 0, b, l]
+                    r = math.sqrt(x * x + y * y)
+                    rough, inverse, pull = c.mu, 1.0 / r, vector[WEIGHT, i]
+                    fine = 1.0 / math.sqrt(min(1.0, r))
+            S[S_N, 0, b, l] = slope * (S[S_D, 0, b, l] - rest)
+            S[S_R, 0, b, l] = r
+            S[S_G, 0, b, l] = inverse
+            lane[SLOPE, b, l], lane[ROUGH, b, l], lane[ONE_OVER, b, l] = slope, rough, inverse
+            lane[PULL, b, l], lane[FINE, b, l] = pull, fine
+        v = lane[ONE_OVER, b]
+        lane[SLIPPING, b, 0] = v[0] + v[1] + v[2] + v[3]
+    return closed
+
+
+@inlined
+def expand(k, z, closed, work, first, degree, stretched):
+    """Write the series of velocity, impulse and depth of orders `first` + 1 to `degree`.
+
+    Those up to `first` are there; `z` contacts stick (see `grip`).
+    """
+    S, lane = work.series, work.series[S_LANE]
+    line = S.shape[2] * LANES
+    un, u1, u2, d, normal = S[S_U], S[S_U1], S[S_U2], S[S_D], S[S_N]
+    pn, p1, p2, q, loss, sigma = S[S_P], S[S_P1], S[S_P2], S[S_Q], S[S_LOSS], S[S_SIGMA]
+    f = S[S_FS] if stretched else S[S_F]
+    for n in range(first, degree):
+        step = same(1.0 / (n + 1))
+        back = same(-1.0 / (n + 1))
+        for b in range(blocks(k)):
+            if lane[SLIPPING, b, 0] > 0.0:
+                _forces(line, S, LANES * b, n)
+        if stretched:
+            _stretch(k, line, S, n)
+        for b in range(blocks(k)):
+            p = LANES * b
+            i, o = n * line + p, (n + 1) * line + p
+            force, speed = load(normal, i), load(un, i)
+            if stretched:
+                force = product(line, normal, p, sigma, 0, 0, n)
+                speed = product(line, un, p, sigma, 0, 0, n)
+            depth = multiply(back, speed)
+            store(pn, o, multiply(step, force))
+            store(d, o, depth)
+            store(normal, o, multiply(load(lane, SLOPE * line + p), depth))
+            x, y, heat = same(0.0), same(0.0), same(0.0)
+            if lane[SLIPPING, b, 0] > 0.0:
+                if stretched:
+                    store(f, i, product(line, S[S_F], p, sigma, 0, 0, n))
+                x = product(line, f, p, u1, p, 0, n)
+                y = product(line, f, p, u2, p, 0, n)
+                heat = product(line, f, p, q, p, 0, n)
+            store(p1, o, multiply(back, x))
+            store(p2, o, multiply(back, y))
+            store(loss, o, multiply(step, heat))
+        _answer(k, closed, line, S, work.columns, work.index[CLOSED], n + 1)
+        if z > 0:
+            _hold(k, z, work, n + 1)
+
+
+@inlined
+def _forces(line, S, p, n):
+    """Write order `n` of |u_t|^2, |u_t| and mu N/|u_t| of the block at `p`."""
+    r, f, lane, i = S[S_R], S[S_F], S[S_LANE], n * line + p
+    g = load(lane, ONE_OVER * line + p)
+    q = add(square(line, S[S_U1], p, 0, n), square(line, S[S_U2], p, 0, n))
+    store(S[S_Q], i, q)
+    if n > 0:
+        q = subtract(q, square(line, r, p, 1, n))
+        store(r, i, multiply(multiply(same(0.5), q), g))
+    force = multiply(load(lane, ROUGH * line + p), load(S[S_N], i))
+    store(f, i, multiply(subtract(force, product(line, r, p, f, p, 1, n)), g))
+
+
+@kernel
+def _stretch(k, line, S, n):
+    """Write order `n` of dtau/dt = 1 + sum c_i/|u_t,i| and of dt/dtau, the same in all lanes."""
+    g, rate, sigma, lane, total = S[S_G], S[S_RATE], S[S_SIGMA], S[S_LANE], 1.0 if n == 0 else 0.0
+    for b in range(blocks(k)):
+        if lane[SLIPPING, b, 0] > 0.0:
+            p = LANES * b
+            if n > 0:
+                s = product(line, S[S_R], p, g, p, 1, n)
+                s = multiply(s, load(lane, ONE_OVER * line + p))
+                store(g, n * line + p, multiply(same(-1.0), s))
+            for l in range(LANES):
+                total += lane[PULL, b, l] * g[n, b, l]
+    store(rate, n * line, same(total))
+    if n == 0:
+        s = same(1.0 / total)
+    else:
+        s = multiply(same(-sigma[0, 0, 0]), product(line, rate, 0, sigma, 0, 1, n))
+    store(sigma, n * line, s)
+
+
+@inlined
+def _answer(k, closed, line, S, columns, slot, n):
+    """Write order `n` of the velocities: W times the impulses of the closed contacts."""
+    row, b0 = 3 * line, n * line  # of a column of W
+    for b in range(blocks(k)):
+        p = LANES * b
+        un, u1, u2 = same(0.0), same(0.0), same(0.0)
+        for a in range(closed):
+            i = slot[a]
+            o = 3 * i * row + p
+            for r in range(3):
+                x = same(S[S_P + r, n, i // LANES, i % LANES])
+                un = add(un, multiply(x, load(columns, o)))
+                u1 = add(u1, multiply(x, load(columns, o + line)))
+                u2 = add(u2, multiply(x, load(columns, o + 2 * line)))
+                o += row
+        store(S[S_U], b0 + p, un)
+        store(S[S_U1], b0 + p, u1)
+        store(S[S_U2], b0 + p, u2)
+
+
+@kernel
+def _hold(k, z, work, n):
+    """Add the friction of stick to order `n`."""
+    S, impulse, velocity = work.series, work.vector[ORDER_P], work.vector[ORDER_U]
+    for i in range(k):
+        for r in range(3):
+            impulse[3 * i + r] = S[S_P + r, n, i // LANES, i % LANES]
+            velocity[3 * i + r] = S[S_U + r, n, i // LANES, i % LANES]
+    stick(k, z, work, impulse, velocity)
+    for i in range(k):
+        for r in range(3):
+            S[S_P + r, n, i // LANES, i % LANES] = impulse[3 * i + r]
+            S[S_U + r, n, i // LANES, i % LANES] = velocity[3 * i + r]
+
+
+@kernel
+def stick(k, z, work, impulse, velocity):
+    """Add to `impulse` the friction that keeps the `z` sticking contacts at rest, and what it does."""
+    hold, slot, t = work.matrix[HOLDING], work.index[STUCK], work.vector[STICK_T]
+    for a in range(2 * z):
+        s, row = 0.0, hold[a]
+        for b in range(z):
+            n = 3 * slot[b]
+            s -= row[2 * b] * velocity[n + 1] + row[2 * b + 1] * velocity[n + 2]
+        t[a] = s
+    for b in range(z):
+        n = 3 * slot[b]
+        x, y = t[2 * b], t[2 * b + 1]
+        impulse[n + 1] += x
+        impulse[n + 2] += y
+        row1, row2 = work.matrix[MASS, n + 1], work.matrix[MASS, n + 2]
+        for i in range(3 * k):
+            velocity[i] += x * row1[i] + y * row2[i]
+    for b in range(z):
+        n = 3 * slot[b]
+        velocity[n + 1], velocity[n + 2] = 0.0, 0.0

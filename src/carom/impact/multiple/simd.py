@@ -1,0 +1,67 @@
+"""Series of four contacts at a time: coefficients of an order lie side by side, added four at once.
+
+Contact i is lane i % 4 of block i // 4. Lanes without a contact hold zeros. An array of a series is
+(ORDERS, B, 4); `line` is the distance of one order from the next, and `p` where a block begins in its order.
+"""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import kernel
+from carom.impact.multiple.four import add, load, multiply, same
+from carom.impact.multiple.layout import LANES
+
+
+@kernel
+def blocks(k):
+    """Return how many blocks `k` contacts fill."""
+    return (k + LANES - 1) // LANES
+
+
+@kernel
+def product(line, x, p, y, q, first, n):
+    """Return the sums over j = first .. n of x_j y_(n-j), of the blocks at `p` and `q`."""
+    s = same(0.0)
+    i, j = p + first * line, q + (n - first) * line
+    for _ in range(first, n + 1):
+        s = add(s, multiply(load(x, i), load(y, j)))
+        i += line
+        j -= line
+    return s
+
+
+@kernel
+def square(line, x, p, first, n):
+    """Return the sums over j = first .. n - first of x_j x_(n-j), each product once."""
+    s = same(0.0)
+    i, j = p + first * line, p + (n - first) * line
+    while i < j:
+        s = add(s, multiply(load(x, i), load(x, j)))
+        i += line
+        j -= line
+    s = add(s, s)
+    if i == j:
+        v = load(x, i)
+        s = add(s, multiply(v, v))
+    return s
+
+
+@kernel
+def values(line, x, p, degree, h):
+    """Return the four polynomials of a block at `h`."""
+    f, i = same(h), p + degree * line
+    s = load(x, i)
+    for _ in range(degree):
+        i -= line
+        s = add(multiply(s, f), load(x, i))
+    return s
+
+
+@kernel
+def value_and_slope(x, i, degree, h):
+    """Return the polynomial of contact `i` at `h`, and its derivative."""
+    b, l = i // LANES, i % LANES
+    s, slope = x[degree, b, l], 0.0
+    for j in range(degree - 1, -1, -1):
+        slope = slope * h + s
+        s = s * h + x[j, b, l]
+    return s, slope

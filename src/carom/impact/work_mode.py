@@ -1,0 +1,35 @@
+"""Energy across the return map: `impact_location="work"`.
+
+Moving back to the boundary at constant velocity would inject the work m g pen. Here the normal velocity
+at the boundary is changed so that the kinetic energy changes by the work of the applied forces along the
+return arc: u_n -> u_n', with (u_n'^2 - u_n^2)/(2 W_nn) = V(before) - V(after).
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom.dynamics.contact_impulse import (
+    add_velocity,
+    effective_inverse_mass,
+    spread,
+)
+from carom.kinematics.contact_point import (
+    contact_velocity,
+    place,
+)
+
+
+@kernel
+def restore_work(system, contact, state, drop, work):
+    """Change u_n at the core point of `work.hit` for the potential energy `drop` [J] that was lost."""
+    hit, point = work.hit[0], work.point[0]
+    place(contact, hit.point, state, point)
+    un = contact_velocity(point, state)[0]
+    if un < 0.0:
+        effective_inverse_mass(system, point, state, work, hit.W)
+        w_nn = hit.W[0, 0]
+        new = -math.sqrt(max(un * un + 2.0 * w_nn * drop, 0.0))
+        spread(system, point, state, (new - un) / w_nn, 0.0, 0.0, work)
+        add_velocity(system, point, work, state)

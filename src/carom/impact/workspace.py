@@ -1,0 +1,116 @@
+"""Scratch for the closed points of one group of bodies, taken together: made once for a run."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from carom._compiled.record_arrays import table
+from carom.collision.layout import MOST_POINTS
+from carom.friction.layout import ConeWork, cone_arrays
+from carom.impact.multiple.layout import (
+    CornerResult,
+    CornerScratch,
+    CornerSettings,
+    corner_arrays,
+    new_corner_result,
+)
+from carom.model.arrays import (
+    POINT,
+    STATE,
+    System,
+)
+
+#: most points that are solved for together
+MOST = 192
+
+#: a closed point: what touches, and where it stands in the list of held points
+SEAT = [
+    ("contact", "i8"),
+    ("feature", "i8"),
+    ("held", "i8"),  # place among the held points, -1 where it is open
+    ("stays", "i8"),  # 1 where it is to be held
+    ("point", "f8", 3),  # of the core, body axes
+    ("rows", "i8"),  # that the return to the surface uses
+    ("stopped", "i8"),  # 1 where slip has stopped within the step
+    ("turns", "i8"),  # of its POINT
+    ("parent", "i8"),  # of rolling and pivoting: the seat whose normal force bounds the torque
+]
+
+#: rows of `v`: velocities; velocities or accelerations without the unknown impulses; impulses or forces; those
+#: of the last round; multipliers of the way back to the surfaces, as of the last round
+U, C, P, OLD, BACK = range(5)
+
+
+class Cluster(NamedTuple):
+    """K points at most, of N bodies; few arrays, as each costs at every call.
+
+    Vectors (3K,) and matrices (3K, 3K) have rows n, t1, t2 a point.
+    """
+
+    seats: np.recarray  # (K,) SEAT
+    points: (
+        np.recarray
+    )  # (2, K) POINT: in the state at hand, or in the middle of a step; at its end
+    v: np.ndarray  # (5, 3K) vectors
+    m: np.ndarray  # (2, 3K, 3K) inverse mass W, and a factor
+    mu: np.ndarray  # (K,)
+    kind: np.ndarray  # (K,) of `carom.friction`
+    heading: np.ndarray  # (K, 2)
+    member: np.ndarray  # (N,) bodies of the group
+    flight: np.recarray  # (N,) STATE at the end of the step without the contacts
+    cone: ConeWork
+
+
+class Corner(NamedTuple):
+    """What the impact of several points needs beyond that, and its result."""
+
+    scratch: CornerScratch
+    settings: CornerSettings
+    result: CornerResult
+    e: np.ndarray  # (K,)
+    law: np.ndarray  # (K,)
+    kappa: np.ndarray  # (K,)
+
+
+def capacity(system: System) -> int:
+    """Return the greatest number of points that may be closed in one group."""
+    contacts = system.contacts
+    vertices, found = contacts["last"] - contacts["first"], contacts["touches"] == 1
+    if found.any():
+        points = np.where(found, MOST_POINTS, vertices)
+        return max(1, min(MOST, int(points.sum())))
+    count = np.zeros(system.bodies.size + 1, dtype=np.int64)
+    rows = 1 + (contacts["turning"] > 0.0).sum(axis=1)
+    np.add.at(count, system.bodies["component"][contacts["body"]], rows * vertices)
+    return max(1, min(MOST, int(count.max())))
+
+
+def new_cluster(system: System) -> Cluster:
+    """Return the scratch for the largest group of `system`."""
+    n, k = system.bodies.size, capacity(system)
+    return Cluster(
+        seats=table(SEAT, k),
+        points=table(POINT, 2, k),
+        v=np.zeros((5, 3 * k)),
+        m=np.zeros((2, 3 * k, 3 * k)),
+        mu=np.zeros(k),
+        kind=np.zeros(k, dtype=np.int64),
+        heading=np.zeros((k, 2)),
+        member=np.zeros(n, dtype=np.int64),
+        flight=table(STATE, n),
+        cone=cone_arrays(k),
+    )
+
+
+def new_corner(k: int, settings: CornerSettings) -> Corner:
+    """Return the scratch of impacts of `k` points."""
+    return Corner(
+        scratch=corner_arrays(k),
+        settings=settings,
+        result=new_corner_result(k),
+        e=np.zeros(k),
+        law=np.zeros(k, dtype=np.int64),
+        kappa=np.zeros(k),
+    )

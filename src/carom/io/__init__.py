@@ -1,0 +1,1 @@
+"""Files: saved runs and checkpoints, models in MJCF and URDF."""

@@ -1,0 +1,183 @@
+"""Where a run stands between two steps: all arrays that the loop goes on from.
+
+What a step writes before it reads it (the scratch of impacts, of groups and of heaps) is not kept, only how
+large it was. Addresses of compiled units are those of one process, and found again.
+"""
+
+from __future__ import annotations
+
+import math
+import zlib
+from collections.abc import Callable, Iterator, Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from carom import checks
+from carom.model import records as r
+from carom.model.arrays import Relations
+
+#: arrays that are the same in every run of a scene, or hold addresses
+FIXED = {
+    "islands.partner", "islands.partner_first", "islands.plane", "islands.plane_first",
+    "relations.relations", "relations.terms", "relations.user", "relations.pieces",
+    "relations.pushes", "relations.forces", "relations.named",
+}  # fmt: skip
+
+
+class Packed(NamedTuple):
+    """An array as it is in a file: unpacked when it is known to be one of the run."""
+
+    dtype: np.dtype
+    shape: tuple[int, ...]
+    data: bytes  # none: all zeros; shorter than the array: deflated
+
+    def unpacked(self) -> np.ndarray:
+        """Return the array."""
+        size = self.dtype.itemsize * math.prod(self.shape)
+        if not self.data:
+            return np.zeros(self.shape, self.dtype)
+        whole = self.data
+        if len(whole) < size:
+            whole = zlib.decompressobj().decompress(whole, size)
+        if len(whole) != size:
+            raise ValueError("an array of the checkpoint has another size than it should")
+        return np.frombuffer(whole, self.dtype).reshape(self.shape)
+
+
+class Checkpoint(NamedTuple):
+    """A run between two steps."""
+
+    found: dict[str, int]  # which units were compiled, and the sizes of what grows
+    arrays: Mapping[str, np.ndarray | Packed]  # by name, copies
+
+
+def capture(run) -> Checkpoint | None:
+    """Return where a run stands; None in the middle of a step."""
+    from carom.stepping.islands.layout import Islands  # with kernels: not needed to read a file
+
+    clock, search = run.clock[0], run.work.search[0]
+    islands = run.islands if isinstance(run.islands, Islands) else None
+    inside = clock.spent != 0.0 or search.pending != 0
+    if inside or (islands is not None and islands.plan[0].planned != 0):
+        return None
+    found = {
+        "hold": int(run.controls.hold_at != 0),
+        "corner": int(run.controls.corner_at != 0),
+        "heap": int(run.controls.heap_at != 0),
+        "spots": len(run.heap.spots),
+        "room": 0 if islands is None else len(islands.which),
+    }
+    return Checkpoint(found, {name: array.copy() for name, array in _arrays(run)})
+
+
+def restore(run, checkpoint: Checkpoint, records: r.Records) -> None:
+    """Put a new run of the same scene where another one stood; `records` are what that had written.
+
+    Raises
+    ------
+    ValueError
+        If the arrays are not those of this version of carom.
+    """
+    from carom.stepping.crowd.layout import roomier_heap
+    from carom.stepping.islands.layout import Islands, roomier
+
+    found = checkpoint.found
+    if found["hold"]:
+        run.find_constrained_step()
+        run.find_hold()
+    if found["corner"]:
+        run.find_corner()
+    if found["heap"]:
+        run.find_heap()
+        while len(run.heap.spots) < found["spots"]:
+            run.heap = roomier_heap(run.heap)
+    while isinstance(run.islands, Islands) and len(run.islands.which) < found["room"]:
+        run.islands = roomier(run.islands)
+    here = dict(_arrays(run))
+    if layout_of(here) != layout_of(checkpoint.arrays):
+        raise ValueError("the checkpoint was written by another version of carom")
+    for name, array in here.items():
+        kept = checkpoint.arrays[name]
+        array[...] = kept.unpacked() if isinstance(kept, Packed) else kept
+    _put_records(run, records)
+
+
+def packed(checkpoint: Checkpoint, add: Callable[[bytes], int]) -> dict:
+    """Return what an index has of a checkpoint; `add` takes bytes of a file, and returns where they stand."""
+    arrays = {}
+    for name, array in checkpoint.arrays.items():
+        data = array.data if isinstance(array, Packed) else _deflated(array)
+        kind = array.dtype.descr if array.dtype.names else array.dtype.str
+        arrays[name] = kind, array.shape, add(data), len(data)
+    return {"found": checkpoint.found, "arrays": arrays}
+
+
+def from_index(note: dict, data: memoryview) -> Checkpoint:
+    """Return a checkpoint: what `packed` has written."""
+    arrays = {}
+    for name, (kind, shape, start, length) in note["arrays"].items():
+        kind = [(f[0], f[1], *map(tuple, f[2:])) for f in kind] if isinstance(kind, list) else kind
+        dtype = np.dtype(kind)
+        sizes = [*shape, start, length]
+        if dtype.hasobject or not all(type(n) is int and n >= 0 for n in sizes):
+            raise ValueError(f"checkpoint: {name!r} is no array")
+        arrays[name] = Packed(dtype, tuple(shape), bytes(data[start : start + length]))
+    found = {str(name): checks.integer(name, n, least=0) for name, n in note["found"].items()}
+    return Checkpoint(found, arrays)
+
+
+def _deflated(array: np.ndarray) -> bytes:
+    """Return the bytes of an array, deflated where that is shorter; none if they are zeros."""
+    whole = np.ascontiguousarray(array).tobytes()
+    if not np.frombuffer(whole, "u1").any():
+        return b""
+    short = zlib.compress(whole, 1)
+    return short if len(short) < len(whole) else whole
+
+
+def layout_of(arrays: Mapping[str, np.ndarray | Packed]) -> dict[str, tuple]:
+    """Return type and shape of arrays by name."""
+    return {name: (_type_of(a), tuple(a.shape)) for name, a in sorted(arrays.items())}
+
+
+def _type_of(array: np.ndarray | Packed) -> str:
+    return str(array.dtype.descr if array.dtype.names else array.dtype.str)
+
+
+def _arrays(run) -> Iterator[tuple[str, np.ndarray]]:
+    """Go through the arrays of a run that are its state, by name."""
+    system = run.compiled.system
+    roots = {
+        "now": run.now, "clock": run.clock, "held": run.held, "work": run.work,
+        "islands": run.islands, "solver": system.solver, "watch": run.watch,
+    }  # fmt: skip
+    if isinstance(system.relations, Relations):
+        roots["relations"] = system.relations
+    for name, root in roots.items():
+        yield from _walk(name, root)
+
+
+def _walk(name: str, value) -> Iterator[tuple[str, np.ndarray]]:
+    if isinstance(value, np.ndarray):
+        if name not in FIXED and value.size:
+            yield name, value
+    elif isinstance(value, tuple):
+        for field, one in zip(value._fields, value):  # pyright: ignore[reportAttributeAccessIssue]
+            yield from _walk(f"{name}.{field}", one)
+
+
+def _put_records(run, records: r.Records) -> None:
+    """Copy what was written before the checkpoint into the records of a run, which grow as they do in one."""
+    clock = run.clock[0]
+    ends = {
+        "series": clock.saved, "state": clock.saved, "touch": clock.touched,
+        "impact": clock.struck, "event": clock.event, "snapshot": clock.snapped,
+    }  # fmt: skip
+    while len(run.records.series) < clock.saved:
+        run.records = r.more_rows(run.records)
+    grows = ("touch", "impact", "event", "snapshot")
+    while any(len(getattr(run.records, name)) < ends[name] for name in grows):
+        run.records = r.longer(run.records)
+    for name, end in ends.items():
+        getattr(run.records, name)[:end] = getattr(records, name)[:end]

@@ -1,0 +1,107 @@
+"""A solution as an xarray Dataset, and as pandas tables."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from carom.io.files.layout import EVENT, HELD, IMPACT, INTERVAL, LEDGER
+from carom.io.files.needs import need
+from carom.io.files.variables import attributes, contact_names, labelled
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+#: short names of the columns of a body
+BODY = {
+    "position": ("x", "y", "z"),
+    "orientation": ("qw", "qx", "qy", "qz"),
+    "velocity": ("vx", "vy", "vz"),
+    "angular_velocity": ("wx", "wy", "wz"),
+}
+ENDS = {3: {"axis": ("x", "y", "z"), "contact_axis": ("n", "t1", "t2")}}
+
+
+class Frames(NamedTuple):
+    """The tables of a run, each a `pandas.DataFrame`; SI units. Made by `Solution.to_pandas`."""
+
+    bodies: pd.DataFrame
+    """Saved times down, columns (body, quantity): ``bodies["die"].z`` is a height over time. Quantities
+    are x, y, z, the quaternion qw, qx, qy, qz, velocities vx, vy, vz and wx, wy, wz. In long form:
+    ``bodies.stack(0)``."""
+    energy: pd.DataFrame
+    """Saved times down: kinetic, potential and the entries of the ledger [J]."""
+    impacts: pd.DataFrame
+    """A row for each impact; vectors as columns ``impulse_n``, ``impulse_t1``, ..., ``point_x``, ...;
+    contacts by name."""
+    events: pd.DataFrame
+    """A row for each event: time, kind, contact."""
+    contacts: pd.DataFrame
+    """A row for each interval of contact that stays: contact, feature, start, end, mode."""
+    forces: pd.DataFrame
+    """A row for each held point and saved time: time, contact, body, other, mode, point, force."""
+
+
+def to_xarray(solution) -> xr.Dataset:
+    """Return all of a solution as a Dataset."""
+    xarray = need("xarray", "to_xarray")
+    variables = {
+        one.name: xarray.Variable(one.dims, one.data, one.attrs) for one in labelled(solution)
+    }
+    return xarray.Dataset(variables, attrs=attributes(solution))
+
+
+def to_pandas(solution) -> Frames:
+    """Return the tables of a solution."""
+    pandas = need("pandas", "to_pandas")
+    scene = solution.scene
+    contacts = np.array([*contact_names(scene)], dtype=object)
+    bodies = np.array([body.name for body in scene.bodies], dtype=object)
+    time = pandas.Index(solution.t, name="time")
+    blocks = [getattr(solution, name) for name in BODY]
+    names = [(body, q) for body in bodies for columns in BODY.values() for q in columns]
+    motion = np.concatenate(blocks, axis=2).reshape(len(time), -1)
+    columns = pandas.MultiIndex.from_tuples(names, names=["body", "quantity"])
+    energy = {"kinetic": solution.kinetic_energy, "potential": solution.potential_energy}
+    energy |= {name: getattr(solution.ledger, name) for name in LEDGER}
+    tables = [
+        _expanded(columns, table)
+        for columns, table in (
+            (IMPACT, solution.impacts), (EVENT, solution.events), (INTERVAL, solution.contacts),
+            (HELD, solution.forces),
+        )
+    ]  # fmt: skip
+    for table in tables:
+        table["contact"] = contacts[table["contact"]]
+    forces = {"time": solution.t[tables[3].pop("saved")], **tables[3]}
+    forces["body"] = bodies[forces["body"]]
+    other = forces["other"]
+    forces["other"] = np.where(other < 0, "", bodies[other]) if len(other) else other.astype(object)
+    frames = (pandas.DataFrame(table) for table in (*tables[:3], forces))
+    return Frames(
+        pandas.DataFrame(motion, index=time, columns=columns),
+        pandas.DataFrame(energy, index=time),
+        *frames,
+    )
+
+
+def _expanded(columns: dict, table) -> dict[str, np.ndarray]:
+    """Return columns of a table, one for each component of a vector."""
+    out = {}
+    for name, (dims, _, _) in columns.items():
+        data = getattr(table, name)
+        if not dims:
+            out[name] = data
+        elif len(dims) == 1:
+            for k, end in enumerate(ENDS[3][dims[0]]):
+                out[f"{name}_{end}"] = data[:, k]
+        else:
+            ends = ENDS[3]["contact_axis"]
+            out |= {
+                f"{name}_{a}_{b}": data[:, i, j]
+                for i, a in enumerate(ends)
+                for j, b in enumerate(ends)
+            }
+    return out

@@ -1,0 +1,222 @@
+"""Reading a run from its file.
+
+The file has not changed since it was written (`carom.io.files.sealed`), but anybody may have written it: all
+that is taken from it is looked at, sizes before anything is made of them, numbers of rows before they are used.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from carom import checks
+from carom.io.files import raw
+from carom.io.files.checkpoint import from_index
+from carom.io.files.kept import KeptRun
+from carom.io.files.layout import EVENT, IMPACT, INTERVAL, LEDGER
+from carom.io.files.scene_parts import scene_from_text
+from carom.io.files.sealed import Sealed, refusal, unsealed
+from carom.model import records as r
+from carom.options import Options
+from carom.results.event_tables import ContactTable, EventTable, ImpactTable
+from carom.results.ledger import Ledger
+from carom.status import Status
+from carom.stepping.settings import checked_settings
+
+SPATIAL = ("time", "body", "axis")
+#: dimensions of the variables that a solution is made of
+MOTION = {
+    "position": SPATIAL, "velocity": SPATIAL, "angular_velocity": SPATIAL,
+    "held_residual": ("time",),
+}  # fmt: skip
+DERIVED = {
+    "orientation": ("time", "body", "quaternion"),
+    "kinetic_energy": ("time",), "potential_energy": ("time",),
+}  # fmt: skip
+LENGTHS = {"axis": 3, "quaternion": 4, "contact_axis": 3, "contact_axis_2": 3}
+TYPES = ("<f8", "<i8", ">f8", ">i8")
+WHOLE = ("contact", "together", "wedged", "feature")  # columns of tables that count something
+
+
+def read(path: Path, functions: Mapping[str, Callable] | None = None) -> dict[str, Any]:
+    """Return the fields of a solution, and in ``cached`` its properties that were worked out already.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is no file.
+    ValueError
+        If it is foreign, damaged, or newer than this version of carom; if a function is none of the scene's.
+    """
+    file = unsealed(path)
+    try:
+        scene, missing = scene_from_text(file.index.get("scene", ""), functions)
+    except ValueError as error:
+        if str(error).startswith("functions must"):
+            raise
+        raise ValueError(refusal(path, f"its scene is broken: {error}")) from error
+    try:
+        return _fields(file, scene, missing)
+    except Exception as error:  # whatever a made-up index leads to
+        what = f"{type(error).__name__}: {error}"
+        raise ValueError(refusal(path, f"a part of it is missing or broken ({what})")) from error
+
+
+def _fields(file: Sealed, scene, missing: list[str]) -> dict[str, Any]:
+    index = file.index
+    attributes = index["attributes"]
+    options = Options(**json.loads(attributes["options"]))
+    settings = _settings(json.loads(attributes["settings"]), options)
+    arrays = _Arrays(file, len(scene.bodies))
+    records = raw.from_columns(arrays.column, arrays.sizes)
+    note = index["checkpoint"]
+    checkpoint = None if note is None else from_index(note, file.data)
+    run = KeptRun(scene, settings, options, records, checkpoint, missing, attributes)
+    check_numbers(records, run.contact_count)
+    derived = {name: arrays.array(name, dims) for name, dims in DERIVED.items()}
+    entries = [arrays.array(f"ledger_{name}", ("time",)) for name in LEDGER if name != "residual"]
+    return {
+        "t": arrays.array("time", ("time",)),
+        **{name: arrays.array(name, dims) for name, dims in MOTION.items()},
+        "status": Status[attributes["status"]],
+        "warnings": tuple(str(one) for one in json.loads(attributes["warnings"])),
+        "stats": {
+            str(name): checks.integer(name, n) if isinstance(n, int) else checks.number(name, n)
+            for name, n in json.loads(attributes["stats"]).items()
+        },
+        "scene": scene, "settings": settings, "_run": run, "_touch": records.touch,
+        "cached": {
+            **derived,
+            "impacts": ImpactTable(**arrays.table("impact", IMPACT)),
+            "events": EventTable(**arrays.table("event", EVENT)),
+            "contacts": ContactTable(**arrays.table("interval", INTERVAL)),
+            "ledger": Ledger(derived["kinetic_energy"], derived["potential_energy"], *entries),
+            **_cached(arrays),
+        },
+    }  # fmt: skip
+
+
+def _settings(given: dict, options: Options) -> dict:
+    """Return the settings of a run, looked at as those of `simulate` are."""
+    checked_settings(
+        given["duration"], given["step"], given["method"], given["impact_location"],
+        given.get("rtol"), given.get("atol"), given["save_every"], options,
+    )  # fmt: skip
+    return given
+
+
+class _Arrays:
+    """The arrays of a file by name: those that its index places in it, of the shape that they should have."""
+
+    def __init__(self, file: Sealed, bodies: int):
+        self.data, self.index = file.data, file.index
+        self.sizes = {
+            str(dim): checks.integer(f"size of {dim}", n, least=0)
+            for dim, n in file.index["sizes"].items()
+        } | LENGTHS
+        if self.sizes["time"] < 1 or self.sizes["body"] != bodies:
+            raise ValueError(f"it has {bodies} bodies, and {self.sizes['body']} rows for them")
+        for dims in raw.DIMS.values():
+            if 8 * math.prod(self.sizes[dim] for dim in dims) > len(self.data):
+                raise ValueError(f"it is too short for its sizes {self.sizes}")
+
+    def __contains__(self, name: str) -> bool:
+        return name in self.index["arrays"]
+
+    def array(self, name: str, dims: tuple[str, ...], kind: str | None = "f8") -> np.ndarray:
+        """Return a variable with these dimensions, of a kind or (None) of any."""
+        return self._placed(name, tuple(self.sizes[dim] for dim in dims), kind)
+
+    def column(self, name: str, same: str, shape: tuple[int, ...], kind) -> np.ndarray:
+        """Return a column of the records, or the variable that has the same bits."""
+        own = f"{raw.GROUP}/{name}"
+        return self._placed(own if own in self else same, shape, kind)
+
+    def table(self, prefix: str, columns: dict) -> dict[str, np.ndarray]:
+        """Return the columns of a table."""
+        out = {}
+        for column, (dims, _, _) in columns.items():
+            name = f"{prefix}_{column}"
+            kind = "i8" if column in WHOLE else None
+            out[column] = (
+                self._words(name, self.sizes[prefix])
+                if name in raw.WORDS
+                else self.array(name, (prefix, *dims), kind)
+            )
+        return out
+
+    def _words(self, name: str, rows: int) -> np.ndarray:
+        codes = np.frombuffer(self.index["words"][name].encode(), "u1") - ord("0")
+        if len(codes) != rows:
+            raise ValueError(f"{name} has {len(codes)} rows where {rows} should be")
+        return np.array(raw.WORDS[name])[codes]
+
+    def _placed(self, name: str, shape: tuple[int, ...], kind) -> np.ndarray:
+        stored, start = self.index["arrays"][name]
+        found = np.dtype(checks.choice(f"type of {name}", stored, TYPES))
+        own = found.newbyteorder("=")
+        if kind is not None and own != kind:
+            raise ValueError(f"{name} is of type {stored!r} where {np.dtype(kind).str!r} should be")
+        size = math.prod(shape)
+        most = len(self.data) - found.itemsize * size
+        checks.integer(f"place of {name}", start, least=0, most=most)
+        flat = np.frombuffer(self.data, found, size, start) if size else np.zeros(0)
+        return flat.reshape(shape).astype(own)
+
+
+def check_numbers(records: r.Records, contacts: int) -> None:
+    """Refuse numbers of rows that there are not: of contacts, bodies, saved times, events, snapshots.
+
+    Raises
+    ------
+    ValueError
+        With the column.
+    """
+    saved, bodies = records.state.shape
+    events, shots = len(records.event), len(records.snapshot)
+    ranges = {
+        "touch": {
+            "saved": (0, saved), "contact": (0, contacts), "body": (0, bodies),
+            "other": (-1, bodies), "mode": (0, 3),
+        },
+        "impact": {"contact": (0, contacts)},
+        "event": {
+            "kind": (0, len(r.EVENTS)), "contact": (0, contacts), "saved": (0, saved + 1),
+            "first": (0, shots + 1), "mode": (0, 3),
+        },
+        "snapshot": {"event": (0, events), "body": (0, bodies)},
+    }  # fmt: skip
+    for table, columns in ranges.items():
+        for name, (least, end) in columns.items():
+            column = getattr(records, table)[name]
+            if column.size and not (column.min() >= least and column.max() < end):
+                raise ValueError(
+                    f"{table}_{name} has numbers outside {least} to {end - 1}, of what is not there"
+                )
+
+
+def _cached(arrays: _Arrays) -> dict[str, Any]:
+    """Return what the file of a finished run holds of reactions, empty where there are none of a kind."""
+    if "position_error" not in arrays:
+        return {}
+    saved = arrays.sizes["time"]
+    errors = (arrays.array(name, ("time",)) for name in ("position_error", "velocity_error"))
+    out: dict[str, Any] = {
+        "joint_reactions": np.zeros((saved, 0, 6)),
+        "constraint_forces": np.zeros((saved, 0)),
+        "constraint_errors": tuple(errors),
+    }
+    if "joint_force" in arrays:
+        pair = [
+            arrays.array(name, ("time", "joint", "axis"))
+            for name in ("joint_force", "joint_torque")
+        ]
+        out["joint_reactions"] = np.concatenate(pair, axis=2)
+    if "constraint_force" in arrays:
+        out["constraint_forces"] = arrays.array("constraint_force", ("time", "row"))
+    return out

@@ -1,0 +1,75 @@
+"""Going on with a run from its file."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+from pathlib import Path
+
+from carom.io.files.kept import KeptRun
+from carom.results.solution import Solution
+from carom.status import Status
+
+
+def resume(
+    path: str | os.PathLike,
+    *,
+    functions: Mapping[str, Callable] | None = None,
+    save_seconds: float = 60.0,
+    progress: bool | Callable[[float, float], None] | None = None,
+    throw: bool = True,
+) -> Solution:
+    """Go on with a run that `simulate` was saving when it ended before its time.
+
+    With the same version of carom on the same machine the result is that of a run without interruption, bit
+    for bit. It is saved to the same file. The state that it goes on from is taken from the file as it is: go on
+    with files that are yours, or of somebody whom you trust.
+
+    Parameters
+    ----------
+    path : str or path
+        File of ``simulate(..., save=path)``. A run that has reached its end is returned as it is.
+    functions : mapping, optional
+        Functions of the user's that the scene has, which the file cannot hold: ``"part.field"`` (as in
+        ``"motor.force"``) to function. What they remember themselves between calls is not restored.
+    save_seconds, progress, throw
+        As of `simulate`.
+
+    Returns
+    -------
+    Solution
+
+    Raises
+    ------
+    ValueError
+        If the file is not that of a run, holds no checkpoint, or one of another version of carom; if
+        functions of the scene are missing, or one is none of it.
+    SimulationError
+        If the run fails later on and `throw` is True.
+    """
+    from carom.io.files.keeper import Keeper
+    from carom.stepping.run_to_end import finish
+    from carom.stepping.settings import check_handling
+
+    check_handling(progress, throw, save_seconds)
+
+    solution = Solution.load(path, functions=functions)
+    if solution.status.ended:
+        return solution
+    kept = solution._run
+    assert isinstance(kept, KeptRun)
+    if solution.status is not Status.INTERRUPTED or kept.checkpoint is None:
+        why = (
+            "it holds no checkpoint, which simulate(save=...) writes"
+            if solution.status is Status.INTERRUPTED
+            else f"it ended by itself: {solution.message}"
+        )
+        raise ValueError(f"path must be a file of a run to go on with, got {str(path)!r}: {why}")
+    if kept.missing:
+        names = ", ".join(map(repr, kept.missing))
+        raise ValueError(f"functions must be given for {names}, which the file does not hold")
+    try:
+        run = kept.revived()
+    except ValueError as error:
+        raise ValueError(f"path must be a run of this carom, got {str(path)!r}: {error}") from error
+    return finish(run, progress, Keeper(run, Path(path), save_seconds), throw)

@@ -1,0 +1,166 @@
+"""What is looked at in a scene that comes from a file: what is when its parts are added by hand.
+
+Records in a file are made without their constructors, which would change last digits. Here they are made once
+more with them, and what they then hold must be what the file says, up to rounding. Of hulls, meshes and
+compounds, which take long to make, sizes and numbers are looked at.
+"""
+
+from __future__ import annotations
+
+import inspect
+import math
+from dataclasses import fields, is_dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from carom import checks
+from carom.io.files.hull_check import check_compound, check_convex, check_mesh, check_piece
+from carom.scene import bodies, contacts, forces, joints, stops
+from carom.scene.compound import Compound
+from carom.scene.constraints import CONSTRAINTS, Constraint, Coupling, Gear, coordinate_kind
+from carom.scene.convex import Convex
+from carom.scene.materials import ContactLaw
+from carom.scene.mesh import Mesh
+from carom.scene.pieces import Piece
+from carom.scene.scene import Scene
+
+ROUNDING = 1e-9  # of what is worked out once more: of unit vectors, lengths, inertias
+KINDS = (bodies.Body, bodies.HalfSpace)
+
+
+def check_record(record: Any) -> None:
+    """Refuse a shape, material, law or definition that its constructor would not have made.
+
+    Raises
+    ------
+    TypeError, ValueError
+        With the field.
+    """
+    kind = type(record)
+    if kind in _LOOKS:
+        _LOOKS[kind](record)
+    elif kind is forces.Bushing:
+        pairs = ("stiffness", "turn_stiffness", "damping", "turn_damping")
+        given = {name: checks.finite_array(name, getattr(record, name), (3,))[:2] for name in pairs}
+        _same(record, forces.Bushing(**given, axis=record.axis, anchor=record.anchor))
+    else:
+        _same(record, kind(**{name: getattr(record, name) for name in _arguments(kind)}))
+
+
+def check_part(scene: Scene, part: Any) -> None:
+    """Refuse a part that the scene, with the parts before it, would not have taken.
+
+    Raises
+    ------
+    TypeError, ValueError
+        With the field.
+    """
+    parts = scene._parts
+    if not isinstance(part.name, str):
+        raise ValueError(f"name must be a string, got {part.name!r}")
+    index, _ = parts.new(type(part), part.name, "")
+    if type(part.index) is not int or part.index != index:
+        raise ValueError(f"index must be {index}, its place among its kind, got {part.index!r}")
+    _same(part, _made(parts, part))
+
+
+def check_pair(pair: frozenset) -> frozenset:
+    """Return a pair of parts that may touch, or be left out; refuse what is none."""
+    allowed = (*KINDS, bodies.Ground)
+    if len(pair) != 2 or not all(isinstance(one, allowed) for one in pair):
+        raise ValueError(f"a pair must be two bodies, or a body and a half-space, got {set(pair)}")
+    if not any(isinstance(one, bodies.Body) for one in pair):
+        raise ValueError(f"one of a pair must be a body, got {set(pair)}")
+    return pair
+
+
+def _made(parts, part: Any) -> Any:
+    """Return a part made once more from its fields."""
+    index, name = part.index, part.name
+    if isinstance(part, bodies.Body):
+        motion = part.position, part.orientation, part.velocity, part.angular_velocity
+        return bodies.make_body(
+            index, name, part.shape, part.mass, None, part.inertia, *motion, part.material
+        )
+    if isinstance(part, bodies.HalfSpace):
+        return bodies.make_half_space(index, name, part.point, part.normal, part.material)
+    if isinstance(part, joints.Joint):
+        checks.instance("definition", part.definition, joints.JOINTS)
+        parts.pair(part.parent, part.child)
+        frames = (None, None) if part.frames is None else part.frames
+        return joints.make_joint(index, name, part.definition, part.parent, part.child, *frames)
+    if isinstance(part, forces.AppliedForce):
+        checks.instance("definition", part.definition, forces.FORCES)
+        for one in forces.force_on(part.definition) or ():
+            parts.member("definition", one, (joints.Joint, bodies.Body))
+        parts.pair(part.parent, part.child)
+        return forces.make_force(index, name, part.definition, part.parent, part.child)
+    if isinstance(part, Constraint):
+        checks.instance("definition", part.definition, CONSTRAINTS)
+        for one in part.parts:
+            parts.member("definition", one, (joints.Joint, bodies.Body))
+        return part
+    if isinstance(part, stops.Stop):
+        parts.member("joint", part.joint, (joints.Joint,))
+        given = part.lower, part.upper, part.restitution, part.impact_law, part.coordinate
+        return stops.make_stop(index, name, part.joint, *given)
+    checks.instance("part", part, (contacts.Contact,))
+    return _made_contact(parts, part)
+
+
+def _made_contact(parts, part: contacts.Contact) -> contacts.Contact:
+    parts.member("body", part.body, (bodies.Body,))
+    parts.member("other", part.other, KINDS)
+    if part.body is part.other:
+        raise ValueError(f"body and other must be two, got {part.body!r} for both")
+    for one in (part.body, part.other):
+        if isinstance(one, bodies.Body) and one.shape is None:
+            raise ValueError(f"body must have a shape to touch with, got {one!r}")
+    law = {one.name: getattr(part, one.name) for one in fields(ContactLaw)}
+    places = {"index": part.index, "name": part.name, "body": part.body, "other": part.other}
+    return contacts.Contact(**places, **law)
+
+
+def _check_coupling(record: Coupling) -> None:
+    if not isinstance(record.terms, tuple) or not record.terms:
+        raise ValueError(f"terms must be a tuple of at least one, got {record.terms!r}")
+    for joint, coordinate, factor in record.terms:
+        coordinate_kind(joint, coordinate)
+        if checks.number("factor", factor) == 0.0:
+            raise ValueError("factor must not be 0, got 0")
+
+
+_LOOKS = {
+    Convex: check_convex, Mesh: check_mesh, Compound: check_compound, Piece: check_piece,
+    Coupling: _check_coupling, Gear: _check_coupling,
+}  # fmt: skip
+
+
+@cache
+def _arguments(kind: type) -> tuple[str, ...]:
+    return tuple(inspect.signature(kind).parameters)
+
+
+def _same(record: Any, made: Any) -> None:
+    """Refuse a record whose fields are not those of the one made once more, up to rounding."""
+    for one in fields(made):
+        here, there = getattr(record, one.name), getattr(made, one.name)
+        if not _near(here, there):
+            raise ValueError(f"{one.name} must be {there!r}, got {here!r}")
+
+
+def _near(a: Any, b: Any) -> bool:
+    if a is b:
+        return True
+    if isinstance(b, np.ndarray):
+        alike = isinstance(a, np.ndarray) and a.shape == b.shape and a.dtype == b.dtype
+        return alike and bool(np.all(np.abs(a - b) <= ROUNDING * np.max(np.abs(b), initial=0.0)))
+    if isinstance(b, float):
+        return type(a) in (int, float) and math.isclose(a, b, rel_tol=ROUNDING)
+    if isinstance(b, tuple):
+        return isinstance(a, tuple) and len(a) == len(b) and all(map(_near, a, b))
+    if is_dataclass(b) or type(a) is not type(b):
+        return False
+    return a == b

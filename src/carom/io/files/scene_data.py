@@ -1,0 +1,209 @@
+"""Values of a scene as JSON and back, bit for bit.
+
+Frozen records are written field by field, the derived ones too, and made again without their constructors:
+normalising a unit vector once more, or taking the hull of a hull, would change last digits. What is plain in
+JSON stands for itself, a list for an array of floats; all else is an object with one of the keys below.
+
+=============== ==================================================================
+``type``        a record: its class and its fields
+``part``        a body, joint, ... of the scene, by its name
+``ground``      `carom.GROUND`
+``shape``       a shape, by its place in the list of shapes (several bodies may share it)
+``dtype``       an array of another type, or one without elements (with its shape)
+``tuple``       a tuple
+``number``      nan, inf or -inf
+``polynomial``  a `scipy.interpolate.PPoly`
+``function``    a function of the user's: only its name
+=============== ==================================================================
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+import numpy as np
+
+from carom import checks
+from carom.io.files.scene_check import check_record
+from carom.scene.bodies import GROUND, Body, Ground, HalfSpace
+from carom.scene.constraints import CONSTRAINTS, Constraint, Gear
+from carom.scene.contacts import Contact
+from carom.scene.forces import FORCES, AppliedForce
+from carom.scene.joints import JOINTS, Joint
+from carom.scene.materials import ContactLaw, Material
+from carom.scene.pieces import Piece
+from carom.scene.shapes import SHAPES
+from carom.scene.stops import Stop
+from carom.scene.values import keep
+
+#: parts that have a name in the scene
+PARTS = (HalfSpace, Body, Joint, AppliedForce, Constraint, Stop, Contact)
+TYPES = {
+    kind.__name__: kind
+    for kind in (*PARTS, *SHAPES, *JOINTS, *FORCES, *CONSTRAINTS, Gear, ContactLaw, Material, Piece)
+}
+ARRAYS = ("<f8", "<i8", ">f8", ">i8", "|b1")
+
+
+class MissingFunction:
+    """Stands for a function of the user's that a file could not hold; calling it is an error."""
+
+    def __init__(self, name: str, was: str):
+        self.name, self.was = name, was
+
+    def __call__(self, *arguments):
+        """Say that it is missing."""
+        raise RuntimeError(
+            f"the function {self.name!r} ({self.was}) is not in the file, which holds data alone; give it: "
+            f"functions={{{self.name!r}: ...}}"
+        )
+
+    def __repr__(self) -> str:
+        return f"<function {self.name!r} ({self.was}), not in the file>"
+
+
+class Encoder:
+    """Values as JSON; collects the shapes that bodies share, and the functions that are left out."""
+
+    def __init__(self):
+        self.shapes: list = []
+        self.functions: list[str] = []
+        self._place: dict[int, int] = {}
+
+    def part(self, part) -> dict:
+        """Return a named part of a scene, with all its fields."""
+        return self._record(part, part.name)
+
+    def value(self, value: Any, where: str = "") -> Any:
+        """Return a value; `where` is what a function there is called."""
+        if value is None or isinstance(value, (bool, str)):
+            return value
+        if isinstance(value, (int, float, np.generic)):
+            return _number(value)
+        if isinstance(value, np.ndarray):
+            return _array(value)
+        if isinstance(value, tuple):
+            return {"tuple": [self.value(one, where) for one in value]}
+        if isinstance(value, Ground):
+            return {"ground": True}
+        if isinstance(value, PARTS):
+            return {"part": value.name}
+        if isinstance(value, SHAPES):
+            return {"shape": self._shape(value)}
+        if is_dataclass(value) and type(value).__name__ in TYPES:
+            return self._record(value, where)
+        if _is_polynomial(value):
+            curve: Any = value
+            return {"polynomial": _array(curve.c), "breaks": _array(curve.x)}
+        if callable(value):
+            self.functions.append(where)
+            return self.function(value, where)
+        raise TypeError(f"{where or 'a value'} cannot be written to a file, got {value!r}")
+
+    def function(self, value: Any, where: str) -> dict:
+        """Return what stands for a function of the user's."""
+        if isinstance(value, MissingFunction):
+            return {"function": where, "was": value.was}
+        module, name = (getattr(value, k, "") for k in ("__module__", "__qualname__"))
+        return {"function": where, "was": f"{module}.{name or type(value).__name__}"}
+
+    def _record(self, record, where: str) -> dict:
+        values = {}
+        for field in fields(record):
+            name = field.name if field.name == "definition" else f"{where}.{field.name}"
+            below = where if field.name == "definition" else name
+            values[field.name] = self.value(getattr(record, field.name), below)
+        return {"type": type(record).__name__, **values}
+
+    def _shape(self, shape) -> int:
+        if id(shape) not in self._place:
+            made = self._record(shape, "shape")  # its parts come before it
+            self._place[id(shape)] = len(self.shapes)
+            self.shapes.append(made)
+        return self._place[id(shape)]
+
+
+class Decoder:
+    """Values from JSON: the reverse of `Encoder`."""
+
+    def __init__(self, functions: Mapping[str, Callable] | None = None):
+        self.parts: dict[str, Any] = {}  # those that later ones may refer to
+        self.shapes: list = []
+        self.given = dict(functions or {})
+        self.missing: list[str] = []
+
+    def value(self, data) -> Any:
+        """Return the value that `data` stands for."""
+        if isinstance(data, list):
+            return _frozen(np.array(data, dtype=np.float64))
+        if not isinstance(data, dict):
+            return data
+        if "type" in data:
+            kind = TYPES[data["type"]]
+            record = object.__new__(kind)
+            keep(record, **{f.name: self.value(data[f.name]) for f in fields(kind)})
+            if not isinstance(record, PARTS):
+                check_record(record)
+            return record
+        if "dtype" in data:
+            if data["dtype"] not in ARRAYS:
+                raise ValueError(f"dtype must be one of {ARRAYS}, got {data['dtype']!r}")
+            array = np.array(data["array"], dtype=np.dtype(data["dtype"]))
+            return _frozen(array.reshape(data["of"]))
+        return self._reference(data)
+
+    def _reference(self, data: dict) -> Any:
+        if "part" in data:
+            return self.parts[data["part"]]
+        if "shape" in data:
+            return self.shapes[data["shape"]]
+        if "tuple" in data:
+            return tuple(self.value(one) for one in data["tuple"])
+        if "number" in data:
+            checks.choice("number", data["number"], ("nan", "inf", "-inf"))
+            return float(data["number"])
+        if "ground" in data:
+            return GROUND
+        if "polynomial" in data:
+            from scipy.interpolate import PPoly
+
+            c, x = self.value(data["polynomial"]), self.value(data["breaks"])
+            if not (np.all(np.isfinite(c)) and np.all(np.isfinite(x))):
+                raise ValueError("a polynomial must be finite")
+            return PPoly(c.copy(), x.copy())
+        name = str(data["function"])
+        if name in self.given:
+            return self.given[name]
+        self.missing.append(name)
+        return MissingFunction(name, data["was"])
+
+
+def _number(value) -> Any:
+    plain = value.item() if isinstance(value, np.generic) else value
+    if isinstance(plain, float) and not math.isfinite(plain):
+        return {"number": repr(plain)}
+    return plain
+
+
+def _array(array: np.ndarray) -> Any:
+    """Return a list where that says all, else type, shape and elements."""
+    if array.dtype == np.float64 and array.size and array.ndim and np.all(np.isfinite(array)):
+        return array.tolist()
+    elements = [repr(x) if x != x or abs(x) == math.inf else x for x in array.ravel().tolist()]
+    return {"dtype": array.dtype.str, "of": list(array.shape), "array": elements}
+
+
+def _frozen(array: np.ndarray) -> np.ndarray:
+    array.setflags(write=False)
+    return array
+
+
+def _is_polynomial(value) -> bool:
+    if not (hasattr(value, "c") and hasattr(value, "x")):
+        return False
+    from scipy.interpolate import PPoly
+
+    return isinstance(value, PPoly)

@@ -1,0 +1,125 @@
+"""A scene as one JSON text, and back."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+
+from carom import checks
+from carom.io.files.scene_check import check_pair, check_part
+from carom.io.files.scene_data import PARTS, Decoder, Encoder
+from carom.scene.materials import ContactLaw, checked_rule
+from carom.scene.scene import Scene
+
+#: what a missing function means, in the words of the file
+NOTE = (
+    "functions of the user's are not in the file: a scene read from it has placeholders there, which raise "
+    "an error when they are called"
+)
+
+
+def scene_to_text(scene: Scene, encoder: Encoder | None = None) -> str:
+    """Return a scene as JSON: its parts in the order added, and which pairs touch."""
+    encoder, pairs = encoder or Encoder(), scene._pairs
+    parts = [encoder.part(part) for part in scene._parts]
+    data = {
+        "gravity": scene.gravity.tolist(),
+        "shapes": encoder.shapes,
+        "parts": parts,
+        "own_pairs": _names(pairs._own),
+        "ignored_pairs": _names(pairs._ignored),
+        "combine": pairs._rules,
+        "contact_values": encoder.value(pairs._values),
+        "all_pairs": pairs.default is not None,
+        "functions": encoder.functions,
+    }
+    if encoder.functions:
+        data["note"] = NOTE
+    return json.dumps(data, allow_nan=False)
+
+
+def scene_from_text(
+    text: str, functions: Mapping[str, Callable] | None = None
+) -> tuple[Scene, list[str]]:
+    """Return a scene from its JSON, and the names of functions that are missing in it.
+
+    Parameters
+    ----------
+    text : str
+        What `scene_to_text` has written.
+    functions : mapping, optional
+        Functions of the user's by name, ``"part.field"``.
+
+    Raises
+    ------
+    ValueError
+        With the part that is wrong: if the text is no JSON, or a part is none that a scene would take; if a
+        name of `functions` is none that the scene knows.
+    """
+    with told("the text"):
+        checks.instance("a scene", text, (str,))
+        data = json.loads(text, parse_constant=_no_number)
+        checks.instance("a scene", data, (dict,))
+        known = [str(name) for name in data["functions"]]
+    unknown = set(functions or {}) - set(known)
+    if unknown:
+        names = ", ".join(map(repr, sorted(set(known)))) or "none"
+        raise ValueError(f"functions must have names of the file ({names}), got {min(unknown)!r}")
+    decoder = Decoder(functions)
+    for k, shape in enumerate(_list(data, "shapes")):
+        with told(f"shapes[{k}]"):
+            decoder.shapes.append(decoder.value(shape))
+    with told("gravity"):
+        scene = Scene(data["gravity"])
+    for k, part in enumerate(_list(data, "parts")):
+        with told(f"parts[{k}]"):
+            made = decoder.value(part)
+            checks.instance("a part", made, PARTS)
+            check_part(scene, made)
+            decoder.parts[made.name] = scene._parts.add(made)
+    with told("contacts"):
+        _put_pairs(scene, data, decoder)
+    return scene, decoder.missing
+
+
+def _put_pairs(scene: Scene, data: dict, decoder: Decoder) -> None:
+    """Let those pairs of a scene touch that do in the file."""
+    pairs, values = scene._pairs, decoder.value(data["contact_values"])
+    if values is not None:
+        checks.instance("contact_values", values, (ContactLaw,))
+    pairs._own, pairs._ignored = (
+        {check_pair(frozenset(map(decoder.value, pair))) for pair in data[name]}
+        for name in ("own_pairs", "ignored_pairs")
+    )
+    checks.instance("combine", data["combine"], (dict,))
+    pairs._rules = checked_rule(data["combine"])
+    pairs._values = values
+    pairs.default = values if checks.flag("all_pairs", data["all_pairs"]) else None
+
+
+@contextmanager
+def told(where: str) -> Iterator[None]:
+    """Say of whatever goes wrong with a part of a scene that it is that one."""
+    try:
+        yield
+    except Exception as error:
+        what = str(error) if isinstance(error, ValueError) else f"{type(error).__name__}: {error}"
+        raise ValueError(f"{where}: {what}") from error
+
+
+def _list(data: dict, name: str) -> list:
+    with told(name):
+        checks.instance(name, data[name], (list,))
+    return data[name]
+
+
+def _no_number(name: str):
+    raise ValueError(f"{name} is no number of JSON")
+
+
+def _names(pairs) -> list:
+    """Return pairs of parts, or of a part and the ground, in an order that does not depend on memory."""
+    encoder = Encoder()
+    named = [[encoder.value(p) for p in sorted(pair, key=lambda p: p.name)] for pair in pairs]
+    return sorted(named, key=json.dumps)

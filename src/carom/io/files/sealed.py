@@ -1,0 +1,104 @@
+"""The end of a file: what carom reads, and the digest by which damage is seen.
+
+A file is netCDF-4 (HDF5) from its first byte on, for all other programs. Behind it, where HDF5 does not look,
+stand carom's own arrays, an index of all arrays (JSON) and a line with the SHA-256 of all that is before. (In
+HDF5's user block, at the beginning, the digest would hide the signature by which xarray knows the file.)
+
+`Solution.load` takes its numbers from where the index says. So HDF5, whose library follows links to other
+files and does not survive every damaged file, never opens what carom reads.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import re
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from carom.io.files.layout import FORMAT
+
+BEFORE = "\ncarom run, format %3d, index of %15d bytes, sha256 "
+TAIL = re.compile(rb"\ncarom run, format +(\d+), index of +(\d+) bytes, sha256 ([0-9a-f]{64})\n")
+LENGTH = len(BEFORE % (0, 0)) + 64 + 1
+SIGNATURE = b"\x89HDF\r\n\x1a\n"
+ALLOWED = "allowed is a file that Solution.save or simulate(save=...) has written"
+
+
+class Sealed(NamedTuple):
+    """A file that is whole: all its bytes, and its index."""
+
+    data: memoryview
+    index: dict[str, Any]
+
+
+def seal(parts: list, index: dict[str, Any]) -> list:
+    """Return the bytes of a file, in parts: those given, their index, and the line with the digest."""
+    text = json.dumps(index, allow_nan=False).encode()
+    parts = [*parts, text, (BEFORE % (FORMAT, len(text))).encode()]
+    digest = hashlib.sha256()
+    for one in parts:
+        digest.update(one)
+    return [*parts, f"{digest.hexdigest()}\n".encode()]
+
+
+def unsealed(path: Path) -> Sealed:
+    """Return what is in a file, if no bit of it has changed since it was written.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there is none.
+    ValueError
+        If it is of another kind, damaged, or newer than this version of carom.
+    """
+    data = memoryview(_bytes(path))
+    tail = TAIL.fullmatch(data[-LENGTH:])
+    if tail is None:
+        raise ValueError(refusal(path, _what_it_is(bytes(data[: len(SIGNATURE)]))))
+    version, length, digest = int(tail[1]), int(tail[2]), tail[3].decode()
+    if hashlib.sha256(data[:-65]).hexdigest() != digest:
+        raise ValueError(refusal(path, "it is damaged: its digest is not that of its bytes"))
+    if version != FORMAT:
+        raise ValueError(
+            f"path must be a file in format {FORMAT}, got {str(path)!r} in format {version}: update carom to "
+            "read it"
+        )
+    start = len(data) - LENGTH - length
+    try:
+        index = json.loads(bytes(data[max(0, start) : -LENGTH]), parse_constant=_no_constant)
+    except (ValueError, RecursionError) as error:
+        raise ValueError(refusal(path, f"its index is broken ({error})")) from error
+    if start < 0 or not isinstance(index, dict):
+        raise ValueError(refusal(path, "its index is broken (it is no object)"))
+    return Sealed(data, index)
+
+
+def refusal(path: Path, why: str) -> str:
+    """Return what is said of a file that is not read."""
+    return f"path must be a file of a run, got {str(path)!r}: {why}; {ALLOWED}"
+
+
+def _bytes(path: Path) -> bytes:
+    if not path.exists():
+        raise FileNotFoundError(f"path must be a file of a run, got {str(path)!r}: there is none")
+    if not path.is_file():
+        what = "a folder" if path.is_dir() else "no file with contents of its own"
+        raise ValueError(refusal(path, f"it is {what}"))
+    try:
+        return path.read_bytes()
+    except MemoryError:
+        raise ValueError(refusal(path, "it is larger than the memory")) from None
+
+
+def _what_it_is(beginning: bytes) -> str:
+    if beginning != SIGNATURE:
+        return "it is not HDF5, or its beginning is lost"
+    return (
+        "it is HDF5 without the end that carom writes: of another program, cut short, changed since it was "
+        "written, or of an earlier carom (0.1 or before), which reads its own"
+    )
+
+
+def _no_constant(name: str):
+    raise ValueError(f"{name} is no number of JSON")

@@ -1,0 +1,205 @@
+"""A solution as labelled arrays: what a file and an xarray Dataset hold alike."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+
+from carom.io.files.layout import (
+    CITATION,
+    CONVENTIONS,
+    DOI,
+    EVENT,
+    FORMAT,
+    HELD,
+    IMPACT,
+    INTERVAL,
+    LABELS,
+    LEDGER,
+    Variable,
+    table_variables,
+)
+from carom.io.files.scene_parts import scene_to_text
+from carom.model.contact_rows import touching_pairs
+from carom.scene.constraints import COORDINATES
+from carom.scene.joints import Distance, Spherical
+
+
+def labelled(solution, reactions: bool = True) -> list[Variable]:
+    """Return all of a solution as variables.
+
+    With `reactions` those of joints, and their coordinates, too: they are worked out from the states.
+    """
+    scene = solution.scene
+    out = [
+        Variable(name, (name,), np.array(values), None, meaning)
+        for name, (values, meaning) in LABELS.items()
+    ]
+    names = np.array([body.name for body in scene.bodies])
+    out.append(Variable("time", ("time",), solution.t, "s", "saved times"))
+    out.append(Variable("body", ("body",), names, None, "bodies by name"))
+    out += _motion(solution)
+    out += table_variables("impact", "impact", IMPACT, solution.impacts)
+    out += table_variables("event", "event", EVENT, solution.events)
+    out += table_variables("interval", "interval", INTERVAL, solution.contacts)
+    out += table_variables("held", "held", HELD, solution.forces)
+    out += _contacts(solution)
+    missing = getattr(solution._run, "missing", ())  # functions that a file could not hold
+    if reactions and not (missing and "joint_reactions" not in vars(solution)):
+        out += _joints(solution) + _constraints(solution)
+    text = np.array(scene_to_text(scene), dtype=object)
+    out.append(Variable("scene", (), text, None, "the scene that was simulated, as JSON"))
+    return out
+
+
+def attributes(solution) -> dict[str, Any]:
+    """Return what is said of a run as a whole."""
+    import carom
+
+    return {
+        "Conventions": CONVENTIONS,
+        "title": "Motion of a multibody system with frictional impacts",
+        "source": f"carom {carom.__version__}",
+        "references": f"https://doi.org/{DOI}",
+        "citation": CITATION,
+        "carom_version": carom.__version__,
+        "carom_format": FORMAT,
+        "status": solution.status.name,
+        "message": solution.message,
+        "warnings": json.dumps(solution.warnings),
+        "stats": json.dumps(solution.stats),
+        "settings": json.dumps(solution.settings),
+        "options": json.dumps(solution._run.options.as_dict()),
+    }
+
+
+def _motion(solution) -> list[Variable]:
+    spatial, series = ("time", "body", "axis"), ("time",)
+    ledger = [
+        Variable(f"ledger_{name}", series, getattr(solution.ledger, name), "J", meaning)
+        for name, meaning in LEDGER.items()
+    ]
+    mass = np.array([body.mass for body in solution.scene.bodies])
+    return [
+        Variable("position", spatial, solution.position, "m", "mass centre, world axes"),
+        Variable(
+            "orientation", ("time", "body", "quaternion"), solution.orientation, "1",
+            "unit quaternion, body to world",
+        ),
+        Variable("velocity", spatial, solution.velocity, "m s-1", "of the mass centre, world axes"),
+        Variable(
+            "angular_velocity", spatial, solution.angular_velocity, "rad s-1", "world axes",
+        ),
+        Variable("mass", ("body",), mass, "kg", "mass of the body"),
+        Variable("kinetic_energy", series, solution.kinetic_energy, "J", "of all bodies"),
+        Variable("potential_energy", series, solution.potential_energy, "J", "gravity and springs"),
+        *ledger,
+        Variable(
+            "held_residual", series, solution.held_residual, "m s-1",
+            "how far held contacts are from their law, greatest since the saved time before",
+        ),
+    ]  # fmt: skip
+
+
+def contact_names(scene) -> list[str]:
+    """Return the names of all contacts in their order: those added, those by default, stops."""
+    pairs, bodies = touching_pairs(scene), scene.bodies
+    names = [contact.name for contact in scene.contacts]
+    for k in range(len(names), len(pairs.body)):
+        plane, other = pairs.plane[k], pairs.other[k]
+        second = scene.half_spaces[plane] if plane >= 0 else bodies[other]
+        names.append(f"{bodies[pairs.body[k]].name}-{second.name}")
+    return [*names, *(stop.name for stop in scene.stops)]
+
+
+def _contacts(solution) -> list[Variable]:
+    scene = solution.scene
+    names = contact_names(scene)
+    if not names:
+        return []
+    out = [Variable("contact", ("contact",), np.array(names), None, "contacts and stops by name")]
+    if scene.contact_default is not None:
+        return out  # too many for a place at each time: the rows of `held_*` say the same
+    return [
+        *out,
+        Variable(
+            "contact_mode", ("time", "contact"), solution.contact_mode, "1",
+            "0 open, 1 slipping, 2 sticking (or rolling, or at rest)",
+        ),
+        Variable(
+            "contact_force", ("time", "contact", "contact_axis"), solution.contact_force, "N",
+            "force of held contacts on the body",
+        ),
+    ]  # fmt: skip
+
+
+def _joints(solution) -> list[Variable]:
+    joints = solution.scene.joints
+    if not joints:
+        return []
+    names, reactions = np.array([j.name for j in joints]), solution.joint_reactions
+    spatial = ("time", "joint", "axis")
+    out = [
+        Variable("joint", ("joint",), names, None, "joints by name"),
+        Variable(
+            "joint_force", spatial, reactions[..., :3], "N", "on the child at its anchor, world axes",
+        ),
+        Variable(
+            "joint_torque", spatial, reactions[..., 3:], "N m",
+            "on the child about its anchor, world axes",
+        ),
+    ]  # fmt: skip
+    labels, units, q, rates = [], [], [], []
+    for joint in joints:
+        value, rate = solution.joint_coordinates(joint)
+        number = value.shape[1]
+        labels += [joint.name if number == 1 else f"{joint.name}[{k}]" for k in range(number)]
+        units += coordinate_units(joint)
+        q.append(value)
+        rates.append(rate)
+    if not labels:
+        return out
+    series = ("time", "coordinate")
+    return [
+        *out,
+        Variable("coordinate", ("coordinate",), np.array(labels), None, "coordinates of joints"),
+        Variable(
+            "coordinate_units", ("coordinate",), np.array(units), None, "units of joint_coordinate"
+        ),
+        Variable("joint_coordinate", series, np.hstack(q), None, "in coordinate_units"),
+        Variable("joint_rate", series, np.hstack(rates), None, "in coordinate_units a second"),
+    ]
+
+
+def coordinate_units(joint) -> list[str]:
+    """Return the units of the coordinates of a joint; none for one without."""
+    d = joint.definition
+    if isinstance(d, Distance):
+        return ["m"]
+    if isinstance(d, Spherical):
+        return ["rad"] * 3
+    return ["rad" if kind == "turn" else "m" for kind in COORDINATES.get(type(d), ())]
+
+
+def _constraints(solution) -> list[Variable]:
+    scene, out = solution.scene, []
+    if scene.constraints:
+        names = [
+            c.name if c.rows == 1 else f"{c.name}[{k}]"
+            for c in scene.constraints
+            for k in range(c.rows)
+        ]
+        forces = solution.constraint_forces
+        out += [
+            Variable("row", ("row",), np.array(names), None, "rows of constraints by name"),
+            Variable("constraint_force", ("time", "row"), forces, None, "multipliers, N or N m"),
+        ]
+    if scene.joints or scene.constraints:
+        position, velocity = solution.constraint_errors
+        out += [
+            Variable("position_error", ("time",), position, "m", "greatest of all joints"),
+            Variable("velocity_error", ("time",), velocity, "m s-1", "greatest of all joints"),
+        ]
+    return out

@@ -1,0 +1,83 @@
+"""What is at hand while a scene is made from a model: both, the names that are taken, what was made of what."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+from carom import checks
+from carom.io.models.report import Report
+from carom.results.solution import Solution
+from carom.scene.bodies import GROUND, Body, Ground, HalfSpace
+from carom.scene.joints import Joint
+from carom.scene.scene import Scene
+
+
+class Names:
+    """Names for the parts of a scene, where they are unique; in a model a body and a joint may share one."""
+
+    def __init__(self, reserved: Iterable[str]):
+        self._taken = set(reserved)
+
+    def new(self, wanted: str, kind: str) -> str:
+        """Return `wanted`, with its kind and a number where it is taken."""
+        name, number = wanted, 1
+        while name in self._taken:
+            name = f"{wanted} ({kind})" if number == 1 else f"{wanted} ({kind} {number})"
+            number += 1
+        self._taken.add(name)
+        return name
+
+
+class Coordinate(NamedTuple):
+    """A coordinate of a hinge or a slide of the model: ``q = start + sign * coordinate of the scene``.
+
+    Attributes
+    ----------
+    joint : Joint
+        Of the scene.
+    index : int
+        Which coordinate of it.
+    sign : float
+        1 or -1.
+    start : float
+        q at the start [rad or m].
+    """
+
+    joint: Joint
+    index: int
+    sign: float
+    start: float
+
+    def of(self, solution) -> tuple[Any, Any]:
+        """Return q and its rate, each (T,), at the saved times of a solution: in the terms of the model."""
+        checks.instance("solution", solution, (Solution,))
+        q, rate = solution.joint_coordinates(self.joint)
+        return self.start + self.sign * q[:, self.index], self.sign * rate[:, self.index]
+
+
+@dataclass
+class Build:
+    """A scene in the making."""
+
+    model: Any  # mujoco.MjModel
+    data: Any  # mujoco.MjData, at the start
+    scene: Scene
+    report: Report
+    names: Names
+    light: float  # masses of links between two joints of one body, as a part of the body's
+    bodies: dict[int, Body | Ground] = field(default_factory=lambda: {0: GROUND})  # of links
+    coordinates: dict[int, Coordinate] = field(default_factory=dict)  # of hinges and slides
+    balls: dict[int, Joint] = field(default_factory=dict)  # of ball joints
+    geoms: dict[int, Body | HalfSpace] = field(default_factory=dict)
+
+    def moving(self, body: int) -> Body:
+        """Return the body of the scene for one of the model that has joints."""
+        part = self.bodies[body]
+        assert isinstance(part, Body)
+        return part
+
+    def carrier(self, body: int) -> Body | Ground:
+        """Return the body of the scene that a body of the model is a part of."""
+        return self.bodies[int(self.model.body_weldid[body])]

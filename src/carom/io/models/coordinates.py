@@ -1,0 +1,145 @@
+"""What acts along the coordinates of joints: springs, dampers, dry friction, ends, the inertia of motors."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom.geometry import quaternion
+from carom.io.models.build import Build, Coordinate
+from carom.io.models.links import Link, name_of
+from carom.io.models.needs import need_mujoco
+from carom.scene import constraints, forces, joints
+from carom.scene.bodies import GROUND
+
+RELAXED = 1e-9  # angle, or distance by the extent of the model, within which a mount starts relaxed
+
+
+def add_coordinate_parts(build: Build, restitution: float, impact_law: str, armature: bool) -> None:
+    """Add what acts along each hinge and slide."""
+    for j, coordinate in build.coordinates.items():
+        _spring(build, j, coordinate)
+        _friction(build, j, coordinate)
+        _stops(build, j, coordinate, restitution, impact_law)
+        _armature(build, j, coordinate, armature)
+
+
+def _called(build: Build, j: int) -> tuple[str, str]:
+    """Return the name of a joint, and how it stands in the report."""
+    name = name_of(build.model.joint(j), "joint")
+    return name, f"joint {name!r}"
+
+
+def _spring(build: Build, j: int, c: Coordinate) -> None:
+    model, dof = build.model, build.model.jnt_dofadr[j]
+    stiffness, damping = float(model.jnt_stiffness[j]), float(model.dof_damping[dof])
+    if stiffness == 0.0 and damping == 0.0:
+        return
+    rest = c.sign * (float(model.qpos_spring[model.jnt_qposadr[j]]) - c.start)
+    spring = forces.JointSpring(
+        c.joint, max(stiffness, 0.0), damping, rest if stiffness else 0.0, c.index
+    )
+    if stiffness < 0.0:
+        build.report.add(_called(build, j)[1], f"stiffness {stiffness:g} is below 0", "left out")
+    build.scene.add_force(spring, name=build.names.new(f"{_called(build, j)[0]}:spring", "force"))
+
+
+def _friction(build: Build, j: int, c: Coordinate) -> None:
+    bound = float(build.model.dof_frictionloss[build.model.jnt_dofadr[j]])
+    if bound > 0.0:
+        name = build.names.new(f"{_called(build, j)[0]}:friction", "force")
+        build.scene.add_force(forces.JointFriction(c.joint, bound, c.index), name=name)
+
+
+def _stops(build: Build, j: int, c: Coordinate, restitution: float, law: str) -> None:
+    """Add both ends; one that the start is beyond is moved to where it starts."""
+    if not build.model.jnt_limited[j]:
+        return
+    name, called = _called(build, j)
+    ends = build.model.jnt_range[j] - c.start
+    for end, side, word in ((float(ends[0]), 1.0, "lower"), (float(ends[1]), -1.0, "upper")):
+        if side * end > 0.0:
+            build.report.add(
+                called,
+                f"starts beyond its {word} limit, by {side * end:.3g}",
+                "the limit is where it starts",
+            )
+            end = 0.0
+        which = "lower" if side * c.sign > 0.0 else "upper"
+        build.scene.add_stop(
+            c.joint,
+            **{which: c.sign * end},
+            restitution=restitution,
+            impact_law=law,
+            coordinate=c.index,
+            name=build.names.new(f"{name}:{word}", "stop"),
+        )
+
+
+def _armature(build: Build, j: int, c: Coordinate, represent: bool) -> None:
+    """Add a flywheel on the ground that turns by q as the joint moves by q: a q'^2 / 2, exactly."""
+    inertia = float(build.model.dof_armature[build.model.jnt_dofadr[j]])
+    if inertia == 0.0:
+        return
+    name, called = _called(build, j)
+    if not represent:
+        build.report.add(called, f"armature {inertia:g}", "left out, as armature=False asks for")
+        return
+    rate = float(build.data.qvel[build.model.jnt_dofadr[j]])
+    wheel = build.scene.add_body(
+        mass=1.0,
+        inertia=(inertia, inertia, inertia),
+        angular_velocity=(0.0, 0.0, c.sign * rate),
+        name=build.names.new(f"{name}:armature", "body"),
+    )
+    bearing = build.scene.add_joint(
+        joints.Revolute((0.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
+        GROUND,
+        wheel,
+        name=build.names.new(f"{name}:bearing", "joint"),
+    )
+    build.scene.add_constraint(
+        constraints.Coupling({(c.joint, c.index): 1.0, bearing: -1.0}),
+        name=build.names.new(f"{name}:rotor", "constraint"),
+    )
+
+
+def add_mounts(build: Build, links: list[Link]) -> None:
+    """Add springs and dampers of ball and free joints, and report what else such joints have."""
+    kinds = need_mujoco().mjtJoint
+    for link in links:
+        j = int(build.model.body_jntadr[link.body])
+        if build.model.jnt_type[j] == kinds.mjJNT_FREE:
+            _mount(build, j, link, GROUND, build.bodies[link.body], moves=True)
+    for j, joint in build.balls.items():
+        link = next(one for one in links if one.body == build.model.jnt_bodyid[j])
+        _mount(build, j, link, joint.parent, joint.child, moves=False)
+
+
+def _mount(build: Build, j: int, link: Link, parent, child, moves: bool) -> None:
+    model, data = build.model, build.data
+    name, called = _called(build, j)
+    dof, first = int(model.jnt_dofadr[j]), int(model.jnt_qposadr[j])
+    stiffness, damping = float(model.jnt_stiffness[j]), float(model.dof_damping[dof])
+    turn = first + 3 if moves else first
+    apart = np.linalg.norm(
+        quaternion.between(model.qpos_spring[turn : turn + 4], data.qpos[turn : turn + 4])
+    )
+    if moves:
+        way = model.qpos_spring[first : first + 3] - data.qpos[first : first + 3]
+        apart = max(apart, np.linalg.norm(way) / model.stat.extent)
+    if stiffness > 0.0 and apart > RELAXED:
+        build.report.add(called, "its spring is not relaxed at the start", "without this spring")
+        stiffness = 0.0
+    if stiffness > 0.0 or damping > 0.0:
+        k, d = (stiffness, stiffness), (damping, damping)
+        none = (0.0, 0.0)
+        anchor = data.xpos[link.body] if moves else data.xanchor[j]
+        mount = forces.Bushing(k if moves else none, k, d if moves else none, d, anchor=anchor)
+        build.scene.add_force(mount, parent, child, name=build.names.new(f"{name}:spring", "force"))
+    dofs = slice(dof, dof + (6 if moves else 3))
+    if np.any(model.dof_armature[dofs]):
+        build.report.add(called, "armature of a joint with several freedoms", "left out")
+    if np.any(model.dof_frictionloss[dofs]):
+        build.report.add(called, "dry friction of a joint with several freedoms", "left out")
+    if model.jnt_limited[j]:
+        build.report.add(called, f"limit {model.jnt_range[j][1]:g} rad of a ball joint", "left out")

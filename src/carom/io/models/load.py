@@ -1,0 +1,229 @@
+"""From a model to a scene."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from carom import checks
+from carom.io.models.build import Build, Names
+from carom.io.models.contacts import add_contacts
+from carom.io.models.coordinates import add_coordinate_parts, add_mounts
+from carom.io.models.equalities import add_equalities
+from carom.io.models.joints import join
+from carom.io.models.leftovers import report_leftovers
+from carom.io.models.links import Link, moving_links, name_of, possible_inertia
+from carom.io.models.model import Model
+from carom.io.models.needs import need_mujoco
+from carom.io.models.overlaps import lift_out, pose
+from carom.io.models.reading import compiled_model
+from carom.io.models.report import Report
+from carom.io.models.solids import Solid, add_standing, covering
+from carom.io.models.state import point_velocity, starting_data
+from carom.io.models.touching import Filter
+from carom.scene import forces
+from carom.scene.materials import IMPACT_LAWS
+from carom.scene.scene import Scene
+
+RESTITUTION = (
+    0.0  # where neither the caller nor the model has one: MuJoCo's own contacts hardly bounce
+)
+# masses and moments of links between two joints of one body, as a part of the body's: nothing to the solver of
+# trees; that of loops takes five times as long with lighter ones (`carom.dynamics.light_bodies`)
+LIGHT, LIGHT_IN_LOOPS = 1e-12, 1e-6
+
+
+def load_model(
+    source: str | os.PathLike | Any,
+    *,
+    restitution: float | None = None,
+    friction: float | None = None,
+    impact_law: str = "newton",
+    limit_restitution: float = 0.0,
+    keyframe: int | str | None = None,
+    qpos: ArrayLike | None = None,
+    qvel: ArrayLike | None = None,
+    free_root: bool = False,
+    contacts: bool = True,
+    armature: bool = True,
+    overlaps: str = "repair",
+    package_dirs: Sequence[str | os.PathLike] = (),
+) -> Model:
+    """Read a model in MJCF or URDF, and make a scene of it. Needs ``carom[models]``.
+
+    What a scene cannot say is in the report of the model; nothing is dropped in silence.
+
+    Parameters
+    ----------
+    source : path, str, mujoco.MjSpec or mujoco.MjModel
+        A file, or an XML text.
+    restitution : float, optional
+        Of all contacts, 0 to 1. Default: ``<custom><numeric name="restitution" data="..."/>`` of the model,
+        else 0. (Neither format has a number for it.)
+    friction : float, optional
+        Sliding friction of all contacts. Default: by MuJoCo's rule from the geoms of a pair, the greater of the
+        two, or that of the higher priority.
+    impact_law : {"newton", "poisson", "stronge"}
+        Of contacts and of limits. Default ``"newton"``.
+    limit_restitution : float
+        Of limits of joints. Default 0.
+    keyframe : int or str, optional
+        Number or name of the keyframe to start from. Default: the default configuration, at rest.
+    qpos : (nq,), optional
+        Coordinates to start from, as MuJoCo has them.
+    qvel : (nv,), optional
+        Velocities to start with.
+    free_root : bool
+        Give the one body on the world a free joint: for the URDF of a robot that walks or flies. Default False.
+    contacts : bool
+        False: nothing touches. Default True.
+    armature : bool
+        True (default): the inertia of motors in joints is that of flywheels, one a joint, which makes the scene
+        slower. False: leave it out.
+    overlaps : {"repair", "refuse"}
+        What starts inside another. ``"repair"`` (default): parts with a free joint are moved out of what
+        stands; other pairs do not touch at all. ``"refuse"``: an error.
+    package_dirs : sequence of path
+        Where ``package://`` of a URDF is looked for, besides the folders above the file.
+
+    Returns
+    -------
+    Model
+        With `scene`, `report`, and the parts by name.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        Without the package mujoco.
+    FileNotFoundError
+        If there is no such file.
+    TypeError, ValueError
+        If the model cannot be read (with MuJoCo's message), nothing in it moves, or an argument is outside its
+        range.
+    """
+    if restitution is not None:
+        checks.number("restitution", restitution, least=0.0, most=1.0)
+    if friction is not None:
+        friction = checks.number("friction", friction, least=0.0)
+    checks.choice("impact_law", impact_law, IMPACT_LAWS)
+    checks.number("limit_restitution", limit_restitution, least=0.0, most=1.0)
+    checks.choice("overlaps", overlaps, ("repair", "refuse"))
+    for name, value in (("free_root", free_root), ("contacts", contacts), ("armature", armature)):
+        checks.flag(name, value)
+    if isinstance(source, os.PathLike) or (isinstance(source, str) and "<" not in source):
+        checks.path("source", source)
+    package_dirs = [
+        checks.path("each of package_dirs", one)
+        for one in checks.listed("package_dirs", package_dirs, "paths")
+    ]
+    report = Report()
+    model = compiled_model(source, free_root, package_dirs, report)
+    loops = bool(np.any(model.eq_active0)) or (armature and bool(np.any(model.dof_armature)))
+    data, light = starting_data(model, keyframe, qpos, qvel), LIGHT_IN_LOOPS if loops else LIGHT
+    build, links = _new_build(model, data, report, light)
+    restitution = _restitution(model, restitution, report)
+    rules, contacts = Filter(model), contacts and not _disabled(model, "mjDSBL_CONTACT")
+    standing = add_standing(build, rules) if contacts else []
+    covers = {link.body: covering(build, link, rules) for link in links}
+    if overlaps == "repair":
+        lift_out(build, links, covers, standing, rules)
+    for link in links:
+        _add_body(build, link, covers[link.body][0])
+        join(build, link)
+    _add_gravcomp(build)
+    add_coordinate_parts(build, limit_restitution, impact_law, armature)
+    add_mounts(build, links)
+    add_equalities(build)
+    if contacts:
+        moving = [Solid(build.moving(one.body), covers[one.body][1], True) for one in links]
+        solids = [*moving, *standing]
+        add_contacts(build, solids, rules, restitution, friction, impact_law, overlaps == "refuse")
+    report_leftovers(model, report)
+    return _finished(build, links, covers, restitution)
+
+
+def _new_build(model, data, report: Report, light: float) -> tuple[Build, list[Link]]:
+    """Return what is at hand, and what moves."""
+    links = moving_links(model)
+    if not links:
+        raise ValueError("the model must have something that moves, got no body with a joint")
+    weightless = bool(int(model.opt.disableflags) & int(need_mujoco().mjtDisableBit.mjDSBL_GRAVITY))
+    scene = Scene(gravity=np.zeros(3) if weightless else model.opt.gravity)
+    names = Names(link.name for link in links)
+    return Build(model, data, scene, report, names, light), links
+
+
+def _disabled(model, flag: str) -> bool:
+    """Return whether a flag of the model switches something off."""
+    bit = int(getattr(need_mujoco().mjtDisableBit, flag))
+    return bool(int(model.opt.disableflags) & bit)
+
+
+def _restitution(model, given: float | None, report: Report) -> float:
+    """Return the restitution of all contacts: that of the caller, of the model, or the default."""
+    if given is not None:
+        return float(given)
+    for k in range(model.nnumeric):
+        if model.numeric(k).name == "restitution":
+            return checks.number(
+                "restitution of the model", float(model.numeric(k).data[0]), least=0.0, most=1.0
+            )
+    report.add("contacts", "the model has no restitution", f"restitution={RESTITUTION:g} for all")
+    return RESTITUTION
+
+
+def _add_body(build: Build, link: Link, shape) -> None:
+    """Add the body of a link where it stands and as it moves."""
+    centre, orientation = pose(build, link)
+    motion = point_velocity(build.model, build.data, link.body, centre)
+    inertia, change = possible_inertia(link.inertia)
+    if change > 1e-11:
+        what = f"its inertia is that of no body, by {change:.1e} of it"
+        build.report.add(f"body {link.name!r}", what, "the nearest that is")
+    build.bodies[link.body] = build.scene.add_body(
+        shape,
+        mass=link.mass,
+        inertia=inertia,
+        position=centre,
+        orientation=orientation,
+        velocity=motion[:3],
+        angular_velocity=motion[3:],
+        name=link.name,
+    )
+
+
+def _add_gravcomp(build: Build) -> None:
+    """Add the forces that bear a part of the weight of bodies."""
+    model = build.model
+    for b in np.flatnonzero(model.body_gravcomp):
+        lift = -model.body_gravcomp[b] * model.body_mass[b] * build.scene.gravity
+        if model.body_weldid[b] == 0 or not np.any(lift):
+            continue
+        name = build.names.new(f"{name_of(model.body(b), 'body')}:gravcomp", "force")
+        force = forces.Force(lift, anchor=build.data.xipos[b])
+        build.scene.add_force(force, build.carrier(int(b)), name=name)
+
+
+def _finished(build: Build, links, covers, restitution: float) -> Model:
+    """Return the model, with all parts by name."""
+    m = build.model
+    for link in links:
+        for g in covers[link.body][1]:
+            build.geoms[g] = build.moving(link.body)
+    return Model(
+        scene=build.scene,
+        report=build.report,
+        bodies={name_of(m.body(b), "body"): build.carrier(b) for b in range(m.nbody)},
+        joints={name_of(m.joint(j), "joint"): c for j, c in build.coordinates.items()},
+        geoms={name_of(m.geom(g), "geom"): part for g, part in sorted(build.geoms.items())},
+        restitution=restitution,
+        mujoco=m,
+        _start=build.data.qpos.copy(),
+        _links=links,
+        _coordinates=build.coordinates,
+        _balls=build.balls,
+    )

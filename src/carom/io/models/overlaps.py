@@ -1,0 +1,75 @@
+"""Models that start a little inside the floor: what is free to move is moved out."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom.io.models.build import Build
+from carom.io.models.links import Link
+from carom.io.models.needs import need_mujoco
+from carom.io.models.solids import Solid
+from carom.io.models.state import place
+from carom.io.models.touching import Filter
+from carom.scene.bodies import Body, make_body
+from carom.scene.contacts import overlap
+from carom.scene.shapes import Shape
+
+ROUNDS = 20
+Covers = dict[int, tuple[Shape | None, list[int]]]
+
+
+def lift_out(build: Build, links: list[Link], covers: Covers, standing: list[Solid], rules: Filter):
+    """Move what hangs on free joints out of what stands, each time by the deepest overlap.
+
+    MuJoCo's contacts are soft: a body at rest is inside the floor. Here none may be.
+    """
+    model, data = build.model, build.data
+    for root in links:
+        joint = int(model.body_jntadr[root.body])
+        if model.jnt_type[joint] != need_mujoco().mjtJoint.mjJNT_FREE:
+            continue
+        tree = [one for one in links if model.body_rootid[one.body] == root.body]
+        first, way = int(model.jnt_qposadr[joint]), np.zeros(3)
+        for _ in range(ROUNDS):
+            depth, normal = _deepest(build, tree, covers, standing, rules)
+            if depth <= 0.0:
+                break
+            way += depth * (1.0 + 1e-9) * normal
+            data.qpos[first : first + 3] += depth * (1.0 + 1e-9) * normal
+            place(model, data)
+        if np.any(way):
+            text = f"starts {np.linalg.norm(way):.3g} m inside what stands"
+            build.report.add(f"body {root.name!r}", text, f"moved by {way.round(9).tolist()} m")
+
+
+def _deepest(build: Build, tree, covers: Covers, standing, rules: Filter):
+    """Return depth and way out of the deepest overlap of a tree with what stands."""
+    deepest, way = 0.0, np.zeros(3)
+    for link in tree:
+        shape, geoms = covers[link.body]
+        if not geoms:
+            continue
+        body = make_body(0, link.name, shape, 1.0, None, (1, 1, 1), *pose(build, link), way, way)
+        for solid in standing:
+            if rules.between(geoms, solid.geoms).friction is None or not near(body, solid.part):
+                continue
+            depth, normal = overlap(body, solid.part)
+            if depth > deepest:
+                deepest, way = depth, normal
+    return deepest, way
+
+
+def pose(build: Build, link: Link) -> tuple[np.ndarray, np.ndarray]:
+    """Return position of the mass centre and orientation of a link in the world."""
+    axes = build.data.xmat[link.body].reshape(3, 3)
+    return build.data.xpos[link.body] + axes @ link.centre, build.data.xquat[link.body]
+
+
+def near(body: Body, other) -> bool:
+    """Return whether the balls around the two meet."""
+    assert body.shape is not None
+    if not isinstance(other, Body):
+        return float((body.position - other.point) @ other.normal) <= body.shape.size
+    assert other.shape is not None
+    reach = body.shape.size + other.shape.size
+    return float(np.linalg.norm(body.position - other.position)) <= reach

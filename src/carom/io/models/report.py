@@ -1,0 +1,78 @@
+"""What a scene does not say as its model did: a list of entries, printed with equal ones together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+from carom import checks
+
+SHOWN = 4  # names of elements that are printed before "and 17 more"
+
+
+class Entry(NamedTuple):
+    """One thing of a model that is not in the scene as it was.
+
+    Attributes
+    ----------
+    element : str
+        Kind and name, such as ``"actuator 'elbow'"``.
+    what : str
+        What was not represented, or was changed.
+    instead : str
+        What was done in its place.
+    """
+
+    element: str
+    what: str
+    instead: str
+
+    def __str__(self) -> str:
+        return f"{self.element}: {self.what}; {self.instead}"
+
+
+class Report(Sequence[Entry]):
+    """All entries of a model. Print it: elements with the same fate stand in one line."""
+
+    def __init__(self):
+        self._entries: list[Entry] = []
+
+    def add(self, element: str, what: str, instead: str) -> None:
+        """Add an entry."""
+        for name, given in (("element", element), ("what", what), ("instead", instead)):
+            checks.text(name, given)
+        self._entries.append(Entry(element, what, instead))
+
+    def __getitem__(self, index):
+        return self._entries[index]
+
+    def __len__(self) -> int:
+        return len(self._entries)
+
+    def __iter__(self) -> Iterator[Entry]:
+        return iter(self._entries)
+
+    def of(self, element: str) -> list[Entry]:
+        """Return the entries whose element has this text in it: a name, or a kind such as ``"actuator"``."""
+        checks.text("element", element)
+        return [entry for entry in self._entries if element in entry.element]
+
+    def __str__(self) -> str:
+        if not self._entries:
+            return "all of the model is in the scene"
+        groups: dict[tuple[str, str], list[str]] = {}
+        for element, what, instead in self._entries:
+            groups.setdefault((what, instead), []).append(element)
+        return "\n".join(
+            f"{_listed(elements)}: {what}; {instead}"
+            for (what, instead), elements in groups.items()
+        )
+
+    def __repr__(self) -> str:
+        return f"<Report: {len(self._entries)} entries>"
+
+
+def _listed(elements: list[str]) -> str:
+    more = len(elements) - SHOWN
+    text = ", ".join(elements[:SHOWN])
+    return f"{text} and {more} more" if more > 0 else text

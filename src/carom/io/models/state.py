@@ -1,0 +1,74 @@
+"""Where a model stands at the start: the default, a keyframe, or coordinates that are given."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from carom import checks
+from carom.io.models.needs import need_mujoco
+
+
+def starting_data(model, keyframe, qpos, qvel) -> Any:
+    """Return ``mujoco.MjData`` of a model at its start, with the poses of all bodies.
+
+    Parameters
+    ----------
+    model : mujoco.MjModel
+    keyframe : int, str or None
+        Number or name; None is the default configuration at rest.
+    qpos : (nq,) or None
+    qvel : (nv,) or None
+        In place of those of the keyframe.
+    """
+    mujoco = need_mujoco()
+    data = mujoco.MjData(model)
+    if keyframe is not None:
+        k = key_number(model, keyframe)
+        mujoco.mj_resetDataKeyframe(model, data, k)
+    if qpos is not None:
+        data.qpos[:] = checks.finite_array("qpos", qpos, (model.nq,))
+    if qvel is not None:
+        data.qvel[:] = checks.finite_array("qvel", qvel, (model.nv,))
+    place(model, data)
+    return data
+
+
+def place(model, data) -> None:
+    """Work out the poses of all bodies and joints from the coordinates."""
+    mujoco = need_mujoco()
+    mujoco.mj_normalizeQuat(model, data.qpos)
+    mujoco.mj_kinematics(model, data)
+    mujoco.mj_comPos(model, data)
+
+
+def key_number(model, keyframe) -> int:
+    """Return the number of a keyframe given by number or name."""
+    names = [model.key(k).name for k in range(model.nkey)]
+    if isinstance(keyframe, str):
+        if keyframe in names:
+            return names.index(keyframe)
+    elif isinstance(keyframe, (int, np.integer)) and not isinstance(keyframe, bool):
+        if 0 <= keyframe < model.nkey:
+            return int(keyframe)
+    named = ", ".join(repr(name) for name in names if name) or "without names"
+    raise ValueError(
+        f"keyframe must be a name or a number below {model.nkey}, the number of keyframes of the model "
+        f"({named}), got {checks.shown(keyframe)}"
+    )
+
+
+def point_velocity(model, data, body: int, point: np.ndarray, without=()) -> np.ndarray:
+    """Return velocity and angular velocity (6,), world axes, of a point that goes with a body.
+
+    Parameters
+    ----------
+    without
+        Numbers of velocities that are taken as 0: those of the later joints of a body, for a link between two.
+    """
+    linear, angular = np.zeros((3, model.nv)), np.zeros((3, model.nv))
+    need_mujoco().mj_jac(model, data, linear, angular, np.array(point, dtype=float), body)
+    rates = data.qvel.copy()
+    rates[list(without)] = 0.0
+    return np.concatenate([linear @ rates, angular @ rates])

@@ -1,0 +1,90 @@
+"""URDF before MuJoCo reads it: where its meshes are, and no link lost.
+
+MuJoCo knows no ``package://`` and reads STL, OBJ and MSH. Meshes of ``<visual>`` are not needed at all. Links
+without joints are kept, so that their names are (`carom.io.models.links` joins them to what carries them).
+"""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from collections.abc import Iterable
+from pathlib import Path
+
+from carom.io.models.report import Report
+from carom.io.models.urdf_inertia import mend_inertias
+
+READ = (".stl", ".obj", ".msh")
+
+
+def prepared(root: ET.Element, folder: Path | None, package_dirs: Iterable, report: Report) -> str:
+    """Return the text of a URDF that MuJoCo can read.
+
+    Parameters
+    ----------
+    root
+        The element ``<robot>``; it is changed.
+    folder
+        Where the file lies; None for a text.
+    package_dirs
+        Folders that hold packages, or are ones.
+    report
+        Gets what had to be left out or changed.
+    """
+    for link in root.iter("link"):
+        for visual in link.findall("visual"):
+            link.remove(visual)
+        for collision in link.findall("collision"):
+            mesh = collision.find("geometry/mesh")
+            if mesh is None:
+                continue
+            name = mesh.get("filename", "")
+            found = located(name, folder, package_dirs)
+            why = "was not found" if found is None else unreadable(found)
+            if found is not None and why is None:
+                mesh.set("filename", str(found))
+                continue
+            report.add(f"link {link.get('name')!r}", f"its mesh {name!r} {why}", "left out")
+            link.remove(collision)
+    mend_inertias(root, report)
+    options = root.find("mujoco")
+    if options is None:
+        options = ET.SubElement(root, "mujoco")
+    compiler = options.find("compiler")
+    if compiler is None:
+        compiler = ET.SubElement(options, "compiler")
+    compiler.attrib.update(strippath="false", fusestatic="false")
+    compiler.attrib.pop("meshdir", None)  # meshes have their full paths now
+    return ET.tostring(root, encoding="unicode")
+
+
+def unreadable(path: Path) -> str | None:
+    """Return why MuJoCo cannot read a mesh; None if it can."""
+    if path.suffix.lower() not in READ:
+        return f"is none of {', '.join(READ)}"
+    if path.suffix.lower() == ".stl":
+        size = path.stat().st_size
+        with path.open("rb") as file:
+            head = file.read(84)
+        if len(head) < 84 or size < 84 + 50 * int.from_bytes(head[80:84], "little"):
+            return "is no binary STL"
+    return None
+
+
+def located(name: str, folder: Path | None, package_dirs: Iterable) -> Path | None:
+    """Return the file of a mesh, or None.
+
+    ``package://robot/mesh.stl`` is looked for as ``robot/mesh.stl``, and as ``mesh.stl`` in a folder called
+    ``robot``, in `package_dirs`, in the folder of the URDF and in all above it.
+    """
+    above = [] if folder is None else [folder, *folder.parents]
+    given = [Path(one).resolve() for one in package_dirs]
+    if name.startswith("file://"):
+        tries = [Path(name.removeprefix("file://"))]
+    elif "://" in name:
+        rest = Path(name.split("://", 1)[1])
+        inside = Path(*rest.parts[1:])
+        tries = [place / rest for place in (*given, *above)]
+        tries += [place / inside for place in (*given, *above) if place.name == rest.parts[0]]
+    else:
+        tries = [place / name for place in (*above[:1], *given)]
+    return next((path for path in tries if path.is_file()), None)

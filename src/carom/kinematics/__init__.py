@@ -1,0 +1,1 @@
+"""Where points, joints and coordinates are and how they move; free flight in closed form."""

@@ -1,0 +1,130 @@
+"""A point of contact: where it is and how it moves, u = G v.
+
+G maps the velocities of all bodies to u = (u_n, u_t1, u_t2), the velocity of body a relative to body b at
+the point. (Paper, change of coordinates at contact.)
+"""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import kernel
+from carom.geometry.rotation import cross, rotate
+from carom.kinematics.wrench import point_velocity
+
+
+@kernel
+def place(contact, p, state, point):
+    """Write the point at which the core point p (body axes) touches the half-space, or would."""
+    b, n, r = contact.body, contact.axes, contact.radius
+    q, x, core, arm, axes = state[b].Q, state[b].x, point.core, point.arm_a, point.axes
+    core[0], core[1], core[2] = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
+    point.a, point.b, point.turns = b, -1, 0
+    gap = -contact.offset
+    for k in range(3):
+        arm[k] = core[k] - r * n[0, k]
+        gap += n[0, k] * (x[k] + arm[k])
+        for i in range(3):
+            axes[i, k] = n[i, k]
+    point.gap = gap
+
+
+@kernel
+def copy_point(p, q):
+    """Copy a point."""
+    q.a, q.b, q.gap, q.turns, q.length = p.a, p.b, p.gap, p.turns, p.length
+    for k in range(3):
+        q.arm_a[k], q.arm_b[k], q.core[k] = p.arm_a[k], p.arm_b[k], p.core[k]
+        for i in range(3):
+            q.axes[i, k] = p.axes[i, k]
+
+
+@kernel
+def in_axes(point, x, y, z):
+    """Return the components (normal, tangent 1, tangent 2) of a world vector."""
+    E = point.axes
+    return (
+        E[0, 0] * x + E[0, 1] * y + E[0, 2] * z,
+        E[1, 0] * x + E[1, 1] * y + E[1, 2] * z,
+        E[2, 0] * x + E[2, 1] * y + E[2, 2] * z,
+    )
+
+
+@kernel
+def turning_rows(point, x, y, z):
+    """Return the rows of a point of rolling or pivoting: relative angular velocity times a length.
+
+    Of a stop that ends a turn that about its axis.
+    """
+    n, t1, t2 = in_axes(point, x, y, z)
+    if point.turns == 3:
+        return point.length * n, 0.0, 0.0
+    if point.turns == 1:
+        return 0.0, point.length * t1, point.length * t2
+    return 0.0, point.length * n, 0.0
+
+
+@kernel
+def own_rows(point, u):
+    """Return u, the normal component alone of a stop."""
+    if point.turns == 4:
+        return u[0], 0.0, 0.0
+    return u
+
+
+@kernel
+def contact_velocity(point, state):
+    """Return u = G v, in contact axes."""
+    if 0 < point.turns < 4:
+        w, z = state[point.a].w, (0.0, 0.0, 0.0)
+        if point.b >= 0:
+            z = (state[point.b].w[0], state[point.b].w[1], state[point.b].w[2])
+        return turning_rows(point, w[0] - z[0], w[1] - z[1], w[2] - z[2])
+    r, s = point.arm_a, point.arm_b
+    ux, uy, uz = point_velocity(state, point.a, r[0], r[1], r[2])
+    vx, vy, vz = point_velocity(state, point.b, s[0], s[1], s[2])
+    return own_rows(point, in_axes(point, ux - vx, uy - vy, uz - vz))
+
+
+@kernel
+def motion_there(motion, r):
+    """Return the world velocity at arm r of a motion (linear, angular)."""
+    ux, uy, uz = cross(motion[3], motion[4], motion[5], r[0], r[1], r[2])
+    return ux + motion[0], uy + motion[1], uz + motion[2]
+
+
+@kernel
+def contact_motion(point, work):
+    """Return G of the motions that the last solve wrote, in contact axes."""
+    if 0 < point.turns < 4:
+        m, z = work.body[point.a].motion, (0.0, 0.0, 0.0)
+        if point.b >= 0:
+            o = work.body[point.b].motion
+            z = (o[3], o[4], o[5])
+        return turning_rows(point, m[3] - z[0], m[4] - z[1], m[5] - z[2])
+    ux, uy, uz = motion_there(work.body[point.a].motion, point.arm_a)
+    if point.b >= 0:
+        vx, vy, vz = motion_there(work.body[point.b].motion, point.arm_b)
+        ux, uy, uz = ux - vx, uy - vy, uz - vz
+    return own_rows(point, in_axes(point, ux, uy, uz))
+
+
+@kernel
+def contact_acceleration(point, state, stage):
+    """Return du/dt in contact axes: a + alpha x r + w x (w x core) (a ball around the core does not turn).
+
+    That is of a half-space, whose normal stays; of two bodies and of stops G times the accelerations alone.
+    """
+    if 0 < point.turns < 4:
+        m, z = stage[point.a].rate, (0.0, 0.0, 0.0)
+        if point.b >= 0:
+            o = stage[point.b].rate
+            z = (o[3], o[4], o[5])
+        return turning_rows(point, m[3] - z[0], m[4] - z[1], m[5] - z[2])
+    if point.b >= 0:
+        ax, ay, az = motion_there(stage[point.a].rate, point.arm_a)
+        bx, by, bz = motion_there(stage[point.b].rate, point.arm_b)
+        return own_rows(point, in_axes(point, ax - bx, ay - by, az - bz))
+    w, c = state[point.a].w, point.core
+    cx, cy, cz = cross(w[0], w[1], w[2], c[0], c[1], c[2])
+    cx, cy, cz = cross(w[0], w[1], w[2], cx, cy, cz)
+    ux, uy, uz = motion_there(stage[point.a].rate, point.arm_a)
+    return own_rows(point, in_axes(point, ux + cx, uy + cy, uz + cz))

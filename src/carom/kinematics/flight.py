@@ -1,0 +1,90 @@
+"""Free flight of one body, exact: translation on a parabola, rotation as a torque-free top in closed form.
+
+With equal moments w is constant and the rotation is exp(h w). Otherwise the constants of a flight are worked
+out where it begins (`carom.kinematics.torque_free_top`), and kept with two states whose times on it are known:
+where the last step started, and where it ended. A step from either goes on with the same flight, so that no
+round-off gathers over steps; from any other state, as after an impact, another flight begins.
+"""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import inlined, kernel
+from carom.geometry.rotation import exp, multiply, renormalize, rotate, rotate_back
+from carom.kinematics.torque_free_top import attitude, begin_top
+
+
+@inlined
+def free_flight(body, g, h, start, end, memory):
+    """Write into the record `end` the state of a body a time h after the record `start`."""
+    x0, v0, w0, q0 = start.x, start.v, start.w, start.Q
+    x1, v1, w1, q1 = end.x, end.v, end.w, end.Q
+    for k in range(3):
+        x1[k] = x0[k] + h * (v0[k] + 0.5 * h * g[k])
+        v1[k] = v0[k] + h * g[k]
+    if body.isotropic == 1:
+        r = exp(h * w0[0], h * w0[1], h * w0[2])
+        q = multiply(r[0], r[1], r[2], r[3], q0[0], q0[1], q0[2], q0[3])
+        q = renormalize(q[0], q[1], q[2], q[3])
+        w = (w0[0], w0[1], w0[2])
+    else:
+        q, w = tumble(body.inertia, h, q0, w0, memory)
+    q1[0], q1[1], q1[2], q1[3] = q
+    w1[0], w1[1], w1[2] = w
+
+
+@kernel
+def knows(memory, i, q, w):
+    """Return whether a state is known state i of the flight in `memory`."""
+    a, s = memory.known_attitude, memory.known_spin
+    return (
+        a[i, 0] == q[0] and a[i, 1] == q[1] and a[i, 2] == q[2] and a[i, 3] == q[3]
+        and s[i, 0] == w[0] and s[i, 1] == w[1] and s[i, 2] == w[2]
+    )  # fmt: skip
+
+
+@kernel
+def note(memory, i, q, w, age, more):
+    """Make a state, at the time age + more, known state i of the flight."""
+    a, s = memory.known_attitude, memory.known_spin
+    a[i, 0], a[i, 1], a[i, 2], a[i, 3] = q[0], q[1], q[2], q[3]
+    s[i, 0], s[i, 1], s[i, 2] = w[0], w[1], w[2]
+    memory.age[i, 0], memory.age[i, 1] = age, more
+
+
+@kernel
+def board(J, q, w, memory):
+    """Have a state be the known state 0 of the flight in `memory`: of that which it holds, or of a new one."""
+    if knows(memory, 0, q, w):
+        return
+    if knows(memory, 1, q, w):
+        note(memory, 0, q, w, memory.age[1, 0], memory.age[1, 1])
+        return
+    W = rotate_back(q[0], q[1], q[2], q[3], w[0], w[1], w[2])
+    begin_top(J, q, W, memory)
+    note(memory, 0, q, w, 0.0, 0.0)
+
+
+@kernel
+def tumble(J, h, q0, w0, memory):
+    """Return attitude and angular velocity (world) after a time h; momentum and energy are kept."""
+    board(J, q0, w0, memory)
+    age, more = memory.age[0, 0], memory.age[0, 1] + h
+    t = age + more
+    more -= t - age  # what the sum has lost, where age is the larger; else a part of round-off of h
+    turn, b = attitude(memory, t)
+    q = memory.turn
+    q = multiply(q[0], q[1], q[2], q[3], turn[0], turn[1], turn[2], turn[3])
+    q = renormalize(q[0], q[1], q[2], q[3])
+    L = memory.magnitude
+    w = rotate(q[0], q[1], q[2], q[3], L * b[0] / J[0], L * b[1] / J[1], L * b[2] / J[2])
+    note(memory, 1, q, w, t, more)
+    return q, w
+
+
+@kernel
+def point_bound(body, q, w, memory):
+    """Return a bound of |W x (W x r) + W' x r|/|r| in free flight: of the accelerations of points of a body."""
+    if body.isotropic == 1:
+        return w[0] * w[0] + w[1] * w[1] + w[2] * w[2]
+    board(body.inertia, q, w, memory)
+    return memory.fastest

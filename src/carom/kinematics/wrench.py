@@ -1,0 +1,42 @@
+"""Points of bodies, their velocities, and what a force there does: -1 stands for the ground."""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import kernel
+from carom.geometry.rotation import cross
+from carom.kinematics.joints import arm
+
+
+@kernel
+def point(state, b, local):
+    """Return the arm from the centre of body b (-1: ground) to `local`, and the point (world)."""
+    rx, ry, rz = arm(state, b, local)
+    if b < 0:
+        return rx, ry, rz, rx, ry, rz
+    x = state[b].x
+    return rx, ry, rz, rx + x[0], ry + x[1], rz + x[2]
+
+
+@kernel
+def point_velocity(state, b, rx, ry, rz):
+    """Return the velocity of the point at arm r of body b (-1: ground)."""
+    if b < 0:
+        return 0.0, 0.0, 0.0
+    v, w = state[b].v, state[b].w
+    ux, uy, uz = cross(w[0], w[1], w[2], rx, ry, rz)
+    return ux + v[0], uy + v[1], uz + v[2]
+
+
+@kernel
+def add_force(work, b, rx, ry, rz, fx, fy, fz):
+    """Add the force f at arm r to the wrench on body b (-1: ground)."""
+    if b < 0:
+        return
+    wrench = work.body[b].wrench
+    tx, ty, tz = cross(rx, ry, rz, fx, fy, fz)
+    wrench[0] += fx
+    wrench[1] += fy
+    wrench[2] += fz
+    wrench[3] += tx
+    wrench[4] += ty
+    wrench[5] += tz

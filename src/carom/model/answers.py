@@ -1,0 +1,62 @@
+"""Answers of the user's functions at the start: refused where they are no numbers or have another shape."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom import checks
+from carom.scene.constraints import Driver, Rows
+from carom.scene.more_forces import JointForce, UserForce
+
+
+def check_answers(scene) -> None:
+    """Refuse a function of a force or constraint that gives another shape, no numbers, or NaN at the start.
+
+    Compiled ones are called as they were written. What a function raises is left to the run, which tells it.
+    """
+    for part in (*scene.forces, *scene.constraints):
+        d = part.definition
+        if isinstance(d, UserForce):
+            states = _states(d.bodies, with_rates=True)
+            _check(f"function of {part.name!r}", d.function, (0.0, states), (len(d.bodies), 6))
+            if d.potential is not None:
+                name = f"potential of {part.name!r}"
+                checks.call(
+                    name, d.potential, 0.0, states
+                )  # no step calls it: what it raises is told here
+                _check(name, d.potential, (0.0, states), ())
+        elif isinstance(d, Rows):
+            states = _states(d.bodies, with_rates=False)
+            shape = (d.rows, 6 * len(d.bodies) + 1)
+            _check(f"function of {part.name!r}", d.function, (0.0, states), shape)
+            if d.position is not None:
+                _check(f"position of {part.name!r}", d.position, (0.0, states), (d.rows,))
+        elif isinstance(d, JointForce) and callable(d.force):
+            # the rate at the start is not known here, and NaN at another one is no mistake
+            _check(f"force of {part.name!r}", d.force, (0.0, 0.0, 0.0), (), finite=False)
+        elif isinstance(d, Driver) and d.motion is not None and not hasattr(d.motion, "c"):
+            _check(f"motion of {part.name!r}", d.motion, (0.0,), (3,))
+
+
+def _states(bodies, with_rates: bool) -> np.ndarray:
+    """Return what a function is told of bodies at the start, (n, 13) or (n, 7)."""
+    names = ("position", "orientation", "velocity", "angular_velocity")[: 4 if with_rates else 2]
+    return np.array([np.concatenate([getattr(b, name) for name in names]) for b in bodies])
+
+
+def _check(name: str, function, given: tuple, shape: tuple[int, ...], finite: bool = True) -> None:
+    """Refuse another shape than `shape`, axes of length 1 aside, and what is no number."""
+    try:
+        answer = getattr(function, "py_func", function)(*given)
+    except Exception:
+        return
+    wanted = ", ".join(map(str, shape)) + ("," if len(shape) == 1 else "")
+    array = checks.real_array(f"the answer of {name}", answer, f"({wanted})")
+    if [n for n in array.shape if n != 1] != [n for n in shape if n != 1]:
+        raise ValueError(
+            f"the answer of {name} must have shape ({wanted}), got shape {array.shape}"
+        )
+    if finite and not np.all(np.isfinite(array)):
+        raise ValueError(
+            f"the answer of {name} must be finite, got {checks.shown(answer)} at the start"
+        )

@@ -1,0 +1,545 @@
+"""A compiled scene, and what a run writes to: one structured array for each noun.
+
+N bodies, J joints, C contacts. Index -1 stands for the ground. Kernels read ``bodies[b].mass``; Python
+sees the same arrays as columns, ``bodies.mass``.
+
+Records, not a tuple of one array per field: Numba hands each array to each function as seven values
+and types and optimises all of them again at every level of the call tree. (Measured: 110 arrays took 125 s
+to compile and 8.5 microseconds a step; docs/development/decisions.md.)
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from carom.collision.layout import Hulls, NoHulls, PairWork
+
+#: kinds of joints in kernels
+SPHERICAL, REVOLUTE, FIXED, PRISMATIC, DISTANCE, KNIFE_EDGE = range(6)
+CYLINDRICAL, UNIVERSAL, PLANAR, POINT_ON_LINE, POINT_ON_PLANE, SCREW = range(6, 12)
+ROLLING_SPHERE, ROLLING_DISC = range(12, 14)
+#: what is no joint but stands among them: a relation of coordinates of joints, rows of the user's own
+RELATION, USER_ROWS = range(14, 16)
+#: a spring and damper as a row, for the implicit step
+STIFF = 16
+#: numbers of constraint rows of joints, by kind
+ROWS = (3, 5, 6, 5, 1, 1, 4, 4, 3, 2, 1, 5, 3, 3)
+#: the child's anchor moves along the first direction of the parent's frame
+ALONG = (PRISMATIC, CYLINDRICAL, POINT_ON_LINE, SCREW)
+#: it moves in the plane across it
+WITHIN = (PLANAR, POINT_ON_PLANE)
+SLIDING = ALONG + WITHIN
+#: the child rolls on a plane of the parent
+ROLLING = (ROLLING_SPHERE, ROLLING_DISC)
+#: the child turns about the first direction alone
+TURNING = (REVOLUTE, CYLINDRICAL, PLANAR, SCREW)
+#: it turns freely
+BALL = (SPHERICAL, POINT_ON_LINE, POINT_ON_PLANE, ROLLING_SPHERE, ROLLING_DISC)
+#: it does not turn
+RIGID = (FIXED, PRISMATIC)
+
+#: absolute coordinates, world axes; Q takes principal axes of inertia to the world
+STATE = [("x", "f8", 3), ("Q", "f8", 4), ("v", "f8", 3), ("w", "f8", 3)]
+
+BODY = [
+    ("mass", "f8"),
+    ("inertia", "f8", 3),  # principal moments
+    ("extent", "f8"),  # a length of the body: its shape, or the arms of its joints
+    ("isotropic", "i8"),  # 1 where the three moments are equal
+    ("isolated", "i8"),  # 1 where no joint acts
+    ("ballistic", "i8"),  # 1 where no joint and no force but gravity acts
+    ("component", "i8"),  # its own number, or N for all that have joints
+    ("number", "i8"),  # among all bodies of the scene
+    ("axes", "f8", 4),  # quaternion from the principal axes to those of the scene
+    ("ball", "f8"),  # radius of the ball around its centre that holds its shapes
+]
+
+JOINT = [
+    ("kind", "i8"),
+    ("parent", "i8"),
+    ("child", "i8"),
+    ("rows", "i8"),  # number of constraint rows
+    ("parent_anchor", "f8", 3),  # in the parent's axes, from its centre
+    ("child_anchor", "f8", 3),
+    ("parent_frame", "f8", (3, 3)),  # columns: axis, second, third direction, in the parent's axes
+    ("child_frame", "f8", (3, 3)),
+    ("length", "f8"),  # of a distance; way of a screw, a radian; radius of what rolls
+    ("number", "i8"),  # of a relation, or of rows of the user's, in `Relations`
+    (
+        "reference",
+        "f8",
+    ),  # of a coordinate: the angle at the start of the trial step, with its whole turns
+    ("begun", "f8"),  # the same at the start of the step
+]
+
+#: a coordinate of a joint: an angle about (kind REVOLUTE), or a way along (PRISMATIC), the first axis of the
+#: parent's frame; either side may be the ground
+COORDINATE = JOINT
+
+#: a relation: sum of factor times coordinate = f(t)
+RELATION_ROW = [
+    ("first", "i8"),  # range of its terms
+    ("last", "i8"),
+    ("constant", "f8"),  # f = constant + rate t
+    ("rate", "f8"),
+    ("address", "i8"),  # or of a function of the user's: t -> (f, f', f'')
+    ("piece", "i8"),  # or the range of pieces of a polynomial
+    ("last_piece", "i8"),
+    ("scale", "f8"),  # by which its error is judged: 1 for angles, a length for ways
+]
+
+TERM = [
+    ("coordinate", "i8"),
+    ("factor", "f8"),
+    ("child_side", "i8"),  # sides of the solver, -1 for the ground
+    ("parent_side", "i8"),
+]
+
+#: rows of the user's: a(q, t) v = b(q, t), as a function (t, poses) -> (rows, 6 bodies + 1)
+USER_ROW = [
+    ("address", "i8"),
+    ("position_address", "i8"),  # of phi(q, t) = 0, 0 where the rows are nonholonomic
+    ("first", "i8"),  # range of its sides, one a body
+    ("last", "i8"),
+]
+
+#: a spring, damper and force along a coordinate of a joint
+PUSH = [
+    ("coordinate", "i8"),
+    ("stiffness", "f8"),
+    ("damping", "f8"),
+    ("rest", "f8"),
+    ("force", "f8"),  # constant
+    ("address", "i8"),  # of a function of the user's: t, (q, q') -> force; 0 for none
+]
+
+#: a spring and damper that the implicit step takes as a row: along a coordinate, or between two points
+STIFF_SPRING = [
+    ("coordinate", "i8"),  # -1: between two points
+    ("parent", "i8"),
+    ("child", "i8"),
+    ("parent_anchor", "f8", 3),
+    ("child_anchor", "f8", 3),
+    ("stiffness", "f8"),
+    ("damping", "f8"),
+    ("rest", "f8"),
+    ("child_side", "i8"),
+    ("parent_side", "i8"),
+    ("speed", "f8"),  # of the last stage, and what it does to it
+    ("gain", "f8"),
+]
+
+#: dry friction along a coordinate of a joint: |force| <= bound
+FRICTION = [
+    ("coordinate", "i8"),
+    ("bound", "f8"),
+    ("mode", "i8"),  # 1 or -1: slips in this direction; 0 sticks
+    ("force", "f8"),  # of the last solve
+    ("change", "f8"),  # of q' by all other forces
+    ("driven", "i8"),  # 1 while it sticks where joints and motors leave its coordinate no freedom
+]
+
+#: forces by a function of the user's: t, (bodies, 13) -> (bodies, 6)
+USER_FORCE = [
+    ("address", "i8"),
+    ("energy_address", "i8"),  # of their potential, 0 where they have none
+    ("first", "i8"),  # range of its bodies in `Relations.named`
+    ("last", "i8"),
+]
+
+#: a piece of a polynomial in (t - start)
+PIECE = [("start", "f8"), ("end", "f8"), ("c", "f8", 6)]  # c: from the constant up
+
+SPRING = [
+    ("parent", "i8"),
+    ("child", "i8"),
+    ("parent_anchor", "f8", 3),
+    ("child_anchor", "f8", 3),
+    ("stiffness", "f8"),
+    ("damping", "f8"),
+    ("rest_length", "f8"),
+    (
+        "piece",
+        "i8",
+    ),  # tension over length, where it is a curve: a range of pieces, empty where it is not
+    ("last_piece", "i8"),
+]
+
+#: a force and torque on a point of a body, constant in the axes of a body or of the world
+LOAD = [
+    ("body", "i8"),
+    ("frame", "i8"),  # the body whose axes the vectors are in, -1 for the world
+    ("anchor", "f8", 3),
+    ("force", "f8", 3),
+    ("torque", "f8", 3),
+]
+
+#: an elastic mount: springs and dampers along and about three axes of the parent
+BUSHING = [
+    ("parent", "i8"),
+    ("child", "i8"),
+    ("parent_anchor", "f8", 3),
+    ("child_anchor", "f8", 3),
+    ("parent_frame", "f8", 4),  # from the axes of the mount to those of the body
+    ("child_frame", "f8", 4),
+    ("stiffness", "f8", 3),
+    ("damping", "f8", 3),
+    ("turn_stiffness", "f8", 3),
+    ("turn_damping", "f8", 3),
+]
+
+#: hull of vertices, swollen by a radius, against a half-space; or two solids, the other perhaps a half-space
+CONTACT = [
+    ("number", "i8"),  # among all contacts of the scene
+    ("body", "i8"),
+    ("other", "i8"),  # -1 for a half-space
+    (
+        "touches",
+        "i8",
+    ),  # 1 where the kernels of pairs find the points, 0 where they are the vertices; 2 of a stop in a joint
+    ("part", "i8"),  # 1 where a body has several pieces
+    ("first", "i8"),  # range of the vertices of the body
+    ("last", "i8"),
+    ("other_first", "i8"),  # of the other body
+    ("other_last", "i8"),
+    (
+        "solid",
+        "i8",
+    ),  # where the kernels of pairs find the points: the two solids; of a stop its coordinate
+    ("other_solid", "i8"),
+    ("law", "i8"),  # 0 newton, 1 poisson, 2 stronge
+    ("axes", "f8", (3, 3)),  # of a half-space: rows n, t1, t2
+    ("offset", "f8"),  # n . point of the plane; of a stop side times where it is
+    # of a stop: gap = side q - offset, above 0 for a lower, below for an upper one; 1 or, of a turn, a length
+    ("side", "f8"),
+    ("radius", "f8"),  # of both, where they are two solids
+    ("friction", "f8"),
+    ("friction_held", "f8"),
+    ("turning", "f8", 2),  # rolling and pivoting friction [m]
+    ("restitution", "f8"),
+    ("stiffness", "f8"),  # of its boundary layer, relative to the others
+    ("extent", "f8"),  # largest distance of the shape from the mass centre
+    ("other_extent", "f8"),
+    ("core", "f8"),  # largest distance of a core point, without the ball that swells it
+    ("still", "f8"),  # speed that is round-off of what gravity gives over the body's size
+    ("width", "f8"),  # b of the boundary layer
+    ("penetration", "f8"),  # delta
+]
+
+#: place of a body in a forest of joints
+LINK = [
+    ("order", "i8"),  # the body at this place of the walk, parents before children
+    ("joint", "i8"),  # joint that carries the body, -1 where it floats
+    ("parent", "i8"),  # parent body, -1 where that is the ground or none
+    ("freedoms", "i8"),  # of the joint; 6 for a floating body
+    ("has_child", "i8"),
+]
+
+#: what the solve for closed loops writes, for each joint
+ROW = [
+    ("first", "i8"),  # range of its sides; of a joint the child, and the parent if it is a body
+    ("last", "i8"),
+    ("off", "i8"),  # 1 where its rows do not count
+    ("compliance", "f8", 6),  # added to the diagonal of A M^-1 A^T
+    ("pivot", "f8", 6),  # reciprocal pivots, 0 = dropped
+    ("weight", "f8", 6),  # diagonal of A M^-1 A^T before elimination
+    ("rhs", "f8", 6),  # right-hand side, then multipliers
+]
+
+#: the rows of one element of the solve for closed loops, for one body
+SIDE = [
+    ("element", "i8"),
+    ("body", "i8"),
+    ("A", "f8", (6, 6)),
+    ("Y", "f8", (6, 6)),  # A M^-1
+]
+
+#: a contact between looks
+BRINK = [
+    ("seen", "i8"),  # scratch: while a group is gathered; 1 + first held point, in a heap
+    ("near", "i8"),  # 1 where something happened at the last event: look before stepping
+    ("jams", "i8"),  # 1 where a held point of it jams: an impact without collision is due
+    ("leaving", "i8"),  # 1 where the body lifts off without speed: it may touch at the start
+    ("blows", "i8"),  # impacts in this step
+    ("step", "i8"),  # the last in which the two were near each other, plus 1
+]
+
+#: a point that is held, over time (see `carom.persistent`)
+HELD = [
+    ("contact", "i8"),
+    ("feature", "i8"),  # what touches, the same as long as it does: number of the vertex
+    ("body", "i8"),  # of the contact
+    ("other", "i8"),
+    ("touches", "i8"),
+    ("mode", "i8"),  # 0 open, 1 slipping, 2 sticking
+    ("next", "i8"),  # mode after the step on trial
+    ("settles", "i8"),  # 1 where that step puts the body to rest
+    ("several", "i8"),  # 1 where it shares its bodies with other held points
+    ("rest", "i8"),  # 1 where the body does not move at all
+    ("jams", "i8"),  # 1 where it slips and no finite force keeps it closed
+    ("point", "f8", 3),  # point of the core that carries the contact, body axes
+    ("anchor", "f8", 3),  # where it is in the world since it sticks
+    ("force", "f8", 3),  # of the last solve, contact axes
+    ("heading", "f8", 2),  # direction of slip at the start of the step, or in which it starts
+    ("speed", "f8"),  # of slip at the start of the step
+    ("stop", "f8"),  # time in which slip will stop under the last forces, where several are held
+    ("lift", "f8"),  # of one of several: how far from opening at the end of a step, below 0: open
+    ("grip", "f8"),  # the same of slip
+    ("due", "i8"),  # 1 where the event that is looked for may be its own too
+    ("turn_stop", "f8", 2),  # the same of rolling and of pivoting
+    ("torque", "f8", 3),  # of rolling and pivoting friction, contact axes
+    ("W", "f8", (3, 3)),  # effective inverse mass of the last solve
+]
+
+#: a point of contact as it is in one state
+POINT = [
+    ("a", "i8"),  # body on the side that the normal points to
+    ("b", "i8"),  # the other, -1 for the ground
+    ("arm_a", "f8", 3),  # from the mass centre, world axes
+    ("arm_b", "f8", 3),
+    (
+        "core",
+        "f8",
+        3,
+    ),  # from the mass centre of a: the part of the arm that turns with it; 0 if it rolls on
+    ("axes", "f8", (3, 3)),  # rows n, t1, t2
+    ("gap", "f8"),
+    # 0; rows of relative rotation: 1 rolling (t1, t2), 2 pivoting (t1), 3 a stop that ends a turn (n);
+    # 4: the normal row alone, of a stop that ends a slide
+    ("turns", "i8"),
+    ("length", "f8"),  # that makes a speed of an angular velocity
+]
+
+#: the flight that a body is on, or was on last (`carom.kinematics.flight`, `carom.kinematics.torque_free_top`)
+FLIGHT = [
+    (
+        "known_attitude",
+        "f8",
+        (2, 4),
+    ),  # states of it whose times are known: where a step starts, and ends
+    ("known_spin", "f8", (2, 3)),
+    ("age", "f8", (2, 2)),  # their times since it began, each as a sum of two numbers
+    ("turn", "f8", 4),  # attitude at its start, less the turn that `attitude` gives for that
+    ("axes", "i8", 3),  # place of each principal axis in Jacobi's order
+    ("sign", "f8", 3),  # by place: -1 where the axis is turned round
+    ("magnitude", "f8"),  # of the angular momentum
+    ("amplitude", "f8", 3),  # of its direction in the body
+    ("rate", "f8", 2),  # of half the turn about the momentum, and of the argument
+    ("phase", "f8"),  # argument at the start
+    ("kind", "i8"),  # how elliptic functions are worked out
+    ("series", "f8", 14),
+    ("fastest", "f8"),  # bound of the acceleration of a point, over its distance from the centre
+]
+
+BODY_WORK = [
+    ("wrench", "f8", 6),  # what a solve takes: force and torque, or impulse
+    ("motion", "f8", 6),  # what a solve gives: linear, angular
+    ("bound", "f8", 3),  # greatest linear, angular acceleration and spin of the last step
+    ("miss", "f8", 3),  # two estimates of the error of a step [m], and what they are measured by
+    ("inverse", "f8", 6),  # inverse inertia, world axes
+    ("group", "i8"),  # bodies with the same number move each other: joined, or held to each other
+    ("holds", "i8"),  # of the body that its group is named after: held points of the group
+    ("status", "i8"),  # FREE, ONE, RESTS or SEVERAL held points
+    ("push", "f8", 6),  # change of momentum (linear, angular about the centre) in a step
+    (
+        "spin",
+        "f8",
+        3,
+    ),  # angular velocity that the momentum below goes with, in the three-field step
+    ("momentum", "f8", 3),  # spatial angular momentum
+    *FLIGHT,
+    ("whole_until", "i8"),  # steps up to this are taken whole
+    ("whole_for", "i8"),  # for so many steps, when that was last found
+    ("home", "f8", 3),  # centre at the start of the step
+    ("room", "f8"),  # how far from it the centre may go in this step
+]
+
+JOINT_WORK = [
+    ("bias", "f8", 6),  # relative motion that a solve shall give: angular, linear
+    ("reaction", "f8", 6),  # wrench on the child at its anchor: force, torque
+    ("multiplier", "f8", 6),  # impulses of the rows in the three-field step
+    ("target", "f8", 6),
+]
+
+#: one stage of a Runge-Kutta step, for one body
+STAGE = [("speed", "f8", 6), ("rate", "f8", 6), ("attitude", "f8", 4)]
+
+#: what a step of joined, loaded or held bodies gives back
+RESULT = [
+    ("applied", "f8"),
+    ("friction", "f8"),
+    ("code", "i8"),
+    ("power", "f8"),  # of loads, and of friction, with the last accelerations
+    ("drag", "f8"),
+    ("residual", "f8"),  # greatest of the groups held at several points
+    ("unnamed", "f8"),  # the same: energy lost without a name, as a part of what may be
+    ("parts", "i8"),  # more parts of steps in which bodies turned far than steps
+    ("fallen", "i8"),  # steps of a symplectic method that the explicit one has taken
+    ("start", "f8"),  # time at which the step on trial starts
+    ("time", "f8"),  # of the state that is looked at: what is prescribed depends on it
+]
+
+#: search for an event inside a step
+SEARCH = [
+    ("active", "i8"),
+    ("kind", "i8"),
+    ("contact", "i8"),
+    ("side", "i8"),  # which end of the bracket moved last
+    ("low", "f8"),
+    ("high", "f8"),
+    ("f_low", "f8"),
+    ("f_high", "f8"),
+    ("t", "f8"),  # last trial
+    ("f", "f8"),
+    ("rate", "f8"),
+    ("d1", "f8"),  # direction of slip at the start
+    ("d2", "f8"),
+    ("width", "f8"),
+    ("tolerance", "f8"),
+    ("eager", "i8"),  # 0 where events of several points are left to the end of the step
+    ("pending", "i8"),  # an action that waits for its unit to be compiled
+    ("horizon", "f8"),
+    ("dt", "f8"),  # of a turn of the loop that was left in the middle: the next trial step,
+    ("pace", "f8"),  # the longest that may be taken,
+    ("cuts", "i8"),  # how often it was cut,
+    ("again", "i8"),  # and whether one was refused
+]
+
+#: of `touches`: a stop in a joint
+STOP = 2
+
+#: what a body does: FREE flight, held at ONE point, RESTS, held at SEVERAL points
+FREE, ONE, RESTS, SEVERAL = range(4)
+
+#: an impact in the making
+HIT = [
+    ("W", "f8", (3, 3)),
+    ("u", "f8", 3),
+    ("friction", "f8"),
+    ("point", "f8", 3),
+    ("out", "f8", 32),
+    ("restitution", "f8"),
+    ("closed", "i8"),
+    ("code", "i8"),
+]
+
+
+#: of a row of the scratch of a forest: where the freedoms begin, and numbers for each (`carom.dynamics.tree`)
+FIRST, WIDTH = 52, 14
+
+
+class FreeSolver(NamedTuple):
+    """No joints: every body answers for itself."""
+
+    address: int  # of the compiled solve
+
+
+class TreeSolver(NamedTuple):
+    """A forest of joints, solved by articulated-body elimination."""
+
+    address: int
+    links: np.recarray  # (N,) LINK
+    scratch: np.ndarray  # (N, FIRST + WIDTH times the most freedoms) written by each solve
+
+
+class LoopSolver(NamedTuple):
+    """Closed loops: block-sparse Cholesky factor of A M^-1 A^T, joints in an order of low fill."""
+
+    address: int
+    order: np.ndarray  # (J,) joints in the order of elimination
+    column: np.ndarray  # (J+1,) ranges of the blocks below the diagonal, by place in the order
+    row: np.ndarray  # (B,) joint of each block below the diagonal
+    update: np.ndarray  # (J+1,) ranges of the update triples
+    triple: np.ndarray  # (U, 3) blocks i, j of a column and the target they change
+    term: np.ndarray  # (P, 3) assembly: target block, sides i and j of two elements
+    rows: np.recarray  # (J,) ROW
+    sides: np.recarray  # (S,) SIDE
+    block: np.ndarray  # (J+B, 6, 6) diagonal blocks, then the others
+    drop: float  # pivots below this part of the row's diagonal are dropped
+    pose: np.ndarray  # (N, 7) that was factored, or (0, 7): rows depend on more than the pose
+    usual: (
+        np.ndarray
+    )  # (1,) how many rows depend on others away from singular positions; -1: not known yet
+    # scratch of `carom.dynamics.light_bodies`, empty where masses are alike: high and low parts
+    fine: np.ndarray  # (2, J+B, 6, 6) blocks
+    digits: np.ndarray  # (J, 4, 6) 1/pivots, multipliers
+    scaled: np.ndarray  # (N, 3, 6) scaled motions, and attitudes
+
+
+class NoRelations(NamedTuple):
+    """Of a scene in which nothing is said of coordinates of joints, and no rows are the user's own."""
+
+    none: int
+
+
+class Relations(NamedTuple):
+    """Coordinates of joints, relations between them, and rows of the user's own."""
+
+    coordinates: np.recarray  # COORDINATE
+    relations: np.recarray  # RELATION_ROW
+    terms: np.recarray  # TERM
+    user: np.recarray  # USER_ROW
+    pieces: np.recarray  # PIECE
+    pushes: np.recarray  # PUSH
+    forces: np.recarray  # USER_FORCE
+    stiff: np.recarray  # STIFF_SPRING
+    frictions: np.recarray  # (F,) FRICTION
+    friction_matrix: np.ndarray  # (F, F) scratch
+    friction_vector: np.ndarray  # (F,) scratch
+    named: np.ndarray  # bodies that functions of the user's speak of
+    read: np.ndarray  # what functions of the user's read and write
+    write: np.ndarray
+
+
+class System(NamedTuple):
+    """All that the kernels know about a scene. Never written to after compile, but the solver's scratch."""
+
+    bodies: np.recarray  # (N,) BODY
+    gravity: np.ndarray  # (3,)
+    joints: (
+        np.recarray
+    )  # (J,) JOINT; relations and rows of the user's come after the joints of the scene
+    relations: Relations | NoRelations
+    springs: np.recarray  # SPRING
+    loads: np.recarray  # LOAD
+    bushings: np.recarray  # BUSHING
+    contacts: np.recarray  # (C,) CONTACT
+    vertices: np.ndarray  # (V, 3) of all contacts, body axes
+    solids: np.recarray  # SOLID of `carom.collision`, of bodies that may touch each other
+    hulls: Hulls | NoHulls
+    touch_at: int  # address of what finds the points of two solids
+    plane_at: int  # of a solid and a half-space
+    acceleration_at: int  # of what works out all accelerations, 0 while nobody asks
+    solver: FreeSolver | TreeSolver | LoopSolver
+
+
+class Held(NamedTuple):
+    """What is held, and what may be: the first `count[0]` of `points` are in use."""
+
+    points: np.recarray  # (P,) HELD
+    brinks: np.recarray  # (C,) BRINK
+    carries: np.ndarray  # (V,) 1 for vertices that carry a held contact
+    count: np.ndarray  # (1,)
+
+
+class Work(NamedTuple):
+    """Scratch of one run: made once, never grown."""
+
+    body: np.recarray  # (N,) BODY_WORK
+    joint: np.recarray  # (J,) JOINT_WORK
+    stages: np.recarray  # (S, N) STAGE
+    stage: np.recarray  # (N,) STATE
+    trial: np.recarray  # (N,) STATE
+    middle: np.recarray  # (N,) STATE
+    first: np.recarray  # (N,) STATE
+    point: np.recarray  # (1,) POINT, the one that strikes, or is looked at
+    pair: PairWork
+    touches: np.recarray  # (8,) TOUCH_POINT of the last pair
+    solid_pose: np.ndarray  # (2, 7) of its solids
+    solid_rate: np.ndarray  # (2, 3) velocities at its point, before and after
+    hit: np.recarray  # (1,) HIT
+    result: np.recarray  # (1,) RESULT
+    search: np.recarray  # (1,) SEARCH
+    history: np.ndarray  # (0, 16) no history inside the loop

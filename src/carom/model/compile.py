@@ -1,0 +1,325 @@
+"""Turn a scene into flat arrays, once, before a run."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from carom._compiled.record_arrays import table
+from carom._compiled.user_functions import Functions
+from carom.geometry import quaternion
+from carom.model import arrays, graph, solvers
+from carom.model.arrays import (
+    BODY,
+    BUSHING,
+    JOINT,
+    LOAD,
+    SPRING,
+    STATE,
+    System,
+)
+from carom.model.contacts import compile_contacts
+from carom.model.frames import triad
+from carom.model.more_forces import MoreForces, Pieces
+from carom.model.placement import Placement
+from carom.model.relations import Coordinates, Elements
+from carom.model.stops import with_stops
+from carom.options import Options
+from carom.scene import joints as definitions
+from carom.scene.forces import Bushing, CurveSpring, Force, Spring, Torque
+from carom.scene.joints import Distance, KnifeEdge, RollingDisc, RollingSphere, Universal
+from carom.scene.scene import Scene
+
+KIND = {
+    definitions.Spherical: arrays.SPHERICAL,
+    definitions.Revolute: arrays.REVOLUTE,
+    definitions.Fixed: arrays.FIXED,
+    definitions.Prismatic: arrays.PRISMATIC,
+    definitions.Distance: arrays.DISTANCE,
+    definitions.KnifeEdge: arrays.KNIFE_EDGE,
+    definitions.Cylindrical: arrays.CYLINDRICAL,
+    definitions.Universal: arrays.UNIVERSAL,
+    definitions.Planar: arrays.PLANAR,
+    definitions.PointOnLine: arrays.POINT_ON_LINE,
+    definitions.PointOnPlane: arrays.POINT_ON_PLANE,
+    definitions.Screw: arrays.SCREW,
+    definitions.RollingSphere: arrays.ROLLING_SPHERE,
+    definitions.RollingDisc: arrays.ROLLING_DISC,
+}
+
+
+class Compiled(NamedTuple):
+    """A scene as arrays, and what is needed to speak of it in the scene's own words again."""
+
+    system: System
+    start: np.recarray  # (N,) STATE
+    to_principal: np.ndarray  # (N, 4) principal axes -> the scene's body axes
+    flipped: np.ndarray  # (J,) joints whose parent and child were exchanged
+    functions: Functions  # of the user's
+
+
+def compile_scene(
+    scene: Scene, options: Options, loops: bool = False, implicit: bool = False
+) -> Compiled:
+    """Return the arrays of `scene`; with `loops` the block-sparse back end even for a forest.
+
+    With `implicit` springs are rows of the solve, not forces.
+    """
+    start, to_principal, moments = _start(scene)
+    placement, functions = Placement(start, to_principal), Functions()
+    coordinates = Coordinates(placement)
+    pieces = Pieces()
+    sizes = start_sizes(scene)
+    elements = Elements(scene, coordinates, functions, pieces, sizes)
+    if implicit:
+        elements.add_springs(scene, placement)
+    more = MoreForces(scene, coordinates, functions, pieces, implicit)
+    joints, flipped, solver = _joints(scene, moments, placement, elements, options, loops)
+    contacts, vertices, solids, hulls = compile_contacts(scene, to_principal, options)
+    contacts = with_stops(scene, contacts, coordinates, sizes, options)
+    relations = elements.arrays(solver, more)
+    springs, loads = _springs(scene, placement, more, implicit), _loads(scene, placement)
+    bushings = _bushings(scene, placement)
+    bodies = _bodies(scene, moments, joints, elements, springs, loads, bushings, more)
+    bodies["axes"] = to_principal
+    gravity = np.array(scene.gravity)
+    system = System(
+        bodies,
+        gravity,
+        joints,
+        relations,
+        springs,
+        loads,
+        bushings,
+        contacts,
+        vertices,
+        solids,
+        hulls,
+        0,
+        0,
+        0,
+        solver,
+    )
+    return Compiled(system, start, to_principal, flipped, functions)
+
+
+def principal(inertia: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return principal moments (3,) and the quaternion principal -> body axes; identity if diagonal."""
+    diagonal = inertia.diagonal().copy()
+    (xx, xy, xz), (yx, yy, yz), (zx, zy, zz) = inertia.tolist()
+    scale = max(xx, yy, zz)
+    if scale - min(xx, yy, zz) <= 1e-13 * scale:
+        diagonal[:] = diagonal.mean()
+    if max(map(abs, (xy, xz, yx, yz, zx, zy))) <= 1e-15 * scale:
+        return diagonal, np.array([1.0, 0.0, 0.0, 0.0])
+    moments, axes = np.linalg.eigh(inertia)
+    if np.linalg.det(axes) < 0.0:
+        axes[:, 0] *= -1.0
+    if np.ptp(moments) <= 1e-13 * scale:
+        return np.full(3, moments.mean()), np.array([1.0, 0.0, 0.0, 0.0])
+    return moments, quaternion.from_matrix(axes)
+
+
+def _start(scene):
+    bodies = scene.bodies
+    pairs = [principal(b.inertia) for b in bodies]
+    moments = np.array([m for m, _ in pairs])
+    to_principal = np.array([q for _, q in pairs])
+    start = table(STATE, len(bodies))
+    start["Q"] = attitudes(np.array([b.orientation for b in bodies]), to_principal)
+    start["x"] = [b.position for b in bodies]
+    start["v"] = [b.velocity for b in bodies]
+    start["w"] = [b.angular_velocity for b in bodies]
+    return start, to_principal, moments
+
+
+def attitudes(orientation: np.ndarray, to_principal: np.ndarray) -> np.ndarray:
+    """Return the quaternions (N, 4) from principal axes to the world of bodies with these orientations."""
+    Q = quaternion.multiply(orientation, to_principal)
+    return Q / np.linalg.norm(Q, axis=1, keepdims=True)
+
+
+def _anchors(joint, flipped):
+    """World anchors of the scene's parent and child, and the joint's frame, of a definition."""
+    d = joint.definition
+    if isinstance(d, Distance):
+        return d.anchor_parent, d.anchor_child, np.eye(3)
+    if isinstance(d, RollingDisc):  # columns: the normal of the plane, the axis of the disc
+        frame = np.stack([d.normal, d.axis, np.cross(d.normal, d.axis)], axis=1)
+        return d.contact(joint.child.position), joint.child.position, frame
+    if isinstance(d, RollingSphere):
+        return d.contact(joint.child.position), joint.child.position, triad(d.normal)
+    anchor = joint.anchor()
+    if isinstance(d, KnifeEdge):
+        along = np.cross(d.lateral, d.normal)
+        return anchor, anchor, np.stack([along, d.lateral, d.normal], axis=1)
+    if isinstance(d, Universal):  # first the axis of the (walked) parent, then that of the child
+        first, second = d.axis_parent, d.axis_child
+        if flipped:
+            first, second = second, first
+        return anchor, anchor, np.stack([first, second, np.cross(first, second)], axis=1)
+    for name in ("axis", "normal", "direction"):
+        if hasattr(d, name):
+            return anchor, anchor, triad(getattr(d, name))
+    return anchor, anchor, np.eye(3)
+
+
+def _joints(scene, moments, placement, elements, options, loops):
+    defined = scene.joints
+    if not defined and not elements.kinds:
+        return table(JOINT, 0), np.zeros(0, dtype=bool), arrays.FreeSolver(0)
+    count, number = len(scene.bodies), len(defined)
+    kind = np.array([KIND[type(j.definition)] for j in defined], dtype=np.int64)
+    parent = np.array([j.parent.index for j in defined], dtype=np.int64)
+    child = np.array([j.child.index for j in defined], dtype=np.int64)
+    flipped = np.zeros(number, dtype=bool)
+    forest = not loops and not elements.kinds and graph.is_forest(count, kind, parent, child)
+    order, carrier = np.arange(count), np.full(count, -1)
+    if forest:
+        order, carrier, turned = graph.forest_order(count, parent, child)
+        forest = not np.any(turned & graph.cannot_flip(kind))
+    if forest:
+        flipped = turned
+        parent, child = np.where(flipped, child, parent), np.where(flipped, parent, child)
+    joints = table(JOINT, number + len(elements.kinds))
+    joints.parent[:number], joints.child[:number] = parent, child
+    joints.kind = [*kind, *elements.kinds]
+    joints.rows = [*(arrays.ROWS[k] for k in kind), *elements.rows]
+    for j, joint in enumerate(defined):
+        first, second, world = _anchors(joint, flipped[j])
+        sides = [(placement.side(joint, 0), first), (placement.side(joint, 1), second)]
+        (p, a), (c, b) = sides[::-1] if flipped[j] else sides
+        joints.parent_anchor[j], joints.child_anchor[j] = p.point(a), c.point(b)
+        joints.parent_frame[j], joints.child_frame[j] = p.axes(world), c.axes(world)
+        joints.length[j] = _length(joint.definition)
+    touching = [[b for b in (c, p) if b >= 0] for p, c in zip(parent.tolist(), child.tolist())]
+    for j, bodies in enumerate(elements.touching, start=number):
+        joints.number[j] = elements.numbers[j - number]
+        joints.child[j], joints.parent[j] = bodies[0], -1
+    touching += elements.touching
+    if forest:
+        solver = solvers.tree_solver(joints, order, carrier)
+    else:
+        mass = np.array([b.mass for b in scene.bodies])
+        ratio, light, heavy = solvers.spread(touching, mass, moments, _extents(scene, joints))
+        if ratio > solvers.LIMIT and not loops:
+            names = scene.bodies[light].name, scene.bodies[heavy].name
+            raise ValueError(
+                f"masses, or moments over the squares of sizes, of bodies {names[0]!r} and {names[1]!r}, which "
+                f"closed loops join, must not differ by more than {solvers.LIMIT:g} times, "
+                f"got {ratio:.3g} times"
+            )
+        solver = solvers.loop_solver(
+            touching, options.drop_tolerance, 0 if elements.touching else count,
+            count if ratio > solvers.SPREAD else 0,
+        )  # fmt: skip
+    return joints, flipped, solver
+
+
+def _length(definition):
+    if isinstance(definition, definitions.Screw):
+        return definition.pitch / (2.0 * np.pi)
+    if isinstance(definition, (RollingSphere, RollingDisc)):
+        return definition.radius
+    return getattr(definition, "length", 0.0)
+
+
+def _springs(scene, frames, more, implicit):
+    kinds = CurveSpring if implicit else (Spring, CurveSpring)
+    chosen = [f for f in scene.forces if isinstance(f.definition, kinds)]
+    springs = table(SPRING, len(chosen))
+    for s, f in zip(springs, chosen):
+        d = f.definition
+        s.parent, s.child = f.parent.index, f.child.index
+        s.parent_anchor[:] = frames.point(f.parent, d.anchor_parent)
+        s.child_anchor[:] = frames.point(f.child, d.anchor_child)
+        s.damping = d.damping
+        if isinstance(d, Spring):
+            s.stiffness, s.rest_length = d.stiffness, d.rest_length
+        else:
+            s.piece, s.last_piece = more.curves[f.index]
+    return springs
+
+
+def _loads(scene, frames):
+    rows, none = [], np.zeros(3)
+    for f in scene.forces:
+        d = f.definition
+        if not isinstance(d, (Torque, Force)):
+            continue
+        frame = f.child.index if d.follow else -1
+        vector = frames.axes(f.child, d.vector[:, None])[:, 0] if d.follow else d.vector
+        if isinstance(d, Torque):
+            rows.append((f.child.index, frame, none, none, vector))
+            if f.parent.index >= 0:
+                rows.append((f.parent.index, frame, none, none, -vector))
+        else:
+            anchor = f.child.position if d.anchor is None else d.anchor
+            rows.append((f.child.index, frame, frames.point(f.child, anchor), vector, none))
+    loads = table(LOAD, len(rows))
+    for k, (body, frame, anchor, force, torque) in enumerate(rows):
+        loads.body[k], loads.frame[k] = body, frame
+        loads.anchor[k], loads.force[k], loads.torque[k] = anchor, force, torque
+    return loads
+
+
+def _bushings(scene, frames):
+    chosen = [f for f in scene.forces if isinstance(f.definition, Bushing)]
+    bushings = table(BUSHING, len(chosen))
+    for b, f in zip(bushings, chosen):
+        d = f.definition
+        b.parent, b.child = f.parent.index, f.child.index
+        anchor, world = f.child.position if d.anchor is None else d.anchor, triad(d.axis)
+        b.parent_anchor[:] = frames.point(f.parent, anchor)
+        b.child_anchor[:] = frames.point(f.child, anchor)
+        b.parent_frame[:] = quaternion.from_matrix(frames.axes(f.parent, world))
+        b.child_frame[:] = quaternion.from_matrix(frames.axes(f.child, world))
+        for name in ("stiffness", "damping", "turn_stiffness", "turn_damping"):
+            b[name][:] = getattr(d, name)
+    return bushings
+
+
+def start_sizes(scene) -> np.ndarray:
+    """Return the size (N,) of the shape of each body; where it has none its radius r, tr J = 2 m r^2."""
+    return np.array(
+        [
+            np.sqrt(0.5 * np.trace(b.inertia) / b.mass) if b.shape is None else b.shape.size
+            for b in scene.bodies
+        ]
+    )
+
+
+def _extents(scene, joints) -> np.ndarray:
+    """Return a length (N,) of each body: of its shape, or the arms of its joints."""
+    size = np.array([0.0 if b.shape is None else b.shape.size for b in scene.bodies])
+    for side in ("parent", "child") if len(joints) else ():
+        sides, anchors = joints[side], joints[f"{side}_anchor"]
+        inside = sides >= 0
+        np.maximum.at(size, sides[inside], np.linalg.norm(anchors[inside], axis=1))
+    return np.where(size == 0.0, start_sizes(scene), size)
+
+
+def _bodies(scene, moments, joints, elements, springs, loads, bushings, more):
+    bodies, number = table(BODY, len(scene.bodies)), np.arange(len(scene.bodies))
+    ball = np.array([0.0 if b.shape is None else b.shape.size for b in scene.bodies])
+    isolated = np.ones(len(bodies), dtype=np.int64)
+    for side in ("parent", "child") if len(joints) else ():
+        isolated[joints[side][joints[side] >= 0]] = 0
+    for touched in elements.touching:
+        isolated[touched] = 0
+    ballistic = isolated.copy()
+    for forces, ends in (
+        (springs, ("parent", "child")), (loads, ("body",)), (bushings, ("parent", "child"))
+    ):  # fmt: skip
+        for end in ends if len(forces) else ():
+            loaded = forces[end]
+            ballistic[loaded[loaded >= 0]] = 0
+    ballistic[more.named] = 0
+    bodies["mass"] = [b.mass for b in scene.bodies]
+    bodies["inertia"], bodies["extent"], bodies["ball"] = moments, _extents(scene, joints), ball
+    bodies["isotropic"] = moments.max(axis=1) == moments.min(axis=1)
+    bodies["isolated"], bodies["ballistic"] = isolated, ballistic
+    bodies["number"] = number
+    bodies["component"] = np.where(isolated == 1, number, len(bodies))
+    return bodies

@@ -1,0 +1,70 @@
+"""The contacts of a scene, own ones and those of all pairs, and the rows of each: one for two cores."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from carom._compiled.record_arrays import table
+from carom.model.cores import CORE, Cores
+from carom.scene.all_pairs import PairTable
+from carom.scene.bodies import HalfSpace
+from carom.scene.scene import Scene
+
+
+class Rows(NamedTuple):
+    """R rows: what touches what."""
+
+    number: np.ndarray  # (R,) of the contact
+    core: np.recarray  # (R,) CORE of the body
+    other: np.recarray  # (R,) CORE of the other body, zero for a half-space
+
+
+def touching_pairs(scene: Scene) -> PairTable:
+    """Return the pairs of the contacts of a scene: those added, then those of `set_contact_default`."""
+    added, rest = scene.contacts, scene.pairs_by_default()
+    ends = [
+        (c.body.index, -1, c.other.index)
+        if isinstance(c.other, HalfSpace)
+        else (c.body.index, c.other.index, -1)
+        for c in added
+    ]
+    body, other, plane = np.array(ends, dtype=np.int64).reshape(-1, 3).T
+    if not rest.laws:
+        return PairTable(body, other, plane, np.arange(len(added)), [*added])
+    return PairTable(
+        np.append(body, rest.body),
+        np.append(other, rest.other),
+        np.append(plane, rest.plane),
+        np.append(np.arange(len(added)), rest.law + len(added)),
+        [*added, *rest.laws],
+    )
+
+
+def contact_rows(pairs: PairTable, grounded: Cores, single: Cores) -> Rows:
+    """Return the rows of contacts: one for each core on a half-space, and for each two pieces of bodies.
+
+    `grounded` are the cores of bodies against half-spaces, `single` those of their pieces one by one.
+    """
+    between = pairs.other >= 0
+    count = _lengths(grounded.first)[pairs.body]
+    if between.any():
+        pieces = _lengths(single.first)
+        count = np.where(between, pieces[pairs.body] * pieces[pairs.other], count)
+    number = np.repeat(np.arange(len(count)), count)
+    k = np.arange(len(number)) - np.repeat(np.cumsum(count) - count, count)
+    core, other = table(CORE, len(number)), table(CORE, len(number))
+    flat = ~between[number]
+    core[flat] = grounded.group[grounded.first[pairs.body[number[flat]]] + k[flat]]
+    if between.any():
+        pair, k = number[~flat], k[~flat]
+        others = pieces[pairs.other[pair]]
+        core[~flat] = single.group[single.first[pairs.body[pair]] + k // others]
+        other[~flat] = single.group[single.first[pairs.other[pair]] + k % others]
+    return Rows(number, core, other)
+
+
+def _lengths(first: np.ndarray) -> np.ndarray:
+    """Return the lengths of ranges."""
+    return first[1:] - first[:-1]

@@ -1,0 +1,106 @@
+"""What bodies touch with, by number: groups of pieces and their vertices, once for each body."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+from itertools import accumulate
+from typing import NamedTuple
+
+import numpy as np
+
+from carom._compiled.record_arrays import table
+from carom.geometry import quaternion
+from carom.scene.pieces import Piece
+from carom.scene.shapes import Shape
+
+#: pieces of a body that touch as one hull of vertices, or one curved piece
+CORE = [
+    ("piece", "i8"),  # the first of them
+    ("several", "i8"),  # 1 where the body has other pieces
+    ("curved", "i8"),  # 1 where it has no vertices
+    ("radius", "f8"),  # of the ball that swells them
+    ("extent", "f8"),  # of the whole shape
+    ("reach", "f8"),  # largest distance of a core point from the mass centre
+    ("first", "i8"),  # range of the vertices
+    ("last", "i8"),
+]
+
+
+class Cores(NamedTuple):
+    """G groups of pieces of N bodies, body by body, with V vertices."""
+
+    group: np.recarray  # (G,) CORE
+    first: np.ndarray  # (N + 1,) range of the groups of each body
+    vertices: np.ndarray  # (V, 3) principal axes of their bodies
+
+
+def singly(pieces: Sequence[Piece]) -> list[list[int]]:
+    """Return the numbers of pieces, each for itself: as bodies touch each other."""
+    return [[k] for k in range(len(pieces))]
+
+
+def swollen_alike(pieces: Sequence[Piece]) -> list[list[int]]:
+    """Return those with vertices by radius, then each curved one: as bodies touch a half-space."""
+    alike: dict[float, list[int]] = {}
+    for k, piece in enumerate(pieces):
+        if piece.corners is not None:
+            alike.setdefault(piece.radius, []).append(k)
+    return [*alike.values(), *([k] for k, piece in enumerate(pieces) if piece.corners is None)]
+
+
+def new_cores(
+    shapes: Sequence[Shape | None], split: Callable[..., list[list[int]]], to_principal: np.ndarray
+) -> Cores:
+    """Return the cores of the shape of each body, None to leave one out; `split` groups the pieces."""
+    own = [
+        None if shape is None else _cores_of(shape, split, tuple(q))
+        for shape, q in zip(shapes, to_principal.tolist())
+    ]
+    counts = [0 if one is None else len(one.group) for one in own]
+    first = np.array([0, *accumulate(counts)], dtype=np.int64)
+    there = [one for one in own if one is not None]
+    if not there:
+        return Cores(table(CORE, 0), first, np.zeros((0, 3)))
+    group, at = table(CORE, int(first[-1])), 0
+    for one in there:
+        group[at : at + len(one.group)] = one.group
+        at += len(one.group)
+    length = group["last"]
+    last = np.cumsum(length)
+    group["first"], group["last"] = last - length, last
+    return Cores(group, first, np.concatenate([one.vertices for one in there]))
+
+
+class CoresOfShape(NamedTuple):
+    """G groups of the pieces of one shape."""
+
+    group: np.recarray  # (G,) CORE, `last` as from 0 on for each
+    vertices: np.ndarray  # (V, 3) principal axes
+
+
+@lru_cache(maxsize=64)
+def _cores_of(shape: Shape, split, to_principal: tuple[float, ...]) -> CoresOfShape:
+    """Return the groups of one shape: kept, as the shapes of one simulation are often those of the next."""
+    pieces = shape.pieces
+    groups = split(pieces)
+    rows, points = table(CORE, len(groups)), []
+    rows["several"], rows["extent"], rows["reach"] = len(pieces) > 1, shape.size, shape.size
+    for k, mine in enumerate(groups):
+        corners = _corners([pieces[i] for i in mine], shape.size)
+        points.append(quaternion.rotate_back(np.array(to_principal), corners))
+        rows["piece"][k], rows["radius"][k] = mine[0], pieces[mine[0]].radius
+        rows["curved"][k], rows["last"][k] = pieces[mine[0]].corners is None, len(corners)
+        if len(corners):
+            rows["reach"][k] = np.max(np.linalg.norm(points[k], axis=1))
+    return CoresOfShape(rows, np.concatenate(points))
+
+
+def _corners(pieces: Sequence[Piece], size: float) -> np.ndarray:
+    """Return the vertices (n, 3) of some pieces in body axes, each place once; none of a curved one."""
+    corners = [piece.corners for piece in pieces]
+    points = np.concatenate([np.zeros((0, 3)), *(c for c in corners if c is not None)])
+    if len(pieces) > 1:
+        places = np.round(points / (1e-12 * size))
+        points = points[np.sort(np.unique(places, axis=0, return_index=True)[1])]
+    return points

@@ -1,0 +1,112 @@
+"""The graph of joints: a forest, or closed loops, and an order of elimination for each."""
+
+from __future__ import annotations
+
+import heapq
+from collections import deque
+
+import numpy as np
+
+from carom.model.arrays import (
+    DISTANCE,
+    KNIFE_EDGE,
+    POINT_ON_LINE,
+    POINT_ON_PLANE,
+    ROLLING_DISC,
+    ROLLING_SPHERE,
+)
+
+
+def is_forest(count: int, kind, parent, child) -> bool:
+    """Return whether no joint closes a loop (the ground is one node) and each carries its child."""
+    if any(k in (DISTANCE, KNIFE_EDGE) for k in kind):
+        return False
+    root = list(range(count + 1))
+
+    def find(i):
+        while root[i] != i:
+            root[i] = root[root[i]]
+            i = root[i]
+        return i
+
+    for p, c in zip(parent, child):
+        a, b = find(p if p >= 0 else count), find(c)
+        if a == b:
+            return False
+        root[a] = b
+    return True
+
+
+def cannot_flip(kind) -> np.ndarray:
+    """Return (J,) which joints carry a tree from parent to child only: a line or plane of one body."""
+    return np.isin(kind, (POINT_ON_LINE, POINT_ON_PLANE, ROLLING_SPHERE, ROLLING_DISC))
+
+
+def forest_order(count: int, parent, child) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Walk the forest from the ground, then from the first body of each floating tree.
+
+    Returns
+    -------
+    order : (N,)
+        Bodies, parents before children.
+    joint : (N,)
+        The joint that carries each body, -1 where it floats.
+    flipped : (J,)
+        True where a joint is walked from its child to its parent.
+    """
+    touching = [[] for _ in range(count + 1)]
+    for j, (p, c) in enumerate(zip(parent, child)):
+        touching[p if p >= 0 else count].append(j)
+        touching[c].append(j)
+    order, joint, flipped = [], np.full(count, -1), np.zeros(len(parent), dtype=bool)
+    seen = np.zeros(count + 1, dtype=bool)
+    for start in (count, *range(count)):
+        if seen[start]:
+            continue
+        seen[start] = True
+        queue = deque([start])
+        while queue:
+            b = queue.popleft()
+            if b < count:
+                order.append(b)
+            for j in touching[b]:
+                p = parent[j] if parent[j] >= 0 else count
+                other = child[j] if p == b else p
+                if not seen[other]:
+                    seen[other] = True
+                    joint[other], flipped[j] = j, p != b
+                    queue.append(other)
+    return np.array(order, dtype=np.int64), joint, flipped
+
+
+def elimination(touching: list[list[int]]) -> tuple[list[int], list[list[int]]]:
+    """Order the elements by least degree and return the fill: neighbours of each that come later.
+
+    Two are neighbours when they share a movable body, as in A M^-1 A^T; `touching` has the bodies of each.
+    """
+    count = len(touching)
+    by_body: dict[int, list[int]] = {}
+    for j, bodies in enumerate(touching):
+        for b in bodies:
+            by_body.setdefault(b, []).append(j)
+    near = [set() for _ in range(count)]
+    for joints in by_body.values():
+        for j in joints:
+            near[j].update(joints)
+    for j in range(count):
+        near[j].discard(j)
+    heap = [(len(near[j]), j) for j in range(count)]
+    heapq.heapify(heap)
+    done, order, later = [False] * count, [], [[] for _ in range(count)]
+    while heap:
+        degree, j = heapq.heappop(heap)
+        if done[j] or degree != len(near[j]):
+            continue
+        done[j] = True
+        order.append(j)
+        later[j] = sorted(near[j])
+        for i in near[j]:
+            near[i] |= near[j]
+            near[i] -= {i, j}
+            heapq.heappush(heap, (len(near[i]), i))
+    return order, later

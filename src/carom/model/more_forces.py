@@ -1,0 +1,105 @@
+"""Forces along coordinates of joints, with curves and by functions of the user's, as arrays."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom._compiled.record_arrays import Columns, table
+from carom._compiled.user_functions import Functions
+from carom.model.arrays import (
+    FRICTION,
+    PIECE,
+    PUSH,
+    USER_FORCE,
+)
+from carom.scene.more_forces import CurveSpring, JointForce, JointFriction, JointSpring, UserForce
+
+DEGREE = 5
+
+
+class Pieces:
+    """Pieces of all polynomials of a scene."""
+
+    def __init__(self):
+        self.rows = table(PIECE, 0)
+
+    def add(self, curve) -> tuple[int, int]:
+        """Add a `scipy.interpolate.PPoly`; return the range of its pieces."""
+        c, x = np.asarray(curve.c, dtype=float), np.asarray(curve.x, dtype=float)
+        if c.ndim != 2 or len(c) > DEGREE + 1:
+            raise ValueError(
+                f"a polynomial in pieces must have one value and degree {DEGREE} at most, got coefficients of "
+                f"shape {c.shape}"
+            )
+        pieces = table(PIECE, len(x) - 1)
+        pieces.start, pieces.end = x[:-1], x[1:]
+        pieces.c[:, : len(c)] = c[::-1].T
+        first = len(self.rows)
+        self.rows = np.concatenate([self.rows, pieces]).view(Columns)
+        return first, len(self.rows)
+
+
+class MoreForces:
+    """What the scene's forces say beyond springs, loads and mounts."""
+
+    def __init__(self, scene, coordinates, functions: Functions, pieces: Pieces, implicit: bool):
+        self.pushes, self.forces, self.frictions, self.named = [], [], [], []
+        self.width = 0
+        self.curves: dict[int, tuple[int, int]] = {}  # by the index of the force
+        for force in scene.forces:
+            d = force.definition
+            if isinstance(d, CurveSpring):
+                self.curves[force.index] = pieces.add(d.tension)
+            elif isinstance(d, JointForce) or (isinstance(d, JointSpring) and not implicit):
+                self.pushes.append(_push(d, coordinates, functions))
+            elif isinstance(d, JointFriction):
+                self.frictions.append(_friction(d, coordinates))
+            elif isinstance(d, UserForce):
+                self.forces.append(self._of_user(d, functions))
+
+    def _of_user(self, d, functions):
+        made, n = table(USER_FORCE, 1), len(d.bodies)
+        made.address = functions.address(d.function, (n, 13), (n, 6))
+        if d.potential is not None:
+            made.energy_address = functions.address(d.potential, (n, 13), (1,))
+        made.first = len(self.named)
+        self.named += [b.index for b in d.bodies]
+        made.last = len(self.named)
+        self.width = max(self.width, 13 * n)
+        return made
+
+    @property
+    def any(self) -> bool:
+        """Whether there are some."""
+        return bool(self.pushes or self.forces or self.frictions or self.curves)
+
+
+def _push(d, coordinates, functions):
+    made = table(PUSH, 1)
+    made.coordinate = coordinates.number(d.joint, d.coordinate)
+    if isinstance(d, JointSpring):
+        made.stiffness, made.damping, made.rest = d.stiffness, d.damping, d.rest
+    elif callable(d.force):
+        made.address = functions.address(_of_coordinate(d.force), (2,), (1,))
+    else:
+        made.force = d.force
+    return made
+
+
+def _friction(d, coordinates):
+    made = table(FRICTION, 1)
+    made.coordinate, made.bound = coordinates.number(d.joint, d.coordinate), d.bound
+    return made
+
+
+def _of_coordinate(function):
+    """Return a function of (t, x) from one of t, q and its rate."""
+    if not hasattr(function, "py_func"):
+        return lambda t, x: function(float(t), float(x[0]), float(x[1]))
+    import numba
+
+    @numba.njit
+    def call(t, x):
+        return function(t, x[0], x[1])
+
+    return call

@@ -1,0 +1,278 @@
+"""What a run writes down, and where it stands: arrays made before the loop."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from carom._compiled.record_arrays import Columns, table
+from carom.collision.layout import new_points, pair_arrays
+from carom.model.arrays import (
+    BODY_WORK,
+    BRINK,
+    HELD,
+    HIT,
+    JOINT_WORK,
+    POINT,
+    RESULT,
+    SEARCH,
+    STAGE,
+    STATE,
+    Held,
+    System,
+    Work,
+)
+
+#: kinds of events, by code
+EVENTS = ("impact", "held", "slips", "sticks", "opens", "jams")
+IMPACT, HOLD, SLIPS, STICKS, OPENS, JAMS = range(6)
+
+#: energies of the present, and energy summed since the start
+ENERGIES = [("kinetic", "f8"), ("potential", "f8")]
+LEDGER = [("loads", "f8"), ("impacts", "f8"), ("friction", "f8"), ("bounces", "f8")]
+
+#: where a run stands; kept between calls of the loop
+CLOCK = [
+    ("now", "f8"),
+    ("spent", "f8"),  # of the present step
+    (
+        "begin",
+        "f8",
+    ),  # start and length of the present step, and length of the next, where it varies
+    ("length", "f8"),
+    ("ahead", "f8"),
+    *ENERGIES,
+    *LEDGER,
+    ("before", "f8"),  # line of the impacts when the step began
+    ("owed", "f8"),  # what friction gave since, as bounces were dropped, and has not taken back
+    ("step", "i8"),  # finished steps
+    ("saved", "i8"),
+    ("struck", "i8"),
+    ("event", "i8"),
+    ("snapped", "i8"),  # rows of snapshots
+    ("touched", "i8"),  # rows of touches
+    ("first_touch", "i8"),  # rows of touches when the island began with the step
+    ("concerns", "i8"),  # contact of the event that is being written
+    ("in_step", "i8"),  # impacts and events in the present step
+    ("at_once", "i8"),  # impacts and events since time last went on
+    ("cuts", "i8"),
+    ("trials", "i8"),
+    ("rejected", "i8"),  # trial steps of too great an error
+    ("tries", "i8"),  # trial steps of the present step of an island
+    ("effort", "f8"),  # work for its contact problems and corners, about [us]
+    ("credit", "f8"),  # how much of it a step may take, as those before took less than they might
+    ("since", "f8"),  # work since the loop was entered, about [us]
+    ("paused", "i8"),  # 1 where it was left in the middle of a trial step
+    ("located", "i8"),
+    ("holds", "i8"),
+    ("pressed", "i8"),  # steps of groups held at several points, on trial too
+    ("rounds", "i8"),  # of their iteration
+    (
+        "whole",
+        "i8",
+    ),  # steps whose islands were taken as heaps, as one could not go from event to event
+    ("residual", "f8"),  # greatest of held contacts since the last saved row
+    (
+        "still",
+        "f8",
+    ),  # end of the first step from which on nothing has moved; infinite while something does
+]
+
+SERIES = [("t", "f8"), *ENERGIES, *LEDGER, ("residual", "f8")]
+#: a held point at a saved time; moments about the mass centres (world axes)
+TOUCH = [
+    ("saved", "i8"),
+    ("contact", "i8"),
+    ("feature", "i8"),
+    ("body", "i8"),
+    ("other", "i8"),
+    ("mode", "i8"),
+    ("point", "f8", 3),  # world
+    ("force", "f8", 3),  # contact axes
+    ("push", "f8", 3),  # the same in world axes
+    ("moment", "f8", 3),
+    ("other_moment", "f8", 3),  # about the mass centre of the other body
+]
+
+IMPACTS = [
+    ("time", "f8"),
+    ("contact", "i8"),
+    ("point", "f8", 3),
+    ("normal", "f8", 3),
+    ("W", "f8", (3, 3)),
+    ("before", "f8", 3),
+    ("after", "f8", 3),
+    ("impulse", "f8", 3),
+    ("energy_change", "f8"),
+    ("duration", "f8"),
+    ("together", "i8"),  # closed points that were resolved together
+    ("compression_work", "f8"),
+    ("restitution_work", "f8"),
+    ("friction_loss", "f8"),
+    ("phases", "i8"),
+]
+
+EVENT = [
+    ("time", "f8"),
+    ("kind", "i8"),
+    ("contact", "i8"),
+    ("feature", "i8"),
+    ("saved", "i8"),  # rows that were saved before
+    ("first", "i8"),  # its snapshots, up to that of the next event
+    ("mode", "i8"),  # of a point that is held from now on
+]
+
+#: a body at an event that concerns it, velocities before and after
+SNAPSHOT = [
+    ("event", "i8"),
+    ("body", "i8"),
+    ("x", "f8", 3),
+    ("Q", "f8", 4),
+    ("v0", "f8", 3),
+    ("w0", "f8", 3),
+    ("v1", "f8", 3),
+    ("w1", "f8", 3),
+]
+
+MARGIN = 260  # impacts, or events, that one turn of the loop may write
+FULL = 100  # a record is full: the caller makes it longer and goes on
+NEEDS_CORNER = 102  # several points strike: the same
+NEEDS_HOLD = 101  # a contact is to be held: the caller compiles what that needs and goes on
+NEEDS_ROOM = 103  # more pairs are near each other than there is room for: the same
+NEEDS_HEAP = 104  # an island is a heap: the caller compiles its step and goes on
+NEEDS_SPOTS = 105  # more points may touch in a heap than there is room for: the caller makes more
+NEEDS_ROWS = 107  # more steps are to be saved than there is room for: the same
+STRAYED = 106  # a body has left the ball that its island gave it
+PAUSE = 108  # much was done: the caller looks for Ctrl-C and goes on
+
+LONG = 5e4  # work after which the loop is left for a moment, about [us]
+# work for contacts, about [us]: what a step may take on the average, one after others that took less, and that
+# as many times as there are bodies
+EACH, SAVED, OWN = 1e4, 1e6, 2e5
+
+
+class Records(NamedTuple):
+    """T saved steps, K impacts, E events, S snapshots, H touches."""
+
+    series: np.recarray  # (T,) SERIES
+    state: np.recarray  # (T, N) STATE
+    touch: np.recarray  # (H,) TOUCH
+    impact: np.recarray  # (K,) IMPACTS
+    event: np.recarray  # (E,) EVENT
+    snapshot: np.recarray  # (S,) SNAPSHOT
+
+
+def new_clock() -> np.recarray:
+    """Return the clock of a run that has not begun, (1,)."""
+    clock = table(CLOCK, 1)
+    clock["still"], clock["credit"] = np.inf, SAVED
+    return clock
+
+
+def new_held(system: System) -> Held:
+    """Return what is held at the start: nothing, and all contacts are to be looked at first."""
+    contacts = system.contacts
+    grounded = int(np.count_nonzero((contacts["touches"] == 1) & (contacts["other"] < 0)))
+    between = max(len(system.bodies), len(system.solids))  # bodies, or pieces of them
+    held = Held(
+        points=table(
+            HELD, len(system.vertices) + 24 * between + 8 * grounded + len(system.contacts)
+        ),
+        brinks=table(BRINK, system.contacts.size),
+        carries=np.zeros(len(system.vertices), dtype=np.int64),
+        count=np.zeros(1, dtype=np.int64),
+    )
+    held.brinks["near"] = 1
+    return held
+
+
+def new_work(system: System, stages: int) -> Work:
+    """Return the scratch of one run."""
+    n, j = system.bodies.size, system.joints.size
+    body = table(BODY_WORK, n)
+    body["room"] = np.inf
+    return Work(
+        body=body,
+        joint=table(JOINT_WORK, j),
+        stages=table(STAGE, stages, n),
+        stage=table(STATE, n),
+        trial=table(STATE, n),
+        middle=table(STATE, n),
+        first=table(STATE, n),
+        point=table(POINT, 1),
+        pair=pair_arrays(),
+        touches=new_points(),
+        solid_pose=np.zeros((2, 7)),
+        solid_rate=np.zeros((2, 3)),
+        hit=table(HIT, 1),
+        result=table(RESULT, 1),
+        search=table(SEARCH, 1),
+        history=np.zeros((0, 16)),
+    )
+
+
+def new_records(system: System, saves: int, events: int) -> Records:
+    """Return empty records for `saves` saved steps and `events` impacts and events."""
+    n = system.bodies.size
+    return Records(
+        series=table(SERIES, saves),
+        state=table(STATE, saves, n),
+        touch=table(TOUCH, events),
+        impact=table(IMPACTS, events),
+        event=table(EVENT, events),
+        snapshot=table(SNAPSHOT, 2 * events + 2 * n),
+    )
+
+
+def longer(records: Records) -> Records:
+    """Return the records with room for twice as many impacts, events and held points."""
+    return records._replace(
+        **{
+            name: np.concatenate([a, np.zeros_like(a)]).view(Columns)
+            for name in ("touch", "impact", "event", "snapshot")
+            for a in [getattr(records, name)]
+        }
+    )
+
+
+def more_rows(records: Records) -> Records:
+    """Return the records with room for twice as many saved steps."""
+    return records._replace(
+        **{
+            name: np.concatenate([a, np.zeros_like(a)]).view(Columns)
+            for name in ("series", "state")
+            for a in [getattr(records, name)]
+        }
+    )
+
+
+def room_for_one(records: Records, saved: int) -> Records:
+    """Return the records with room for one more saved step."""
+    if saved < len(records.series):
+        return records
+    return records._replace(
+        **{
+            name: np.concatenate([a, np.zeros_like(a[:1])]).view(Columns)
+            for name in ("series", "state")
+            for a in [getattr(records, name)]
+        }
+    )
+
+
+def trimmed(records: Records, clock: np.recarray) -> Records:
+    """Return copies of the rows that were written."""
+    return Records(*(rows.copy().view(Columns) for rows in written(records, clock)))
+
+
+def written(records: Records, clock: np.recarray) -> Records:
+    """Return the rows that were written: a run that goes on may write to them."""
+    row = told(clock)
+    saved = row["saved"]
+    ends = saved, saved, row["touched"], row["struck"], row["event"], row["snapped"]
+    return Records(*(rows[:end].view(Columns) for rows, end in zip(records, ends)))
+
+
+def told(clock: np.recarray) -> dict:
+    """Return what the clock says as numbers of Python, by name."""
+    return dict(zip(clock.dtype.names or (), clock[0].item()))

@@ -1,0 +1,233 @@
+"""Coordinates of joints, their relations and rows of the user's own, as arrays."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom._compiled.record_arrays import Columns, table
+from carom._compiled.user_functions import Functions
+from carom.model.arrays import (
+    COORDINATE,
+    FRICTION,
+    PRISMATIC,
+    PUSH,
+    RELATION,
+    RELATION_ROW,
+    REVOLUTE,
+    STIFF,
+    STIFF_SPRING,
+    TERM,
+    USER_FORCE,
+    USER_ROW,
+    USER_ROWS,
+    NoRelations,
+    Relations,
+)
+from carom.model.frames import triad
+from carom.model.more_forces import MoreForces, Pieces
+from carom.model.placement import Placement
+from carom.scene.constraints import Coupling, Rows, coordinate_kind
+from carom.scene.forces import Spring
+from carom.scene.joints import Joint, Planar, PointOnLine, PointOnPlane, Universal
+from carom.scene.more_forces import JointSpring
+
+
+class Coordinates:
+    """The coordinates that a scene speaks of, each once."""
+
+    def __init__(self, placement: Placement):
+        self.placement = placement
+        self.rows: list[np.recarray] = []
+        self._numbers: dict[tuple[int, int], int] = {}
+
+    def number(self, joint: Joint, coordinate: int) -> int:
+        """Return the place of a coordinate in the table."""
+        key = joint.index, coordinate
+        if key not in self._numbers:
+            self._numbers[key] = len(self.rows)
+            self.rows.append(self._row(joint, coordinate))
+        return self._numbers[key]
+
+    def bodies(self, number: int) -> set[int]:
+        """Return the bodies that a coordinate moves."""
+        row = self.rows[number][0]
+        return {int(row.child), int(row.parent)} - {-1}
+
+    def table(self) -> np.recarray:
+        """Return all rows."""
+        return np.concatenate([table(COORDINATE, 0), *self.rows]).view(Columns)
+
+    def _row(self, joint, coordinate):
+        d, made = joint.definition, table(COORDINATE, 1)
+        row = made[0]
+        turns = coordinate_kind(joint, coordinate) == "turn"
+        first, second = (self.placement.side(joint, k) for k in range(2))
+        frame = _frame(d, coordinate)
+        if isinstance(d, Universal) and coordinate == 1:  # seen from the child
+            first, second = second, first
+        anchor = joint.anchor()
+        row.kind = REVOLUTE if turns else PRISMATIC
+        row.parent, row.child = first.body.index, second.body.index
+        row.parent_anchor[:], row.child_anchor[:] = first.point(anchor), second.point(anchor)
+        row.parent_frame[:], row.child_frame[:] = first.axes(frame), second.axes(frame)
+        return made
+
+
+def _frame(d, coordinate: int) -> np.ndarray:
+    """Return columns: the axis of a coordinate, and two across it."""
+    if isinstance(d, Universal):
+        a, b = d.axis_parent, d.axis_child
+        columns = (a, b, np.cross(a, b)) if coordinate == 0 else (-b, a, np.cross(a, b))
+        return np.stack(columns, axis=1)
+    if isinstance(d, (Planar, PointOnPlane)):
+        frame = triad(d.normal)
+        return frame if coordinate == 2 else triad(frame[:, 1 + coordinate])
+    return triad(d.direction if isinstance(d, PointOnLine) else d.axis)
+
+
+class Elements:
+    """What stands after the joints of a scene: relations and rows of the user's."""
+
+    def __init__(self, scene, coordinates, functions: Functions, pieces: Pieces, sizes: np.ndarray):
+        self.coordinates = coordinates
+        self.kinds, self.rows, self.numbers, self.touching = [], [], [], []
+        self.relations, self.user, self.stiff = [], [], []
+        self.terms: list[list[tuple[int, float]]] = []
+        self.pieces = pieces
+        self.width = 8
+        for constraint in scene.constraints:
+            d = constraint.definition
+            if isinstance(d, Rows):
+                self._user(d, functions)
+            else:
+                self._relation(d, functions, sizes)
+
+    def _add(self, kind, rows, number, bodies):
+        self.kinds.append(kind)
+        self.rows.append(rows)
+        self.numbers.append(number)
+        self.touching.append(bodies)
+
+    def add_springs(self, scene, placement) -> None:
+        """Add the springs of a scene, between points and along coordinates, as rows for the implicit step."""
+        for force in scene.forces:
+            d = force.definition
+            if not isinstance(d, (Spring, JointSpring)) or not (d.stiffness + d.damping > 0.0):
+                continue
+            made = table(STIFF_SPRING, 1)
+            made.stiffness, made.damping = d.stiffness, d.damping
+            if isinstance(d, JointSpring):
+                made.coordinate, made.rest = self.coordinates.number(d.joint, d.coordinate), d.rest
+                row = self.coordinates.rows[int(made.coordinate[0])]
+                made.child, made.parent = row.child, row.parent
+            else:
+                made.coordinate, made.rest = -1, d.rest_length
+                made.parent, made.child = force.parent.index, force.child.index
+                made.parent_anchor[0] = placement.point(force.parent, d.anchor_parent)
+                made.child_anchor[0] = placement.point(force.child, d.anchor_child)
+            bodies = sorted({int(made.child[0]), int(made.parent[0])} - {-1})
+            self._add(STIFF, 1, len(self.stiff), bodies)
+            self.stiff.append(made)
+
+    def _user(self, d, functions):
+        n, rows = len(d.bodies), d.rows
+        made = table(USER_ROW, 1)
+        made.address = functions.address(d.function, (n, 7), (rows, 6 * n + 1))
+        if d.position is not None:
+            made.position_address = functions.address(d.position, (n, 7), (rows,))
+        self.width = max(self.width, rows * (6 * n + 1), 7 * n)
+        self._add(USER_ROWS, rows, len(self.user), [b.index for b in d.bodies])
+        self.user.append(made)
+
+    def _relation(self, d, functions, sizes):
+        made = table(RELATION_ROW, 1)
+        given = d.terms if isinstance(d, Coupling) else ((d.joint, d.coordinate, 1.0),)
+        terms = [(self.coordinates.number(joint, k), factor) for joint, k, factor in given]
+        lengths = [
+            abs(factor) * (1.0 if coordinate_kind(joint, k) == "turn" else sizes[joint.child.index])
+            for joint, k, factor in given
+        ]
+        made.scale = max(lengths)
+        if not isinstance(d, Coupling):
+            self._motion(d, made, functions)
+        bodies = sorted(set().union(*(self.coordinates.bodies(k) for k, _ in terms)))
+        self._add(RELATION, 1, len(self.relations), bodies)
+        self.relations.append(made)
+        self.terms.append(terms)
+
+    def _motion(self, d, made, functions):
+        if d.rate is not None:
+            made.rate = d.rate
+            return
+        if hasattr(d.motion, "c") and hasattr(d.motion, "x"):
+            made.piece, made.last_piece = self.pieces.add(d.motion)
+        else:
+            made.address = functions.address(_of_time(d.motion), (1,), (3,))
+
+    def arrays(self, solver, more: MoreForces) -> Relations | NoRelations:
+        """Return the tables, with the sides that `solver` gave to the bodies; nothing where nothing is said."""
+        if not self.kinds and not self.coordinates.rows and not more.any:
+            return NoRelations(0)
+        terms = []
+        relation = iter(range(len(self.relations)))
+        first_side = solver.rows.first[-len(self.kinds) :] if self.kinds else []
+        rows = self.coordinates.table()
+        for first, kind, bodies, number in zip(
+            first_side, self.kinds, self.touching, self.numbers, strict=True
+        ):
+            if kind == USER_ROWS:
+                self.user[number].first, self.user[number].last = first, first + len(bodies)
+                continue
+            if kind == STIFF:
+                made = self.stiff[number]
+                for name, b in (("child_side", made.child[0]), ("parent_side", made.parent[0])):
+                    made[name] = first + bodies.index(b) if b >= 0 else -1
+                solver.rows.off[solver.rows.first == first] = 1
+                continue
+            k = next(relation)
+            self.relations[k].first = len(terms)
+            for coordinate, factor in self.terms[k]:
+                sides = [
+                    first + bodies.index(b) if b >= 0 else -1
+                    for b in (rows.child[coordinate], rows.parent[coordinate])
+                ]
+                terms.append((coordinate, factor, *sides))
+            self.relations[k].last = len(terms)
+        listed = table(TERM, len(terms))
+        for t, values in zip(listed, terms):
+            t.coordinate, t.factor, t.child_side, t.parent_side = values
+        return Relations(
+            rows,
+            _joined(RELATION_ROW, self.relations),
+            listed,
+            _joined(USER_ROW, self.user),
+            self.pieces.rows,
+            _joined(PUSH, more.pushes),
+            _joined(USER_FORCE, more.forces),
+            _joined(STIFF_SPRING, self.stiff),
+            _joined(FRICTION, more.frictions),
+            np.zeros((len(more.frictions), len(more.frictions))),
+            np.zeros(len(more.frictions)),
+            np.array(more.named, dtype=np.int64),
+            np.zeros(max(self.width, more.width)),
+            np.zeros(max(self.width, more.width)),
+        )
+
+
+def _joined(fields, rows) -> np.recarray:
+    return np.concatenate([table(fields, 0), *rows]).view(Columns)
+
+
+def _of_time(function):
+    """Return a function of (t, x) from one of t."""
+    if not hasattr(function, "py_func"):
+        return lambda t, x: function(float(t))
+    import numba
+
+    @numba.njit
+    def call(t, x):
+        out = np.empty(3)
+        out[0], out[1], out[2] = function(t)
+        return out
+
+    return call

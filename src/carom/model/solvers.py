@@ -1,0 +1,132 @@
+"""Build the arrays of the back end that a scene needs."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom._compiled.record_arrays import table
+from carom.model.arrays import (
+    FIRST,
+    LINK,
+    ROW,
+    ROWS,
+    SIDE,
+    WIDTH,
+    LoopSolver,
+    TreeSolver,
+)
+from carom.model.graph import elimination
+
+SPREAD = (
+    1e5  # of masses, from which on A M^-1 A^T loses too many digits (`carom.dynamics.light_bodies`)
+)
+LIMIT = 1e24  # of masses, from which on nothing is left of 31 digits
+
+
+def tree_solver(joints: np.recarray, order: np.ndarray, joint: np.ndarray) -> TreeSolver:
+    """Return the solver of a forest; `order` and `joint` are those of `forest_order`."""
+    links = table(LINK, order.size)
+    links.order, links.joint = order, joint
+    links["parent"], links["freedoms"] = -1, 6
+    for b, j in enumerate(joint):
+        if j >= 0:
+            links.parent[b] = p = joints.parent[j]
+            links.freedoms[b] = 6 - ROWS[int(joints.kind[j])]
+            if p >= 0:
+                links.has_child[p] = 1
+    # no wider than it must be: memory is what a solve of 1000 links waits for
+    most = max(
+        1, int(np.max(links.freedoms[(links.joint >= 0) | (links.has_child == 1)], initial=0))
+    )
+    return TreeSolver(0, links, np.full((order.size, FIRST + WIDTH * most), np.nan))
+
+
+def spread(touching: list[list[int]], mass, moments, extent) -> tuple[float, int, int]:
+    """Return by how much masses, or moments over squares of sizes, differ in a mechanism, and of which bodies.
+
+    `touching` is that of `loop_solver`; for all bodies mass (N,), principal moments (N, 3) and size (N,). The
+    bodies are the lightest and the heaviest of that mechanism.
+    """
+    root = list(range(len(mass)))
+
+    def find(b):
+        while root[b] != b:
+            b = root[b]
+        return b
+
+    for first, *others in touching:
+        for b in others:
+            root[find(b)] = find(first)
+    inertia = np.column_stack([mass, moments / extent[:, None] ** 2])
+    least, most = inertia.min(axis=1), inertia.max(axis=1)
+    own: dict[int, list[int]] = {}
+    for b in {b for bodies in touching for b in bodies}:
+        own.setdefault(find(b), []).append(b)
+    ends = [
+        (min(group, key=least.__getitem__), max(group, key=most.__getitem__))
+        for group in own.values()
+    ]
+    return max(((float(most[k] / least[i]), i, k) for i, k in ends), default=(1.0, 0, 0))
+
+
+def loop_solver(touching: list[list[int]], drop: float, poses: int, bodies: int) -> LoopSolver:
+    """Return the solver of a scene with closed loops: the symbolic factor of A M^-1 A^T.
+
+    `touching` has the bodies of each element, joints first: the child, then the parent if it is a body. `poses`
+    is the number of bodies if the rows depend on nothing but their poses, else 0; `bodies` is that number where
+    their masses are spread, else 0.
+    """
+    number = len(touching)
+    order, later = elimination(touching)
+    place = np.empty(number, dtype=np.int64)
+    place[order] = np.arange(number)
+    column, row, slot = [0], [], {(j, j): j for j in range(number)}
+    for k in order:
+        for i in sorted(later[k], key=lambda j: place[j]):
+            slot[i, k] = number + len(row)
+            row.append(i)
+        column.append(len(row))
+    update, triple = [0], []
+    for n in range(number):
+        below = range(column[n], column[n + 1])
+        for s in below:
+            for t in below:
+                if place[row[s]] >= place[row[t]]:
+                    triple.append((s, t, slot[row[s], row[t]]))
+        update.append(len(triple))
+    rows = table(ROW, number)
+    count = np.array([len(bodies) for bodies in touching], dtype=np.int64)
+    rows.last = np.cumsum(count)
+    rows.first = rows.last - count
+    sides = table(SIDE, int(rows.last[-1]))
+    sides.element = np.repeat(np.arange(number), count)
+    sides.body = [b for bodies in touching for b in bodies]
+    by_body: dict[int, list[int]] = {}
+    for s, b in enumerate(sides.body):
+        by_body.setdefault(int(b), []).append(s)
+    element = sides.element
+    term = [
+        (slot[element[s], element[t]], s, t)
+        for near in by_body.values()
+        for s in near
+        for t in near
+        if place[element[s]] >= place[element[t]]
+    ]
+    return LoopSolver(
+        address=0,
+        order=np.array(order, dtype=np.int64),
+        column=np.array(column, dtype=np.int64),
+        row=np.array(row, dtype=np.int64),
+        update=np.array(update, dtype=np.int64),
+        triple=np.array(triple, dtype=np.int64).reshape(-1, 3),
+        term=np.array(term, dtype=np.int64).reshape(-1, 3),
+        rows=rows,
+        sides=sides,
+        block=np.zeros((number + len(row), 6, 6)),
+        drop=drop,
+        pose=np.full((poses, 7), np.nan),
+        usual=np.full(1, -1),
+        fine=np.zeros((2, number + len(row) if bodies else 0, 6, 6)),
+        digits=np.zeros((number if bodies else 0, 4, 6)),
+        scaled=np.zeros((bodies, 3, 6)),
+    )

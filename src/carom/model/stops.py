@@ -1,0 +1,36 @@
+"""Stops in joints as rows of contacts, after those of bodies."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom._compiled.record_arrays import Columns, table
+from carom.model.arrays import (
+    CONTACT,
+    STOP,
+)
+from carom.scene.constraints import coordinate_kind
+from carom.scene.materials import IMPACT_LAWS
+
+
+def with_stops(scene, contacts: np.recarray, coordinates, sizes, options) -> np.recarray:
+    """Return the contacts and, with the numbers after theirs, the stops."""
+    if not scene.stops:
+        return contacts
+    rows, first = table(CONTACT, len(scene.stops)), int(contacts.number.max(initial=-1)) + 1
+    for row, stop in zip(rows, scene.stops):
+        number = coordinates.number(stop.joint, stop.coordinate)
+        c = coordinates.rows[number][0]
+        turns = coordinate_kind(stop.joint, stop.coordinate) == "turn"
+        row.number, row.solid, row.touches = first + stop.index, number, STOP
+        row.body, row.other = (c.child, c.parent) if c.child >= 0 else (c.parent, -1)
+        size = sizes[stop.joint.child.index]
+        row.side = stop.side * (size if turns else 1.0)
+        row.offset = row.side * stop.end
+        row.law, row.restitution = IMPACT_LAWS.index(stop.impact_law), stop.restitution
+        row.extent = row.other_extent = size
+        row.first, row.last, row.stiffness = 0, 1, 1.0
+    rows.still = 1e-14 * np.sqrt(np.linalg.norm(scene.gravity) * rows.extent)
+    rows.width = 1e-5 * rows.extent if options.layer_width is None else options.layer_width
+    rows.penetration = options.penetration
+    return np.concatenate([contacts, rows]).view(Columns)

@@ -1,1 +1,0 @@
-"""The free phase: forces, joints, the constrained solve with its back ends, the methods."""

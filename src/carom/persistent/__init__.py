@@ -1,0 +1,1 @@
+"""Contact that persists: the active set, the contact step, slip, stick and rest."""

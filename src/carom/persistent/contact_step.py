@@ -1,0 +1,323 @@
+"""A step of bodies that are held at several points: midpoint rows carry the impulse, end rows the constraint.
+
+The step without the contacts is known (any method). With the impulses p of all k points,
+
+    pi_1 = pi_free + G_0^T p,    v_1 = M(q_1)^-1 pi_1,    q_1 = Exp_q_free(h/2 P G_0^T p), then gap_i = 0,
+    w = G_1 v_1,    0 <= p_n _|_ w_n >= 0,    p_t in -mu p_n d|w_t|,
+
+G_0 at the middle of the step, G_1 at its end, momenta pi about each centre in world axes. A point that slips
+throughout takes the direction of friction from the velocity at the middle of the step; where slip has stopped,
+the cone holds with the velocity at the end. Each round solves with the symmetric W = G_0 P G_0^T for
+
+    w = w(p_old) + W (p - p_old),
+
+so that the fixed point is exact. Order 2. (Mathematics page, VI.1.)
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.choice import by_address
+from carom._compiled.decorators import kernel, unit
+from carom.contact.closed_points import gather_held, place_seats
+from carom.contact.groups import members
+from carom.dynamics.acceleration import SLIP
+from carom.dynamics.elements import driven_power
+from carom.dynamics.explicit import keep
+from carom.dynamics.forces import applied_wrenches
+from carom.dynamics.joint_friction import slip_power
+from carom.dynamics.project import project_velocity, shift
+from carom.dynamics.several_points import inverse_masses, of_one_body, spread_all, velocities
+from carom.friction.layout import BUDGET, CONE, ENOUGH, NEAR
+from carom.friction.residual import measure
+from carom.friction.solve import solve_cones
+from carom.geometry.rotation import rotate, rotate_back
+from carom.impact.workspace import BACK, OLD, C, P, U
+from carom.kinematics.contact_point import contact_velocity
+from carom.persistent.finish import finish, forces_at_end, gained
+from carom.persistent.middle_state import halfway, mean_velocity, spin_momentum
+from carom.persistent.return_to_surfaces import onto_surfaces
+from carom.persistent.rolling_friction import bound_turning, first_torque
+from carom.persistent.step_control import affordable, unnamed
+
+ROUNDS = 50
+SETTLED = 1e-14  # relative change of velocities by a round that is the last
+# while rounds change them by more than FAR they need no forces better than ROUGH, but W anew; then W stays: the
+# fixed point does not depend on it
+FAR, ROUGH = 1e-4, 1e-8
+# of a body alone, whose motion is unique though forces are not: how well the first round solves for these, and
+# the others as a part of what the last has changed
+FIRST, PART = 1e-5, 1e-4
+ITERATION = 0.3  # cost [us] of an iteration for k points, by k^2
+
+
+@unit
+def press_unit(system, controls, held, start, h, end, cluster, work, clocks):
+    """Correct the step from `start` to `end` of all bodies that are held at several points.
+
+    Forces at the end go to the held points; work of friction, of loads and a status to `work.result`.
+    """
+    result = work.result[0]
+    result.applied, result.friction, result.code = 0.0, 0.0, 0
+    result.residual, result.unnamed = 0.0, 0.0
+    for i in range(held.count[0]):
+        hold = held.points[i]
+        group = work.body[hold.body].group
+        if hold.several == 0 or hold.rest == 1 or seen(held, i, group, work):
+            continue
+        press_group(system, controls, held, group, start, h, end, cluster, work, clocks[0])
+        if result.code != 0:
+            return
+
+
+#: press(address, system, controls, held, start, h, end, cluster, work, clocks)
+press = by_address(press_unit)
+
+
+@kernel
+def seen(held, i, group, work):
+    """Return whether an earlier held point is of the same group."""
+    for j in range(i):
+        if work.body[held.points[j].body].group == group:
+            return True
+    return False
+
+
+@kernel
+def press_group(system, controls, held, group, start, h, end, cluster, work, clock):
+    """Correct the step of one group."""
+    k = gather_held(system, held, group, start, cluster, work)
+    count = members(work, group, cluster.member)
+    loaded = False
+    for m in range(count):
+        loaded = loaded or system.bodies[cluster.member[m]].ballistic == 0
+    begin(system, controls, held, k, start, h, end, count, loaded, cluster, work)
+    before, single = math.inf, of_one_body(system, k, cluster.points[0])
+    clock.pressed += 1
+    for turn in range(ROUNDS):
+        # where impulses are not unique: those of least norm, then those near them
+        cluster.cone.count[NEAR] = min(turn, 1)
+        for m in range(count):
+            halfway(start[cluster.member[m]], end[cluster.member[m]], work.stage[cluster.member[m]])
+        place_seats(system, k, work.stage, cluster, cluster.points[0], work)
+        far = before > FAR
+        if turn < 2 or far:
+            inverse_masses(system, k, cluster.points[0], work.stage, work, cluster.m[0])
+        impose(system, held, k, h, end, count, loaded, cluster, work)
+        for m in range(count):
+            mean_velocity(
+                start[cluster.member[m]], end[cluster.member[m]], work.stage[cluster.member[m]]
+            )
+        pose(k, start, cluster, work)
+        bound_turning(system, k, cluster)
+        enough = ROUGH if turn > 0 and far else 0.0
+        if single:
+            enough = FIRST if turn == 0 else PART * before
+        change = find_impulses(controls, k, enough, cluster, clock)
+        if single and change <= SETTLED:  # good enough as they were: or the solution?
+            change = find_impulses(controls, k, 0.0, cluster, clock)
+        if change <= SETTLED or (change <= 1e-7 and change >= 0.3 * before):
+            break
+        if controls.retry == 1 and clock.effort > affordable(controls, clock):
+            break  # to be given up, where there is another way
+        before = change
+        clock.rounds += 1
+    cluster.cone.count[NEAR], cluster.cone.mismatch[ENOUGH] = 0, 0.0
+    driven = impose(system, held, k, h, end, count, loaded, cluster, work)
+    check(system, k, start, end, count, cluster, work)
+    friction = finish(system, controls, held, k, start, h, end, count, cluster, work)
+    work.result[0].friction += friction
+    if loaded:
+        work.result[0].applied += driven + extra_work(system, h, start, end, cluster, work)
+        rubbed = slip_power(system, work.stage) - slip_power(system, work.middle)
+        work.result[0].friction += h * rubbed
+    else:
+        over = unnamed(system, controls, start, end, friction, count, cluster.member)
+        work.result[0].unnamed = max(work.result[0].unnamed, over)
+    forces_at_end(system, controls, held, k, end, cluster, work)
+
+
+@kernel
+def find_impulses(controls, k, enough, cluster, clock):
+    """Solve for the impulses of a round, to `enough` (0: to round-off); return what that moves, relative."""
+    left, each = affordable(controls, clock) - clock.effort, ITERATION * k * k
+    cluster.cone.mismatch[ENOUGH] = enough
+    cluster.cone.count[BUDGET] = max(100, int(left / each))
+    _, _, iterations = solve_cones(
+        k, cluster.m[0], cluster.v[C], cluster.mu, cluster.kind, cluster.heading, cluster.v[P],
+        cluster.cone,
+    )  # fmt: skip
+    clock.effort += each * iterations
+    clock.since += 5.0 * k + each * iterations
+    return moved(3 * k, cluster)
+
+
+@kernel
+def check(system, k, start, end, count, cluster, work):
+    """Measure how well impulses and velocities fit each other, whoever found them.
+
+    The velocities are those of the bodies: w(p) = W p + c with the c of one more round.
+    """
+    for m in range(count):
+        b = cluster.member[m]
+        mean_velocity(start[b], end[b], work.stage[b])
+    pose(k, start, cluster, work)
+    bound_turning(system, k, cluster)
+    found = measure(
+        k, cluster.m[0], cluster.v[C], cluster.mu, cluster.kind, cluster.heading, cluster.v[P]
+    )
+    if not found[0] <= work.result[0].residual:
+        work.result[0].residual = found[0]
+
+
+@kernel
+def moved(n, cluster):
+    """Return what the last change of p does to the velocities, relative to what all of p does.
+
+    Forces themselves may go on changing where they are not unique.
+    """
+    change, largest = 0.0, 0.0
+    for i in range(n):
+        s, t = 0.0, 0.0
+        for j in range(n):
+            s += cluster.m[0][i, j] * (cluster.v[P][j] - cluster.v[OLD][j])
+            t += abs(cluster.m[0][i, j] * cluster.v[P][j])
+        change, largest = max(change, abs(s)), max(largest, t)
+    return change / largest if largest > 0.0 else 0.0
+
+
+@kernel
+def begin(system, controls, held, k, start, h, end, count, loaded, cluster, work):
+    """Note the step without contacts, the directions of slip, and the last forces as a first guess."""
+    for m in range(count):
+        keep(end[cluster.member[m]], cluster.flight[cluster.member[m]])
+    if loaded:  # springs may lead to any body
+        for b in range(start.shape[0]):
+            halfway(start[b], end[b], work.stage[b])
+            halfway(start[b], end[b], work.middle[b])
+    still = controls.rest * gained(start, count, cluster) * controls.step / h
+    for i in range(3 * k):
+        cluster.v[BACK][i] = 0.0
+    for i in range(k):
+        seat = cluster.seats[i]
+        hold = held.points[seat.held]
+        _, u1, u2 = contact_velocity(cluster.points[0][i], start)
+        speed = math.sqrt(u1 * u1 + u2 * u2)
+        if seat.turns == 0:
+            cluster.mu[i] = system.contacts[hold.contact].friction_held
+            for r in range(3):
+                cluster.v[P][3 * i + r] = h * hold.force[r]
+            slips, stop = hold.mode == SLIP and speed > 0.0, hold.stop
+        else:
+            cluster.mu[i] = 1.0
+            first_torque(system, hold, i, h, cluster)
+            slips, stop = speed > still, hold.turn_stop[seat.turns - 1]
+        cluster.heading[i, 0] = u1 / speed if slips else 0.0
+        cluster.heading[i, 1] = u2 / speed if slips else 0.0
+        cluster.kind[i] = CONE
+        seat.stopped = 0 if slips and stop > h * (1.0 + 1e-9) else 1
+
+
+@kernel
+def any_joined(system, count, member):
+    """Return whether a body of the group has a joint."""
+    for m in range(count):
+        if system.bodies[member[m]].isolated == 0:
+            return True
+    return False
+
+
+@kernel
+def impose(system, held, k, h, end, count, loaded, cluster, work):
+    """Put `end` where the impulses p of the middle rows bring it; write u = G_1 v_1.
+
+    Returns the work of what is prescribed: in answer to p, and in the return to the joints.
+    """
+    member, flight, result, driven = cluster.member, cluster.flight, work.result[0], 0.0
+    spread_all(system, k, cluster.points[0], cluster.v[P], count, member, work.stage, work)
+    joined = system.joints.shape[0] > 0 and any_joined(system, count, member)
+    if joined:
+        result.time = result.start + 0.5 * h
+        driven += driven_power(system, work.stage, work)  # of an impulse: its work
+        result.time = result.start + h
+    for m in range(count):
+        b = member[m]
+        body, motion, push = system.bodies[b], work.body[b].motion, work.body[b].push
+        for i in range(3):
+            push[i] = body.mass * motion[i]
+        push[3], push[4], push[5] = spin_momentum(
+            body, work.stage[b].Q, motion[3], motion[4], motion[5]
+        )
+        for i in range(6):
+            motion[i] *= 0.5 * h
+        keep(flight[b], end[b])
+        shift(motion, end[b])
+    if loaded:
+        add_difference(system, h, count, cluster, work)
+    onto_surfaces(system, held, k, count, end, cluster, work)
+    for m in range(count):
+        b = member[m]
+        body, push, J = system.bodies[b], work.body[b].push, system.bodies[b].inertia
+        v, w, q = end[b].v, end[b].w, end[b].Q
+        l = spin_momentum(body, flight[b].Q, flight[b].w[0], flight[b].w[1], flight[b].w[2])
+        for i in range(3):
+            v[i] = flight[b].v[i] + push[i] / body.mass
+        a = rotate_back(q[0], q[1], q[2], q[3], l[0] + push[3], l[1] + push[4], l[2] + push[5])
+        w[0], w[1], w[2] = rotate(q[0], q[1], q[2], q[3], a[0] / J[0], a[1] / J[1], a[2] / J[2])
+    if joined:
+        project_velocity(system, end, work)
+        driven += driven_power(system, end, work)
+    place_seats(system, k, end, cluster, cluster.points[1], work)
+    velocities(k, cluster.points[1], end, cluster.v[U])
+    return driven
+
+
+@kernel
+def add_difference(system, h, count, cluster, work):
+    """Add to the push what applied forces do on the path that is taken, less on the one without contacts."""
+    applied_wrenches(system, work.stage, False, work)
+    for m in range(count):
+        b = cluster.member[m]
+        for i in range(6):
+            work.body[b].push[i] += h * work.body[b].wrench[i]
+    applied_wrenches(system, work.middle, False, work)
+    for m in range(count):
+        b = cluster.member[m]
+        for i in range(6):
+            work.body[b].push[i] -= h * work.body[b].wrench[i]
+
+
+@kernel
+def pose(k, start, cluster, work):
+    """Write c of the contact problem: w(p_old) - W p_old, with the slip that rules the friction of each point.
+
+    Where slip goes on that is twice the velocity at the middle of the step, G_0 (v_0 + v_1), else the one at
+    the end. (Friction along the slip of the last round would not converge at speeds below mu N h W_tt.)
+    """
+    for i in range(k):
+        w, point, q = cluster.v[U], cluster.points[0][i], 3 * i
+        c = (w[q], w[q + 1], w[q + 2])
+        if cluster.seats[i].stopped == 0:
+            _, m1, m2 = contact_velocity(point, work.stage)
+            d1, d2 = cluster.heading[i, 0], cluster.heading[i, 1]
+            if m1 * d1 + m2 * d2 > 0.0 and w[q + 1] * d1 + w[q + 2] * d2 > 0.0:
+                c = (w[q], 2.0 * m1, 2.0 * m2)
+            else:
+                cluster.seats[i].stopped = 1
+        for r in range(3):
+            s = c[r]
+            for j in range(3 * k):
+                s -= cluster.m[0][q + r, j] * cluster.v[P][j]
+            cluster.v[C][q + r] = s
+    for i in range(3 * k):
+        cluster.v[OLD][i] = cluster.v[P][i]
+
+
+@kernel
+def extra_work(system, h, start, end, cluster, work):
+    """Return the work of loads on the path that was taken, less that on the one without contacts."""
+    for b in range(start.shape[0]):
+        halfway(start[b], end[b], work.stage[b])
+    taken = applied_wrenches(system, work.stage, False, work)
+    return h * (taken - applied_wrenches(system, work.middle, False, work))

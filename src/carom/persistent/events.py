@@ -1,0 +1,165 @@
+"""What can end the present mode of a held contact: its force would pull, it slips, or slip stops.
+
+Each event is a function that is positive before and negative after, evaluated at the end of a step:
+
+    SEPARATE   N                    the normal force
+    CONE       mu N - |T|           while sticking
+               (of one of several points: `carom.persistent.margins`)
+    REVERSE    u_t . d              while slipping; d is the direction of slip at the start of the step
+    JAM        k                    while slipping (`carom.persistent.jam`)
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import inlined, kernel
+from carom.contact.place import place_held
+from carom.dynamics.acceleration import OPEN, SLIP, STICK, acceleration
+from carom.kinematics.contact_point import contact_velocity
+from carom.persistent.jam import JAMMED, yields
+
+GAP, SEPARATE, CONE, REVERSE, JAM = range(5)
+_NO_GRIP = 1e-9  # of the friction that there may be: less is round-off
+
+
+@kernel
+def held_value(system, hold, kind, d1, d2, state, work):
+    """Return the event function `kind`; the force of the contact must be that of `state`."""
+    f, contact = hold.force, system.contacts[hold.contact]
+    if hold.several == 1 and kind != JAM:
+        return hold.lift if kind == SEPARATE else hold.grip
+    if kind == SEPARATE:
+        return f[0]
+    if kind == CONE:
+        return contact.friction_held * f[0] - math.sqrt(f[1] * f[1] + f[2] * f[2])
+    point = work.point[0]
+    place_held(system, hold, state, point, work)
+    _, u1, u2 = contact_velocity(point, state)
+    if kind == JAM:
+        return yields(hold.W, contact.friction_held, u1, u2) - JAMMED * hold.W[0, 0]
+    return u1 * d1 + u2 * d2
+
+
+@inlined
+def end_forces(system, held, state, work):
+    """Put the forces of points that are held one to a body, at `state`, in place if any moves."""
+    for i in range(held.count[0]):
+        hold = held.points[i]
+        if hold.mode != OPEN and hold.rest == 0 and hold.several == 0:
+            acceleration(system, state, held, work, work.stages[0])
+            return
+
+
+@inlined
+def find_held_event(system, held, end, h, work):
+    """Return (event, place in the list, d1, d2) of the first held point whose mode ends; place -1 if none.
+
+    Slip that the step h has turned astray says nothing of k: it is for `turned` to judge.
+    """
+    for i in range(held.count[0]):
+        hold = held.points[i]
+        if hold.mode == OPEN or hold.rest == 1:
+            continue
+        if hold.several == 1:
+            if work.search[0].eager == 1 and hold.lift < 0.0:
+                return SEPARATE, i, 0.0, 0.0
+            if work.search[0].eager == 1 and hold.grip < 0.0:
+                return CONE, i, 0.0, 0.0
+            continue
+        jams = hold.mode == SLIP and held_value(system, hold, JAM, 0.0, 0.0, end, work) <= 0.0
+        if jams and not reverses(system, hold, end, work):
+            if strays(system, hold, end, h, work) != 0:
+                continue
+            return JAM, i, 0.0, 0.0
+        if hold.force[0] < 0.0 and not jams and not grips(system, hold):
+            return SEPARATE, i, 0.0, 0.0
+        if hold.mode == SLIP:
+            d1, d2 = hold.heading[0], hold.heading[1]
+            if reverses(system, hold, end, work):
+                return REVERSE, i, d1, d2
+        # a cone met to round-off (a body on the verge of slip) is no event
+        elif held_value(system, hold, CONE, 0.0, 0.0, end, work) < -1e-12 * hold.force[0]:
+            return CONE, i, 0.0, 0.0
+    return GAP, -1, 0.0, 0.0
+
+
+@inlined
+def grips(system, hold):
+    """Return whether a point sticks by more friction than round-off: it slips before it lifts off."""
+    f, mu = hold.force, system.contacts[hold.contact].friction_held
+    return hold.mode == STICK and math.sqrt(f[1] * f[1] + f[2] * f[2]) > _NO_GRIP * mu * abs(f[0])
+
+
+@inlined
+def reverses(system, hold, end, work):
+    """Return whether slip has come to a stop and turned about: not if it has turned off to a side."""
+    point = work.point[0]
+    place_held(system, hold, end, point, work)
+    _, u1, u2 = contact_velocity(point, end)
+    d1, d2 = hold.heading[0], hold.heading[1]
+    across = abs(u1 * d2 - u2 * d1)
+    return hold.speed > 0.0 and u1 * d1 + u2 * d2 < 0.0 and across <= 0.1 * hold.speed
+
+
+@inlined
+def turned(system, held, end, h, work):
+    """Look for slip that has turned within the step h: 0 none, 1 the step is too long, 2 not by this method.
+
+    Too long: by more than 60 degrees. Where friction can turn it over within the step, mu N h W_tt > |u_t|, an
+    explicit step is of no use: its stages swing about a slip that does not end, and that gives energy. Such
+    a point is handed to the implicit step, as one of several (`carom.persistent.contact_step`).
+    """
+    found = 0
+    for i in range(held.count[0]):
+        hold = held.points[i]
+        if hold.mode == SLIP and hold.rest == 0 and hold.several == 0:
+            far = strays(system, hold, end, h, work)
+            if far == 2:
+                hold.several, hold.stop = 1, math.inf
+            found = max(found, far)
+    return found
+
+
+@kernel
+def strays(system, hold, end, h, work):
+    """Return the same of one point."""
+    d1, d2 = hold.heading[0], hold.heading[1]
+    point, contact = work.point[0], system.contacts[hold.contact]
+    place_held(system, hold, end, point, work)
+    _, u1, u2 = contact_velocity(point, end)
+    along, across, square = u1 * d1 + u2 * d2, u1 * d2 - u2 * d1, u1 * u1 + u2 * u2
+    if across * across > 1e-12 * square and braked(contact, hold, h) ** 2 > square:
+        return 2
+    return 1 if along < 0.5 * math.sqrt(square * (d1 * d1 + d2 * d2)) else 0
+
+
+@inlined
+def braked(contact, hold, h):
+    """Return the slip that friction can take away in the time h."""
+    return h * contact.friction_held * abs(hold.force[0]) * (hold.W[1, 1] + hold.W[2, 2])
+
+
+@inlined
+def slides_on(system, hold, now, h, work):
+    """Return whether a point slides too fast for friction to turn it within a step."""
+    if hold.mode != SLIP or hold.other >= 0:
+        return False
+    contact, point = system.contacts[hold.contact], work.point[0]
+    place_held(system, hold, now, point, work)
+    _, u1, u2 = contact_velocity(point, now)
+    return 100.0 * braked(contact, hold, h) ** 2 < u1 * u1 + u2 * u2
+
+
+@kernel
+def residual(system, held, state, work):
+    """Return the greatest velocity that a point held alone must not have: normal, and all where it sticks."""
+    worst, point = 0.0, work.point[0]
+    for i in range(held.count[0]):
+        hold = held.points[i]
+        if hold.several == 0 and hold.rest == 0:
+            place_held(system, hold, state, point, work)
+            u0, u1, u2 = contact_velocity(point, state)
+            slip = math.sqrt(u1 * u1 + u2 * u2) if hold.mode == STICK else 0.0
+            worst = max(worst, max(abs(u0), slip))
+    return worst

@@ -1,0 +1,111 @@
+"""The end of a step of bodies that are held at several points: rest, modes, forces, and when slip stops."""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom.contact.closed_points import place_seats
+from carom.contact.gap import slow
+from carom.dynamics.acceleration import OPEN, SLIP, STICK
+from carom.dynamics.explicit import keep
+from carom.impact.workspace import P, U
+from carom.kinematics.contact_point import contact_velocity
+from carom.persistent.forces import pose_forces, solve_forces, take_forces
+from carom.persistent.jam import jams_among
+from carom.persistent.margins import greatest_push, set_margins
+from carom.persistent.step_control import rest_speed
+
+
+@kernel
+def gained(start, count, cluster):
+    """Return the greatest speed that the bodies gain without the contacts."""
+    most = 0.0
+    for m in range(count):
+        b = cluster.member[m]
+        for r in range(3):
+            most = max(most, abs(cluster.flight[b].v[r] - start[b].v[r]))
+    return most
+
+
+@kernel
+def finish(system, controls, held, k, start, h, end, count, cluster, work):
+    """Put the bodies to rest if nothing is left to move them; note modes and bounds, return friction's work.
+
+    That is never positive: what friction seems to give by rows that turn within the step is an error of it.
+    """
+    friction = 0.0
+    tolerance = rest_speed(controls, gained(start, count, cluster), work.result[0].residual, k)
+    at_rest = settle(system, tolerance, start, end, count, cluster)
+    stop, away = tolerance * controls.step / h, 1e-6 * gained(start, count, cluster)
+    for i in range(k):
+        hold, p, u = held.points[cluster.seats[i].held], cluster.v[P], cluster.v[U]
+        contact = system.contacts[hold.contact]
+        s1, s2 = u[3 * i + 1], u[3 * i + 2]
+        _, m1, m2 = contact_velocity(cluster.points[0][i], start)
+        _, e1, e2 = contact_velocity(cluster.points[0][i], end)
+        friction += 0.5 * (p[3 * i + 1] * (m1 + e1) + p[3 * i + 2] * (m2 + e2))
+        if cluster.seats[i].turns > 0:
+            continue
+        still = max(stop, 10.0 * max(slow(contact, start), slow(contact, end)))
+        if p[3 * i] <= 0.0 and u[3 * i] > max(still, away):
+            hold.next = OPEN
+        else:
+            hold.next = SLIP if math.sqrt(s1 * s1 + s2 * s2) > still else STICK
+        if at_rest:
+            hold.next = STICK
+        hold.settles = 1 if at_rest else 0
+    for m in range(count):
+        b = cluster.member[m]
+        linear, angular, spin = 0.0, 0.0, 0.0
+        for r in range(3):
+            linear += (end[b].v[r] - start[b].v[r]) ** 2
+            angular += (end[b].w[r] - start[b].w[r]) ** 2
+            spin += max(end[b].w[r] ** 2, start[b].w[r] ** 2)
+        bound = work.body[b].bound
+        bound[0], bound[1] = 2.0 * math.sqrt(linear) / h, 2.0 * math.sqrt(angular) / h
+        bound[2] = math.sqrt(spin)
+    return min(0.0, friction)
+
+
+@kernel
+def settle(system, tolerance, start, end, count, cluster):
+    """Stop the bodies, exactly, if all their speed at the end is below the tolerance.
+
+    If they had none at the start they have not moved either. Returns whether so.
+    """
+    speed, before = 0.0, 0.0
+    for m in range(count):
+        b = cluster.member[m]
+        size = system.bodies[b].extent
+        for r in range(3):
+            speed = max(speed, max(abs(end[b].v[r]), size * abs(end[b].w[r])))
+            before = max(before, max(abs(start[b].v[r]), abs(start[b].w[r])))
+    if not speed <= tolerance:
+        return False
+    for m in range(count):
+        b = cluster.member[m]
+        if before == 0.0:
+            keep(start[b], end[b])
+        for r in range(3):
+            end[b].v[r], end[b].w[r] = 0.0, 0.0
+    return before == 0.0
+
+
+@kernel
+def forces_at_end(system, controls, held, k, end, cluster, work):
+    """Put the forces in the state at the end into the list of held points."""
+    for i in range(k):
+        seat = cluster.seats[i]
+        hold = held.points[seat.held]
+        seat.stays = 1 if hold.next != OPEN else 0
+    place_seats(system, k, end, cluster, cluster.points[0], work)
+    pose_forces(system, controls, held, k, end, cluster, work)
+    status = solve_forces(system, k, cluster)
+    push = greatest_push(k, cluster)
+    for i in range(k):
+        hold = held.points[cluster.seats[i].held]
+        take_forces(hold, i, cluster)
+        if cluster.seats[i].turns == 0:
+            set_margins(hold, i, push, cluster)
+            hold.jams = jams_among(hold, i, status, cluster)

@@ -1,0 +1,143 @@
+"""What ends a mode of dry friction in a joint: slip comes to a stop, or a force exceeds its bound.
+
+Where some have no speed, all of them are tried as sticking, and the one whose force is most above its bound is
+let go, until none is.
+"""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import entry, kernel
+from carom.dynamics.acceleration import acceleration
+from carom.dynamics.joint_friction import any_sticks, stay_stuck
+from carom.kinematics.coordinate import drift, motion_along, rate, speeds_of
+from carom.model.choice import only_with_coordinates
+
+STOPS, BREAKS = 5, 6  # events, after those of held contacts
+STILL = 1e-12  # of the speeds of both sides: no speed
+ABOVE = 1e-10  # of a bound: round-off of a force
+
+
+@kernel
+def _find_joint_event(system, held, state, work):
+    """Return (event, number) of the first friction in a joint whose mode has ended in `state`; -1 if none."""
+    relations = system.relations
+    for i in range(relations.frictions.shape[0]):
+        one = relations.frictions[i]
+        if one.mode != 0 and one.mode * rate(relations.coordinates[one.coordinate], state) < 0.0:
+            return STOPS, i
+    if relations.frictions.shape[0] > 0 and any_sticks(relations):
+        acceleration(system, state, held, work, work.stages[0])
+        for i in range(relations.frictions.shape[0]):
+            one = relations.frictions[i]
+            if one.mode == 0 and abs(one.force) > one.bound * (1.0 + ABOVE):
+                return BREAKS, i
+    return 0, -1
+
+
+@kernel
+def _find_none(system, held, state, work):
+    """There is none."""
+    return 0, -1
+
+
+@kernel
+def _joint_event_value(system, kind, i, held, state, work):
+    """Return the event function, negative after the event."""
+    one = system.relations.frictions[i]
+    if kind == STOPS:
+        return one.mode * rate(system.relations.coordinates[one.coordinate], state)
+    acceleration(system, state, held, work, work.stages[0])
+    return one.bound - abs(one.force)
+
+
+@kernel
+def _no_value(system, kind, i, held, state, work):
+    """There is none."""
+    return 0.0
+
+
+@kernel
+def _turn_joint(system, kind, i, held, now, work):
+    """Carry out the event of friction i."""
+    one = system.relations.frictions[i]
+    if kind == BREAKS:
+        acceleration(system, now, held, work, work.stages[0])
+        one.mode = -1 if one.force > 0.0 else 1
+    else:
+        one.mode = -one.mode
+        if not one.mode * change(system, one, held, now, work) > 0.0:
+            one.mode = 0
+            stay_stuck(system, now, work)
+    let_go(system, held, now, work)
+
+
+@kernel
+def change(system, one, held, state, work):
+    """Return q'' of the coordinate of a friction, in its present mode.
+
+    Where q'' goes the way of the mode that slip would turn to, slip turns, and nothing sticks. The force of
+    stick would say so too, but not where a loop passes its dead centre: there J P J^T and what friction can do
+    are nothing, and q' = 0 in the metric of J would stop all that moves.
+    """
+    acceleration(system, state, held, work, work.stages[0])
+    for b in range(state.shape[0]):
+        for k in range(6):
+            work.body[b].motion[k] = work.stages[0][b].rate[k]
+    c = system.relations.coordinates[one.coordinate]
+    return motion_along(c, state, work) + drift(c, state, system.relations.write)
+
+
+@kernel
+def _none_turns(system, kind, i, held, now, work):
+    """There is none."""
+
+
+@kernel
+def let_go(system, held, now, work):
+    """Let slip, one after the other, what its friction cannot keep from it."""
+    relations = system.relations
+    for _ in range(relations.frictions.shape[0]):
+        acceleration(system, now, held, work, work.stages[0])
+        worst, which = ABOVE, -1
+        for i in range(relations.frictions.shape[0]):
+            one = relations.frictions[i]
+            if one.mode == 0:
+                over = abs(one.force) - one.bound
+                if over > worst * max(one.bound, abs(one.force)):
+                    worst, which = over / max(one.bound, abs(one.force)), i
+        if which < 0:
+            return
+        relations.frictions[which].mode = -1 if relations.frictions[which].force > 0.0 else 1
+
+
+@kernel
+def _review_joints(system, held, now, work):
+    """Find the mode of each anew: at the start, and after velocities have jumped."""
+    relations = system.relations
+    if relations.frictions.shape[0] == 0:
+        return
+    for i in range(relations.frictions.shape[0]):
+        one = relations.frictions[i]
+        c = relations.coordinates[one.coordinate]
+        speed = rate(c, now)
+        still = STILL * speeds_of(system, c, now)
+        one.mode = 1 if speed > still else -1 if speed < -still else 0
+    stay_stuck(system, now, work)
+    let_go(system, held, now, work)
+
+
+@kernel
+def _none_to_review(system, held, now, work):
+    """There is none."""
+
+
+find_joint_event = only_with_coordinates(_find_joint_event, _find_none)
+joint_event_value = only_with_coordinates(_joint_event_value, _no_value)
+turn_joint = only_with_coordinates(_turn_joint, _none_turns)
+review_joints = only_with_coordinates(_review_joints, _none_to_review)
+
+
+@entry
+def first_modes(system, held, now, work):
+    """Find how all frictions in joints begin."""
+    review_joints(system, held, now, work)

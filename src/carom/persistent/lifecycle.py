@@ -1,0 +1,60 @@
+"""When a contact is held, whether it slips or sticks, and when it is at rest.
+
+After an impact with exit speed u_n, a contact whose free acceleration of approach is g_i bounces on for
+
+    t_i = 2 u_n / (g_i (1 - e)),
+
+exactly, as long as g_i is constant. If that ends within the present step the contact is held from now
+on: u_n is taken out in the kinetic metric and the energy this drops goes to the ledger. There is no threshold
+of speed: a smaller step holds later. Of several closed points each is judged by the acceleration that it has
+while those that do not leave are kept.
+"""
+
+from __future__ import annotations
+
+from carom._compiled.choice import by_address
+from carom._compiled.decorators import unit
+from carom.contact.closed_points import gather_closed
+from carom.persistent.active_set import regroup, set_anchor, together
+from carom.persistent.one_point import hold_one, settle_one
+from carom.persistent.several_points import hold_several
+
+TOO_MANY_POINTS = 10
+
+
+@unit
+def hold_unit(system, controls, held, c, state, horizon, cluster, work, clocks, records):
+    """Hold what is closed in the group of contact c, does not approach, and shall be held by the rule."""
+    contact, clock, hit = system.contacts[c], clocks[0], work.hit[0]
+    hit.code = 0
+    k = gather_closed(system, controls, held, c, state, cluster, work, False)
+    group = work.body[contact.body].group
+    for i in range(held.count[0]):
+        hold = held.points[i]
+        if work.body[hold.body].group == group:
+            if hold.several == 0:  # from now on it stays where it is
+                set_anchor(system, hold, state, work)
+            hold.rest, hold.several = 0, 1  # together with the new one
+    if k < 0:
+        hit.code = TOO_MANY_POINTS
+    elif k == 1 and cluster.seats[0].held < 0 and not together(contact):
+        hold_one(system, controls, held, state, horizon, cluster, work, clock, records)
+    elif k > 0:
+        hold_several(
+            system, controls, held, k, group, state, horizon, cluster, work, clock, records
+        )
+    regroup(system, held, work)
+
+
+#: hold_contact(address, system, controls, held, c, state, horizon, cluster, work, clocks, records)
+hold_contact = by_address(hold_unit)
+
+
+@unit
+def settle_unit(system, controls, held, i, state, work, clocks, records):
+    """Find anew how point i, the only one of its body, goes on: its slip has come to a stop or has turned."""
+    settle_one(system, controls, held.points[i], held, state, work, clocks[0], records)
+
+
+#: settle(address, system, controls, held, i, state, work, clocks, records)
+settle = by_address(settle_unit)

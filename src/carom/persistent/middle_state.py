@@ -1,0 +1,36 @@
+"""The middle of a step of one body, and its angular momentum."""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import kernel
+from carom.geometry.rotation import exp, log, multiply, normalize, rotate, rotate_back
+
+
+@kernel
+def halfway(start, end, out):
+    """Write the state of a body half-way: mean position and velocities, half the turn."""
+    p, q, Q = start.Q, end.Q, out.Q
+    t = multiply(q[0], q[1], q[2], q[3], p[0], -p[1], -p[2], -p[3])
+    a = log(t[0], t[1], t[2], t[3])
+    r = exp(0.5 * a[0], 0.5 * a[1], 0.5 * a[2])
+    q = multiply(r[0], r[1], r[2], r[3], p[0], p[1], p[2], p[3])
+    Q[0], Q[1], Q[2], Q[3] = normalize(q[0], q[1], q[2], q[3])
+    for k in range(3):
+        out.x[k] = 0.5 * (start.x[k] + end.x[k])
+    mean_velocity(start, end, out)
+
+
+@kernel
+def mean_velocity(start, end, out):
+    """Write the mean of the velocities of a body."""
+    for k in range(3):
+        out.v[k] = 0.5 * (start.v[k] + end.v[k])
+        out.w[k] = 0.5 * (start.w[k] + end.w[k])
+
+
+@kernel
+def spin_momentum(body, q, w0, w1, w2):
+    """Return the angular momentum J w about the centre, world axes."""
+    J = body.inertia
+    a = rotate_back(q[0], q[1], q[2], q[3], w0, w1, w2)
+    return rotate(q[0], q[1], q[2], q[3], J[0] * a[0], J[1] * a[1], J[2] * a[2])

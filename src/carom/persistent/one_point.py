@@ -1,0 +1,206 @@
+"""A body that is held at one point: from its last bounce to slip, stick or rest."""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom.contact.gap import slow
+from carom.contact.pair_point import drift
+from carom.contact.place import place_held
+from carom.dynamics.acceleration import SLIP, STICK, acceleration
+from carom.dynamics.contact_impulse import (
+    add_velocity,
+    alone,
+    effective_inverse_mass,
+    spread,
+)
+from carom.dynamics.elements import driven_power
+from carom.dynamics.friction import slip_force, stick_force
+from carom.kinematics.contact_point import (
+    contact_acceleration,
+    contact_velocity,
+)
+from carom.model.event_rows import begin_event, end_event
+from carom.model.records import HOLD, SLIPS, STICKS
+from carom.persistent.active_set import enlist
+from carom.persistent.events import braked
+from carom.persistent.jam import JAMMED, note_jam, presses, yields
+
+
+@kernel
+def hold_one(system, controls, held, state, horizon, cluster, work, clock, records):
+    """Hold the one closed point, in seat 0, if it does not approach and the rule says so."""
+    seat, point = cluster.seats[0], cluster.points[0][0]
+    contact = system.contacts[seat.contact]
+    u, still = contact_velocity(point, state), slow(contact, state)
+    acceleration(system, state, held, work, work.stages[0])
+    a = contact_acceleration(point, state, work.stages[0])
+    if contact.touches != 0:
+        d = drift(system, contact, seat.feature, seat.point, point, state, work)
+        a = (a[0] + d[0], a[1] + d[1], a[2] + d[2])
+    if not bounces_end(contact, u[0], -a[0], still, horizon):
+        return
+    begin_event(system, seat.contact, seat.feature, state, clock, records)
+    i = enlist(system, held, seat, STICK, state, work)
+    hold = held.points[i]
+    begin_hold(system, contact, hold, state, 0.0, a, horizon, work, clock)
+    find_mode(system, contact, hold, held, state, work)
+    clock.holds += 1
+    records.event[clock.event].mode = hold.mode
+    end_event(system, HOLD, state, clock, records)
+
+
+@kernel
+def settle_one(system, controls, hold, held, state, work, clock, records):
+    """Find anew how a point goes on, whose slip has stopped or turned."""
+    contact = system.contacts[hold.contact]
+    stop = braked(contact, hold, 1e-3 * controls.step)  # in a thousandth of a step
+    hold.heading[0], hold.heading[1] = 0.0, 0.0
+    acceleration(system, state, held, work, work.stages[0])
+    begin_event(system, hold.contact, hold.feature, state, clock, records)
+    if begin_hold(system, contact, hold, state, stop, (0.0, 0.0, 0.0), math.inf, work, clock):
+        find_mode(system, contact, hold, held, state, work)
+    end_event(system, STICKS if hold.mode == STICK else SLIPS, state, clock, records)
+
+
+@kernel
+def bounces_end(contact, rate, g, still, horizon):
+    """Return whether a contact leaving at `rate` and drawn back by g is closed for good by `horizon`."""
+    if not (g > 0.0 and rate >= -still):
+        return False
+    e = contact.restitution
+    return rate <= still or (e < 1.0 and 2.0 * rate < g * (1.0 - e) * horizon)
+
+
+@kernel
+def begin_hold(system, contact, hold, state, stop, a, horizon, work, clock):
+    """Take out the normal velocity, and slip that has stopped; set the mode to try first.
+
+    Slip has stopped when all of it is below `stop` (or round-off). Returns False if a contact that was
+    to settle goes on slipping. Else, where slip lasts under the acceleration `a` as long as the bounces that
+    are dropped, t = 2 u_n/(g (1 - e)), friction goes with what pulls u_n out: over them the normal impulse is
+    (g t - u_n)/k, over as long a hold g t/k.
+    """
+    point, still = work.point[0], slow(contact, state)
+    place_held(system, hold, state, point, work)
+    u = contact_velocity(point, state)
+    W = work.hit[0].W
+    effective_inverse_mass(system, point, state, work, W)
+    n, t1, t2 = -u[0] / W[0, 0], 0.0, 0.0
+    s1, s2 = u[1] + W[1, 0] * n, u[2] + W[2, 0] * n  # slip once the normal velocity is out
+    slip = math.sqrt(s1 * s1 + s2 * s2)
+    stops = slip <= max(stop, 10.0 * still)
+    if math.sqrt(u[1] * u[1] + u[2] * u[2]) <= 10.0 * still:
+        stops = stops or sticks(
+            W, a, contact.friction_held
+        )  # bounces that stick leave no slip either
+    if stop > 0.0 and not stops:
+        return False
+    if stops:
+        n, t1, t2 = stick_force(W, u[0], u[1], u[2])
+        s1, s2 = 0.0, 0.0
+    hold.mode = STICK if stops else SLIP
+    if hold.mode == SLIP and yields(W, contact.friction, u[1], u[2]) > 0.0:
+        f, f1, f2 = slip_force(W, u[0], u[1], u[2], u[1], u[2], contact.friction)
+        v1, v2 = u[1] + moved(W, 1, f, f1, f2), u[2] + moved(W, 2, f, f1, f2)
+        given = 0.5 * (f * u[0] + f1 * (u[1] + v1) + f2 * (u[2] + v2))
+        if given <= spare(clock) and lasts(W, a, u, v1, v2, contact.friction, horizon):
+            n, t1, t2, s1, s2 = f, f1, f2, v1, v2
+    spread(system, point, state, n, t1, t2, work)
+    add_velocity(system, point, work, state)
+    if not alone(system, point):
+        clock.loads += driven_power(system, state, work)  # of an impulse: its work
+    # work of the impulse: half of it times the sum of the velocities before and after
+    name_work(0.5 * n * u[0], 0.5 * (t1 * (u[1] + s1) + t2 * (u[2] + s2)), clock)
+    return True
+
+
+@kernel
+def spare(clock):
+    """Return what dropped bounces may give: what the impacts of the step have taken, less what is owed."""
+    return max(0.0, clock.before - clock.impacts - clock.owed)
+
+
+@kernel
+def name_work(normal, tangential, clock):
+    """Put the work of what takes bounces out into the ledger.
+
+    Where that is a gain it is friction's: less than what the hold takes until the bounces would have ended, and
+    owed until then (`carom.stepping.time_loop.settle_up`).
+    """
+    if normal + tangential <= 0.0:
+        clock.bounces += normal + tangential
+    else:
+        clock.bounces += normal
+        clock.friction += tangential
+        clock.owed += tangential
+
+
+@kernel
+def sticks(W, a, mu):
+    """Return whether friction holds a point without slip under the free acceleration a."""
+    n, t1, t2 = stick_force(W, a[0], a[1], a[2])
+    return math.sqrt(t1 * t1 + t2 * t2) <= mu * n
+
+
+@kernel
+def lasts(W, a, u, v1, v2, mu, horizon):
+    """Return whether a contact with the velocity u and the free acceleration a slips along u_t until then.
+
+    From the slip u_t, and from (v1, v2), what the pull with friction makes of it.
+    """
+    speed = math.sqrt(u[1] * u[1] + u[2] * u[2])
+    if not (speed > 0.0 and horizon < math.inf):
+        return False
+    e1, e2 = u[1] / speed, u[2] / speed
+    n, t1, t2 = slip_force(W, a[0], a[1], a[2], e1, e2, mu)
+    rate = e1 * (a[1] + moved(W, 1, n, t1, t2)) + e2 * (a[2] + moved(W, 2, n, t1, t2))
+    least = min(speed, e1 * v1 + e2 * v2)
+    return least > 0.0 and least + rate * horizon > 0.0
+
+
+@kernel
+def moved(W, r, n, t1, t2):
+    """Return what an impulse (n, t1, t2) does to the velocity r."""
+    return W[r, 0] * n + W[r, 1] * t1 + W[r, 2] * t2
+
+
+@kernel
+def find_mode(system, contact, hold, held, state, work):
+    """Let a contact slip whose friction cannot hold it; put its body to rest where nothing is left."""
+    acceleration(system, state, held, work, work.stages[0])
+    f = hold.force
+    if hold.mode == STICK and not (
+        math.sqrt(f[1] * f[1] + f[2] * f[2]) <= contact.friction_held * f[0]
+    ):
+        hold.mode = SLIP
+        acceleration(system, state, held, work, work.stages[0])
+    if hold.mode == SLIP:
+        _, u1, u2 = contact_velocity(work.point[0], state)
+        k = yields(hold.W, contact.friction_held, u1, u2)
+        if k <= JAMMED * hold.W[0, 0] and presses(hold, k):
+            note_jam(held, hold)
+    body = system.bodies[contact.body]
+    if hold.mode == STICK and body.isolated == 1:
+        rate = work.stages[0, contact.body].rate
+        rest_if_still(contact, hold, state[contact.body], rate, hold.force[0] / body.mass)
+
+
+@kernel
+def rest_if_still(contact, hold, body, rate, push):
+    """Put a body to rest, exactly, if neither speed nor acceleration is left.
+
+    No speed: round-off of the speeds that gravity gives it over its own size. No acceleration: round-off
+    of `push`, what the contact force does to it.
+    """
+    size = contact.extent
+    speed, change = 0.0, 0.0
+    for k in range(3):
+        speed = max(speed, max(abs(body.v[k]), size * abs(body.w[k])))
+        change = max(change, max(abs(rate[k]), size * abs(rate[3 + k])))
+    if change <= 1e-9 * push and speed <= 1e-9 * math.sqrt(push * size):
+        for k in range(3):
+            body.v[k] = 0.0
+            body.w[k] = 0.0
+        hold.rest = 1

@@ -1,0 +1,176 @@
+"""What a step of a group loses or gains without a name: where that is too much the step is too long.
+
+Edges that are nearly parallel turn their normal in some 1e-5 s, with forces of 1e4 times the weight: a step of
+order 2 over all of such a push takes energy that no friction has. Where only gravity acts the balance is known.
+"""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import inlined, kernel
+from carom.geometry.rotation import norm
+from carom.model import records as r
+from carom.model.arrays import ONE
+from carom.persistent.middle_state import spin_momentum
+
+# what a step of several bodies may lose: this part of the kinetic energy at its start, and of what a fall of a
+# whole step gains, but no more than of m g times their size, which does not grow with the step; one that is cut
+# is cut on until it loses CAREFUL of that
+OF_MOTION, OF_FALL, OF_SIZE = 1e-6, 1e-2, 1e-7
+# ... of a body that hardly moves not even that: of so many times what it exchanges in the step, and of this
+# part of m g times its size, which is far above round-off
+MUCH, LEAST = 1e3, 1e-4
+CAREFUL = 0.01
+SURE = 1.0 / 32.0  # of that: what a step may lose for the next to be twice as long (order 4: 2^5)
+# of one body: these parts of its kinetic energy and of m g times its size, held at one point and at several
+OF_ONE, OF_SEVERAL = 1e-9, 2e-8
+# ... and how far it may turn: the methods are of use for less than a radian
+TURN = 0.5
+# residual of contacts, as a part of what gravity gives in a step: where a step is cut, then taken whole; where
+# there is nothing to take whole, and the run stops
+UNSOLVED, USELESS = 0.01, 10.0
+# what is solved so much worse than rest asks for is not rest
+POORLY = 10.0
+# of the step: what is no longer is cut no more, for what it loses and for a solution
+SHORTEST, RETRIED = 1e-4, 1e-2
+# what is so many times more than may be lost, in a step that is cut no more, is not lost by its length: where a
+# force grows without bound (near a jam, or as a rim becomes flat) no step is short enough, and it is taken
+# whole in the end. Of groups, and of one body
+WILD, GROSS = 100.0, 1e4
+# how much more work a step may take where it cannot be taken whole: in parts, or not in another way
+PATIENCE = 10.0
+
+
+@kernel
+def kinetic(body, state):
+    """Return the kinetic energy of a body."""
+    q, v, w = state.Q, state.v, state.w
+    l = spin_momentum(body, q, w[0], w[1], w[2])
+    return 0.5 * (body.mass * norm(v) ** 2 + l[0] * w[0] + l[1] * w[1] + l[2] * w[2])
+
+
+@kernel
+def lost_by(system, b, start, end):
+    """Return the energy that a body on which gravity acts has lost in a step."""
+    body, lost, g = system.bodies[b], kinetic(system.bodies[b], start[b]), system.gravity
+    for k in range(3):
+        lost += body.mass * g[k] * (end[b].x[k] - start[b].x[k])
+    return lost - kinetic(body, end[b])
+
+
+@kernel
+def may_lose(system, b, start, part):
+    """Return a part of the kinetic energy of a body and of its weight times its size."""
+    body = system.bodies[b]
+    return part * (kinetic(body, start[b]) + body.mass * norm(system.gravity) * body.extent)
+
+
+@kernel
+def weigh(system, b, start, end):
+    """Return the weight of a body times its size; less where it hardly moves: it is not what is looked at."""
+    body, g, fallen = system.bodies[b], system.gravity, 0.0
+    for k in range(3):
+        fallen += body.mass * g[k] * (end[b].x[k] - start[b].x[k])
+    size = body.mass * norm(g) * body.extent
+    turned = kinetic(body, start[b]) + kinetic(body, end[b]) + abs(fallen)
+    return min(size, MUCH * turned + LEAST * size)
+
+
+@kernel
+def unnamed(system, controls, start, end, friction, count, member):
+    """Return what the step has lost or gained besides the work of friction, as a part of what it may."""
+    lost, may = friction, 0.0
+    fall = 0.5 * OF_FALL * (controls.step * norm(system.gravity)) ** 2
+    for m in range(count):
+        b = member[m]
+        body = system.bodies[b]
+        lost += lost_by(system, b, start, end)
+        may += OF_MOTION * kinetic(body, start[b])
+        may += min(body.mass * fall, OF_SIZE * weigh(system, b, start, end))
+    if count == 1:
+        may = may_lose(system, member[0], start, OF_SEVERAL)
+    return abs(lost) / may if may > 0.0 else 0.0
+
+
+@kernel
+def unnamed_alone(system, start, end, friction, work):
+    """Return the same of bodies held at one point each, on which gravity alone acts besides."""
+    lost, may = friction, 0.0
+    for b in range(start.shape[0]):
+        if work.body[b].status == ONE:
+            if system.bodies[b].ballistic == 0:
+                return 0.0
+            lost += lost_by(system, b, start, end)
+            may += may_lose(system, b, start, OF_ONE)
+    return abs(lost) / may if may > 0.0 else 0.0
+
+
+@kernel
+def turns_far(system, held, start, end, dt):
+    """Return whether a body that is held turns too far in a step."""
+    for i in range(held.count[0]):
+        hold = held.points[i]
+        if (
+            hold.rest == 0
+            and not dt * max(norm(start[hold.body].w), norm(end[hold.body].w)) <= TURN
+        ):
+            return True
+    return False
+
+
+@kernel
+def unsolved(system, controls, work, part):
+    """Return whether contacts of the last trial step are off by that part of what gravity gives in one."""
+    gained = controls.step * norm(system.gravity)
+    return gained > 0.0 and not work.result[0].residual <= part * gained
+
+
+@inlined
+def too_long(system, controls, held, start, end, dt, friction, careful, late, work):
+    """Return whether a step with held points is to be cut: for want of a solution, or for what it loses.
+
+    The latter not where events wait for the end of a part of the step (`late`).
+    """
+    if held.count[0] == 0:
+        return False
+    if dt > RETRIED * controls.step and unsolved(system, controls, work, UNSOLVED):
+        return True
+    if late:
+        return False
+    shortest = dt <= SHORTEST * controls.step
+    if not shortest and turns_far(system, held, start, end, dt):
+        return True
+    result = work.result[0]
+    alone = unnamed_alone(system, start, end, friction, work)
+    if shortest:
+        return not (alone <= GROSS)
+    result.unnamed = max(result.unnamed, alone)
+    return not (result.unnamed <= (CAREFUL if careful else 1.0))
+
+
+@inlined
+def goes_wild(work):
+    """Return whether a step of a group that was cut as far as it may be loses a lot all the same."""
+    return work.result[0].unnamed > WILD
+
+
+@inlined
+def next_pace(pace, work):
+    """Return how long the next step may be: twice as long, unless that would lose too much."""
+    return 2.0 * pace if work.result[0].unnamed <= SURE * CAREFUL else pace
+
+
+@kernel
+def affordable(controls, clock):
+    """Return how much work a step may take for contacts, about [us]: more than that, and it is given up."""
+    return max(r.EACH, clock.credit) * (1.0 if controls.retry == 1 else PATIENCE)
+
+
+@kernel
+def rest_speed(controls, gained, residual, k):
+    """Return the speed [m/s] below which bodies rest that are held at k points.
+
+    `Options.rest_tolerance` of the speed that applied forces give them in the step, or what k contacts that are
+    solved to a residual may leave of it, up to ten times the former.
+    """
+    least = controls.rest * gained
+    return max(least, min(k * residual, POORLY * least))

@@ -1,0 +1,128 @@
+"""What is said of a run whose balance of energy is off, or in which a body gets into what it touches."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from carom.model.contact_rows import touching_pairs
+from carom.results.ledger import Ledger
+from carom.status import Status
+from carom.stepping.energy_balance import (
+    ALL,
+    BOUNCES,
+    FRICTION,
+    IMPACTS,
+    RESIDUAL,
+    ROUND_OFF,
+    new_watch,
+)
+
+if TYPE_CHECKING:
+    from carom.scene.scene import Scene
+
+INACCURATE = 100.0  # times the tolerance: what is no success any more
+DEEP, TOO_DEEP = (
+    1e-8,
+    1e-4,
+)  # parts of its size that a body is in what it touches: said, and no success
+
+_WHAT = {
+    RESIDUAL: (
+        "Energy that no entry of the ledger explains:",
+        "Take a smaller step, or allow for it",
+    ),
+    IMPACTS: ("Impacts gave energy, which they never should:", 'Take impact_law="stronge"'),
+    FRICTION: (
+        "Friction gave energy, which it never should:",
+        "Take a smaller step, or allow for it",
+    ),
+    BOUNCES: (
+        "Bounces that were dropped gave energy, which they never should:",
+        "Take a smaller step",
+    ),
+    ALL: (
+        "Energy without a name, of several kinds together:",
+        "Take a smaller step, or allow for it",
+    ),
+}
+
+
+def beyond(i: int, watch: np.record, times: float = 1.0) -> bool:
+    """Return whether energy of a kind without a name is beyond the tolerance, or that so many times."""
+    allowed = watch.tolerance * watch.exchanged * times + ROUND_OFF * watch.size
+    return not abs(watch.amount[i]) <= allowed
+
+
+def judge(watch: np.record) -> Status:
+    """Return whether a run that has reached its end has kept the balance of energy, and its gaps."""
+    off = beyond(ALL, watch, INACCURATE) or not watch.depth <= TOO_DEEP
+    return Status.INACCURATE if off else Status.SUCCESS
+
+
+def sentences(watch: np.record, scene: Scene | None = None) -> tuple[str, ...]:
+    """Return what has gone beyond `Options.energy_tolerance`, or into a surface: when, and what to change."""
+    kinds = [i for i in (RESIDUAL, IMPACTS, FRICTION, BOUNCES) if beyond(i, watch)]
+    if not kinds and beyond(ALL, watch):
+        kinds = [ALL]
+    deep = [_of_depth(watch, scene)] if scene is not None and watch.depth > DEEP else []
+    return (*(_sentence(i, watch) for i in kinds), *deep)
+
+
+def _of_depth(watch: np.record, scene: Scene) -> str:
+    """Return the sentence about a body that is in what it touches."""
+    number, pairs = int(watch.deep_contact), touching_pairs(scene)
+    if number < len(pairs.body):
+        what, where = (
+            scene.bodies[pairs.body[number]].name,
+            scene.half_spaces[pairs.plane[number]].name,
+        )
+        if pairs.other[number] >= 0:
+            where = scene.bodies[pairs.other[number]].name
+        said = f"Body {what!r} is in {where!r} by {watch.depth:.2g} of its size"
+    else:
+        stop = scene.stops[number - len(pairs.body)]
+        said = f"Joint {stop.joint.name!r} is beyond its stop by {watch.depth:.2g} of the size of its body"
+    return (
+        f"{said} at t = {watch.deep_at:.6g} s: events follow each other too fast to be located. Take a "
+        "smaller step."
+    )
+
+
+def _sentence(i: int, watch: np.record) -> str:
+    what, cure = _WHAT[i]
+    amount, of = float(watch.amount[i]), float(watch.exchanged)
+    part = abs(amount) / of if of > 0.0 else np.inf
+    return (
+        f"{what} {amount:.3g} J at t = {watch.time[i]:.6g} s, {part:.2g} of the largest energy exchanged "
+        f"({of:.3g} J); allowed is Options.energy_tolerance = {float(watch.tolerance):g}. {cure}."
+    )
+
+
+def watched(t, ledger: Ledger, given, tolerance: float) -> np.record:
+    """Return that record from a ledger at saved times t, for runs that are not watched in their loop.
+
+    `given` is what impacts gave until then where Newton's law with friction may.
+    """
+    watch = new_watch(tolerance)[0]
+    rises = {IMPACTS: ledger.impacts - given, FRICTION: ledger.friction, BOUNCES: ledger.bounces}
+    kinds = {i: line - np.minimum.accumulate(line) for i, line in rises.items()}
+    kinds[ALL] = np.abs(ledger.residual) + sum(kinds.values())
+    kinds[RESIDUAL] = ledger.residual
+    for i, amounts in kinds.items():
+        k = int(np.argmax(np.abs(amounts)))
+        watch.amount[i], watch.time[i] = amounts[k], t[k]
+    change = ledger.potential - ledger.potential[0]
+    lines = (ledger.kinetic, change, ledger.loads, ledger.impacts, ledger.friction, ledger.bounces)
+    watch.exchanged = max(float(np.max(np.abs(line))) for line in lines)
+    watch.size = float(np.max(ledger.kinetic + np.abs(ledger.potential)))
+    return watch
+
+
+def energy_error(watch: np.record) -> float:
+    """Return the greatest energy without a name as a part of the largest exchanged; round-off is none."""
+    amount, of = abs(float(watch.amount[ALL])), float(watch.exchanged)
+    if amount <= ROUND_OFF * float(watch.size):
+        return 0.0
+    return amount / of if of > 0.0 else np.inf

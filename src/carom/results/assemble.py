@@ -1,0 +1,238 @@
+"""From the records of a run to the arrays of a solution."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from carom._compiled.record_arrays import Columns
+from carom.geometry import quaternion
+from carom.impact.layout import WEDGED
+from carom.model import records as r
+from carom.model.arrays import STOP
+from carom.results.accuracy import sentences
+from carom.results.event_tables import LAWS, ContactTable, EventTable, ImpactTable, contact_table
+from carom.results.ledger import Ledger
+from carom.scene.forces import AppliedForce
+from carom.status import Status
+
+#: what tables say of contacts (an ensemble changes them from run to run)
+OF_CONTACTS = (
+    "number", "other", "first", "law", "restitution", "friction", "penetration", "width", "touches", "side",
+)  # fmt: skip
+
+
+class Written(NamedTuple):
+    """Copies of what a run has written: a solution works out of them what it is asked for."""
+
+    attitude: np.ndarray  # (T, N, 4) of the principal axes
+    series: np.recarray  # (T,) SERIES
+    impact: np.recarray  # (K,) IMPACTS, in the order of time
+    event: np.recarray  # (E,) EVENT, in the order of time
+    contacts: dict[str, np.ndarray]  # (C,) columns of CONTACT
+    forces: tuple[AppliedForce, ...]  # of the scene, which may be given more
+
+
+def assemble(run, status: Status) -> dict:
+    """Return the fields of a `Solution`."""
+    rec, clock = r.written(run.records, run.clock), r.told(run.clock)
+    state, series, contacts = rec.state, rec.series, run.compiled.system.contacts
+    return {
+        "t": np.array(series["t"]),
+        "position": np.array(state["x"]),
+        "velocity": np.array(state["v"]),
+        "angular_velocity": np.array(state["w"]),
+        "held_residual": np.array(series["residual"]),
+        "status": status,
+        "warnings": sentences(run.watch[0], run.scene),
+        "stats": {
+            "steps": clock["step"], "trial_steps": clock["trials"], "rejected": clock["rejected"],
+            "cuts": clock["cuts"], "located": clock["located"], "impacts": clock["struck"],
+            "holds": clock["holds"], "held_steps": clock["pressed"],
+            "held_rounds": clock["rounds"], "whole_steps": clock["whole"],
+            "explicit_steps": int(run.work.result["fallen"][0]),
+            "parts": int(run.work.result["parts"][0]),
+        },
+        "scene": run.scene,
+        "settings": dict(run.settings),
+        "_run": run,
+        "_touch": rec.touch.copy(),
+        "_written": Written(
+            np.array(state["Q"]), series.copy(), _in_time(rec.impact), _in_time(rec.event),
+            {name: np.array(contacts[name]) for name in OF_CONTACTS}, run.scene.forces,
+        ),
+    }  # fmt: skip
+
+
+def _in_time(rows: np.recarray) -> np.recarray:
+    """Return rows in the order of time: of a step they were written one island after the other."""
+    return rows[rows["time"].argsort(kind="stable")].view(Columns)
+
+
+def orientation(solution) -> np.ndarray:
+    """Return the attitudes (T, N, 4) of the scene's body axes."""
+    return to_scene_axes(solution._written.attitude, solution._run.compiled.to_principal)
+
+
+def energy(solution, name: str) -> np.ndarray:
+    """Return the kinetic or the potential energy (T,) of all that has one."""
+    return np.array(solution._written.series[name])
+
+
+def ledger(solution) -> Ledger:
+    """Return where the energy went."""
+    series = solution._written.series
+    entries = (np.array(series[name]) for name, _ in r.LEDGER)
+    return Ledger(solution.kinetic_energy, solution.potential_energy, *entries)
+
+
+def event_table(solution) -> EventTable:
+    """Return the events in the order of time."""
+    event = solution._written.event
+    names = np.array(r.EVENTS)[event["kind"]]
+    return EventTable(np.array(event["time"]), names, np.array(event["contact"]))
+
+
+def intervals(solution) -> ContactTable:
+    """Return the intervals of contact that stays."""
+    written = solution._written
+    end = float(solution.t[-1])
+    return contact_table(written.event, r.EVENTS, first_vertices(written.contacts), end)
+
+
+def to_scene_axes(Q: np.ndarray, to_principal: np.ndarray) -> np.ndarray:
+    """Return attitudes (T, N, 4) of the scene's body axes, from those of the principal axes."""
+    if np.all(to_principal == np.array([1.0, 0.0, 0.0, 0.0])):
+        return Q.copy()
+    return quaternion.multiply(Q, quaternion.conjugate(to_principal)[None])
+
+
+def first_vertices(contacts) -> np.ndarray:
+    """Return the first vertex of each contact of the scene with a half-space, 0 for two bodies."""
+    _, row = np.unique(contacts["number"], return_index=True)
+    return np.where(contacts["other"] < 0, contacts["first"], 0)[row]
+
+
+def impact_table(solution) -> ImpactTable:
+    """Return the impacts with all that the scene knows of their contacts."""
+    rows, contacts = solution._written.impact, solution._written.contacts
+    number, first = np.unique(contacts["number"], return_index=True)
+    c = first[np.searchsorted(number, rows.contact)]
+    arm = arms(contacts)[c]
+    return ImpactTable(
+        relative_velocity_before=rows.before / arm[:, None],
+        relative_velocity_after=rows.after / arm[:, None],
+        penetration=contacts["penetration"][c] * contacts["width"][c] / arm,
+        law=np.array(LAWS)[contacts["law"][c]],
+        inverse_mass=rows.W / arm[:, None, None] ** 2,
+        impulse=rows.impulse * arm[:, None],
+        restitution=contacts["restitution"][c],
+        friction=contacts["friction"][c],
+        wedged=(rows.phases & WEDGED) // WEDGED,
+        **{
+            name: np.array(rows[name])
+            for name in (
+                "time", "contact", "point", "normal", "energy_change", "duration",
+                "compression_work", "restitution_work", "friction_loss", "together",
+            )
+        },
+    )  # fmt: skip
+
+
+class Nodes(NamedTuple):
+    """What one body's motion is interpolated between: saved steps, and events that concern it."""
+
+    time: np.ndarray  # (M,)
+    pose: np.ndarray  # (M, 7)
+    before: np.ndarray  # (M, 6) velocities
+    after: np.ndarray  # (M, 6)
+
+
+def nodes(run) -> list[Nodes]:
+    """Return the nodes of each body, in the order of time."""
+    rec = r.trimmed(run.records, run.clock)
+    state, shot = rec.state, rec.snapshot
+    events = rec.event[shot.event].view(Columns)
+    # an event stands after the saved rows that were written before it
+    place = np.arange(1.0, len(state) + 1)
+    by_body = np.argsort(shot.body, kind="stable")
+    ends = np.searchsorted(shot.body[by_body], np.arange(state.shape[1] + 1))
+    out = []
+    for b in range(state.shape[1]):
+        own = by_body[ends[b] : ends[b + 1]]
+        here, event = state[:, b].view(Columns), shot[own].view(Columns)
+        order = np.argsort(np.concatenate([place, events.saved[own] + 0.5]), kind="stable")
+        speed = np.hstack([here.v, here.w])
+        columns = (
+            (rec.series.t, events.time[own]),
+            (np.hstack([here.x, here.Q]), np.hstack([event.x, event.Q])),
+            (speed, np.hstack([event.v0, event.w0])),
+            (speed, np.hstack([event.v1, event.w1])),
+        )
+        out.append(Nodes(*(np.concatenate(pair)[order] for pair in columns)))
+    return out
+
+
+def arms(contacts) -> np.ndarray:
+    """Return the lengths (C,) at which stops that end turns have their forces and ways; 1 for all others."""
+    return np.where(contacts["touches"] == STOP, np.abs(contacts["side"]), 1.0)
+
+
+def contact_sums(touch: np.recarray, saved: int, contacts: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return modes (T, C) and forces (T, C, 3) of contacts: the largest, and the sum, of their held points."""
+    mode = np.zeros((saved, contacts), dtype=np.int64)
+    force = np.zeros((saved, contacts, 3))
+    np.maximum.at(mode, (touch.saved, touch.contact), touch.mode)
+    np.add.at(force, (touch.saved, touch.contact), touch.force)
+    return mode, force
+
+
+def element_reactions(solution) -> np.ndarray:
+    """Return what each joint, then each constraint answers with (T, E, 6), as the solver has it."""
+    from carom.dynamics.reactions import reactions
+
+    run = solution._run
+    system, rec = run.compiled.system, r.trimmed(run.records, run.clock)
+    out = np.zeros((len(rec.state), system.joints.size, 6))
+    work = r.new_work(system, run.method.b.size)
+    reactions(system, run.options.augmentation, rec.series.t, rec.state, rec.touch, work, out)
+    return out
+
+
+def constraint_forces(solution) -> np.ndarray:
+    """Return the multipliers (T, K) of the rows of all constraints beyond joints."""
+    first = len(solution.scene.joints)
+    out = solution._reactions[:, first:]
+    rows = [out[:, k, : c.rows] for k, c in enumerate(solution.scene.constraints)]
+    return np.concatenate([np.zeros((len(out), 0)), *rows], axis=1)
+
+
+def joint_reactions(solution) -> np.ndarray:
+    """Return force and torque (T, J, 6) on the children, world axes, in the scene's order."""
+    run = solution._run
+    system, rec = run.compiled.system, r.trimmed(run.records, run.clock)
+    out = solution._reactions[:, : len(run.scene.joints)].copy()
+    for j in np.flatnonzero(run.compiled.flipped):  # the scene's child is the tree's parent there
+        out[:, j] *= -1.0
+        joint = system.joints[j]
+        anchors = [
+            rec.state.x[:, b] + quaternion.rotate(rec.state.Q[:, b], anchor)
+            for b, anchor in (
+                (joint.parent, joint.parent_anchor),
+                (joint.child, joint.child_anchor),
+            )
+        ]
+        out[:, j, 3:] += np.cross(anchors[1] - anchors[0], out[:, j, :3])  # where it slides
+    return out
+
+
+def constraint_errors(solution) -> tuple[np.ndarray, np.ndarray]:
+    """Return the largest errors of position and velocity of all joint rows at saved times."""
+    from carom.dynamics.reactions import row_errors
+
+    run = solution._run
+    system, rec = run.compiled.system, r.trimmed(run.records, run.clock)
+    out = np.zeros((len(rec.state), 2))
+    row_errors(system, rec.series.t, rec.state, r.new_work(system, run.method.b.size), out)
+    return out[:, 0], out[:, 1]

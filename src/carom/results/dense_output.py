@@ -1,0 +1,93 @@
+"""The motion of a body between the states that a run has kept of it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from carom.geometry import differential, quaternion, spline
+
+if TYPE_CHECKING:
+    from carom.results.assemble import Nodes
+
+
+class Flights(NamedTuple):
+    """When a body with unequal moments flies: always, but for the intervals in which a contact is held."""
+
+    moments: np.ndarray  # (3,)
+    starts: np.ndarray  # (M,) of the intervals, sorted
+    ends: np.ndarray  # (M,) the same
+
+    def cover(self, t0: np.ndarray, t1: np.ndarray) -> np.ndarray:
+        """Return whether nothing is held between the times t0 and t1 (K,)."""
+        begun = np.searchsorted(self.starts, t1, side="left")
+        return begun == np.searchsorted(self.ends, t0, side="right")
+
+
+def flights(solution) -> list[Flights | None]:
+    """Return the flights of each body; None where it turns steadily, or where more than gravity acts on it."""
+    from carom.model.contact_rows import touching_pairs
+
+    bodies, contacts = solution._run.bodies, solution.contacts
+    free = (bodies["ballistic"] == 1) & (bodies["isotropic"] == 0)
+    if not free.any():
+        return [None] * len(bodies)
+    pairs = touching_pairs(solution.scene)
+    of_pair = contacts.contact < len(pairs.body)  # the rest are stops in joints
+    which = contacts.contact[of_pair]
+    sides = np.concatenate([pairs.body[which], pairs.other[which]])
+    starts, ends = np.tile(contacts.start[of_pair], 2), np.tile(contacts.end[of_pair], 2)
+    out: list[Flights | None] = []
+    for b in range(len(bodies)):
+        own = sides == b
+        flies = Flights(np.array(bodies["inertia"][b]), np.sort(starts[own]), np.sort(ends[own]))
+        out.append(flies if free[b] else None)
+    return out
+
+
+def between(node: Nodes, flies: Flights | None, times: np.ndarray, side: str):
+    """Return position, attitude and velocities of one body at times (K,), from its nodes."""
+    at, pose, left, right = node
+    i = np.searchsorted(at, times, side="right" if side == "right" else "left") - 1
+    i = np.clip(i, 0, max(len(at) - 2, 0))
+    n = np.minimum(i + 1, len(at) - 1)
+    start = (pose[i, :3], pose[i, 3:], right[i, :3], right[i, 3:])
+    end = (pose[n, :3], pose[n, 3:], left[n, :3], left[n, 3:])
+    x, Q, v, w = spline.interpolate(times, at[i], at[n], start, end)
+    if flies is not None:
+        inside = (times > at[i]) & (times < at[n]) & flies.cover(at[i], at[n])
+        if inside.any():
+            ends = [a[inside] for a in (start[1], start[3], end[1], end[3])]
+            Q[inside], w[inside] = _along_flight(
+                flies.moments, times[inside] - at[i][inside], (at[n] - at[i])[inside], *ends
+            )
+    last = times == at[-1]
+    if side == "right" and np.any(last):
+        v[last], w[last] = right[-1, :3], right[-1, 3:]
+    return x, Q, v, w
+
+
+def _along_flight(moments, t, h, Q0, w0, Q1, w1):
+    """Return attitude and angular velocity at times t of steps h, of a body without torque.
+
+    What the flight from the start misses of the end is added as the cubic is in `carom.geometry.spline`, in
+    the chart that the flight carries: round-off, or where bodies that press on each other were moved as a
+    whole (`Options.heap`) their impulses.
+    """
+    from carom.kinematics.flight_arrays import torque_free
+
+    Q, w = torque_free(moments, Q0, w0, t)
+    Qh, wh = torque_free(moments, Q0, w0, h)
+    miss = quaternion.between(Qh, Q1)
+    W1, Wh = quaternion.rotate_back(Q1, w1), quaternion.rotate_back(Qh, wh)
+    rate = differential.apply_inverse(miss, W1 - quaternion.rotate_back(quaternion.exp(miss), Wh))
+    s, h = (t / h)[:, None], h[:, None]
+    eta = s * s * ((3.0 - 2.0 * s) * miss - (1.0 - s) * h * rate)
+    slope = s * (6.0 * (1.0 - s) * miss / h + (3.0 * s - 2.0) * rate)
+    turned = quaternion.exp(eta)
+    W = differential.apply(eta, slope) + quaternion.rotate_back(
+        turned, quaternion.rotate_back(Q, w)
+    )
+    Q = quaternion.normalize(quaternion.multiply(Q, turned))
+    return Q, quaternion.rotate(Q, W)

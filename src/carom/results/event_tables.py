@@ -1,0 +1,189 @@
+"""Tables of impacts and of events: columns as arrays, rows as records."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from carom._compiled.record_arrays import Columns
+
+LAWS = ("newton", "poisson", "stronge")
+CURVED = 1 << 40  # features of curved pieces are above, numbers of vertices below
+
+
+class ImpactRecord(NamedTuple):
+    """One impact. Vectors are in contact axes (normal, tangent 1, tangent 2) unless said otherwise."""
+
+    time: float  #: [s]
+    contact: int  #: index of the contact in `Scene.contacts`
+    point: np.ndarray  #: (3,) where, world [m]
+    normal: np.ndarray  #: (3,) from the half-space into free space, world
+    relative_velocity_before: np.ndarray  #: (3,) [m/s], approach negative
+    relative_velocity_after: np.ndarray  #: (3,) [m/s]
+    impulse: np.ndarray  #: (3,) on the body [N s]
+    energy_change: float  #: of the whole system [J]
+    penetration: float  #: greatest penetration of the boundary layer, delta b [m]
+    duration: float  #: in the boundary layer [s]
+    law: str  #: law of restitution
+    inverse_mass: np.ndarray  #: (3, 3) W of the contact [1/kg]
+    restitution: float
+    friction: float
+    compression_work: float  #: of the normal force [J]
+    restitution_work: float  #: of the normal force [J]
+    friction_loss: float  #: [J]
+    together: int  #: points that were resolved together, each with a row of its own; 1 for most
+    wedged: int  #: 1 where friction held the pair, and its law of restitution could not be met; 0 for most
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ImpactTable:
+    """All impacts of a run in the order of time; fields of `ImpactRecord` as columns (K, ...).
+
+    Examples
+    --------
+    >>> scene = carom.Scene(gravity=(0, 0, -9.81))
+    >>> floor = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1))
+    >>> ball = scene.add_body(carom.Sphere(0.1), mass=1.0, position=(0, 0, 0.5))
+    >>> contact = scene.add_contact(ball, floor, restitution=0.5)
+    >>> impacts = carom.simulate(scene, duration=0.8, step=0.01).impacts
+    >>> print(impacts.time.round(6))
+    [0.285569 0.571137 0.713922 0.785314]
+    >>> blow = impacts[0]
+    >>> print(blow.relative_velocity_before[0].round(6), blow.relative_velocity_after[0].round(6))
+    -2.801428 1.400714
+    """
+
+    time: np.ndarray
+    contact: np.ndarray
+    point: np.ndarray
+    normal: np.ndarray
+    relative_velocity_before: np.ndarray
+    relative_velocity_after: np.ndarray
+    impulse: np.ndarray
+    energy_change: np.ndarray
+    penetration: np.ndarray
+    duration: np.ndarray
+    law: np.ndarray
+    inverse_mass: np.ndarray
+    restitution: np.ndarray
+    friction: np.ndarray
+    compression_work: np.ndarray
+    restitution_work: np.ndarray
+    friction_loss: np.ndarray
+    together: np.ndarray
+    wedged: np.ndarray
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def __getitem__(self, k: int) -> ImpactRecord:
+        if not -len(self) <= k < len(self):
+            raise IndexError(f"impact {k} of {len(self)}")
+        return ImpactRecord(*(_plain(getattr(self, name)[k]) for name in ImpactRecord._fields))
+
+    def __iter__(self) -> Iterator[ImpactRecord]:
+        return (self[k] for k in range(len(self)))
+
+    def __repr__(self) -> str:
+        head = f"<ImpactTable: {len(self)} impacts"
+        rows = [
+            f"  t = {r.time:.9f} s  contact {r.contact}  u_n {r.relative_velocity_before[0]:+.6g} -> "
+            f"{r.relative_velocity_after[0]:+.6g} m/s  dE = {r.energy_change:.6g} J"
+            for r in (self[k] for k in range(min(len(self), 8)))
+        ]
+        more = [f"  ... {len(self) - 8} more"] if len(self) > 8 else []
+        return "\n".join([head, *rows, *more]) + ">"
+
+
+class EventTable(NamedTuple):
+    """Events of contacts in the order of time."""
+
+    time: np.ndarray  #: (E,) [s]
+    kind: np.ndarray  #: (E,) "impact", "held", "slips", "sticks", "opens" or "jams"
+    contact: np.ndarray  #: (E,) index of the contact
+
+
+class ContactTable(NamedTuple):
+    """Intervals of contact that stays: each as long as a point keeps slipping, or keeps sticking.
+
+    In the order of their starts. Where faces of two bodies slide on each other the corners of their overlap
+    change; a new corner goes on with the interval of the one whose place it took.
+    """
+
+    contact: np.ndarray  #: (M,) index of the contact
+    feature: np.ndarray  #: (M,) what touches: of a half-space the number of the vertex in the shape
+    start: np.ndarray  #: (M,) [s]
+    end: np.ndarray  #: (M,) [s]; where it lasted to the end of the run, that
+    mode: np.ndarray  #: (M,) "slipping" or "sticking" (or rolling, or at rest)
+
+
+class ForceTable(NamedTuple):
+    """Forces of contacts that stay, one row a held point and saved time, in the order of time."""
+
+    saved: np.ndarray  #: (M,) number of the saved time
+    contact: np.ndarray  #: (M,) index of the contact
+    body: np.ndarray  #: (M,) index of its body
+    other: np.ndarray  #: (M,) index of the other body, -1 for a half-space
+    mode: np.ndarray  #: (M,) "slipping" or "sticking" (or rolling, or at rest)
+    point: np.ndarray  #: (M, 3) where, world [m]
+    force: np.ndarray  #: (M, 3) on the body, contact axes [N]
+    vector: np.ndarray  #: (M, 3) the same in world axes [N]
+
+
+def force_table(touch) -> ForceTable:
+    """Return the forces of all held points that were saved, (M,)."""
+    row = touch[np.argsort(touch.saved, kind="stable")].view(Columns)
+    mode = np.array(["open", "slipping", "sticking"])[row.mode]
+    columns = (row.saved, row.contact, row.body, row.other, mode, row.point, row.force, row.push)
+    return ForceTable(*(np.array(column) for column in columns))
+
+
+_MODES = {"slips": 1, "sticks": 2, "opens": 0}
+
+
+def contact_table(event, kinds, first, end: float) -> ContactTable:
+    """Return the intervals that events make.
+
+    Parameters
+    ----------
+    event : records of the run, (E,)
+    kinds : their names, by code
+    first : (C,) first vertex of each contact with a half-space, 0 for two bodies
+    end : time of the last state
+    """
+    rows, at = [], {}  # rows: contact, feature, start, end, mode; at: the row that a point is in
+    fields = ("contact", "feature", "kind", "time", "mode")
+    for contact, feature, code, time, mode_held in zip(*(event[f].tolist() for f in fields)):
+        key, kind = (contact, feature), kinds[code]
+        if kind not in ("held", "slips", "sticks", "opens"):
+            continue
+        if kind != "held" and key not in at:  # took the place of another
+            others = [other for other in at if other[0] == key[0]]
+            if not others:
+                continue
+            at[key] = at.pop(others[0])
+        mode: int = mode_held if kind == "held" else _MODES[kind]
+        if key in at:
+            if rows[at[key]][4] == mode:
+                continue  # slip that has turned
+            rows[at.pop(key)][3] = time
+        if mode > 0:
+            at[key] = len(rows)
+            rows.append([*key, time, end, mode])
+    columns = list(zip(*rows)) if rows else [[]] * 5
+    contact = np.array(columns[0], dtype=np.int64)
+    feature = np.array(columns[1], dtype=np.int64)
+    return ContactTable(
+        contact,
+        np.where(feature < CURVED, feature - first[contact], feature),
+        np.array(columns[2], dtype=float),
+        np.array(columns[3], dtype=float),
+        np.array(["open", "slipping", "sticking"])[np.array(columns[4], dtype=np.int64)],
+    )
+
+
+def _plain(value):
+    return value.item() if isinstance(value, np.generic) else value

@@ -1,0 +1,117 @@
+"""The methods of a solution that hand it to files and to other libraries."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Self
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from carom.io.files.convert import Frames
+
+
+class Portable:
+    """Saving, loading and converting a `Solution`; needs ``carom[files]``."""
+
+    def save(self, path: str | os.PathLike) -> None:
+        """Write all of the run to one netCDF-4 (HDF5) file, which needs no carom to be read.
+
+        With labelled dimensions, units, the tables of impacts, events and held contacts, the ledger, reactions
+        and coordinates of joints, the scene as JSON, settings, options, version and citation. The file
+        appears when it is complete, in the place of what was there, and has a digest of all its bytes. (How to:
+        keep results in files.)
+
+        Parameters
+        ----------
+        path : str or path
+            In a folder that exists; ``.nc`` is what other programs expect.
+
+        Raises
+        ------
+        ImportError
+            Without h5netcdf.
+        OSError
+            If it cannot be written, as on a full disk; what was there is as it was.
+        ValueError
+            If the folder is not there.
+        """
+        from carom.io.files.keeper import checked_path
+        from carom.io.files.writing import write
+
+        where = checked_path(path, "path")
+        write(where, self, getattr(self._run, "checkpoint", None))  # pyright: ignore
+
+    @classmethod
+    def load(
+        cls, path: str | os.PathLike, *, functions: Mapping[str, Callable] | None = None
+    ) -> Self:
+        """Return the solution that a file holds, bit for bit the one that was saved.
+
+        No damaged file is read: a digest of all its bytes is checked first. No other file is read, whatever it
+        says, and no code is run.
+
+        Also of a run that was killed or stopped, up to the last saving; `status` is ``INTERRUPTED`` then (see
+        `resume`). What a solution works out on demand, as between saved times, is worked out alike.
+
+        Parameters
+        ----------
+        path : str or path
+        functions : mapping, optional
+            Functions of the user's that the scene has, which no file can hold: ``"part.field"`` (as in
+            ``"motor.force"``) to function. Where they are left out `scene` has placeholders that raise an
+            error when they are called; all that was saved is there without them.
+
+        Raises
+        ------
+        FileNotFoundError
+            If there is no such file.
+        ValueError
+            If the file is foreign, damaged, changed, or of another version of the format; if a function is none
+            of the scene's.
+        """
+        from carom import checks
+        from carom.io.files.reading import read
+
+        where = checks.path("path", path)
+        if functions is not None and not isinstance(functions, Mapping):
+            raise ValueError(
+                f"functions must be a mapping from names, got {checks.shown(functions)}"
+            )
+        fields = read(where, functions)
+        cached = fields.pop("cached")
+        solution = cls(**fields)
+        vars(solution).update(cached)
+        return solution
+
+    def to_xarray(self) -> xr.Dataset:
+        """Return all of the run as an `xarray.Dataset`: what `save` writes, and `xarray.open_dataset` reads.
+
+        Dimensions time, body, axis, quaternion; impact, event, interval and held (tables), contact,
+        contact_axis; joint, coordinate and row where there are some. Each variable has ``units`` and a
+        ``long_name``.
+
+        Raises
+        ------
+        ImportError
+            Without xarray.
+        """
+        from carom.io.files.convert import to_xarray
+
+        return to_xarray(self)
+
+    def to_pandas(self) -> Frames:
+        """Return the run as six tables (`pandas.DataFrame`), a named tuple.
+
+        ``bodies`` (saved times down, columns body and quantity), ``energy``, ``impacts``, ``events``,
+        ``contacts`` and ``forces``; bodies and contacts by name, vectors as one column a component.
+
+        Raises
+        ------
+        ImportError
+            Without pandas.
+        """
+        from carom.io.files.convert import to_pandas
+
+        return to_pandas(self)

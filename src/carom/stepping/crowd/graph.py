@@ -1,0 +1,144 @@
+"""The order in which the bodies of a heap are eliminated, found anew when other bodies touch.
+
+Bodies are neighbours where they may touch. The one with fewest neighbours goes first, and makes those that it
+leaves neighbours of each other (least degree; rows of bits). The lists are those of `carom.friction.graph`,
+which makes them once, in Python.
+"""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import entry, kernel
+
+WORD = 63  # bits of a row that an int64 takes
+
+
+@entry
+def find_order(n, k, heap):
+    """Write the lists for the bodies and points at hand, unless they are known; return False without room."""
+    graph, link = heap.graph, heap.problem.link
+    known = graph.count[0] == n and graph.count[1] == k
+    for i in range(k):
+        for side in range(2):
+            if graph.body[i, side] != link[i].body[side]:
+                known, graph.body[i, side] = False, link[i].body[side]
+    if known:
+        return graph.count[2] >= 0
+    graph.count[0], graph.count[1], graph.count[2] = n, k, -1
+    begin(n, k, heap)
+    if not eliminate(n, heap) or not write_updates(n, heap):
+        return False
+    write_corners(k, heap)
+    return True
+
+
+@kernel
+def begin(n, k, heap):
+    """Write the rows of bits of all bodies."""
+    near, degree, link = heap.graph.near, heap.graph.degree, heap.problem.link
+    words = n // WORD + 1
+    for b in range(n):
+        degree[b] = 0
+        for w in range(words):
+            near[b, w] = 0
+    for i in range(k):
+        a, b = link[i].body[0], link[i].body[1]
+        if b >= 0 and a != b and near[a, b // WORD] >> (b % WORD) & 1 == 0:
+            near[a, b // WORD] |= 1 << (b % WORD)
+            near[b, a // WORD] |= 1 << (a % WORD)
+            degree[a] += 1
+            degree[b] += 1
+
+
+@kernel
+def eliminate(n, heap):
+    """Write the order, and of each body the neighbours that come later; return False if there is no room."""
+    graph, place, later = heap.graph, heap.problem.place, heap.problem.later
+    near, degree, rank, words, pairs = graph.near, graph.degree, graph.rank, n // WORD + 1, 0
+    for t in range(n):
+        b = -1
+        for i in range(n):
+            if degree[i] >= 0 and (b < 0 or degree[i] < degree[b]):
+                b = i
+        if pairs + degree[b] > later.shape[0]:
+            return False
+        place[t].body, place[t].pair, rank[b] = b, pairs, t
+        for w in range(words):
+            bits, i = near[b, w], w * WORD
+            while bits != 0:
+                if bits & 1 == 1:
+                    later[pairs] = i
+                    pairs += 1
+                bits >>= 1
+                i += 1
+        place[t].pairs_end, degree[b] = pairs, -1
+        for s in range(place[t].pair, pairs):
+            merge(graph, later[s], b, words)
+    graph.count[3] = pairs
+    return True
+
+
+@kernel
+def merge(graph, i, b, words):
+    """Give body i the neighbours of b, which is eliminated."""
+    near, count = graph.near, 0
+    for w in range(words):
+        near[i, w] |= near[b, w]
+    near[i, i // WORD] &= ~(1 << (i % WORD))
+    near[i, b // WORD] &= ~(1 << (b % WORD))
+    for w in range(words):
+        bits = near[i, w]
+        while bits != 0:
+            bits &= bits - 1
+            count += 1
+    graph.degree[i] = count
+
+
+@kernel
+def block_of(n, i, j, heap):
+    """Return the block of bodies i and j: right of the diagonal where i goes first, else below it."""
+    if i == j:
+        return i
+    graph, later = heap.graph, heap.problem.later
+    first, second = (i, j) if graph.rank[i] < graph.rank[j] else (j, i)
+    place = heap.problem.place[graph.rank[first]]
+    low, high = place.pair, place.pairs_end
+    while low < high:
+        middle = (low + high) // 2
+        if later[middle] < second:
+            low = middle + 1
+        else:
+            high = middle
+    return n + low + (0 if first == i else graph.count[3])
+
+
+@kernel
+def write_updates(n, heap):
+    """Write which blocks each elimination changes; return False if there is no room."""
+    problem, at = heap.problem, 0
+    for t in range(n):
+        place = problem.place[t]
+        d = place.pairs_end - place.pair
+        if at + d * d > problem.target.shape[0]:
+            return False
+        place.update = at
+        for s in range(place.pair, place.pairs_end):
+            for r in range(place.pair, place.pairs_end):
+                row = problem.target[at]
+                row[0], row[1] = s, r
+                row[2] = block_of(n, problem.later[s], problem.later[r], heap)
+                at += 1
+        place.updates_end = at
+    heap.graph.count[2] = at
+    return True
+
+
+@kernel
+def write_corners(k, heap):
+    """Write the blocks of the bodies of each point."""
+    n = heap.graph.count[0]
+    for i in range(k):
+        link = heap.problem.link[i]
+        for r in range(2):
+            for s in range(2):
+                a, b = link.body[r], link.body[s]
+                link.corner[r, s] = block_of(n, a, b, heap) if a >= 0 and b >= 0 else -1

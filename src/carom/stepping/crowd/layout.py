@@ -1,0 +1,118 @@
+"""Scratch of a step of a heap: made when the first one is met, longer where it has more points."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+
+from carom._compiled.record_arrays import table
+from carom.friction.arrays import ISLAND_BODY, LINK, PLACE, IslandWork
+from carom.friction.layout import CONTACT, VECTORS
+from carom.model.arrays import (
+    HELD,
+    POINT,
+    STATE,
+)
+from carom.stepping.crowd.graph import WORD
+
+#: a point that may touch in the step
+SPOT = [
+    ("contact", "i8"),
+    ("feature", "i8"),
+    ("point", "f8", 3),  # of the first body, its axes
+    ("turns", "i8"),  # of its POINT
+    ("parent", "i8"),  # of rolling and pivoting: the spot whose normal impulse bounds the torque
+    ("place", "i8"),  # among the held points after the step, -1 where it is none
+    ("held", "i8"),  # its place among the held points, -1 where it is open
+    ("gap", "f8"),  # at the start
+    ("left", "f8"),  # at the end, without contacts
+    ("before", "f8", 3),  # velocity at the start, by the rows of the middle of the step
+    (
+        "drift",
+        "f8",
+        3,
+    ),  # the part of it that is due to rows that turn, of a held point of few bodies; else 0
+    ("bound", "f8"),  # least normal velocity after
+    ("impulse", "f8", 3),
+    ("strikes", "i8"),  # 1 for an impact, 0 for what stays, or is far
+]
+
+
+class Graph(NamedTuple):
+    """What finding an order of elimination needs (`carom.stepping.crowd.graph`)."""
+
+    count: np.ndarray  # (4,) bodies, points, updates (-1: no room), pairs
+    body: np.ndarray  # (K, 2) bodies of each point
+    near: np.ndarray  # (N, words) neighbours, a bit each
+    degree: np.ndarray  # (N,) how many, -1 once eliminated
+    rank: np.ndarray  # (N,) place in the order
+
+
+class Heap(NamedTuple):
+    """K points at most, of N bodies; P points are held at most. Vectors have rows n, t1, t2 a point."""
+
+    spots: np.recarray  # (K,) SPOT
+    points: np.recarray  # (2, K) POINT: in the middle of the step; at its end
+    c: np.ndarray  # (3K,) velocities without impulses, less their bounds
+    p: np.ndarray  # (3K,) impulses
+    problem: IslandWork
+    graph: Graph
+    flight: np.recarray  # (N,) STATE at the end of the step without contacts
+    held: np.recarray  # (P,) HELD, as it will be
+    follows: np.ndarray  # (P,) next held point of the same contact, -1 after the last
+    parent: np.ndarray  # (N,) of the union-find of what touches
+    speed: np.ndarray  # (2, N) greatest speed of such a set, at the start and at the end
+
+
+def new_heap(bodies: int, held: int, points: int) -> Heap:
+    """Return the scratch for `points` points that may touch, and `held` that may be held."""
+    # what 500 spheres in a box need is half of this; where it is not enough there are sweeps only
+    pairs, updates = 4 * points, 128 * points
+    problem = IslandWork(
+        address=0,
+        newton=0,
+        contact=table(CONTACT, points),
+        link=table(LINK, points),
+        vector=np.zeros((VECTORS, 3 * points)),
+        count=np.zeros(5, dtype=np.int64),
+        mismatch=np.zeros(2),
+        body=table(ISLAND_BODY, bodies),
+        place=table(PLACE, bodies),
+        later=np.zeros(pairs, dtype=np.int64),
+        target=np.zeros((updates, 3), dtype=np.int64),
+        block=np.zeros((bodies + 2 * pairs, 6, 6)),
+        sums=np.zeros((2, bodies, 6)),
+    )
+    return Heap(
+        spots=table(SPOT, points),
+        points=table(POINT, 2, points),
+        c=np.zeros(3 * points),
+        p=np.zeros(3 * points),
+        problem=problem,
+        graph=Graph(
+            count=np.zeros(4, dtype=np.int64),
+            body=np.zeros((points, 2), dtype=np.int64),
+            near=np.zeros((bodies, bodies // WORD + 1), dtype=np.int64),
+            degree=np.zeros(bodies, dtype=np.int64),
+            rank=np.zeros(bodies, dtype=np.int64),
+        ),
+        flight=table(STATE, bodies),
+        held=table(HELD, held),
+        follows=np.zeros(held, dtype=np.int64),
+        parent=np.zeros(bodies, dtype=np.int64),
+        speed=np.zeros((2, bodies)),
+    )
+
+
+@cache
+def no_heap() -> Heap:
+    """Return what stands for the scratch while no heap was met: nothing is written to it."""
+    return new_heap(1, 1, 1)
+
+
+def roomier_heap(heap: Heap) -> Heap:
+    """Return the scratch for twice as many points, with what is compiled for it."""
+    more = new_heap(len(heap.flight), len(heap.held), 2 * len(heap.spots))
+    return more._replace(problem=more.problem._replace(newton=heap.problem.newton))

@@ -1,0 +1,154 @@
+"""The points of a heap that may touch within a step, and where they are in a state."""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom.contact.closed_points import apart
+from carom.contact.pair_point import (
+    HELD_REACH,
+    REACH,
+    find_touches,
+    own_point,
+    smaller,
+    which_touch,
+    write_touch,
+)
+from carom.geometry.rotation import norm
+from carom.kinematics.contact_point import place
+
+
+@kernel
+def closing_speed(contact, state):
+    """Return a bound of the speed at which the two approach each other [m/s]."""
+    a, b = state[contact.body], contact.other
+    s, v0, v1, v2 = contact.extent * norm(a.w), a.v[0], a.v[1], a.v[2]
+    if b >= 0:
+        s += contact.other_extent * norm(state[b].w)
+        v0, v1, v2 = v0 - state[b].v[0], v1 - state[b].v[1], v2 - state[b].v[2]
+    return s + math.sqrt(v0 * v0 + v1 * v1 + v2 * v2)
+
+
+@kernel
+def gather(system, held, h, fall, state, heap, work):
+    """List the points that may touch within a time h; return how many, -1 if there is no room.
+
+    A pair comes no nearer than by its speeds, and by what impulses of others may add: twice g h is allowed for.
+    A body that is alone may turn so that its other end comes down at twice its speed: thrice is allowed for.
+    """
+    k, quicker = 0, 3.0 if state.shape[0] == 1 else 1.0
+    chain(system, held, heap)
+    for c in range(system.contacts.shape[0]):
+        contact = system.contacts[c]
+        reach = h * (quicker * closing_speed(contact, state) + 2.0 * fall * h)
+        if apart(contact, state, reach):
+            continue
+        first = k
+        if contact.touches == 0:
+            k = add_vertices(system, contact, c, reach, state, k, heap, work)
+        else:
+            k = add_touches(system, contact, c, reach, state, k, heap, work)
+        if k < 0:
+            return -1
+        for i in range(first, k):
+            find_held(held, heap.spots[i], heap)
+        last = k
+        for i in range(first, last):
+            for turns in range(1, 3):
+                if contact.turning[turns - 1] > 0.0:
+                    if k == heap.spots.shape[0]:
+                        return -1
+                    take_turning(heap.spots[i], heap.spots[k], i, turns)
+                    k += 1
+    return k
+
+
+@kernel
+def add_vertices(system, contact, c, reach, state, k, heap, work):
+    """Add the vertices that may come to a half-space; return the new count, -1 if there is no room."""
+    point = work.point[0]
+    for i in range(contact.first, contact.last):
+        place(contact, system.vertices[i], state, point)
+        if point.gap <= reach:
+            if k == heap.spots.shape[0]:
+                return -1
+            p = system.vertices[i]
+            take(heap.spots[k], c, i, point.gap, p[0], p[1], p[2])
+            k += 1
+    return k
+
+
+@kernel
+def add_touches(system, contact, c, reach, state, k, heap, work):
+    """Add the points that the kernels of pairs find; return the new count, -1 if there is no room."""
+    p = work.hit[0].point
+    count = find_touches(system, contact, state, max(reach, REACH * smaller(contact)), work)
+    for i in range(count):
+        touch = work.touches[i]
+        if touch.gap <= reach:
+            if k == heap.spots.shape[0]:
+                return -1
+            own_point(contact, touch, state, p)
+            take(heap.spots[k], c, touch.feature, touch.gap, p[0], p[1], p[2])
+            k += 1
+    return k
+
+
+@kernel
+def take(spot, c, feature, gap, p0, p1, p2):
+    """Write a point that may touch."""
+    spot.contact, spot.feature, spot.gap, spot.held, spot.turns = c, feature, gap, -1, 0
+    spot.point[0], spot.point[1], spot.point[2] = p0, p1, p2
+
+
+@kernel
+def take_turning(parent, spot, i, turns):
+    """Write the rolling (turns = 1) or pivoting (2) of spot i."""
+    p = parent.point
+    take(spot, parent.contact, parent.feature, parent.gap, p[0], p[1], p[2])
+    spot.turns, spot.parent, spot.held = turns, i, parent.held
+
+
+@kernel
+def chain(system, held, heap):
+    """Chain the held points of each contact; `seen` of the contact is 1 + its first."""
+    for c in range(system.contacts.shape[0]):
+        held.brinks[c].seen = 0
+    for i in range(held.count[0] - 1, -1, -1):
+        brink = held.brinks[held.points[i].contact]
+        heap.follows[i] = brink.seen - 1
+        brink.seen = i + 1
+
+
+@kernel
+def find_held(held, spot, heap):
+    """Note which held point a spot is."""
+    i = held.brinks[spot.contact].seen - 1
+    while i >= 0:
+        hold = held.points[i]
+        if hold.feature == spot.feature:
+            spot.held = i
+            return
+        i = heap.follows[i]
+
+
+@kernel
+def place_all(system, k, state, heap, points, work):
+    """Write all points as they are in a state."""
+    i = 0
+    while i < k:
+        c = heap.spots[i].contact
+        contact = system.contacts[c]
+        if contact.touches == 0:
+            place(contact, heap.spots[i].point, state, points[i])
+            points[i].turns, points[i].length = heap.spots[i].turns, contact.extent
+            i += 1
+            continue
+        count = find_touches(system, contact, state, HELD_REACH * smaller(contact), work)
+        while i < k and heap.spots[i].contact == c:
+            spot = heap.spots[i]
+            t = which_touch(system, contact, count, spot.feature, spot.point, state, work)
+            write_touch(contact, work.touches[t], state, points[i])
+            points[i].turns, points[i].length = spot.turns, smaller(contact)
+            i += 1

@@ -1,0 +1,87 @@
+"""What has sunk in comes back to the surfaces: 0 <= lam _|_ phi + W_nn lam >= 0, xi = P G_n^T lam.
+
+Sweeps over the normal rows, phi the gaps; repeated, as gaps are not linear.
+"""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import kernel
+from carom.contact.pair_point import smaller
+from carom.dynamics.project import shift
+from carom.stepping.crowd.spots import place_all
+
+TINY = 1e-11  # of the smaller body
+PASSES, SWEEPS, WORK = (
+    8,
+    (100, 1000),
+    20000,
+)  # sweeps: least and most, and how many times a point in a pass
+BETTER = 0.01  # in one pass: gaps are not linear, more would be lost
+
+
+@kernel
+def onto_surfaces(system, k, count, end, heap, work):
+    """Move the bodies apart where points have sunk in; `heap.points[1]` are those at the end."""
+    for _ in range(PASSES):
+        place_all(system, k, end, heap, heap.points[1], work)
+        deepest, tiny = 0.0, 1.0
+        for i in range(k):
+            gap = heap.points[1][i].gap
+            size = smaller(system.contacts[heap.spots[i].contact])
+            if heap.spots[i].turns == 0 and gap < -TINY * size:
+                deepest, tiny = max(deepest, -gap), min(tiny, 0.1 * TINY * size)
+        if deepest == 0.0:
+            break
+        lift(k, count, max(tiny, BETTER * deepest), heap)
+        move(count, 1.0, end, heap.problem)
+
+
+@kernel
+def lift(k, count, tolerance, heap):
+    """Write the motion that brings the points out, to a tolerance [m]."""
+    problem, lam = heap.problem, heap.p
+    for b in range(count):
+        for j in range(6):
+            problem.body[b].motion[j] = 0.0
+    for i in range(k):
+        lam[i] = 0.0
+    for turn in range(max(SWEEPS[0], min(SWEEPS[1], WORK // max(1, k)))):
+        change = 0.0
+        for place in range(k):
+            i = place if turn % 2 == 0 else k - 1 - place
+            if heap.spots[i].turns == 0:
+                change = max(change, lift_one(problem, i, heap.points[1][i].gap, lam))
+        if change <= tolerance:
+            break
+
+
+@kernel
+def lift_one(problem, i, gap, lam):
+    """Bring one point out, the others as they are; return by how much its gap changes. All rows are scaled."""
+    link, s = problem.link[i], problem.contact[i].scale
+    for side in range(2):
+        if link.body[side] >= 0:
+            G, y = link.rows[side], problem.body[link.body[side]].motion
+            for j in range(6):
+                gap += G[0, j] * y[j] / s
+    before = lam[i]
+    lam[i] = max(0.0, before - s * gap / link.local[0])
+    d = lam[i] - before
+    if d == 0.0:
+        return 0.0
+    for side in range(2):
+        if link.body[side] >= 0:
+            Y, y = link.response[side], problem.body[link.body[side]].motion
+            for j in range(6):
+                y[j] += d * Y[j, 0]
+    return abs(d) * link.local[0] / s
+
+
+@kernel
+def move(count, factor, state, problem):
+    """Displace all bodies by a factor times the motions of the problem."""
+    for b in range(count):
+        xi = problem.body[b].motion
+        for r in range(6):
+            xi[r] *= factor
+        shift(xi, state[b])

@@ -1,0 +1,175 @@
+"""The balance of energy, step by step: what has no name, beside the largest energy exchanged so far.
+
+After each step, with sums since the start,
+
+    residual = T + V - (T_0 + V_0) - loads - impacts - friction - bounces,
+    unnamed  = |residual| + sum over lines that never rise of (line - its lowest so far),
+    exchanged = greatest so far of T, |V - V_0|, |loads|, |impacts|, |friction|, |bounces|.
+
+No zero of the potential is in it. Impacts may rise where Newton's law with friction says so. The greatest
+unnamed energy of a run is judged by all that was exchanged in it; 1e-13 of what energies are made of is
+round-off. (Mathematics page, II.12.)
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from carom._compiled.decorators import inlined, kernel
+from carom._compiled.record_arrays import table
+from carom.dynamics.energy import energies
+from carom.geometry.rotation import norm
+from carom.impact import laws
+
+#: what can be wrong: places in the columns of `WATCH`
+RESIDUAL, IMPACTS, FRICTION, BOUNCES, ALL = range(5)
+ROUND_OFF = 1e-13
+# a step that gains this part of all that it exchanges is cut, down to this part of a whole step; so many of
+# those in a row that gain all the same are the last
+GAIN, SHORTEST, IN_A_ROW = 0.25, 1.0 / 1024.0, 3
+# what a step of an explicit method may have without a name, as a part of `Options.energy_tolerance`: it is cut
+# otherwise; ten times that with points held, where the order is lower. A limit that the shortest step does
+# not keep is made so many times wider
+SHARE, OF_HELD, WIDER = 1e-3, 10.0, 4.0
+
+WATCH = [
+    ("tolerance", "f8"),  # `Options.energy_tolerance`
+    ("total", "f8"),  # kinetic and potential energy at the start
+    ("potential", "f8"),  # at the start
+    ("exchanged", "f8"),
+    ("struck", "i8"),  # impacts that were looked at
+    ("named", "f8"),  # what impacts gave by Newton's law with friction
+    ("lowest", "f8", 4),  # of the lines so far
+    ("size", "f8"),  # of what the energies are made of, greatest
+    ("amount", "f8", 5),  # greatest without a name, of each kind
+    ("time", "f8", 5),  # and when
+    ("depth", "f8"),  # greatest of a contact at a saved time, by the size of the body
+    ("deep_at", "f8"),  # its time, and its contact
+    ("deep_contact", "i8"),
+    ("gains", "i8"),  # shortest steps in a row that gained
+    ("share", "f8"),  # part of what was exchanged that a step may have without a name
+]
+
+
+def new_watch(tolerance: float, share: float = np.inf) -> np.recarray:
+    """Return the record of a run that has not begun, (1,); with no limit for a step by itself."""
+    watch = table(WATCH, 1)
+    watch["tolerance"], watch["share"] = tolerance, share
+    return watch
+
+
+@kernel
+def begin_watch(system, now, t, watch):
+    """Note the energies of the start."""
+    kinetic, potential, size = energies(system, now, t)
+    watch.total, watch.potential = kinetic + potential, potential
+    watch.exchanged, watch.struck, watch.named, watch.gains = kinetic, 0, 0.0, 0
+    watch.size, watch.depth = size, 0.0
+    for i in range(5):
+        watch.amount[i], watch.time[i] = 0.0, t
+    for i in range(4):
+        watch.lowest[i] = 0.0
+
+
+@kernel
+def note_energies(system, now, clock):
+    """Note the energies of the present; return the size of what they are made of."""
+    clock.kinetic, clock.potential, size = energies(system, now, clock.now)
+    return size
+
+
+@kernel
+def watch_step(system, now, clock, records, watch):
+    """Look at the balance at the end of a step."""
+    size = note_energies(system, now, clock)
+    kinetic, potential = clock.kinetic, clock.potential
+    residual = kinetic + potential - watch.total
+    residual -= clock.loads + clock.impacts + clock.friction + clock.bounces
+    exchanged = max(watch.exchanged, max(kinetic, abs(potential - watch.potential)))
+    exchanged = max(exchanged, max(abs(clock.loads), abs(clock.impacts)))
+    exchanged = max(exchanged, max(abs(clock.friction), abs(clock.bounces)))
+    watch.exchanged, watch.size = exchanged, max(watch.size, size)
+    watch.named += given_by_law(system, clock, records, watch)
+    total = abs(residual)
+    compare(RESIDUAL, residual, clock.now, watch)
+    for i in range(1, 4):
+        line = clock.friction if i == FRICTION else clock.bounces
+        if i == IMPACTS:
+            line = clock.impacts - watch.named
+        watch.lowest[i] = min(watch.lowest[i], line)
+        total += line - watch.lowest[i]
+        compare(i, line - watch.lowest[i], clock.now, watch)
+    compare(ALL, total, clock.now, watch)
+
+
+@inlined
+def compare(i, amount, t, watch):
+    """Note an amount without a name if it is the greatest of its kind so far; one that is no number stays."""
+    greatest = watch.amount[i]
+    if not (abs(amount) <= abs(greatest)) and greatest == greatest:
+        watch.amount[i], watch.time[i] = amount, t
+
+
+@kernel
+def given_by_law(system, clock, records, watch):
+    """Return what the new impacts have given where Newton's law with friction may (V8)."""
+    total = 0.0
+    for k in range(watch.struck, clock.struck):
+        row = records.impact[k]
+        given = max(row.energy_change, row.compression_work + row.restitution_work)
+        if given > 0.0:
+            for c in range(system.contacts.shape[0]):
+                contact = system.contacts[c]
+                if contact.number == row.contact:
+                    if contact.law == laws.NEWTON and contact.friction > 0.0:
+                        total += given
+                    break
+    watch.struck = clock.struck
+    return total
+
+
+@inlined
+def imbalance(system, held, start, end, named, t, h, watch):
+    """Return the energy of a step that has no name, as a part of what it may have; and if it multiplies energy.
+
+    Bodies that only gravity acts on are exact in flight, and watched where they are held
+    (`carom.persistent.step_control`).
+    """
+    loaded = False
+    for b in range(start.shape[0]):
+        loaded = loaded or system.bodies[b].ballistic == 0
+    return unbalanced(system, held, start, end, named, t, h, watch) if loaded else (0.0, False)
+
+
+@kernel
+def speeds_known(system, state, h):
+    """Return the energy [J] of speeds that round-off of places makes in a step."""
+    total = 0.0
+    for b in range(state.shape[0]):
+        body = system.bodies[b]
+        speed = ROUND_OFF * (norm(state[b].x) + body.extent) / h
+        total += body.mass * speed * speed
+    return total
+
+
+@kernel
+def unbalanced(system, held, start, end, named, t, h, watch):
+    """Return so of bodies that are joined or loaded; `named` is the work of loads and of friction.
+
+    A step multiplies energy if it gains as much as it exchanges, and more than is tolerated, from nobody: what
+    explicit methods do with springs and dampers that are too stiff for them.
+    """
+    before, low, _ = energies(system, start, t)
+    after, high, size = energies(system, end, t + h)
+    gain = after + high - before - low - named
+    exchanged = before + after + abs(high - low) + abs(named)
+    known = ROUND_OFF * size + speeds_known(system, end, h)
+    tolerated = watch.tolerance * watch.exchanged + known
+    grows = not (gain <= GAIN * exchanged + tolerated)
+    share = watch.share * (OF_HELD if held.count[0] > 0 else 1.0)
+    may = share * max(watch.exchanged, exchanged) + known
+    if not abs(gain) < math.inf:
+        return math.inf, grows
+    return abs(gain) / may if may > 0.0 else 0.0, grows

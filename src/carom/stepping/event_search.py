@@ -1,0 +1,131 @@
+"""Search for the first event inside a step: examination of a trial step, and the root of an event function.
+
+For a gap the rate is known: Newton's method, kept inside the bracket. For held contacts: regula falsi
+with the Illinois rule. Every trial is a step of the method itself from the start of the step, so that
+an event is as exact as the method.
+"""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import inlined, kernel
+from carom.contact.closed_points import RIM_TIME, round_off_of_both
+from carom.contact.continuous_detection import AGAIN, BELOW, CLEAR, FLAT_RIM, UNSURE, passage
+from carom.contact.continuous_detection_pair import lowest_pair, passage_pair
+from carom.contact.gap import lowest, round_off
+from carom.contact.pair_point import smaller
+from carom.contact.stop import passage_stop, stop_gap
+from carom.model.arrays import STOP
+from carom.persistent.events import GAP, find_held_event, held_value, turned
+from carom.persistent.joint_events import STOPS, find_joint_event, joint_event_value
+from carom.persistent.margins import LEAST, NEAR
+
+
+@inlined
+def examine(system, controls, held, now, dt, work):
+    """Look at the step from `now` to work.trial: verdict, event, contact, a time before it, slip."""
+    found, which, low = CLEAR, -1, 0.0
+    for c in range(held.brinks.shape[0]):
+        contact = system.contacts[c]
+        leaving = held.brinks[c].leaving
+        if contact.touches == 0:
+            verdict, first = passage(
+                system, contact, held, leaving, now, work.trial, dt, work, controls.gap
+            )
+        elif contact.touches == STOP:
+            verdict, first = passage_stop(
+                system, contact, c, held, leaving, now, work.trial, dt, work, controls.gap
+            )
+        else:
+            verdict, first = passage_pair(
+                system, contact, c, held, leaving, now, work.trial, dt, work, controls.gap,
+                RIM_TIME * controls.step,
+            )  # fmt: skip
+        if verdict in (UNSURE, FLAT_RIM):
+            return verdict, GAP, c, 0.0, 0.0, 0.0
+        if verdict == BELOW and found == CLEAR:
+            found, which, low = BELOW, c, 0.5 * first
+        elif verdict == CLEAR and leaving == 1 and first > 0.0:
+            held.brinks[c].leaving = 0
+    if found == BELOW:
+        return BELOW, GAP, which, low, 0.0, 0.0
+    kind, i, d1, d2 = find_held_event(system, held, work.trial, dt, work)
+    if i >= 0:
+        return BELOW, kind, i, 0.0, d1, d2
+    kind, i = find_joint_event(system, held, work.trial, work)
+    if i >= 0:
+        return BELOW, kind, i, 0.0, 0.0, 0.0
+    far = turned(system, held, work.trial, dt, work)
+    if far == 2:
+        return AGAIN, GAP, -1, 0.0, 0.0, 0.0
+    if far == 1 and dt > 1e-3 * controls.step:
+        return UNSURE, GAP, -1, 0.0, 0.0, 0.0
+    return CLEAR, GAP, -1, 0.0, 0.0, 0.0
+
+
+@kernel
+def event_value(system, controls, held, search, state, work):
+    """Return the event function and, for a gap, its rate; forces of held contacts are those of `state`."""
+    if search.kind == GAP:
+        contact = system.contacts[search.contact]
+        search.tolerance = max(controls.gap * smaller(contact), round_off(contact, state))
+        if contact.touches == 0:
+            return lowest(contact, system.vertices, state)
+        if contact.touches == STOP:
+            return stop_gap(system, contact, state, work)
+        search.tolerance = 4.0 * max(search.tolerance, round_off_of_both(contact, state))
+        return lowest_pair(system, contact, search.contact, held, state, work)
+    if search.kind >= STOPS:
+        return joint_event_value(system, search.kind, search.contact, held, state, work), 0.0
+    hold = held.points[search.contact]
+    if hold.several == 1:
+        search.tolerance = NEAR
+    return held_value(system, hold, search.kind, search.d1, search.d2, state, work), 0.0
+
+
+@kernel
+def begin_search(search, kind, contact, low, high, d1, d2):
+    """Start to look for an event between `low` and `high`, where its function is negative."""
+    search.active, search.kind, search.contact = 1, kind, contact
+    search.low, search.high, search.width = low, high, high
+    search.d1, search.d2 = d1, d2
+    search.f_low, search.side, search.tolerance = -1.0, 0, -1.0
+
+
+@kernel
+def narrow(search, t, f, rate):
+    """Take in the value f at t. Returns 1 if that is the event, 0 if not yet, -1 if f is not a number."""
+    search.t, search.f, search.rate = t, f, rate
+    if search.f_low < 0.0:  # the first value; nothing is known at the low end but the sign
+        search.f_low = abs(f)
+        if search.tolerance < 0.0:
+            search.tolerance = 1e-13 * abs(f)
+    if abs(f) <= search.tolerance or search.high - search.low <= 1e-15 * search.width:
+        return 1
+    if f < 0.0:
+        search.high, search.f_high = t, f
+        if search.side == 1:
+            search.f_low *= 0.5
+        search.side = 1
+    elif f > 0.0:
+        search.low, search.f_low = t, f
+        if search.side == 2:
+            search.f_high *= 0.5
+        search.side = 2
+    else:
+        return -1
+    return 0
+
+
+@kernel
+def propose(search):
+    """Return the next time to try: Newton's, else the regula falsi's, else the middle."""
+    if search.kind == GAP and search.rate < 0.0:
+        t = search.t - search.f / search.rate
+    else:
+        low, high = search.low, search.high
+        if search.tolerance == NEAR and search.f_low <= LEAST:  # nothing is known but the sign
+            return 0.5 * (low + high)
+        t = (low * search.f_high - high * search.f_low) / (search.f_high - search.f_low)
+    if not (search.low < t < search.high):
+        t = 0.5 * (search.low + search.high)
+    return t

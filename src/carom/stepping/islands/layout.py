@@ -1,0 +1,162 @@
+"""Arrays of the islands of a step: made before the loop, and longer where a step needs more room."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from carom._compiled.record_arrays import table
+from carom.collision.sweep import SweepWork, new_sweep_work
+from carom.model.arrays import (
+    BODY,
+    BODY_WORK,
+    BRINK,
+    CONTACT,
+    HELD,
+    STATE,
+    Held,
+    Relations,
+    System,
+)
+from carom.model.records import CLOCK
+
+#: what a body does in a step: nothing, flies with nothing near, or takes part in an island
+ASLEEP, FLIES, MEETS = range(3)
+
+PLAN = [
+    ("count", "i8"),  # islands in this step
+    ("at", "i8"),  # the one that is being moved
+    ("entered", "i8"),  # 1 from when its bodies were taken until they are put back
+    ("planned", "i8"),  # 1 while a step is going on
+    ("widen", "f8"),  # how much more room than expected bodies are given
+    ("pairs", "i8"),  # balls that overlap
+    ("used", "i8"),  # contacts in all islands
+    ("kept", "i8"),  # held points after the step, so far
+]
+
+#: a body, while islands are sought
+MEMBER = [
+    ("parent", "i8"),  # of the union-find; roots are the lowest of their set
+    ("awake", "i8"),  # of a root: 1 if a body of the set moves
+    ("bodies", "i8"),  # of a root: how many are in the set
+    ("speed", "f8"),  # of a root: greatest of the set
+    ("island", "i8"),  # of a root: number of the island, -1 for none
+    ("kind", "i8"),
+    ("place", "i8"),  # slot of the body
+]
+
+
+class Islands(NamedTuple):
+    """N bodies in slots, island by island, and M contacts that may act in the step."""
+
+    plan: np.recarray  # (1,) PLAN
+    member: np.recarray  # (N,) MEMBER
+    first: np.ndarray  # (3, N + 1) ranges of an island: bodies, contacts, held points
+    body_of: np.ndarray  # (N,) body in a slot
+    bodies: np.recarray  # (N,) BODY, numbered by their place in the island
+    state: np.recarray  # (N,) STATE
+    memory: np.recarray  # (N,) BODY_WORK
+    which: np.ndarray  # (M,) contact in a slot
+    contacts: np.recarray  # (M,) CONTACT, of bodies by their place in the island
+    brinks: np.recarray  # (M,) BRINK
+    held_of: np.ndarray  # (P,) held points, island by island
+    points: np.recarray  # (2, P) HELD: of the island at hand; of all after the step
+    carried: np.ndarray  # (1,) number of held points of the island at hand
+    clock: np.recarray  # (1,) CLOCK at the start of the step
+    centre: np.ndarray  # (N, 3)
+    radius: np.ndarray  # (N,)
+    pair: np.ndarray  # (M, 2)
+    sweep: SweepWork
+    partner: np.ndarray  # (2, P) other body and contact, sorted, body by body
+    partner_first: np.ndarray  # (N + 1,)
+    plane: np.ndarray  # (Q,) contacts with half-spaces, body by body
+    plane_first: np.ndarray  # (N + 1,)
+
+
+class NoIslands(NamedTuple):
+    """All bodies together: one of them, or joined. What a step begins with is kept, to go back to.
+
+    No state is kept where a step is not done in another way: nothing touches, and no joint sticks.
+    """
+
+    free: int  # 1 where gravity and contacts alone act
+    begun: np.ndarray  # (1,) 1 while a step is going on
+    state: np.recarray  # (N,) STATE
+    brinks: np.recarray  # (M,) BRINK
+    points: np.recarray  # (P,) HELD
+    count: np.ndarray  # (1,) number of held points
+    clock: np.recarray  # (1,) CLOCK
+
+
+def has_events(system: System) -> bool:
+    """Return whether steps may have events, which could follow each other too fast: contacts, dry friction."""
+    relations = system.relations
+    frictions = relations.frictions if isinstance(relations, Relations) else ()
+    return system.contacts.size > 0 or len(frictions) > 0
+
+
+def no_islands(system: System, held: Held) -> NoIslands:
+    """Return the scratch for bodies that are stepped together."""
+    keeps = has_events(system)
+    return NoIslands(
+        free=int(system.bodies["ballistic"].all()),
+        begun=np.zeros(1, dtype=np.int64),
+        state=table(STATE, system.bodies.size if keeps else 0),
+        brinks=table(BRINK, len(held.brinks)),
+        points=table(HELD, len(held.points)),
+        count=np.zeros(1, dtype=np.int64),
+        clock=table(CLOCK, 1),
+    )
+
+
+def new_islands(system: System, held: Held) -> Islands | NoIslands:
+    """Return the scratch for a scene whose bodies may move apart from each other."""
+    n = system.bodies.size
+    if n == 1 or not system.bodies["ballistic"].all():
+        return no_islands(system, held)
+    contacts = system.contacts
+    rows = np.arange(contacts.size)
+    pairs = rows[contacts.other >= 0]
+    body, other = contacts.body[pairs], contacts.other[pairs]
+    low, high = np.minimum(body, other), np.maximum(body, other)
+    order = np.lexsort((pairs, high, low))
+    planes = rows[contacts.other < 0]
+    planes = planes[np.argsort(contacts.body[planes], kind="stable")]
+    numbers = np.arange(n + 1)
+    room, points = min(rows.size, 8 * n + 64), len(held.points)
+    return Islands(
+        plan=table(PLAN, 1),
+        member=table(MEMBER, n),
+        first=np.zeros((3, n + 1), dtype=np.int64),
+        body_of=np.zeros(n, dtype=np.int64),
+        bodies=table(BODY, n),
+        state=table(STATE, n),
+        memory=table(BODY_WORK, n),
+        which=np.zeros(room, dtype=np.int64),
+        contacts=table(CONTACT, room),
+        brinks=table(BRINK, room),
+        held_of=np.zeros(points, dtype=np.int64),
+        points=table(HELD, 2, points),
+        carried=np.zeros(1, dtype=np.int64),
+        clock=table(CLOCK, 1),
+        centre=np.zeros((n, 3)),
+        radius=np.zeros(n),
+        pair=np.zeros((8 * n + 64, 2), dtype=np.int64),
+        sweep=new_sweep_work(n),
+        partner=np.stack([high[order], pairs[order]]),
+        partner_first=np.searchsorted(low[order], numbers),
+        plane=planes,
+        plane_first=np.searchsorted(contacts.body[planes], numbers),
+    )
+
+
+def roomier(islands: Islands) -> Islands:
+    """Return the scratch with room for twice as many pairs and contacts in a step."""
+    m, p = 2 * len(islands.which), 2 * len(islands.pair)
+    return islands._replace(
+        which=np.zeros(m, dtype=np.int64),
+        contacts=table(CONTACT, m),
+        brinks=table(BRINK, m),
+        pair=np.zeros((p, 2), dtype=np.int64),
+    )

@@ -1,0 +1,241 @@
+"""An island as a system of its own: its bodies, contacts and held points, taken out and put back."""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import kernel
+from carom.dynamics.explicit import keep, mark_held
+from carom.kinematics.flight import free_flight
+from carom.model.arrays import Held, System, Work
+from carom.persistent.active_set import regroup
+from carom.stepping.islands.layout import ASLEEP, FLIES
+from carom.stepping.islands.plan import number, root, seek
+
+
+@kernel
+def begin_step(system, held, now, length, clocks, work, islands):
+    """Find the islands of a step and fill their slots; return False if there is no room."""
+    plan, member = islands.plan[0], islands.member
+    mark_held(system, held, work)
+    if not (seek(system, held, now, length, work, islands) and number(
+        system, held, now, work, islands
+    )):  # fmt: skip
+        return False
+    for slot in range(islands.first[0, plan.count]):
+        b = islands.body_of[slot]
+        place = slot - islands.first[0, member[root(member, b)].island]
+        islands.bodies[slot] = system.bodies[b]
+        islands.bodies[slot].component = place
+        islands.state[slot] = now[b]
+        islands.memory[slot] = work.body[b]
+    for slot in range(plan.used):
+        c = islands.which[slot]
+        contact, brink = islands.contacts[slot], islands.brinks[slot]
+        islands.contacts[slot] = system.contacts[c]
+        contact.body = local(islands, contact.body)
+        if contact.other >= 0:
+            contact.other = local(islands, contact.other)
+        islands.brinks[slot] = held.brinks[c]
+        brink.blows = 0
+        if brink.step != clocks[0].step:  # nothing was near it in the step before
+            brink.leaving = 0
+    plan.kept = 0
+    for i in range(held.count[0]):
+        if member[root(member, held.points[i].body)].island < 0:
+            islands.points[1, plan.kept] = held.points[i]
+            plan.kept += 1
+    plan.at, plan.entered, plan.planned = 0, 0, 1
+    clocks[0].before = clocks[0].impacts
+    islands.clock[0] = clocks[0]
+    return True
+
+
+@kernel
+def local(islands, b):
+    """Return the place of a body in its island."""
+    member = islands.member
+    return member[b].place - islands.first[0, member[root(member, b)].island]
+
+
+@kernel
+def part_system(system, islands, i):
+    """Return island i as a system."""
+    first = islands.first
+    return System(
+        islands.bodies[first[0, i] : first[0, i + 1]],
+        system.gravity,
+        system.joints,
+        system.relations,
+        system.springs,
+        system.loads,
+        system.bushings,
+        islands.contacts[first[1, i] : first[1, i + 1]],
+        system.vertices,
+        system.solids,
+        system.hulls,
+        system.touch_at,
+        system.plane_at,
+        system.acceleration_at,
+        system.solver,
+    )
+
+
+@kernel
+def part_held(held, islands, i):
+    """Return what is held in island i."""
+    first = islands.first
+    brinks = islands.brinks[first[1, i] : first[1, i + 1]]
+    return Held(islands.points[0], brinks, held.carries, islands.carried)
+
+
+@kernel
+def part_work(work, islands, i):
+    """Return the scratch of island i."""
+    a, b = islands.first[0, i], islands.first[0, i + 1]
+    n = b - a
+    return Work(
+        islands.memory[a:b],
+        work.joint,
+        work.stages,
+        work.stage[:n],
+        work.trial[:n],
+        work.middle[:n],
+        work.first[:n],
+        work.point,
+        work.pair,
+        work.touches,
+        work.solid_pose,
+        work.solid_rate,
+        work.hit,
+        work.result,
+        work.search,
+        work.history,
+    )
+
+
+@kernel
+def enter(part, own, held, work, islands, begin, clock):
+    """Begin with island `plan.at`: take its held points, label its groups, set its clock back."""
+    i = islands.plan[0].at
+    own.count[0] = 0
+    for k in range(islands.first[2, i], islands.first[2, i + 1]):
+        hold = own.points[own.count[0]]
+        own.points[own.count[0]] = held.points[islands.held_of[k]]
+        hold.body = local(islands, hold.body)
+        if hold.other >= 0:
+            hold.other = local(islands, hold.other)
+        hold.contact = slot_of(islands, i, hold.contact)
+        own.count[0] += 1
+    regroup(part, own, work)
+    clock.spent, clock.in_step, clock.at_once, clock.now = 0.0, 0, 0, begin
+    clock.tries, clock.effort = 0, 0.0
+    islands.plan[0].entered = 1
+
+
+@kernel
+def slot_of(islands, i, c):
+    """Return the number of contact c within island i; its contacts are in order."""
+    first, last = islands.first[1, i], islands.first[1, i + 1]
+    low, high = first, last
+    while low < high:
+        middle = (low + high) // 2
+        if islands.which[middle] < c:
+            low = middle + 1
+        else:
+            high = middle
+    return low - first
+
+
+@kernel
+def is_heap(part, least, step, work):
+    """Return whether an island takes its step whole: large, or of late unable to go from event to event."""
+    n = part.bodies.shape[0]
+    heap = n >= least
+    for b in range(n):
+        heap = heap or work.body[b].whole_until > step
+    return heap
+
+
+@kernel
+def tire(islands, step, work):
+    """Have the bodies of the island at hand take this step and some more whole; return False if they do.
+
+    The more often in a row, the more of them: 1, 2, 4, ... 128.
+    """
+    first, at, new = islands.first, islands.plan[0].at, True
+    for slot in range(first[0, at], first[0, at + 1]):
+        new = new and not work.body[islands.body_of[slot]].whole_until > step
+    for slot in range(first[0, at], first[0, at + 1] if new else 0):
+        tire_body(work.body[islands.body_of[slot]], step)
+    return new
+
+
+@kernel
+def tire_body(memory, step):
+    """Have a body take this step and some more whole."""
+    memory.whole_for = min(128, max(1, 2 * memory.whole_for))
+    memory.whole_until = step + memory.whole_for
+
+
+@kernel
+def recover(part, step, work):
+    """Note that an island has gone from event to event."""
+    for b in range(part.bodies.shape[0]):
+        if work.body[b].whole_until < step:
+            work.body[b].whole_for //= 2
+
+
+@kernel
+def leave(own, islands):
+    """End with island `plan.at`: keep its held points for after the step."""
+    plan, first = islands.plan[0], islands.first
+    bodies, contacts = first[0, plan.at], first[1, plan.at]
+    for k in range(own.count[0]):
+        hold = islands.points[1, plan.kept]
+        islands.points[1, plan.kept] = own.points[k]
+        hold.body = islands.body_of[bodies + hold.body]
+        if hold.other >= 0:
+            hold.other = islands.body_of[bodies + hold.other]
+        hold.contact = islands.which[contacts + hold.contact]
+        plan.kept += 1
+    plan.at += 1
+    plan.entered = 0
+
+
+@kernel
+def end_step(system, held, now, length, clock, work, islands):
+    """Put all islands back; move what flies with nothing near."""
+    plan, member = islands.plan[0], islands.member
+    for b in range(system.bodies.shape[0]):
+        if member[b].kind == FLIES:
+            free_flight(
+                system.bodies[b], system.gravity, length, now[b], work.trial[b], work.body[b]
+            )
+            keep(work.trial[b], now[b])
+        elif member[b].kind != ASLEEP:
+            now[b] = islands.state[member[b].place]
+            work.body[b] = islands.memory[member[b].place]
+    for slot in range(plan.used):
+        brink = held.brinks[islands.which[slot]]
+        held.brinks[islands.which[slot]] = islands.brinks[slot]
+        brink.step = clock.step + 1
+    for i in range(plan.kept):
+        held.points[i] = islands.points[1, i]
+    held.count[0] = plan.kept
+    plan.planned, plan.widen = 0, 1.0
+
+
+@kernel
+def forget_step(held, clocks, islands):
+    """Go back to the start of the step, as if nothing had happened in it."""
+    plan = islands.plan[0]
+    for k in range(2):
+        for i in range(plan.kept if k == 1 else islands.carried[0]):
+            feature = islands.points[k, i].feature
+            if islands.points[k, i].touches == 0:
+                held.carries[feature] = 0
+    for i in range(held.count[0]):
+        if held.points[i].touches == 0:
+            held.carries[held.points[i].feature] = 1
+    clocks[0] = islands.clock[0]
+    plan.planned, plan.entered = 0, 0
+    islands.carried[0] = 0

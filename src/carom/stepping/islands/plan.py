@@ -1,0 +1,229 @@
+"""Which bodies may meet in a step: balls that hold their whole paths, and the sets that overlapping balls make.
+
+A body moves no further in a step h than v h + g h^2, v a bound of the speed of its points, as long as it meets
+nothing. In a set that meets, none moves further than at twice the greatest speed of it, unless light bodies
+are thrown by heavy ones: then one leaves its ball, which is seen, and the step is done again with more room. So
+islands are exact: bodies of different ones have not met.
+"""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import kernel
+from carom.collision.sweep import sweep
+from carom.contact.gap import along_normal
+from carom.geometry.rotation import norm
+from carom.model.arrays import FREE, RESTS
+from carom.stepping.islands.layout import ASLEEP, FLIES, MEETS
+
+SLACK = 1e-6  # of a ball: what touches overlaps
+
+
+@kernel
+def root(member, b):
+    """Return the lowest body of the set of b."""
+    while member[b].parent != b:
+        member[b].parent = member[member[b].parent].parent
+        b = member[b].parent
+    return b
+
+
+@kernel
+def join(member, a, b):
+    """Make the sets of two bodies one; return whether they were two."""
+    a, b = root(member, a), root(member, b)
+    if a == b:
+        return False
+    a, b = min(a, b), max(a, b)
+    member[b].parent = a
+    member[a].bodies += member[b].bodies
+    member[a].awake = max(member[a].awake, member[b].awake)
+    member[a].speed = max(member[a].speed, member[b].speed)
+    return True
+
+
+@kernel
+def seek(system, held, now, length, work, islands):
+    """Find the sets of bodies that may meet; return False if there is no room for all pairs."""
+    member, plan, fall = islands.member, islands.plan[0], norm(system.gravity)
+    for b in range(system.bodies.shape[0]):
+        v, w, memory, m = now[b].v, now[b].w, work.body[b], member[b]
+        m.parent, m.bodies, m.awake = b, 1, 0 if memory.status == RESTS else 1
+        m.speed = norm(v) + norm(w) * system.bodies[b].ball
+        memory.room = m.awake * plan.widen * (m.speed + fall * length) * length
+        for k in range(3):
+            memory.home[k] = now[b].x[k]
+            islands.centre[b, k] = now[b].x[k]
+    for i in range(held.count[0]):
+        if held.points[i].other >= 0:
+            join(member, held.points[i].body, held.points[i].other)
+    for turn in range(20):
+        for b in range(system.bodies.shape[0]):
+            r, memory, ball = member[root(member, b)], work.body[b], system.bodies[b].ball
+            if turn > 0 and r.awake == 1 and r.bodies > 1:
+                room = 2.0 * plan.widen * (r.speed + fall * length) * length
+                memory.room = max(memory.room, room)
+            islands.radius[b] = (1.0 + SLACK) * ball + memory.room if ball > 0.0 else -1.0
+        plan.pairs = sweep(islands.centre, islands.radius, islands.pair, islands.sweep)
+        if plan.pairs > islands.pair.shape[0]:
+            return False
+        if not join_pairs(islands) and turn > 0:
+            break
+    return True
+
+
+@kernel
+def join_pairs(islands):
+    """Join the sets of all pairs that may touch, unless both are asleep; return whether any were two."""
+    member, any_joined, more = islands.member, False, True
+    while more:
+        more = False
+        for p in range(islands.plan[0].pairs):
+            i, j = islands.pair[p, 0], islands.pair[p, 1]
+            awake = member[root(member, i)].awake + member[root(member, j)].awake
+            if awake > 0 and first_contact(islands, i, j) >= 0 and join(member, i, j):
+                more, any_joined = True, True
+    return any_joined
+
+
+@kernel
+def first_contact(islands, i, j):
+    """Return the place among partners of the first contact of bodies i < j, -1 if they have none."""
+    low, high = islands.partner_first[i], islands.partner_first[i + 1]
+    end = high
+    while low < high:
+        middle = (low + high) // 2
+        if islands.partner[0, middle] < j:
+            low = middle + 1
+        else:
+            high = middle
+    return low if low < end and islands.partner[0, low] == j else -1
+
+
+@kernel
+def near_plane(system, c, now, work):
+    """Return whether a body may come to a half-space in the step."""
+    contact = system.contacts[c]
+    reach = contact.extent * (1.0 + SLACK) + contact.radius + work.body[contact.body].room
+    return along_normal(contact, now[contact.body].x) - contact.offset <= reach
+
+
+@kernel
+def number(system, held, now, work, islands):
+    """Give each island a number, each body, contact and held point a slot; return False if there is no room."""
+    member, plan, n = islands.member, islands.plan[0], system.bodies.shape[0]
+    for b in range(n):
+        member[b].island = -1
+        member[b].kind = ASLEEP
+        if member[root(member, b)].awake == 1:
+            member[b].kind = MEETS
+            if member[root(member, b)].bodies == 1 and work.body[b].status == FREE:
+                member[b].kind = FLIES
+                for q in range(islands.plane_first[b], islands.plane_first[b + 1]):
+                    if near_plane(system, islands.plane[q], now, work):
+                        member[b].kind = MEETS
+    plan.count = 0
+    for b in range(n):  # roots are the lowest of their sets
+        if member[b].kind == MEETS and root(member, b) == b:
+            member[b].island = plan.count
+            plan.count += 1
+    for s in range(3):
+        for i in range(plan.count + 1):
+            islands.first[s, i] = 0
+    give_slots(n, islands)
+    # count, then fill; half-spaces first, as `set_contact_default` numbers them
+    for phase in range(2):
+        for b in range(n):
+            if member[b].kind == MEETS:
+                for q in range(islands.plane_first[b], islands.plane_first[b + 1]):
+                    if near_plane(system, islands.plane[q], now, work):
+                        put(islands, phase, member[root(member, b)].island, islands.plane[q])
+        for p in range(plan.pairs):
+            i, j = islands.pair[p, 0], islands.pair[p, 1]
+            island = member[root(member, i)].island
+            q = first_contact(islands, i, j)
+            if island < 0 or q < 0 or root(member, j) != root(member, i):
+                continue
+            while q < islands.partner_first[i + 1] and islands.partner[0, q] == j:
+                put(islands, phase, island, islands.partner[1, q])
+                q += 1
+        if phase == 0:
+            plan.used = ranges(islands, 1)
+            if plan.used > islands.which.shape[0]:
+                return False
+        else:
+            sort_contacts(islands)
+    for phase in range(2):
+        for i in range(held.count[0]):
+            island = member[root(member, held.points[i].body)].island
+            if island >= 0 and phase == 0:
+                islands.first[2, island] += 1
+            elif island >= 0:
+                islands.held_of[islands.first[2, island]] = i
+                islands.first[2, island] += 1
+        if phase == 0:
+            ranges(islands, 2)
+        else:
+            back(islands, 2)
+    return True
+
+
+@kernel
+def give_slots(n, islands):
+    """Put the bodies of each island next to each other, in their own order."""
+    member = islands.member
+    for phase in range(2):
+        for b in range(n):
+            island = member[root(member, b)].island
+            if island < 0:
+                continue
+            if phase == 1:
+                member[b].place = islands.first[0, island]
+                islands.body_of[member[b].place] = b
+            islands.first[0, island] += 1
+        if phase == 0:
+            ranges(islands, 0)
+        else:
+            back(islands, 0)
+
+
+@kernel
+def ranges(islands, s):
+    """Turn counts into beginnings; return the sum."""
+    total = 0
+    for i in range(islands.plan[0].count):
+        count = islands.first[s, i]
+        islands.first[s, i] = total
+        total += count
+    islands.first[s, islands.plan[0].count] = total
+    return total
+
+
+@kernel
+def back(islands, s):
+    """Turn ends back into beginnings."""
+    for i in range(islands.plan[0].count - 1, 0, -1):
+        islands.first[s, i] = islands.first[s, i - 1]
+    if islands.plan[0].count > 0:
+        islands.first[s, 0] = 0
+
+
+@kernel
+def put(islands, phase, island, c):
+    """Count a contact of an island, or write it into the next slot."""
+    if phase == 1:
+        islands.which[islands.first[1, island]] = c
+    islands.first[1, island] += 1
+
+
+@kernel
+def sort_contacts(islands):
+    """Put the contacts of each island into the order of the scene: by insertion, as they are few."""
+    back(islands, 1)
+    for island in range(islands.plan[0].count):
+        first = islands.first[1, island]
+        for i in range(first + 1, islands.first[1, island + 1]):
+            c, j = islands.which[i], i
+            while j > first and islands.which[j - 1] > c:
+                islands.which[j] = islands.which[j - 1]
+                j -= 1
+            islands.which[j] = c

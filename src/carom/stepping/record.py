@@ -1,0 +1,93 @@
+"""Writing the state of a run into its records."""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import entry, inlined, kernel
+from carom.contact.place import place_any
+from carom.dynamics.explicit import keep
+from carom.geometry.rotation import cross
+from carom.stepping.energy_balance import begin_watch, note_energies
+
+
+@inlined
+def finite(state):
+    """Return whether the state is made of numbers."""
+    s = 0.0
+    for b in range(state.shape[0]):
+        for k in range(3):
+            s += state[b].x[k] + state[b].v[k] + state[b].w[k]
+        s += state[b].Q[0]
+    return math.isfinite(s)
+
+
+@inlined
+def still(state):
+    """Return whether nothing moves at all."""
+    for b in range(state.shape[0]):
+        for k in range(3):
+            if state[b].v[k] != 0.0 or state[b].w[k] != 0.0:
+                return False
+    return True
+
+
+@entry
+def save_now(system, held, now, clocks, work, records, watch):
+    """Write the present state: at the start, and after a failure."""
+    note_energies(system, now, clocks[0])
+    if clocks[0].saved == 0:
+        begin_watch(system, now, clocks[0].now, watch[0])
+    save(system, held, now, clocks[0], work, records)
+
+
+@inlined
+def save(system, held, now, clock, work, records):
+    """Write the present state into the next row."""
+    k = clock.saved
+    row = records.series[k]
+    row.t, row.kinetic, row.potential = clock.now, clock.kinetic, clock.potential
+    row.loads, row.impacts = clock.loads, clock.impacts
+    row.friction, row.bounces = clock.friction, clock.bounces
+    row.residual, clock.residual = clock.residual, 0.0
+    for b in range(now.shape[0]):
+        keep(now[b], records.state[k, b])
+    if held.count[0] > 0:
+        save_contacts(system, held, now, k, clock, work, records)
+    clock.saved += 1
+
+
+@kernel
+def save_contacts(system, held, now, k, clock, work, records):
+    """Write forces and moments of all held points at saved time k."""
+    for i in range(held.count[0]):
+        hold, point, touch = held.points[i], work.point[0], records.touch[clock.touched]
+        contact = system.contacts[hold.contact]
+        place_any(system, contact, hold.feature, hold.point, now, point, work)
+        E, arm, other, f = point.axes, point.arm_a, point.arm_b, hold.force
+        touch.saved, touch.contact, touch.feature = k, contact.number, hold.feature
+        touch.mode, touch.body, touch.other = hold.mode, system.bodies[hold.body].number, -1
+        if hold.other >= 0:
+            touch.other = system.bodies[hold.other].number
+        fx = f[0] * E[0, 0] + f[1] * E[1, 0] + f[2] * E[2, 0]
+        fy = f[0] * E[0, 1] + f[1] * E[1, 1] + f[2] * E[2, 1]
+        fz = f[0] * E[0, 2] + f[1] * E[1, 2] + f[2] * E[2, 2]
+        tx, ty, tz = cross(arm[0], arm[1], arm[2], fx, fy, fz)
+        sx, sy, sz = cross(other[0], other[1], other[2], -fx, -fy, -fz)
+        unit = 1.0
+        if point.turns == 3:  # the force of such a stop is a torque over a length
+            unit = point.length
+            tx, ty, tz = unit * fx, unit * fy, unit * fz
+            sx, sy, sz = -tx, -ty, -tz
+            fx, fy, fz = 0.0, 0.0, 0.0
+        m = hold.torque
+        mx = m[0] * E[0, 0] + m[1] * E[1, 0] + m[2] * E[2, 0]
+        my = m[0] * E[0, 1] + m[1] * E[1, 1] + m[2] * E[2, 1]
+        mz = m[0] * E[0, 2] + m[1] * E[1, 2] + m[2] * E[2, 2]
+        t, o, p = touch.moment, touch.other_moment, touch.push
+        t[0], t[1], t[2] = tx + mx, ty + my, tz + mz
+        o[0], o[1], o[2] = sx - mx, sy - my, sz - mz
+        p[0], p[1], p[2] = fx, fy, fz
+        for j in range(3):
+            touch.force[j], touch.point[j] = unit * f[j], now[hold.body].x[j] + arm[j]
+        clock.touched += 1

@@ -1,0 +1,109 @@
+"""Taking a run to its end: in parts, to report and to save; Ctrl-C stops it."""
+
+from __future__ import annotations
+
+import warnings
+from time import perf_counter
+from typing import TYPE_CHECKING
+
+from carom import checks
+from carom.status import AccuracyWarning, SimulationError, Status
+
+if TYPE_CHECKING:
+    from carom.io.files.keeper import Keeper
+
+CHUNKS = 100  # reports of a run
+LOOKS = 4  # parts in the time between two savings, about
+
+
+def finish(run, progress, keeper: Keeper | None, throw: bool):
+    """Take a run to its end and return its solution; `throw` raises that of a run that failed."""
+    adapts = run.settings["step"] == "auto"
+    total = run.settings["duration"] if adapts else run.steps
+    report = reporter(progress, total, "s" if adapts else "step")
+    status = Status.SUCCESS
+    try:
+        for until in goals(lambda: reached(run, adapts), total, report is not None, keeper):
+            status = run.go_on(until)
+            if report is not None:
+                report(reached(run, adapts), total)
+            if status is not Status.SUCCESS:
+                break
+            if keeper is not None and reached(run, adapts) < total:
+                keeper.look()
+    except KeyboardInterrupt:
+        status = Status.INTERRUPTED
+    finally:
+        close = getattr(report, "close", None)
+        if close is not None:
+            close()
+    if status is Status.INTERRUPTED:
+        run.go_back()
+    if keeper is not None:
+        keeper.stop()
+    solution = run.solution(status)
+    lost = None if keeper is None else keeper.finish(solution)
+    if lost is not None:
+        what = f"The run ended and could not be saved: {lost}"
+        if throw and solution.success:
+            raise SimulationError(what, solution) from lost
+        warnings.warn(what, RuntimeWarning, stacklevel=3)
+    if throw and not solution.success:
+        raise SimulationError(solution.message, solution) from run.failure
+    if solution.warnings and solution.success:
+        warnings.warn(" ".join(solution.warnings), AccuracyWarning, stacklevel=3)
+    return solution
+
+
+def reached(run, adapts: bool) -> float:
+    """Return how far a run has come: the time, or the number of steps."""
+    return run.reached if adapts else run.steps_done
+
+
+def goals(done, total: float, reports: bool, keeper: Keeper | None):
+    """Go through the numbers of steps, or times, at which a run stops on its way, up to `total`.
+
+    All at once if nobody waits for it; in `CHUNKS` parts to report; to save, in parts that take a small part of
+    the time between two savings, found by doubling and halving.
+    """
+    least = 1 if isinstance(total, int) else total * 1e-6
+    most = -(-total // CHUNKS) if isinstance(total, int) else total / CHUNKS
+    most = max(least, most) if reports else total
+    part = least if keeper is not None else most
+    while done() < total:
+        begin = perf_counter()
+        yield min(total, done() + part)
+        if keeper is not None:
+            took, wish = perf_counter() - begin, keeper.interval / LOOKS
+            part = min(most, 2 * part) if took < 0.5 * wish else part
+            part = (
+                max(least, part // 2 if isinstance(total, int) else part / 2)
+                if took > wish
+                else part
+            )
+
+
+class _Bar:
+    """A tqdm bar as a progress function."""
+
+    def __init__(self, total: float, unit: str):
+        from tqdm import tqdm
+
+        self.bar = tqdm(total=total, unit=unit)
+
+    def __call__(self, done: float, total: float) -> None:
+        self.bar.update(done - self.bar.n)
+
+    def close(self) -> None:
+        self.bar.close()
+
+
+def reporter(progress, total: float, unit: str):
+    """Return a function of (done, total) that shows progress, or None."""
+    if progress is None or progress is False:
+        return None
+    if progress is True:
+        return _Bar(total, unit)
+    if callable(progress):
+        return lambda done, total: checks.call("progress", progress, done, total)
+    raise TypeError(f"progress must be True, False or a function, got {checks.shown(progress)}")

@@ -1,0 +1,7 @@
+"""Many runs of a scene with some of its values varied: `carom.ensemble`."""
+
+from carom.studies.ensembles.api import ensemble
+from carom.studies.ensembles.result import Ensemble
+from carom.studies.ensembles.sampling import UniformOrientation
+
+__all__ = ["Ensemble", "UniformOrientation", "ensemble"]

@@ -1,0 +1,115 @@
+"""A run that is made once and started many times, each time as if it were new.
+
+Setting up a run costs as much as hundreds of its steps: the scene is compiled, arrays are made, compiled
+code is looked up. All that a run writes to is put back instead to what it was before the first step, so that
+no run can know what ran before it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from carom._compiled.record_arrays import Columns
+from carom.model.compile import attitudes
+from carom.run import Run, check_start, check_stops
+from carom.scene.scene import Scene
+from carom.studies.ensembles.targets import Target, changed, check_places
+
+
+class Again:
+    """A `Run` with values that differ from one start to the next."""
+
+    def __init__(self, scene: Scene, settings: tuple, targets: list[Target]):
+        self.scene, self.settings, self.targets = scene, settings, targets
+        projected = (
+            settings[6].project_start and len(scene.joints) > 0
+        )  # a start of its own each time
+        self.light = all(target.light for target in targets) and not projected
+        if self.light:
+            self.run = Run(scene, *settings)
+            start = self.run.compiled.start.copy()
+            self.first = start.view(Columns)  # `Run.now` is written to
+            self.remember()
+
+    def start(self, values: dict[str, np.ndarray]) -> Run:
+        """Return a run that is to begin with these values, one of each name.
+
+        Raises
+        ------
+        ValueError
+            If bodies start inside each other, or the start breaks a joint.
+        """
+        if not self.light:
+            return Run(changed(self.scene, self.targets, values), *self.settings)
+        run = self.run
+        # something may have grown, or been made, while it ran
+        if any(a is not b for a, b in zip(self.parts(), self.known)):
+            run.compiled.start[:] = self.first
+            run.renew()
+            self.remember()
+        else:
+            for array, kept in self.kept:
+                array[...] = kept
+        run.clock.saved = 0
+        run.compiled.functions.failed = None  # what a function of the user's raised in the last run
+        self.write(values)
+        check_start(run.scene, run.compiled, run.now, run.work, run.options)
+        check_stops(run.scene, run.compiled, run.now, run.work, run.options)
+        run.note_modes()
+        run.save_now()
+        return run
+
+    def write(self, values: dict[str, np.ndarray]) -> None:
+        """Write the values into the arrays of the run."""
+        run, contacts = self.run, self.run.compiled.system.contacts
+        run.now[:] = self.first
+        check_places(self.scene, self.targets, values)
+        names = {target.name for target in self.targets}
+        for target in self.targets:
+            value, k = values[target.name], target.index
+            if target.field == "position":
+                run.now.x[k] = value
+            elif target.field == "velocity":
+                run.now.v[k] = value
+            elif target.field == "angular_velocity":
+                run.now.w[k] = value
+            elif target.field == "orientation":
+                unit = np.array(value) / np.linalg.norm(value)
+                run.now.Q[k] = attitudes(unit[None], run.compiled.to_principal[k : k + 1])[0]
+            else:
+                rows = contacts.number == k
+                if target.field == "rolling_friction":
+                    contacts.turning[rows, 0] = value
+                elif target.field == "pivoting_friction":
+                    contacts.turning[rows, 1] = value
+                else:
+                    contacts[target.field][rows] = value
+                law = self.scene.contacts[k]
+                follows = target.field == "friction" and f"{target.part}.friction_held" not in names
+                if follows and law.friction_held == law.friction:
+                    contacts.friction_held[rows] = value
+
+    def remember(self) -> None:
+        """Keep what all arrays hold before the first step."""
+        self.kept = [(array, array.copy()) for array in arrays_of(self.parts())]
+        self.known = self.parts()
+
+    def parts(self) -> tuple:
+        """Return all that a run writes to, but its records, which are written anew from the top."""
+        run = self.run
+        return (
+            run.now, run.held, run.work, run.islands, run.cluster, run.corner, run.heap, run.clock,
+            run.compiled.system, run.method, run.watch,
+        )  # fmt: skip
+
+
+def arrays_of(value) -> Iterator[np.ndarray]:
+    """Yield the arrays in nested tuples that can be written to."""
+    if isinstance(value, np.ndarray):
+        if value.size and value.flags.writeable:
+            yield value
+    elif isinstance(value, tuple):
+        for part in value:
+            yield from arrays_of(part)

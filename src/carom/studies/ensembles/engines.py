@@ -1,0 +1,104 @@
+"""Who does the parts of an ensemble: this thread, threads, processes, or another's executor.
+
+Few parts are handed out at a time, so that memory does not grow with their number. A part that is lost with its
+worker is handed out again: it gives the same numbers wherever it is done.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from concurrent import futures
+from contextlib import contextmanager
+
+from carom import checks
+
+NAMES = ("threads", "processes", "serial")
+TRIES = 5  # of a part whose worker is lost
+
+
+def check_engine(executor) -> None:
+    """Refuse what is neither the name of an engine nor another's executor."""
+    if isinstance(executor, str):
+        checks.choice("executor", executor, NAMES)
+    elif isinstance(executor, type) or not (
+        hasattr(executor, "get_executor") or hasattr(executor, "submit")
+    ):
+        raise TypeError(
+            f"executor must be one of {', '.join(map(repr, NAMES))}, a concurrent.futures.Executor or a "
+            f"dask.distributed.Client, got {checks.shown(executor)}"
+        )
+
+
+@contextmanager
+def engine(executor, workers: int | None):
+    """Yield (submit, wait for the first, how many parts to hand out at once)."""
+    if isinstance(executor, str):
+        checks.choice("executor", executor, NAMES)
+        count = workers or os.cpu_count() or 1
+        if executor == "serial":
+            yield _at_once, 1
+            return
+        if executor == "threads":
+            pool = futures.ThreadPoolExecutor(count)
+        else:
+            import multiprocessing
+
+            spawn = multiprocessing.get_context("spawn")
+            pool = futures.ProcessPoolExecutor(count, mp_context=spawn)
+        try:
+            yield pool.submit, 2 * count
+        finally:
+            pool.shutdown(wait=True, cancel_futures=True)
+    elif hasattr(executor, "get_executor"):  # a client of dask.distributed
+        pool = executor.get_executor(pure=False)
+        cores = max(1, sum(executor.ncores().values()))
+        yield pool.submit, 2 * (workers or cores)
+    elif hasattr(executor, "submit"):
+        yield executor.submit, 2 * (workers or os.cpu_count() or 1)
+    else:
+        check_engine(executor)
+
+
+def _at_once(function, *arguments) -> futures.Future:
+    """Do it here and now."""
+    done: futures.Future = futures.Future()
+    try:
+        done.set_result(function(*arguments))
+    except Exception as error:
+        done.set_exception(error)
+    return done
+
+
+def each(tasks: Iterator[tuple], function: Callable, executor, workers: int | None) -> Iterator:
+    """Yield `function(*task)` of all tasks, in the order in which they get done."""
+    with engine(executor, workers) as (submit, most):
+        running: dict[futures.Future, tuple[tuple, int]] = {}
+        left = True
+        while left or running:
+            while left and len(running) < most:
+                task = next(tasks, None)
+                left = task is not None
+                if task is not None:
+                    running[submit(function, *task)] = task, 1
+            if not running:
+                break
+            finished, _ = futures.wait(running, return_when=futures.FIRST_COMPLETED)
+            for future in finished:
+                task, tried = running.pop(future)
+                try:
+                    yield future.result()
+                except Exception as error:
+                    if tried >= TRIES or not _lost(error):
+                        for other in running:
+                            other.cancel()
+                        raise
+                    running[submit(function, *task)] = task, tried + 1
+
+
+def _lost(error: Exception) -> bool:
+    """Return whether it was the worker that failed, not the work."""
+    names = {kind.__name__ for kind in type(error).__mro__}
+    return bool(
+        names & {"KilledWorker", "CancelledError", "FutureCancelledError", "CommClosedError"}
+    )

@@ -1,0 +1,68 @@
+"""The mark by which a saved ensemble is known again: of its scene, its functions, settings and inputs."""
+
+from __future__ import annotations
+
+import functools
+import hashlib
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+
+from carom._compiled.cache_key import stamp
+from carom.io.files.scene_data import Encoder
+from carom.io.files.scene_parts import scene_to_text
+from carom.scene.scene import Scene
+from carom.studies.ensembles.plan import Plan
+
+
+def digest(plan: Plan, inputs: dict[str, np.ndarray]) -> str:
+    """Return a text that differs for ensembles that differ: inputs, settings, scene and its functions."""
+    found = hashlib.sha256(repr(plan.settings).encode())
+    for name, values in sorted(inputs.items()):
+        found.update(name.encode() + np.ascontiguousarray(values).tobytes())
+    if isinstance(plan.scene, Scene):
+        found.update(scene_to_text(plan.scene, _Marker()).encode())
+    else:
+        found.update(mark_of(plan.scene).encode())
+    return found.hexdigest()
+
+
+class _Marker(Encoder):
+    """Functions of the user's by what they do, where a file has their names alone."""
+
+    def function(self, value: Any, where: str) -> dict:
+        """Return the name of a function and its mark."""
+        return {**super().function(value, where), "mark": mark_of(value)}
+
+
+def mark_of(function: Callable) -> str:
+    """Return a text that changes with the code of a function and with the numbers that it refers to.
+
+    Not with functions in Python that it calls, nor with what is inside objects of other classes.
+    """
+    return "; ".join(_marks(function))
+
+
+def _marks(value: Any) -> Iterator[str]:
+    if isinstance(value, functools.partial):
+        yield from _marks(value.func)
+        yield from _marks(value.args)
+        yield from _marks(tuple(value.keywords.items()))
+        return
+    plain = getattr(value, "py_func", value)
+    plain = getattr(plain, "__func__", plain)
+    if hasattr(plain, "__code__"):
+        yield stamp(plain)
+        cells = [cell.cell_contents for cell in plain.__closure__ or ()]
+        for inner in (*cells, *(plain.__defaults__ or ()), *(plain.__kwdefaults__ or {}).values()):
+            yield from _marks(inner)
+    elif isinstance(value, (tuple, list)):
+        for inner in value:
+            yield from _marks(inner)
+    elif isinstance(value, np.ndarray):
+        yield f"{value.dtype}{value.shape}{hashlib.sha256(value.tobytes()).hexdigest()}"
+    elif isinstance(value, (int, float, complex, str, bool, type(None), np.generic)):
+        yield repr(value)
+    else:
+        yield f"{type(value).__module__}.{type(value).__qualname__}"

@@ -1,0 +1,67 @@
+"""What is kept of each run of an ensemble: a row of numbers, and what was observed."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom.geometry import quaternion
+from carom.results.accuracy import energy_error
+from carom.results.assemble import to_scene_axes
+from carom.run import Run
+from carom.status import Status
+
+#: of runs that have not been made; and of those that could not begin
+PENDING, REFUSED = -1, -2
+
+
+def outcome_type(bodies: int) -> np.dtype:
+    """Return the type of a row, for scenes of so many bodies."""
+    return np.dtype(
+        [
+            ("status", "i8"),  # a `Status`, or PENDING, or REFUSED
+            ("t", "f8"),  # reached
+            ("rest_time", "f8"),  # end of the first step after which nothing moves, else NaN
+            ("impacts", "i8"),
+            ("first_impact", "f8"),  # time, else NaN
+            ("kinetic_energy", "f8"),  # at the end
+            ("impact_loss", "f8"),  # energy that impacts, friction and bounces have taken
+            ("friction_loss", "f8"),
+            ("bounce_loss", "f8"),
+            ("load_work", "f8"),
+            ("energy_error", "f8"),  # worst without a name, as a part of what was exchanged
+            ("position", "f8", (bodies, 3)),
+            ("orientation", "f8", (bodies, 4)),
+            ("velocity", "f8", (bodies, 3)),
+            ("angular_velocity", "f8", (bodies, 3)),
+        ]
+    )
+
+
+def no_outcomes(runs: int, bodies: int) -> np.ndarray:
+    """Return rows of runs that have not been made."""
+    rows = np.zeros(runs, dtype=outcome_type(bodies))
+    rows["status"] = PENDING
+    for name in rows.dtype.names or ():
+        if rows.dtype[name].base.kind == "f":
+            rows[name] = np.nan
+    return rows
+
+
+def write_outcome(run: Run, status: Status, row: np.void) -> None:
+    """Write what a run has come to."""
+    clock, now, records = run.clock[0], run.now, run.records
+    struck = int(clock.struck)
+    row["status"], row["t"], row["impacts"] = int(status), clock.now, struck
+    row["rest_time"] = clock.still if np.isfinite(clock.still) else np.nan
+    row["first_impact"] = np.min(records.impact.time[:struck]) if struck else np.nan
+    row["impact_loss"], row["friction_loss"] = -clock.impacts, -clock.friction
+    row["bounce_loss"], row["load_work"] = -clock.bounces, clock.loads
+    row["energy_error"] = energy_error(run.watch[0])
+    system = run.compiled.system
+    body_rate = quaternion.rotate_back(now.Q, now.w)
+    row["kinetic_energy"] = 0.5 * float(
+        np.sum(system.bodies.mass[:, None] * now.v**2)
+        + np.sum(system.bodies.inertia * body_rate**2)
+    )
+    row["position"], row["velocity"], row["angular_velocity"] = now.x, now.v, now.w
+    row["orientation"] = to_scene_axes(now.Q[None], run.compiled.to_principal)[0]

@@ -1,0 +1,241 @@
+"""An ensemble on disk: a Zarr group that grows by whole parts, and can be gone on with.
+
+A part is there when its mark is, a small file that is written last and at once, with the digest of all numbers
+of the part. Whatever an interruption leaves behind, a part whose numbers are not those of its mark is done
+again. While a store is made a file says so; one that was never finished is made anew.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from carom.io.files.disk import put, settle
+from carom.studies.ensembles.outcome import PENDING, no_outcomes, outcome_type
+from carom.studies.ensembles.plan import Part
+
+FORMAT = "carom ensemble 2"
+MAKING = ".making"  # is there while a store is made
+NEW = ".new"  # an array that is made
+MARKS = "parts"
+OWN = (NEW, "zarr.json", "inputs", "outcomes", "observed", MARKS)
+
+
+def _zarr():
+    try:
+        import zarr
+    except ImportError as error:
+        raise ImportError(
+            'save needs the package zarr; try: pip install "carom[ensemble]"'
+        ) from error
+    return zarr
+
+
+def is_begun(path: Path) -> bool:
+    """Return whether there is something at a path, but for what was killed while it was made."""
+    if not path.is_dir():
+        return path.exists()
+    return any(path.iterdir()) and not (path / MAKING).exists()
+
+
+class Store:
+    """The arrays of an ensemble under a path."""
+
+    def __init__(self, path, group: Any):
+        self.path, self.group = Path(path), group
+
+    @classmethod
+    def make(cls, path, inputs: dict[str, np.ndarray], bodies: int, chunk: int, about: dict):
+        """Return a new store, nothing of which has been done."""
+        zarr = _zarr()
+        path = Path(path)
+        path.mkdir(parents=True, exist_ok=True)
+        (path / MAKING).touch()
+        for name in OWN:
+            _remove(path / name)
+        runs = len(next(iter(inputs.values())))
+        group = zarr.create_group(str(path), attributes={**about, "chunk": chunk, "bodies": bodies})
+        for name in ("inputs", "outcomes", "observed", MARKS):
+            group.create_group(name)
+        for name, values in inputs.items():
+            _array(group, f"inputs/{name}", values.shape, values.dtype, chunk)[:] = values
+        kind = outcome_type(bodies)
+        for name in kind.names or ():
+            base, shape = kind[name].base, kind[name].shape
+            fill = PENDING if name == "status" else (0 if base.kind == "i" else np.nan)
+            _array(group, f"outcomes/{name}", (runs, *shape), base, chunk, fill)
+        group.attrs["inputs"] = _digest(inputs)
+        group.attrs["format"] = FORMAT
+        settle(path)
+        (path / MAKING).unlink()
+        return cls(path, group)
+
+    @classmethod
+    def open(cls, path):
+        """Return a store that is there; refuse what is none."""
+        zarr = _zarr()
+        if not is_begun(Path(path)):
+            raise FileNotFoundError(f"{path} is not there; an ensemble is saved with save=")
+        try:
+            group = zarr.open_group(str(path), mode="r+")
+            known = group.attrs.get("format")
+        except Exception as error:
+            raise ValueError(
+                f"{path} must be an ensemble of carom, but cannot be read: {error}"
+            ) from None
+        if known != FORMAT:
+            raise ValueError(
+                f"{path} must be of format {FORMAT!r}, got {known!r}; give another path, or remove it"
+            )
+        return cls(path, group)
+
+    @property
+    def chunk(self) -> int:
+        """Runs in a part."""
+        return int(self.group.attrs["chunk"])
+
+    @property
+    def about(self) -> dict:
+        """What was noted when the store was made."""
+        return dict(self.group.attrs)
+
+    @property
+    def runs(self) -> int:
+        """Number of runs."""
+        return self.group["outcomes/status"].shape[0]
+
+    def write(self, part: Part) -> None:
+        """Write a part, its mark last.
+
+        Raises
+        ------
+        OSError
+            If it cannot be written: on a full disk above all. Parts that were written before are as they were.
+        """
+        rows = slice(part.first, part.first + len(part.outcomes))
+        failures = {str(k): message for k, message in part.failures.items()}
+        mark = {"digest": _digest(_columns(part.outcomes), part.observed), "failures": failures}
+        text = json.dumps({**mark, "observed": sorted(part.observed)})
+        try:
+            for name, values in part.observed.items():
+                self._observed(name, values)[rows] = values
+            names = part.outcomes.dtype.names or ()
+            for name in sorted(names, key="status".__eq__):  # that last, for other readers
+                self.group[f"outcomes/{name}"][rows] = part.outcomes[name]
+            put(self.path / MARKS / f"{part.first}.json", [text.encode()])
+        except OSError as error:
+            raise OSError(
+                error.errno,
+                f"{error.strerror or error}; what was written is kept: call again to go on",
+                str(self.path),
+            ) from error
+
+    def _observed(self, name: str, values: np.ndarray):
+        """Return the array of what was observed; a new one is put in its place as a whole."""
+        key = f"observed/{name}"
+        if key not in self.group:
+            _remove(self.path / NEW)
+            shape = (self.runs, *values.shape[1:])
+            fill = np.nan if values.dtype.kind == "f" else 0
+            _array(self.group, NEW, shape, values.dtype, self.chunk, fill)
+            settle(self.path / NEW)
+            place = self.path / key
+            place.parent.mkdir(parents=True, exist_ok=True)
+            (self.path / NEW).rename(place)
+        return self.group[key]
+
+    def inputs(self) -> dict[str, np.ndarray]:
+        """Return the values that differed.
+
+        Raises
+        ------
+        ValueError
+            If they are not those that were written.
+        """
+        try:
+            values = {name: np.asarray(a[:]) for name, a in sorted(self.group["inputs"].arrays())}
+            whole = _digest(values) == self.group.attrs["inputs"]
+        except Exception as error:  # whatever a decoder makes of a damaged file
+            raise ValueError(
+                f"{self.path} is damaged, its inputs cannot be read: {error}"
+            ) from error
+        if not whole:
+            raise ValueError(f"{self.path} is damaged: its inputs are not those that were written")
+        return values
+
+    def read(self) -> Part:
+        """Return all that has been done, as one part; rows of other runs are pending."""
+        columns = {name: self._column(f"outcomes/{name}") for name in self.group["outcomes"]}
+        observed = {name: self._column(f"observed/{name}") for name in self.group["observed"]}
+        whole = Part(0, no_outcomes(self.runs, int(self.group.attrs["bodies"])), {}, {})
+        for name, values in observed.items():
+            empty = np.nan if values.dtype.kind == "f" else np.zeros((), values.dtype)
+            whole.observed[name] = np.full(values.shape, empty, values.dtype)
+        for rows, mark in self._marks():
+            made = np.zeros(rows.stop - rows.start, dtype=whole.outcomes.dtype)
+            for name in made.dtype.names or ():
+                made[name] = columns[name][rows]
+            seen = {name: observed[name][rows] for name in mark["observed"] if name in observed}
+            if _digest(_columns(made), seen) != mark["digest"]:
+                continue
+            whole.outcomes[rows] = made
+            for name, values in seen.items():
+                whole.observed[name][rows] = values
+            whole.failures.update({int(k): message for k, message in mark["failures"].items()})
+        return whole._replace(failures=dict(sorted(whole.failures.items())))
+
+    def _marks(self) -> Iterator[tuple[slice, dict]]:
+        """Go through the parts that have a mark: their rows, and what it says."""
+        for first in range(0, self.runs, self.chunk):
+            file = self.path / MARKS / f"{first}.json"
+            if file.exists():
+                yield (
+                    slice(first, min(first + self.chunk, self.runs)),
+                    json.loads(file.read_bytes()),
+                )
+
+    def _column(self, key: str) -> np.ndarray:
+        """Return an array; zeros where it cannot be read, for a part that was cut short has no mark."""
+        array = self.group[key]
+        try:
+            return np.asarray(array[:])
+        except Exception:  # whatever a decoder makes of half of what it wrote
+            out = np.zeros(array.shape, array.dtype)
+        for first in range(0, self.runs, self.chunk):
+            try:
+                out[first : first + self.chunk] = array[first : first + self.chunk]
+            except Exception:
+                continue
+        return out
+
+
+def _columns(outcomes: np.ndarray) -> dict[str, np.ndarray]:
+    return {name: outcomes[name] for name in outcomes.dtype.names or ()}
+
+
+def _digest(*tables: dict[str, np.ndarray]) -> str:
+    """Return the SHA-256 of columns of numbers."""
+    found = hashlib.sha256()
+    for name, values in (column for table in tables for column in sorted(table.items())):
+        found.update(f"{name} {values.dtype.str} {values.shape}".encode())
+        found.update(np.ascontiguousarray(values).tobytes())
+    return found.hexdigest()
+
+
+def _array(group, key: str, shape, kind, chunk: int, fill: float = 0):
+    return group.create_array(
+        key, shape=shape, dtype=kind, chunks=(min(chunk, shape[0]), *shape[1:]), fill_value=fill
+    )
+
+
+def _remove(place: Path) -> None:
+    if place.is_dir():
+        shutil.rmtree(place)
+    else:
+        place.unlink(missing_ok=True)

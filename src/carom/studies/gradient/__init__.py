@@ -1,0 +1,18 @@
+"""Derivatives of a motion with its impacts, with respect to its start and to the numbers of its scene."""
+
+from carom.studies.gradient.api import sensitivities
+from carom.studies.gradient.impact import ByInputs, ImpactDerivative, impact_derivative
+from carom.studies.gradient.result import Derivative, Margin, Sensitivities
+from carom.studies.gradient.sequence import ImpactKind, contact_sequence
+
+__all__ = [
+    "ByInputs",
+    "Derivative",
+    "ImpactDerivative",
+    "ImpactKind",
+    "Margin",
+    "Sensitivities",
+    "contact_sequence",
+    "impact_derivative",
+    "sensitivities",
+]

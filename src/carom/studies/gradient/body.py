@@ -1,0 +1,168 @@
+"""One body on its way: its state, and the derivative of that state, carried along free flight.
+
+Tangents are (dx, dtheta, dv, dw) in world axes, 12 numbers, with R -> exp(dtheta) R. In flight the spatial
+angular momentum L = R J R^T w is constant, and the change phi = R^T dtheta of attitude follows
+
+    dphi/dt = -W x phi - J^-1 (phi x l) + J^-1 R^T dL - J^-1 dJ J^-1 l,    l = R^T L,  W = J^-1 l
+
+(mathematics page, VIII.1). With equal moments that do not change it is closed: exp and its differential.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from carom.geometry import quaternion
+
+ACCURACY = 1e-12  # of the variational equation, relative
+#: changes of the six components of a symmetric matrix
+UNITS = np.zeros((6, 3, 3))
+for _k, (_i, _j) in enumerate(((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))):
+    UNITS[_k, _i, _j] = UNITS[_k, _j, _i] = 1.0
+
+
+def hat(a: np.ndarray) -> np.ndarray:
+    """Return the matrix of a x; of columns (3, P) as (3, 3, P)."""
+    o = np.zeros_like(a[0])
+    return np.array([[o, -a[2], a[1]], [a[2], o, -a[0]], [-a[1], a[0], o]])
+
+
+def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Return a x b of vectors (3,) or columns (3, P)."""
+    if a.ndim < b.ndim:
+        a = a[:, None]
+    elif b.ndim < a.ndim:
+        b = b[:, None]
+    return np.array(
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class Moving:
+    """A body at a time, with the tangents X (12, P) of its state.
+
+    `inertia` are principal moments, R (3, 3) takes principal axes to the world; dm (P,), dJ (3, 3, P) and
+    dg (3, P) are the changes of mass, of inertia in principal axes, and of gravity.
+    """
+
+    t: float
+    x: np.ndarray
+    R: np.ndarray
+    v: np.ndarray
+    w: np.ndarray
+    X: np.ndarray
+    mass: float
+    inertia: np.ndarray
+    gravity: np.ndarray
+    dm: np.ndarray
+    dJ: np.ndarray
+    dg: np.ndarray
+
+    @property
+    def inverse_inertia(self) -> np.ndarray:
+        """R J^-1 R^T (3, 3)."""
+        return (self.R / self.inertia) @ self.R.T
+
+    @property
+    def momentum(self) -> np.ndarray:
+        """L = R J R^T w (3,)."""
+        return self.R @ (self.inertia * (self.R.T @ self.w))
+
+    @property
+    def spin_rate(self) -> np.ndarray:
+        """dw/dt = -I^-1 (w x L) of free flight (3,)."""
+        return -self.inverse_inertia @ np.cross(self.w, self.momentum)
+
+    @property
+    def d_momentum(self) -> np.ndarray:
+        """Return dL (3, P)."""
+        d, w, L = self.X, self.w, self.momentum
+        spin = self.R.T @ w
+        return (
+            cross(d[3:6], L)
+            + (self.R * self.inertia) @ (self.R.T @ (d[9:] - cross(d[3:6], w)))
+            + self.R @ np.einsum("ijp,j->ip", self.dJ, spin)
+        )
+
+
+def fly(body: Moving, until: float, accuracy: float = ACCURACY) -> Moving:
+    """Return the body at the time `until`, in free flight, with its tangents to a relative `accuracy`."""
+    h = until - body.t
+    if h == 0.0:
+        return body
+    X = np.empty_like(body.X)
+    d = body.X
+    X[:3] = d[:3] + h * d[6:9] + 0.5 * h * h * body.dg
+    X[6:9] = d[6:9] + h * body.dg
+    closed = np.ptp(body.inertia) == 0.0 and not np.any(body.dJ)
+    R, w, X[3:6], X[9:] = _turn_closed(body, h) if closed else _turn(body, h, accuracy)
+    return replace(
+        body, t=until, x=body.x + h * (body.v + 0.5 * h * body.gravity), R=R,
+        v=body.v + h * body.gravity, w=w, X=X,
+    )  # fmt: skip
+
+
+def path(body: Moving, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return position (n, 3) and attitude (n, 3, 3) of a free flight at `times`."""
+    from carom.kinematics.flight_arrays import torque_free
+
+    h = (times - body.t)[:, None]
+    x = body.x + h * (body.v + 0.5 * h * body.gravity)
+    Q, w = (np.tile(a, (len(times), 1)) for a in (quaternion.from_matrix(body.R), body.w))
+    return x, quaternion.matrix(torque_free(body.inertia, Q, w, times - body.t)[0])
+
+
+def _turn_closed(body: Moving, h: float):
+    """Return attitude, angular velocity and their tangents where the moments are equal."""
+    turn = h * body.w
+    step = quaternion.matrix(quaternion.exp(turn))
+    d = body.X
+    return step @ body.R, body.w, step @ d[3:6] + h * _left(turn) @ d[9:], d[9:]
+
+
+def _left(a: np.ndarray) -> np.ndarray:
+    """Return the differential of exp at a: exp(a + da) = exp(T da) exp(a)."""
+    angle, A = float(np.linalg.norm(a)), hat(a)
+    if angle < 1e-4:
+        return np.eye(3) + (0.5 - angle**2 / 24) * A + (1 / 6 - angle**2 / 120) * A @ A
+    one, two = (1 - np.cos(angle)) / angle**2, (angle - np.sin(angle)) / angle**3
+    return np.eye(3) + one * A + two * A @ A
+
+
+def _turn(body: Moving, h: float, accuracy: float):
+    """Return the same for any moments: the motion in closed form, its variation integrated along with it."""
+    from carom.kinematics.flight_arrays import torque_free
+
+    i, L, dL = 1.0 / body.inertia, body.momentum, body.d_momentum
+    unit = np.einsum("i,kij,j->kij", i, UNITS, i)  # J^-1 dJ J^-1
+
+    def rate(_, y):
+        Q, phi = y[:4], y[4:].reshape(3, 12)
+        R = quaternion.matrix(Q)
+        l = R.T @ L
+        W = i * l
+        forced = np.concatenate([np.zeros((3, 3)), i[:, None] * R.T, -(unit @ l).T], axis=1)
+        rates = forced - cross(W, phi) - i[:, None] * cross(phi, l)
+        return np.concatenate([0.5 * quaternion.multiply(Q, np.append(0.0, W)), rates.ravel()])
+
+    start = np.zeros((3, 12))
+    start[:, :3] = np.eye(3)
+    y0 = np.append(quaternion.from_matrix(body.R), start.ravel())
+    # phi per unit of dL is of the order h / J: tolerances by its size
+    size = np.concatenate(
+        [np.ones(3), h * i.max() * np.ones(3), h * i.max() * np.linalg.norm(i * L) * np.ones(6)]
+    )
+    atol = accuracy * np.append(np.ones(4), np.tile(size + 1e-300, 3))
+    done = solve_ivp(rate, (0.0, h), y0, method="DOP853", rtol=accuracy, atol=np.abs(atol))
+    y = done.y[:, -1]
+    Q, w = torque_free(body.inertia, y0[None, :4], body.w[None], np.array([h]))
+    R, w = quaternion.matrix(Q[0]), w[0]
+    moments = np.array([body.dJ[a, b] for a, b in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))])
+    phi = y[4:].reshape(3, 12) @ np.concatenate([body.R.T @ body.X[3:6], dL, moments])
+    l = R.T @ L
+    change = i[:, None] * (R.T @ dL - cross(phi, l) - np.einsum("ijp,j->ip", body.dJ, i * l))
+    return R, w, R @ phi, cross(R @ phi, w) + R @ change

@@ -1,0 +1,72 @@
+"""Derivatives of one frictional impact on its own: `impact_derivative`."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from carom.impact.api import checked_impact
+
+
+class ByInputs(NamedTuple):
+    """Derivatives of a vector (3,) in contact axes by what an impact is given."""
+
+    inverse_mass: (
+        np.ndarray
+    )  #: (3, 3, 3): a change dW, symmetric, changes it by einsum("ijk,jk", D, dW)
+    velocity: np.ndarray  #: (3, 3)
+    friction: np.ndarray  #: (3,); from above where friction is 0
+    restitution: np.ndarray  #: (3,); from above where restitution is 0
+
+
+class ImpactDerivative(NamedTuple):
+    """Derivatives of an impact."""
+
+    impulse: ByInputs
+    velocity_after: ByInputs
+    error: float  #: estimate of the relative error of `impulse`
+
+
+def impact_derivative(
+    inverse_mass, velocity, friction: float, restitution: float, law: str = "newton"
+) -> ImpactDerivative:
+    """Differentiate `carom.resolve_impact` by all its arguments.
+
+    Parameters
+    ----------
+    inverse_mass, velocity, friction, restitution, law
+        As of `carom.resolve_impact`.
+
+    Returns
+    -------
+    ImpactDerivative
+
+    Raises
+    ------
+    ValueError
+        If an argument is not as there; or if the impact has no derivative: it starts without slip and slips,
+        or is about to take another course (slip to the end, stick, reversal).
+
+    Notes
+    -----
+    Mathematics page, VIII.2.
+    """
+    from carom.studies.gradient.blow import UPPER, blow
+
+    W, u, mu, e, number = checked_impact(inverse_mass, velocity, friction, restitution, law)
+    found = blow(W, u, mu, e, number)
+    if found is None:
+        raise ValueError("the impact was not resolved: W is singular along the way")
+    if found.kink:
+        raise ValueError(f"the impact must have a derivative, got one where {found.kink}")
+    by_mass = np.zeros((3, 3, 3))
+    for k, (i, j) in enumerate(UPPER):
+        by_mass[:, i, j] = by_mass[:, j, i] = found.d[:3, k] * (1.0 if i == j else 0.5)
+    impulse = ByInputs(by_mass, found.d[:3, 6:9], found.d[:3, 9], found.d[:3, 10])
+    # u+ = u + W P
+    direct = np.einsum("ij,k->ijk", np.eye(3), found.impulse)
+    after = [np.einsum("ij,j...->i...", W, d) for d in impulse]
+    after[0] = after[0] + 0.5 * (direct + direct.transpose(0, 2, 1))
+    after[1] = after[1] + np.eye(3)
+    return ImpactDerivative(impulse, ByInputs(*after), found.error)

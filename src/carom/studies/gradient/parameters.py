@@ -1,0 +1,126 @@
+"""The parameters of a derivative: their names, and what each of them changes at the start."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from carom import checks
+from carom.geometry import quaternion
+from carom.scene.bodies import Body
+from carom.scene.contacts import Contact
+
+VECTORS = ("position", "orientation", "velocity", "angular_velocity")
+AXES = ("x", "y", "z")
+#: components of a symmetric matrix, and the changes that one unit of each is
+MOMENTS = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "xz": (0, 2), "yz": (1, 2)}
+OF_BODY = (*VECTORS, "mass", "inertia")
+OF_CONTACT = ("restitution", "friction")
+OF_SCENE = ("gravity", *OF_CONTACT)
+
+
+@dataclass(frozen=True, eq=False)
+class Parameters:
+    """P numbers, and the changes that a unit of each makes.
+
+    Attributes
+    ----------
+    labels : tuple of str
+        One a column: ``"die.velocity.x"``, ``"die-ground.friction"``, ...
+    columns : dict of str to slice or int
+        Where the columns of each name are: a slice of those with components, an index of the others.
+    start : (N, 12, P)
+        Of the initial state: position, rotation vector, velocity, angular velocity, in world axes.
+    mass : (N, P)
+    inertia : (N, 3, 3, P)
+        In principal axes.
+    restitution, friction : (C, P)
+        Of contacts, by their numbers.
+    gravity : (3, P)
+    """
+
+    labels: tuple[str, ...]
+    columns: dict[str, slice | int]
+    start: np.ndarray
+    mass: np.ndarray
+    inertia: np.ndarray
+    restitution: np.ndarray
+    friction: np.ndarray
+    gravity: np.ndarray
+
+
+def make_parameters(scene, names, contacts: int, to_principal: np.ndarray) -> Parameters:
+    """Return the parameters called `names` of a scene.
+
+    `contacts` is the number of its pairs, those by default included; `to_principal` (N, 4) turns principal
+    axes to those of the scene's bodies.
+    """
+    if isinstance(names, str):
+        names = (names,)
+    names = tuple(checks.listed("with_respect_to", names, "names"))
+    if not names:
+        raise ValueError("with_respect_to must name at least one parameter, got none")
+    parts = [_parts(scene, name) for name in names]
+    labels, columns = [], {}
+    for name, (_, _, components) in zip(names, parts):
+        if name in columns:
+            raise ValueError(
+                f"with_respect_to must name each parameter once, got {checks.shown(name)} twice"
+            )
+        at = len(labels)
+        labels += [f"{name}.{c}" for c in components] or [name]
+        columns[name] = slice(at, len(labels)) if components else at
+    N, P = len(scene.bodies), len(labels)
+    made = Parameters(
+        tuple(labels), columns, np.zeros((N, 12, P)), np.zeros((N, P)), np.zeros((N, 3, 3, P)),
+        np.zeros((contacts, P)), np.zeros((contacts, P)), np.zeros((3, P)),
+    )  # fmt: skip
+    for name, (part, field, components) in zip(names, parts):
+        _write(made, part, field, components, columns[name], to_principal)
+    return made
+
+
+def _parts(scene, name: str):
+    """Return (part of the scene or None, field, components) of a name."""
+    checks.text("each name in with_respect_to", name)
+    part, _, field = name.rpartition(".")
+    if not part:
+        checks.choice("a name in with_respect_to", field, OF_SCENE)
+        return None, field, AXES if field == "gravity" else ()
+    try:
+        found = scene[part]
+    except KeyError as error:
+        raise ValueError(f"with_respect_to: {error.args[0]}, got {checks.shown(name)}") from None
+    if isinstance(found, Body):
+        checks.choice(f"what follows {part!r} in with_respect_to", field, OF_BODY)
+        components = AXES if field in VECTORS else tuple(MOMENTS) if field == "inertia" else ()
+        return found, field, components
+    if isinstance(found, Contact):
+        checks.choice(f"what follows {part!r} in with_respect_to", field, OF_CONTACT)
+        return found, field, ()
+    raise ValueError(
+        "with_respect_to must name fields of bodies or contacts, as in 'die.velocity', "
+        f"'die-ground.friction', or one of {', '.join(OF_SCENE)}, got {checks.shown(name)}"
+    )
+
+
+def _write(made: Parameters, part, field, components, columns, to_principal) -> None:
+    """Write what the parameters of one name change."""
+    if field == "gravity":
+        made.gravity[:, columns] = np.eye(3)
+    elif field in OF_CONTACT:
+        which = slice(None) if part is None else part.index
+        getattr(made, field)[which, columns] = 1.0
+    elif field == "mass":
+        made.mass[part.index, columns] = 1.0
+    elif field == "inertia":
+        R = quaternion.matrix(to_principal[part.index])
+        for column, name in enumerate(components, columns.start):
+            i, j = MOMENTS[name]
+            change = np.zeros((3, 3))
+            change[i, j] = change[j, i] = 1.0
+            made.inertia[part.index, :, :, column] = R.T @ change @ R
+    else:
+        row = 3 * VECTORS.index(field)
+        made.start[part.index, row : row + 3, columns] = np.eye(3)

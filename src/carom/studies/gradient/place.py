@@ -1,0 +1,131 @@
+"""Where two touch, and how that point moves with the poses of the bodies."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from carom.geometry import quaternion
+from carom.studies.gradient.body import Moving, hat
+
+STEP = 2.0**-9  # of the size of the smaller body, for differences of order 4
+AGREE = 1e-6  # how far two such differences may be from each other, relative to the size
+
+
+class Place(NamedTuple):
+    """A point of contact of one body (with a half-space) or of two.
+
+    Derivatives have a last axis for (dx, dtheta) of each body, 6 or 12.
+    """
+
+    gap: float
+    axes: np.ndarray  # (3, 3) rows n, t1, t2
+    arms: np.ndarray  # (B, 3) from the mass centres, world
+    d_gap: np.ndarray  # (6 B,)
+    d_axes: np.ndarray  # (3, 3, 6 B)
+    d_arms: np.ndarray  # (B, 3, 6 B)
+
+
+def vertex_place(row, core: np.ndarray, body: Moving) -> Place:
+    """Return the point of a vertex, `core` in principal axes, that a ball swells, on a half-space."""
+    n = row.axes[0]
+    c = body.R @ core
+    arm = c - row.radius * n
+    d_arm = np.zeros((1, 3, 6))
+    d_arm[0, :, 3:] = -hat(c)  # dtheta x c
+    return Place(
+        float(n @ (body.x + arm) - row.offset), row.axes.copy(), arm[None],
+        np.concatenate([n, np.cross(c, n)]), np.zeros((3, 3, 6)), d_arm,
+    )  # fmt: skip
+
+
+def found_place(system, row, bodies: list[Moving]) -> Place | None:
+    """Return the nearest point of two solids, or of a curved one and a half-space.
+
+    Its derivatives are differences of order 4, made with two steps. None where these do not agree: at an edge
+    or face from which the point may go over to another.
+    """
+    finder = _Finder(system, row)
+    size = float(row.extent if row.other < 0 else min(row.extent, row.other_extent))
+    here = finder(bodies, np.zeros(6 * len(bodies)))
+    if here is None:
+        return None
+    unit = np.tile([size, size, size, 1.0, 1.0, 1.0], len(bodies))
+    slopes = [_differences(finder, bodies, STEP * part * unit) for part in (1.0, 0.5)]
+    if slopes[0] is None or slopes[1] is None:
+        return None
+    scale = np.concatenate([[size], np.ones(9), np.full(here.size - 10, size)])
+    if not np.max(np.abs(slopes[0] - slopes[1]) * unit / scale[:, None]) <= AGREE:
+        return None
+    d, count = slopes[1], len(bodies)
+    return Place(
+        float(here[0]), here[1:10].reshape(3, 3), here[10:].reshape(count, 3), d[0],
+        d[1:10].reshape(3, 3, -1), d[10:].reshape(count, 3, -1),
+    )  # fmt: skip
+
+
+def _differences(finder, bodies, steps):
+    """Return the derivatives of what `finder` gives by all poses, (values, 6 B)."""
+    columns = []
+    for k, step in enumerate(steps):
+        total = 0.0
+        for at, weight in ((-2, 1 / 12), (-1, -2 / 3), (1, 2 / 3), (2, -1 / 12)):
+            change = np.zeros(len(steps))
+            change[k] = at * step
+            value = finder(bodies, change)
+            if value is None:
+                return None
+            total = total + weight / step * value
+        columns.append(total)
+    return np.stack(columns, axis=1)
+
+
+class _Finder:
+    """The nearest point of a contact of changed poses: gap, axes and arms in one array."""
+
+    def __init__(self, system, row):
+        from carom.collision.layout import new_pair_work, new_points
+
+        self.system, self.row = system, row
+        self.work, self.out = new_pair_work(), new_points()
+        self.poses = [(np.zeros(3), np.zeros(4)) for _ in range(2)]
+
+    def __call__(self, bodies: list[Moving], change: np.ndarray):
+        from carom.collision.frame import place
+        from carom.collision.plane import touch_plane
+        from carom.collision.touch import touch
+
+        row, system = self.row, self.system
+        solids = (system.solids[row.solid], system.solids[row.other_solid])
+        centres = []
+        for k, body in enumerate(bodies):
+            d = change[6 * k : 6 * k + 6]
+            x = body.x + d[:3]
+            Q = quaternion.from_matrix(quaternion.matrix(quaternion.exp(d[3:])) @ body.R)
+            place(solids[k], x, Q, *self.poses[k])
+            centres.append(x)
+        (xa, qa), (xb, qb) = self.poses
+        if len(bodies) == 1:
+            n = np.ascontiguousarray(row.axes[0])
+            count = touch_plane(
+                solids[0], system.hulls, xa, qa, n, float(row.offset), 0.0, self.work, self.out
+            )
+        else:
+            count = touch(*solids, system.hulls, xa, qa, xb, qb, 0.0, self.work, self.out)
+        if count < 1:
+            return None
+        best = self.out[int(np.argmin(self.out["gap"][:count]))]
+        axes = row.axes if len(bodies) == 1 else tangents(best.normal)
+        arms = [best.on_a - centres[0]]
+        if len(bodies) == 2:
+            arms.append(best.on_b - centres[1])
+        return np.concatenate([[best.gap], axes.ravel(), *arms])
+
+
+def tangents(n: np.ndarray) -> np.ndarray:
+    """Return rows n, t1, t2 as runs have them: t1 world x made tangent, or y where n is near x."""
+    e = np.array([1.0, 0.0, 0.0]) if abs(n[0]) < 0.8 else np.array([0.0, 1.0, 0.0])
+    t1 = e - (e @ n) * n
+    t1 = t1 / np.linalg.norm(t1)
+    return np.stack([n, t1, np.cross(n, t1)])

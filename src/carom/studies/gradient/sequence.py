@@ -1,0 +1,87 @@
+"""What happened in a run, as a sequence that two runs can be compared by."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from carom import checks
+from carom._compiled.record_arrays import Columns
+from carom.impact.api import phase_names
+from carom.model import records as r
+from carom.results.solution import Solution
+
+
+class ImpactKind(NamedTuple):
+    """One event of a contact, without its numbers."""
+
+    event: str  #: "impact", "held", "slips", "sticks", "opens" or "jams"
+    contact: int  #: index of the contact
+    feature: int  #: what touches: of a half-space the number of the vertex
+    phases: tuple[str, ...]  #: as of `Impact`, without "slip": all that does not stick slips
+    together: int  #: points that were resolved together; 0 where it is no impact
+
+
+class Step(NamedTuple):
+    """An event of a run and what was written about it."""
+
+    event: Any
+    kind: str
+    shots: np.recarray  # of the bodies that it concerns
+    impact: int  # row in `Solution.impacts`, -1 where there is none
+    row: Any  # of that impact
+
+
+def steps_of(solution: Solution) -> list[Step]:
+    """Return the events of a run in the order of time."""
+    rec = r.trimmed(solution._run.records, solution._run.clock)
+    order = np.argsort(rec.impact.time, kind="stable")
+    impacts = rec.impact[order]
+    used = np.zeros(len(impacts), dtype=bool)
+    steps = []
+    for number in np.argsort(rec.event.time, kind="stable"):
+        event: Any = rec.event[number]
+        kind, k = r.EVENTS[event.kind], -1
+        if kind in ("impact", "jams"):
+            k = _impact_of(event, impacts, used)
+        shots = rec.snapshot[rec.snapshot.event == number].view(Columns)
+        steps.append(Step(event, kind, shots, k, impacts[k] if k >= 0 else None))
+    return steps
+
+
+def _impact_of(event, impacts, used) -> int:
+    """Return the first impact of an event that was not another's; those of its other points are used too."""
+    own = np.flatnonzero(~used & (impacts["time"] == event.time))
+    of_contact = own[impacts["contact"][own] == event.contact]
+    if len(of_contact) == 0:
+        return -1
+    k = int(of_contact[0])
+    if impacts["together"][k] > 1:
+        used[own[impacts["together"][own] == impacts["together"][k]]] = True
+    used[k] = True
+    return k
+
+
+def contact_sequence(solution: Solution) -> tuple[ImpactKind, ...]:
+    """Return which contacts struck, where, and how, in the order of time.
+
+    Two runs with equal sequences are connected by derivatives as long as none lies between them that differs;
+    after a step along a derivative compare ``contact_sequence(new) == contact_sequence(old)``.
+
+    Parameters
+    ----------
+    solution : Solution
+    """
+    checks.instance("solution", solution, (Solution,))
+    found = []
+    for step in steps_of(solution):
+        row, event = step.row, step.event
+        phases = () if row is None else phase_names(int(row.phases))
+        # slip goes over to no slip, before it sticks or without friction, with no change of sequence
+        phases = tuple(name for name in phases if name != "slip")
+        together = 0 if row is None else int(row.together)
+        found.append(
+            ImpactKind(step.kind, int(event.contact), int(event.feature), phases, together)
+        )
+    return tuple(found)

@@ -1,0 +1,239 @@
+"""Going through a run from event to event, with the tangents of all bodies."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from carom.geometry import quaternion
+from carom.results.solution import Solution
+from carom.studies.gradient import margins as near
+from carom.studies.gradient.blow import blow
+from carom.studies.gradient.body import Moving, cross, fly
+from carom.studies.gradient.parameters import Parameters
+from carom.studies.gradient.place import found_place, vertex_place
+from carom.studies.gradient.result import Sensitivities
+from carom.studies.gradient.saltation import Strike, inverse_mass, relative_velocity, strike
+from carom.studies.gradient.sequence import Step, steps_of
+from carom.studies.gradient.tangents import Flights
+
+SAME = 1e-8  # how far the impact of the record may be from the one that is differentiated, relative
+TIED = 1e-9  # changes by which tied points part that are round-off, relative
+SURE = 1e-5  # error up to which the derivative of an impact counts
+WHY = {
+    "held": "is held from then on",
+    "slips": "goes from stick to slip in a held contact",
+    "sticks": "goes from slip to stick in a held contact",
+    "opens": "leaves a held contact",
+    "jams": "jams",
+}
+
+
+class Walk:
+    """The derivatives of a run by `parameters`, gathered from its first event to its last."""
+
+    def __init__(self, solution: Solution, parameters: Parameters):
+        self.solution, self.parameters = solution, parameters
+        self.scene, self.system = solution.scene, solution._run.compiled.system
+        self.tie = solution._run.options.tie_tolerance
+        self.notes: list[str] = []
+        self.margins: list[near.Margin] = []
+        self.defect = 0.0
+        self.bodies = self.start()
+        self.free = [True] * len(self.bodies)
+        self.knots = [[b] for b in self.bodies]
+        self.flies = [[True] for _ in self.bodies]
+        K, P = len(solution.impacts), len(parameters.labels)
+        self.times, self.errors = np.full((K, P), np.nan), np.full(K, np.nan)
+        self.vectors = [np.full((K, 3, P), np.nan) for _ in range(4)]
+        if solution.stats["whole_steps"] or solution._run.controls.heap_at:
+            for b in range(len(self.bodies)):
+                self.lose(b, 0.0, "has taken steps as a part of a heap", stays_free=False)
+        for step in steps_of(solution):
+            self.pass_event(step)
+        end = float(solution.t[-1])
+        for b, body in enumerate(self.bodies):
+            if self.free[b]:
+                self.look_between(b, body, end)
+        if K:
+            self.margins += near.of_end(
+                K - 1, self.times[-1], float(solution.impacts.time[-1]), end
+            )
+
+    def start(self) -> list[Moving]:
+        """Return all bodies at the start."""
+        compiled, p = self.solution._run.compiled, self.parameters
+        first = self.solution._run.records.state[0]
+        return [
+            Moving(
+                float(self.solution.t[0]), first.x[b].copy(), quaternion.matrix(first.Q[b]),
+                first.v[b].copy(), first.w[b].copy(), p.start[b], float(body.mass),
+                body.inertia.copy(), compiled.system.gravity, p.mass[b], p.inertia[b], p.gravity,
+            )
+            for b, body in enumerate(compiled.system.bodies)
+        ]  # fmt: skip
+
+    def result(self) -> Sensitivities:
+        """Return all that was found."""
+        margins = sorted(self.margins, key=lambda m: m.relative)
+        point, before, after, impulse = self.vectors
+        return Sensitivities(
+            labels=self.parameters.labels, columns=self.parameters.columns,
+            impact_time=self.times, impact_point=point, velocity_before=before,
+            velocity_after=after, impulse=impulse, impact_error=self.errors,
+            notes=tuple(self.notes), margins=tuple(margins), defect=self.defect, by="saltation",
+            _motion=Flights(self.knots, self.flies, float(self.solution.t[-1])),
+        )  # fmt: skip
+
+    def lose(
+        self, b: int, time: float, why: str, columns: np.ndarray | bool = True, stays_free=True
+    ) -> None:
+        """Note that the motion of a body has no derivative from now on, by those parameters that it knows."""
+        body, rows = self.bodies[b], self.system.contacts
+        own = np.unique(rows.number[(rows.body == b) | (rows.other == b)])
+        p = self.parameters
+        known = np.concatenate(
+            [body.X, body.dm[None], body.dJ.reshape(9, -1), body.dg, p.friction[own],
+             p.restitution[own]]
+        )  # fmt: skip
+        lost = np.any(known != 0.0, axis=0) & columns
+        self.free[b] = self.free[b] and stays_free
+        fresh = lost & ~np.any(np.isnan(body.X), axis=0)
+        self.bodies[b] = replace(body, X=np.where(lost, np.nan, body.X))
+        if np.any(fresh):
+            which = "" if np.all(lost) else " (by " + _names(p.labels, fresh) + ")"
+            self.notes.append(f"{self.scene.bodies[b].name!r} {why} at t = {time:.6g} s{which}")
+
+    def pass_event(self, step: Step) -> None:
+        """Carry the bodies of an event to its time and through it."""
+        time = float(step.event.time)
+        if len(step.shots) == 0:
+            return  # of a heap: lost already
+        for shot in step.shots:
+            self.meet(int(shot.body), shot, time)
+        struck = step.kind == "impact" and self.pass_impact(step, time)
+        for shot in step.shots:
+            b = int(shot.body)
+            if not struck:
+                why = WHY.get(step.kind, "takes part in an impact that is not of one point")
+                self.lose(b, time, why, stays_free=step.kind == "impact")
+            self.bodies[b] = replace(self.bodies[b], v=shot.v1.copy(), w=shot.w1.copy())
+            self.knots[b].append(self.bodies[b])
+            self.flies[b].append(self.free[b])
+
+    def meet(self, b: int, shot, time: float) -> None:
+        """Let a body fly to an event; go on from the state that was written there."""
+        body = self.bodies[b]
+        if self.free[b]:
+            self.look_between(b, body, time)
+            body = fly(body, time)
+            size = float(self.system.bodies.extent[b])
+            turn = body.R.T @ quaternion.matrix(shot.Q) - np.eye(3)
+            off = max(np.max(np.abs(body.x - shot.x)) / size, np.max(np.abs(turn)))
+            self.defect = max(self.defect, float(off))
+        self.bodies[b] = replace(
+            body, t=time, x=shot.x.copy(), R=quaternion.matrix(shot.Q), v=shot.v0.copy(),
+            w=shot.w0.copy(),
+        )  # fmt: skip
+
+    def pass_impact(self, step: Step, time: float) -> bool:
+        """Pass an impact of one point; return False if it is none, or there is no derivative for anything."""
+        if step.row is None or step.row.together != 1:
+            return False
+        found = self.place_of(step)
+        if found is None:
+            return False
+        row, place, tied = found
+        which = [int(row.body)] + ([int(row.other)] if row.other >= 0 else [])
+        bodies = [self.bodies[b] for b in which]
+        W, u = inverse_mass(place, bodies), relative_velocity(place, bodies)
+        hit = blow(W, u, float(row.friction), float(row.restitution), int(row.law))
+        if hit is None or not _same(hit.impulse, step.row.impulse):
+            for b in which:
+                self.lose(b, time, "was struck otherwise than the law of the contact says")
+            return True
+        if hit.kink or not hit.error <= SURE:
+            why = hit.kink or f"its derivative was found to {hit.error:.1g} only"
+            for b in which:
+                self.lose(b, time, f"strikes where there is no derivative ({why})")
+            return True
+        p, number = self.parameters, int(row.number)
+        done = strike(place, bodies, hit, p.friction[number], p.restitution[number])
+        self.write(step.impact, done, hit)
+        self.margins += near.of_impact(
+            self.system, row, place, tied, bodies, done, hit, u, W, step.impact, p.friction[number]
+        )
+        parted = self.parted(row, tied, bodies[0], done)
+        for b, body in zip(which, done.bodies):
+            self.bodies[b] = body
+        for b in which:
+            self.lose(b, time, "strikes with several points, which part", parted)
+        for a in (self.times, *self.vectors):
+            a[step.impact][..., parted] = np.nan
+        return True
+
+    def write(self, k: int, done: Strike, hit) -> None:
+        """Write the derivatives of an impact."""
+        self.times[k], self.errors[k] = done.time, hit.error
+        for a, value in zip(self.vectors, (done.point, done.before, done.after, done.impulse)):
+            a[k] = value
+
+    def place_of(self, step: Step):
+        """Return (row, place, tied vertices) of the point that struck; None if it is not one."""
+        contacts = self.system.contacts
+        rows = contacts[contacts.number == step.event.contact]
+        candidates = []
+        for row in rows:
+            body = self.bodies[int(row.body)]
+            if row.touches == 0:
+                gaps = near.vertex_gaps(self.system, row, body)
+                closed = np.flatnonzero(gaps <= max(gaps.min(), 0.0) + self.tie * row.extent)
+                if gaps.min() <= self.tie * row.extent:
+                    tied = self.system.vertices[row.first + closed]
+                    candidates.append((row, vertex_place(row, tied.mean(axis=0), body), tied))
+            elif row.touches == 1:
+                pair = [body] + ([self.bodies[int(row.other)]] if row.other >= 0 else [])
+                place = found_place(self.system, row, pair)
+                point = None if place is None else pair[0].x + place.arms[0]
+                if point is not None and np.allclose(
+                    point, step.row.point, rtol=0.0, atol=1e-6 * float(row.extent)
+                ):
+                    candidates.append((row, place, np.zeros((1, 3))))
+        return candidates[0] if len(candidates) == 1 else None
+
+    def parted(self, row, tied: np.ndarray, body: Moving, done: Strike) -> np.ndarray:
+        """Return which parameters (P,) part points that strike as one, by gap or velocity before or after."""
+        P = done.time.size
+        apart = np.zeros(P, dtype=bool)
+        turn, after = done.poses[3:6], done.bodies[0]
+        spin = np.outer(after.spin_rate, done.time) + after.X[9:]
+        for core in tied - tied.mean(axis=0) if len(tied) > 1 else ():
+            arm = body.R @ core
+            shift = cross(turn, arm)
+            length = float(np.linalg.norm(arm))
+            if not length > 0.0:
+                continue  # two pieces that share the vertex
+            size = np.linalg.norm(turn, axis=0) + np.linalg.norm(done.poses[:3], axis=0) / length
+            apart |= ~(np.abs(row.axes[0] @ shift) <= TIED * length * size)
+            for w, dw in ((body.w, done.velocities[0][3:]), (after.w, spin)):
+                speed = cross(dw, arm) + cross(w, shift)
+                scale = np.linalg.norm(dw, axis=0) + np.linalg.norm(w) * size
+                scale = scale + np.linalg.norm(done.velocities[0][:3], axis=0) / length
+                apart |= ~(np.linalg.norm(speed, axis=0) <= TIED * length * scale)
+        return apart
+
+    def look_between(self, b: int, body: Moving, until: float) -> None:
+        """Find out how near a body comes to half-spaces without striking."""
+        self.margins += near.of_flight(
+            self.system, b, body, until, until == float(self.solution.t[-1])
+        )
+
+
+def _same(impulse: np.ndarray, written: np.ndarray) -> bool:
+    return bool(np.linalg.norm(impulse - written) <= SAME * np.linalg.norm(written))
+
+
+def _names(labels, which: np.ndarray) -> str:
+    names = [label for label, lost in zip(labels, which) if lost]
+    return ", ".join(names[:6]) + (", ..." if len(names) > 6 else "")

@@ -1,0 +1,103 @@
+"""Least squares of attitudes: Gauss and Newton's method on rotation vectors."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from carom.geometry import quaternion
+
+ITERATIONS = 50
+DIFFERENCE = 1e-5  # [rad], for slopes
+
+
+class Turn(NamedTuple):
+    """A fitted rotation."""
+
+    orientation: np.ndarray  # (4,) at the first time
+    angular_velocity: np.ndarray  # (3,) there, world
+    error: np.ndarray  # (6,) standard errors of both
+    residual: np.ndarray  # (n, 3) from fitted to recorded
+    noise: float  # of one component
+
+
+def fit_attitude(t, q, inertia=None) -> Turn:
+    """Fit a free rotation to quaternions q (n, 4) at times t (n,), t[0] = 0."""
+    moments, axes = principal_axes(inertia)
+    spin = constant_spin if moments is None else _torque_free(moments)
+    to_principal = np.array([1.0, 0.0, 0.0, 0.0]) if axes is None else axes
+    q = quaternion.multiply(q, to_principal)
+    # unknowns: a turn of R0 about the world axes, and the turn w t[-1] over the whole flight
+    R0, turn = q[0], _first_guess(t, q) * t[-1]
+    changes = np.concatenate([np.zeros((1, 6)), DIFFERENCE * np.eye(6), -DIFFERENCE * np.eye(6)])
+
+    def residuals():
+        """Residuals (13, 3 n): as it stands, and with each unknown a little larger and smaller."""
+        starts = quaternion.multiply(quaternion.exp(changes[:, :3]), R0)
+        model = spin(t, starts, (turn + changes[:, 3:]) / t[-1])
+        off = quaternion.log(quaternion.multiply(q, quaternion.conjugate(model)))
+        return off.reshape(13, -1)
+
+    before = np.inf
+    for _ in range(ITERATIONS):
+        here = residuals()
+        slope = (here[1:7] - here[7:]).T / (2.0 * DIFFERENCE)
+        change = np.linalg.lstsq(slope, -here[0], rcond=None)[0]
+        R0 = quaternion.normalize(quaternion.multiply(quaternion.exp(change[:3]), R0))
+        turn, length = turn + change[3:], float(np.max(np.abs(change)))
+        # at round-off it no longer shrinks; the slopes are good to 1e-10
+        if length < 1e-12 or (length < 1e-7 and length > 0.5 * before):
+            break
+        before = length
+    else:
+        raise RuntimeError(
+            f"orientation is not that of a free body: the fit of the attitude did not converge in {ITERATIONS} "
+            f"iterations, the last one turned it by {length:.3g} rad; give samples of free flight only"
+        )
+    here = residuals()[0].reshape(-1, 3)
+    noise = float(np.sqrt(np.sum(here**2) / (here.size - 6)))
+    spread = np.sqrt(np.diag(np.linalg.inv(slope.T @ slope)))
+    error = noise * spread / np.repeat((1.0, t[-1]), 3)
+    orientation = quaternion.multiply(R0, quaternion.conjugate(to_principal))
+    return Turn(orientation, turn / t[-1], error, here, noise)
+
+
+def constant_spin(t, starts, w) -> np.ndarray:
+    """Return attitudes exp(w t) R0 (m, n, 4) of starts (m, 4) and angular velocities (m, 3)."""
+    return quaternion.multiply(quaternion.exp(w[:, None] * t[:, None]), starts[:, None])
+
+
+def _first_guess(t, q) -> np.ndarray:
+    """Return the median of the angular velocities from sample to sample, but for the sense of slow ones.
+
+    The turn from the first sample to the last may be many revolutions, so it cannot be taken.
+    """
+    steps = quaternion.log(quaternion.multiply(q[1:], quaternion.conjugate(q[:-1])))
+    return np.median(steps / np.diff(t)[:, None], axis=0)
+
+
+def principal_axes(inertia):
+    """Return principal moments (3,) and quaternion principal to body axes; (None, None) where w is constant."""
+    if inertia is None:
+        return None, None
+    from carom.scene.inertia import inertia_matrix
+
+    matrix = inertia_matrix(inertia)
+    moments, axes = np.linalg.eigh(matrix)
+    if np.ptp(moments) <= 1e-13 * moments[-1]:
+        return None, None
+    if np.linalg.det(axes) < 0.0:
+        axes[:, 0] *= -1.0
+    return moments, quaternion.from_matrix(axes)
+
+
+def _torque_free(moments):
+    """Return a function like `constant_spin` for a body with these principal moments."""
+    from carom.kinematics.flight_arrays import torque_free
+
+    def spin(t, starts, w):
+        each = np.repeat(starts, t.size, axis=0), np.repeat(w, t.size, axis=0)
+        return torque_free(moments, *each, np.tile(t, len(starts)))[0].reshape(len(starts), -1, 4)
+
+    return spin

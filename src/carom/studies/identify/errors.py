@@ -1,0 +1,118 @@
+"""How far a simulated motion is from a recorded one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from carom import checks
+from carom.geometry import quaternion
+
+
+class TrajectoryError(NamedTuple):
+    """Means over all samples and bodies."""
+
+    position: float  #: distance of the mass centres, as a part of `length`
+    rotation: float  #: angle from one attitude to the other [rad], 0 to pi
+
+
+def distances(simulated, recorded) -> np.ndarray:
+    """Return the distances (n, N) of the mass centres [m]; the arguments have a `position` (n, N, 3)."""
+    return np.linalg.norm(simulated.position - recorded.position, axis=-1)
+
+
+def angles(simulated, recorded) -> np.ndarray:
+    """Return the angles (n, N) of the rotations between the attitudes [rad], 0 to pi."""
+    turn = quaternion.between(recorded.orientation, simulated.orientation)
+    return np.linalg.norm(turn, axis=-1)
+
+
+def trajectory_error(simulated, recorded, length: float = 1.0) -> TrajectoryError:
+    """Compare a simulated motion with a recorded one, sample by sample.
+
+    Parameters
+    ----------
+    simulated, recorded : RollOut or Recording
+        With `position` (n, N, 3) and `orientation` (n, N, 4) at the same times.
+    length : float
+        That distances are divided by, such as an edge of the body [m]. Default 1.
+
+    Returns
+    -------
+    TrajectoryError
+        ``position``, the mean of ``|p_sim - p_rec| / length``, and ``rotation``, the mean of the geodesic
+        angle ``2 asin(|R_sim - R_rec|_F / sqrt(8))`` [rad].
+    """
+    length = checks.number("length", length, above=0.0, unit="m")
+    for name, given in (("simulated", simulated), ("recorded", recorded)):
+        if not (hasattr(given, "position") and hasattr(given, "orientation")):
+            raise TypeError(f"{name} must be a RollOut or a Recording, got {checks.shown(given)}")
+    if np.shape(simulated.position) != np.shape(recorded.position):
+        raise ValueError(
+            f"simulated and recorded must have the same shape, got {np.shape(simulated.position)} and "
+            f"{np.shape(recorded.position)}"
+        )
+    distance, angle = distances(simulated, recorded), angles(simulated, recorded)
+    return TrajectoryError(float(np.mean(distance)) / length, float(np.mean(angle)))
+
+
+def mean_error(length: float, angle: float) -> Callable:
+    """Return an objective for `identify`: half the mean distance over `length` plus mean angle over `angle`.
+
+    Distances are not squared, so that single recordings which part early do not lead the fit.
+
+    Parameters
+    ----------
+    length, angle : float
+        Errors of position [m] and rotation [rad] that count alike, above 0.
+    """
+    length = checks.number("length", length, above=0.0, unit="m")
+    angle = checks.number("angle", angle, above=0.0, unit="rad")
+
+    def objective(simulated, recorded) -> float:
+        error = trajectory_error(simulated, recorded, length)
+        return 0.5 * (error.position + error.rotation / angle)
+
+    return objective
+
+
+def squared_error(length: float, angle: float) -> Callable:
+    """Return an objective for `identify`: least squares, 1 where errors are as large as the noise.
+
+    Best where the simulated motion is a smooth function of the parameters over the whole recording.
+
+    Parameters
+    ----------
+    length, angle : float
+        Standard deviation of one component of a recorded position [m] and rotation [rad], above 0.
+    """
+    length = checks.number("length", length, above=0.0, unit="m")
+    angle = checks.number("angle", angle, above=0.0, unit="rad")
+
+    def objective(simulated, recorded) -> float:
+        distance, turn = distances(simulated, recorded), angles(simulated, recorded)
+        return float(np.mean((distance / length) ** 2) + np.mean((turn / angle) ** 2)) / 6.0
+
+    return objective
+
+
+def face_up(orientation: ArrayLike, up: ArrayLike = (0.0, 0.0, 1.0)) -> np.ndarray:
+    """Return which body axis points up: 0, 1, 2 for x, y, z and 3, 4, 5 for -x, -y, -z.
+
+    Parameters
+    ----------
+    orientation : (..., 4)
+        Unit quaternions (w, x, y, z), body to world.
+    up : (3,)
+        Default (0, 0, 1).
+
+    Returns
+    -------
+    ndarray of int (...)
+    """
+    Q = checks.vectors("orientation", orientation, 4)
+    seen = quaternion.rotate_back(Q, checks.unit_vector("up", up))
+    return np.argmax(np.concatenate([seen, -seen], axis=-1), axis=-1)

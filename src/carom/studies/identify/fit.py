@@ -1,0 +1,135 @@
+"""Parameters of a scene from recorded motion."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from carom import checks
+from carom.options import Options
+from carom.scene.scene import Scene
+from carom.studies.identify.evaluate import Evaluator
+from carom.studies.identify.parameters import Space
+from carom.studies.identify.recording import Recording, checked_recordings
+from carom.studies.identify.result import Identification
+from carom.studies.identify.search import search
+from carom.studies.identify.uncertainty import bootstrap
+
+SEARCHES = 4
+LEAST_GAIN = 0.02
+METHODS = ("Nelder-Mead", "Powell", "COBYQA", "L-BFGS-B")
+
+
+def identify(
+    scene: Scene | Callable[[dict, Recording], Scene],
+    recordings: Sequence[Recording],
+    parameters: Mapping,
+    objective: Callable,
+    *,
+    method: str = "Nelder-Mead",
+    restarts: int = 2,
+    tolerance: float = 1e-3,
+    max_evaluations: int = 400,
+    resamples: int = 200,
+    seed: int = 0,
+    step: float | None = None,
+    options: Options | None = None,
+    threads: int | None = None,
+    progress: Callable[[int, dict, float], None] | None = None,
+) -> Identification:
+    """Fit parameters of a scene to recorded motion.
+
+    Each recording is simulated from its own start, and compared over its whole length; what is
+    minimised is the mean of the objective over the recordings.
+
+    Parameters
+    ----------
+    scene : Scene or callable
+        A scene whose first N bodies are the recorded ones, of which `varied` makes copies with the start
+        of each recording; or a function of (parameters, recording) that returns a scene.
+    recordings : sequence of Recording
+    parameters : dict
+        A `Parameter`, or (start, step), by name. For a `Scene`: ``restitution``, ``friction``,
+        ``friction_held``, ``inertia_factor`` and ``corner_radius`` of `varied`; for a function, its own.
+    objective : callable
+        From (`RollOut`, `Recording`) to a number, such as ``mean_error(length, angle)`` or
+        ``squared_error(length, angle)``.
+    method : {"Nelder-Mead", "Powell", "COBYQA", "L-BFGS-B"}
+        Of `scipy.optimize.minimize`. Default ``"Nelder-Mead"``: for motion with many impacts, whose
+        objective is rough. ``"L-BFGS-B"`` takes differences, and needs a smooth one.
+    restarts : int
+        How often at most the search starts anew from its best point. Default 2; it ends before that if
+        a restart gains less than `tolerance`.
+    tolerance : float
+        The search ends when parameters change by less than this part of their steps, and
+        the objective by less than this part of its first value. Default 1e-3.
+    max_evaluations : int
+        No search begins or goes on after this many evaluations, each a simulation of all recordings. Default
+        400.
+    resamples : int
+        Sets of recordings drawn anew for the uncertainty, 0 for none, at most 100 000. Default 200. They cost a
+        design of 2 p^2 + 1 evaluations, at most six times; should it come upon a point that is better by 2 %,
+        the search goes on from there.
+    seed : int
+        Of the drawing. Default 0.
+    step, options, threads
+        As of `roll_outs`.
+    progress : callable, optional
+        Called after each evaluation with (number, parameters, objective).
+
+    Returns
+    -------
+    Identification
+
+    Raises
+    ------
+    TypeError, ValueError
+        For an argument that is not as above, parameters with which no scene can be made, or an objective
+        that is no finite number.
+    """
+    if not isinstance(scene, Scene) and not callable(scene):
+        raise TypeError(
+            f"scene must be a carom.Scene or a function that makes one, got {type(scene).__name__}"
+        )
+    recordings = checked_recordings(recordings)
+    checks.function("objective", objective)
+    checks.function("progress", progress, optional=True)
+    checks.choice("method", method, METHODS)
+    restarts = checks.integer("restarts", restarts, least=0)
+    tolerance = checks.number("tolerance", tolerance, above=0.0, below=1.0)
+    max_evaluations = checks.integer("max_evaluations", max_evaluations, least=1)
+    resamples = checks.integer("resamples", resamples, least=0, most=100_000)
+    seed = checks.integer("seed", seed, least=0)
+    if step is not None:
+        step = checks.number("step", step, above=0.0, unit="s")
+    if threads is not None:
+        threads = checks.integer("threads", threads, least=1)
+    space = Space(parameters, known=isinstance(scene, Scene))
+    settings = {"step": step, "options": options, "threads": threads}
+    evaluate = Evaluator(scene, recordings, space, objective, progress, **settings)
+    uncertainty = None
+    for _ in range(SEARCHES):
+        converged, message = search(evaluate, method, restarts, tolerance, max_evaluations)
+        before = evaluate.mean(evaluate.best)
+        if resamples > 0:
+            uncertainty = bootstrap(evaluate, resamples, seed)
+            evaluate.number(uncertainty.centre)
+        best = evaluate.best
+        # the design around the best point saw a way on: the search had stopped at a plateau or in a rough place
+        if not converged or before - evaluate.mean(best) <= LEAST_GAIN * before:
+            break
+    return Identification(
+        parameters=space.named(evaluate.points[best]),
+        objective=evaluate.mean(best),
+        objective_at_start=evaluate.mean(0),
+        objectives=evaluate.values[best],
+        runs=evaluate.runs(evaluate.points[best]),
+        recordings=recordings,
+        points=np.array(evaluate.points),
+        values=np.array(evaluate.values),
+        failed=np.array(evaluate.failed),
+        converged=converged,
+        message=message,
+        uncertainty=uncertainty,
+    )

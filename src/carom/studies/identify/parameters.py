@@ -1,0 +1,98 @@
+"""The parameters of a fit: start, step and bounds."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from carom import checks
+from carom.scene.values import keep
+from carom.studies.identify.varied import KNOWN
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One number to be fitted.
+
+    Parameters
+    ----------
+    start : float
+        Where the search begins, inside the bounds.
+    step : float
+        How far the first simplex reaches, above 0. Impacts on corners make motion chaotic and the objective
+        rough: a step must be large compared with the roughness.
+    lower, upper : float
+        Bounds, themselves allowed. Default none.
+    """
+
+    start: float
+    step: float
+    lower: float = -np.inf
+    upper: float = np.inf
+
+    def __post_init__(self):
+        lower, upper = _bound("lower", self.lower), _bound("upper", self.upper)
+        keep(self, lower=lower, upper=upper)
+        if not lower < upper:
+            raise ValueError(f"lower must be below upper, got {lower!r} and {upper!r}")
+        start = checks.number("start", self.start)
+        if not lower <= start <= upper:
+            raise ValueError(
+                f"start must be at least {lower:g} and at most {upper:g} (lower and upper), got {start!r}"
+            )
+        step = checks.number("step", self.step, above=0.0)
+        if not step <= upper - lower:
+            raise ValueError(
+                f"step must be at most upper - lower = {upper - lower:g}, got {step!r}"
+            )
+        keep(self, start=start, step=step)
+
+
+def _bound(name: str, value) -> float:
+    """Return a bound: a number, or infinite."""
+    infinite = isinstance(value, (float, np.floating)) and np.isinf(value)
+    return float(value) if infinite else checks.number(name, value)
+
+
+class Space:
+    """All parameters of a fit in their order, and units in which their steps are 1."""
+
+    def __init__(self, parameters: Mapping, known: bool):
+        if not isinstance(parameters, Mapping) or not parameters:
+            raise ValueError(
+                f"parameters must be a dict of names and Parameters, got {checks.shown(parameters)}"
+            )
+        self.names = tuple(parameters)
+        all_of_them = [_parameter(name, parameters[name], known) for name in self.names]
+        self.start = np.array([p.start for p in all_of_them])
+        self.step = np.array([p.step for p in all_of_them])
+        self.lower = np.array([p.lower for p in all_of_them])
+        self.upper = np.array([p.upper for p in all_of_them])
+
+    def clip(self, values: np.ndarray) -> np.ndarray:
+        """Return the values moved inside the bounds."""
+        return np.clip(values, self.lower, self.upper)
+
+    def named(self, values) -> dict[str, float]:
+        """Return values by name."""
+        return dict(zip(self.names, map(float, values)))
+
+
+def _parameter(name: str, value, known: bool) -> Parameter:
+    bounds = KNOWN.get(name, (-np.inf, np.inf, 0.0)) if known else (-np.inf, np.inf, 0.0)
+    if known:
+        checks.choice("a name in parameters", name, KNOWN)
+    if isinstance(value, Parameter):
+        low, high = max(value.lower, bounds[0]), min(value.upper, bounds[1])
+        return Parameter(value.start, value.step, low, high)
+    if isinstance(value, tuple) and len(value) == 2:
+        return Parameter(value[0], value[1], bounds[0], bounds[1])
+    if not isinstance(value, bool) and isinstance(value, (int, float)) and bounds[2] > 0.0:
+        return Parameter(value, bounds[2], bounds[0], bounds[1])
+    raise ValueError(
+        f"parameters[{name!r}] must be a Parameter or (start, step)"
+        + (", or a number to start from" if bounds[2] > 0.0 else "")
+        + f", got {checks.shown(value)}"
+    )

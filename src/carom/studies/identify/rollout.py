@@ -1,0 +1,127 @@
+"""Simulated motion at the times of a recording, and many of them in threads."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from typing import NamedTuple
+
+import numpy as np
+
+from carom import checks
+from carom.options import Options
+from carom.scene.scene import Scene
+from carom.studies.identify.recording import Recording, checked_recordings
+
+UNIFORM = 1e-6  # of the sampling time: what clocks write down as rounded
+
+
+class RollOut(NamedTuple):
+    """Simulated poses of the recorded bodies at the n times of a recording."""
+
+    position: np.ndarray  #: (n, N, 3) [m]
+    orientation: np.ndarray  #: (n, N, 4)
+    message: str  #: empty, or why the run stopped early: it stays where it stopped
+    residual: float  #: largest energy that no entry of the ledger explains [J]
+    speed: float  #: largest component of the velocities [m/s], [rad/s] at the last sample
+
+
+def roll_out(
+    scene: Scene, recording: Recording, *, step: float | None = None, options: Options | None = None
+) -> RollOut:
+    """Simulate a scene from the first time of a recording to its last; compare nothing yet.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its first N bodies are the recorded ones.
+    recording : Recording
+    step : float, optional
+        Longest time step [s]; it is shortened to a whole part of the sampling time where that is the same
+        throughout. Default: a quarter of the mean sampling time.
+    options : Options, optional
+
+    Returns
+    -------
+    RollOut
+        Of a run that failed part-way too: from there on bodies stay, and `message` says why.
+    """
+    from carom.simulate import simulate
+
+    checks.instance("scene", scene, (Scene,))
+    checks.instance("recording", recording, (Recording,))
+    if recording.position.shape[1] > len(scene.bodies):
+        raise ValueError(
+            f"scene must have the {recording.position.shape[1]} bodies of the recording, got {scene!r}"
+        )
+    if step is not None:
+        step = checks.number("step", step, above=0.0, unit="s")
+    since = recording.t - recording.t[0]
+    n, length = since.size, float(since[-1])
+    sampling = length / (n - 1)
+    longest = 0.25 * sampling if step is None else step
+    checks.steps(length, longest, 1e12)
+    uniform = np.max(np.abs(since - sampling * np.arange(n))) <= UNIFORM * sampling
+    parts = int(np.ceil(sampling / longest * (1.0 - 1e-9))) if uniform else 1
+    used = sampling / parts if uniform else longest
+    solution = simulate(
+        scene, length, step=used, save_every=parts, options=options, throw=False
+    )  # fmt: skip
+    count = recording.position.shape[1]
+    if uniform and solution.status.ended:
+        x, q = solution.position, solution.orientation
+    else:
+        x, q, *_ = solution.evaluate(np.minimum(since, solution.t[-1]))
+    speed = max(
+        np.max(np.abs(solution.velocity[-1])), np.max(np.abs(solution.angular_velocity[-1]))
+    )
+    return RollOut(
+        x[:, :count], q[:, :count], "" if solution.success else solution.message,
+        float(np.max(np.abs(solution.ledger.residual))), float(speed),
+    )  # fmt: skip
+
+
+def roll_outs(
+    make: Callable[[Recording], Scene],
+    recordings: Sequence[Recording],
+    *,
+    step: float | None = None,
+    options: Options | None = None,
+    threads: int | None = None,
+) -> list[RollOut]:
+    """Simulate the scene that `make` gives for each recording, in threads.
+
+    Parameters
+    ----------
+    make : callable
+        From a `Recording` to its `Scene`.
+    recordings : sequence of Recording
+    step, options
+        As of `roll_out`.
+    threads : int, optional
+        Default: the number of cores that the process may use. The compiled loop lets other threads run.
+    """
+    checks.function("make", make)
+    recordings = checked_recordings(recordings)
+    if threads is not None:
+        threads = checks.integer("threads", threads, least=1)
+
+    def one(recording: Recording) -> RollOut:
+        scene = checks.call("make", make, recording)
+        checks.instance("what make returns", scene, (Scene,))
+        return roll_out(scene, recording, step=step, options=options)
+
+    threads = cores() if threads is None else threads
+    first = [one(recording) for recording in recordings[:1]]  # what is to be compiled is, once
+    if threads == 1 or len(recordings) < 3:
+        return first + [one(recording) for recording in recordings[1:]]
+    with ThreadPoolExecutor(threads) as pool:
+        return first + list(pool.map(one, recordings[1:]))
+
+
+def cores() -> int:
+    """Return the number of cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

@@ -1,0 +1,110 @@
+"""A scene once more with other numbers."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, replace
+
+import numpy as np
+
+from carom import checks
+from carom.scene.materials import ContactLaw
+from carom.scene.scene import Scene
+from carom.scene.shapes import Box
+from carom.studies.identify.recording import State, checked_state
+
+#: parameters that `varied` knows: lower and upper bound, and a step that is large enough to begin a search with
+KNOWN: dict[str, tuple[float, float, float]] = {
+    "restitution": (0.0, 1.0, 0.1),
+    "friction": (0.0, np.inf, 0.05),
+    "friction_held": (0.0, np.inf, 0.05),
+    "inertia_factor": (0.05, np.inf, 0.15),
+    "corner_radius": (0.0, np.inf, 0.0),
+}
+
+
+def varied(
+    scene: Scene,
+    *,
+    restitution: float | None = None,
+    friction: float | None = None,
+    friction_held: float | None = None,
+    inertia_factor: float = 1.0,
+    corner_radius: float | None = None,
+    start: State | None = None,
+) -> Scene:
+    """Return a copy of a scene with some numbers changed, for all its bodies and contacts.
+
+    Parameters
+    ----------
+    scene : Scene
+        Bodies, half-spaces and contacts with half-spaces; joints and forces only if `start` is None.
+    restitution, friction, friction_held : float, optional
+        Of all contacts; default as they are. A new `friction` is that of held contacts too where these had
+        the same and `friction_held` is not given.
+    inertia_factor : float
+        That the inertia of all bodies is multiplied by. Default 1.
+    corner_radius : float, optional
+        Of the rounding of all boxes, whose outer size stays [m]; nor does it change mass and inertia.
+    start : State, optional
+        Initial state of the bodies, in their order.
+
+    Raises
+    ------
+    ValueError
+        If the scene has what cannot be copied so, or a value is outside its range.
+    """
+    if not isinstance(scene, Scene):
+        raise TypeError(f"scene must be a carom.Scene, got {type(scene).__name__}")
+    if scene.contact_default is not None:
+        raise ValueError(
+            "scene must name its contacts by add_contact, got one with set_contact_default; "
+            "give a function that makes the scene instead"
+        )
+    if start is not None and (scene.joints or scene.forces):
+        raise ValueError(
+            "start cannot replace the state of a scene with joints or forces, whose places are those of the "
+            f"start, got {checks.shown(scene)}; give a function that makes the scene instead"
+        )
+    if not scene.bodies:
+        raise ValueError(f"scene must have at least one body, got {scene!r}")
+    if start is not None:
+        start = checked_state(start, len(scene.bodies))
+    factor = checks.scale("inertia_factor", inertia_factor)
+    copy = Scene(gravity=scene.gravity)
+    parts: dict = {}
+    for plane in scene.half_spaces:
+        parts[plane] = copy.add_half_space(plane.point, plane.normal, name=plane.name)
+    for k, body in enumerate(scene.bodies):
+        state = _state(body) if start is None else State(*(field[k] for field in start))
+        parts[body] = copy.add_body(
+            _rounded(body.shape, corner_radius), mass=body.mass, inertia=factor * body.inertia,
+            name=body.name, **state._asdict(),
+        )  # fmt: skip
+    given = {"restitution": restitution, "friction": friction, "friction_held": friction_held}
+    given = {name: value for name, value in given.items() if value is not None}
+    for contact in scene.contacts:
+        law = {name: getattr(contact, name) for name in asdict(ContactLaw())}
+        if contact.friction_held == contact.friction and "friction" in given:
+            law["friction_held"] = None  # the same as friction again
+        law.update(given)
+        copy.add_contact(parts[contact.body], parts[contact.other], name=contact.name, **law)
+    for joint in scene.joints:
+        parent, child = parts.get(joint.parent, joint.parent), parts[joint.child]
+        copy.add_joint(joint.definition, parent, child, name=joint.name)
+    for force in scene.forces:
+        parent, child = parts.get(force.parent, force.parent), parts[force.child]
+        copy.add_force(force.definition, parent, child, name=force.name)
+    return copy
+
+
+def _state(body) -> State:
+    return State(body.position, body.orientation, body.velocity, body.angular_velocity)
+
+
+def _rounded(shape, radius):
+    """Return a box with another radius of its rounding; any other shape as it is."""
+    if radius is not None:
+        radius = checks.length("corner_radius", radius, zero=True)
+    if radius is None or not isinstance(shape, Box):
+        return shape
+    return replace(shape, radius=radius)

@@ -1,1 +1,0 @@
-"""The scene compiled into flat arrays."""

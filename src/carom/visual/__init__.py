@@ -1,0 +1,1 @@
+"""Pictures: plots, films, the page of a run and the live view."""

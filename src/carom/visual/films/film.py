@@ -1,0 +1,139 @@
+"""`carom.film`: a motion as a film."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from carom import checks
+from carom.visual.films.marks import LINGER
+from carom.visual.films.stage import Stage, pillow
+from carom.visual.plots.figure import need_bodies
+
+SUFFIXES = (".gif", ".mp4")
+MOST = 100_000  # pictures of a film: an hour
+
+
+def film(
+    solution, path, *, fps: float = 30, speed: float = 1.0, size=(1280, 720), view="oblique", follow=None,
+    zoom: float = 1.0, start: float | None = None, end: float | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Path:  # fmt: skip
+    """Write the motion of a solution as a film: MP4 (H.264) or GIF, as the name ends.
+
+    Bodies are solid, in a colour each, with their shadows on half-spaces, which have a grid (those that the
+    camera is behind are left out). Round ones have patches that show how they turn; bodies without a shape
+    are rods from their mass centre to their joints. An orange arrow is the impulse of an impact, its length as
+    the root of its magnitude, seen for 0.15 s of the film; black dots are contacts that are held. Between saved
+    times the motion is that of `Solution.evaluate`.
+
+    Parameters
+    ----------
+    solution : Solution
+    path : str or path
+        ``.mp4`` or ``.gif``, in a folder that exists.
+    fps : float
+        Pictures a second, above 0, at most 1000. Default 30. A GIF keeps whole hundredths of a second: at
+        most 50.
+    speed : float
+        Seconds of the motion in one of the film: below 1 slow motion. Default 1. A film has at most 100 000
+        pictures.
+    size : (int, int)
+        Width and height in pixels, even. Default (1280, 720).
+    view : str or (float, float)
+        "oblique" (default), "front", "side", "top", or azimuth and elevation of the camera [degrees]: the
+        azimuth about the vertical from world x (front: -90), the vertical against gravity (z without).
+    follow : str or Body, optional
+        A body that stays in the middle. Default None: the camera stands still and sees the whole motion.
+    zoom : float
+        Above 1 nearer, 0.001 to 1000. Default 1.
+    start, end : float, optional
+        Part of the run to show [s]. Default: all of it.
+    progress : callable, optional
+        Called as ``progress(done, count)`` after each picture.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    ImportError
+        Without pillow, or for MP4 without imageio and imageio-ffmpeg.
+    ValueError
+        If an argument is not as above.
+    """
+    need_bodies(solution, "film")
+    path = checks.path("path", path)
+    if path.suffix.lower() not in SUFFIXES:
+        raise ValueError(f"path must end in {' or '.join(SUFFIXES)}, got {str(path)!r}")
+    if not path.parent.is_dir():
+        raise ValueError(f"path must be in a folder that exists, got {str(path)!r}")
+    gif = path.suffix.lower() == ".gif"
+    fps = checks.number("fps", fps, above=0.0, most=50.0 if gif else 1000.0)
+    checks.scale("fps", fps)
+    speed = checks.scale("speed", speed)
+    checks.function("progress", progress, optional=True)
+    first, last = float(solution.t[0]), float(solution.t[-1])
+    begin = (
+        first if start is None else checks.number("start", start, least=first, most=last, unit="s")
+    )
+    stop = last if end is None else checks.number("end", end, least=begin, most=last, unit="s")
+    pillow()
+    stage = Stage(solution, size, view, follow, (begin, stop), zoom)
+    stage.marks.linger = LINGER * speed
+    times = frame_times(begin, stop, fps, speed)
+
+    def pictures():
+        for k, t in enumerate(times):
+            yield stage.draw(t)
+            if progress is not None:
+                checks.call("progress", progress, k + 1, len(times))
+
+    (_write_gif if gif else _write_mp4)(path, pictures(), fps)
+    return path
+
+
+def frame_times(begin: float, end: float, fps: float, speed: float) -> np.ndarray:
+    """Return the times of the pictures [s], the first at `begin`."""
+    if not (end - begin) * fps <= MOST * speed:
+        raise ValueError(
+            f"speed and fps must give at most {MOST} pictures, got {(end - begin):g} s with "
+            f"speed={speed:g} and fps={fps:g}"
+        )
+    count = math.floor((end - begin) * fps / speed + 1e-9) + 1
+    return np.minimum(begin + speed / fps * np.arange(count), end)
+
+
+def _write_mp4(path: Path, pictures, fps: float) -> None:
+    try:
+        import imageio.v2 as imageio
+        import imageio_ffmpeg  # noqa: F401
+    except ImportError:
+        raise ImportError(
+            'MP4 needs imageio and imageio-ffmpeg: pip install "carom[film]"; or write a .gif'
+        ) from None
+    with imageio.get_writer(
+        path, format="FFMPEG", fps=fps, codec="libx264", pixelformat="yuv420p", macro_block_size=2,  # pyright: ignore
+        output_params=["-crf", "18", "-preset", "medium", "-movflags", "+faststart"],
+    ) as writer:  # fmt: skip
+        for picture in pictures:
+            writer.append_data(picture)  # pyright: ignore[reportAttributeAccessIssue]
+
+
+def _write_gif(path: Path, pictures, fps: float) -> None:
+    Image, _, _ = pillow()
+    # one palette for all: with one each, colours of what stands still would flicker
+    frames = [Image.fromarray(picture) for picture in pictures]
+    palette = frames[len(frames) // 2].quantize(256, dither=Image.Dither.NONE)
+    frames = [one.quantize(palette=palette, dither=Image.Dither.NONE) for one in frames]
+    # hundredths of a second are what the format has: shared out so that the whole lasts as long as it should
+    ends = np.round(100.0 / fps * np.arange(len(frames) + 1)).astype(int)
+    frames[0].save(
+        path, save_all=True, append_images=frames[1:], duration=(10 * np.diff(ends)).tolist(), loop=0,
+        optimize=False,
+    )  # fmt: skip

@@ -1,0 +1,90 @@
+"""Arrows of impulses, and points of contacts that are held."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom.model.contact_rows import touching_pairs
+from carom.model.frames import contact_axes
+from carom.visual.plots import style
+
+LINGER = 0.15  # how long an arrow is seen [s of the film]
+LONGEST = 0.20  # of the arrow of the greatest impulse, by the height of what is seen
+LEAST = 0.03  # impulse, by the greatest, below which none is drawn
+HEAD = 0.35  # of an arrow
+GRAZE = 0.004  # of the distance, by which a point may lie below a surface and be seen
+
+
+class Marks:
+    """Impulses of a run as arrows in the world."""
+
+    def __init__(self, solution, length: float):
+        self.solution, self.linger = solution, LINGER
+        pairs = touching_pairs(solution.scene)
+        table = solution.impacts
+        drawn = np.flatnonzero(table.contact < len(pairs.body))  # stops have no point of contact
+        self.time, self.point = table.time[drawn], table.point[drawn]
+        push = np.zeros((len(drawn), 3))
+        for row, k in enumerate(drawn):
+            flat = pairs.plane[table.contact[k]] >= 0
+            n = table.normal[k]
+            push[row] = table.impulse[k] @ (contact_axes(n) if flat else pair_axes(n))
+        size = np.linalg.norm(push, axis=1)
+        greatest = float(size.max(initial=0.0)) or 1.0
+        # as the root: the first impulse is often ten times those that follow
+        scale = LONGEST * length * np.sqrt(size / greatest) / np.where(size > 0.0, size, 1.0)
+        self.arrow = np.where((size > LEAST * greatest)[:, None], push * scale[:, None], 0.0)
+        self.saved, self.held = solution.forces.saved, solution.forces.point
+
+    def draw(self, pen, camera, depth, t: float) -> None:
+        """Draw what is to be seen at a time."""
+        unit = camera.height / 720.0
+        k = int(np.clip(np.searchsorted(self.solution.t, t, side="right") - 1, 0, None))
+        low, high = np.searchsorted(self.saved, [k, k + 1])
+        dot = 2.6 * unit
+        if high - low <= 60:  # in a heap they would hide what they belong to
+            for x, y, near in camera.project(self.held[low:high]):
+                if _visible(x, y, near, depth):
+                    pen.ellipse((x - dot, y - dot, x + dot, y + dot), fill="#202020")
+        for row in np.flatnonzero((self.time <= t) & (self.time > t - self.linger)):
+            ends = camera.project(np.array([self.point[row], self.point[row] + self.arrow[row]]))
+            if np.all(ends[:, 2] > 0.0):
+                _arrow(pen, ends[0, :2], ends[1, :2], unit)
+
+
+def _visible(x: float, y: float, near: float, depth) -> bool:
+    """Return whether nothing is before a point; it may be hidden by the surface that it lies on."""
+    height, width = depth.shape
+    if not (near > 0.0 and 0.0 <= x < width and 0.0 <= y < height):
+        return False
+    return near >= (1.0 - GRAZE) * depth[int(y), int(x)]
+
+
+def pair_axes(normal: np.ndarray) -> np.ndarray:
+    """Return rows n, t1, t2 of a contact of two bodies, as `carom.contact.pair_point.tangents`."""
+    e = np.eye(3)[0 if abs(normal[0]) < 0.8 else 1]
+    first = e - (e @ normal) * normal
+    first /= np.linalg.norm(first)
+    return np.stack([normal, first, np.cross(normal, first)])
+
+
+def _arrow(pen, start, end, unit: float) -> None:
+    """Draw an arrow, its head no longer than itself."""
+    way = end - start
+    length = float(np.hypot(*way))
+    if not length > 2.0 * unit:
+        return
+    along = way / length
+    across = np.array([-along[1], along[0]])
+    head = min(HEAD * length, 16.0 * unit)
+    neck = end - head * along
+    wide = 0.42 * head
+    pen.line(
+        [tuple(start), tuple(neck + 0.2 * head * along)],
+        fill=style.RED,
+        width=max(1, round(4.0 * unit)),
+    )
+    tip = [tuple(end), tuple(neck + wide * across), tuple(neck - wide * across)]
+    pen.polygon(tip, fill=style.RED)
+    dot = 3.2 * unit
+    pen.ellipse((start[0] - dot, start[1] - dot, start[0] + dot, start[1] + dot), fill=style.RED)

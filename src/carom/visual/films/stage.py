@@ -1,0 +1,283 @@
+"""A motion set up to be drawn at any of its times."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from carom import checks
+from carom.geometry import quaternion
+from carom.scene.joints import Distance
+from carom.scene.shapes import Sphere
+from carom.visual.films import marks
+from carom.visual.films.camera import Camera, axes_of, fitted, vertical
+from carom.visual.films.models import Model, anchors, model_of, models, rgb, turned_to
+from carom.visual.plots.figure import bodies as named_bodies
+from carom.visual.plots.figure import need_bodies
+from carom.visual.surfaces import surface
+
+BACKGROUND = rgb("#ffffff")
+PLANE, GRID, LINK = rgb("#ededed"), rgb("#cfcfcf"), rgb("#6b6b6b")
+SHADOW = 0.80  # brightness in it
+DIM = 0.85  # brightness of a plane that turns away from the light
+FINER = 2  # pixels of the buffer by those of the picture, in each direction
+LINE = 0.0022  # width of an edge by the height of the picture
+RECENT = 0.01  # part of the run over which an impulse is seen in a single picture
+SAMPLES = 400  # times at which a camera looks where the bodies will be
+
+
+class Stage:
+    """What is the same in all pictures of one film."""
+
+    def __init__(
+        self, solution, size=(1280, 720), view="oblique", follow=None, span=None, zoom=1.0
+    ):
+        need_bodies(solution, "film")
+        self.solution, scene = solution, solution.scene
+        self.size = checked_size(size)
+        self.zoom = checks.number("zoom", zoom, least=1e-3, most=1e3)
+        self.followed = None if follow is None else named_bodies(solution, follow, "follow")
+        if self.followed is not None and len(self.followed) != 1:
+            raise ValueError(f"follow must be one body or None, got {checks.shown(follow)}")
+        begin, end = span or (float(solution.t[0]), float(solution.t[-1]))
+        times = np.linspace(begin, end, SAMPLES)
+        places = solution.evaluate(times)[0]
+        middle = places.reshape(-1, 3).mean(axis=0)
+        spread = float(np.linalg.norm(places - middle, axis=2).max())
+        self.radii = np.array(
+            [b.shape.size if b.shape is not None else 0.05 * spread for b in scene.bodies]
+        )
+        self.axes = axes_of(view, scene)
+        self.camera = self._camera(places)
+        self.length = self.camera.distance * 0.46  # height of what is seen, about
+        self._place_models()
+        self._place_planes(places)
+        self.marks = marks.Marks(solution, self.length)
+        self._kept = None
+
+    def _camera(self, places) -> Camera:
+        """Return the camera that sees all that happens, or the one body that it follows."""
+        width, height = (FINER * n for n in self.size)
+        if self.followed is None:
+            radii = np.tile(self.radii, len(places))
+            flat = places.reshape(-1, 3)
+            ends = [
+                at
+                for part, at in anchors(self.solution.scene.joints)
+                if part.index < 0 and at is not None
+            ]
+            flat, radii = np.vstack([flat, *ends]), np.append(radii, np.zeros(len(ends)))
+        else:
+            k = self.followed[0].index
+            flat, radii = places[:1, k], 4.0 * self.radii[k : k + 1]
+        camera = fitted(self.axes, flat, radii, (width, height))
+        return camera._replace(distance=camera.distance / self.zoom)
+
+    def _place_models(self) -> None:
+        made = models(self.solution.scene, self.length)
+        counts = [len(model.corners) for model in made]
+        self.owner = np.repeat(np.arange(len(made)), counts)
+        self.all = Model(*(np.concatenate(columns) for columns in zip(*made)))
+        scene = self.solution.scene
+        held = [j for j in scene.joints if isinstance(j.definition, Distance)]
+        self.links = anchors([*held, *(f for f in scene.forces if f.kind == "Spring")])
+        n = 12
+        angle = 2.0 * np.pi / n * np.arange(n)
+        self.ring = np.stack([np.cos(angle), np.sin(angle), np.zeros(n)], axis=1)
+        self.ball = model_of(*surface(Sphere(1.0), 16), None)
+
+    def _place_planes(self, places) -> None:
+        up, _, _ = vertical(self.solution.scene)
+        light = 1.2 * self.axes.towards + 0.6 * self.axes.up - 0.5 * self.axes.right
+        light = light / np.linalg.norm(light) + 0.8 * up
+        self.light = light / np.linalg.norm(light)
+        flat = places.reshape(-1, 3)
+        self.spacing = _round(0.14 * self.length)
+        self.planes = []
+        for half_space in self.solution.scene.half_spaces:
+            n = half_space.normal
+            if not n @ (self.camera.eye - half_space.point) > 0.0:
+                continue  # seen from behind: what is before it is to be seen
+            middle = self.camera.centre - ((self.camera.centre - half_space.point) @ n) * n
+            reach = float(np.linalg.norm(flat - self.camera.centre, axis=1).max()) + self.length
+            begin, end = 0.35 * reach, 1.6 * reach
+            u = np.eye(3)[np.argmin(np.abs(n))]
+            u = u - (u @ n) * n
+            u /= np.linalg.norm(u)
+            v = np.cross(n, u)
+            # lines go through the point of the half-space, whatever the camera looks at
+            middle = half_space.point + _steps(middle - half_space.point, (u, v), self.spacing)
+            self.planes.append((np.array([middle, n, u, v]), np.array([self.spacing, begin, end])))
+
+    def draw(self, t: float, clock: bool = True) -> np.ndarray:
+        """Return the picture (height, width, 3), uint8, at a time within the run."""
+        from carom.visual.films.raster import paint, shade
+
+        camera = self.camera
+        x, Q, _, _ = self.solution.evaluate(t)
+        if self.followed is not None:
+            camera = camera._replace(centre=x[self.followed[0].index])
+        image, depth, seen = (one.copy() for one in self._empty(camera))
+        axes, world = camera.axes, self._world(x, Q)
+        for number, (plane, _) in enumerate(self.planes, 1):
+            falls = self.light @ plane[1]
+            if falls > 0.1:
+                above = (world.corners - plane[0]) @ plane[1]
+                cast = world.corners - (np.maximum(above, 0.0) / falls)[..., None] * self.light
+                shade(camera.project(cast), SHADOW, number, image, seen)
+        half_line = max(0.5, 0.5 * LINE * camera.height)
+        paint(camera.project(world.corners), world.normals, world.colours, world.edges, self.light,
+              axes.towards, half_line, image, depth)  # fmt: skip
+        return self._finished(image, depth, camera, t, clock)
+
+    def _empty(self, camera):
+        """Return picture, depth and marks of the planes alone; made once if the camera stands still."""
+        from carom.visual.films.raster import ground
+
+        if self.followed is None and self._kept is not None:
+            return self._kept
+        shape = camera.height, camera.width
+        image = np.full((*shape, 3), 255, np.uint8)
+        depth, seen = np.zeros(shape, np.float32), np.zeros(shape, np.uint8)
+        axes = camera.axes
+        for number, (plane, grid) in enumerate(self.planes, 1):
+            if self.followed is not None:
+                plane = plane.copy()
+                plane[0] += _steps(camera.centre - plane[0], plane[2:], grid[0])
+            bright = DIM + (1.0 - DIM) * max(0.0, float(plane[1] @ self.light))
+            colours = np.array([bright * PLANE, bright * GRID, BACKGROUND])
+            ground(camera.eye, axes.right, axes.up, -axes.towards, camera.focal, plane, grid, colours,
+                   image, depth, seen, number)  # fmt: skip
+        self._kept = image, depth, seen
+        return self._kept
+
+    def _world(self, x, Q) -> Model:
+        """Return all triangles where they are."""
+        turn = quaternion.matrix(Q).reshape(-1, 3, 3)[self.owner]
+        corners = np.einsum("fij,fkj->fki", turn, self.all.corners) + x[self.owner][:, None]
+        normals = np.einsum("fij,fkj->fki", turn, self.all.normals)
+        parts = [self.all._replace(corners=corners, normals=normals)]
+        ends = [
+            at if part.index < 0 else x[part.index] + quaternion.rotate(Q[part.index], at)
+            for part, at in self.links
+        ]
+        for a, b in zip(ends[::2], ends[1::2]):
+            parts.append(_rod(np.asarray(a), np.asarray(b), 0.004 * self.length, self.ring))
+        return Model(*(np.ascontiguousarray(np.concatenate(column)) for column in zip(*parts)))
+
+    def _finished(self, image, depth, camera, t: float, clock: bool) -> np.ndarray:
+        """Return the picture with arrows and clock, in its own size."""
+        Image, ImageDraw, ImageFont = pillow()
+        large = Image.fromarray(image)
+        pen = ImageDraw.Draw(large)
+        self.marks.draw(pen, camera, depth, t)
+        if clock:
+            height = max(12, camera.height // 20)
+            font = ImageFont.load_default(height)
+            words = f"{t:.{self.digits}f} s"
+            pen.text((0.7 * height, 0.55 * height), words, fill="#404040", font=font)
+        return np.asarray(large.resize(self.size, Image.Resampling.BOX))
+
+    @property
+    def digits(self) -> int:
+        """Decimals of the clock: so that a hundredth of the run can be read."""
+        span = float(self.solution.t[-1] - self.solution.t[0])
+        return int(np.clip(np.ceil(2.0 - np.log10(max(span, 1e-9))), 0, 9))
+
+
+def still(
+    solution,
+    t: float | None = None,
+    *,
+    size=(1280, 720),
+    view="oblique",
+    follow=None,
+    zoom=1.0,
+    clock=True,
+) -> np.ndarray:
+    """Draw one picture of a motion, as a film would show it; with impulses of the last hundredth of the run.
+
+    Parameters
+    ----------
+    solution : Solution
+    t : float, optional
+        Time within the run [s]. Default: its end.
+    size, view, follow, zoom
+        As for `carom.film`.
+    clock : bool
+        Whether to write the time into a corner. Default True.
+
+    Returns
+    -------
+    ndarray, shape (height, width, 3), uint8
+    """
+    need_bodies(solution, "still")
+    last = float(solution.t[-1])
+    t = (
+        last
+        if t is None
+        else checks.number("t", t, least=float(solution.t[0]), most=last, unit="s")
+    )
+    checks.flag("clock", clock)
+    stage = Stage(solution, size, view, follow, zoom=zoom)
+    stage.marks.linger = RECENT * (last - float(solution.t[0]))
+    return stage.draw(t, clock)
+
+
+def checked_size(size) -> tuple[int, int]:
+    """Return width and height, even: a rule of the films' code."""
+    if (
+        not isinstance(size, (list, tuple, np.ndarray))
+        or len(checks.listed("size", size, "two")) != 2
+    ):
+        raise ValueError(f"size must be (width, height) in pixels, got {checks.shown(size)}")
+    for name, n in zip(("width", "height"), size):
+        checks.integer(f"size, {name},", n, least=16, most=8192)
+        if n % 2:
+            raise ValueError(f"size must be even numbers of pixels, got {checks.shown(size)}")
+    return int(size[0]), int(size[1])
+
+
+def pillow() -> tuple[Any, Any, Any]:
+    """Return what is used of Pillow, or say how to get it."""
+    try:
+        from PIL import Image, ImageDraw, ImageFont
+    except ImportError:
+        raise ImportError('films need pillow: pip install "carom[film]"') from None
+    return Image, ImageDraw, ImageFont
+
+
+def _rod(a, b, radius: float, ring) -> Model:
+    """Return a thin rod from one point to another."""
+    length = float(np.linalg.norm(b - a))
+    if not length > 0.0:
+        none = np.zeros((0, 3, 3))
+        return Model(none, none, np.zeros((0, 3)), np.zeros((0, 3), np.int8))
+    out = ring @ turned_to((b - a) / length).T
+    low, high = a + radius * out, b + radius * out
+    after = np.roll(np.arange(len(ring)), -1)
+    corners = np.concatenate(
+        [
+            np.stack([low, low[after], high[after]], axis=1),
+            np.stack([low, high[after], high], axis=1),
+        ]
+    )
+    normals = np.concatenate(
+        [np.stack([out, out[after], out[after]], axis=1), np.stack([out, out[after], out], axis=1)]
+    )
+    return Model(
+        corners, normals, np.tile(LINK, (len(corners), 1)), np.zeros((len(corners), 3), np.int8)
+    )
+
+
+def _steps(apart, directions, spacing: float) -> np.ndarray:
+    """Return the whole steps of a grid that are nearest to a way."""
+    way = [spacing * np.round(apart @ e / spacing) * e for e in directions]
+    return np.sum(way, axis=0)
+
+
+def _round(length: float) -> float:
+    """Return 1, 2 or 5 times a power of ten near a length."""
+    power = 10.0 ** np.floor(np.log10(length))
+    return float(power * min((1.0, 2.0, 5.0, 10.0), key=lambda f: abs(np.log(f * power / length))))

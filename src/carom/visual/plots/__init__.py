@@ -1,0 +1,54 @@
+"""Plots of what a run hands back; needs ``carom[plot]``.
+
+Each function draws one plot of a `Solution` (of this session or from a file) or a `GeneralizedSolution`, into
+the axes that it is given or a new figure, and returns the axes.
+"""
+
+from __future__ import annotations
+
+import importlib
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from carom.visual.plots.balance import energy
+    from carom.visual.plots.blows import impacts
+    from carom.visual.plots.errors import constraint_errors
+    from carom.visual.plots.glance import overview
+    from carom.visual.plots.layer import impact_inside
+    from carom.visual.plots.paths import trajectory
+    from carom.visual.plots.plane import phase
+    from carom.visual.plots.precision import work_precision
+    from carom.visual.plots.slip import hodograph
+    from carom.visual.plots.timeline import contacts
+
+__all__ = [
+    "constraint_errors",
+    "contacts",
+    "energy",
+    "hodograph",
+    "impact_inside",
+    "impacts",
+    "overview",
+    "phase",
+    "trajectory",
+    "work_precision",
+]
+
+_WHERE = {
+    "constraint_errors": "errors",
+    "contacts": "timeline",
+    "energy": "balance",
+    "hodograph": "slip",
+    "impact_inside": "layer",
+    "impacts": "blows",
+    "overview": "glance",
+    "phase": "plane",
+    "trajectory": "paths",
+    "work_precision": "precision",
+}
+
+
+def __getattr__(name: str):
+    if name in _WHERE:
+        return getattr(importlib.import_module(f"carom.visual.plots.{_WHERE[name]}"), name)
+    raise AttributeError(f"module 'carom.plots' has no attribute {name!r}")

@@ -1,0 +1,195 @@
+"""What the plots share: new figures, the axes that are given, bodies and contacts by name, their colours."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from difflib import get_close_matches
+from itertools import cycle
+from typing import Any
+
+import numpy as np
+
+from carom import checks
+from carom.visual.plots import style
+
+#: of lines that are told apart, in their order
+COLOURS = (style.BLUE, style.RED, style.GREEN, style.ORANGE, style.PURPLE, style.SKY, style.BLACK)
+
+
+@contextmanager
+def drawing(
+    ax, count: int = 1, size=(style.COLUMN, 2.3), compressed=False, **layout
+) -> Iterator[Any]:
+    """Within this context matplotlib draws in the style of the plots; the axes to draw into.
+
+    Parameters
+    ----------
+    ax : Axes, or a sequence of `count` of them, or None
+        What the caller was given. None: a new figure of pyplot, `count` axes one below the other unless
+        `layout` (arguments of `Figure.subplots`) says otherwise; `compressed` for axes of fixed aspect.
+    """
+    plt = pyplot()
+    from matplotlib.axes import Axes
+
+    figure = None
+    with style.style():
+        if ax is None:
+            figure = plt.figure(figsize=size, layout="compressed" if compressed else "constrained")
+            layout = layout or {"nrows": count, "sharex": True}
+            parts = np.ravel(figure.subplots(**layout))
+            if layout.get("sharex") and count > 1:
+                figure.align_ylabels(parts)
+        else:
+            parts = np.empty(1, dtype=object)
+            parts[0] = ax
+            if isinstance(ax, (list, tuple, np.ndarray)):
+                try:
+                    parts = np.ravel(np.array(ax, dtype=object))
+                except ValueError:
+                    parts = np.empty(0, dtype=object)
+            if len(parts) != count or not all(isinstance(one, Axes) for one in parts):
+                raise ValueError(
+                    f"ax must be {count} matplotlib Axes or None, got {checks.shown(ax)}"
+                )
+        try:
+            yield parts[0] if count == 1 else parts
+        except Exception:
+            plt.close(
+                figure
+            )  # nothing half drawn is left to be shown; of the caller's axes: no figure
+            raise
+
+
+@contextmanager
+def drawing_mosaic(rows, size, heights) -> Iterator[Any]:
+    """Within this context matplotlib draws in the style of the plots; the axes of a new figure by name."""
+    plt = pyplot()
+    with style.style():
+        figure = plt.figure(figsize=size, layout="constrained")
+        yield figure.subplot_mosaic(rows, height_ratios=heights)
+
+
+def pyplot() -> Any:
+    """Return matplotlib.pyplot, or say how to get it."""
+    try:
+        import matplotlib.pyplot as plt
+    except ImportError:
+        raise ImportError('plots need matplotlib: pip install "carom[plot]"') from None
+    return plt
+
+
+def is_bodies(solution) -> bool:
+    """Return True for a `Solution`, False for a `GeneralizedSolution`; refuse what is neither."""
+    from carom.generalized.solution import GeneralizedSolution
+    from carom.results.solution import Solution
+
+    if isinstance(solution, (Solution, GeneralizedSolution)):
+        return isinstance(solution, Solution)
+    raise TypeError(
+        f"solution must be a Solution or a GeneralizedSolution, got {checks.shown(solution)}; from a file: "
+        "carom.Solution.load(path)"
+    )
+
+
+def need_bodies(solution, what: str) -> None:
+    """Refuse a solution in coordinates."""
+    if not is_bodies(solution):
+        raise ValueError(
+            f"{what} needs the Solution of a scene of bodies, got {checks.shown(solution)}"
+        )
+
+
+def named(argument: str, wanted, parts: list[str]) -> list[int]:
+    """Return the indices of `wanted`, names or handles with a name or one of them; None is all."""
+    if wanted is None:
+        return list(range(len(parts)))
+    if isinstance(wanted, str) or not isinstance(wanted, (list, tuple, set, np.ndarray)):
+        wanted = [wanted]
+    wanted = wanted.ravel() if isinstance(wanted, np.ndarray) else wanted
+    found = []
+    for one in wanted:
+        name = one if isinstance(one, (str, type)) else getattr(one, "name", one)
+        if not isinstance(name, str) or name not in parts:
+            near = get_close_matches(checks.shown(name), parts, n=1)
+            hint = f"; did you mean {near[0]!r}?" if near else ""
+            shown = ", ".join(map(repr, parts[:12])) + (", ..." if len(parts) > 12 else "")
+            raise ValueError(
+                f"{argument} must be among {shown or 'none'}, got {checks.shown(name)}{hint}"
+            )
+        found.append(parts.index(name))
+    if not found:
+        raise ValueError(f"{argument} must be at least one of {len(parts)}, got none")
+    return found
+
+
+def bodies(solution, wanted, argument: str = "bodies") -> list:
+    """Return bodies of the scene by name."""
+    every = solution.scene.bodies
+    return [every[k] for k in named(argument, wanted, [body.name for body in every])]
+
+
+def contact_names(solution) -> list[str]:
+    """Return the names of all contacts, in their order."""
+    if not is_bodies(solution):
+        return [contact.name for contact in solution.system.contacts]
+    from carom.io.files.variables import contact_names as names
+
+    return names(solution.scene)
+
+
+def need_impacts(solution) -> None:
+    """Refuse a solution without impacts."""
+    if not len(solution.impacts):
+        raise ValueError(f"there must be an impact to draw, got {checks.shown(solution)}")
+
+
+def impact(solution, k):
+    """Return the record of impact k."""
+    need_impacts(solution)
+    count = len(solution.impacts)
+    return solution.impacts[
+        checks.integer("k, number of the impact,", k, least=-count, most=count - 1)
+    ]
+
+
+def with_impacts(solution) -> np.ndarray:
+    """Return the saved times and those of impacts between them, where paths have corners."""
+    times = solution.impacts.time
+    inside = times[(times >= solution.t[0]) & (times <= solution.t[-1])]
+    return np.union1d(solution.t, inside)
+
+
+def colours():
+    """Return an endless iterator over colours and dashes: the next ones once the colours are used up."""
+    return ((c, line) for line in cycle(("-", "--", ":", "-.")) for c in COLOURS)
+
+
+def legend(ax, least: int = 2, most: int = 12, **where) -> None:
+    """Add a legend, unless there are too few entries or too many to be told apart."""
+    if least <= len(ax.get_legend_handles_labels()[1]) <= most:
+        ax.legend(**where)
+
+
+def seconds(span: float) -> tuple[float, str]:
+    """Return factor and unit in which a span of time [s] reads well."""
+    for factor, unit in ((1.0, "s"), (1e3, "ms"), (1e6, r"$\mu$s"), (1e9, "ns")):
+        if span * factor >= 1.0:
+            return factor, unit
+    return 1e12, "ps"
+
+
+def metres(span: float) -> tuple[float, str]:
+    """Return factor and unit in which a length [m] reads well."""
+    for factor, unit in ((1.0, "m"), (1e3, "mm"), (1e6, r"$\mu$m"), (1e9, "nm")):
+        if span * factor >= 1.0:
+            return factor, unit
+    return 1e12, "pm"
+
+
+def newtons(greatest: float) -> tuple[float, str]:
+    """Return factor and unit in which forces up to `greatest` [N] read well."""
+    for factor, unit in ((1e-6, "MN"), (1e-3, "kN"), (1.0, "N"), (1e3, "mN")):
+        if greatest * factor >= 1.0:
+            return factor, unit
+    return 1.0, "N"

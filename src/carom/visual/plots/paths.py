@@ -1,0 +1,157 @@
+"""Paths of bodies, seen along an axis or another."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom import checks
+from carom.geometry import quaternion
+from carom.visual.plots import figure, style
+
+GROUND = "#ececec"
+MOST = 200  # outlines: more would cover each other
+
+
+def trajectory(
+    solution, bodies=None, *, plane: str | None = None, outlines=None, ground=True, ax=None
+):
+    """Draw the paths of mass centres as seen along a coordinate axis.
+
+    A square is the start, dots are impacts of the body; a corner at each. Half-spaces whose planes are seen
+    edge-on are drawn as the ground.
+
+    Parameters
+    ----------
+    solution : Solution
+    bodies : str or sequence of str, optional
+        Names (or handles). Default: all.
+    plane : str, optional
+        Two of "x", "y", "z": the axis to the right and the axis up. Default: up against gravity, and to the
+        right the other axis along which there is more motion.
+    outlines : (m,) or int, optional
+        Times [s] at which the outlines of the bodies are drawn, or how many, spread evenly over the run; at
+        most 200. Default: none.
+    ground : bool
+        Whether to draw half-spaces. Default True.
+    ax : Axes, optional
+        To draw into. Default: a new figure.
+
+    Returns
+    -------
+    Axes
+
+    Raises
+    ------
+    ValueError
+        If there is no body of that name, or the plane is none.
+    """
+    figure.need_bodies(solution, "trajectory")
+    checks.flag("ground", ground)
+    chosen = figure.bodies(solution, bodies)
+    t = figure.with_impacts(solution)
+    x = solution.evaluate(t)[0]
+    axes = _plane(plane, solution, x[:, [b.index for b in chosen]])
+    seen, times = list(axes), _times(outlines, solution)
+    wide, high = np.ptp(x[:, [b.index for b in chosen]][..., seen].reshape(-1, 2), axis=0)
+    inches = np.clip(2.8 * high / max(wide, 1e-300), 1.0, 3.4) + 0.6  # nearly as the axes are to be
+    with figure.drawing(ax, 1, (style.COLUMN, inches)) as drawn:
+        many = len(chosen) > 12
+        for body, (colour, line) in zip(chosen, figure.colours()):
+            path = x[:, body.index][:, seen]
+            drawn.plot(*path.T, line, color=colour, lw=0.6 if many else 1.2, label=body.name)
+            drawn.plot(*path[0], "s", color=colour, ms=2 if many else 3.5)
+            struck = np.isin(t, _blows(solution, body))
+            drawn.plot(*path[struck].T, "o", color=colour, ms=1.5 if many else 2.5)
+            if body.shape is not None:
+                _outlines(drawn, solution, body, times, seen, colour)
+        drawn.set(xlabel=f"${'xyz'[axes[0]]}$ [m]", ylabel=f"${'xyz'[axes[1]]}$ [m]")
+        drawn.set_aspect("equal", adjustable="datalim")
+        drawn.margins(0.08)
+        drawn.autoscale_view()
+        if ground:
+            for half_space in solution.scene.half_spaces:
+                _ground(drawn, half_space, seen)
+        figure.legend(drawn, loc="best")
+    return drawn
+
+
+def _plane(plane, solution, x) -> tuple[int, int]:
+    """Return the numbers of the axes to the right and up."""
+    if plane is not None:
+        checks.choice("plane", plane, (a + b for a in "xyz" for b in "xyz" if a != b))
+        return "xyz".index(plane[0]), "xyz".index(plane[1])
+    gravity = solution.scene.gravity
+    moved = np.ptp(x, axis=0).max(axis=0)
+    up = int(np.argmax(np.abs(gravity))) if np.any(gravity) else 2
+    if not np.any(gravity) and moved[2] < 1e-9 * moved.max():
+        up = 1
+    return max((k for k in range(3) if k != up), key=lambda k: moved[k] * (1 - 1e-9 * k)), up
+
+
+def _blows(solution, body) -> np.ndarray:
+    """Return the times of the impacts of a body."""
+    from carom.model.contact_rows import touching_pairs
+
+    pairs = touching_pairs(solution.scene)
+    mine = np.flatnonzero((pairs.body == body.index) | (pairs.other == body.index))
+    return solution.impacts.time[np.isin(solution.impacts.contact, mine)]
+
+
+def _times(outlines, solution) -> np.ndarray:
+    """Return the times of outlines."""
+    if outlines is None:
+        return np.zeros(0)
+    if checks.real_array("outlines", outlines, "() or (m,)").ndim == 0:
+        return np.linspace(
+            solution.t[0], solution.t[-1], checks.integer("outlines", outlines, least=1, most=MOST)
+        )
+    times, (first, last) = (
+        checks.finite_array("outlines", outlines, (None,), "s"),
+        solution.t[[0, -1]],
+    )
+    if len(times) > MOST:
+        raise ValueError(f"outlines must be at most {MOST} times, got {len(times)}")
+    if not np.all((times >= first) & (times <= last)):
+        raise ValueError(
+            f"outlines must be times within [{first:g}, {last:g}] s, got {checks.shown(outlines)}"
+        )
+    return times
+
+
+def _outlines(axes, solution, body, times, seen, colour) -> None:
+    """Draw the edges between what is turned to the eye and what is not."""
+    from matplotlib.collections import LineCollection
+
+    from carom.visual.surfaces import surface
+
+    if not len(times):
+        return
+    vertices, triangles = surface(body.shape, 48)
+    sides = {(int(f[k]), int(f[k - 2])): n for n, f in enumerate(triangles) for k in range(3)}
+    pairs = np.array([(a, b, n, sides[b, a]) for (a, b), n in sides.items() if a < b])
+    x, Q, _, _ = solution.evaluate(times)
+    for place, turn in zip(x[:, body.index], Q[:, body.index]):
+        flat = (place + quaternion.rotate(turn, vertices))[:, seen]
+        a, b, c = (flat[triangles[:, k]] for k in range(3))
+        (p, q), (r, s) = (b - a).T, (c - a).T
+        towards = p * s - q * r > 0.0
+        edge = pairs[towards[pairs[:, 2]] != towards[pairs[:, 3]], :2]
+        axes.add_collection(
+            LineCollection(list(flat[edge]), colors=colour, linewidths=0.6, capstyle="round")
+        )
+
+
+def _ground(axes, half_space, seen) -> None:
+    """Draw a half-space whose plane is seen edge-on: a line, and the matter behind it shaded."""
+    normal = half_space.normal[seen]
+    if not np.linalg.norm(normal) > 1.0 - 1e-9:
+        return
+    from matplotlib.patches import Polygon
+
+    extent = axes.dataLim.get_points()
+    centre, reach = extent.mean(axis=0), 50.0 * np.ptp(extent, axis=0).max()
+    point = centre - ((centre - half_space.point[seen]) @ normal) * normal
+    along, down = reach * np.array([-normal[1], normal[0]]), -reach * normal
+    corners = np.array([point - along, point + along, point + along + down, point - along + down])
+    # not through add_patch: the matter has no end, and must not count for the limits
+    axes.add_artist(Polygon(corners, facecolor=GROUND, edgecolor=style.BLACK, lw=0.8, zorder=0))

@@ -1,0 +1,83 @@
+"""Rates against coordinates."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom import checks
+from carom.visual.plots import figure, style
+
+
+def phase(solution, of=None, *, axis: str = "z", number: int = 0, ax=None):
+    """Draw the phase plane of one coordinate: its rate against it.
+
+    An impact is a step down or up where the path of a body or of a coordinate is drawn; of a joint only saved
+    times are known, and it slants from one to the next.
+
+    Parameters
+    ----------
+    solution : Solution or GeneralizedSolution
+    of : str or handle, optional
+        A body (its place along `axis`) or a joint (its coordinate `number`) by name. Default: the first joint
+        that has a coordinate, else the first body. Of a `GeneralizedSolution`: left out.
+    axis : {"x", "y", "z"}
+        Along which a body is looked at. Default "z".
+    number : int
+        Which coordinate of a joint with several, or of the system. Default 0.
+    ax : Axes, optional
+        To draw into. Default: a new figure.
+
+    Returns
+    -------
+    Axes
+    """
+    if not figure.is_bodies(solution):
+        if of is not None:
+            raise ValueError(
+                f"of must be left out for a system in coordinates, got {checks.shown(of)}; give number"
+            )
+        count = solution.q.shape[1]
+        k = checks.integer("number", number, least=0, most=count - 1)
+        _, (q, v) = _course(solution, lambda states: (states[0][:, k], states[1][:, k]))
+        words = f"$q_{{{k}}}$", f"$\\dot q_{{{k}}}$ [1/s]"
+    else:
+        checks.integer("number", number, least=0)
+        q, v, words = _of_scene(solution, of, checks.choice("axis", axis, "xyz"), number)
+    with figure.drawing(ax, 1, (style.COLUMN, 2.6)) as axes:
+        axes.plot(q, v, color=style.BLUE, lw=0.9)
+        axes.plot(q[:1], v[:1], "s", color=style.BLUE, ms=4)
+        axes.plot(q[-1:], v[-1:], "o", color=style.BLUE, ms=4)
+        axes.set(xlabel=words[0], ylabel=words[1])
+    return axes
+
+
+def _of_scene(solution, of, axis: str, number: int):
+    """Return coordinate, rate and their labels, of a joint or a body."""
+    from carom.io.files.variables import coordinate_units
+
+    scene = solution.scene
+    joints = {joint.name: joint for joint in scene.joints if coordinate_units(joint)}
+    every = [body.name for body in scene.bodies]
+    name = of if isinstance(of, type) else getattr(of, "name", of)
+    if name is None:
+        name = next(iter(joints), every[0])
+    if isinstance(name, str) and name in joints:
+        units = coordinate_units(joints[name])
+        k = checks.integer("number", number, least=0, most=len(units) - 1)
+        q, rate = solution.joint_coordinates(name)
+        words = f"coordinate of {name} [{units[k]}]", f"rate of {name} [{units[k]}/s]"
+        return q.reshape(len(q), -1)[:, k], rate.reshape(len(q), -1)[:, k], words
+    (b,) = figure.named("of", name, [*every, *joints])
+    k = "xyz".index(axis)
+    _, (q, v) = _course(solution, lambda states: (states[0][:, b, k], states[2][:, b, k]))
+    return q, v, (f"${axis}$ of {name} [m]", f"$v_{axis}$ of {name} [m/s]")
+
+
+def _course(solution, pick):
+    """Return times (M,) and what is picked of the states there: at impacts before and after them."""
+    t = figure.with_impacts(solution)
+    struck = np.isin(t, solution.impacts.time)
+    twice = np.repeat(t, 1 + struck)
+    first = np.append(twice[1:] == twice[:-1], False)
+    before, after = (pick(solution.evaluate(twice, side)) for side in ("left", "right"))
+    return twice, tuple(np.where(first, b, a) for b, a in zip(before, after))

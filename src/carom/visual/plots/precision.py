@@ -1,0 +1,70 @@
+"""Error against cost."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from carom import checks
+from carom.visual.plots import figure, style
+
+_MARKS = "osD^v<>P"
+
+
+def work_precision(series: Mapping, *, error: str = "error", ax=None):
+    """Draw errors against wall time of several methods, both logarithmic.
+
+    Parameters
+    ----------
+    series : mapping of str to (times, errors)
+        By the name for the legend: wall times (n,) [s] and errors (n,), all above 0 (zeros of an error do not
+        show). Points are joined in the order of time.
+    error : str
+        What the error is, with its unit, for the axis. Default "error".
+    ax : Axes, optional
+        To draw into. Default: a new figure.
+
+    Returns
+    -------
+    Axes
+    """
+    if not isinstance(series, Mapping) or not series:
+        raise ValueError(
+            f"series must be a mapping of names to (times, errors), got {checks.shown(series)}"
+        )
+    checks.text("error", error)
+    checked = {name: _checked(name, pair) for name, pair in series.items()}
+    figure.pyplot()
+    from matplotlib.ticker import LogFormatterSciNotation, LogLocator
+
+    with figure.drawing(ax, 1, (style.COLUMN, 2.6)) as axes:
+        for k, (name, (times, errors)) in enumerate(checked.items()):
+            colour, mark = figure.COLOURS[k % 7], _MARKS[k % 8]
+            axes.plot(times, errors, marker=mark, color=colour, lw=1.0, label=str(name))
+        axes.set(xscale="log", yscale="log", xlabel="wall time [s]", ylabel=error)
+        if (
+            axes.get_xlim()[1] < 100.0 * axes.get_xlim()[0]
+        ):  # hardly a decade has its label in there
+            axes.xaxis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
+            axes.xaxis.set_minor_formatter(LogFormatterSciNotation(minor_thresholds=(9.0, 9.0)))
+        axes.grid(which="major", color="#dddddd", lw=0.5)
+        axes.set_axisbelow(True)
+        figure.legend(axes, least=1)
+    return axes
+
+
+def _checked(name, pair) -> tuple[np.ndarray, np.ndarray]:
+    """Return times and errors, sorted by time."""
+    two = checks.listed(f"series[{name!r}]", pair, "two: times and errors")
+    if len(two) != 2:
+        raise ValueError(f"series[{name!r}] must be (times, errors), got {checks.shown(pair)}")
+    times, errors = two
+    times = checks.finite_array(f"series[{name!r}] times", times, (None,), "s")
+    errors = checks.finite_array(f"series[{name!r}] errors", errors, (None,))
+    if len(times) != len(errors) or not np.all(times > 0.0) or not np.all(errors >= 0.0):
+        raise ValueError(
+            f"series[{name!r}] must be as many times above 0 as errors of at least 0, got {checks.shown(pair)}"
+        )
+    order = np.argsort(times)
+    return times[order], np.where(errors > 0.0, errors, np.nan)[order]

@@ -1,0 +1,119 @@
+"""Slip in the tangent plane during an impact."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom import checks
+from carom.visual.plots import figure, style
+
+STEPS = 128  # of the spline through the impact
+FLOW = 0.7  # density of the lines of the flow
+
+
+def hodograph(solution, k: int = 0, *, flow: bool = True, ax=None):
+    """Draw the slip velocity during one impact, and the friction that goes with it.
+
+    Left: the path of the slip velocity from before the impact (square) to after it (dot), and rays that slip
+    does not leave (`invariant_directions`): outgoing ones, along which it grows, and incoming ones, along which
+    it dies. Grey lines: how slip of any start moves while it lasts, along ``W_tn - mu W_tt e`` with e its
+    direction (mathematics page, II.9). Right: friction force by normal force; on the circle of radius mu
+    while the contact slips, inside while it sticks.
+
+    Parameters
+    ----------
+    solution : Solution or GeneralizedSolution
+    k : int
+        Number of the impact; negative ones count from the end. Default 0.
+    flow : bool
+        Whether to draw the lines of the flow. Default True.
+    ax : sequence of 2 Axes, optional
+        To draw into. Default: a new figure.
+
+    Returns
+    -------
+    ndarray of 2 Axes
+
+    Raises
+    ------
+    ValueError
+        If there is no such impact, it was resolved together with others, or it has no tangents.
+    """
+    figure.is_bodies(solution)
+    checks.flag("flow", flow)
+    record = figure.impact(solution, k)
+    W, mu = record.inverse_mass, record.friction
+    if record.together > 1:
+        raise ValueError(
+            f"impact {k} was resolved together with others ({record.together} closed points): its slip "
+            "depends on theirs; draw one with impacts.together == 1"
+        )
+    if not np.any(W[1:, 1:]):
+        raise ValueError(f"impact {k} must have tangential motion, got a contact without tangents")
+    history = _course(record)
+    path = history.evaluate(np.linspace(0.0, history.duration, 600))[1][:, 1:]
+    path = np.vstack(
+        [record.relative_velocity_before[1:], path, record.relative_velocity_after[1:]]
+    )
+    with figure.drawing(ax, 2, (style.PAGE, 3.3), ncols=2, compressed=True) as axes:
+        _slip(axes[0], path, W, mu, flow)
+        _friction(axes[1], history, mu)
+    return axes
+
+
+def _course(record):
+    """Return the impact in time; velocities depend neither on the width nor on the penetration."""
+    from carom.impact.history import impact_layer
+
+    return impact_layer(
+        record.inverse_mass, record.relative_velocity_before, record.friction, record.restitution,
+        penetration=0.5, width=1e-6, law=record.law, steps=STEPS,
+    )  # fmt: skip
+
+
+def _slip(axes, path, W, mu, flow: bool) -> None:
+    from carom.impact.slip_directions import invariant_directions
+
+    corners = np.vstack([path, np.zeros(2)])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    middle, half = 0.5 * (low + high), 0.62 * float(max(high - low)) or 1.0
+    if flow and mu > 0.0:
+        grid = np.linspace(-half, half, 60)
+        slip = np.stack(np.meshgrid(*(m + grid for m in middle)))
+        size = np.maximum(np.hypot(*slip), 1e-12 * half)
+        rate = W[1:, 0, None, None] - mu * np.einsum("ij,jab->iab", W[1:, 1:], slip / size)
+        axes.streamplot(
+            *(m + grid for m in middle), *rate, density=FLOW, color="#c8c8c8", linewidth=0.6,
+            arrowsize=0.6, zorder=0,
+        )  # fmt: skip
+    axes.plot(*path.T, color=style.RED, lw=1.8, zorder=3, label="slip")
+    rays = invariant_directions(W, mu)
+    drawn = {True: "outgoing ray", False: "incoming ray"}
+    for angle, grows in zip(rays.angle, rays.outgoing):
+        end = 4.0 * half * np.array([np.cos(angle), np.sin(angle)])
+        axes.plot([0.0, end[0]], [0.0, end[1]], "--" if grows else ":", color=style.BLACK, lw=0.9,
+                  label=drawn.pop(bool(grows), None))  # fmt: skip
+    axes.plot(*path[0], "s", color=style.RED, ms=4.5, zorder=4)
+    axes.plot(*path[-1], "o", color=style.RED, ms=4.5, zorder=4)
+    axes.plot(0.0, 0.0, "+", color=style.BLACK, ms=6, zorder=4)
+    axes.set(xlabel="slip $u_{t1}$ [m/s]", ylabel="slip $u_{t2}$ [m/s]", aspect="equal")
+    axes.set(xlim=middle[0] + half * np.array([-1, 1]), ylim=middle[1] + half * np.array([-1, 1]))
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2)
+
+
+def _friction(axes, history, mu: float) -> None:
+    angle = np.linspace(0.0, 2.0 * np.pi, 181)
+    axes.plot(
+        mu * np.cos(angle), mu * np.sin(angle), color=style.GREY, lw=0.8, label=rf"$\mu$ = {mu:g}"
+    )
+    pressed = history.normal_force > 0.0
+    share = history.friction_force[pressed] / history.normal_force[pressed, None]
+    axes.plot(*share.T, ".-", color=style.RED, lw=0.8, ms=3)
+    if len(share):
+        axes.plot(*share[0], "s", color=style.RED, ms=4.5)
+        axes.plot(*share[-1], "o", color=style.RED, ms=4.5)
+    axes.plot(0.0, 0.0, "+", color=style.BLACK, ms=6)
+    axes.set(xlabel="friction / normal force, $t_1$", ylabel="friction / normal force, $t_2$")
+    reach = 1.15 * mu or 1.0
+    axes.set(aspect="equal", xlim=(-reach, reach), ylim=(-reach, reach))
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0))

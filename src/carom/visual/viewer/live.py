@@ -1,0 +1,207 @@
+"""A run in the browser, played from here: needs viser."""
+
+from __future__ import annotations
+
+import io
+import socket
+import threading
+import time
+import webbrowser
+from contextlib import redirect_stdout
+from typing import Self
+
+import numpy as np
+
+from carom.visual.viewer.frames import poses_at
+from carom.visual.viewer.show import Show, body_number, playing_speed
+
+RATE = 30.0  # pictures a second
+SAID = 0.1  # slider and energies follow so often while it plays [s]
+FADE = 0.35  # an impact is seen that long [s of the clock on the wall]
+
+
+def need_viser() -> None:
+    """Say what to install if viser is not there."""
+    try:
+        import viser  # noqa: F401
+    except ImportError as error:
+        if error.name is not None and error.name.split(".")[0] != "viser":
+            raise  # it is there, and lacks something itself
+        raise ImportError(
+            'a live view needs the package viser: pip install "carom[view]"; a page that plays by '
+            'itself needs nothing: carom.view(solution, export="run.html")'
+        ) from None
+
+
+class LiveView:
+    """A run that is shown in a browser. Made by `carom.view` with ``block=False``; use it in a ``with``.
+
+    Attributes
+    ----------
+    time : float
+        The time that is shown [s].
+    playing : bool
+    speed : float
+        Seconds of the run in a second.
+    server : viser.ViserServer
+        To add things of your own.
+    """
+
+    def __init__(self, show: Show, follow: int, speed: float | None, host: str, port: int | None):
+        import viser
+
+        from carom.visual.viewer.live_panel import LivePanel
+        from carom.visual.viewer.live_scene import LiveScene
+
+        self.show, self.host = show, host
+        self.start, self.end = float(show.frames.time[0]), float(show.frames.time[-1])
+        self.time, self.playing, self.chosen = self.start, False, -1
+        self.speed = speed or playing_speed(self.end - self.start)
+        self._followed, self._change = follow, threading.RLock()
+        self._stopped, self._marked = threading.Event(), 0.0
+        with redirect_stdout(io.StringIO()):  # its banner; `wait` says where it is
+            self.server = viser.ViserServer(
+                host, port or free_port(host), label=show.title, verbose=False
+            )
+        self.stage = LiveScene(self.server, show)
+        self.panel = LivePanel(self.server, show, self)
+        if len(show.strikes.number):
+            self.stage.marks.on_click(self._clicked)
+        if follow >= 0:
+            self.panel.follow.value = show.solution.scene.bodies[follow].name
+        self.seek(self.start)
+        self._player = threading.Thread(target=self._run, name="carom view", daemon=True)
+        self._player.start()
+
+    @property
+    def url(self) -> str:
+        """Where the browser finds it."""
+        host = "localhost" if self.host in ("0.0.0.0", "127.0.0.1", "") else self.host
+        return f"http://{host}:{self.server.get_port()}"
+
+    def seek(self, t: float) -> None:
+        """Show the time `t` [s], or the nearest one of the run."""
+        with self._change, self.server.atomic():
+            before = self._place_followed()
+            self.time = min(max(float(t), self.start), self.end)
+            self.stage.move(self.time, FADE * self.speed)
+            if not self.playing or time.monotonic() - self._marked > SAID:
+                self._marked = time.monotonic()
+                self.panel.show_time(self.time)
+            self._move_eyes(before)
+
+    def play(self, on: bool = True) -> None:
+        """Play on, or from the start if it is at its end; with False pause."""
+        with self._change:
+            if on and self.time >= self.end:
+                self.seek(self.start)
+            self.playing = bool(on)
+            if on:
+                self.stage.see_through(self.panel.through.value)
+            self.panel.play.label = "Pause" if on else "Play"
+            self.panel.show_time(self.time)
+
+    def choose(self, k: int) -> None:
+        """Stop at impact `k` of those in the list and show its inside; -1 for none."""
+        with self._change:
+            self.chosen = k
+            self.panel.show_impact(k)
+            self.stage.see_through(k >= 0 or self.panel.through.value)
+            if k >= 0:
+                self.play(False)
+                self.seek(float(self.show.solution.impacts.time[self.show.strikes.number[k]]))
+            else:
+                self.seek(self.time)
+
+    def next_impact(self, step: int = 1) -> None:
+        """Choose the impact after the chosen one or the time shown, or before it with -1."""
+        times = self.show.solution.impacts.time[self.show.strikes.number]
+        if self.chosen >= 0:
+            k = self.chosen + step
+        else:
+            k = int(np.searchsorted(times, self.time)) - (step < 0)
+        if 0 <= k < len(times):
+            self.choose(k)
+
+    def follow(self, name: str | None) -> None:
+        """Let the eye go with the body called `name`; None: with none."""
+        self._followed = body_number(self.show, name)
+        place = self._place_followed()
+        if place is not None:
+            for client in self.server.get_clients().values():
+                client.camera.look_at = place
+
+    def show_arrows(self, on: bool, length: float | None = None) -> None:
+        """Show or hide arrows, `length` times as long as at first."""
+        self.stage.arrows_on = on
+        self.stage.length = length or self.stage.length
+        self.seek(self.time)
+
+    def open(self) -> None:
+        """Open the browser."""
+        webbrowser.open(self.url)
+
+    def wait(self) -> None:
+        """Say where it is and go on when Ctrl-C was pressed."""
+        print(f"{self.show.title}: {self.url} (Ctrl-C ends it)", flush=True)
+        try:
+            while not self._stopped.wait(0.5):
+                pass
+        except KeyboardInterrupt:
+            pass
+        finally:
+            self.stop()
+
+    def stop(self) -> None:
+        """End it; the page in the browser stays as it is."""
+        if self._stopped.is_set():
+            return
+        self._stopped.set()
+        self._player.join()
+        with redirect_stdout(io.StringIO()):
+            self.server.stop()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_) -> None:
+        self.stop()
+
+    def __repr__(self) -> str:
+        ended = ", ended" if self._stopped.is_set() else ""
+        return f"<LiveView of {self.show.title!r} at {self.url}, t = {self.time:g} s{ended}>"
+
+    def _run(self) -> None:
+        """Move on while it plays."""
+        last = time.monotonic()
+        while not self._stopped.wait(1.0 / RATE):
+            now = time.monotonic()
+            if self.playing:
+                self.seek(self.time + self.speed * min(now - last, 0.1))
+                if self.time >= self.end:
+                    self.play(False)
+            last = now
+
+    def _place_followed(self) -> np.ndarray | None:
+        """Return where the followed body is (3,) [m]; None if there is none."""
+        if self._followed < 0:
+            return None
+        return poses_at(self.show.frames, self.time)[0][self._followed]
+
+    def _move_eyes(self, before: np.ndarray | None) -> None:
+        """Move the eyes of all who look on as the followed body has moved."""
+        after = self._place_followed()
+        if before is None or after is None or np.array_equal(before, after):
+            return
+        for client in self.server.get_clients().values():
+            client.camera.position = client.camera.position + after - before
+
+    def _clicked(self, event) -> None:
+        self.choose(self.stage.nearest_impact(event.ray_origin, event.ray_direction))
+
+
+def free_port(host: str) -> int:
+    """Return a port that nobody uses."""
+    with socket.socket() as probe:
+        probe.bind((host, 0))
+        return probe.getsockname()[1]

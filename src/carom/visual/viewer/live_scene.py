@@ -1,0 +1,182 @@
+"""The motion in viser: bodies, planes, arrows and marks, moved to a time."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom.geometry import quaternion
+from carom.visual.viewer.frames import poses_at
+from carom.visual.viewer.grids import grid_lines, round_length
+from carom.visual.viewer.show import COLOURS, FORCE, IMPULSE, Show
+
+PATHS = 20  # bodies whose paths are drawn
+SHADE = (236, 240, 243)
+DARK, FAINT = "#5b6873", (184, 194, 202)
+
+
+class LiveScene:
+    """What of a run is on the stage of a viser server."""
+
+    def __init__(self, server, show: Show):
+        self.show = show
+        self.radius, centre = show.place.radius, show.place.centre
+        self.length = 1.0  #: factor of all arrows
+        self.arrows_on = True
+        self.strongest = np.max(np.linalg.norm(show.strikes.arrow, axis=1), initial=0.0)
+        forces = np.linalg.norm(show.held.force, axis=1)
+        self.pressed = float(np.quantile(forces, 0.99)) if len(forces) else 0.0
+        self.stage = stage = server.scene
+        stage.configure_default_lights(enabled=False)
+        up, side = show.place.up, show.place.side
+        sun = 5.0 * self.radius * (up + 0.5 * side + 0.4 * np.cross(up, side))
+        stage.add_light_directional(
+            "/sun", intensity=2.2, cast_shadow=True, position=tuple(centre + sun)
+        )
+        stage.add_light_ambient("/sky", intensity=1.1)
+        stage.set_up_direction(tuple(show.place.up))
+        lift = show.place.lift
+        eye = np.cos(lift) * show.place.side + np.sin(lift) * show.place.up
+        server.initial_camera.position = centre + 3.4 * self.radius * eye
+        server.initial_camera.look_at = centre
+        server.initial_camera.fov = 0.62
+        server.initial_camera.near = 1e-3 * self.radius
+        server.initial_camera.far = 40.0 * self.radius
+        x, Q = poses_at(show.frames, show.frames.time[0])
+        self.bodies = [self._part(k, part, x, Q) for k, part in enumerate(show.parts)]
+        for plane in show.planes:
+            self._plane(plane)
+        self.paths = self._paths()
+        self.links = None
+        if show.links:
+            self.links = stage.add_line_segments(
+                "/links", self._link_ends(x, Q), (91, 104, 115), thickness=0.012 * self.radius
+            )
+        points = show.solution.impacts.point[show.strikes.number]
+        self.marks = stage.add_icosphere("/none", 1e-9) if not len(points) else self._marks(points)
+        self.impulses = self._arrows("/impulses", IMPULSE)
+        self.forces = self._arrows("/forces", FORCE)
+
+    def move(self, t: float, fading: float) -> None:
+        """Bring all to a time; impulses are seen for `fading` [s]."""
+        x, Q = poses_at(self.show.frames, t)
+        for part, handle in zip(self.show.parts, self.bodies):
+            handle.batched_positions = x[part.bodies].astype(np.float32)
+            handle.batched_wxyzs = Q[part.bodies].astype(np.float32)
+        if self.links is not None:
+            self.links.points = self._link_ends(x, Q)
+        number, time = self.show.strikes.number, self.show.solution.impacts.time
+        age = t - time[number]
+        seen = (age >= 0.0) & (age < fading)
+        longest = self.show.longest * self.length
+        point = self.show.solution.impacts.point[number[seen]]
+        self._point(self.impulses, point, self.show.strikes.arrow[seen], longest, self.strongest)
+        held = self.show.held
+        s = max(int(np.searchsorted(held.time, t, side="right")) - 1, 0)
+        rows = slice(held.first[s], held.first[s + 1])
+        self._point(self.forces, held.point[rows], held.force[rows], 0.7 * longest, self.pressed)
+
+    def see_through(self, on: bool) -> None:
+        """Make bodies transparent, so that arrows in them are seen."""
+        for handle in self.bodies:
+            handle.opacity = 0.45 if on else None
+
+    def nearest_impact(self, origin, direction) -> int:
+        """Return which shown impact is nearest to a ray."""
+        points = self.show.solution.impacts.point[self.show.strikes.number] - np.asarray(origin)
+        along = np.asarray(direction) / np.linalg.norm(direction)
+        away = np.linalg.norm(points - np.outer(points @ along, along), axis=1)
+        return int(np.argmin(away))
+
+    def _part(self, k: int, part, x: np.ndarray, Q: np.ndarray):
+        joint = part.look == "joint"
+        colours = [_rgb(DARK if joint else COLOURS[b % len(COLOURS)]) for b in part.bodies]
+        return self.stage.add_batched_meshes_simple(
+            f"/bodies/{k}", part.vertices.astype(np.float32), part.triangles.astype(np.uint32),
+            Q[part.bodies], x[part.bodies], batched_colors=np.array(colours, dtype=np.uint8),
+            flat_shading=part.look == "solid", lod="off",
+        )  # fmt: skip
+
+    def _paths(self) -> list:
+        """Draw the ways of the mass centres, unless there are too many."""
+        position = self.show.frames.position
+        if position.shape[1] > PATHS:
+            return []
+        ways = [
+            np.stack([position[:-1, b], position[1:, b]], axis=1) for b in range(position.shape[1])
+        ]
+        return [
+            self.stage.add_line_segments(
+                f"/paths/{b}", way.astype(np.float32), FAINT, thickness=2e-3 * self.radius
+            )
+            for b, way in enumerate(ways)
+        ]
+
+    def show_paths(self, on: bool) -> None:
+        """Show or hide the paths."""
+        for path in self.paths:
+            path.visible = on
+
+    def _plane(self, plane) -> None:
+        fan = np.array([(0, k, k + 1) for k in range(1, len(plane.corners) - 1)])
+        name = f"/planes/{plane.name}"
+        self.stage.add_mesh_simple(
+            name, plane.corners.astype(np.float32), fan, color=SHADE, side="front",
+            cast_shadow=False,
+        )  # fmt: skip
+        if plane.normal @ self.show.place.up < 0.5:
+            return  # a wall: its lines would be seen from behind too
+        cell = round_length(self.radius / 9.0)
+        lines = grid_lines(plane, cell) + 1e-3 * self.radius * plane.normal
+        self.stage.add_line_segments(
+            f"{name}/grid", lines.astype(np.float32), FAINT, thickness=2e-3 * self.radius
+        )
+
+    def _marks(self, points: np.ndarray):
+        ball = 0.009 * self.radius
+        return self.stage.add_batched_meshes_simple(
+            "/marks", ball * OCTAHEDRON, FACES, np.tile([1.0, 0, 0, 0], (len(points), 1)), points,
+            batched_colors=_rgb(DARK), lod="off", cast_shadow=False,
+        )  # fmt: skip
+
+    def _arrows(self, name: str, colour: str):
+        return self.stage.add_arrows(
+            name, np.zeros((1, 2, 3)), _rgb(colour), shaft_radius=0.02 * self.show.longest,
+            head_radius=0.045 * self.show.longest, head_length=0.1 * self.show.longest, visible=False,
+        )  # fmt: skip
+
+    def _point(self, handle, start, vectors, longest: float, greatest: float) -> None:
+        """Show arrows from `start` (A, 3) with lengths in proportion, the greatest as long as `longest`."""
+        sizes = np.linalg.norm(vectors, axis=1)
+        seen = sizes > 1e-3 * greatest
+        handle.visible = bool(self.arrows_on and np.any(seen))
+        if not handle.visible:
+            return
+        scale = longest / np.maximum(sizes[seen], greatest)  # a few beyond the greatest are cut
+        ends = start[seen] + scale[:, None] * vectors[seen]
+        handle.points = np.stack([start[seen], ends], axis=1).astype(np.float32)
+
+    def _link_ends(self, x: np.ndarray, Q: np.ndarray) -> np.ndarray:
+        """Return both ends (L, 2, 3) of springs and rods."""
+
+        def at(body, anchor):
+            return x[body] + quaternion.rotate(Q[body], anchor) if body >= 0 else anchor
+
+        ends = [
+            (at(k.parent, k.parent_anchor), at(k.child, k.child_anchor)) for k in self.show.links
+        ]
+        return np.array(ends, dtype=np.float32)
+
+
+OCTAHEDRON = np.array(
+    [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]], dtype=np.float32
+)
+FACES = np.array(
+    [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]],
+    dtype=np.uint32,
+)
+
+
+def _rgb(colour: str) -> tuple[int, int, int]:
+    """Return red, green and blue of ``"#rrggbb"``, linear in light: so viser takes them for batches."""
+    red, green, blue = (round(255 * (part / 255) ** 2.2) for part in bytes.fromhex(colour[1:]))
+    return red, green, blue

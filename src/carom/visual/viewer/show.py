@@ -1,0 +1,104 @@
+"""All that a viewer shows of a run, whichever viewer it is."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from carom import checks
+from carom.generalized.solution import GeneralizedSolution
+from carom.results.solution import Solution
+from carom.visual.viewer import frames, solids, strikes
+
+#: Okabe and Ito's colours, told apart by colour-blind eyes; their vermilion and blue are for arrows
+COLOURS = ("#56B4E9", "#E69F00", "#009E73", "#F0E442", "#CC79A7", "#999999")
+IMPULSE, FORCE = "#D55E00", "#0072B2"
+
+
+class Show(NamedTuple):
+    """What is shown of a run."""
+
+    title: str
+    solution: Solution
+    frames: frames.Frames
+    place: frames.Place
+    sizes: np.ndarray  #: (N,) radii of the bodies [m]
+    parts: list[solids.Part]
+    planes: list[solids.Plane]
+    links: list[solids.Link]
+    strikes: strikes.Strikes
+    held: strikes.Held
+
+    @property
+    def longest(self) -> float:
+        """Length of the longest arrow [m]: some bodies long, and not lost in the place."""
+        radius = self.place.radius
+        return min(0.45 * radius, max(0.1 * radius, 8.0 * float(np.median(self.sizes))))
+
+    @property
+    def left_out(self) -> list[str]:
+        """What is not shown, in words."""
+        solution, words = self.solution, []
+        saved, impacts = len(solution.t), len(solution.impacts)
+        shown = int(np.sum(np.isin(solution.t, self.frames.time)))
+        if shown < saved:
+            words.append(f"{shown} of {saved} saved times")
+        if len(self.strikes.number) < impacts:
+            words.append(f"the {len(self.strikes.number)} strongest of {impacts} impacts")
+        if len(self.held.point) < len(solution.forces.point):
+            words.append(
+                f"{len(self.held.point)} of {len(solution.forces.point)} forces of held contacts"
+            )
+        return words
+
+
+def show_of(what, title: str | None = None, most: int = frames.MOST) -> Show:
+    """Return what is shown of a solution, or of the file of one."""
+    solution = solution_of(what)
+    if title is None:
+        title = Path(what).stem if isinstance(what, (str, os.PathLike)) else "carom"
+    scene = solution.scene
+    outlines = [solids.outline_of(scene, body) for body in scene.bodies]
+    sizes = np.array([solids.size_of(outline) for outline in outlines])
+    moments = frames.frames_of(solution, checks.integer("frames", most, least=2))
+    links = solids.links_of(scene)
+    ground = [a for k in links for a in solids.ends_on_ground(k)]
+    place = frames.place_of(solution, moments, outlines, ground)
+    return Show(
+        title, solution, moments, place, sizes,
+        solids.parts_of(scene, place.radius),
+        solids.planes_of(scene, place, moments.position),
+        links,
+        strikes.strikes_of(solution),
+        strikes.held_of(solution, moments.time),
+    )  # fmt: skip
+
+
+def solution_of(what) -> Solution:
+    """Return the solution that is to be shown, loaded if it is in a file."""
+    if isinstance(what, GeneralizedSolution):
+        raise TypeError(
+            "solution must be of a Scene to be shown, got one of a GeneralizedSystem: its coordinates do "
+            "not say where bodies are; plot them, or state the system as a Scene"
+        )
+    if isinstance(what, (str, os.PathLike)):
+        return Solution.load(checks.path("solution", what))
+    checks.instance("solution", what, (Solution,), "; a path to the file of one is allowed too")
+    return what
+
+
+def body_number(show: Show, follow: str | None) -> int:
+    """Return which body to follow, by its name; -1 for none."""
+    if follow is None:
+        return -1
+    names = [body.name for body in show.solution.scene.bodies]
+    return names.index(checks.choice("follow", follow, names))
+
+
+def playing_speed(duration: float) -> float:
+    """Return a speed at which a run is played by default: real time, or slower if it lasts below 5 s."""
+    speeds = [m * 10.0**e for e in range(-6, 0) for m in (1, 2, 5)] + [1.0]
+    return max((s for s in speeds if duration >= 5.0 * s), default=speeds[0])

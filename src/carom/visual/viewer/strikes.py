@@ -1,0 +1,117 @@
+"""Impacts and held contacts as they are shown: arrows in the world, and the inside of each impact."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from carom.model.contact_rows import touching_pairs
+from carom.model.frames import contact_axes
+from carom.scene.constraints import coordinate_kind
+
+LISTED = 1000  # impacts in the list: the strongest
+OPENED = 200  # impacts whose inside is kept: the strongest
+STEPS = 24  # spline steps through a layer
+ROWS = 100_000  # arrows of held contacts, of all moments together
+
+
+class Strikes(NamedTuple):
+    """The K' impacts that are shown, in the order of time."""
+
+    number: np.ndarray  #: (K',) which of `Solution.impacts`
+    arrow: np.ndarray  #: (K', 3) impulse on the body, world axes [N s]; 0 of stops
+    contact: list[str]  #: (K',) names
+    turning: np.ndarray  #: (K',) whether it is the stop of an angle: [rad/s], [N m s]
+
+
+class Held(NamedTuple):
+    """Forces of contacts that stay, at S moments: those from `first[s]` up to `first[s + 1]`."""
+
+    time: np.ndarray  #: (S,) [s]
+    first: np.ndarray  #: (S + 1,)
+    point: np.ndarray  #: (M, 3) world [m]
+    force: np.ndarray  #: (M, 3) on the body, world axes [N]
+
+
+class Inside(NamedTuple):
+    """One impact in the time of its layer, at I instants."""
+
+    time: np.ndarray  #: (I,) since entry [s]
+    velocity: np.ndarray  #: (I, 3) contact axes [m/s]
+    force: np.ndarray  #: (I, 3) contact axes [N]
+    phases: tuple[str, ...]
+
+
+def strikes_of(solution, listed: int = LISTED) -> Strikes:
+    """Return the impacts to show."""
+    impacts, scene = solution.impacts, solution.scene
+    chosen = np.sort(_strongest(impacts)[:listed])
+    pairs = touching_pairs(scene)
+    stops = len(pairs.body)  # they come after contacts
+    arrow = np.zeros((len(chosen), 3))
+    for row, k in enumerate(chosen):
+        c = impacts.contact[k]
+        if c < stops:
+            axes = _axes(impacts.normal[k], bool(pairs.plane[c] >= 0))
+            arrow[row] = impacts.impulse[k] @ axes
+    names = [_name(scene, pairs, impacts.contact[k]) for k in chosen]
+    turning = [c >= stops and _turns(scene.stops[c - stops]) for c in impacts.contact[chosen]]
+    return Strikes(chosen, arrow, names, np.array(turning, dtype=bool))
+
+
+def held_of(solution, times: np.ndarray, rows: int = ROWS) -> Held:
+    """Return the forces of held contacts at the saved times among `times`, or fewer of them."""
+    table = solution.forces
+    saved = np.unique(np.searchsorted(solution.t, times, side="right") - 1)
+    first, last = (np.searchsorted(table.saved, saved, side=side) for side in ("left", "right"))
+    every = max(1, -(-int(np.sum(last - first)) // rows))
+    saved, first, last = saved[::every], first[::every], last[::every]
+    chosen = np.concatenate([np.arange(a, b) for a, b in zip(first, last)] or [[]]).astype(int)
+    starts = np.concatenate([[0], np.cumsum(last - first)])
+    return Held(solution.t[saved], starts, table.point[chosen], table.vector[chosen])
+
+
+def inside_of(solution, k: int) -> Inside | None:
+    """Return impact `k` from within; None where several points were resolved together."""
+    if solution.impacts.together[k] > 1:
+        return None
+    history = solution.impact_history(k, steps=STEPS)
+    force = np.column_stack([history.normal_force, history.friction_force])
+    return Inside(history.t, history.velocity, force, history.phases)
+
+
+def insides_of(solution, strikes: Strikes, opened: int = OPENED) -> dict[int, Inside]:
+    """Return the insides of the strongest impacts, by number."""
+    chosen = _strongest(solution.impacts)[:opened]
+    found = {int(k): inside_of(solution, int(k)) for k in np.intersect1d(chosen, strikes.number)}
+    return {k: inside for k, inside in found.items() if inside is not None}
+
+
+def _strongest(impacts) -> np.ndarray:
+    return np.argsort(-np.linalg.norm(impacts.impulse, axis=1), kind="stable")
+
+
+def _axes(normal: np.ndarray, of_plane: bool) -> np.ndarray:
+    """Return rows n, t1, t2: of half-spaces and of two bodies the tangents are chosen differently."""
+    if of_plane:
+        return contact_axes(normal)
+    east = np.array([1.0, 0.0, 0.0]) if abs(normal[0]) < 0.8 else np.array([0.0, 1.0, 0.0])
+    first = east - (east @ normal) * normal
+    first /= np.linalg.norm(first)
+    return np.stack([normal, first, np.cross(normal, first)])
+
+
+def _turns(stop) -> bool:
+    return coordinate_kind(stop.joint, stop.coordinate) == "turn"
+
+
+def _name(scene, pairs, contact: int) -> str:
+    """Return the name of a contact or stop."""
+    if contact < len(scene.contacts):
+        return scene.contacts[contact].name
+    if contact >= len(pairs.body):
+        return scene.stops[contact - len(pairs.body)].name
+    plane = pairs.plane[contact]
+    other = scene.half_spaces[plane] if plane >= 0 else scene.bodies[pairs.other[contact]]
+    return f"{scene.bodies[pairs.body[contact]].name}-{other.name}"
