@@ -141,8 +141,8 @@ ASKED = re.compile(r">>> (?!.*\+SKIP)")
 MODULES = ("baselines", "constraints", "forces", "geometry", "identify", "joints")
 SHOWN = [
     "Scene", "Scene.add_body", "Scene.add_contact", "Scene.add_joint", "Scene.check", "simulate",
-    "Solution", "tables.ImpactTable", "resolve_impact", "impact_layer", "ensemble", "sensitivities",
-    "solve_contacts",
+    "Solution", "results.event_tables.ImpactTable", "resolve_impact", "impact_layer", "ensemble",
+    "sensitivities", "solve_contacts",
 ]  # fmt: skip
 
 

@@ -13,7 +13,7 @@ def leaf(x):
     return {factor} * x + SHIFT
 
 def caller(x):
-    return leaf(x) + cache_key.deep(x) + chosen(x)
+    return leaf(x) + module.deep(x) + chosen(x)
 """
 
 
@@ -59,5 +59,9 @@ def test_the_whole_loop_is_reached():
     if not hasattr(press_unit, "py_func"):
         pytest.skip("not compiled: there is no cache")
     names = list(cache_key._reached(press_unit.py_func, set()))
-    for name in ("hold.press.impose", "motion.several.spread_all", "coulomb.solve.solve_cones"):
+    for name in (
+        "persistent.contact_step.impose",
+        "dynamics.several_points.spread_all",
+        "friction.solve.solve_cones",
+    ):
         assert f"carom.{name}" in names

@@ -120,7 +120,7 @@ def read(folder):
             dict(solution=solution(), export=folder / "run.html", title="run", follow="ball", speed=1.0,
                  frames=10, port=8080, host="127.0.0.1", open=False, block=False),
         ),
-        "surfaces.surface": lambda: (
+        "visual.surfaces.surface": lambda: (
             surfaces.surface, dict(shape=carom.Sphere(0.1), fineness=8),
         ),
         "plots.energy": lambda: (plots.energy, dict(solution=solution(), ax=None)),

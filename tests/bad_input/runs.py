@@ -105,10 +105,10 @@ def run(folder):
         "Ensemble.solution": lambda: (runs().solution, dict(run=0)),
         "UniformOrientation": lambda: (carom.UniformOrientation, {}),
         "UniformOrientation.ppf": lambda: (carom.UniformOrientation().ppf, dict(u=np.full((1, 3), 0.5))),
-        "ensembles.dice.face_up": lambda: (
+        "studies.ensembles.dice.face_up": lambda: (
             dice.face_up, dict(orientation=(1.0, 0, 0, 0)),
         ),
-        "ensembles.dice.fairness": lambda: (
+        "studies.ensembles.dice.fairness": lambda: (
             dice.fairness, dict(faces=[1, 2, 3]),
         ),
         "resolve_impact": lambda: (carom.resolve_impact, dict(**blow, law="newton")),
@@ -127,10 +127,10 @@ def run(folder):
             dict(inverse_mass=W, velocity=(-1.0, 1.0, 0.0), friction=0.1, kind="sliding",
                  heading=[(1.0, 0.0)], start=(0.0, 0.0, 0.0)),
         ),
-        "impact.directions.invariant_directions": lambda: (
+        "impact.slip_directions.invariant_directions": lambda: (
             slip_directions.invariant_directions, dict(inverse_mass=W, friction=0.1),
         ),
-        "impact.directions.critical_friction": lambda: (
+        "impact.slip_directions.critical_friction": lambda: (
             slip_directions.critical_friction, dict(inverse_mass=W),
         ),
         "impact.geometry.diagonal_form": lambda: (

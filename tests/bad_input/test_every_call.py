@@ -45,19 +45,21 @@ MODULES = (
 
 #: what the library hands back, and nobody makes
 HANDED_BACK = {
-    "AccuracyWarning",
-    "GROUND", "ContactSolution", "CornerImpact", "Ensemble", "Impact", "LayerHistory", "Model", "Sensitivities",
-    "SimulationError", "Solution", "Solution.from_run", "Status", "generalized.CoordinateContact",
-    "generalized.solution.GeneralizedSolution", "generalized.solution.CoordinateImpactTable",
-    "generalized.solution.CoordinateImpact", "system.mobility.Mobility", "tables.ImpactTable",
-    "tables.ImpactRecord", "tables.EventTable", "tables.ContactTable", "tables.ForceTable", "ledger.Ledger",
-    "files.convert.Frames", "viewer.live.LiveView", "viewer.page.Exported", "models.Coordinate", "models.Model",
-    "models.Report", "models.Entry", "impact.directions.InvariantDirections", "impact.geometry.NormalMotion",
-    "gradient.Sensitivities", "gradient.Derivative", "gradient.Margin", "gradient.ImpactKind",
-    "gradient.ImpactDerivative", "gradient.ByInputs", "identify.Identification", "identify.State",
-    "identify.FreeFlight", "identify.RollOut", "identify.TrajectoryError", "identify.Uncertainty",
-    "baselines.HHTRun", "baselines.LayerRun", "baselines.MoreauJeanRun", "joints.Joint", "joints.Joint.anchor",
-    "forces.AppliedForce", "constraints.Constraint", "Options.as_dict",
+    "AccuracyWarning", "GROUND", "ContactSolution", "CornerImpact", "Ensemble", "Impact", "LayerHistory",
+    "Model", "Sensitivities", "SimulationError", "Solution", "Solution.from_run", "Status",
+    "generalized.CoordinateContact", "generalized.solution.GeneralizedSolution",
+    "generalized.solution.CoordinateImpactTable", "generalized.solution.CoordinateImpact",
+    "dynamics.mobility.Mobility", "results.event_tables.ImpactTable", "results.event_tables.ImpactRecord",
+    "results.event_tables.EventTable", "results.event_tables.ContactTable",
+    "results.event_tables.ForceTable", "results.ledger.Ledger", "io.files.convert.Frames",
+    "visual.viewer.live.LiveView", "visual.viewer.page.Exported", "models.Coordinate", "models.Model",
+    "models.Report", "models.Entry", "impact.slip_directions.InvariantDirections",
+    "impact.geometry.NormalMotion", "gradient.Sensitivities", "gradient.Derivative", "gradient.Margin",
+    "gradient.ImpactKind", "gradient.ImpactDerivative", "gradient.ByInputs", "identify.Identification",
+    "identify.State", "identify.FreeFlight", "identify.RollOut", "identify.TrajectoryError",
+    "identify.Uncertainty", "baselines.HHTRun", "baselines.LayerRun", "baselines.MoreauJeanRun",
+    "joints.Joint", "joints.Joint.anchor", "forces.AppliedForce", "constraints.Constraint",
+    "Options.as_dict",
 }  # fmt: skip
 
 

@@ -14,12 +14,14 @@ from functools import cache
 from pathlib import Path
 
 _RULES = (
-    "jit.py",
-    "parts.py",
-    "dispatch.py",
-    "stamp.py",
-    "functions.py",
-    "references.py",
+    "decorators.py",
+    "link_only.py",
+    "choice.py",
+    "cache_key.py",
+    "composed.py",
+    "user_functions.py",
+    "by_reference.py",
+    "simd.py",
 )  # how everything is compiled
 _CONSTANTS = (int, float, str, bool, tuple, frozenset)
 

@@ -18,9 +18,9 @@ from typing import Any
 import numpy as np
 from numba import carray, cfunc, njit  # pyright: ignore[reportPrivateImportUsage]
 from numba.core import types
-from numba.core.dispatcher import Dispatcher
 from numba.extending import intrinsic, overload
 
+from carom._compiled.composed import is_compiled
 from carom._compiled.decorators import OPTIONS
 
 _NUMBERS = ctypes.POINTER(ctypes.c_double)
@@ -37,7 +37,7 @@ class Functions:
 
     def address(self, function: Callable, inside: tuple[int, ...], outside: tuple[int, ...]):
         """Return the address of ``function(t, x) -> y``, x and y arrays of the given shapes."""
-        if isinstance(function, Dispatcher):
+        if is_compiled(function):
             made = _compiled(function, inside, outside)
             self._kept.append(made)
             return made.address

@@ -85,8 +85,9 @@ def _cache() -> tuple[dict[str, Any], list[str]]:
         why = "no place for compiled code: set NUMBA_CACHE_DIR to a folder that can be written"
         return {"folder": None, "megabytes": 0.0}, [why]
     top = Path(folder)
-    if (top.parent / "jit.py").exists() or (top / "jit.py").exists():  # beside the source
-        top = top if (top / "jit.py").exists() else top.parent
+    package = Path(time_loop.__file__).parents[1]
+    if top.is_relative_to(package):  # beside the source
+        top = package
     size = sum(file.stat().st_size for file in top.rglob("*.nb[ic]"))
     found = {"folder": str(folder), "megabytes": size / 1e6}
     if not os.access(folder, os.W_OK):

@@ -16,33 +16,19 @@ from typing import Any
 
 import numpy as np
 
+from carom._compiled.composed import is_compiled, joined
+
 STEP = float(np.finfo(float).eps ** 0.2)
 STEP_TWICE = float(np.finfo(float).eps ** (1.0 / 6.0))
 _FIRST = (1.0 / 12.0, -2.0 / 3.0, 0.0, 2.0 / 3.0, -1.0 / 12.0)  # weights of f(-2h) ... f(2h)
 _SECOND = (-1.0 / 12.0, 4.0 / 3.0, -2.5, 4.0 / 3.0, -1.0 / 12.0)
 
 
-def compiled(function) -> bool:
-    """Return whether Numba has compiled a function."""
-    from numba.core.dispatcher import Dispatcher
-
-    return isinstance(function, Dispatcher)
-
-
 def as_array(function) -> Any:
     """Return a plain function that gives an array, where it may give lists; others as they are."""
-    if function is None or compiled(function):
+    if function is None or is_compiled(function):
         return function
     return lambda *arguments: np.asarray(function(*arguments), dtype=float)
-
-
-def joined(function, *parts) -> Any:
-    """Compile `function` if all that it calls is compiled."""
-    if all(compiled(one) for one in parts):
-        from numba import njit
-
-        return njit(function)
-    return function
 
 
 def derivative(f, n, shape):

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from carom._compiled.composed import joined
 from carom.generalized.differences import (
     along,
     along_one,
     as_array,
     as_rows,
     derivative,
-    joined,
     second,
     swapped,
 )

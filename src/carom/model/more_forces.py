@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from carom._compiled.composed import is_compiled, joined
 from carom._compiled.record_arrays import Columns, table
 from carom._compiled.user_functions import Functions
 from carom.model.arrays import (
@@ -94,12 +95,10 @@ def _friction(d, coordinates):
 
 def _of_coordinate(function):
     """Return a function of (t, x) from one of t, q and its rate."""
-    if not hasattr(function, "py_func"):
+    if not is_compiled(function):
         return lambda t, x: function(float(t), float(x[0]), float(x[1]))
-    import numba
 
-    @numba.njit
     def call(t, x):
         return function(t, x[0], x[1])
 
-    return call
+    return joined(call, function)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from carom._compiled.composed import is_compiled, joined
 from carom._compiled.record_arrays import Columns, table
 from carom._compiled.user_functions import Functions
 from carom.model.arrays import (
@@ -220,14 +221,12 @@ def _joined(fields, rows) -> np.recarray:
 
 def _of_time(function):
     """Return a function of (t, x) from one of t."""
-    if not hasattr(function, "py_func"):
+    if not is_compiled(function):
         return lambda t, x: function(float(t))
-    import numba
 
-    @numba.njit
     def call(t, x):
         out = np.empty(3)
         out[0], out[1], out[2] = function(t)
         return out
 
-    return call
+    return joined(call, function)

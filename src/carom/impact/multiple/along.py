@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import inlined, kernel
-from carom.impact.multiple.four import add, greatest, larger, load, multiply, same, store, subtract
+from carom._compiled.simd import add, greatest, larger, load, multiply, same, store, subtract
+from carom.impact.multiple.lanes import blocks, values
 from carom.impact.multiple.layout import (
     FINE,
     LANES,
@@ -24,7 +25,6 @@ from carom.impact.multiple.layout import (
     U,
 )
 from carom.impact.multiple.series import slips
-from carom.impact.multiple.simd import blocks, values
 
 _FARTHEST = 4.0  # longest step, in units of the time of the fastest contact
 _FARTHEST_STRETCHED = 40.0

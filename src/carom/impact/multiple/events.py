@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from carom._compiled.decorators import inlined, kernel
+from carom._compiled.simd import store
 from carom.impact.multiple import law
-from carom.impact.multiple.four import store
+from carom.impact.multiple.lanes import blocks, value_and_slope, values
 from carom.impact.multiple.layout import AT_D, AT_U, LANES, S_AT, S_D, S_U, D, P
-from carom.impact.multiple.simd import blocks, value_and_slope, values
 
 ROUND_OFF = 1e-13  # of the scales of velocity and depth
 TOGETHER = 1e-10  # changes closer than this in time are one

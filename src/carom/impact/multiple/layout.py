@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from carom._compiled.record_arrays import table
+from carom._compiled.simd import LANES
 from carom.friction.layout import ConeWork, cone_arrays
 from carom.impact import layout as one
 
@@ -177,7 +178,6 @@ S_LANE, S_AT = 16, 17
 SLOPE, ROUGH, ONE_OVER, PULL, FINE, SLIPPING = range(6)
 #: rows of S_AT, values at one instant: depth, normal velocity
 AT_D, AT_U = 0, 1
-LANES = 4
 FORCE, STAGE = 0, 1  # of `stage`
 ORDERS = 26  # room for series
 

@@ -6,6 +6,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.impact.multiple.discs import friction
+from carom.impact.multiple.lanes import blocks
 from carom.impact.multiple.law import OPEN, force
 from carom.impact.multiple.layout import (
     DISC,
@@ -21,7 +22,6 @@ from carom.impact.multiple.layout import (
     P,
     U,
 )
-from carom.impact.multiple.simd import blocks
 
 
 @kernel

@@ -11,7 +11,8 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import inlined, kernel
-from carom.impact.multiple.four import add, load, multiply, same, store, subtract
+from carom._compiled.simd import add, load, multiply, same, store, subtract
+from carom.impact.multiple.lanes import blocks, product, square
 from carom.impact.multiple.law import OPEN
 from carom.impact.multiple.layout import (
     CLOSED,
@@ -50,7 +51,6 @@ from carom.impact.multiple.layout import (
     P,
     U,
 )
-from carom.impact.multiple.simd import blocks, product, square
 
 _NEAR = 0.3  # slip may end within this time: stretch
 

@@ -15,7 +15,7 @@ from llvmlite import ir
 from numba.core import cgutils, config, types
 from numba.extending import intrinsic, models, register_model
 
-from carom.impact.multiple.layout import LANES
+LANES = 4  # numbers that a processor takes at once
 
 
 class Four(types.Type):

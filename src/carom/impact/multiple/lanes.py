@@ -7,7 +7,7 @@ Contact i is lane i % 4 of block i // 4. Lanes without a contact hold zeros. An 
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
-from carom.impact.multiple.four import add, load, multiply, same
+from carom._compiled.simd import add, load, multiply, same
 from carom.impact.multiple.layout import LANES
 
 

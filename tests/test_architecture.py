@@ -1,0 +1,116 @@
+"""The order of the house: each folder imports only from those before it, and nothing goes round in circles."""
+
+from __future__ import annotations
+
+import ast
+from pathlib import Path
+
+import carom
+
+ROOT = Path(carom.__file__).parent
+#: folders and modules of carom, lowest first (`docs/development/architecture.md`)
+ORDER = (
+    "_compiled", "checks", "options", "status", "geometry", "scene", "collision", "model", "kinematics",
+    "contact", "friction", "dynamics", "impact", "persistent", "stepping", "results", "generalized", "run",
+    "io", "simulate", "studies", "visual", "baselines", "paper", "bench", "cli",
+)  # fmt: skip
+#: methods of what users hold in their hands that need a floor above, imported where they are called
+DOORS = {
+    ("scene.scene", "dynamics.mobility"),
+    ("scene.contacts", "collision.api"),
+    ("results.portable", "io.files.keeper"),
+    ("results.portable", "io.files.writing"),
+    ("results.portable", "io.files.reading"),
+    ("results.portable", "io.files.convert"),
+    ("results.drawn", "visual.plots"),
+}
+LOOSE = 8
+
+
+def modules() -> dict[str, Path]:
+    """All modules, by their names below carom."""
+    found = {}
+    for path in ROOT.rglob("*.py"):
+        parts = path.relative_to(ROOT).with_suffix("").parts
+        found[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
+    return found
+
+
+def imports(path: Path, known) -> list[tuple[str, bool]]:
+    """Modules of carom that a file imports, and whether inside a function; not those for types only."""
+    tree = ast.parse(path.read_text())
+    for_types, inside = set(), set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
+            for_types |= {id(inner) for inner in ast.walk(node)}
+        if isinstance(node, ast.FunctionDef):
+            inside |= {id(inner) for inner in ast.walk(node)}
+    found = []
+    for node in ast.walk(tree):
+        if id(node) in for_types:
+            continue
+        names = []
+        if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "carom":
+            base = (node.module or "")[6:]
+            for alias in node.names:
+                full = f"{base}.{alias.name}" if base else alias.name
+                names.append(full if full in known else base)
+        elif isinstance(node, ast.Import):
+            names = [alias.name[6:] for alias in node.names if alias.name.startswith("carom.")]
+        found += [(name, id(node) in inside) for name in names if name]
+    return found
+
+
+def test_each_folder_imports_from_those_before_it():
+    known, doors, wrong = modules(), set(), []
+    for name, path in known.items():
+        if not name:
+            continue
+        own = ORDER.index(name.split(".")[0])
+        for other, inside in imports(path, known):
+            if ORDER.index(other.split(".")[0]) > own:
+                if inside and (name, other) in DOORS:
+                    doors.add((name, other))
+                else:
+                    wrong.append(f"{name} imports {other}")
+    assert not wrong
+    assert doors == DOORS  # none that is not used
+
+
+def test_no_file_imports_itself_by_way_of_others():
+    known = modules()
+    edges = {
+        name: {other for other, inside in imports(path, known) if not inside and other != name}
+        for name, path in known.items()
+    }
+    done, way = set(), []
+
+    def visit(name):
+        assert name not in way, " -> ".join([*way[way.index(name) :], name])
+        if name in done:
+            return
+        way.append(name)
+        for other in sorted(edges[name]):
+            visit(other)
+        way.pop()
+        done.add(name)
+
+    for name in known:
+        visit(name)
+
+
+def test_few_modules_stand_beside_the_folders():
+    loose = {path.stem for path in ROOT.glob("*.py")} - {"__init__"}
+    assert len(loose) <= LOOSE
+    assert loose | {p.name for p in ROOT.iterdir() if (p / "__init__.py").exists()} == set(ORDER)
+
+
+def test_only_compiled_code_knows_numba():
+    for name, path in modules().items():
+        if name.split(".")[0] == "_compiled":
+            continue
+        for node in ast.walk(ast.parse(path.read_text())):
+            names = [a.name for a in node.names] if isinstance(node, ast.Import) else []
+            if isinstance(node, ast.ImportFrom):
+                names.append(node.module or "")
+            assert not {one.split(".")[0] for one in names} & {"numba", "llvmlite"}, name
