@@ -4,8 +4,8 @@ import types
 
 import pytest
 
+from carom._compiled import choice
 from carom._compiled.cache_key import stamp
-from carom.model import choice
 
 LEAF = """
 def leaf(x):
