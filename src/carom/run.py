@@ -24,6 +24,8 @@ from carom.model import records as r
 from carom.model.answers import check_answers
 from carom.model.arrays import Relations
 from carom.model.compile import compile_scene
+from carom.model.controls import LOCATE, PROJECT, WORK, Controls
+from carom.model.data import Data, Model
 from carom.options import Options
 from carom.persistent.contact_step import press_unit
 from carom.persistent.joint_events import first_modes
@@ -33,13 +35,13 @@ from carom.results.solution import Solution
 from carom.scene.joints import Joint
 from carom.scene.scene import Scene
 from carom.status import Status
-from carom.stepping import event_step, record, time_loop
+from carom.stepping import record, time_loop
 from carom.stepping.crowd.layout import new_heap, no_heap, roomier_heap
 from carom.stepping.crowd.step import heap_unit
 from carom.stepping.energy_balance import SHARE, new_watch
 from carom.stepping.islands.layout import Islands, has_events, new_islands, no_islands, roomier
 
-LOCATIONS = {"locate": event_step.LOCATE, "project": event_step.PROJECT, "work": event_step.WORK}
+LOCATIONS = {"locate": LOCATE, "project": PROJECT, "work": WORK}
 
 
 def corner_settings(options: Options) -> CornerSettings:
@@ -70,7 +72,7 @@ class Run:
         if tolerances is not None:
             self.settings.update(step="auto", rtol=tolerances[0], atol=tolerances[1])
             longest, step = step, time_of_bounces(system, tolerances, step)
-        self.controls = event_step.Controls(
+        self.controls = Controls(
             step=step,
             duration=duration,
             location=LOCATIONS[impact_location],
@@ -164,6 +166,19 @@ class Run:
         self.clock[:] = r.new_clock()
         self.clock["ahead"] = FIRST * self.controls.longest
 
+    @property
+    def model(self) -> Model:
+        """What the kernels read: the compiled scene, and the settings of the run."""
+        return Model(self.compiled.system, self.controls)
+
+    @property
+    def data(self) -> Data:
+        """What the kernels change."""
+        return Data(
+            self.now, self.held, self.work, self.cluster, self.corner, self.heap, self.clock, self.records,
+            self.watch,
+        )  # fmt: skip
+
     def save_now(self) -> None:
         """Write the present state into the records."""
         state = (
@@ -197,10 +212,7 @@ class Run:
 
     def find_strike(self) -> None:
         """Compile what a scene with contacts needs, and note where it is."""
-        found = self.address(
-            strike_unit, self.method, self.compiled.system, self.controls, self.held, 0, self.now,
-            self.cluster, self.corner, self.work, self.clock, self.records,
-        )  # fmt: skip
+        found = self.address(strike_unit, self.model, self.data, self.method, 0)
         self.controls = self.controls._replace(strike_at=found)
 
     def find_constrained_step(self) -> None:
@@ -230,16 +242,10 @@ class Run:
         """Compile what a held contact needs: only when the first one is to be held."""
         from carom.friction.strategy import with_address as with_search
 
-        system, held, now = self.compiled.system, self.held, self.now
         self.cluster = self.cluster._replace(cone=with_search(self.cluster.cone, self.address))
-        scratch = (self.cluster, self.work, self.clock)
-        hold = self.address(
-            hold_unit, system, self.controls, held, 0, now, 0.0, *scratch, self.records
-        )
-        settle = self.address(
-            settle_unit, system, self.controls, held, 0, now, self.work, self.clock, self.records
-        )
-        press = self.address(press_unit, system, self.controls, held, now, 0.0, now, *scratch)
+        hold = self.address(hold_unit, self.model, self.data, 0, 0.0)
+        settle = self.address(settle_unit, self.model, self.data, 0)
+        press = self.address(press_unit, self.model, self.data, 0.0)
         self.controls = self.controls._replace(hold_at=hold or 1, settle_at=settle, press_at=press)
 
     def find_heap(self) -> None:
@@ -249,10 +255,7 @@ class Run:
         problem = self.heap.problem
         newton = address(newton_unit, problem, 1, 1.0, True)
         self.heap = self.heap._replace(problem=problem._replace(newton=newton))
-        found = address(
-            heap_unit, system, self.controls, self.held, self.now, 0.0, 0.0, self.heap, self.work,
-            self.clock, self.records,
-        )  # fmt: skip
+        found = address(heap_unit, self.model, self.data)
         self.controls = self.controls._replace(heap_at=found or 1)
 
     def find_corner(self) -> None:
@@ -299,11 +302,7 @@ class Run:
     def go_on(self, until: float) -> Status:
         """Go on to step number `until`, or to that time if steps vary, or to a failure."""
         while True:
-            state = (
-                self.compiled.system, self.method, self.controls, self.held, self.now, self.work,
-                self.islands, self.cluster, self.corner, self.heap, self.clock, self.records,
-                self.watch, float(until),
-            )  # fmt: skip
+            state = (self.model, self.data, self.method, self.islands, float(until))
             code = self.address.entry(time_loop.run, *state)(*state)
             if code == r.FULL:
                 self.records = r.longer(self.records)

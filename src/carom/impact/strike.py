@@ -33,10 +33,10 @@ from carom.impact.return_map import return_map
 from carom.impact.strike_several import strike_several
 from carom.impact.work_mode import restore_work
 from carom.kinematics.contact_point import contact_velocity
+from carom.model.controls import LOCATE, WORK
 from carom.model.event_rows import begin_event, end_event
 from carom.model.records import IMPACT, JAMS, NEEDS_CORNER
 
-LOCATE, WORK = 0, 2
 RETURN_MAP_FAILED, IMPACT_FAILED, TOO_MANY_POINTS = 5, 6, 10
 SEED = 1e-10  # approach given to a point that jams, as a part of its slip; the result does not depend on it
 
@@ -74,12 +74,21 @@ def onto_surface(system, controls, c, state, work):
 
 
 @unit
-def strike_unit(method, system, controls, held, c, state, cluster, corner, work, clocks, records):
+def strike_unit(model, data, method, c):
     """Resolve the impact of contact c, together with all that is closed in its group.
 
     0 or the number of a `Status` goes to work.hit, and how many points were closed, if one was struck.
     Velocities of `state` change; its position only by the return map.
     """
+    system, controls = model.system, model.controls
+    held, state, cluster, work, clocks, records = (
+        data.held,
+        data.state,
+        data.cluster,
+        data.work,
+        data.clocks,
+        data.records,
+    )
     contact, hit, clock = system.contacts[c], work.hit[0], clocks[0]
     hit.closed = 0
     hit.code = onto_surface(system, controls, c, state, work)
@@ -109,11 +118,9 @@ def strike_unit(method, system, controls, held, c, state, cluster, corner, work,
             if approach == 0.0:
                 hit.friction = contact.friction_held
                 hit.u[0] = -SEED * math.sqrt(hit.u[1] ** 2 + hit.u[2] ** 2)
-            strike_one(method, system, controls, held, c, state, work, clock, records)
+            strike_one(model, data, method, c)
         else:
-            strike_several(
-                system, controls, held, c, k, state, cluster, corner, work, clock, records
-            )  # fmt: skip
+            strike_several(model, data, c, k)
         if hit.code != 0:
             return
         if system.joints.shape[0] > 0:
@@ -130,7 +137,7 @@ def strike_unit(method, system, controls, held, c, state, cluster, corner, work,
             held.brinks[i].near = 1
 
 
-#: strike(address, method, system, controls, held, c, state, cluster, corner, work, clocks, records)
+#: strike(address, model, data, method, c)
 strike = by_address(strike_unit)
 
 
@@ -143,8 +150,16 @@ def forget_jams(held, k, cluster):
 
 
 @kernel
-def strike_one(method, system, controls, held, c, state, work, clock, records):
+def strike_one(model, data, method, c):
     """Resolve the impact of the one point in work.point, with W and u in work.hit."""
+    system, controls = model.system, model.controls
+    held, state, work, clock, records = (
+        data.held,
+        data.state,
+        data.work,
+        data.clocks[0],
+        data.records,
+    )
     contact, hit, point = system.contacts[c], work.hit[0], work.point[0]
     hit.restitution, hit.out[layout.STILL] = (
         what_is_left(contact, held.brinks[c]),

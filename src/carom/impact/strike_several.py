@@ -36,11 +36,21 @@ at_corner = by_address(corner_unit)
 
 
 @kernel
-def strike_several(system, controls, held, c, k, state, cluster, corner, work, clock, records):
+def strike_several(model, data, c, k):
     """Resolve the impact of all k closed points; add their impulses, write a row for each that has one.
 
     A point that jams begins with a little approach (mathematics page, VI.6).
     """
+    system, controls = model.system, model.controls
+    held, state, cluster, corner, work, clock, records = (
+        data.held,
+        data.state,
+        data.cluster,
+        data.corner,
+        data.work,
+        data.clocks[0],
+        data.records,
+    )
     hit, u = work.hit[0], cluster.v[U]
     inverse_masses(system, k, cluster.points[0], state, work, cluster.m[0])
     velocities(k, cluster.points[0], state, u)

@@ -400,11 +400,17 @@ SEARCH = [
     ("tolerance", "f8"),
     ("eager", "i8"),  # 0 where events of several points are left to the end of the step
     ("pending", "i8"),  # an action that waits for its unit to be compiled
-    ("horizon", "f8"),
-    ("dt", "f8"),  # of a turn of the loop that was left in the middle: the next trial step,
+    ("horizon", "f8"),  # time in which bounces may end
+    ("left", "f8"),  # time to the end of the step
+    ("dt", "f8"),  # the trial step,
     ("pace", "f8"),  # the longest that may be taken,
     ("cuts", "i8"),  # how often it was cut,
-    ("again", "i8"),  # and whether one was refused
+    ("again", "i8"),  # whether one was refused for its error,
+    ("code", "i8"),  # of the step without contacts,
+    ("applied", "f8"),  # work of loads and of friction in it,
+    ("friction", "f8"),
+    ("alone", "f8"),  # of points that are held one to a body,
+    ("found", "i8"),  # whether an event is at its end
 ]
 
 #: of `touches`: a stop in a joint

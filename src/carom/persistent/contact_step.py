@@ -53,11 +53,12 @@ ITERATION = 0.3  # cost [us] of an iteration for k points, by k^2
 
 
 @unit
-def press_unit(system, controls, held, start, h, end, cluster, work, clocks):
+def press_unit(model, data, h):
     """Correct the step from `start` to `end` of all bodies that are held at several points.
 
     Forces at the end go to the held points; work of friction, of loads and a status to `work.result`.
     """
+    held, work = data.held, data.work
     result = work.result[0]
     result.applied, result.friction, result.code = 0.0, 0.0, 0
     result.residual, result.unnamed = 0.0, 0.0
@@ -66,12 +67,12 @@ def press_unit(system, controls, held, start, h, end, cluster, work, clocks):
         group = work.body[hold.body].group
         if hold.several == 0 or hold.rest == 1 or seen(held, i, group, work):
             continue
-        press_group(system, controls, held, group, start, h, end, cluster, work, clocks[0])
+        press_group(model, data, group, h)
         if result.code != 0:
             return
 
 
-#: press(address, system, controls, held, start, h, end, cluster, work, clocks)
+#: press(address, model, data, h)
 press = by_address(press_unit)
 
 
@@ -85,14 +86,23 @@ def seen(held, i, group, work):
 
 
 @kernel
-def press_group(system, controls, held, group, start, h, end, cluster, work, clock):
+def press_group(model, data, group, h):
     """Correct the step of one group."""
+    system, controls = model.system, model.controls
+    held, start, end, cluster, work, clock = (
+        data.held,
+        data.state,
+        data.work.trial,
+        data.cluster,
+        data.work,
+        data.clocks[0],
+    )
     k = gather_held(system, held, group, start, cluster, work)
     count = members(work, group, cluster.member)
     loaded = False
     for m in range(count):
         loaded = loaded or system.bodies[cluster.member[m]].ballistic == 0
-    begin(system, controls, held, k, start, h, end, count, loaded, cluster, work)
+    begin(model, data, k, h, count, loaded)
     before, single = math.inf, of_one_body(system, k, cluster.points[0])
     clock.pressed += 1
     for turn in range(ROUNDS):
@@ -104,7 +114,7 @@ def press_group(system, controls, held, group, start, h, end, cluster, work, clo
         far = before > FAR
         if turn < 2 or far:
             inverse_masses(system, k, cluster.points[0], work.stage, work, cluster.m[0])
-        impose(system, held, k, h, end, count, loaded, cluster, work)
+        impose(model, data, k, h, count, loaded)
         for m in range(count):
             mean_velocity(
                 start[cluster.member[m]], end[cluster.member[m]], work.stage[cluster.member[m]]
@@ -114,9 +124,9 @@ def press_group(system, controls, held, group, start, h, end, cluster, work, clo
         enough = ROUGH if turn > 0 and far else 0.0
         if single:
             enough = FIRST if turn == 0 else PART * before
-        change = find_impulses(controls, k, enough, cluster, clock)
+        change = find_impulses(model, data, k, enough)
         if single and change <= SETTLED:  # good enough as they were: or the solution?
-            change = find_impulses(controls, k, 0.0, cluster, clock)
+            change = find_impulses(model, data, k, 0.0)
         if change <= SETTLED or (change <= 1e-7 and change >= 0.3 * before):
             break
         if controls.retry == 1 and clock.effort > affordable(controls, clock):
@@ -124,9 +134,9 @@ def press_group(system, controls, held, group, start, h, end, cluster, work, clo
         before = change
         clock.rounds += 1
     cluster.cone.count[NEAR], cluster.cone.mismatch[ENOUGH] = 0, 0.0
-    driven = impose(system, held, k, h, end, count, loaded, cluster, work)
-    check(system, k, start, end, count, cluster, work)
-    friction = finish(system, controls, held, k, start, h, end, count, cluster, work)
+    driven = impose(model, data, k, h, count, loaded)
+    check(model, data, k, count)
+    friction = finish(model, data, k, h, count)
     work.result[0].friction += friction
     if loaded:
         work.result[0].applied += driven + extra_work(system, h, start, end, cluster, work)
@@ -139,8 +149,10 @@ def press_group(system, controls, held, group, start, h, end, cluster, work, clo
 
 
 @kernel
-def find_impulses(controls, k, enough, cluster, clock):
+def find_impulses(model, data, k, enough):
     """Solve for the impulses of a round, to `enough` (0: to round-off); return what that moves, relative."""
+    controls = model.controls
+    cluster, clock = data.cluster, data.clocks[0]
     left, each = affordable(controls, clock) - clock.effort, ITERATION * k * k
     cluster.cone.mismatch[ENOUGH] = enough
     cluster.cone.count[BUDGET] = max(100, int(left / each))
@@ -154,11 +166,13 @@ def find_impulses(controls, k, enough, cluster, clock):
 
 
 @kernel
-def check(system, k, start, end, count, cluster, work):
+def check(model, data, k, count):
     """Measure how well impulses and velocities fit each other, whoever found them.
 
     The velocities are those of the bodies: w(p) = W p + c with the c of one more round.
     """
+    system = model.system
+    start, end, cluster, work = data.state, data.work.trial, data.cluster, data.work
     for m in range(count):
         b = cluster.member[m]
         mean_velocity(start[b], end[b], work.stage[b])
@@ -188,8 +202,16 @@ def moved(n, cluster):
 
 
 @kernel
-def begin(system, controls, held, k, start, h, end, count, loaded, cluster, work):
+def begin(model, data, k, h, count, loaded):
     """Note the step without contacts, the directions of slip, and the last forces as a first guess."""
+    system, controls = model.system, model.controls
+    held, start, end, cluster, work = (
+        data.held,
+        data.state,
+        data.work.trial,
+        data.cluster,
+        data.work,
+    )
     for m in range(count):
         keep(end[cluster.member[m]], cluster.flight[cluster.member[m]])
     if loaded:  # springs may lead to any body
@@ -229,11 +251,13 @@ def any_joined(system, count, member):
 
 
 @kernel
-def impose(system, held, k, h, end, count, loaded, cluster, work):
+def impose(model, data, k, h, count, loaded):
     """Put `end` where the impulses p of the middle rows bring it; write u = G_1 v_1.
 
     Returns the work of what is prescribed: in answer to p, and in the return to the joints.
     """
+    system = model.system
+    held, end, cluster, work = data.held, data.work.trial, data.cluster, data.work
     member, flight, result, driven = cluster.member, cluster.flight, work.result[0], 0.0
     spread_all(system, k, cluster.points[0], cluster.v[P], count, member, work.stage, work)
     joined = system.joints.shape[0] > 0 and any_joined(system, count, member)

@@ -29,11 +29,19 @@ def gained(start, count, cluster):
 
 
 @kernel
-def finish(system, controls, held, k, start, h, end, count, cluster, work):
+def finish(model, data, k, h, count):
     """Put the bodies to rest if nothing is left to move them; note modes and bounds, return friction's work.
 
     That is never positive: what friction seems to give by rows that turn within the step is an error of it.
     """
+    system, controls = model.system, model.controls
+    held, start, end, cluster, work = (
+        data.held,
+        data.state,
+        data.work.trial,
+        data.cluster,
+        data.work,
+    )
     friction = 0.0
     tolerance = rest_speed(controls, gained(start, count, cluster), work.result[0].residual, k)
     at_rest = settle(system, tolerance, start, end, count, cluster)

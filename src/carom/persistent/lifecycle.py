@@ -23,9 +23,11 @@ TOO_MANY_POINTS = 10
 
 
 @unit
-def hold_unit(system, controls, held, c, state, horizon, cluster, work, clocks, records):
+def hold_unit(model, data, c, horizon):
     """Hold what is closed in the group of contact c, does not approach, and shall be held by the rule."""
-    contact, clock, hit = system.contacts[c], clocks[0], work.hit[0]
+    system, controls = model.system, model.controls
+    held, state, cluster, work = data.held, data.state, data.cluster, data.work
+    contact, hit = system.contacts[c], work.hit[0]
     hit.code = 0
     k = gather_closed(system, controls, held, c, state, cluster, work, False)
     group = work.body[contact.body].group
@@ -38,23 +40,22 @@ def hold_unit(system, controls, held, c, state, horizon, cluster, work, clocks, 
     if k < 0:
         hit.code = TOO_MANY_POINTS
     elif k == 1 and cluster.seats[0].held < 0 and not together(contact):
-        hold_one(system, controls, held, state, horizon, cluster, work, clock, records)
+        hold_one(model, data, horizon)
     elif k > 0:
-        hold_several(
-            system, controls, held, k, group, state, horizon, cluster, work, clock, records
-        )
+        hold_several(model, data, k, group, horizon)
     regroup(system, held, work)
 
 
-#: hold_contact(address, system, controls, held, c, state, horizon, cluster, work, clocks, records)
+#: hold_contact(address, model, data, c, horizon)
 hold_contact = by_address(hold_unit)
 
 
 @unit
-def settle_unit(system, controls, held, i, state, work, clocks, records):
+def settle_unit(model, data, i):
     """Find anew how point i, the only one of its body, goes on: its slip has come to a stop or has turned."""
-    settle_one(system, controls, held.points[i], held, state, work, clocks[0], records)
+    held = data.held
+    settle_one(model, data, held.points[i])
 
 
-#: settle(address, system, controls, held, i, state, work, clocks, records)
+#: settle(address, model, data, i)
 settle = by_address(settle_unit)

@@ -29,8 +29,17 @@ from carom.persistent.jam import JAMMED, note_jam, presses, yields
 
 
 @kernel
-def hold_one(system, controls, held, state, horizon, cluster, work, clock, records):
+def hold_one(model, data, horizon):
     """Hold the one closed point, in seat 0, if it does not approach and the rule says so."""
+    system = model.system
+    held, state, cluster, work, clock, records = (
+        data.held,
+        data.state,
+        data.cluster,
+        data.work,
+        data.clocks[0],
+        data.records,
+    )
     seat, point = cluster.seats[0], cluster.points[0][0]
     contact = system.contacts[seat.contact]
     u, still = contact_velocity(point, state), slow(contact, state)
@@ -44,23 +53,31 @@ def hold_one(system, controls, held, state, horizon, cluster, work, clock, recor
     begin_event(system, seat.contact, seat.feature, state, clock, records)
     i = enlist(system, held, seat, STICK, state, work)
     hold = held.points[i]
-    begin_hold(system, contact, hold, state, 0.0, a, horizon, work, clock)
-    find_mode(system, contact, hold, held, state, work)
+    begin_hold(model, data, contact, hold, 0.0, a, horizon)
+    find_mode(model, data, contact, hold)
     clock.holds += 1
     records.event[clock.event].mode = hold.mode
     end_event(system, HOLD, state, clock, records)
 
 
 @kernel
-def settle_one(system, controls, hold, held, state, work, clock, records):
+def settle_one(model, data, hold):
     """Find anew how a point goes on, whose slip has stopped or turned."""
+    system, controls = model.system, model.controls
+    held, state, work, clock, records = (
+        data.held,
+        data.state,
+        data.work,
+        data.clocks[0],
+        data.records,
+    )
     contact = system.contacts[hold.contact]
     stop = braked(contact, hold, 1e-3 * controls.step)  # in a thousandth of a step
     hold.heading[0], hold.heading[1] = 0.0, 0.0
     acceleration(system, state, held, work, work.stages[0])
     begin_event(system, hold.contact, hold.feature, state, clock, records)
-    if begin_hold(system, contact, hold, state, stop, (0.0, 0.0, 0.0), math.inf, work, clock):
-        find_mode(system, contact, hold, held, state, work)
+    if begin_hold(model, data, contact, hold, stop, (0.0, 0.0, 0.0), math.inf):
+        find_mode(model, data, contact, hold)
     end_event(system, STICKS if hold.mode == STICK else SLIPS, state, clock, records)
 
 
@@ -74,7 +91,7 @@ def bounces_end(contact, rate, g, still, horizon):
 
 
 @kernel
-def begin_hold(system, contact, hold, state, stop, a, horizon, work, clock):
+def begin_hold(model, data, contact, hold, stop, a, horizon):
     """Take out the normal velocity, and slip that has stopped; set the mode to try first.
 
     Slip has stopped when all of it is below `stop` (or round-off). Returns False if a contact that was
@@ -82,6 +99,8 @@ def begin_hold(system, contact, hold, state, stop, a, horizon, work, clock):
     are dropped, t = 2 u_n/(g (1 - e)), friction goes with what pulls u_n out: over them the normal impulse is
     (g t - u_n)/k, over as long a hold g t/k.
     """
+    system = model.system
+    state, work, clock = data.state, data.work, data.clocks[0]
     point, still = work.point[0], slow(contact, state)
     place_held(system, hold, state, point, work)
     u = contact_velocity(point, state)
@@ -167,8 +186,10 @@ def moved(W, r, n, t1, t2):
 
 
 @kernel
-def find_mode(system, contact, hold, held, state, work):
+def find_mode(model, data, contact, hold):
     """Let a contact slip whose friction cannot hold it; put its body to rest where nothing is left."""
+    system = model.system
+    held, state, work = data.held, data.state, data.work
     acceleration(system, state, held, work, work.stages[0])
     f = hold.force
     if hold.mode == STICK and not (

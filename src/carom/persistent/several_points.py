@@ -31,8 +31,17 @@ ROUNDS = 60  # of friction with what it does to the normal impulses
 
 
 @kernel
-def hold_several(system, controls, held, k, group, state, horizon, cluster, work, clock, records):
+def hold_several(model, data, k, group, horizon):
     """Judge all k closed points of a group; take the new ones in, strike off those that open."""
+    system, controls = model.system, model.controls
+    held, state, cluster, work, clock, records = (
+        data.held,
+        data.state,
+        data.cluster,
+        data.work,
+        data.clocks[0],
+        data.records,
+    )
     pose_forces(system, controls, held, k, state, cluster, work)
     judge(system, k, state, horizon, cluster)
     new, stay = -1, False
@@ -47,12 +56,12 @@ def hold_several(system, controls, held, k, group, state, horizon, cluster, work
         seat = cluster.seats[new]
         begin_event(system, seat.contact, seat.feature, state, clock, records)
     if stay:
-        drop_bounces(system, controls, k, group, state, horizon, cluster, work, clock)
-        set_modes(system, held, k, state, cluster, work, clock, records)
-    strike_off_open(system, held, k, group, state, cluster, work, clock, records)
+        drop_bounces(model, data, k, group, horizon)
+        set_modes(model, data, k)
+    strike_off_open(model, data, k, group)
     look_again(system, held, k, state, cluster)
     if stay:
-        first_forces(system, controls, held, group, state, cluster, work)
+        first_forces(model, data, group)
 
 
 @kernel
@@ -103,13 +112,15 @@ def speed_of(system, state, count, member):
 
 
 @kernel
-def drop_bounces(system, controls, k, group, state, horizon, cluster, work, clock):
+def drop_bounces(model, data, k, group, horizon):
     """Take out the normal velocities of the points that stay, in the kinetic metric.
 
     A point without slip keeps none: else it would stick with the slip that this gives it. With slip that lasts
     friction goes with the impulse (`carom.persistent.one_point.begin_hold`). Where that leaves nothing but
     round-off it leaves nothing.
     """
+    system, controls = model.system, model.controls
+    state, cluster, work, clock = data.state, data.cluster, data.work, data.clocks[0]
     count = members(work, group, cluster.member)
     still = 1e-12 * speed_of(system, state, count, cluster.member)
     for i in range(3 * k):
@@ -224,8 +235,17 @@ def mode_of(system, i, state, cluster):
 
 
 @kernel
-def set_modes(system, held, k, state, cluster, work, clock, records):
+def set_modes(model, data, k):
     """Take the new points in, with an event each, the first is begun already; note what others do now."""
+    system = model.system
+    held, state, cluster, work, clock, records = (
+        data.held,
+        data.state,
+        data.cluster,
+        data.work,
+        data.clocks[0],
+        data.records,
+    )
     begun, before = True, held.count[0]
     for i in range(k):
         seat = cluster.seats[i]
@@ -253,8 +273,10 @@ def set_modes(system, held, k, state, cluster, work, clock, records):
 
 
 @kernel
-def first_forces(system, controls, held, group, state, cluster, work):
+def first_forces(model, data, group):
     """Put the forces of all held points of the group into the list, and the times at which their slip stops."""
+    system, controls = model.system, model.controls
+    held, state, cluster, work = data.held, data.state, data.cluster, data.work
     k = gather_held(system, held, group, state, cluster, work)
     for i in range(k):
         held.points[cluster.seats[i].held].several = 1
@@ -282,8 +304,17 @@ def look_again(system, held, k, state, cluster):
 
 
 @kernel
-def strike_off_open(system, held, k, group, state, cluster, work, clock, records):
+def strike_off_open(model, data, k, group):
     """Strike off the held points of the group that do not stay."""
+    system = model.system
+    held, state, cluster, work, clock, records = (
+        data.held,
+        data.state,
+        data.cluster,
+        data.work,
+        data.clocks[0],
+        data.records,
+    )
     for j in range(held.count[0] - 1, -1, -1):
         hold = held.points[j]
         if work.body[hold.body].group != group:

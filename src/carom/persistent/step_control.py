@@ -6,6 +6,8 @@ order 2 over all of such a push takes energy that no friction has. Where only gr
 
 from __future__ import annotations
 
+import math
+
 from carom._compiled.decorators import inlined, kernel
 from carom.geometry.rotation import norm
 from carom.model import records as r
@@ -125,11 +127,14 @@ def unsolved(system, controls, work, part):
 
 
 @inlined
-def too_long(system, controls, held, start, end, dt, friction, careful, late, work):
+def too_long(model, data, late):
     """Return whether a step with held points is to be cut: for want of a solution, or for what it loses.
 
     The latter not where events wait for the end of a part of the step (`late`).
     """
+    system, controls = model.system, model.controls
+    held, start, work, search = data.held, data.state, data.work, data.work.search[0]
+    end, dt = work.trial, search.dt
     if held.count[0] == 0:
         return False
     if dt > RETRIED * controls.step and unsolved(system, controls, work, UNSOLVED):
@@ -140,11 +145,11 @@ def too_long(system, controls, held, start, end, dt, friction, careful, late, wo
     if not shortest and turns_far(system, held, start, end, dt):
         return True
     result = work.result[0]
-    alone = unnamed_alone(system, start, end, friction, work)
+    alone = unnamed_alone(system, start, end, search.alone, work)
     if shortest:
         return not (alone <= GROSS)
     result.unnamed = max(result.unnamed, alone)
-    return not (result.unnamed <= (CAREFUL if careful else 1.0))
+    return not (result.unnamed <= (CAREFUL if search.pace < math.inf else 1.0))
 
 
 @inlined

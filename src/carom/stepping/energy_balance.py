@@ -22,6 +22,8 @@ from carom._compiled.record_arrays import table
 from carom.dynamics.energy import energies
 from carom.geometry.rotation import norm
 from carom.impact import laws
+from carom.persistent.events import JAM
+from carom.persistent.step_control import CAREFUL
 
 #: what can be wrong: places in the columns of `WATCH`
 RESIDUAL, IMPACTS, FRICTION, BOUNCES, ALL = range(5)
@@ -173,3 +175,31 @@ def unbalanced(system, held, start, end, named, t, h, watch):
     if not abs(gain) < math.inf:
         return math.inf, grows
     return abs(gain) / may if may > 0.0 else 0.0, grows
+
+
+@kernel
+def off_balance(model, data):
+    """Return whether a step is to be cut for energy without a name, and how many gained energy in a row.
+
+    The shortest are taken as they are, and the limit is made wider for those that come: round-off, or a force
+    that jumps, is not to cut all steps of a run. On the way to a jam forces have no bound: it is come to by
+    halves, however short.
+    """
+    system, controls, held, work = model.system, model.controls, data.held, data.work
+    result, search, clock, watch = work.result[0], work.search[0], data.clocks[0], data.watch[0]
+    dt, named = search.dt, search.applied + search.friction
+    shortest, careful = dt <= SHORTEST * controls.step, search.pace < math.inf
+    jams = search.active == 1 and search.kind == JAM
+    if search.active == 1 and shortest and not jams:
+        return False, 0
+    if held.count[0] == 0:
+        result.unnamed = 0.0
+    off, grows = imbalance(system, held, data.state, work.trial, named, clock.now, dt, watch)
+    result.unnamed = max(result.unnamed, off)
+    cut = grows or off > (CAREFUL if careful else 1.0)
+    if (cut and not shortest) or (grows and jams):
+        return True, 0
+    if off > 1.0:
+        watch.share *= WIDER
+    watch.gains = watch.gains + 1 if grows else 0
+    return False, watch.gains

@@ -11,78 +11,94 @@ from carom.contact.depth import watch_depth
 from carom.dynamics.adapt import begin_step
 from carom.impact.driven import BLOCKED
 from carom.model import records as r
+from carom.model.controls import LOCATE
+from carom.model.data import Data, Model
 from carom.persistent.active_set import regroup
 from carom.stepping.crowd.step import step_heap
 from carom.stepping.energy_balance import watch_step
-from carom.stepping.event_step import LOCATE, NOT_FINITE, advance, is_whole, strayed
+from carom.stepping.event_step import NOT_FINITE, advance, is_whole, strayed
 from carom.stepping.islands import one_island, parts
 from carom.stepping.islands.layout import Islands, NoIslands
 from carom.stepping.record import finite, save, still
 
 
 @entry
-def run(
-    system, method, controls, held, now, work, islands, cluster, corner, heap, clocks, records,
-    watch, until,
-):  # fmt: skip
-    """Go on from `now` to step number `until`, or to that time if the length of steps is chosen.
+def run(model, data, method, islands, until):
+    """Go on to step number `until`, or to that time if the length of steps is chosen.
 
     Returns 0, what the caller is to do, or a `Status`.
     """
-    clock = clocks[0]
+    controls, clock = model.controls, data.clocks[0]
     clock.since = 0.0
     while (clock.now if controls.order > 0 else clock.step) < until:
         if clock.since > r.LONG:
             return r.PAUSE
-        clock.since += 0.1 * now.shape[0]
+        clock.since += 0.1 * data.state.shape[0]
         if controls.order > 0:
-            if clock.saved >= records.series.shape[0]:
+            if clock.saved >= data.records.series.shape[0]:
                 return r.NEEDS_ROWS
             begin_step(controls, clock)
-            begin, length = clock.begin, clock.length
         else:
-            begin = clock.step * controls.step
-            length = min(controls.step, controls.duration - begin)
-        if not start(islands, system, held, now, length, clocks, work):
+            clock.begin = clock.step * controls.step
+            clock.length = min(controls.step, controls.duration - clock.begin)
+        if not start(islands, model, data):
             return r.NEEDS_ROOM
-        code = 0
-        while code == 0 and some_left(islands, length, clock):
-            part, own, here, scratch = take(islands, system, held, now, work)
-            part, own, scratch = refer(part), refer(own), refer(scratch)
-            enter(islands, part, own, held, scratch, begin, clock)
-            code = move(
-                islands, part, method, controls, own, here, begin, length, cluster, corner, heap,
-                scratch, clocks, records, watch[0],
-            )  # fmt: skip
-            if controls.order > 0:
-                length = clock.length
-            if code == 0:
-                leave(islands, own)
-                clock.credit, clock.effort = max(0.0, clock.credit - clock.effort), 0.0
+        code = move_islands(model, data, method, islands)
         if code != 0:
-            if not lost(islands, system, controls, code, held, now, clocks, work):
+            if not lost(islands, model, data, code):
                 return code
             continue
-        if clock.touched + held.points.shape[0] > records.touch.shape[0]:
+        if clock.touched + data.held.points.shape[0] > data.records.touch.shape[0]:
             return r.FULL
-        end(islands, system, held, now, length, clock, work)
-        clock.spent = 0.0
-        settle_up(clock)
-        clock.step += 1
-        clock.in_step = 0
-        earn(now, clock, work)
-        clock.now = begin + length
-        clock.still = min(clock.still, clock.now) if still(now) else math.inf
-        last = clock.step == controls.last
-        if controls.order > 0 and length == controls.duration - begin:
-            clock.now, last = controls.duration, True
-        if not finite(now):
-            return NOT_FINITE
-        watch_step(system, now, clock, records, watch[0])
-        if clock.step % controls.save_every == 0 or last:
-            if controls.location == LOCATE:
-                watch_depth(system, now, clock.now, work, watch[0])
-            save(system, held, now, clock, work, records)
+        end(islands, model, data)
+        code = finish_step(model, data)
+        if code != 0:
+            return code
+    return 0
+
+
+@inlined
+def move_islands(model, data, method, islands):
+    """Move one island after the other to the end of the step; return 0 or a code."""
+    code, clock = 0, data.clocks[0]
+    while code == 0 and some_left(islands, clock):
+        system, held, state, work = take(islands, model, data)
+        part = refer(Model(refer(system), model.controls))
+        own = refer(
+            Data(
+                state, refer(held), refer(work), data.cluster, data.corner, data.heap, data.clocks,
+                data.records, data.watch,
+            )
+        )  # fmt: skip
+        enter(islands, part, own, data.held)
+        code = move(islands, part, own, method)
+        if code == 0:
+            leave(islands, own)
+            clock.credit, clock.effort = max(0.0, clock.credit - clock.effort), 0.0
+    return code
+
+
+@inlined
+def finish_step(model, data):
+    """Set the clock to the end of the step, look at its balance, and save its row if it is one of those."""
+    system, controls, clock, state = model.system, model.controls, data.clocks[0], data.state
+    clock.spent = 0.0
+    settle_up(clock)
+    clock.step += 1
+    clock.in_step = 0
+    earn(state, clock, data.work)
+    clock.now = clock.begin + clock.length
+    clock.still = min(clock.still, clock.now) if still(state) else math.inf
+    last = clock.step == controls.last
+    if controls.order > 0 and clock.length == controls.duration - clock.begin:
+        clock.now, last = controls.duration, True
+    if not finite(state):
+        return NOT_FINITE
+    watch_step(system, state, clock, data.records, data.watch[0])
+    if clock.step % controls.save_every == 0 or last:
+        if controls.location == LOCATE:
+            watch_depth(system, state, clock.now, data.work, data.watch[0])
+        save(system, data.held, state, clock, data.work, data.records)
     return 0
 
 
@@ -109,110 +125,104 @@ def earn(now, clock, work):
 
 
 @kernel
-def _start_all(islands, system, held, now, length, clocks, work):
+def _start_all(islands, model, data):
     """Begin a step of all bodies together."""
-    one_island.begin_together(system, held, now, clocks, islands)
+    one_island.begin_together(model.system, data.held, data.state, data.clocks, islands)
     return True
 
 
 @kernel
-def _start_islands(islands, system, held, now, length, clocks, work):
+def _start_islands(islands, model, data):
     """Begin a step: find its islands, unless it has begun already; return False if there is no room."""
     if islands.plan[0].planned == 1:
         return True
     islands.plan[0].widen = max(1.0, islands.plan[0].widen)
-    return parts.begin_step(system, held, now, length, clocks, work, islands)
+    return parts.begin_step(
+        model.system, data.held, data.state, data.clocks[0].length, data.clocks, data.work, islands
+    )
 
 
 @kernel
-def _all_left(islands, length, clock):
+def _all_left(islands, clock):
     """Return whether the step has not ended."""
-    return clock.spent < length
+    return clock.spent < clock.length
 
 
 @kernel
-def _islands_left(islands, length, clock):
+def _islands_left(islands, clock):
     """Return whether an island has not been moved."""
     return islands.plan[0].at < islands.plan[0].count
 
 
 @kernel
-def _take_all(islands, system, held, now, work):
-    """Return what there is."""
-    return system, held, now, work
+def _take_all(islands, model, data):
+    """Return the whole scene unchanged: it is one island."""
+    return model.system, data.held, data.state, data.work
 
 
 @kernel
-def _take_island(islands, system, held, now, work):
+def _take_island(islands, model, data):
     """Return the island at hand as a system, with what it holds, its state and its scratch."""
     i = islands.plan[0].at
     state = islands.state[islands.first[0, i] : islands.first[0, i + 1]]
     return (
-        parts.part_system(system, islands, i),
-        parts.part_held(held, islands, i),
+        parts.part_system(model.system, islands, i),
+        parts.part_held(data.held, islands, i),
         state,
-        parts.part_work(work, islands, i),
+        parts.part_work(data.work, islands, i),
     )
 
 
 @kernel
-def _enter_all(islands, part, own, held, work, begin, clock):
+def _enter_all(islands, part, own, held):
     """All bodies are there already."""
 
 
 @kernel
-def _enter_island(islands, part, own, held, work, begin, clock):
+def _enter_island(islands, part, own, held):
     """Begin with an island, unless that was done before the loop was left."""
     if islands.plan[0].entered == 0:
-        parts.enter(part, own, held, work, islands, begin, clock)
+        clock = own.clocks[0]
+        parts.enter(part.system, own.held, held, own.work, islands, clock.begin, clock)
         clock.first_touch = clock.touched
 
 
 @inlined
-def _move_all(
-    islands, system, method, controls, held, now, begin, length, cluster, corner, heap, work,
-    clocks, records, watch,
-):  # fmt: skip
+def _move_all(islands, model, data, method):
     """Move all bodies to the end of the step: event by event, or whole if that did not get on."""
-    step = clocks[0].step
+    system, controls, work = model.system, model.controls, data.work
+    step = data.clocks[0].step
     if islands.free == 0 or not is_whole(step, work):
         parts.recover(system, step, work)
-        return advance(
-            system, method, controls, held, now, begin, length, cluster, corner, work, clocks,
-            records, watch,
-        )  # fmt: skip
+        return advance(model, data, method)
     if controls.hold_at == 0:
         return r.NEEDS_HOLD
     if controls.heap_at == 0:
         return r.NEEDS_HEAP
-    step_heap(
-        controls.heap_at, system, controls, held, now, begin, length, heap, work, clocks, records
-    )
-    regroup(system, held, work)
+    step_heap(controls.heap_at, model, data)
+    regroup(system, data.held, work)
     return work.result[0].code
 
 
 @inlined
-def _move_island(
-    islands, part, method, controls, own, here, begin, length, cluster, corner, heap, work, clocks,
-    records, watch,
-):  # fmt: skip
+def _move_island(islands, model, data, method):
     """Move an island to the end of the step: event by event, or whole if it is large."""
-    if not parts.is_heap(part, controls.heap, clocks[0].step, work):
-        if own.count[0] > 0 and controls.hold_at == 0:  # by a heap
+    system, controls, work = model.system, model.controls, data.work
+    step = data.clocks[0].step
+    if not parts.is_heap(system, controls.heap, step, work):
+        if data.held.count[0] > 0 and controls.hold_at == 0:  # by a heap
             return r.NEEDS_HOLD
-        parts.recover(part, clocks[0].step, work)
-        return advance(
-            part, method, controls, own, here, begin, length, cluster, corner, work, clocks, records,
-            watch,
-        )  # fmt: skip
+        parts.recover(system, step, work)
+        return advance(model, data, method)
     if controls.heap_at == 0:
         return r.NEEDS_HEAP
-    step_heap(
-        controls.heap_at, part, controls, own, here, begin, length, heap, work, clocks, records
-    )
+    step_heap(controls.heap_at, model, data)
     code = work.result[0].code
-    return r.STRAYED if code == 0 and strayed(part, here, length, work) else code
+    return (
+        r.STRAYED
+        if code == 0 and strayed(system, data.state, data.clocks[0].length, work)
+        else code
+    )
 
 
 @kernel
@@ -223,25 +233,26 @@ def _leave_all(islands, own):
 @kernel
 def _leave_island(islands, own):
     """End with an island."""
-    parts.leave(own, islands)
+    parts.leave(own.held, islands)
 
 
 @kernel
-def _all_lost(islands, system, controls, code, held, now, clocks, work):
+def _all_lost(islands, model, data, code):
     """Go back to the start of a step that could not be taken from event to event; return whether so."""
-    if code >= r.FULL or code == BLOCKED or controls.retry == 0:
+    clock = data.clocks[0]
+    if code >= r.FULL or code == BLOCKED or model.controls.retry == 0:
         return False
-    if not one_island.tire_together(clocks[0].step, work):
+    if not one_island.tire_together(clock.step, data.work):
         return False
-    spent = clocks[0].effort
-    one_island.forget_together(system, held, now, clocks, work, islands)
-    clocks[0].whole += 1
-    clocks[0].credit = max(0.0, clocks[0].credit - spent)
+    spent = clock.effort
+    one_island.forget_together(model.system, data.held, data.state, data.clocks, data.work, islands)
+    clock.whole += 1
+    clock.credit = max(0.0, clock.credit - spent)
     return True
 
 
 @kernel
-def _island_lost(islands, system, controls, code, held, now, clocks, work):
+def _island_lost(islands, model, data, code):
     """Go back to the start of the step; return whether it is to be done again.
 
     With more room for bodies that have left theirs; with islands as heaps where one could not go from event
@@ -249,29 +260,30 @@ def _island_lost(islands, system, controls, code, held, now, clocks, work):
     """
     if code >= r.FULL and code != r.STRAYED:
         return False  # the caller sees to it, and comes back
-    again = code == r.STRAYED
+    clock, again = data.clocks[0], code == r.STRAYED
     if again:
         islands.plan[0].widen *= 2.0
-    elif controls.hold == 1:
-        again = parts.tire(islands, clocks[0].step, work)
-    spent = clocks[0].effort
-    parts.forget_step(held, clocks, islands)
-    clocks[0].credit = max(0.0, clocks[0].credit - spent)
+    elif model.controls.hold == 1:
+        again = parts.tire(islands, clock.step, data.work)
+    spent = clock.effort
+    parts.forget_step(data.held, data.clocks, islands)
+    clock.credit = max(0.0, clock.credit - spent)
     if again and code != r.STRAYED:
-        clocks[0].whole += 1
+        clock.whole += 1
     return again
 
 
 @kernel
-def _end_all(islands, system, held, now, length, clock, work):
+def _end_all(islands, model, data):
     """All bodies are there already."""
     islands.begun[0] = 0
 
 
 @kernel
-def _end_islands(islands, system, held, now, length, clock, work):
+def _end_islands(islands, model, data):
     """Put all islands back."""
-    parts.end_step(system, held, now, length, clock, work, islands)
+    clock = data.clocks[0]
+    parts.end_step(model.system, data.held, data.state, clock.length, clock, data.work, islands)
 
 
 start = by_method({Islands: _start_islands, NoIslands: _start_all})

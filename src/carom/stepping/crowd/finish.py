@@ -18,8 +18,17 @@ from carom.persistent.step_control import rest_speed
 
 
 @kernel
-def finish(system, controls, held, k, h, fall, residual, start, end, heap, work, clock, records):
+def finish(model, data, k, h, fall, residual):
     """Write what the step has done, and put to rest what moves no more; return the energy that has a name."""
+    system, controls = model.system, model.controls
+    held, start, end, heap, clock, records = (
+        data.held,
+        data.state,
+        data.work.trial,
+        data.heap,
+        data.clocks[0],
+        data.records,
+    )
     tolerance = rest_speed(controls, fall * h, residual, k)
     blows, pressing, rubbing = 0.0, 0.0, 0.0
     for i in range(k):
@@ -30,9 +39,7 @@ def finish(system, controls, held, k, h, fall, residual, start, end, heap, work,
         tangential = 0.5 * (p[1] * (u[1] + w[1]) + p[2] * (u[2] + w[2]))
         if spot.turns == 0 and p[0] > 0.0 and spot.strikes == 1:
             blows += normal + tangential
-            write_impact(
-                contact, spot, point, w, normal, tangential, i, k, end, heap, clock, records
-            )
+            write_impact(model, data, contact, spot, point, w, normal, tangential, i, k)
             note_event(system, spot.contact, spot.feature, IMPACT, 0, clock, records)
         else:
             pressing += normal
@@ -44,7 +51,7 @@ def finish(system, controls, held, k, h, fall, residual, start, end, heap, work,
     clock.impacts += blows
     clock.friction += rubbing
     clock.bounces += pressing
-    count = list_held(system, held, k, h, tolerance, end, heap, clock, records)
+    count = list_held(model, data, k, h, tolerance)
     settle(system, tolerance, count, start, end, heap)
     for i in range(held.count[0]):
         if held.points[i].touches == 0:
@@ -61,8 +68,9 @@ def finish(system, controls, held, k, h, fall, residual, start, end, heap, work,
 
 
 @kernel
-def write_impact(contact, spot, point, w, pressure, rubbing, i, k, end, heap, clock, records):
+def write_impact(model, data, contact, spot, point, w, pressure, rubbing, i, k):
     """Write the row of an impact; it has no duration, and its point is one of all that press."""
+    end, heap, clock, records = data.work.trial, data.heap, data.clocks[0], data.records
     row, x = records.impact[clock.struck], end[point.a].x
     row.time, row.contact, row.together = clock.now, contact.number, max(2, k)
     inverse_mass_of(heap.problem.link[i], heap.problem.contact[i], row.W)
@@ -76,8 +84,16 @@ def write_impact(contact, spot, point, w, pressure, rubbing, i, k, end, heap, cl
 
 
 @kernel
-def list_held(system, held, k, h, tolerance, end, heap, clock, records):
+def list_held(model, data, k, h, tolerance):
     """Write the points that press and did not strike into `heap.held`, with their events; return how many."""
+    system = model.system
+    held, end, heap, clock, records = (
+        data.held,
+        data.work.trial,
+        data.heap,
+        data.clocks[0],
+        data.records,
+    )
     count = 0
     for i in range(held.count[0]):
         heap.follows[i] = 0  # 1 where a point goes on

@@ -43,42 +43,41 @@ GAINS, OFF = 1e-7, 1e-4
 
 
 @unit
-def heap_unit(system, controls, held, now, begin, length, heap, work, clocks, records):
+def heap_unit(model, data):
     """Move all bodies of an island to the end of the step; a code for `run` goes to `work.result`.
 
     Few of them, which could not go from event to event, in pieces that are cut where that does not do.
     """
+    system, controls = model.system, model.controls
+    now, work, clocks = data.state, data.work, data.clocks
     clock, result, search = clocks[0], work.result[0], work.search[0]
     few = now.shape[0] < controls.heap
     result.code = 0
     if clock.spent == 0.0:
         search.pace = math.inf
-    while clock.spent < length:
+    while clock.spent < clock.length:
         if clock.since > r.LONG:
             result.code = r.PAUSE
             return
-        dt = min(piece(system, now, controls.step, length - clock.spent, few), search.pace)
+        dt = min(piece(system, now, controls.step, clock.length - clock.spent, few), search.pace)
         while True:
             clock.tries += 1
             patient = few and clock.tries <= CAREFUL and clock.effort <= affordable(controls, clock)
             careful = patient and dt > SHORTEST * controls.step
-            result.code = move_on(
-                system, controls, held, now, begin, dt, patient, careful, heap, work, clock,
-                records,
-            )  # fmt: skip
+            result.code = move_on(model, data, dt, patient, careful)
             if result.code != MISSED:
                 break
             dt *= 0.5
         if result.code != 0:
             return
         search.pace = 2.0 * dt
-        if dt == length - clock.spent:
-            clock.spent = length
+        if dt == clock.length - clock.spent:
+            clock.spent = clock.length
         else:
             clock.spent += dt
 
 
-#: step_heap(address, system, controls, held, now, begin, length, heap, work, clocks, records)
+#: step_heap(address, model, data)
 step_heap = by_address(heap_unit)
 
 
@@ -108,10 +107,17 @@ def thickness(body):
 
 
 @kernel
-def move_on(
-    system, controls, held, now, begin, h, patient, careful, heap, work, clock, records
-):  # fmt: skip
+def move_on(model, data, h, patient, careful):
     """Make one piece of the step; return 0 or a code: MISSED if it was to be `careful` and is too long."""
+    system, controls = model.system, model.controls
+    held, now, heap, work, clock, records = (
+        data.held,
+        data.state,
+        data.heap,
+        data.work,
+        data.clocks[0],
+        data.records,
+    )
     n, fall = now.shape[0], norm(system.gravity)
     k = gather(system, held, h, fall, now, heap, work)
     if k < 0:
@@ -150,11 +156,9 @@ def move_on(
     if careful and n > 1 and off(system, k, now, work.trial, heap):
         return MISSED
     clock.residual = max(clock.residual, residual)
-    clock.now = begin + clock.spent + h
+    clock.now = clock.begin + clock.spent + h
     impacts, friction, bounces = clock.impacts, clock.friction, clock.bounces
-    named = finish(
-        system, controls, held, k, h, fall, residual, now, work.trial, heap, work, clock, records
-    )
+    named = finish(model, data, k, h, fall, residual)
     if k > 0:
         gained = energy_gained(system, now, work.trial)
         if n < controls.heap:  # alone it gains nothing beside what is named, a group nothing at all

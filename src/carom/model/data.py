@@ -1,0 +1,35 @@
+"""What a kernel of a step is given: `Model`, which it reads, and `Data`, which it changes."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from carom.model.arrays import Held, System, Work
+from carom.model.controls import Controls
+from carom.model.records import Records
+
+
+class Model(NamedTuple):
+    """A compiled scene, or an island of one, and the settings of its run: read only."""
+
+    system: System
+    controls: Controls
+
+
+class Data(NamedTuple):
+    """All that a step changes: where bodies are, what is held, scratch, clock and records.
+
+    The arrays of an island are parts of those of the run.
+    """
+
+    state: np.recarray  # (N,) STATE, the present
+    held: Held
+    work: Work
+    cluster: tuple  # `carom.impact.workspace.Cluster`: scratch of several closed points
+    corner: tuple  # `carom.impact.multiple.layout.Corner`: scratch of an impact of several points
+    heap: tuple  # `carom.stepping.crowd.layout.Heap`: scratch of a step that is taken whole
+    clocks: np.recarray  # (1,) CLOCK
+    records: Records
+    watch: np.recarray  # (1,) WATCH

@@ -1,0 +1,226 @@
+"""A trial step: proposed, then cut or shortened until nothing lies inside it but its first event at its end."""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import inlined
+from carom.contact.continuous_detection import AGAIN, CLEAR, FLAT_RIM, UNSURE
+from carom.dynamics.acceleration import SLIP
+from carom.dynamics.adapt import NOTHING_LEFT, plan_next, shorter, step_error
+from carom.dynamics.explicit import CONSTRAINTS_LOST
+from carom.dynamics.more_forces import turns_round
+from carom.dynamics.step import step
+from carom.model import records as r
+from carom.model.actions import STRIKE
+from carom.model.controls import LOCATE
+from carom.persistent.contact_step import press
+from carom.persistent.events import GAP, end_forces
+from carom.persistent.joint_events import STOPS
+from carom.persistent.margins import note_due
+from carom.persistent.step_control import affordable, too_long
+from carom.stepping.energy_balance import IN_A_ROW, SHORTEST, off_balance
+from carom.stepping.event_search import begin_search, event_value, examine, narrow, propose
+from carom.stepping.record import finite
+
+STEP_CUT, TOO_MANY, NOT_FINITE = 2, 3, 4
+STEP_TOO_SMALL, UNSTABLE = 12, 14
+TRIES = 3000  # trial steps of a step that is given up
+PARTS = (
+    16  # a step that is given up goes on in so many parts without looking for the times of events
+)
+ONCE_MORE = -1  # another trial step is to be made
+
+
+@inlined
+def propose_step(model, data, late):
+    """Note the length of the first trial step, unless the loop was left in the middle of one."""
+    clock, search = data.clocks[0], data.work.search[0]
+    if clock.paused == 1:
+        clock.paused = 0
+        return
+    dt = min(search.left, search.pace)
+    if data.held.count[0] > 0 and not late:
+        dt = until_stop(model.controls, data.held, dt, clock)
+    if late:
+        dt = min(dt, clock.length / PARTS)
+    search.dt, search.cuts, search.again, search.active = dt, 0, 0, 0
+    search.eager = 1 if clock.in_step < 20 else 0
+
+
+@inlined
+def until_stop(controls, held, dt, clock):
+    """Return dt, or the time in which slip of one of several held points is going to stop."""
+    first = dt
+    for i in range(held.count[0]):
+        hold = held.points[i]
+        if hold.several == 1 and hold.rest == 0:
+            first = min(first, hold.stop if hold.mode == SLIP else first)
+            first = min(first, min(hold.turn_stop[0], hold.turn_stop[1]))
+    # not where they follow each other without end, nor for round-off of the step
+    inside = first > controls.rest * dt and first < (1.0 - 1e-12) * dt
+    return first if inside and clock.in_step < 20 else dt
+
+
+@inlined
+def first_event(model, data, method, late):
+    """Make trial steps until nothing can lie inside one, or the first event is at its end. Returns a code."""
+    clock, search = data.clocks[0], data.work.search[0]
+    search.found = 0
+    while True:
+        if clock.since > r.LONG:
+            clock.paused = 1
+            return r.PAUSE
+        code = trial_step(model, data, method, late)
+        if code == 0:
+            code = fits(model, data)
+        if code == 0 and search.active == 1:
+            code = is_root(model, data)
+        if code == 0:
+            code = look_inside(model, data, late)
+        if code != ONCE_MORE:
+            return code
+
+
+@inlined
+def trial_step(model, data, method, late):
+    """Make a step of length `search.dt` from the present to `work.trial`, with its impulses of contacts.
+
+    The code of the step without them goes to the search: a shorter one may do.
+    """
+    system, controls, held, now = model.system, model.controls, data.held, data.state
+    work, clock, search = data.work, data.clocks[0], data.work.search[0]
+    work.result[0].start = clock.now
+    applied, friction, code = step(method, system, held, now, search.dt, work.trial, work)
+    search.applied, search.friction, search.code = applied, friction, code
+    search.alone = friction  # of points that are held one to a body
+    clock.trials += 1
+    clock.tries += 1
+    clock.since += 1.0 + now.shape[0] + held.brinks.shape[0]
+    if controls.retry > 0 and not late:
+        if clock.tries > TRIES or clock.effort > affordable(controls, clock):
+            return TOO_MANY
+    if held.count[0] > 0 and code == 0:
+        end_forces(system, held, work.trial, work)
+        press(controls.press_at, model, data, search.dt)
+        if work.result[0].code != 0:
+            return work.result[0].code
+        if controls.retry == 1 and clock.effort > affordable(controls, clock):
+            return TOO_MANY  # and its rounds were not all made
+        search.applied += work.result[0].applied
+        search.friction += work.result[0].friction
+    return 0
+
+
+@inlined
+def fits(model, data):
+    """Return 0 if the trial step is as short as its error and its joints ask for; else ONCE_MORE or a code."""
+    system, controls, work = model.system, model.controls, data.work
+    clock, search, code = data.clocks[0], work.search[0], work.search[0].code
+    dt = search.dt
+    if controls.order > 0 and search.active == 0:
+        error = math.inf
+        if code == 0:
+            error = step_error(
+                system, controls.rtol, controls.atol, data.state, dt, work.trial, work
+            )
+        if error <= 1.0:
+            plan_next(dt, error, search.again == 1, controls, clock)
+            return 0
+        if not dt > NOTHING_LEFT * controls.duration:
+            return code if code != 0 else STEP_TOO_SMALL
+        search.dt, search.again = shorter(dt, error, controls, clock), 1
+        search.left = search.dt
+        return ONCE_MORE
+    if code == CONSTRAINTS_LOST and dt > SHORTEST * controls.step:
+        search.active = 0
+        clock.cuts += 1
+        search.dt = 0.5 * dt
+        search.pace = search.dt
+        return ONCE_MORE
+    return code
+
+
+@inlined
+def is_root(model, data):
+    """Return 0 if the end of the trial step is the event that is searched for; ONCE_MORE or a code if not."""
+    system, controls, work, search = model.system, model.controls, data.work, data.work.search[0]
+    f, rate = event_value(system, controls, data.held, search, work.trial, work)
+    state = narrow(search, search.dt, f, rate)
+    if state < 0:
+        return NOT_FINITE
+    if state == 0:
+        search.dt = propose(search)
+        return ONCE_MORE
+    return 0
+
+
+@inlined
+def look_inside(model, data, late):
+    """Return 0 if the trial step may be taken: nothing lies inside, or the event is at its end (`found`)."""
+    system, controls, held, now = model.system, model.controls, data.held, data.state
+    work, search = data.work, data.work.search[0]
+
+    # is it too long for what it loses?
+    loses = too_long(model, data, late)
+    if search.active == 0 and search.dt > SHORTEST * controls.step:
+        loses = loses or turns_round(system, now, work.trial, search.dt)
+    if not loses and controls.order == 0:
+        loses, gains = off_balance(model, data)
+        if gains == IN_A_ROW:
+            return UNSTABLE if finite(work.trial) else NOT_FINITE
+    if loses:
+        return halve(model, data, True)
+
+    # does an event lie inside?
+    verdict, kind, other, low, d1, d2 = examine(system, controls, held, now, search.dt, work)
+    if verdict == FLAT_RIM and not late:  # its points strike together where they are
+        search.pending, search.contact, search.horizon = STRIKE, other, search.left
+        return 0
+    own = search.active == 1 and kind == search.kind and other == search.contact
+    if verdict == CLEAR or (own and verdict != UNSURE):
+        search.found = search.active
+        return 0
+    if verdict == AGAIN:
+        search.active = 0
+        return ONCE_MORE
+    if late:  # at the end of this part
+        search.kind, search.contact, search.found = kind, other, 1 if other >= 0 else 0
+        return 0
+    if verdict == UNSURE:
+        return halve(model, data, False)
+    begin_search(search, kind, other, low, search.dt, d1, d2)
+    return bracket(model, data)
+
+
+@inlined
+def halve(model, data, loses):
+    """Cut the trial step to half; if it `loses`, later ones too. Returns 0 if it is nothing, else as above."""
+    clock, search = data.clocks[0], data.work.search[0]
+    if search.active == 1 and search.dt <= 1e-9 * search.horizon:
+        search.found = 1
+        return 0
+    search.cuts += 1
+    clock.cuts += 1
+    if search.cuts > model.controls.max_cuts:
+        return STEP_CUT
+    search.active = 0
+    search.dt *= 0.5
+    if loses:
+        search.pace = search.dt
+    return ONCE_MORE
+
+
+@inlined
+def bracket(model, data):
+    """Begin to narrow the time of an event; where impacts are not located they are at the end of the step."""
+    system, controls, work, search = model.system, model.controls, data.work, data.work.search[0]
+    if search.kind != GAP and search.kind < STOPS:
+        note_due(data.held, search, work)
+    if search.kind == GAP and controls.location != LOCATE:
+        search.found = 1
+        return 0
+    f, rate = event_value(system, controls, data.held, search, work.trial, work)
+    narrow(search, search.dt, f, rate)
+    search.dt = propose(search)
+    return ONCE_MORE
