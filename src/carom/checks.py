@@ -1,4 +1,4 @@
-"""Checks of input: each raises at once, naming the argument, what it was and what is allowed.
+"""Checks of input: each raises at once; the error names the argument, its value and what is allowed.
 
 A number is what Python takes for one, but for what only looks like it: truth values, texts, dates, and what
 is masked. Where a value has the wrong type or is out of range the error is a `ValueError`; where an object of
@@ -128,7 +128,7 @@ def steps(duration: float, step: float, most: float) -> int:
 
 
 def call(name: str, function: Callable, *arguments):
-    """Return what a function of the user's gives; an error that it raises is told by which it was."""
+    """Call a function of the user's; add its name to an error that it raises."""
     try:
         return function(*arguments)
     except Exception as error:

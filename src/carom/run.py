@@ -8,7 +8,7 @@ from carom._compiled.decorators import address
 from carom._compiled.units import Addresses
 from carom.contact.stop import write_stop_gaps
 from carom.dynamics.acceleration import acceleration_unit
-from carom.dynamics.explicit import EXPLICIT, constrained_unit
+from carom.dynamics.explicit import EXPLICIT, Tableau, constrained_unit
 from carom.dynamics.implicit import Implicit, implicit_unit
 from carom.dynamics.methods import FIRST, ORDERS, make_method, time_of_bounces
 from carom.dynamics.project import project_start
@@ -217,13 +217,13 @@ class Run:
 
     def find_constrained_step(self) -> None:
         """Compile the step of bodies that are joined, loaded or held."""
-        system, coefficients = self.compiled.system, (self.method.A, self.method.b, self.method.E)
+        system, tableau = self.compiled.system, Tableau(self.method.A, self.method.b, self.method.E)
         found = self.address(
             acceleration_unit, system, self.now, self.held, self.work, self.work.stages[0]
         )
         self.compiled = self.compiled._replace(system=system._replace(acceleration_at=found))
         found = self.address(
-            constrained_unit, *coefficients, self.compiled.system, self.held, self.now, 0.0, self.now,
+            constrained_unit, tableau, self.compiled.system, self.held, self.now, 0.0, self.now,
             self.work,
         )  # fmt: skip
         self.method = self.method._replace(address=found)
@@ -358,7 +358,7 @@ class Run:
         held.carries[points["feature"][points["touches"] == 0]] = 1
 
     def solution(self, status: Status) -> Solution:
-        """Return what was computed; after a failure up to the last state, between saved steps or not."""
+        """Return the solution; after a failure it ends with the last state, saved or not."""
         if status is Status.SUCCESS:
             status = self.judged(status)
         else:

@@ -19,7 +19,7 @@ _ENTRIES: dict[tuple, Callable] = {}
 
 
 def kind(value):
-    """Return what is the same for values of one Numba type."""
+    """Return a key that values of one Numba type have in common."""
     if isinstance(value, tuple):
         return (type(value), *map(kind, value))
     if isinstance(value, np.ndarray):
@@ -51,7 +51,7 @@ class Addresses:
         return _UNITS[key]
 
     def entry(self, function, *arguments) -> Callable:
-        """Return what is called for an entry; it does not look at the types of what it is given."""
+        """Return the compiled form of an entry, which takes its arguments without looking at their types."""
         key = (function, self._kind, *map(type, arguments))
         if key not in _ENTRIES:
             jitted = hasattr(function, "typeof_pyval")  # not with NUMBA_DISABLE_JIT=1

@@ -50,7 +50,7 @@ def run(
 
 
 def facts(solution, file: Path) -> dict[str, Any]:
-    """Return what is in a solution as plain values."""
+    """Return the contents of a solution as plain values."""
     from carom.scene.summary import KINDS
 
     attributes = {k: solution._run.attributes[k] for k in ("source", "citation", "references")}

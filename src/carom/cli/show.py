@@ -66,7 +66,7 @@ class Progress:
             self.bar.update(self.task, completed=done, total=total)
 
     def tell(self, what: str) -> None:
-        """Say what is being done."""
+        """Print a line about the work at hand."""
         if self.bar is not None:
             self.bar.update(self.task, description=what)
 

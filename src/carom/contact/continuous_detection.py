@@ -69,18 +69,19 @@ def ball_clears(system, contact, start, end, h, centre, work):
 
 
 @inlined
-def passage(system, contact, held, leaving, start, end, h, work, tolerance):
+def passage(system, controls, held, c, start, h, work):
     """Return CLEAR, BELOW (the end is inside the half-space) or UNSURE, and a time before any contact.
 
-    Vertices that carry a held contact are left out.
+    The end is the trial state. Vertices that carry a held contact are left out.
     """
+    contact, end, leaving = system.contacts[c], work.trial, held.brinks[c].leaving
     if work.body[contact.body].status == RESTS:
         return CLEAR, h
     centre, a = greatest_acceleration(system, contact, start, work)
     if ball_clears(system, contact, start, end, h, centre, work):
         return CLEAR, h
     verdict, first, flies = CLEAR, h, work.body[contact.body].status == FREE
-    tiny = max(tolerance * contact.extent, round_off(contact, end))
+    tiny = max(controls.gap * contact.extent, round_off(contact, end))
     sag = 0.125 * a * h * h  # a path keeps this near its chord
     smooth = not flies or sag <= MISSED * contact.extent
     before, after = plane_in_body(contact, start), plane_in_body(contact, end)

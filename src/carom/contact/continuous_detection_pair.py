@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.contact.closed_points import round_off_of_both
+from carom.contact.closed_points import RIM_TIME, round_off_of_both
 from carom.contact.continuous_detection import (
     BELOW,
     CLEAR,
@@ -206,18 +206,21 @@ def far_apart(system, contact, start, end, h, work):
 
 
 @kernel
-def _passage_pair(system, contact, c, held, leaving, start, end, h, work, tolerance, longest):
+def _passage_pair(system, controls, held, c, start, h, work):
     """Return CLEAR, BELOW (they overlap at the end), UNSURE or FLAT_RIM, and a time before any contact.
 
-    Of a rim that wobbles only steps up to `longest` may follow its lowest point far round.
+    The end is the trial state. Of a rim that wobbles only steps up to `longest` may follow its lowest point far
+    round.
     """
+    contact, end, leaving = system.contacts[c], work.trial, held.brinks[c].leaving
+    longest = RIM_TIME * controls.step
     most = far_apart(system, contact, start, end, h, work)
     if most < 0.0:
         return CLEAR, h
     touching = False
     for j in range(held.count[0]):
         touching = touching or held.points[j].contact == c
-    tiny = 4.0 * max(tolerance * smaller(contact), round_off_of_both(contact, end))
+    tiny = 4.0 * max(controls.gap * smaller(contact), round_off_of_both(contact, end))
     count = find_touches(system, contact, end, REACH * smaller(contact), work)
     least, rate = lowest_open(system, contact, c, count, held, end, work)
     nearest = work.touches[0]
@@ -290,7 +293,7 @@ def _no_gap(system, contact, c, held, state, work):
 
 
 @kernel
-def _no_passage(system, contact, c, held, leaving, start, end, h, work, tolerance, longest):
+def _no_passage(system, controls, held, c, start, h, work):
     """No kernels of pairs are needed."""
     return CLEAR, h
 

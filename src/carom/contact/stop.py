@@ -102,13 +102,14 @@ def look_at_stop(system, controls, held, contact, c, now, work):
 
 
 @kernel
-def passage_stop(system, contact, c, held, leaving, start, end, h, work, tolerance):
-    """Return CLEAR, BELOW or UNSURE, and a time before any contact; the path is the cubic of its ends."""
+def passage_stop(system, controls, held, c, start, h, work):
+    """Return CLEAR, BELOW or UNSURE, and a time before any contact, by the cubic to the trial state."""
+    contact, end, leaving = system.contacts[c], work.trial, held.brinks[c].leaving
     if is_held_stop(held, c):
         return CLEAR, h
     z0, rate0 = stop_gap(system, contact, start, work)
     z1, rate1 = stop_gap(system, contact, end, work)
-    tiny = max(tolerance * contact.extent, round_off(contact, end))
+    tiny = max(controls.gap * contact.extent, round_off(contact, end))
     if not (z1 >= -tiny):
         slightly = z1 >= -MISSED * contact.extent
         if z0 <= tiny and (slightly or (z0 < -tiny and z1 >= z0)):

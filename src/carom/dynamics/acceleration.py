@@ -125,9 +125,9 @@ def slip_direction(contact, hold, point, state):
 
 @kernel
 def press_one(system, contact, hold, point, state, work, stage):
-    """Work out the force that meets the rows of one held point; add what it does to the accelerations.
+    """Find the force that meets the rows of one held point, and add its effect to the accelerations.
 
-    Returns the power that what is prescribed answers with.
+    Returns the power of prescribed motions in answer to it.
     """
     f, W = hold.force, hold.W
     an, a1, a2 = contact_acceleration(point, state, stage)

@@ -31,6 +31,14 @@ MANY = 1 << 30  # rows, more than there are
 TURN, MOST_PARTS, TINY = 0.075, 100, 1e-300
 
 
+class Tableau(NamedTuple):
+    """Coefficients of a Runge-Kutta method, as those of `Explicit`."""
+
+    A: np.ndarray
+    b: np.ndarray
+    E: np.ndarray
+
+
 class Explicit(NamedTuple):
     """A Runge-Kutta method: strictly lower triangular A, weights b, and those of its errors."""
 
@@ -88,27 +96,30 @@ def explicit_step(method, system, held, start, h, end, work):
 @inlined
 def constrained(method, system, held, start, h, end, work):
     """Step the bodies that are joined, loaded or held; as `explicit_step` gives back."""
-    whole_step(method.address, method.A, method.b, method.E, system, held, start, h, end, work)
+    tableau = Tableau(method.A, method.b, method.E)
+    whole_step(method.address, tableau, system, held, start, h, end, work)
     result = work.result[0]
     return result.applied, result.friction, result.code
 
 
 @unit
-def constrained_unit(A, weight, E, system, held, start, h, end, work):
+def constrained_unit(tableau, system, held, start, h, end, work):
     """Step at once, or in parts in which no body turns far.
 
     The length of a part depends on where it starts alone, so that the end is a continuous function of h.
     """
     result = work.result[0]
     begin, left, first = result.start, h, start
+    stages, estimates = tableau.b.size, tableau.E.shape[0] > 0
     applied, friction = 0.0, 0.0
     forget_bounds(work)
     aim(system, held, start, work)
     for part in range(MOST_PARTS):
         dt = left
-        if E.shape[0] == 0 and part < MOST_PARTS - 1:
-            dt = min(left, TURN * weight.size / max(fastest_spin(system, first, work), TINY))
-        with_care(A, weight, E, system, held, first, begin + (h - left), dt, end, work)
+        if not estimates and part < MOST_PARTS - 1:
+            dt = min(left, TURN * stages / max(fastest_spin(system, first, work), TINY))
+        result.begin = begin + (h - left)
+        with_care(tableau, system, held, first, dt, end, work)
         applied, friction = applied + result.applied, friction + result.friction
         left -= dt
         if not (left > 0.0 and result.code == 0):
@@ -132,12 +143,12 @@ def fastest_spin(system, state, work):
 
 
 @kernel
-def with_care(A, weight, E, system, held, start, begin, h, end, work):
+def with_care(tableau, system, held, start, h, end, work):
     """Step; and again with care, if stages fell into a position that is singular (`singular_positions`)."""
     result = work.result[0]
     for care in (False, True):
         applied, friction, code, least, most = constrained_step(
-            system, A, weight, E, held, start, care, begin, h, end, work
+            tableau, system, held, start, care, h, end, work
         )
         if not is_singular(system, least, most):
             break
@@ -146,7 +157,7 @@ def with_care(A, weight, E, system, held, start, begin, h, end, work):
     result.applied, result.friction, result.code = applied, friction, code
 
 
-#: whole_step(address, A, weight, E, system, held, start, h, end, work)
+#: whole_step(address, tableau, system, held, start, h, end, work)
 whole_step = by_address(constrained_unit)
 
 
@@ -189,12 +200,13 @@ def mark_held(system, held, work):
 
 
 @kernel
-def constrained_step(system, A, weight, E, held, start, care, t0, h, end, work):
-    """Step the bodies that are joined, loaded or held, from the time t0; the others are in `end` already.
+def constrained_step(tableau, system, held, start, care, h, end, work):
+    """Step the bodies that are joined, loaded or held, from `result.begin`; the others are in `end` already.
 
     With `care` the stages return to the joints first, and those in singular positions are passed round. Returns
     work of loads, of friction, a status, and the least and the most rows that stages left out, or nearly.
     """
+    A, weight, E, t0 = tableau.A, tableau.b, tableau.E, work.result[0].begin
     stages, stage = weight.size, work.stage
     applied, friction = 0.0, 0.0
     least, most = MANY, 0

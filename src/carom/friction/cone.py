@@ -86,7 +86,7 @@ def in_disc(radius, x1, x2):
 
 @kernel
 def shift(kind, mu, h1, h2, w1, w2):
-    """Return what is added to w_n so that w lies in the dual of the set of allowed impulses (de Saxce)."""
+    """Return the correction of w_n by which w lies in the dual of the set of allowed impulses (de Saxce)."""
     if kind == CONE:
         return mu * math.sqrt(w1 * w1 + w2 * w2)
     if kind == SLIDING:

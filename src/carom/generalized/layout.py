@@ -1,4 +1,4 @@
-"""The arrays of a system in the user's own coordinates: what it is, what is held, and scratch.
+"""The arrays of a system in the user's own coordinates: the system, its active set, and workspace.
 
 A state is one array ``x = (q, v)`` of 2n numbers. Everything that the user states reaches the kernels as four
 functions ``f(t, x, out)`` (`carom._compiled.user_functions`), whose answers are laid out here.

@@ -78,7 +78,7 @@ def slip_of(system, held, i, x, work):
 
 @kernel
 def direction(held, i, u1, u2):
-    """Return the direction of slip: where it would turn about within a stage, what it was before."""
+    """Return the direction of slip; where it would turn about within a stage, the one before."""
     h1, h2 = held.heading[i, 0], held.heading[i, 1]
     size = math.sqrt(u1 * u1 + u2 * u2)
     if size > 0.0 and u1 * h1 + u2 * h2 > 0.0:

@@ -155,7 +155,7 @@ class GeneralizedRun:
             return Status.FUNCTION_FAILED
 
     def solution(self, status: Status):
-        """Return what was computed; after a failure up to the last state."""
+        """Return the solution; after a failure it ends with the last state."""
         from carom.generalized.solution import GeneralizedSolution
 
         clock = self.clock[0]

@@ -14,7 +14,7 @@ LAWS = ("newton", "poisson", "stronge")
 
 @dataclass(frozen=True)
 class CoordinateContact:
-    """A contact of a system in coordinates: its law; what touches is told by its gap."""
+    """A contact of a system in coordinates: its law; its gap function says what touches."""
 
     name: str
     restitution: float

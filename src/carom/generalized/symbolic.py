@@ -123,7 +123,7 @@ class SymbolicModel:
         return isinstance(result, sp.Expr) and not result.has(sp.nan, sp.zoo, sp.oo, -sp.oo)
 
     def expression(self, name: str, given) -> Any:
-        """Return what is given as an expression; refuse texts, which SymPy would evaluate, and no numbers."""
+        """Return an expression; refuse texts, which SymPy would evaluate, and whatever is no number."""
         sp = self.sp
         try:
             result = sp.sympify(given, strict=True)

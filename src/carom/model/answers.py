@@ -39,7 +39,7 @@ def check_answers(scene) -> None:
 
 
 def _states(bodies, with_rates: bool) -> np.ndarray:
-    """Return what a function is told of bodies at the start, (n, 13) or (n, 7)."""
+    """Return the argument of a function at the start: states of bodies, (n, 13) or (n, 7)."""
     names = ("position", "orientation", "velocity", "angular_velocity")[: 4 if with_rates else 2]
     return np.array([np.concatenate([getattr(b, name) for name in names]) for b in bodies])
 

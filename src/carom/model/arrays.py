@@ -378,6 +378,7 @@ RESULT = [
     ("parts", "i8"),  # more parts of steps in which bodies turned far than steps
     ("fallen", "i8"),  # steps of a symplectic method that the explicit one has taken
     ("start", "f8"),  # time at which the step on trial starts
+    ("begin", "f8"),  # of the part of it at hand
     ("time", "f8"),  # of the state that is looked at: what is prescribed depends on it
 ]
 

@@ -24,7 +24,7 @@ OF_CONTACTS = (
 
 
 class Written(NamedTuple):
-    """Copies of what a run has written: a solution works out of them what it is asked for."""
+    """Copies of the records of a run, from which a solution works out its columns on demand."""
 
     attitude: np.ndarray  # (T, N, 4) of the principal axes
     series: np.recarray  # (T,) SERIES

@@ -8,7 +8,7 @@ an event is as exact as the method.
 from __future__ import annotations
 
 from carom._compiled.decorators import inlined, kernel
-from carom.contact.closed_points import RIM_TIME, round_off_of_both
+from carom.contact.closed_points import round_off_of_both
 from carom.contact.continuous_detection import AGAIN, BELOW, CLEAR, FLAT_RIM, UNSURE, passage
 from carom.contact.continuous_detection_pair import lowest_pair, passage_pair
 from carom.contact.gap import lowest, round_off
@@ -26,25 +26,17 @@ def examine(system, controls, held, now, dt, work):
     found, which, low = CLEAR, -1, 0.0
     for c in range(held.brinks.shape[0]):
         contact = system.contacts[c]
-        leaving = held.brinks[c].leaving
         if contact.touches == 0:
-            verdict, first = passage(
-                system, contact, held, leaving, now, work.trial, dt, work, controls.gap
-            )
+            verdict, first = passage(system, controls, held, c, now, dt, work)
         elif contact.touches == STOP:
-            verdict, first = passage_stop(
-                system, contact, c, held, leaving, now, work.trial, dt, work, controls.gap
-            )
+            verdict, first = passage_stop(system, controls, held, c, now, dt, work)
         else:
-            verdict, first = passage_pair(
-                system, contact, c, held, leaving, now, work.trial, dt, work, controls.gap,
-                RIM_TIME * controls.step,
-            )  # fmt: skip
+            verdict, first = passage_pair(system, controls, held, c, now, dt, work)
         if verdict in (UNSURE, FLAT_RIM):
             return verdict, GAP, c, 0.0, 0.0, 0.0
         if verdict == BELOW and found == CLEAR:
             found, which, low = BELOW, c, 0.5 * first
-        elif verdict == CLEAR and leaving == 1 and first > 0.0:
+        elif verdict == CLEAR and held.brinks[c].leaving == 1 and first > 0.0:
             held.brinks[c].leaving = 0
     if found == BELOW:
         return BELOW, GAP, which, low, 0.0, 0.0

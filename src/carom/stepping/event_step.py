@@ -108,7 +108,7 @@ def may_go_on(model, data, late):
 
 @inlined
 def due_action(model, data, late):
-    """Return what is to be done before time goes on: what was put off, or what closed points ask for."""
+    """Return the action that is due before time goes on: one put off, or one that closed points ask for."""
     controls, clock, search = model.controls, data.clocks[0], data.work.search[0]
     search.left = clock.length - clock.spent
     action = search.pending

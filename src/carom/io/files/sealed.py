@@ -43,7 +43,7 @@ def seal(parts: list, index: dict[str, Any]) -> list:
 
 
 def unsealed(path: Path) -> Sealed:
-    """Return what is in a file, if no bit of it has changed since it was written.
+    """Return the contents of a file, if no bit of it has changed since it was written.
 
     Raises
     ------
@@ -75,7 +75,7 @@ def unsealed(path: Path) -> Sealed:
 
 
 def refusal(path: Path, why: str) -> str:
-    """Return what is said of a file that is not read."""
+    """Return the message about a file that is refused."""
     return f"path must be a file of a run, got {str(path)!r}: {why}; {ALLOWED}"
 
 

@@ -55,7 +55,7 @@ def labelled(solution, reactions: bool = True) -> list[Variable]:
 
 
 def attributes(solution) -> dict[str, Any]:
-    """Return what is said of a run as a whole."""
+    """Return the attributes of a run as a whole."""
     import carom
 
     return {

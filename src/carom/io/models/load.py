@@ -147,7 +147,7 @@ def load_model(
 
 
 def _new_build(model, data, report: Report, light: float) -> tuple[Build, list[Link]]:
-    """Return what is at hand, and what moves."""
+    """Return the bodies that stand, and those that move."""
     links = moving_links(model)
     if not links:
         raise ValueError("the model must have something that moves, got no body with a joint")

@@ -33,13 +33,13 @@ def finish(model, data, k, h, fall, residual):
     blows, pressing, rubbing = 0.0, 0.0, 0.0
     for i in range(k):
         spot, point = heap.spots[i], heap.points[0][i]
-        contact, p, u = system.contacts[spot.contact], spot.impulse, spot.before
+        p, u = spot.impulse, spot.before
         w = contact_velocity(point, end)
         normal = 0.5 * p[0] * (u[0] + w[0]) if spot.turns == 0 else 0.0
         tangential = 0.5 * (p[1] * (u[1] + w[1]) + p[2] * (u[2] + w[2]))
         if spot.turns == 0 and p[0] > 0.0 and spot.strikes == 1:
             blows += normal + tangential
-            write_impact(model, data, contact, spot, point, w, normal, tangential, i, k)
+            write_impact(model, data, i, k, w, normal, tangential)
             note_event(system, spot.contact, spot.feature, IMPACT, 0, clock, records)
         else:
             pressing += normal
@@ -68,10 +68,15 @@ def finish(model, data, k, h, fall, residual):
 
 
 @kernel
-def write_impact(model, data, contact, spot, point, w, pressure, rubbing, i, k):
+def write_impact(model, data, i, k, w, pressure, rubbing):
     """Write the row of an impact; it has no duration, and its point is one of all that press."""
     end, heap, clock, records = data.work.trial, data.heap, data.clocks[0], data.records
-    row, x = records.impact[clock.struck], end[point.a].x
+    spot, point = heap.spots[i], heap.points[0][i]
+    row, x, contact = (
+        records.impact[clock.struck],
+        end[point.a].x,
+        model.system.contacts[spot.contact],
+    )
     row.time, row.contact, row.together = clock.now, contact.number, max(2, k)
     inverse_mass_of(heap.problem.link[i], heap.problem.contact[i], row.W)
     for a in range(3):

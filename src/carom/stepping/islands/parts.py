@@ -81,7 +81,7 @@ def part_system(system, islands, i):
 
 @kernel
 def part_held(held, islands, i):
-    """Return what is held in island i."""
+    """Return the active set of island i."""
     first = islands.first
     brinks = islands.brinks[first[1, i] : first[1, i + 1]]
     return Held(islands.points[0], brinks, held.carries, islands.carried)

@@ -233,7 +233,7 @@ class Pieces:
         return between(one, other) / (2.0 * e), {n: (rows[n] - others[n]) / (2.0 * e) for n in ROWS}
 
     def happened(self, run: Run, struck: int, event: int) -> list[tuple]:
-        """Return what was written from those rows on, without numbers."""
+        """Return the records from those rows on, without their numbers."""
         rec, clock = run.records, run.clock[0]
         rows = rec.impact[struck : clock.struck]
         events = rec.event[event : clock.event]

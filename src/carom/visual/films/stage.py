@@ -240,7 +240,7 @@ def checked_size(size) -> tuple[int, int]:
 
 
 def pillow() -> tuple[Any, Any, Any]:
-    """Return what is used of Pillow, or say how to get it."""
+    """Return the parts of Pillow that are used, or raise an error that says how to install it."""
     try:
         from PIL import Image, ImageDraw, ImageFont
     except ImportError:

@@ -65,7 +65,7 @@ def page_text(show: Show, follow: str | None = None, speed: float | None = None)
 
 
 def header(show: Show, packer: Packer) -> dict:
-    """Return what the page is told, with the arrays put into `packer`."""
+    """Return the header of the page, and put its arrays into `packer`."""
     solution, frames, place = show.solution, show.frames, show.place
     return {
         "title": show.title,

@@ -56,7 +56,7 @@ class Show(NamedTuple):
 
 
 def show_of(what, title: str | None = None, most: int = frames.MOST) -> Show:
-    """Return what is shown of a solution, or of the file of one."""
+    """Return the show of a solution, or of the file of one."""
     solution = solution_of(what)
     if title is None:
         title = Path(what).stem if isinstance(what, (str, os.PathLike)) else "carom"
