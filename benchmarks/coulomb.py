@@ -9,14 +9,14 @@ import numba
 import numpy as np
 
 from carom.friction.arrays import new_island_work
-from carom.friction.graph import island_graph
 from carom.friction.layout import new_cone_work
 from carom.friction.solve import solve_cones
-from carom.friction.solve_island import solve_island
 from common import clock, report, seconds, spread
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "coulomb"))
+sys.path[:0] = [str(Path(__file__).parents[1] / "tests" / k) for k in ("", "coulomb")]
 from contact_problems import dense, pile, stack, wall
+from references.island_graph import island_graph
+from references.solve_island import solve_island
 
 MU = 0.3
 US = 1e-6

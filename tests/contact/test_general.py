@@ -5,7 +5,7 @@ import itertools
 import numpy as np
 import pytest
 
-from carom.collision import general
+from references import general
 from carom.collision.api import nearest_points
 from carom.scene import Box, Compound, Sphere
 from contact.pair_cases import NAMES, SHAPES, unit

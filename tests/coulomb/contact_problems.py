@@ -7,11 +7,11 @@ from typing import NamedTuple
 import numpy as np
 
 from carom.friction.arrays import Island, new_island_work
-from carom.friction.graph import island_graph
+from references.island_graph import island_graph
 from carom.friction.layout import new_cone_work
 from carom.friction.residual import measure
 from carom.friction.solve import solve_cones
-from carom.friction.solve_island import solve_island
+from references.solve_island import solve_island
 
 G = 9.81
 STEP = 1e-3  # [s]: gravity acts as a velocity G STEP in one step

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from contact_problems import STEP, G, dense, pile, solve, solve_sparse, stack, wall
 
-from carom.friction.graph import island_graph
+from references.island_graph import island_graph
 from carom.friction.layout import NOT_SOLVED, SOLVED
 
 

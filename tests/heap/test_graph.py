@@ -1,9 +1,9 @@
-"""The order of elimination that the loop finds is that of `carom.friction.graph`."""
+"""The order of elimination that the loop finds is that of `references.island_graph`."""
 
 import numpy as np
 import pytest
 
-from carom.friction.graph import island_graph
+from references.island_graph import island_graph
 from carom.stepping.crowd.graph import find_order
 from carom.stepping.crowd.layout import new_heap
 

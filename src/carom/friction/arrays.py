@@ -24,7 +24,7 @@ class Island(NamedTuple):
 
 
 class IslandGraph(NamedTuple):
-    """Which blocks there are and in which order bodies are eliminated; made by `graph.island_graph`."""
+    """Which blocks there are and in which order bodies are eliminated; made by `carom.stepping.crowd.graph`."""
 
     place: np.recarray  # (N,) PLACE
     later: np.ndarray  # (pairs,) the body of a pair that is eliminated later
@@ -58,7 +58,7 @@ ISLAND_BODY = [("motion", "f8", 6), ("pivot", "i8", 6)]
 
 
 class IslandWork(NamedTuple):
-    """Work arrays of `carom.friction.solve_island.solve_island`."""
+    """Work arrays of a solve through bodies."""
 
     address: int  # of the compiled search
     newton: int  # of what it calls

@@ -6,7 +6,7 @@ import pytest
 from carom.impact.api import resolve_impact
 from carom.impact.multiple.api import resolve_impacts
 from carom.impact.multiple.layout import CornerSettings, new_corner_result
-from carom.impact.multiple.painleve import impact_without_collision
+from references.painleve import impact_without_collision
 from carom.impact.multiple.work import new_corner_work
 
 

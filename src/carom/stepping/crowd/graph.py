@@ -1,8 +1,8 @@
 """The order in which the bodies of a heap are eliminated, found anew when other bodies touch.
 
 Bodies are neighbours where they may touch. The one with fewest neighbours goes first, and makes those that it
-leaves neighbours of each other (least degree; rows of bits). The lists are those of `carom.friction.graph`,
-which makes them once, in Python.
+leaves neighbours of each other (least degree; rows of bits). A plain form in Python, to compare with, is in the
+tests (`references.island_graph`).
 """
 
 from __future__ import annotations
