@@ -83,7 +83,7 @@ _MESSAGES = {
     ),
     Status.INACCURATE: (
         "The run reached its end, but its energy is off by more than a hundred times "
-        "Options.energy_tolerance, or a body is in what it touches by more than 1e-4 of its size. The solution "
+        "Options.energy_tolerance, or a body is in what it touches by more than 1e-2 of its size. The solution "
         "is whole; do not trust it before a smaller step agrees."
     ),
     Status.UNSTABLE: (

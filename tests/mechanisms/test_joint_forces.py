@@ -240,7 +240,7 @@ def test_slip_turns_where_a_loop_passes_its_dead_centres():
     turns = np.count_nonzero(np.diff(np.sign(np.diff(x))))
     assert turns >= 6
     assert solution.stats["whole_steps"] == 0
-    gone = solution.evaluate(np.linspace(0.0, 1.5, 200_001)).position[:, 2, 0]
+    gone = solution.evaluate(np.linspace(0.0, 1.5, 200_001))[0][:, 2, 0]
     way_gone = np.sum(np.abs(np.diff(gone)))
     assert solution.ledger.friction[-1] == pytest.approx(-force * way_gone, rel=1e-6)
     assert np.max(np.abs(solution.ledger.residual)) < 1e-8 * solution.kinetic_energy[0]

@@ -23,10 +23,8 @@ if TYPE_CHECKING:
     from carom.scene.scene import Scene
 
 INACCURATE = 100.0  # times the tolerance: what is no success any more
-DEEP, TOO_DEEP = (
-    1e-8,
-    1e-4,
-)  # parts of its size that a body is in what it touches: said, and no success
+# parts of its size that a body is in what it touches: said, and no success
+DEEP, TOO_DEEP = 1e-8, 1e-2
 
 _WHAT = {
     RESIDUAL: (
