@@ -13,8 +13,10 @@ from carom.friction.layout import new_cone_work
 from carom.friction.solve import solve_cones
 from common import clock, report, seconds, spread
 
-sys.path[:0] = [str(Path(__file__).parents[1] / "tests" / k) for k in ("", "coulomb")]
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "coulomb"))
 from contact_problems import dense, pile, stack, wall
+
 from references.island_graph import island_graph
 from references.solve_island import solve_island
 

@@ -5,10 +5,10 @@ import itertools
 import numpy as np
 import pytest
 
-from references import general
 from carom.collision.api import nearest_points
 from carom.scene import Box, Compound, Sphere
 from contact.pair_cases import NAMES, SHAPES, unit
+from references import general
 
 CURVED = {"cylinder", "ellipsoid"}
 PAIRS = list(itertools.combinations_with_replacement([n for n in NAMES if n != "disc"], 2))

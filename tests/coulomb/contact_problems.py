@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 
 from carom.friction.arrays import Island, new_island_work
-from references.island_graph import island_graph
 from carom.friction.layout import new_cone_work
 from carom.friction.residual import measure
 from carom.friction.solve import solve_cones
+from references.island_graph import island_graph
 from references.solve_island import solve_island
 
 G = 9.81

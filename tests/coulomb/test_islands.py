@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from contact_problems import STEP, G, dense, pile, solve, solve_sparse, stack, wall
 
-from references.island_graph import island_graph
 from carom.friction.layout import NOT_SOLVED, SOLVED
+from references.island_graph import island_graph
 
 
 @pytest.mark.plain

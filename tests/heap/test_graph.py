@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from references.island_graph import island_graph
 from carom.stepping.crowd.graph import find_order
 from carom.stepping.crowd.layout import new_heap
+from references.island_graph import island_graph
 
 
 @pytest.mark.plain

@@ -6,8 +6,8 @@ import pytest
 from carom.impact.api import resolve_impact
 from carom.impact.multiple.api import resolve_impacts
 from carom.impact.multiple.layout import CornerSettings, new_corner_result
-from references.painleve import impact_without_collision
 from carom.impact.multiple.work import new_corner_work
+from references.painleve import impact_without_collision
 
 
 def rock(b, h, e, mu):
