@@ -112,7 +112,17 @@ def public():
         for own in listed:
             if own not in carom.__all__:
                 yield from members(f"{name}.{own}", getattr(module, own))
-    yield from re.findall(ENTRY, API.read_text(), re.MULTILINE)
+    for name in re.findall(ENTRY, API.read_text(), re.MULTILINE):
+        yield short(name)
+
+
+def short(name):
+    """Return a name as users type it: `plots.energy` for `visual.plots.energy`."""
+    for brief, module in carom._PACKAGES.items():
+        whole = module.removeprefix("carom.") + "."
+        if name.startswith(whole):
+            return f"{brief}.{name.removeprefix(whole)}"
+    return name
 
 
 @pytest.mark.skipif(not API.exists(), reason="the pages are not here")
