@@ -149,7 +149,16 @@ def test_names_of_the_reference_exist():
 
 
 ASKED = re.compile(r">>> (?!.*\+SKIP)")
-MODULES = ("baselines", "constraints", "forces", "geometry", "identify", "joints")
+MODULES = (
+    "baselines",
+    "constraints",
+    "forces",
+    "geometry",
+    "identify",
+    "joints",
+    "models",
+    "plots",
+)
 SHOWN = [
     "Scene", "Scene.add_body", "Scene.add_contact", "Scene.add_joint", "Scene.check", "simulate",
     "Solution", "results.event_tables.ImpactTable", "resolve_impact", "impact_layer", "ensemble",
