@@ -14,7 +14,7 @@ from carom.friction.solve import solve_cones
 from common import clock, report, seconds, spread
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
-sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "coulomb"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "friction"))
 from contact_problems import dense, pile, stack, wall
 
 from references.island_graph import island_graph
