@@ -16,7 +16,6 @@ PAIRS = list(itertools.combinations_with_replacement([n for n in NAMES if n != "
 
 @pytest.mark.parametrize(("first", "second"), PAIRS)
 def test_gaps_agree(first, second):
-    pytest.importorskip("coal")
     a, b, rng = SHAPES[first], SHAPES[second], np.random.default_rng(5)
     # coal ends curved cores at a direction good to 1e-5: gaps of second order in it, and a few steps more.
     slack = 1e-6 if {first, second} & CURVED else 1e-13
@@ -37,7 +36,6 @@ def test_gaps_agree(first, second):
 def test_depths_of_sharp_polytopes_agree(first, second, depth):
     # coal's EPA finds the least way out of all. Two vertices that meet are the hardest case: the poses
     # here are moved in along the line of the nearest points.
-    pytest.importorskip("coal")
     a, b, rng = SHAPES[first], SHAPES[second], np.random.default_rng(8)
     for _ in range(40):
         x, turn = unit(rng.normal(size=3)) * rng.uniform(0.8, 1.5), unit(rng.normal(size=4))
@@ -49,7 +47,6 @@ def test_depths_of_sharp_polytopes_agree(first, second, depth):
 
 
 def test_compounds_agree():
-    pytest.importorskip("coal")
     dumbbell = Compound([(Sphere(0.3), (0, 0, -1)), (Box(0.4, 0.4, 0.4, radius=0.1), (0, 0, 1))])
     turn = unit([1, 2, 3, 4])
     poses = (np.array([2.0, 0, 0]), turn), (np.zeros(3), np.array([1.0, 0, 0, 0]))
@@ -57,10 +54,3 @@ def test_compounds_agree():
     theirs = general.distance(dumbbell, poses[0], dumbbell, poses[1])
     assert theirs.gap == pytest.approx(ours.gap, abs=1e-13)
     np.testing.assert_allclose(theirs.on_a, ours.on_a, atol=1e-9)
-
-
-def test_missing_package_is_named(monkeypatch):
-    monkeypatch.setitem(__import__("sys").modules, "coal", None)
-    pose = np.zeros(3), np.array([1.0, 0, 0, 0])
-    with pytest.raises(ImportError, match=r'needs the package coal: pip install "carom\[shapes\]"'):
-        general.distance(Sphere(1), pose, Sphere(1), pose)

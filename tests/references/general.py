@@ -1,7 +1,6 @@
 """Nearest points by the package coal (GJK and EPA): an independent second opinion on the kernels.
 
-The compiled loop does not call it: see `distance` for what was measured. Optional: ``pip install
-"carom[shapes]"``.
+See `distance` for what was measured.
 """
 
 from __future__ import annotations
@@ -23,11 +22,6 @@ def distance(shape_a, pose_a, shape_b, pose_b) -> PairPoint:
 
     Arguments and result as of `carom.collision.api.nearest_points`. coal's security margin stays zero.
 
-    Raises
-    ------
-    ImportError
-        Without the package coal.
-
     Notes
     -----
     Against `nearest_points`, whose gaps apart are certified to 1e-14 m by duality (sizes 0.2 to 0.9 m, 60
@@ -37,7 +31,8 @@ def distance(shape_a, pose_a, shape_b, pose_b) -> PairPoint:
     (gaps of 1.5 m or 1e308). It takes 5 to 9 microseconds in C++, the kernels 0.1 to 6 near contact.
     So the compiled loop keeps to its own kernels.
     """
-    coal = _coal()
+    import coal
+
     request = coal.DistanceRequest()
     request.enable_signed_distance = True
     request.gjk_tolerance = request.epa_tolerance = TOLERANCE
@@ -55,14 +50,6 @@ def distance(shape_a, pose_a, shape_b, pose_b) -> PairPoint:
                 best = PairPoint(float(gap), -np.array(result.normal), *map(np.array, points))
     assert best is not None
     return best
-
-
-def _coal():
-    try:
-        import coal  # pyright: ignore[reportMissingImports]
-    except ImportError:
-        raise ImportError('distance needs the package coal: pip install "carom[shapes]"') from None
-    return coal
 
 
 def _placed(coal, piece: Piece, x, q):

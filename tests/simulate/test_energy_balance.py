@@ -279,6 +279,32 @@ def look_at_depth(system, state, t, work, watch):
     watch_depth(system, state, t, work, watch[0])
 
 
+def test_a_body_in_another_and_a_joint_beyond_its_stop_are_said():
+    # No half-space in the scene. Two balls by 1e-6 m, 2e-5 of the radius; then a stop by 1e-4 rad.
+    scene = carom.Scene(gravity=(0, 0, 0))
+    left, right = (
+        scene.add_body(carom.Sphere(0.05), mass=1.0, position=(x, 0, 0), name=name)
+        for x, name in ((0.0, "left"), (0.2, "right"))
+    )
+    scene.add_contact(right, left)
+    run = carom.simulate(scene, 0.1, step=0.01)._run
+    run.now["x"][1, 0] = 0.1 - 1e-6
+    look_at_depth(run.compiled.system, run.now, 0.1, run.work, run.watch)
+    (said,) = sentences(run.watch[0], scene)
+    assert said.startswith("Body 'right' is in 'left' by 2e-05 of its size")
+
+    scene = carom.Scene(gravity=(0, 0, 0))
+    arm = scene.add_body(carom.Box(0.2, 0.02, 0.02), mass=1.0, position=(0.1, 0, 0))
+    hinge = scene.add_joint(joints.Revolute((0, 0, 0), (0, 0, 1)), GROUND, arm, name="hinge")
+    scene.add_stop(hinge, lower=0.0, restitution=0.0)
+    run = carom.simulate(scene, 0.1, step=0.01)._run
+    run.now["Q"][0] = (np.cos(5e-5), 0, 0, -np.sin(5e-5))
+    run.now["x"][0] = (0.1 * np.cos(1e-4), -0.1 * np.sin(1e-4), 0)
+    look_at_depth(run.compiled.system, run.now, 0.1, run.work, run.watch)
+    (said,) = sentences(run.watch[0], scene)
+    assert said.startswith("Joint 'hinge' is beyond its stop by 0.0001 of the size of its body")
+
+
 def test_a_body_in_what_it_touches_is_said():
     # Boxes on each other, on a floor; the state is put deeper and looked at again: exactly that depth, by the
     # distance of the corners from the centre, sqrt(3)/10.

@@ -72,13 +72,10 @@ def _of_depth(watch: np.record, scene: Scene) -> str:
     """Return the sentence about a body that is in what it touches."""
     number, pairs = int(watch.deep_contact), touching_pairs(scene)
     if number < len(pairs.body):
-        what, where = (
-            scene.bodies[pairs.body[number]].name,
-            scene.half_spaces[pairs.plane[number]].name,
-        )
-        if pairs.other[number] >= 0:
-            where = scene.bodies[pairs.other[number]].name
-        said = f"Body {what!r} is in {where!r} by {watch.depth:.2g} of its size"
+        other, plane = pairs.other[number], pairs.plane[number]
+        what = scene.bodies[pairs.body[number]]
+        where = scene.bodies[other] if other >= 0 else scene.half_spaces[plane]
+        said = f"Body {what.name!r} is in {where.name!r} by {watch.depth:.2g} of its size"
     else:
         stop = scene.stops[number - len(pairs.body)]
         said = f"Joint {stop.joint.name!r} is beyond its stop by {watch.depth:.2g} of the size of its body"

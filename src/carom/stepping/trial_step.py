@@ -26,9 +26,7 @@ from carom.stepping.record import finite
 STEP_CUT, TOO_MANY, NOT_FINITE = 2, 3, 4
 STEP_TOO_SMALL, UNSTABLE = 12, 14
 TRIES = 3000  # trial steps of a step that is given up
-PARTS = (
-    16  # a step that is given up goes on in so many parts without looking for the times of events
-)
+PARTS = 16  # of a step that is given up; events are at the ends of parts
 ONCE_MORE = -1  # another trial step is to be made
 
 
