@@ -130,7 +130,7 @@ implicit_step = by_address(step_unit)
 
 @kernel
 def _friction(k, m, work, units, step, force, u, tolerance):
-    """Add friction to `force` and what it does within `step` to `u`."""
+    """Add friction to `force`, and its effect within `step` to `u`."""
     slot, vector = work.index[DISC], work.vector
     c, t = vector[DISC_C], vector[DISC_T]
     largest = 0.0

@@ -7,9 +7,10 @@ worker is handed out again: it gives the same numbers wherever it is done.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from concurrent import futures
 from contextlib import contextmanager
+from itertools import islice
 
 from carom import checks
 
@@ -74,15 +75,13 @@ def each(tasks: Iterator[tuple], function: Callable, executor, workers: int | No
     """Yield `function(*task)` of all tasks, in the order in which they get done."""
     with engine(executor, workers) as (submit, most):
         running: dict[futures.Future, tuple[tuple, int]] = {}
-        left = True
-        while left or running:
-            while left and len(running) < most:
-                task = next(tasks, None)
-                left = task is not None
-                if task is not None:
-                    running[submit(function, *task)] = task, 1
-            if not running:
-                break
+
+        def start(task: tuple, tried: int) -> None:
+            running[submit(function, *task)] = task, tried
+
+        for task in islice(tasks, most):
+            start(task, 1)
+        while running:
             finished, _ = futures.wait(running, return_when=futures.FIRST_COMPLETED)
             for future in finished:
                 task, tried = running.pop(future)
@@ -90,10 +89,17 @@ def each(tasks: Iterator[tuple], function: Callable, executor, workers: int | No
                     yield future.result()
                 except Exception as error:
                     if tried >= TRIES or not _lost(error):
-                        for other in running:
-                            other.cancel()
+                        _cancel(running)
                         raise
-                    running[submit(function, *task)] = task, tried + 1
+                    start(task, tried + 1)
+            for task in islice(tasks, most - len(running)):
+                start(task, 1)
+
+
+def _cancel(running: Iterable[futures.Future]) -> None:
+    """Cancel all that has not begun."""
+    for future in running:
+        future.cancel()
 
 
 def _lost(error: Exception) -> bool:
