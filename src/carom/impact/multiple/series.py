@@ -245,7 +245,7 @@ def _hold(k, z, work, n):
 
 @kernel
 def stick(k, z, work, impulse, velocity):
-    """Add to `impulse` the friction that keeps the `z` sticking contacts at rest, and its effect to `velocity`."""
+    """Add to `impulse` the friction that keeps `z` sticking contacts at rest, and its effect to `velocity`."""
     hold, slot, t = work.matrix[HOLDING], work.index[STUCK], work.vector[STICK_T]
     for a in range(2 * z):
         s, row = 0.0, hold[a]
