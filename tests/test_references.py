@@ -4,7 +4,7 @@ import numba
 import numpy as np
 import pytest
 
-from carom._compiled.by_reference import Reference, refer
+from carom._compiled.by_reference import Reference, refer, type_of
 from carom._compiled.choice import by_address
 from carom._compiled.decorators import address, entry, kernel, unit
 from carom._compiled.record_arrays import table
@@ -67,12 +67,12 @@ def test_a_change_of_arrays_is_seen():
 
 def test_types():
     """Ours by reference; tuples and the named tuples of others by value, as Numba has it."""
-    made = numba.typeof(hulls(2))
+    made = type_of(hulls(2))
     assert isinstance(made, Reference)
     assert made.fields == Hulls._fields
-    assert numba.typeof(hulls(5)) == made
-    assert isinstance(numba.typeof((1, 2.0)), numba.types.Tuple)
-    assert isinstance(numba.typeof(np.linalg.slogdet(np.eye(2))), numba.types.BaseNamedTuple)
+    assert type_of(hulls(5)) == made
+    assert isinstance(type_of((1, 2.0)), numba.types.Tuple)
+    assert isinstance(type_of(np.linalg.slogdet(np.eye(2))), numba.types.BaseNamedTuple)
 
 
 @pytest.mark.skipif(not hasattr(of_parts, "overloads"), reason="nothing is compiled")

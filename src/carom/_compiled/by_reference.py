@@ -15,7 +15,7 @@ from typing import Any
 from llvmlite import ir
 from numba.core import cgutils, config, types
 from numba.core.typing.templates import AttributeTemplate, infer_getattr
-from numba.core.typing.typeof import Purpose, typeof_impl
+from numba.core.typing.typeof import Purpose, typeof
 from numba.extending import (
     NativeValue,
     intrinsic,
@@ -55,18 +55,21 @@ def _reference(record: Any) -> Reference:
     return Reference(record)
 
 
-def install() -> None:
-    """Let Numba take our named tuples by reference in this process."""
-    typeof_impl.register(tuple)(_type_of_tuple)
+def type_of(value: Any) -> types.Type:
+    """Return the type of an argument from Python: a reference if it is a named tuple of ours."""
+    kind = _type_of(value)
+    return _reference(kind) if is_ours(kind) else kind
 
 
-def _type_of_tuple(value, context):
-    """Return the type of a tuple from Python: a reference if it is a record of ours."""
-    kinds = [typeof_impl(v, context) for v in value]
-    if any(kind is None for kind in kinds):
-        return None
-    made: Any = types.BaseTuple.from_types(kinds, type(value))
-    return _reference(made) if is_ours(made) and context.purpose is Purpose.argument else made
+def _type_of(value):
+    if isinstance(value, tuple):
+        kinds = [type_of(v) for v in value]
+        return types.BaseTuple.from_types(kinds, type(value))
+    try:
+        kind = typeof(value, Purpose.argument)
+    except ValueError:
+        kind = None
+    return types.pyobject if kind is None else kind
 
 
 def is_ours(kind: Any) -> bool:

@@ -15,6 +15,7 @@ from pathlib import Path
 
 _RULES = (
     "decorators.py",
+    "target.py",
     "link_only.py",
     "choice.py",
     "cache_key.py",

@@ -12,24 +12,13 @@ from __future__ import annotations
 import contextlib
 from typing import Any
 
-import numba
 import numpy as np
+from numba.core import config, types
 
-from carom._compiled import (
-    by_reference as references,
-)
-from carom._compiled import (
-    compile_speed as hasten,
-)
-from carom._compiled import (
-    symbol_names as symbols,
-)
+from carom._compiled.by_reference import type_of
 from carom._compiled.cache import StampedCache
 from carom._compiled.link_only import PartCompiler
-
-hasten.install()
-references.install()
-symbols.install()
+from carom._compiled.target import compiled as _compiled
 
 _RULES: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
 _INSIDE: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
@@ -45,31 +34,17 @@ def kernel(function):
 
     Division follows IEEE (``error_model="numpy"``), no fast-math: results are the same on every run.
     """
-    return _of_plain_types(numba.njit(**_PART)(function))
+    return _jit(**_PART)(function)
 
 
 def inlined(function):
     """Compile `function` as `kernel` does, always inlined: for what every step passes."""
-    return _of_plain_types(numba.njit(**_PART, forceinline=True)(function))
+    return _jit(**_PART, forceinline=True)(function)
 
 
-def _of_plain_types(compiled):
-    """Let callers ask for a function of plain types only.
-
-    A variable that begins as a constant (``n = 0``) has a type of its own until all that is assigned to it is
-    known. Numba compiles what is called meanwhile for that type, with all that this calls, and uses none of it:
-    a quarter of all functions that a thrown die needs.
-    """
-    if not hasattr(compiled, "get_call_template"):  # NUMBA_DISABLE_JIT=1
-        return compiled
-    asked = compiled.get_call_template
-
-    def get_call_template(args, kws):
-        plain = {name: numba.types.unliteral(kind) for name, kind in kws.items()}
-        return asked(tuple(map(numba.types.unliteral, args)), plain)
-
-    compiled.get_call_template = get_call_template
-    return compiled
+def _jit(**options):
+    """Return the decorator of the target, or that of functions left as they are (``NUMBA_DISABLE_JIT=1``)."""
+    return (lambda function: function) if config.DISABLE_JIT else _compiled(**options)
 
 
 def unit(function):
@@ -78,7 +53,7 @@ def unit(function):
     What is called directly is compiled again into each of its callers, and theirs; a solve that is
     reached from twenty places cost a minute that way.
     """
-    compiled = numba.njit(**_RULES, **_INSIDE)(function)
+    compiled = _jit(**_RULES, **_INSIDE)(function)
     return _keep_on_disk(compiled, function)
 
 
@@ -88,7 +63,7 @@ def address(function, *arguments) -> int:
         return 0
     key = (function, *map(_alike, arguments))
     if key not in _ADDRESSES:
-        given = numba.types.void(*(numba.typeof(a) for a in arguments))
+        given = types.void(*(type_of(a) for a in arguments))
         compiled = function.get_compile_result(given)
         name = compiled.fndesc.llvm_func_name
         _ADDRESSES[key] = compiled.library.get_pointer_to_function(name)
@@ -102,7 +77,7 @@ _flags, _dtype, _ndim = (getattr(np.ndarray, name).__get__ for name in ("flags",
 def _alike(value):
     """Return a key that values of one Numba type have in common.
 
-    `numba.typeof` spells out each structured array: 60 ms a run, twice what the tosses of a cube take in all.
+    The type of an argument spells out each structured array: 60 ms a run, twice what the tosses of a cube take in all.
     """
     if isinstance(value, tuple):
         return (type(value), *map(_alike, value))
@@ -119,7 +94,7 @@ def entry(function):
     Where no directory can be written (a read-only install without a user cache) it is compiled in each
     process.
     """
-    compiled = numba.njit(**_RULES, **_OUTSIDE)(function)
+    compiled = _jit(**_RULES, **_OUTSIDE)(function)
     return _keep_on_disk(compiled, function)
 
 
