@@ -4,21 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom._compiled.decorators import address
-from carom._compiled.units import Addresses
+from carom._compiled.units import Entries
 from carom.contact.stop import write_stop_gaps
-from carom.dynamics.acceleration import acceleration_unit
-from carom.dynamics.explicit import EXPLICIT, Tableau, constrained_unit
-from carom.dynamics.implicit import Implicit, implicit_unit
+from carom.dynamics.explicit import EXPLICIT
 from carom.dynamics.methods import FIRST, ORDERS, make_method, time_of_bounces
 from carom.dynamics.project import project_start
-from carom.dynamics.rattle import Rattle, rattle_unit
 from carom.dynamics.reactions import start_errors, start_speeds
-from carom.dynamics.solve import with_address
-from carom.friction.newton import newton_unit
 from carom.impact.multiple.layout import MULTIPLE, CornerSettings
-from carom.impact.strike import strike_unit
-from carom.impact.strike_several import corner_unit
 from carom.impact.workspace import new_cluster, new_corner
 from carom.model import records as r
 from carom.model.answers import check_answers
@@ -27,17 +19,14 @@ from carom.model.compile import compile_scene
 from carom.model.controls import LOCATE, PROJECT, WORK, Controls
 from carom.model.data import Data, Model
 from carom.options import Options
-from carom.persistent.contact_step import press_unit
 from carom.persistent.joint_events import first_modes
-from carom.persistent.lifecycle import hold_unit, settle_unit
 from carom.results.accuracy import judge
 from carom.results.solution import Solution
 from carom.scene.joints import Joint
 from carom.scene.scene import Scene
 from carom.status import Status
 from carom.stepping import record, time_loop
-from carom.stepping.crowd.layout import new_heap, no_heap, roomier_heap
-from carom.stepping.crowd.step import heap_unit
+from carom.stepping.crowd.layout import SPOTS, new_heap, no_heap, roomier_heap
 from carom.stepping.energy_balance import SHARE, new_watch
 from carom.stepping.islands.layout import Islands, has_events, new_islands, no_islands, roomier
 
@@ -86,12 +75,6 @@ class Run:
             layer_time=int(options.add_layer_time),
             max_impacts=options.max_impacts_per_step,
             max_cuts=options.max_cuts,
-            strike_at=0,
-            hold_at=0,
-            corner_at=0,
-            settle_at=0,
-            press_at=0,
-            heap_at=0,
             heap=options.heap,
             retry=0,
             order=0 if tolerances is None else ORDERS[method],
@@ -103,14 +86,12 @@ class Run:
         self.begin()
 
     def begin(self) -> None:
-        """Check the start, and make all that a run writes to; find the compiled parts that it needs at once."""
+        """Make all that a run writes to, and check the start."""
         scene, options, system = self.scene, self.options, self.compiled.system
         tolerances, method = self.tolerances, self.settings["method"]
         self.now = self.compiled.start
         self.held = r.new_held(system)
         self.work = r.new_work(system, self.method.b.size)
-        if (system.contacts["touches"] == 1).any():
-            system = self.find_touches(system)
         located = self.settings["impact_location"] == "locate"
         apart = located and tolerances is None and not method.startswith("paper")
         self.islands = (new_islands if apart else no_islands)(system, self.held)
@@ -126,9 +107,7 @@ class Run:
         self.clock["ahead"] = FIRST * self.controls.longest
         rows = 256 if tolerances else -(-self.controls.last // self.controls.save_every) + 1
         self.records = r.new_records(system, rows, 512)
-        self.address = Addresses(system, self.method, self.controls, self.corner.settings)
-        system = with_address(system, self.now, self.work, self.address)
-        self.compiled = self.compiled._replace(system=system)
+        self.call = Entries(system, self.method, self.controls, self.corner.settings)
         if options.project_start and len(system.joints):
             error = project_start(system, self.now, self.work)
             if not error <= options.constraint_tolerance:
@@ -141,9 +120,6 @@ class Run:
         check_stops(scene, self.compiled, self.now, self.work, options)
         if system.contacts.size:
             self.work.body["group"] = system.bodies["component"]
-            self.find_strike()
-        if not system.bodies["ballistic"].all():
-            self.find_constrained_step()
         self.note_modes()
         self.save_now()
 
@@ -153,16 +129,8 @@ class Run:
             first_modes(self.compiled.system, self.held, self.now, self.work)
 
     def renew(self) -> None:
-        """Make anew all that a run writes to, and find what was compiled while it ran; nothing is saved."""
-        controls = self.controls
+        """Make anew all that a run writes to; nothing is saved."""
         self.begin()
-        if controls.hold_at:
-            self.find_constrained_step()
-            self.find_hold()
-        if controls.corner_at:
-            self.find_corner()
-        if controls.heap_at:
-            self.find_heap()
         self.clock[:] = r.new_clock()
         self.clock["ahead"] = FIRST * self.controls.longest
 
@@ -185,89 +153,29 @@ class Run:
             self.compiled.system, self.held, self.now, self.clock, self.work, self.records,
             self.watch,
         )  # fmt: skip
-        self.address.entry(record.save_now, *state)(*state)
+        self.call(record.save_now, *state)
 
-    def find_touches(self, system):
-        """Compile what finds the points of two solids; return the system with its addresses."""
-        from carom.collision.layout import new_pair_work
-        from carom.collision.plane import plane_unit
-        from carom.collision.touch import touch_unit
+    def grow(self, what: int) -> None:
+        """Make arrays longer that are full."""
+        if what == r.FULL_EVENTS:
+            self.records = r.longer(self.records)
+        elif what == r.FULL_ROWS:
+            self.records = r.more_rows(self.records)
+        elif what == r.FULL_PAIRS:
+            assert isinstance(self.islands, Islands)
+            self.islands = roomier(self.islands)
+        elif what == r.FULL_CORNER:
+            self.corner = new_corner(len(self.cluster.mu), self.corner.settings)
+        elif self.has_heap:
+            self.heap = roomier_heap(self.heap)
+        else:
+            bodies = len(self.compiled.system.bodies)
+            self.heap = new_heap(bodies, len(self.held.points), SPOTS * bodies)
 
-        contacts = system.contacts[system.contacts.touches == 1]
-        solid, pose, out = system.solids[0], self.work.solid_pose, self.work.touches
-        if np.any(contacts.other < 0):
-            found = address(
-                plane_unit, solid, system.hulls, pose[0, :3], pose[0, 3:],
-                system.contacts[0].axes[0], 0.0, 0.0, self.work.pair, out,
-            )  # fmt: skip
-            system = system._replace(plane_at=found)
-        if not np.any(contacts.other >= 0):
-            return system
-        self.work = self.work._replace(pair=new_pair_work())
-        found = address(
-            touch_unit, solid, solid, system.hulls, pose[0, :3], pose[0, 3:], pose[0, :3],
-            pose[0, 3:], 0.0, self.work.pair, out,
-        )  # fmt: skip
-        return system._replace(touch_at=found)
-
-    def find_strike(self) -> None:
-        """Compile what a scene with contacts needs, and note where it is."""
-        found = self.address(strike_unit, self.model, self.data, self.method, 0)
-        self.controls = self.controls._replace(strike_at=found)
-
-    def find_constrained_step(self) -> None:
-        """Compile the step of bodies that are joined, loaded or held."""
-        system, tableau = self.compiled.system, Tableau(self.method.A, self.method.b, self.method.E)
-        found = self.address(
-            acceleration_unit, system, self.now, self.held, self.work, self.work.stages[0]
-        )
-        self.compiled = self.compiled._replace(system=system._replace(acceleration_at=found))
-        found = self.address(
-            constrained_unit, tableau, self.compiled.system, self.held, self.now, 0.0, self.now,
-            self.work,
-        )  # fmt: skip
-        self.method = self.method._replace(address=found)
-        if isinstance(self.method, Rattle) and self.method.at == 0:
-            found = self.address(
-                rattle_unit, self.method.parts, system, self.now, 0.0, self.now, self.work
-            )
-            self.method = self.method._replace(at=found)
-        elif isinstance(self.method, Implicit) and self.method.at == 0:
-            found = self.address(
-                implicit_unit, system, self.held, self.now, 0.0, self.now, self.work
-            )
-            self.method = self.method._replace(at=found)
-
-    def find_hold(self) -> None:
-        """Compile what a held contact needs: only when the first one is to be held."""
-        from carom.friction.strategy import with_address as with_search
-
-        self.cluster = self.cluster._replace(cone=with_search(self.cluster.cone, self.address))
-        hold = self.address(hold_unit, self.model, self.data, 0, 0.0)
-        settle = self.address(settle_unit, self.model, self.data, 0)
-        press = self.address(press_unit, self.model, self.data, 0.0)
-        self.controls = self.controls._replace(hold_at=hold or 1, settle_at=settle, press_at=press)
-
-    def find_heap(self) -> None:
-        """Compile the step of a heap: only when the first one is met."""
-        system = self.compiled.system
-        self.heap = new_heap(len(system.bodies), len(self.held.points), 8 * len(system.bodies))
-        problem = self.heap.problem
-        newton = address(newton_unit, problem, 1, 1.0, True)
-        self.heap = self.heap._replace(problem=problem._replace(newton=newton))
-        found = address(heap_unit, self.model, self.data)
-        self.controls = self.controls._replace(heap_at=found or 1)
-
-    def find_corner(self) -> None:
-        """Compile the impact of several points: only when the first one is to be resolved."""
-        from carom.impact.multiple.work import with_units
-
-        made = new_corner(len(self.cluster.mu), self.corner.settings)
-        known = made.scratch._replace(units=self.corner.scratch.units)  # the second time: the rest
-        self.corner = made._replace(scratch=with_units(known, self.address))
-        W, u, mu = self.cluster.m[0], self.cluster.v[0], self.cluster.mu
-        found = self.address(corner_unit, 1, W, u, mu, self.corner)
-        self.controls = self.controls._replace(corner_at=found or 1)
+    @property
+    def has_heap(self) -> bool:
+        """Whether a crowd has taken a step whole."""
+        return len(self.heap.spots) >= SPOTS
 
     @property
     def steps_done(self) -> int:
@@ -303,25 +211,11 @@ class Run:
         """Go on to step number `until`, or to that time if steps vary, or to a failure."""
         while True:
             state = (self.model, self.data, self.method, self.islands, float(until))
-            code = self.address.entry(time_loop.run, *state)(*state)
-            if code == r.FULL:
-                self.records = r.longer(self.records)
+            code = self.call(time_loop.run, *state)
+            if code == r.GROW:
+                self.grow(self.clock[0].grow)
             elif code == r.PAUSE and self.failure is None:
                 continue  # here Ctrl-C is raised
-            elif code == r.NEEDS_ROWS:
-                self.records = r.more_rows(self.records)
-            elif code == r.NEEDS_HOLD:
-                self.find_constrained_step()
-                self.find_hold()
-            elif code == r.NEEDS_CORNER:
-                self.find_corner()
-            elif code == r.NEEDS_HEAP:
-                self.find_heap()
-            elif code == r.NEEDS_SPOTS:
-                self.heap = roomier_heap(self.heap)
-            elif code == r.NEEDS_ROOM:
-                assert isinstance(self.islands, Islands)
-                self.islands = roomier(self.islands)
             elif isinstance(self.failure, KeyboardInterrupt):  # while a plain function ran
                 self.compiled.functions.failed = None
                 return Status.INTERRUPTED

@@ -1,7 +1,7 @@
 """What compiled code was made from: a hash of a function and of all that is linked into it.
 
 Numba's cache looks at the file of the cached function only: a change of a callee in another file would go
-unseen. This stamp follows the calls. What is reached through an address is compiled on its own and left
+unseen. This stamp follows the calls. Units (`carom._compiled.units`) are compiled on their own and left
 out, so that a change recompiles the units that contain it and no others.
 """
 
@@ -16,6 +16,7 @@ from pathlib import Path
 _RULES = (
     "decorators.py",
     "target.py",
+    "units.py",
     "link_only.py",
     "choice.py",
     "cache_key.py",
@@ -66,7 +67,8 @@ def _value(name: str, value: object, seen: set[int]) -> Iterator[str]:
     if isinstance(value, _CONSTANTS):
         yield f"{name}={value!r}"
     for part in getattr(value, "parts", ()):
-        yield from _reached(getattr(part, "py_func", part), seen)
+        if not hasattr(part, "compiled"):  # a unit is not linked in
+            yield from _reached(getattr(part, "py_func", part), seen)
     inner = getattr(value, "py_func", None)
     if inner is not None:
         yield from _reached(inner, seen)

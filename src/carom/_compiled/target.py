@@ -18,7 +18,8 @@ import os
 from typing import Any
 
 import llvmlite.binding as llvm
-from numba.core import codegen, compiler, config, cpu, dispatcher, itanium_mangler, types, typing
+import numba.core.typing.context
+from numba.core import codegen, compiler, config, cpu, dispatcher, itanium_mangler, types
 from numba.core.descriptors import TargetDescriptor
 from numba.core.target_extension import (
     CPU,
@@ -72,7 +73,7 @@ class Codegen(codegen.JITCPUCodegen):
         return processor()[1]
 
 
-class TypingContext(typing.Context):
+class TypingContext(numba.core.typing.context.Context):
     """Types of expressions; what a function makes of plain numbers is found once, not in each place."""
 
     _plain = (types.Integer, types.Float, types.Boolean)
@@ -113,7 +114,7 @@ class TargetContext(cpu.CPUContext):
         third of the first run of a process.
         """
         from numba.core import optional  # noqa: F401
-        from numba.core.runtime import rtsys
+        from numba.core.runtime.nrt import rtsys
         from numba.cpython import (  # noqa: F401
             builtins,
             iterators,
@@ -177,7 +178,7 @@ class Target(TargetDescriptor):
         return TargetContext(self.typing_context, target=NAME)
 
 
-class _Compiler(dispatcher._FunctionCompiler):
+class _Compiler(dispatcher._FunctionCompiler):  # pyright: ignore[reportAttributeAccessIssue]
     """Compiles one function, with `Flags` of ours."""
 
     def _customize_flags(self, flags):
@@ -211,10 +212,10 @@ class Dispatcher(dispatcher.Dispatcher):
     def typeof_pyval(self, val):
         """Return the type of an argument from Python: a reference where it is a named tuple of ours."""
         kind = type_of(val)
-        self._types_active_call.add(kind)
+        self._types_active_call.add(kind)  # pyright: ignore[reportAttributeAccessIssue]
         return kind
 
-    def get_call_template(self, args, kws):
+    def get_call_template(self, args, kws: Any):
         """Return how a call is typed, for plain types only.
 
         A variable that begins as a constant (``n = 0``) has a type of its own until all that is assigned to it

@@ -1,20 +1,154 @@
-"""Compiled code for the arguments of one run, whose types are looked at once.
+"""Units: kernels that are compiled on their own, and found when compiled code first calls them.
 
-`carom._compiled.decorators.address` goes through all arguments at each call: some 600 arrays and numbers for
-the units of a die. Numba does the same each time an entry is called: 25 microseconds, of which 2 are the call.
+What a kernel calls directly is compiled again into each of its callers, and theirs; a solve that is reached
+from twenty places cost a minute that way. A unit is called through its address instead. The caller has room for
+the address, empty at first; where it is empty the caller asks Python for it (`_find`), which loads the unit
+from disk or compiles it. So a scene waits only for what it does: joints, several points, groups, when they
+first occur.
+
+Uncompiled a unit is a plain function.
 """
 
 from __future__ import annotations
 
+import ctypes
+import hashlib
+import importlib
+import inspect
+import pickle
+import zlib
 from collections.abc import Callable
+from typing import Any
 
+import llvmlite.binding as llvm
 import numpy as np
+from llvmlite import ir
+from numba.core import cgutils, config, types
+from numba.extending import intrinsic
 
-from carom._compiled.decorators import address
+from carom._compiled.by_reference import refer_to
+from carom._compiled.decorators import INSIDE, RULES, jit, keep_on_disk
+
+_RETURNS = {None: types.none, float: types.float64, int: types.int64, bool: types.boolean}
+_FINDER = "carom_find_unit"  # symbol of the function that compiled code asks
+
+
+class NotCompiled(RuntimeError):
+    """A unit that compiled code has called could not be compiled; `Failure.cause` says why."""
+
+
+class Failure:
+    """The error that stopped the last compile of a unit: it has no way through compiled code."""
+
+    cause: BaseException | None = None
+
+    @classmethod
+    def take(cls) -> BaseException | None:
+        """Return the error, and forget it."""
+        cause, cls.cause = cls.cause, None
+        return cause
+
+
+def unit(function):
+    """Compile `function` on its own; kernels call it like any other kernel.
+
+    It returns nothing, or what its annotation says: `float`, `int` or `bool`.
+    """
+    if getattr(config, "DISABLE_JIT", 0):
+        return function
+    compiled = keep_on_disk(jit(**RULES, **INSIDE)(function), function)
+    given = inspect.signature(function)
+    returned = {"float": float, "int": int, "bool": bool}.get(given.return_annotation)
+    result = _RETURNS[returned]
+
+    def call(typing, *arguments):
+        kinds = tuple(types.unliteral(kind) for kind in arguments)
+
+        def generate(context, builder, signature, values):
+            pairs = [refer_to(builder, kind, value) for kind, value in zip(kinds, values)]
+            taken, values = zip(*pairs)
+            return _call(context, builder, name, result, taken, values)
+
+        return result(*kinds), generate
+
+    name = f"{function.__module__}:{function.__qualname__}"
+    own = [p.replace(annotation=inspect.Parameter.empty) for p in given.parameters.values()]
+    first = inspect.Parameter("typing", inspect.Parameter.POSITIONAL_OR_KEYWORD)
+    call.__signature__ = inspect.Signature([first, *own])  # pyright: ignore[reportFunctionMemberAccess]
+    call.__name__, call.__qualname__ = function.__name__, function.__qualname__
+    call.__module__, call.__doc__ = function.__module__, function.__doc__
+    made: Any = intrinsic(call)
+    made.compiled, made.returned = compiled, result
+    UNITS[name] = made
+    return made
+
+
+def _call(context, builder, name, result, kinds, values):
+    """Generate the call of a unit: look into the slot, fill it if it is empty, call."""
+    pointer, number = ir.IntType(8).as_pointer(), ir.IntType(64)
+    packed = zlib.compress(pickle.dumps(kinds))
+    digest = hashlib.sha256(packed).hexdigest()[:16]
+    slot = _global(builder.module, f"slot.{name}.{digest}", ir.Constant(pointer, None), False)
+    found = builder.load(slot)
+    place = cgutils.alloca_once_value(builder, found)
+    with cgutils.if_unlikely(builder, cgutils.is_null(builder, found)):
+        form = ir.FunctionType(pointer, [pointer, pointer, number])
+        finder = cgutils.get_or_insert_function(builder.module, form, _FINDER)
+        texts = [
+            _global(builder.module, f"{kind}.{name}.{digest}", cgutils.make_bytearray(text), True)
+            for kind, text in (("name", name.encode() + b"\0"), ("types", packed))
+        ]
+        texts = [builder.bitcast(text, pointer) for text in texts]
+        asked = builder.call(finder, [*texts, ir.Constant(number, len(packed))])
+        with cgutils.if_unlikely(builder, cgutils.is_null(builder, asked)):
+            context.call_conv.return_user_exc(builder, NotCompiled, (name,))
+        builder.store(asked, slot)
+        builder.store(asked, place)
+    function = context.call_conv.get_function_type(result, kinds)
+    callee = builder.bitcast(builder.load(place), function.as_pointer())
+    status, answer = context.call_conv.call_function(builder, callee, result, kinds, values)
+    with cgutils.if_unlikely(builder, status.is_error):
+        context.call_conv.return_status_propagate(builder, status)
+    return context.get_dummy_value() if result is types.none else answer
+
+
+def _global(module, name, value, constant):
+    """Return a variable of a module, made once."""
+    if name not in module.globals:
+        made = ir.GlobalVariable(module, value.type, name)
+        made.initializer, made.linkage, made.global_constant = value, "internal", constant
+    return module.globals[name]
+
+
+#: all units, by module and name
+UNITS: dict[str, Any] = {}
+
+
+def _address(name: str, kinds: tuple) -> int:
+    """Return the address of a unit for arguments of these types, loaded or compiled."""
+    if name not in UNITS:
+        importlib.import_module(name.partition(":")[0])
+    made = UNITS[name]
+    compiled = made.compiled.get_compile_result(made.returned(*kinds))
+    return compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name)
+
+
+@ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p, ctypes.c_int64)
+def _find(name, packed, size):
+    """Return the address of a unit to compiled code, or 0 if it could not be compiled."""
+    try:
+        return _address(
+            name.decode(), pickle.loads(zlib.decompress(ctypes.string_at(packed, size)))
+        )
+    except BaseException as error:  # Ctrl-C too: it has no way through compiled code
+        Failure.cause = error
+        return 0
+
+
+llvm.add_symbol(_FINDER, ctypes.cast(_find, ctypes.c_void_p).value)
 
 _FLAGS = 0x1 | 0x2 | 0x100 | 0x400  # of an array: C order, Fortran order, aligned, writeable
 _KINDS: dict[tuple, object] = {}  # something of its own for each: quicker to compare
-_UNITS: dict[tuple, int] = {}
 _ENTRIES: dict[tuple, Callable] = {}
 
 
@@ -27,10 +161,12 @@ def kind(value):
     return type(value)
 
 
-class Addresses:
-    """Finds code for arguments that are made of these parts, of numbers, and of scratch and records.
+class Entries:
+    """Finds entries for arguments that are made of these parts, of numbers, and of a workspace and records.
 
-    Scratch and records are named tuples of arrays that `carom` makes, of the same types in every run.
+    Numba looks at the types of all arguments, some 600 arrays and numbers, each time an entry is called: 25
+    microseconds, of which 2 are the call. Workspace and records are named tuples of arrays of the same types in
+    every run.
     """
 
     def __init__(self, *parts):
@@ -43,18 +179,17 @@ class Addresses:
         self._kinds = kinds
         self._kind = _KINDS.setdefault(kinds, object())
 
-    def __call__(self, unit, *arguments) -> int:
-        """Return the address of a unit, compiled if need be; 0 without the JIT."""
-        key = (unit, self._kind, *map(type, arguments))
-        if key not in _UNITS:
-            _UNITS[key] = address(unit, *arguments)
-        return _UNITS[key]
+    def __call__(self, function, *arguments) -> Any:
+        """Call an entry with arguments whose types are not looked at.
 
-    def entry(self, function, *arguments) -> Callable:
-        """Return the compiled form of an entry, which takes its arguments without looking at their types."""
+        Raises what stopped the compile of a unit that it needs, if one could not be compiled.
+        """
         key = (function, self._kind, *map(type, arguments))
         if key not in _ENTRIES:
             jitted = hasattr(function, "typeof_pyval")  # not with NUMBA_DISABLE_JIT=1
             types = tuple(map(function.typeof_pyval, arguments)) if jitted else ()
             _ENTRIES[key] = function.compile(types) if jitted else function
-        return _ENTRIES[key]
+        try:
+            return _ENTRIES[key](*arguments)
+        except NotCompiled as error:
+            raise (Failure.take() or error) from None

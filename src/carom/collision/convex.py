@@ -11,8 +11,8 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.choice import by_address
-from carom._compiled.decorators import kernel, unit
+from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
 from carom.collision.faces import load_face
 from carom.collision.features import of_edges, of_vertex_a, of_vertex_b
 from carom.collision.found import put
@@ -36,7 +36,7 @@ FACE = 1e-12  # relative to the size: by so much a face's normal may be worse an
 
 
 @unit
-def closest_unit(s, a, b, hulls, found):
+def closest(s, a, b, hulls, found):
     """Write the nearest points of two convex solids as the first point.
 
     Overlap must be slight, less than about half of either core: deeper, the way out may not be the least.
@@ -75,9 +75,6 @@ def closest_unit(s, a, b, hulls, found):
     ax, ay, az = bx + core * nx, by + core * ny, bz + core * nz
     gap = core - a.radius - b.radius
     put(found, 0, gap, nx, ny, nz, ax, ay, az, bx, by, bz, feature)
-
-
-closest = by_address(closest_unit)  # (address, s, a, b, hulls, found)
 
 
 @kernel

@@ -94,24 +94,11 @@ class PairWork(NamedTuple):
 
     state: np.recarray  # (1,) PAIR_STATE
     found: np.recarray  # (96,) TOUCH_POINT, in axes of B, points on the cores
-    closest: int  # address of the compiled search that curved cores, hulls and some boxes need
-
-
-def pair_arrays() -> PairWork:
-    """Return the scratch of the kernels of pairs, without the address of the search."""
-    return PairWork(table(PAIR_STATE, 1), table(TOUCH_POINT, 96), 0)
 
 
 def new_pair_work() -> PairWork:
-    """Return the scratch of the kernels of pairs; compiles the search if it is not on disk."""
-    from carom._compiled.decorators import address
-    from carom.collision.convex import closest_unit
-
-    state, found, _ = pair_arrays()
-    solid = table(SOLID, 1)
-    hulls = Hulls(np.zeros((0, 3)), table(FACE, 0), np.zeros(0, dtype=np.int64))
-    found_at = address(closest_unit, state[0], solid[0], solid[0], hulls, found)
-    return PairWork(state, found, found_at)
+    """Return the scratch of the kernels of pairs."""
+    return PairWork(table(PAIR_STATE, 1), table(TOUCH_POINT, 96))
 
 
 def new_points(count: int = MOST_POINTS) -> np.recarray:

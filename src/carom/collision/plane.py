@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.choice import by_address
-from carom._compiled.decorators import entry, kernel, unit
+from carom._compiled.decorators import entry, kernel
+from carom._compiled.units import unit
 from carom.collision.faces import RIM, rim_point
 from carom.collision.features import of_vertex_a
 from carom.collision.found import put, spread
@@ -72,9 +72,6 @@ def touch_plane(a, hulls, x, q, normal, offset, reach, work, out):
 def plane_unit(a, hulls, x, q, normal, offset, reach, work, out):
     """As `touch_plane`, compiled once; the number of points goes to ``work.state[0].total``."""
     work.state[0].total = touch_plane(a, hulls, x, q, normal, offset, reach, work, out)
-
-
-touch_plane_at = by_address(plane_unit)  # (address, a, hulls, ..., out)
 
 
 @kernel

@@ -8,8 +8,8 @@ of points always in it.
 
 from __future__ import annotations
 
-from carom._compiled.choice import by_address
-from carom._compiled.decorators import entry, kernel, unit
+from carom._compiled.decorators import entry, kernel
+from carom._compiled.units import unit
 from carom.collision.box import point_box, segment_box
 from carom.collision.box_box import face_or_edges
 from carom.collision.clip import overlap
@@ -53,7 +53,7 @@ def touch(a, b, hulls, xa, qa, xb, qb, reach, work, out):
         a, b = b, a
         xa, qa, xb, qb = xb, qb, xa, qa
     enter(s, xa, qa, xb, qb)
-    count = _ordered(s, a, b, hulls, work.closest, reach, found)
+    count = _ordered(s, a, b, hulls, reach, found)
     return hand_on(s, found, count, a.radius, b.radius, flip, out)
 
 
@@ -63,11 +63,8 @@ def touch_unit(a, b, hulls, xa, qa, xb, qb, reach, work, out):
     work.state[0].total = touch(a, b, hulls, xa, qa, xb, qb, reach, work, out)
 
 
-touch_at = by_address(touch_unit)  # (address, a, b, ..., out)
-
-
 @kernel
-def _ordered(s, a, b, hulls, address, reach, found):
+def _ordered(s, a, b, hulls, reach, found):
     """Find the points of a pair whose first kind is not above its second."""
     boxes = a.kind == BOX and b.kind == BOX
     if b.kind <= SEGMENT:
@@ -84,16 +81,16 @@ def _ordered(s, a, b, hulls, address, reach, found):
     elif b.kind == BOX and a.kind == SEGMENT:
         segment_box(s, a, b, found)
     elif not boxes:
-        closest(address, s, a, b, hulls, found)
+        closest(s, a, b, hulls, found)
     elif not face_or_edges(s, a, b, found):
-        closest(address, s, a, b, hulls, found)
+        closest(s, a, b, hulls, found)
         boxes = False
     while True:
         count = _manifold(s, a, b, hulls, reach, found)
         if not (boxes and found[0].feature == 0):
             return count
         # No points of the two faces are as near as the axis says: vertices or edges beside them are nearest.
-        closest(address, s, a, b, hulls, found)
+        closest(s, a, b, hulls, found)
         boxes = False
 
 

@@ -8,8 +8,8 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.collision.plane import touch_plane_at
-from carom.collision.touch import touch_at
+from carom.collision.plane import plane_unit
+from carom.collision.touch import touch_unit
 from carom.contact.rim import same_point
 from carom.contact.roll import roll_on_plane
 from carom.geometry.rotation import exp, multiply, normalize, rotate, rotate_back
@@ -37,15 +37,15 @@ def find_touches(system, contact, state, reach, work):
     a, pose = system.solids[contact.solid], work.solid_pose
     pose_solid(a, state[contact.body], pose[0])
     if contact.other < 0:
-        touch_plane_at(
-            system.plane_at, a, system.hulls, pose[0, :3], pose[0, 3:], contact.axes[0],
+        plane_unit(
+            a, system.hulls, pose[0, :3], pose[0, 3:], contact.axes[0],
             contact.offset, reach, work.pair, work.touches,
         )  # fmt: skip
     else:
         b = system.solids[contact.other_solid]
         pose_solid(b, state[contact.other], pose[1])
-        touch_at(
-            system.touch_at, a, b, system.hulls, pose[0, :3], pose[0, 3:], pose[1, :3],
+        touch_unit(
+            a, b, system.hulls, pose[0, :3], pose[0, 3:], pose[1, :3],
             pose[1, 3:], reach, work.pair, work.touches,
         )  # fmt: skip
     return work.pair.state[0].total

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.choice import by_address
-from carom._compiled.decorators import inlined, kernel, unit
+from carom._compiled.decorators import inlined, kernel
+from carom._compiled.units import unit
 from carom.contact.gap import slow
 from carom.contact.pair_point import drift
 from carom.contact.place import place_held
@@ -81,13 +81,10 @@ def accelerations(system, state, held, work, stage):
     work.result[0].power, work.result[0].drag = applied, friction
 
 
-_acceleration_at = by_address(acceleration_unit)
-
-
 @inlined
 def acceleration(system, state, held, work, stage):
     """Write the accelerations into `rate` of `stage`; return the powers of loads and of friction."""
-    _acceleration_at(system.acceleration_at, system, state, held, work, stage)
+    acceleration_unit(system, state, held, work, stage)
     return work.result[0].power, work.result[0].drag
 
 

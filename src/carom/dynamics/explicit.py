@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom._compiled.choice import by_address
-from carom._compiled.decorators import inlined, kernel, unit
+from carom._compiled.decorators import inlined, kernel
+from carom._compiled.units import unit
 from carom.dynamics.acceleration import accelerations, aim
 from carom.dynamics.adapt import forget_misses, note_misses
 from carom.dynamics.joint_friction import stay_stuck
@@ -45,7 +45,6 @@ class Explicit(NamedTuple):
     A: np.ndarray  # (S, S)
     b: np.ndarray  # (S,)
     E: np.ndarray  # (0, S) none; (1, S); (2, S) of orders 5 and 3
-    address: int  # of the step for bodies that are joined, loaded or held; 0 while none is
 
 
 #: names of the explicit methods
@@ -61,14 +60,14 @@ def tableau(name: str) -> Explicit:
         A = np.zeros((4, 4))
         A[1, 0] = A[2, 1] = 0.5
         A[3, 2] = 1.0
-        return Explicit(A, np.array([1.0, 2.0, 2.0, 1.0]) / 6.0, np.zeros((0, 4)), 0)
+        return Explicit(A, np.array([1.0, 2.0, 2.0, 1.0]) / 6.0, np.zeros((0, 4)))
     from scipy.integrate import DOP853, RK45
 
     chosen = {"rk5": RK45, "rk8": DOP853}[name]
     stages = len(chosen.B)
     A = np.zeros((stages, stages))
     A[:, : chosen.A.shape[1]] = chosen.A[:stages]
-    return Explicit(A, np.array(chosen.B), np.zeros((0, stages)), 0)
+    return Explicit(A, np.array(chosen.B), np.zeros((0, stages)))
 
 
 def with_error(name: str) -> Explicit:
@@ -97,13 +96,13 @@ def explicit_step(method, system, held, start, h, end, work):
 def constrained(method, system, held, start, h, end, work):
     """Step the bodies that are joined, loaded or held; as `explicit_step` gives back."""
     tableau = Tableau(method.A, method.b, method.E)
-    whole_step(method.address, tableau, system, held, start, h, end, work)
+    whole_step(tableau, system, held, start, h, end, work)
     result = work.result[0]
     return result.applied, result.friction, result.code
 
 
 @unit
-def constrained_unit(tableau, system, held, start, h, end, work):
+def whole_step(tableau, system, held, start, h, end, work):
     """Step at once, or in parts in which no body turns far.
 
     The length of a part depends on where it starts alone, so that the end is a continuous function of h.
@@ -155,10 +154,6 @@ def with_care(tableau, system, held, start, h, end, work):
         if not care:
             forget_misses(work)  # what was done is void
     result.applied, result.friction, result.code = applied, friction, code
-
-
-#: whole_step(address, tableau, system, held, start, h, end, work)
-whole_step = by_address(constrained_unit)
 
 
 @inlined

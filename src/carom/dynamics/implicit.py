@@ -18,8 +18,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom._compiled.choice import by_address
-from carom._compiled.decorators import inlined, kernel, unit
+from carom._compiled.decorators import inlined, kernel
+from carom._compiled.units import unit
 from carom.dynamics.acceleration import bias_joints
 from carom.dynamics.elements import driven_power
 from carom.dynamics.explicit import bound_accelerations, constrained, fly, forget_bounds, keep
@@ -38,11 +38,9 @@ CONSTRAINTS_LOST = 7
 class Implicit(NamedTuple):
     """The implicit step, and the explicit method for held contacts."""
 
-    at: int  # address of the step; 0 while none is needed
     A: np.ndarray
     b: np.ndarray
     E: np.ndarray
-    address: int
 
 
 @inlined
@@ -56,12 +54,12 @@ def implicit_step(method, system, held, start, h, end, work):
     for i in range(held.count[0]):
         if held.points[i].rest == 0:
             return constrained(method, system, held, start, h, end, work)
-    whole_step(method.at, system, held, start, h, end, work)
+    whole_step(system, held, start, h, end, work)
     return work.result[0].applied, 0.0, work.result[0].code
 
 
 @unit
-def implicit_unit(system, held, start, h, end, work):
+def whole_step(system, held, start, h, end, work):
     """Make the two stages, and return to the joints."""
     result, stage = work.result[0], work.stage
     result.code = 0
@@ -93,10 +91,6 @@ def implicit_unit(system, held, start, h, end, work):
         result.code = CONSTRAINTS_LOST
     project_velocity(system, end, work)
     result.applied = 0.5 * h * power + damper_work(system, start, h, end)
-
-
-#: whole_step(address, system, held, start, h, end, work)
-whole_step = by_address(implicit_unit)
 
 
 @kernel

@@ -23,9 +23,9 @@ def make_method(
     if name in EXPLICIT:
         return tableau(name)
     if name in SYMPLECTIC:
-        return Rattle(composition(name), 0, *tableau("rk8" if name == "rattle6" else "rk4"))
+        return Rattle(composition(name), *tableau("rk8" if name == "rattle6" else "rk4"))
     if name == "implicit":
-        return Implicit(0, *tableau("rk4"))
+        return Implicit(*tableau("rk4"))
     return ThreeField(
         int(name == "paper-ode"),
         options.natural_frequency,

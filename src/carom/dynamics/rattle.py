@@ -26,8 +26,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom._compiled.choice import by_address
-from carom._compiled.decorators import inlined, kernel, unit
+from carom._compiled.decorators import inlined, kernel
+from carom._compiled.units import unit
 from carom.dynamics.contact_impulse import clear_wrenches
 from carom.dynamics.discrete_rotation import turn_by_momentum
 from carom.dynamics.elements import driven_power
@@ -52,11 +52,9 @@ class Rattle(NamedTuple):
     """Parts of a step, and the explicit method for held contacts and singular positions."""
 
     parts: np.ndarray  # (S,) of h, sum 1
-    at: int  # address of the step; 0 while none is needed
     A: np.ndarray
     b: np.ndarray
     E: np.ndarray
-    address: int
 
 
 #: names of the symplectic methods
@@ -89,7 +87,7 @@ def rattle_step(method, system, held, start, h, end, work):
         if held.points[i].rest == 0:
             return constrained(method, system, held, start, h, end, work)
     result = work.result[0]
-    whole_step(method.at, method.parts, system, start, h, end, work)
+    whole_step(method.parts, system, start, h, end, work)
     if result.code == STALLED:
         result.fallen += 1
         return constrained(method, system, held, start, h, end, work)
@@ -97,7 +95,7 @@ def rattle_step(method, system, held, start, h, end, work):
 
 
 @unit
-def rattle_unit(parts, system, start, h, end, work):
+def whole_step(parts, system, start, h, end, work):
     """Make the parts of a step, one after the other."""
     applied, code, result, t = 0.0, DONE, work.result[0], work.result[0].start
     for b in range(start.shape[0]):
@@ -115,10 +113,6 @@ def rattle_unit(parts, system, start, h, end, work):
                 bound_changes(work.middle[b], end[b], parts[s] * h, work.body[b].bound)
                 keep(end[b], work.middle[b])
     result.applied, result.code = applied, code
-
-
-#: whole_step(address, parts, system, start, h, end, work)
-whole_step = by_address(rattle_unit)
 
 
 @kernel

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from carom._compiled.choice import by_address
-from carom._compiled.decorators import address, inlined, kernel, unit
+from carom._compiled.decorators import inlined, kernel
+from carom._compiled.units import unit
 from carom.dynamics.light_bodies import factor_light, solve_light
 from carom.dynamics.loops import factor, solve_factored
 from carom.dynamics.tree import solve_tree, walk_tree
@@ -75,14 +75,16 @@ def joint_wrench(joint, state, multiplier, reaction):
             reaction[3 + k] += multiplier[r] * d[k]
 
 
-def back_end(solver):
-    """Return the unit that solves; of closed loops it depends on the masses."""
-    if isinstance(solver, LoopSolver):
-        return solve_spread if len(solver.scaled) else solve_loops
-    return solve_free if isinstance(solver, FreeSolver) else solve_tree
+@inlined
+def _solve_loops(system, state, biased, near, work):
+    """Solve closed loops, with 31 digits where a light body needs them."""
+    if system.solver.scaled.shape[0] > 0:
+        solve_spread(system, state, biased, near, work)
+    else:
+        solve_loops(system, state, biased, near, work)
 
 
-_solve_at = by_address(lambda system, *rest: back_end(system.solver)(system, *rest))
+_solve = by_solver({FreeSolver: solve_free, TreeSolver: solve_tree, LoopSolver: _solve_loops})
 
 
 @inlined
@@ -92,7 +94,7 @@ def solve(system, state, biased, work):
     With `biased` the joints move relative to each other as `work.joint` says, else not. See
     `carom.dynamics.tree` for the meaning.
     """
-    _solve_at(system.solver.address, system, state, biased, False, work)
+    _solve(system, state, biased, False, work)
 
 
 @inlined
@@ -102,7 +104,7 @@ def _solve_at_once(system, state, work):
 
 
 @inlined
-def _solve_by_address(system, state, work):
+def _solve_unit(system, state, work):
     """Solve with biased joints."""
     solve(system, state, True, work)
 
@@ -111,9 +113,9 @@ def _solve_by_address(system, state, work):
 #: hands on some 300 numbers, as much as four links of a tree; what is called directly is compiled again.
 solve_directly = by_solver(
     {
-        FreeSolver: _solve_by_address,
+        FreeSolver: _solve_unit,
         TreeSolver: _solve_at_once,
-        LoopSolver: _solve_by_address,
+        LoopSolver: _solve_unit,
     }
 )
 
@@ -121,10 +123,4 @@ solve_directly = by_solver(
 @inlined
 def solve_near(system, state, work):
     """Do the same, biased, with what was worked out for the last position: a correction from nearby."""
-    _solve_at(system.solver.address, system, state, True, True, work)
-
-
-def with_address(system, state, work, find=address):
-    """Return the system with the address of its back end for arrays like these, which `find` finds."""
-    found = find(back_end(system.solver), system, state, True, False, work)
-    return system._replace(solver=system.solver._replace(address=found))
+    _solve(system, state, True, True, work)

@@ -65,7 +65,6 @@ class ThreeField(NamedTuple):
     A: np.ndarray
     b: np.ndarray
     E: np.ndarray
-    address: int
 
 
 @kernel

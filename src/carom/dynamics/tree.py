@@ -24,7 +24,8 @@ freedom: S (6), U (6), 1/D, u.
 
 from __future__ import annotations
 
-from carom._compiled.decorators import kernel, unit
+from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
 from carom.geometry.rotation import cross, matrix, spin_tensor
 from carom.kinematics.joints import axis, child_arm, parent_arm
 from carom.kinematics.pose import keep_pose, same_pose

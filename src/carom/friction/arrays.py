@@ -60,8 +60,6 @@ ISLAND_BODY = [("motion", "f8", 6), ("pivot", "i8", 6)]
 class IslandWork(NamedTuple):
     """Work arrays of a solve through bodies."""
 
-    address: int  # of the compiled search
-    newton: int  # of what it calls
     contact: np.recarray  # (k,) CONTACT
     link: np.recarray  # (k,) LINK
     vector: np.ndarray  # (VECTORS, 3k)
@@ -80,22 +78,16 @@ def new_island_work(graph: IslandGraph, body: np.ndarray) -> IslandWork:
     k, bodies, pairs = len(body), len(graph.place), len(graph.later)
     link = table(LINK, k)
     link.body, link.corner = body, graph.corner
-    from carom.friction.strategy import with_address
-
-    return with_address(
-        IslandWork(
-            0,
-            0,
-            table(CONTACT, k),
-            link,
-            np.zeros((VECTORS, 3 * k)),
-            np.zeros(5, dtype=np.int64),
-            np.zeros(2),
-            table(ISLAND_BODY, bodies),
-            graph.place,
-            graph.later,
-            graph.target,
-            np.zeros((bodies + 2 * pairs, 6, 6)),
-            np.zeros((2, bodies, 6)),
-        )
+    return IslandWork(
+        table(CONTACT, k),
+        link,
+        np.zeros((VECTORS, 3 * k)),
+        np.zeros(5, dtype=np.int64),
+        np.zeros(2),
+        table(ISLAND_BODY, bodies),
+        graph.place,
+        graph.later,
+        graph.target,
+        np.zeros((bodies + 2 * pairs, 6, 6)),
+        np.zeros((2, bodies, 6)),
     )

@@ -62,8 +62,6 @@ ENOUGH = 1
 class ConeWork(NamedTuple):
     """Work arrays of `carom.friction.solve.solve_cones` for up to K contacts."""
 
-    address: int  # of the compiled search
-    newton: int  # of what it calls
     contact: np.recarray  # (K,) CONTACT
     vector: np.ndarray  # (VECTORS, 3K)
     count: np.ndarray  # (5,) int64
@@ -75,19 +73,10 @@ class ConeWork(NamedTuple):
 
 
 def new_cone_work(capacity: int) -> ConeWork:
-    """Return work arrays for up to `capacity` contacts; compiles the search if it is not on disk."""
-    from carom.friction.strategy import with_address
-
-    return with_address(cone_arrays(capacity))
-
-
-def cone_arrays(capacity: int) -> ConeWork:
-    """Return work arrays that do not have the address of the search yet."""
+    """Return work arrays for up to `capacity` contacts."""
     contacts = max(capacity, 1)
     n = 3 * contacts
     return ConeWork(
-        0,
-        0,
         table(CONTACT, contacts),
         np.zeros((VECTORS, n)),
         np.zeros(5, dtype=np.int64),

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.choice import by_address
-from carom._compiled.decorators import kernel, unit
+from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
 from carom.friction import layout as o
 from carom.friction.cone import project
 from carom.friction.operators import factor, multiply, solve
@@ -22,7 +22,7 @@ _CHORD = 0.1  # factors are kept for another step if the last one reduced f by t
 
 
 @unit
-def newton_unit(work, k, eps, patient):
+def newton(work, k, eps, patient):
     """Iterate from p; leave in work how often (added to `ITERATIONS`), and |f|.
 
     A step must reduce |f|; or, if `patient`, the greatest of the last four: the way past a kink. Factors at
@@ -62,10 +62,6 @@ def newton_unit(work, k, eps, patient):
             work.count[o.ROWS] = -1
     work.count[o.ITERATIONS] += count
     work.mismatch[0] = size
-
-
-#: newton(address, work, k, eps, patient)
-newton = by_address(newton_unit)
 
 
 @kernel

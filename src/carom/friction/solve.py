@@ -46,7 +46,7 @@ def solve_cones(k, W, c, mu, kind, heading, p, scratch):
             b[2],
         )
     else:
-        search(scratch.address, scratch, k)
+        search(scratch, k)
         iterations = scratch.count[o.ITERATIONS]
     for i in range(3 * k):
         p[i] = gamma * scratch.contact[i // 3].scale * q[i]

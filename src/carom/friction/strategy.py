@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.choice import by_address
-from carom._compiled.decorators import address, kernel, unit
+from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
 from carom.friction import layout as o
 from carom.friction.alternating import alternate
 from carom.friction.cone import nearest, project, shift
-from carom.friction.newton import newton, newton_unit, velocity
+from carom.friction.newton import newton, velocity
 from carom.friction.operators import magnitude, sweep
 from carom.friction.residual import RELATIVE, ROUND_OFF
 
@@ -25,7 +25,7 @@ _RELEASES = 60
 
 
 @unit
-def search_unit(work, k):
+def search(work, k):
     """Leave in work the best p that is found from one starting point after the other, and the iterations.
 
     Start 0: what was given, to the solution of least norm (unless one that is near is wanted). Start 1: what
@@ -68,16 +68,6 @@ def search_unit(work, k):
         p[i] = best[i]
 
 
-#: search(address, work, k)
-search = by_address(search_unit)
-
-
-def with_address(work, find=address):
-    """Return the work arrays with the addresses of what is compiled for arrays like these."""
-    work = work._replace(newton=find(newton_unit, work, 1, 1.0, True))
-    return work._replace(address=find(search_unit, work, 1))
-
-
 @kernel
 def spent(work):
     """Return whether a search has had the iterations that it was given."""
@@ -117,7 +107,7 @@ def release(work, k):
         for i in range(3 * k):
             centre[i] = p[i] = kept[i]
         work.count[o.ROWS] = -1
-        newton(work.newton, work, k, eps, True)
+        newton(work, k, eps, True)
         if work.mismatch[0] < 1e-8:
             for i in range(3 * k):
                 kept[i] = p[i]
@@ -146,7 +136,7 @@ def polished(work, k, least_norm, patient):
         kept[i] = p[i]
     goal, tolerance = 0.0, 0.0
     for _ in range(_POLISH):
-        newton(work.newton, work, k, _EPS, patient)
+        newton(work, k, _EPS, patient)
         for i in range(k):
             n = 3 * i
             p[n], p[n + 1], p[n + 2] = project(work.contact[i], p[n], p[n + 1], p[n + 2])

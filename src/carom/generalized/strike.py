@@ -75,9 +75,14 @@ class Strike:
 
     def several(self, closed: list[int], now: float, jams: int) -> int:
         """Resolve the impact of all closed contacts together (mathematics page, V)."""
-        from carom.impact.multiple.layout import MULTIPLE, OK, CornerSettings, new_corner_result
+        from carom.impact.multiple.layout import (
+            MULTIPLE,
+            OK,
+            CornerSettings,
+            corner_arrays,
+            new_corner_result,
+        )
         from carom.impact.multiple.resolve import resolve_corner
-        from carom.impact.multiple.work import new_corner_work
 
         here, k = self.contacts, len(closed)
         options, n = here.run.options, here.run.n
@@ -95,7 +100,7 @@ class Strike:
             exponent=options.corner_exponent,
         )  # fmt: skip
         if self.room is None:
-            self.room = new_corner_work(len(here.friction))
+            self.room = corner_arrays(len(here.friction))
         out = new_corner_result(k)
         code = resolve_corner(
             k, W, u.reshape(-1), here.friction[closed], e, here.law[closed], np.ones(k), settings,

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 
 from carom._compiled.choice import (
-    by_address,
     by_method,
 )
-from carom._compiled.decorators import kernel, unit
+from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
 from carom.contact.closed_points import concerns, gather_closed
 from carom.contact.gap import round_off, slow, strike_point
 from carom.contact.groups import label_groups
@@ -35,7 +35,7 @@ from carom.impact.work_mode import restore_work
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.controls import LOCATE, WORK
 from carom.model.event_rows import begin_event, end_event
-from carom.model.records import IMPACT, JAMS, NEEDS_CORNER
+from carom.model.records import FULL_CORNER, GROW, IMPACT, JAMS
 
 RETURN_MAP_FAILED, IMPACT_FAILED, TOO_MANY_POINTS = 5, 6, 10
 SEED = 1e-10  # approach given to a point that jams, as a part of its slip; the result does not depend on it
@@ -74,7 +74,7 @@ def onto_surface(system, controls, c, state, work):
 
 
 @unit
-def strike_unit(model, data, method, c):
+def strike(model, data, method, c):
     """Resolve the impact of contact c, together with all that is closed in its group.
 
     0 or the number of a `Status` goes to work.hit, and how many points were closed, if one was struck.
@@ -108,8 +108,8 @@ def strike_unit(model, data, method, c):
     if approach < 0.0 or jams:
         hit.closed = max(k, 2) if jams else k  # a point that is held is always judged anew
         single = as_one(system, k, state, cluster, work)
-        if not single and controls.corner_at == 0:
-            hit.code = NEEDS_CORNER
+        if not single and data.corner.e.shape[0] < k:
+            clock.grow, hit.code = FULL_CORNER, GROW
             return
         begin_event(system, c, cluster.seats[0].feature, state, clock, records)
         first = clock.struck
@@ -135,10 +135,6 @@ def strike_unit(model, data, method, c):
     if controls.location != LOCATE:  # others may be inside as well
         for i in range(held.brinks.shape[0]):
             held.brinks[i].near = 1
-
-
-#: strike(address, model, data, method, c)
-strike = by_address(strike_unit)
 
 
 @kernel

@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.choice import by_address
-from carom._compiled.decorators import kernel, unit
+from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
 from carom.contact.gap import slow
 from carom.dynamics.contact_impulse import add_velocity, spread
 from carom.dynamics.several_points import inverse_masses, velocities
 from carom.impact.driven import BLOCKED, blocked
 from carom.impact.effective_restitution import what_is_left
 from carom.impact.layout import WEDGED
-from carom.impact.multiple.layout import NEEDS_UNITS, OK
+from carom.impact.multiple.layout import OK
 from carom.impact.multiple.resolve import resolve_contacts
 from carom.impact.workspace import U
-from carom.model.records import NEEDS_CORNER
 
 IMPACT_FAILED = 6
 SEED = 1e-7  # of the slip
@@ -23,16 +22,12 @@ STEP = 30.0  # cost of a step through the layers, of a point [us]
 
 
 @unit
-def corner_unit(k, W, u, mu, corner):
+def at_corner(k, W, u, mu, corner):
     """Resolve the impact of k points; its code goes to the clock of the scratch."""
     corner.scratch.work.clock[0].code = resolve_contacts(
         k, W, u, mu, corner.e, corner.law, corner.kappa, corner.settings, corner.scratch,
         corner.result,
     )  # fmt: skip
-
-
-#: at_corner(address, k, W, u, mu, corner)
-at_corner = by_address(corner_unit)
 
 
 @kernel
@@ -41,7 +36,7 @@ def strike_several(model, data, c, k):
 
     A point that jams begins with a little approach (mathematics page, VI.6).
     """
-    system, controls = model.system, model.controls
+    system = model.system
     held, state, cluster, corner, work, clock, records = (
         data.held,
         data.state,
@@ -67,13 +62,13 @@ def strike_several(model, data, c, k):
             u[3 * i] -= SEED * math.sqrt(u[3 * i + 1] ** 2 + u[3 * i + 2] ** 2)
             cluster.mu[i] = contact.friction_held
         corner.law[i], corner.kappa[i] = contact.law, contact.stiffness
-    at_corner(controls.corner_at, k, cluster.m[0], u, cluster.mu, corner)
+    at_corner(k, cluster.m[0], u, cluster.mu, corner)
     code = corner.scratch.work.clock[0].code
     worked = STEP * k * corner.result.summary[0].steps
     clock.effort += worked
     clock.since += worked
     if code != OK:
-        hit.code = NEEDS_CORNER if code == NEEDS_UNITS else IMPACT_FAILED
+        hit.code = IMPACT_FAILED
         return
     count_blows(held, k, cluster)
     P = corner.result.impulse

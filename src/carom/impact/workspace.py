@@ -8,7 +8,7 @@ import numpy as np
 
 from carom._compiled.record_arrays import table
 from carom.collision.layout import MOST_POINTS
-from carom.friction.layout import ConeWork, cone_arrays
+from carom.friction.layout import ConeWork, new_cone_work
 from carom.impact.multiple.layout import (
     CornerResult,
     CornerScratch,
@@ -100,7 +100,7 @@ def new_cluster(system: System) -> Cluster:
         heading=np.zeros((k, 2)),
         member=np.zeros(n, dtype=np.int64),
         flight=table(STATE, n),
-        cone=cone_arrays(k),
+        cone=new_cone_work(k),
     )
 
 

@@ -440,13 +440,12 @@ FIRST, WIDTH = 52, 14
 class FreeSolver(NamedTuple):
     """No joints: every body answers for itself."""
 
-    address: int  # of the compiled solve
+    count: int  # of joints
 
 
 class TreeSolver(NamedTuple):
     """A forest of joints, solved by articulated-body elimination."""
 
-    address: int
     links: np.recarray  # (N,) LINK
     scratch: np.ndarray  # (N, FIRST + WIDTH times the most freedoms) written by each solve
 
@@ -454,7 +453,6 @@ class TreeSolver(NamedTuple):
 class LoopSolver(NamedTuple):
     """Closed loops: block-sparse Cholesky factor of A M^-1 A^T, joints in an order of low fill."""
 
-    address: int
     order: np.ndarray  # (J,) joints in the order of elimination
     column: np.ndarray  # (J+1,) ranges of the blocks below the diagonal, by place in the order
     row: np.ndarray  # (B,) joint of each block below the diagonal
@@ -516,9 +514,6 @@ class System(NamedTuple):
     vertices: np.ndarray  # (V, 3) of all contacts, body axes
     solids: np.recarray  # SOLID of `carom.collision`, of bodies that may touch each other
     hulls: Hulls | NoHulls
-    touch_at: int  # address of what finds the points of two solids
-    plane_at: int  # of a solid and a half-space
-    acceleration_at: int  # of what works out all accelerations, 0 while nobody asks
     solver: FreeSolver | TreeSolver | LoopSolver
 
 

@@ -96,9 +96,6 @@ def compile_scene(
         vertices,
         solids,
         hulls,
-        0,
-        0,
-        0,
         solver,
     )
     return Compiled(system, start, to_principal, flipped, functions)

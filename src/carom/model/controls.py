@@ -1,4 +1,4 @@
-"""Settings of a run as numbers, and the addresses of the units that it calls."""
+"""Settings of a run as numbers."""
 
 from __future__ import annotations
 
@@ -23,12 +23,6 @@ class Controls(NamedTuple):
     layer_time: int  # 1: add the duration of impacts to the clock
     max_impacts: int
     max_cuts: int
-    strike_at: int  # addresses of units
-    hold_at: int
-    corner_at: int
-    settle_at: int
-    press_at: int
-    heap_at: int
     heap: int  # an island of so many bodies takes its steps whole
     retry: int  # a step that does not get on is given up, to be taken: 1 whole, 2 in parts; 0: it is not
     order: int  # of the error of a step whose length is chosen; 0: all steps are `step`

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from carom._compiled.record_arrays import Columns, table
-from carom.collision.layout import new_points, pair_arrays
+from carom.collision.layout import new_pair_work, new_points
 from carom.model.arrays import (
     BODY_WORK,
     BRINK,
@@ -62,6 +62,7 @@ CLOCK = [
     ("tries", "i8"),  # trial steps of the present step of an island
     ("effort", "f8"),  # work for its contact problems and corners, about [us]
     ("credit", "f8"),  # how much of it a step may take, as those before took less than they might
+    ("grow", "i8"),  # what is to grow before the loop goes on
     ("since", "f8"),  # work since the loop was entered, about [us]
     ("paused", "i8"),  # 1 where it was left in the middle of a trial step
     ("located", "i8"),
@@ -136,15 +137,14 @@ SNAPSHOT = [
 ]
 
 MARGIN = 260  # impacts, or events, that one turn of the loop may write
-FULL = 100  # a record is full: the caller makes it longer and goes on
-NEEDS_CORNER = 102  # several points strike: the same
-NEEDS_HOLD = 101  # a contact is to be held: the caller compiles what that needs and goes on
-NEEDS_ROOM = 103  # more pairs are near each other than there is room for: the same
-NEEDS_HEAP = 104  # an island is a heap: the caller compiles its step and goes on
-NEEDS_SPOTS = 105  # more points may touch in a heap than there is room for: the caller makes more
-NEEDS_ROWS = 107  # more steps are to be saved than there is room for: the same
-STRAYED = 106  # a body has left the ball that its island gave it
-PAUSE = 108  # much was done: the caller looks for Ctrl-C and goes on
+# codes beyond those of `Status`. Of the loop, which goes on when it is called again:
+GROW = 100  # arrays are full (`clock.grow` says which): the caller makes longer ones
+PAUSE = 101  # much was done: the caller looks for Ctrl-C
+# within it:
+STRAYED = 102  # a body has left the ball that its island gave it
+
+# what is to grow: records of impacts and events, saved rows, pairs of islands, points of a crowd, of an impact
+FULL_EVENTS, FULL_ROWS, FULL_PAIRS, FULL_SPOTS, FULL_CORNER = range(5)
 
 LONG = 5e4  # work after which the loop is left for a moment, about [us]
 # work for contacts, about [us]: what a step may take on the average, one after others that took less, and that
@@ -201,7 +201,7 @@ def new_work(system: System, stages: int) -> Work:
         middle=table(STATE, n),
         first=table(STATE, n),
         point=table(POINT, 1),
-        pair=pair_arrays(),
+        pair=new_pair_work(),
         touches=new_points(),
         solid_pose=np.zeros((2, 7)),
         solid_rate=np.zeros((2, 3)),

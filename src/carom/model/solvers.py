@@ -38,7 +38,7 @@ def tree_solver(joints: np.recarray, order: np.ndarray, joint: np.ndarray) -> Tr
     most = max(
         1, int(np.max(links.freedoms[(links.joint >= 0) | (links.has_child == 1)], initial=0))
     )
-    return TreeSolver(0, links, np.full((order.size, FIRST + WIDTH * most), np.nan))
+    return TreeSolver(links, np.full((order.size, FIRST + WIDTH * most), np.nan))
 
 
 def spread(touching: list[list[int]], mass, moments, extent) -> tuple[float, int, int]:
@@ -113,7 +113,6 @@ def loop_solver(touching: list[list[int]], drop: float, poses: int, bodies: int)
         if place[element[s]] >= place[element[t]]
     ]
     return LoopSolver(
-        address=0,
         order=np.array(order, dtype=np.int64),
         column=np.array(column, dtype=np.int64),
         row=np.array(row, dtype=np.int64),

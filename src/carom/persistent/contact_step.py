@@ -18,8 +18,8 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.choice import by_address
-from carom._compiled.decorators import kernel, unit
+from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
 from carom.contact.closed_points import gather_held, place_seats
 from carom.contact.groups import members
 from carom.dynamics.acceleration import SLIP
@@ -53,7 +53,7 @@ ITERATION = 0.3  # cost [us] of an iteration for k points, by k^2
 
 
 @unit
-def press_unit(model, data, h):
+def press(model, data, h):
     """Correct the step from `start` to `end` of all bodies that are held at several points.
 
     Forces at the end go to the held points; work of friction, of loads and a status to `work.result`.
@@ -70,10 +70,6 @@ def press_unit(model, data, h):
         press_group(model, data, group, h)
         if result.code != 0:
             return
-
-
-#: press(address, model, data, h)
-press = by_address(press_unit)
 
 
 @kernel

@@ -12,8 +12,7 @@ while those that do not leave are kept.
 
 from __future__ import annotations
 
-from carom._compiled.choice import by_address
-from carom._compiled.decorators import unit
+from carom._compiled.units import unit
 from carom.contact.closed_points import gather_closed
 from carom.persistent.active_set import regroup, set_anchor, together
 from carom.persistent.one_point import hold_one, settle_one
@@ -23,7 +22,7 @@ TOO_MANY_POINTS = 10
 
 
 @unit
-def hold_unit(model, data, c, horizon):
+def hold_contact(model, data, c, horizon):
     """Hold what is closed in the group of contact c, does not approach, and shall be held by the rule."""
     system, controls = model.system, model.controls
     held, state, cluster, work = data.held, data.state, data.cluster, data.work
@@ -46,16 +45,8 @@ def hold_unit(model, data, c, horizon):
     regroup(system, held, work)
 
 
-#: hold_contact(address, model, data, c, horizon)
-hold_contact = by_address(hold_unit)
-
-
 @unit
-def settle_unit(model, data, i):
+def settle(model, data, i):
     """Find anew how point i, the only one of its body, goes on: its slip has come to a stop or has turned."""
     held = data.held
     settle_one(model, data, held.points[i])
-
-
-#: settle(address, model, data, i)
-settle = by_address(settle_unit)

@@ -45,7 +45,7 @@ from carom.persistent.step_control import (
     next_pace,
     unsolved,
 )
-from carom.stepping.record import finite, save_contacts
+from carom.stepping.record import finite, grow, save_contacts
 from carom.stepping.trial_step import first_event, propose_step
 
 NO_CONVERGENCE, TOO_MANY, NOT_FINITE = 1, 3, 4
@@ -97,7 +97,7 @@ def may_go_on(model, data, late):
     if clock.since > r.LONG and clock.paused == 0:
         return r.PAUSE
     if full(model.system, data.held, clock, data.records):
-        return r.FULL
+        return grow(clock, r.FULL_EVENTS)
     if not late:
         if clock.in_step > controls.max_impacts or clock.at_once > 1000:
             return TOO_MANY
@@ -204,7 +204,7 @@ def act(model, data, method, action, late):
     clock.at_once += 1
     if action == STRIKE:
         struck = clock.struck
-        strike(controls.strike_at, model, data, method, search.contact)
+        strike(model, data, method, search.contact)
         closed = work.hit[0].closed
         clock.since += 10.0
         if late:
@@ -224,14 +224,11 @@ def act(model, data, method, action, late):
 @inlined
 def persist(model, data, action):
     """Let what is closed with the contact persist from now on, or go on in another mode. Returns a code."""
-    controls, work, clock, search = model.controls, data.work, data.clocks[0], data.work.search[0]
-    if controls.hold_at == 0:
-        search.pending = max(action, HOLD)
-        return r.NEEDS_HOLD
+    work, clock, search = data.work, data.clocks[0], data.work.search[0]
     if action == SETTLE:
-        settle(controls.settle_at, model, data, search.contact)
+        settle(model, data, search.contact)
     else:
-        hold_contact(controls.hold_at, model, data, search.contact, search.horizon)
+        hold_contact(model, data, search.contact, search.horizon)
         if work.hit[0].code != 0:
             return work.hit[0].code
     if clock.now == 0.0:  # touching from the start: the first row says so

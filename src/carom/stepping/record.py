@@ -8,6 +8,7 @@ from carom._compiled.decorators import entry, inlined, kernel
 from carom.contact.place import place_any
 from carom.dynamics.explicit import keep
 from carom.geometry.rotation import cross
+from carom.model.records import GROW
 from carom.stepping.energy_balance import begin_watch, note_energies
 
 
@@ -30,6 +31,13 @@ def still(state):
             if state[b].v[k] != 0.0 or state[b].w[k] != 0.0:
                 return False
     return True
+
+
+@inlined
+def grow(clock, what):
+    """Ask for longer arrays: return the code with which the loop is left."""
+    clock.grow = what
+    return GROW
 
 
 @entry

@@ -19,7 +19,7 @@ from carom.stepping.energy_balance import watch_step
 from carom.stepping.event_step import NOT_FINITE, advance, is_whole, strayed
 from carom.stepping.islands import one_island, parts
 from carom.stepping.islands.layout import Islands, NoIslands
-from carom.stepping.record import finite, save, still
+from carom.stepping.record import finite, grow, save, still
 
 
 @entry
@@ -36,20 +36,20 @@ def run(model, data, method, islands, until):
         clock.since += 0.1 * data.state.shape[0]
         if controls.order > 0:
             if clock.saved >= data.records.series.shape[0]:
-                return r.NEEDS_ROWS
+                return grow(clock, r.FULL_ROWS)
             begin_step(controls, clock)
         else:
             clock.begin = clock.step * controls.step
             clock.length = min(controls.step, controls.duration - clock.begin)
         if not start(islands, model, data):
-            return r.NEEDS_ROOM
+            return grow(clock, r.FULL_PAIRS)
         code = move_islands(model, data, method, islands)
         if code != 0:
             if not lost(islands, model, data, code):
                 return code
             continue
         if clock.touched + data.held.points.shape[0] > data.records.touch.shape[0]:
-            return r.FULL
+            return grow(clock, r.FULL_EVENTS)
         end(islands, model, data)
         code = finish_step(model, data)
         if code != 0:
@@ -190,16 +190,12 @@ def _enter_island(islands, part, own, held):
 @inlined
 def _move_all(islands, model, data, method):
     """Move all bodies to the end of the step: event by event, or whole if that did not get on."""
-    system, controls, work = model.system, model.controls, data.work
+    system, work = model.system, data.work
     step = data.clocks[0].step
     if islands.free == 0 or not is_whole(step, work):
         parts.recover(system, step, work)
         return advance(model, data, method)
-    if controls.hold_at == 0:
-        return r.NEEDS_HOLD
-    if controls.heap_at == 0:
-        return r.NEEDS_HEAP
-    step_heap(controls.heap_at, model, data)
+    step_heap(model, data)
     regroup(system, data.held, work)
     return work.result[0].code
 
@@ -210,13 +206,9 @@ def _move_island(islands, model, data, method):
     system, controls, work = model.system, model.controls, data.work
     step = data.clocks[0].step
     if not parts.is_heap(system, controls.heap, step, work):
-        if data.held.count[0] > 0 and controls.hold_at == 0:  # by a heap
-            return r.NEEDS_HOLD
         parts.recover(system, step, work)
         return advance(model, data, method)
-    if controls.heap_at == 0:
-        return r.NEEDS_HEAP
-    step_heap(controls.heap_at, model, data)
+    step_heap(model, data)
     code = work.result[0].code
     return (
         r.STRAYED
@@ -240,7 +232,7 @@ def _leave_island(islands, own):
 def _all_lost(islands, model, data, code):
     """Go back to the start of a step that could not be taken from event to event; return whether so."""
     clock = data.clocks[0]
-    if code >= r.FULL or code == BLOCKED or model.controls.retry == 0:
+    if code >= r.GROW or code == BLOCKED or model.controls.retry == 0:
         return False
     if not one_island.tire_together(clock.step, data.work):
         return False
@@ -258,7 +250,7 @@ def _island_lost(islands, model, data, code):
     With more room for bodies that have left theirs; with islands as heaps where one could not go from event
     to event.
     """
-    if code >= r.FULL and code != r.STRAYED:
+    if code >= r.GROW and code != r.STRAYED:
         return False  # the caller sees to it, and comes back
     clock, again = data.clocks[0], code == r.STRAYED
     if again:

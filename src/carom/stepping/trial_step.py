@@ -100,7 +100,7 @@ def trial_step(model, data, method, late):
             return TOO_MANY
     if held.count[0] > 0 and code == 0:
         end_forces(system, held, work.trial, work)
-        press(controls.press_at, model, data, search.dt)
+        press(model, data, search.dt)
         if work.result[0].code != 0:
             return work.result[0].code
         if controls.retry == 1 and clock.effort > affordable(controls, clock):

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.choice import by_address
-from carom._compiled.decorators import inlined, kernel, unit
+from carom._compiled.decorators import inlined, kernel
+from carom._compiled.units import unit
 from carom.impact.multiple import events, law
 from carom.impact.multiple.by_series import series_step
 from carom.impact.multiple.by_stages import by_stages
-from carom.impact.multiple.layout import MISSING, SAVED_D, SAVED_P, SAVED_WHEN, WHEN, D, P, U
+from carom.impact.multiple.layout import SAVED_D, SAVED_P, SAVED_WHEN, WHEN, D, P, U
 from carom.impact.multiple.motion import set_velocity
 
 ENDED, TRAPPED = 0, 1
@@ -131,7 +131,7 @@ def wedged(k, work, h, p):
 
 
 @kernel
-def traverse(k, work, units, rtol, p, max_events, max_steps):
+def traverse(k, work, rtol, p, max_events, max_steps):
     """Go on to the end of the event: ENDED, or TRAPPED after too many changes of mode or steps."""
     clock = work.clock[0]
     when = work.vector[WHEN]
@@ -150,13 +150,10 @@ def traverse(k, work, units, rtol, p, max_events, max_steps):
             return TRAPPED
         h, changes = -1.0, False
         if p == 1.0 and clock.stiff == 0:
-            h, changes = series_step(k, work, units, rtol)
+            h, changes = series_step(k, work, rtol)
         if h < 0.0:
-            if units.stages == MISSING or clock.wants == 1:
-                clock.wants = 1
-                return TRAPPED
             fine = max(0.1 * rtol, min(rtol, _FINE)) if p == 1.0 else rtol  # as exact as series are
-            by_stages(units.stages, k, work, units, fine, p)
+            by_stages(k, work, fine, p)
             h, changes = clock.length, clock.changes == 1
             clock.stiff = clock.stiff - 1 if clock.stiff > 0 else _STIFF_STEPS - 1
         if changes:
@@ -169,10 +166,6 @@ def traverse(k, work, units, rtol, p, max_events, max_steps):
 
 
 @unit
-def layer_unit(k, work, units, rtol, p, max_events, max_steps):
+def pass_layer(k, work, rtol, p, max_events, max_steps):
     """Traverse; the code goes to the clock."""
-    work.clock[0].code = traverse(k, work, units, rtol, p, max_events, max_steps)
-
-
-#: pass_layer(address, k, work, units, rtol, p, max_events, max_steps)
-pass_layer = by_address(layer_unit)
+    work.clock[0].code = traverse(k, work, rtol, p, max_events, max_steps)

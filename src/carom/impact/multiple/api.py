@@ -130,10 +130,10 @@ def resolve_impacts(
         MULTIPLE,
         OK,
         CornerSettings,
+        corner_arrays,
         new_corner_result,
     )
     from carom.impact.multiple.resolve import resolve_corner
-    from carom.impact.multiple.work import new_corner_work
 
     u = checks.finite_array("velocity", velocity, (None, 3), "m/s")
     k = len(u)
@@ -153,7 +153,7 @@ def resolve_impacts(
         exponent=checks.number("exponent", exponent, least=1.0, most=4.0),
     )
     out = new_corner_result(k)
-    scratch = new_corner_work(k)
+    scratch = corner_arrays(k)
     code = resolve_corner(
         k, W, np.ascontiguousarray(u).reshape(-1), mu, e, numbers, kappa, settings, scratch, out
     )

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.choice import by_address
-from carom._compiled.decorators import kernel, unit
+from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
 from carom.friction.layout import CONE, ENOUGH
 from carom.friction.solve import solve_cones
-from carom.impact.multiple.layout import CLEAN, FACTOR, MISSING, SCRATCH, STACK, TRY
+from carom.impact.multiple.layout import CLEAN, FACTOR, SCRATCH, STACK, TRY
 
 _GROWTH = 1e-9  # of the energy that the greatest velocity stands for
 _MOST = 1e3  # times the greatest velocity before: none is thrown off faster
@@ -35,7 +35,7 @@ def unsound(k, u, scale, out):
 
 
 @unit
-def at_once_unit(k, u, mu, e, scratch, out):
+def solve_at_once(k, u, mu, e, scratch, out):
     """Write impulses and works of all contacts."""
     work = scratch.work
     W, c, p = work.matrix[CLEAN], work.vector[SCRATCH], work.vector[TRY]
@@ -69,15 +69,3 @@ def at_once_unit(k, u, mu, e, scratch, out):
         slip += p[a + 2] * (u[a + 2] + out.velocity[a + 2])
         out.compression[i], out.restitution[i] = min(0.0, part), max(0.0, part)
         out.friction[i] = max(0.0, -0.5 * slip)
-
-
-_solve = by_address(at_once_unit)
-
-
-@kernel
-def all_at_once(k, u, mu, e, scratch, out):
-    """Write impulses and works of all contacts."""
-    if scratch.units.at_once == MISSING:
-        scratch.work.clock[0].wants = 1
-        return
-    _solve(scratch.units.at_once, k, u, mu, e, scratch, out)

@@ -17,7 +17,7 @@ _STIFF = 100.0  # rate at which a slow direction relaxes, in units of the fastes
 
 
 @inlined
-def series_step(k, work, units, rtol):
+def series_step(k, work, rtol):
     """One step by series, cut at the first change; return its length, or -1 if stages must do it."""
     clock, when, u = work.clock[0], work.vector[WHEN], work.vector[U]
     least = max(AT_REST, 0.1 * rtol)
@@ -32,9 +32,7 @@ def series_step(k, work, units, rtol):
             c = work.contact[i]
             if taylor.slips(c) and math.sqrt(u[3 * i + 1] ** 2 + u[3 * i + 2] ** 2) <= 10.0 * least:
                 c.sticks = 1
-    z = gather_stuck(k, work, units)
-    if clock.wants == 1:
-        return -1.0, False
+    z = gather_stuck(k, work)
     if z > 0:
         halt(k, z, work)
     stretched = taylor.stretch_weights(k, work)

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.choice import by_address
-from carom._compiled.decorators import kernel, unit
+from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
 from carom.impact.multiple import events, law
 from carom.impact.multiple.by_series import AT_REST
 from carom.impact.multiple.implicit import advance, implicit_step, interpolate
@@ -17,28 +17,24 @@ _AT_CHANGE = 0.02  # part of the tolerance where a contact begins or ceases to s
 
 
 @unit
-def stages_unit(k, work, units, rtol, p):
+def by_stages(k, work, rtol, p):
     """One implicit step, cut at the first change of mode; its length and any change go to the clock."""
     m = gather_discs(k, work)
     work.clock[0].stretched = 0
-    h, changes = stages_step(k, m, work, units, rtol, p)
+    h, changes = stages_step(k, m, work, rtol, p)
     work.clock[0].length, work.clock[0].changes = h, 1 if changes else 0
 
 
-#: by_stages(address, k, work, units, rtol, p)
-by_stages = by_address(stages_unit)
-
-
 @kernel
-def stages_step(k, m, work, units, rtol, p):
+def stages_step(k, m, work, rtol, p):
     """One implicit step, cut at the first change of mode; return its length and whether one changes."""
     clock, when, tolerance = work.clock[0], work.vector[WHEN], 1e-3 * rtol
     h, slow = clock.step, max(AT_REST, 0.01 * rtol)
     force = work.stage[FORCE]
     normal_forces(k, work, work.vector[D], p, force[0])
-    friction_now(k, m, work, units, 1e-7 * h, slow, tolerance / h, force[0])
+    friction_now(k, m, work, 1e-7 * h, slow, tolerance / h, force[0])
     while True:
-        implicit_step(units.step, k, m, work, units, h, p, tolerance)
+        implicit_step(k, m, work, h, p, tolerance)
         clock.steps += 1
         allowed = rtol
         if regime_changes(m, work, slow):
@@ -54,7 +50,7 @@ def stages_step(k, m, work, units, rtol, p):
     changes = first <= h
     if changes:
         if first > events.TOGETHER:
-            h = _land(k, m, work, units, first, p, tolerance, 0.1 * rtol)
+            h = _land(k, m, work, first, p, tolerance, 0.1 * rtol)
             for i in range(k):  # in the time of the step as it is now
                 when[i] -= first - h
         else:
@@ -66,7 +62,7 @@ def stages_step(k, m, work, units, rtol, p):
 
 
 @kernel
-def _land(k, m, work, units, h, p, tolerance, residual):
+def _land(k, m, work, h, p, tolerance, residual):
     """Step to the change of mode near `h`: Newton's iteration on the length of the step."""
     when, lead = work.vector[WHEN], 0
     for i in range(k):
@@ -74,7 +70,7 @@ def _land(k, m, work, units, h, p, tolerance, residual):
             lead = i
     c = work.contact[lead]
     for turn in range(5):
-        implicit_step(units.step, k, m, work, units, h, p, tolerance)
+        implicit_step(k, m, work, h, p, tolerance)
         work.clock[0].steps += 1
         d, u_n = work.vector[NEW_D, lead], work.vector[NEW_U, 3 * lead]
         if c.mode == law.OPEN:

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.choice import by_address
-from carom._compiled.decorators import kernel, unit
+from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
 from carom.friction.lu import factor, substitute
 from carom.impact.multiple.layout import (
     DISC_C,
@@ -208,10 +208,6 @@ def _project(m, radius, t):
 
 
 @unit
-def discs_unit(m, A, J, vector, index, tolerance):
+def friction(m, A, J, vector, index, tolerance):
     """Solve as `solve_discs`."""
     solve_discs(m, A, J, vector, index, tolerance)
-
-
-#: friction(address, m, A, J, vector, index, tolerance)
-friction = by_address(discs_unit)

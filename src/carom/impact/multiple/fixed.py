@@ -6,8 +6,8 @@ locate each change.
 
 from __future__ import annotations
 
-from carom._compiled.choice import by_address
-from carom._compiled.decorators import kernel, unit
+from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
 from carom.impact.multiple import law
 from carom.impact.multiple.adaptive import ENDED, TRAPPED, drift, wedged
 from carom.impact.multiple.discs import friction
@@ -32,7 +32,7 @@ _APART = 1e-10  # velocities of approach below this are none
 
 
 @kernel
-def traverse_fixed(k, work, units, n, p, max_events, max_steps):
+def traverse_fixed(k, work, n, p, max_events, max_steps):
     """Pass the layer with `n` steps a unit of time (of the fastest contact, and of its unloading)."""
     clock = work.clock[0]
     least = 1.0
@@ -49,7 +49,7 @@ def traverse_fixed(k, work, units, n, p, max_events, max_steps):
             return TRAPPED
         if clock.events != before:
             m = gather_discs(k, work)
-        _step(k, m, work, units, h, p)
+        _step(k, m, work, h, p)
         clock.steps += 1
         changed = _switch(k, work, p)
         if changed > 0:
@@ -58,17 +58,13 @@ def traverse_fixed(k, work, units, n, p, max_events, max_steps):
 
 
 @unit
-def fixed_unit(k, work, units, n, p, max_events, max_steps):
+def pass_fixed(k, work, n, p, max_events, max_steps):
     """Traverse; the code goes to the clock."""
-    work.clock[0].code = traverse_fixed(k, work, units, n, p, max_events, max_steps)
-
-
-#: pass_fixed(address, k, work, units, n, p, max_events, max_steps)
-pass_fixed = by_address(fixed_unit)
+    work.clock[0].code = traverse_fixed(k, work, n, p, max_events, max_steps)
 
 
 @kernel
-def _step(k, m, work, units, h, p):
+def _step(k, m, work, h, p):
     d, u, impulse, force = work.vector[D], work.vector[U], work.vector[P], work.vector[SCRATCH]
     for i in range(k):
         d[i] -= 0.5 * h * u[3 * i]
@@ -86,7 +82,7 @@ def _step(k, m, work, units, h, p):
             c[2 * s], c[2 * s + 1] = u[a + 1], u[a + 2]
             largest = max(largest, abs(u[a + 1]), abs(u[a + 2]))
         friction(
-            units.discs, m, work.matrix[DISCS], work.matrix[JACOBIAN], work.vector, work.index,
+            m, work.matrix[DISCS], work.matrix[JACOBIAN], work.vector, work.index,
             _TOLERANCE + 1e-14 * largest,
         )  # fmt: skip
         for s in range(m):

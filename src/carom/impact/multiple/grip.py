@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.choice import by_address
-from carom._compiled.decorators import kernel, unit
+from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
 from carom.impact.multiple.law import OPEN
 from carom.impact.multiple.layout import (
     FACTOR,
@@ -19,7 +19,6 @@ from carom.impact.multiple.layout import (
     LEFT,
     MASS,
     MIDDLE,
-    MISSING,
     S_P,
     S_P1,
     S_P2,
@@ -39,7 +38,7 @@ _MOMENT = 0.3  # units of the time of the fastest contact
 
 
 @kernel
-def gather_stuck(k, work, units):
+def gather_stuck(k, work):
     """List the closed contacts that stick; return how many. What holds them goes to HOLDING."""
     z = 0
     for i in range(k):
@@ -49,10 +48,8 @@ def gather_stuck(k, work, units):
         elif c.sticks == 1 and c.mu > 0.0:
             work.index[STUCK, z] = i
             z += 1
-    if z > 0 and units.hold == MISSING:
-        work.clock[0].wants = 1
-    elif z > 0:
-        find_holding(units.hold, z, work)
+    if z > 0:
+        find_holding(z, work)
     return z
 
 
@@ -83,7 +80,7 @@ def _bearing(z, work, weight):
 
 
 @unit
-def holding_unit(z, work):
+def find_holding(z, work):
     """Write H = D^2 L (L^T D^2 L)^-1 (L^T L)^-1 L^T, W_ZZ = L L^T by Cholesky with pivots: T = -H a."""
     n, slot, vector = 2 * z, work.index[STUCK], work.vector
     L, M, hold = work.matrix[FACTOR], work.matrix[MIDDLE], work.matrix[HOLDING]
@@ -116,10 +113,6 @@ def holding_unit(z, work):
             for q in range(rank):
                 s += row[q] * L[b, q]
             hold[a, b] = s
-
-
-#: find_holding(address, z, work)
-find_holding = by_address(holding_unit)
 
 
 @kernel

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom._compiled.choice import by_address
-from carom._compiled.decorators import kernel, unit
+from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
 from carom.impact.multiple.discs import friction
 from carom.impact.multiple.layout import (
     DISC,
@@ -67,7 +67,7 @@ DEFECT = WEIGHTS - np.array([
 
 
 @unit
-def step_unit(k, m, work, units, h, p, tolerance):
+def implicit_step(k, m, work, h, p, tolerance):
     """Step from (d, P, u) by `h` to the new state; the error goes to the clock.
 
     Forces of this instant are in ``work.stage[FORCE, 0]``; `m` discs are gathered. `tolerance` is for the
@@ -96,7 +96,7 @@ def step_unit(k, m, work, units, h, p, tolerance):
             u1[i] = u[i]
         add_velocity(n, W, q, u1)
         if m > 0:
-            _friction(k, m, work, units, GAMMA * h, force[s], u1, tolerance)
+            _friction(k, m, work, GAMMA * h, force[s], u1, tolerance)
         for i in range(k):
             a = 3 * i
             rate[s, i] = -u1[a]
@@ -124,12 +124,8 @@ def step_unit(k, m, work, units, h, p, tolerance):
     work.clock[0].error = worst
 
 
-#: implicit_step(address, k, m, work, units, h, p, tolerance)
-implicit_step = by_address(step_unit)
-
-
 @kernel
-def _friction(k, m, work, units, step, force, u, tolerance):
+def _friction(k, m, work, step, force, u, tolerance):
     """Add friction to `force`, and its effect within `step` to `u`."""
     slot, vector = work.index[DISC], work.vector
     c, t = vector[DISC_C], vector[DISC_T]
@@ -141,9 +137,7 @@ def _friction(k, m, work, units, step, force, u, tolerance):
         c[2 * s + 1] = u[a + 2] / step
         largest = max(largest, abs(c[2 * s]), abs(c[2 * s + 1]))
     tolerance = tolerance / step + 1e-14 * largest
-    friction(
-        units.discs, m, work.matrix[DISCS], work.matrix[JACOBIAN], vector, work.index, tolerance
-    )
+    friction(m, work.matrix[DISCS], work.matrix[JACOBIAN], vector, work.index, tolerance)
     for s in range(m):
         a = 3 * slot[s]
         force[a + 1], force[a + 2] = t[2 * s], t[2 * s + 1]

@@ -8,7 +8,7 @@ import numpy as np
 
 from carom._compiled.record_arrays import table
 from carom._compiled.simd import LANES
-from carom.friction.layout import ConeWork, cone_arrays
+from carom.friction.layout import ConeWork, new_cone_work
 from carom.impact import layout as one
 
 SIMULTANEOUS, SEQUENTIAL, BY_NEWTON = 0, 1, 2
@@ -17,7 +17,6 @@ MULTIPLE = {"simultaneous": SIMULTANEOUS, "sequential": SEQUENTIAL, "newton": BY
 OK = 0
 BAD_INPUT = 1  #: a number is not finite, or a law or a coefficient is out of its range
 NOT_RESOLVED = 2  #: no method ended with contacts that do not approach
-NEEDS_UNITS = 3  #: something has to be compiled first (`work.with_units`); then again
 
 MESSAGES = {
     BAD_INPUT: "a number is not finite or out of its range",
@@ -117,31 +116,11 @@ class CornerWork(NamedTuple):
     single: np.ndarray  # result of one contact, as `carom.impact.layout` says
 
 
-class CornerUnits(NamedTuple):
-    """Addresses of what is compiled on its own; MISSING where it was not needed so far."""
-
-    layer: int
-    single: int
-    # rarely needed: compiled together when one of them is asked for
-    discs: int
-    step: int
-    stages: int
-    hold: int
-    fixed: int
-    plastic: int
-    at_once: int
-
-
-MISSING = -1
-NO_UNITS = CornerUnits(*[MISSING] * 9)
-
-
 class CornerScratch(NamedTuple):
     """Scratch of `resolve_corner` for up to K contacts."""
 
     work: CornerWork
     cones: ConeWork
-    units: CornerUnits
 
 
 #: rows of `index`: class of a contact, first member of a class, its size, its group, members of
@@ -202,7 +181,6 @@ CLOCK = [
     ("code", "i8"),
     ("length", "f8"),
     ("changes", "i8"),
-    ("wants", "i8"),  # 1: something that is needed is not compiled; results are of no use
 ]
 
 
@@ -216,7 +194,7 @@ def new_corner_result(capacity: int) -> CornerResult:
 
 
 def corner_arrays(capacity: int) -> CornerScratch:
-    """Return scratch for up to `capacity` contacts that does not have the addresses of its units yet."""
+    """Return scratch for up to `capacity` contacts."""
     k = max(int(capacity), 1)
     n, blocks = 3 * k, (k + LANES - 1) // LANES
     work = CornerWork(
@@ -231,4 +209,4 @@ def corner_arrays(capacity: int) -> CornerScratch:
         stage=np.zeros((2, 6, n)),
         single=np.zeros(one.SIZE),
     )
-    return CornerScratch(work, cone_arrays(k), NO_UNITS)
+    return CornerScratch(work, new_cone_work(k))

@@ -85,7 +85,7 @@ def normal_forces(k, work, d, p, out):
 
 
 @kernel
-def friction_now(k, m, work, units, horizon, slow, tolerance, out):
+def friction_now(k, m, work, horizon, slow, tolerance, out):
     """Add the friction of this instant to the normal forces `out`; `m` discs are gathered.
 
     Of a contact that slips T = -mu N u_t/|u_t|; of those at rest, slower than `slow`, the solution of V.3:
@@ -112,9 +112,7 @@ def friction_now(k, m, work, units, horizon, slow, tolerance, out):
             largest = max(largest, abs(a[3 * i + 1 + r]))
             most = max(most, abs(c[2 * s + r]))
     tolerance += 1e-13 * (1.0 + largest) + 1e-14 * most
-    friction(
-        units.discs, m, work.matrix[DISCS], work.matrix[JACOBIAN], vector, work.index, tolerance
-    )
+    friction(m, work.matrix[DISCS], work.matrix[JACOBIAN], vector, work.index, tolerance)
     for s in range(m):
         n = 3 * slot[s]
         out[n + 1], out[n + 2] = t[2 * s], t[2 * s + 1]

@@ -21,34 +21,34 @@ def all_plastic(k, work):
 
 
 @kernel
-def pass_group(k, work, cones, units, settings, result):
+def pass_group(k, work, cones, settings, result):
     """Resolve the group of `k` contacts in `work`; velocities before are in row U0, impulses go to P."""
     p = settings.exponent
     r.energetic(k, work)
     start(k, work)
     if all_plastic(k, work):
-        end_plastically(units.plastic, k, work, cones, p)
+        end_plastically(k, work, cones, p)
         result.plastic_change += work.clock[0].change
         result.marks |= PLASTIC
         return
     into_lanes(k, work)
     fixed = 0 if k <= settings.adaptive_up_to else settings.fixed_steps
-    ended = run(k, work, units, settings, settings.rtol, fixed, True)
+    ended = run(k, work, settings, settings.rtol, fixed, True)
     if ended != ENDED and fixed == 0 and work.clock[0].steps >= settings.max_steps * k:
         fixed = settings.fixed_steps
-        ended = run(k, work, units, settings, settings.rtol, fixed, True)
+        ended = run(k, work, settings, settings.rtol, fixed, True)
     if r.any_aims(k, work) and ended == ENDED:
-        ended = meet_laws(k, work, units, settings, fixed, result)
+        ended = meet_laws(k, work, settings, fixed, result)
     if fixed > 0:
         result.marks |= FIXED
         for i in range(3 * k):
             work.vector[TRY, i] = work.vector[U, i]
-        ended = run(k, work, units, settings, settings.rtol, 2 * fixed, True)
+        ended = run(k, work, settings, settings.rtol, 2 * fixed, True)
         for i in range(3 * k):
             result.error = max(result.error, abs(work.vector[TRY, i] - work.vector[U, i]))
     result.steps += work.clock[0].steps
     result.events += work.clock[0].events
     if ended != ENDED:
-        end_plastically(units.plastic, k, work, cones, p)
+        end_plastically(k, work, cones, p)
         result.plastic_change += work.clock[0].change
         result.marks |= PLASTIC

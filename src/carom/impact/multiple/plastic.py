@@ -5,12 +5,12 @@ For e = 0 everywhere, and to close what does not end by itself (a body trapped b
 
 from __future__ import annotations
 
-from carom._compiled.choice import by_address
-from carom._compiled.decorators import kernel, unit
+from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
 from carom.friction.layout import CONE, ENOUGH, SOLVED
 from carom.friction.solve import solve_cones
 from carom.impact.multiple import law
-from carom.impact.multiple.layout import FACTOR, MASS, MISSING, SCRATCH, STACK, TRY, WEIGHT, D, P, U
+from carom.impact.multiple.layout import FACTOR, MASS, SCRATCH, STACK, TRY, WEIGHT, D, P, U
 from carom.impact.multiple.motion import set_velocity
 
 _ROUNDS = 4
@@ -35,21 +35,9 @@ def plastic_event(k, work, cones, p):
 
 
 @unit
-def plastic_unit(k, work, cones, p):
+def end_plastically(k, work, cones, p):
     """End the event plastically; the change of energy goes to the clock."""
     work.clock[0].change = plastic_event(k, work, cones, p)
-
-
-_end = by_address(plastic_unit)
-
-
-@kernel
-def end_plastically(address, k, work, cones, p):
-    """End the event plastically; the change of energy goes to the clock."""
-    if address == MISSING:
-        work.clock[0].wants = 1
-        return
-    _end(address, k, work, cones, p)
 
 
 @kernel

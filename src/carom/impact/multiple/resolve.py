@@ -8,7 +8,7 @@ from carom._compiled.decorators import entry, kernel
 from carom.impact import laws
 from carom.impact import layout as one
 from carom.impact.multiple import equal_contacts
-from carom.impact.multiple.at_once import all_at_once, unsound
+from carom.impact.multiple.at_once import solve_at_once, unsound
 from carom.impact.multiple.layout import (
     AT_ONCE,
     BAD_INPUT,
@@ -22,7 +22,6 @@ from carom.impact.multiple.layout import (
     GROUP,
     MASS,
     MEMBER,
-    NEEDS_UNITS,
     NOT_RESOLVED,
     OK,
     REPELLED,
@@ -49,17 +48,16 @@ def resolve_corner(k, W, u, mu, e, law, kappa, settings, scratch, out):
 
 @kernel
 def resolve_contacts(k, W, u, mu, e, law, kappa, settings, scratch, out):
-    """Resolve an impact of `k` contacts; return OK or BAD_INPUT (nothing is written then), or NEEDS_UNITS.
+    """Resolve an impact of `k` contacts; return OK or BAD_INPUT (nothing is written then).
 
     `W` (3K, 3K) symmetric inverse mass, often singular, and `u` (3K,) velocities before, rows (n, t1, t2) of
     each contact, approach negative; of contacts that touch or are held u_n = 0. `mu`, `e`, `law` and
     `kappa` (K,): friction, restitution, its law as in `carom.impact.laws`, stiffness (only ratios matter).
-    `settings`: `CornerSettings`; `scratch` from `new_corner_work`, `out` from `new_corner_result`, for K >= k.
+    `settings`: `CornerSettings`; `scratch` from `corner_arrays`, `out` from `new_corner_result`, for K >= k.
     """
     scale = _check(k, W, u, mu, e, law, kappa)
     if not scale >= 0.0:
         return BAD_INPUT
-    scratch.work.clock[0].wants = 0
     result, index, clean = out.summary[0], scratch.work.index, scratch.work.matrix[CLEAN]
     result.energy_change, result.plastic_change = 0.0, 0.0
     result.error, result.miss = 0.0, 0.0
@@ -104,9 +102,9 @@ def resolve_contacts(k, W, u, mu, e, law, kappa, settings, scratch, out):
     exact = (result.marks & EXACT) != 0  # that of one contact may gain energy, by Newton's law
     if code != OK or (not exact and unsound(k, u, scale, out)):
         result.marks, result.miss, result.plastic_change = AT_ONCE, 0.0, 0.0
-        all_at_once(k, u, mu, e, scratch, out)
+        solve_at_once(k, u, mu, e, scratch, out)
         _finish(k, W, u, scale, out)
-    return NEEDS_UNITS if scratch.work.clock[0].wants == 1 else OK
+    return OK
 
 
 @kernel
@@ -153,7 +151,7 @@ def _group(k, g, count, u, mu, e, law, kappa, scale, settings, scratch, out):
         i = index[FIRST, index[MEMBER, 0]]
         parts = equal_contacts.parts_others(k, work.matrix[CLEAN], i, index)
         gives = e[i] > 0.0 or not parts  # several that give nothing back are one plastic event
-        if gives and _exactly(k, i, parts, u, mu, e, law, scale, work, scratch.units, out) == OK:
+        if gives and _exactly(k, i, parts, u, mu, e, law, scale, work, out) == OK:
             return OK
     mass, speed, rate = _fill(n, u, mu, e, law, kappa, scale, settings.exponent, work)
     if not (mass > 0.0 and rate > 0.0):
@@ -162,9 +160,9 @@ def _group(k, g, count, u, mu, e, law, kappa, scale, settings, scratch, out):
     plastic, error = summary.plastic_change, summary.error
     summary.plastic_change, summary.error = 0.0, 0.0
     if settings.multiple == SEQUENTIAL:
-        blow_by_blow(n, work, scratch.cones, scratch.units, settings, summary)
+        blow_by_blow(n, work, scratch.cones, settings, summary)
     else:
-        pass_group(n, work, scratch.cones, scratch.units, settings, summary)
+        pass_group(n, work, scratch.cones, settings, summary)
     energy = speed * speed / mass
     for a in range(n):
         q = index[MEMBER, a]
@@ -220,7 +218,7 @@ def _fill(n, u, mu, e, law, kappa, scale, exponent, work):
 
 
 @kernel
-def _exactly(k, i, parts, u, mu, e, law, scale, work, units, out):
+def _exactly(k, i, parts, u, mu, e, law, scale, work, out):
     """Resolve a group that is one contact, number `i` and those like it; NOT_RESOLVED if nothing stops it.
 
     If it `parts` others, it gives back no more than it took, as each of several contacts.
@@ -234,9 +232,9 @@ def _exactly(k, i, parts, u, mu, e, law, scale, work, units, out):
     single = work.single
     clock = work.clock
     single[one.STILL] = _TOUCHES * scale
-    resolve_single(units.single, clock, W, before, mu[i], e[i], law[i], single)
+    resolve_single(clock, W, before, mu[i], e[i], law[i], single)
     if parts and clock[0].code == one.OK and single[one.WORK_R] > -single[one.WORK_C]:
-        resolve_single(units.single, clock, W, before, mu[i], 1.0, laws.STRONGE, single)
+        resolve_single(clock, W, before, mu[i], 1.0, laws.STRONGE, single)
         out.summary[0].marks |= CAPPED
     if clock[0].code != one.OK:
         return NOT_RESOLVED

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.impact.multiple import restitution as r
-from carom.impact.multiple.adaptive import ENDED, TRAPPED, pass_layer, resume, start
+from carom.impact.multiple.adaptive import ENDED, pass_layer, resume, start
 from carom.impact.multiple.fixed import pass_fixed
-from carom.impact.multiple.layout import CAPPED, MISSED, MISSING, OUT_F, OUT_NEW
+from carom.impact.multiple.layout import CAPPED, MISSED, OUT_F, OUT_NEW
 
 _GAIN = 0.8  # a round is a gain if it leaves at most this part of the greatest miss
 _PATIENCE = 4  # rounds without gain before the iteration begins again, damped; twice that: it ends
@@ -15,27 +15,24 @@ _NEAR = 0.1  # greatest ln(target/reached) at which the nearest found is taken
 
 
 @kernel
-def run(k, work, units, settings, rtol, fixed, anew):
+def run(k, work, settings, rtol, fixed, anew):
     """Pass the layer with the coefficients e_* as they are."""
     p, most_events = settings.exponent, settings.max_events * k
     if anew:
         start(k, work)
-    if fixed > 0 and units.fixed == MISSING:
-        work.clock[0].wants = 1
-        return TRAPPED
     if fixed > 0:
         most = 20 * fixed * k + 50 * fixed
-        pass_fixed(units.fixed, k, work, units, fixed, p, 8 * most_events, most)
+        pass_fixed(k, work, fixed, p, 8 * most_events, most)
         return work.clock[0].code
     if not anew:
         resume(k, work, p)
     most = settings.max_steps * k
-    pass_layer(units.layer, k, work, units, rtol, p, most_events, most)
+    pass_layer(k, work, rtol, p, most_events, most)
     return work.clock[0].code
 
 
 @kernel
-def meet_laws(k, work, units, settings, fixed, result):
+def meet_laws(k, work, settings, fixed, result):
     """Iterate the energetic coefficients until each contact meets its own law.
 
     Where they do not converge (two corners of one rigid edge cannot always both do), the nearest found is
@@ -51,12 +48,12 @@ def meet_laws(k, work, units, settings, fixed, result):
     while worst > tolerance and rounds < settings.max_rounds and ended == ENDED:
         r.improve(k, work)
         rtol = max(settings.rtol, min(_COARSE, 0.01 * worst))
-        ended = again(k, work, units, settings, rtol, fixed)
+        ended = again(k, work, settings, rtol, fixed)
         rounds += 1
         worst, capped = r.misses(k, work, o[OUT_NEW])
         if not worst > tolerance and rtol > settings.rtol:
             rtol = settings.rtol
-            ended = again(k, work, units, settings, rtol, fixed)
+            ended = again(k, work, settings, rtol, fixed)
             worst, capped = r.misses(k, work, o[OUT_NEW])
         r.learn(k, work)
         stale += 1
@@ -77,14 +74,14 @@ def meet_laws(k, work, units, settings, fixed, result):
             r.back_to_best(k, work)
         else:
             r.energetic(k, work)
-        return again(k, work, units, settings, settings.rtol, fixed)
+        return again(k, work, settings, settings.rtol, fixed)
     if capped:
         result.marks |= CAPPED
     return ended
 
 
 @kernel
-def again(k, work, units, settings, rtol, fixed):
+def again(k, work, settings, rtol, fixed):
     """Run with other coefficients, from the first unloading on where that was saved."""
     anew = fixed > 0 or work.clock[0].branched == 0
-    return run(k, work, units, settings, rtol, fixed, anew)
+    return run(k, work, settings, rtol, fixed, anew)

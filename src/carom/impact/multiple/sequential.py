@@ -16,7 +16,7 @@ from carom.impact.multiple.plastic import end_plastically
 
 
 @kernel
-def blow_by_blow(k, work, cones, units, settings, result):
+def blow_by_blow(k, work, cones, settings, result):
     """Resolve the group of `k` contacts in `work`; velocities before are in row U0, impulses go to P."""
     start(k, work)
     for i in range(k):
@@ -28,17 +28,17 @@ def blow_by_blow(k, work, cones, units, settings, result):
                 lead = i
         if not work.vector[U, 3 * lead] < -APART:
             return
-        if result.events >= settings.max_events * k or not _blow(lead, work, units):
+        if result.events >= settings.max_events * k or not _blow(lead, work):
             break
         result.events += 1
         set_velocity(k, work)
-    end_plastically(units.plastic, k, work, cones, settings.exponent)
+    end_plastically(k, work, cones, settings.exponent)
     result.plastic_change += work.clock[0].change
     result.marks |= PLASTIC
 
 
 @kernel
-def _blow(i, work, units):
+def _blow(i, work):
     """Resolve contact `i` alone; return whether it could be."""
     c, W, u, single = work.contact[i], work.matrix[SINGLE], work.vector[TRY], work.single
     for r in range(3):
@@ -46,11 +46,11 @@ def _blow(i, work, units):
         for s in range(3):
             W[r, s] = work.matrix[MASS, 3 * i + r, 3 * i + s]
     clock = work.clock
-    resolve_single(units.single, clock, W, u, c.mu, c.restitution, c.law, single)
+    resolve_single(clock, W, u, c.mu, c.restitution, c.law, single)
     if (
         clock[0].code == one.OK and single[one.WORK_R] > -single[one.WORK_C]
     ):  # not more than it took
-        resolve_single(units.single, clock, W, u, c.mu, 1.0, laws.STRONGE, single)
+        resolve_single(clock, W, u, c.mu, 1.0, laws.STRONGE, single)
     if clock[0].code != one.OK:
         return False
     for r in range(3):

@@ -1,7 +1,7 @@
 """Where a run stands between two steps: all arrays that the loop goes on from.
 
 What a step writes before it reads it (the scratch of impacts, of groups and of heaps) is not kept, only how
-large it was. Addresses of compiled units are those of one process, and found again.
+large it was.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class Packed(NamedTuple):
 class Checkpoint(NamedTuple):
     """A run between two steps."""
 
-    found: dict[str, int]  # which units were compiled, and the sizes of what grows
+    found: dict[str, int]  # the sizes of what grows
     arrays: Mapping[str, np.ndarray | Packed]  # by name, copies
 
 
@@ -62,9 +62,7 @@ def capture(run) -> Checkpoint | None:
     if inside or (islands is not None and islands.plan[0].planned != 0):
         return None
     found = {
-        "hold": int(run.controls.hold_at != 0),
-        "corner": int(run.controls.corner_at != 0),
-        "heap": int(run.controls.heap_at != 0),
+        "corner": len(run.corner.e),
         "spots": len(run.heap.spots),
         "room": 0 if islands is None else len(islands.which),
     }
@@ -79,21 +77,15 @@ def restore(run, checkpoint: Checkpoint, records: r.Records) -> None:
     ValueError
         If the arrays are not those of this version of carom.
     """
-    from carom.stepping.crowd.layout import roomier_heap
-    from carom.stepping.islands.layout import Islands, roomier
+    from carom.stepping.islands.layout import Islands
 
     found = checkpoint.found
-    if found["hold"]:
-        run.find_constrained_step()
-        run.find_hold()
-    if found["corner"]:
-        run.find_corner()
-    if found["heap"]:
-        run.find_heap()
-        while len(run.heap.spots) < found["spots"]:
-            run.heap = roomier_heap(run.heap)
+    while len(run.corner.e) < found["corner"]:
+        run.grow(r.FULL_CORNER)
+    while len(run.heap.spots) < found["spots"]:
+        run.grow(r.FULL_SPOTS)
     while isinstance(run.islands, Islands) and len(run.islands.which) < found["room"]:
-        run.islands = roomier(run.islands)
+        run.grow(r.FULL_PAIRS)
     here = dict(_arrays(run))
     if layout_of(here) != layout_of(checkpoint.arrays):
         raise ValueError("the checkpoint was written by another version of carom")

@@ -50,6 +50,10 @@ class Graph(NamedTuple):
     rank: np.ndarray  # (N,) place in the order
 
 
+#: of a body, to begin with: points that may touch
+SPOTS = 8
+
+
 class Heap(NamedTuple):
     """K points at most, of N bodies; P points are held at most. Vectors have rows n, t1, t2 a point."""
 
@@ -71,8 +75,6 @@ def new_heap(bodies: int, held: int, points: int) -> Heap:
     # what 500 spheres in a box need is half of this; where it is not enough there are sweeps only
     pairs, updates = 4 * points, 128 * points
     problem = IslandWork(
-        address=0,
-        newton=0,
         contact=table(CONTACT, points),
         link=table(LINK, points),
         vector=np.zeros((VECTORS, 3 * points)),
@@ -109,10 +111,10 @@ def new_heap(bodies: int, held: int, points: int) -> Heap:
 @cache
 def no_heap() -> Heap:
     """Return what stands for the scratch while no heap was met: nothing is written to it."""
-    return new_heap(1, 1, 1)
+    return new_heap(1, 1, 1)  # fewer spots than `SPOTS`
 
 
 def roomier_heap(heap: Heap) -> Heap:
     """Return the scratch for twice as many points, with what is compiled for it."""
     more = new_heap(len(heap.flight), len(heap.held), 2 * len(heap.spots))
-    return more._replace(problem=more.problem._replace(newton=heap.problem.newton))
+    return more

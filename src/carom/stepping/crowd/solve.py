@@ -96,8 +96,6 @@ def newton_on_graph(heap, k, n, least, enough, most):
 def part(work, n, pairs, updates):
     """Return the problem with its arrays as long as the bodies and blocks at hand are many."""
     return IslandWork(
-        work.address,
-        work.newton,
         work.contact,
         work.link,
         work.vector,

@@ -14,8 +14,8 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.choice import by_address
-from carom._compiled.decorators import kernel, unit
+from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
 from carom.dynamics.explicit import keep
 from carom.geometry.rotation import norm, rotate, rotate_back
 from carom.kinematics.contact_point import contact_velocity
@@ -24,10 +24,12 @@ from carom.model import records as r
 from carom.persistent.middle_state import halfway, spin_momentum
 from carom.persistent.step_control import affordable, kinetic, lost_by, weigh
 from carom.stepping.crowd.finish import finish
+from carom.stepping.crowd.layout import SPOTS
 from carom.stepping.crowd.pose import note_drift, pose
 from carom.stepping.crowd.solve import solve
 from carom.stepping.crowd.spots import gather, place_all
 from carom.stepping.crowd.surface import move, onto_surfaces
+from carom.stepping.record import grow
 
 FINE = 0.1  # of the speed below which bodies rest: to be reached, or they never would
 # of its ball: a body goes no further in a piece of the step; alone it turns no more [rad]. Bodies of a group go
@@ -43,7 +45,7 @@ GAINS, OFF = 1e-7, 1e-4
 
 
 @unit
-def heap_unit(model, data):
+def step_heap(model, data):
     """Move all bodies of an island to the end of the step; a code for `run` goes to `work.result`.
 
     Few of them, which could not go from event to event, in pieces that are cut where that does not do.
@@ -52,7 +54,9 @@ def heap_unit(model, data):
     now, work, clocks = data.state, data.work, data.clocks
     clock, result, search = clocks[0], work.result[0], work.search[0]
     few = now.shape[0] < controls.heap
-    result.code = 0
+    result.code = 0 if data.heap.spots.shape[0] >= SPOTS else grow(clock, r.FULL_SPOTS)
+    if result.code != 0:
+        return
     if clock.spent == 0.0:
         search.pace = math.inf
     while clock.spent < clock.length:
@@ -75,10 +79,6 @@ def heap_unit(model, data):
             clock.spent = clock.length
         else:
             clock.spent += dt
-
-
-#: step_heap(address, model, data)
-step_heap = by_address(heap_unit)
 
 
 @kernel
@@ -121,10 +121,10 @@ def move_on(model, data, h, patient, careful):
     n, fall = now.shape[0], norm(system.gravity)
     k = gather(system, held, h, fall, now, heap, work)
     if k < 0:
-        return r.NEEDS_SPOTS
+        return grow(clock, r.FULL_SPOTS)
     rows = r.MARGIN + k + held.count[0]
     if max(clock.event, clock.struck) + rows > records.event.shape[0]:
-        return r.FULL
+        return grow(clock, r.FULL_EVENTS)
     for b in range(n):
         free_flight(system.bodies[b], system.gravity, h, now[b], heap.flight[b], work.body[b])
         halfway(now[b], heap.flight[b], work.stage[b])

@@ -72,9 +72,6 @@ def part_system(system, islands, i):
         system.vertices,
         system.solids,
         system.hulls,
-        system.touch_at,
-        system.plane_at,
-        system.acceleration_at,
         system.solver,
     )
 

@@ -43,7 +43,7 @@ def differentiate(solution: Solution, parameters: Parameters) -> Sensitivities:
     run = solution._run
     if run.tolerances is not None:
         raise ValueError('solution must be of a run with steps of one length, got step="auto"')
-    if solution.stats["whole_steps"] or run.controls.heap_at:
+    if solution.stats["whole_steps"] or run.has_heap:
         raise ValueError("solution must be without heaps, got a run that has taken steps as a heap")
     if np.any(parameters.inertia):
         raise ValueError(
