@@ -65,7 +65,7 @@ class Case:
 
     def __init__(self, problem, mu=0.0, e=0.5, law=STRONGE, kappa=None, repeat=200, **settings):
         from carom.impact.multiple.layout import CornerSettings, new_corner_result
-        from carom.impact.multiple.work import new_corner_work
+        from carom.impact.multiple.layout import corner_arrays
 
         W, u = problem
         k = len(u) // 3
@@ -75,7 +75,7 @@ class Case:
             np.full(k, law), ones if kappa is None else np.array(kappa, float),
         )  # fmt: skip
         self.settings, self.repeat, self.given = CornerSettings, repeat, settings
-        self.scratch, self.out = new_corner_work(k), new_corner_result(k)
+        self.scratch, self.out = corner_arrays(k), new_corner_result(k)
 
     def run(self, loop, rtol, **more):
         """Return microseconds, steps, rounds, velocities after."""

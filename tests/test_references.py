@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from carom._compiled.by_reference import Reference, refer, type_of
-from carom._compiled.choice import by_address
-from carom._compiled.decorators import address, entry, kernel, unit
+from carom._compiled.decorators import entry, kernel
 from carom._compiled.record_arrays import table
+from carom._compiled.units import unit
 from carom.collision.layout import FACE, Hulls
 
 
@@ -31,16 +31,13 @@ def total_unit(h, out):
     out[0] = total(h)
 
 
-total_at = by_address(total_unit)
-
-
 @entry
-def of_parts(h, at, out, each):
-    """Write twice the sum of each vertex alone, found directly and through an address; return that of all."""
+def of_parts(h, out, each):
+    """Write twice the sum of each vertex alone, found directly and through a unit; return that of all."""
     for i in range(each.shape[0]):
         part = refer(Hulls(h.vertices[i : i + 1], h.faces, h.corners[i : i + 1]))
         each[i] = total(part)
-        total_at(at, Hulls(h.vertices[i : i + 1], h.faces, h.corners[i : i + 1]), out)
+        total_unit(Hulls(h.vertices[i : i + 1], h.faces, h.corners[i : i + 1]), out)
         each[i] += out[0]
     return total(h)
 
@@ -49,7 +46,7 @@ def of_parts(h, at, out, each):
 def test_what_is_put_together_in_a_loop_is_what_is_read():
     """Loads are marked invariant: those of one turn must not be those of the turn before."""
     h, out, each = hulls(7), np.zeros(1), np.zeros(7)
-    assert of_parts(h, address(total_unit, h, out), out, each) == 42.0
+    assert of_parts(h, out, each) == 42.0
     np.testing.assert_array_equal(each, 4.0 * np.arange(7))
 
 
@@ -57,12 +54,11 @@ def test_what_is_put_together_in_a_loop_is_what_is_read():
 def test_a_change_of_arrays_is_seen():
     """What is invariant is where the arrays are, not what is in them."""
     h, out, each = hulls(3), np.zeros(1), np.zeros(3)
-    at = address(total_unit, h, out)
-    assert of_parts(h, at, out, each) == 6.0
+    assert of_parts(h, out, each) == 6.0
     h.vertices[:, 0] += 1.0
-    assert of_parts(h, at, out, each) == 9.0
+    assert of_parts(h, out, each) == 9.0
     other = Hulls(h.vertices[:2], h.faces, h.corners)
-    assert of_parts(other, at, out, each[:2]) == 1.0 + 3.0
+    assert of_parts(other, out, each[:2]) == 1.0 + 3.0
 
 
 def test_types():
@@ -78,6 +74,6 @@ def test_types():
 @pytest.mark.skipif(not hasattr(of_parts, "overloads"), reason="nothing is compiled")
 def test_names_are_short():
     h, out = hulls(2), np.zeros(1)
-    of_parts(h, address(total_unit, h, out), out, np.zeros(2))
+    of_parts(h, out, np.zeros(2))
     (compiled,) = of_parts.overloads.values()
     assert len(compiled.fndesc.mangled_name) < 300

@@ -4,7 +4,6 @@ import types
 
 import pytest
 
-from carom._compiled import choice
 from carom._compiled.cache_key import stamp
 
 LEAF = """
@@ -13,7 +12,7 @@ def leaf(x):
     return {factor} * x + SHIFT
 
 def caller(x):
-    return leaf(x) + module.deep(x) + chosen(x)
+    return leaf(x) + module.deep(x) + chosen(x) + reached(x)
 """
 
 
@@ -26,7 +25,7 @@ def made(factor="2.0", shift=1.0, doc="''", deep="x", option="x + 1.0", unit="x"
     space["leaf"].__module__ = "made"
     exec(f"def option(x):\n    return {option}\ndef reached(x):\n    return {unit}", space)
     space["chosen"] = types.SimpleNamespace(parts=(space["option"],))
-    space["by_address"] = types.SimpleNamespace(parts=())
+    space["reached"] = types.SimpleNamespace(compiled=space["reached"])
     for name in ("leaf", "deep"):
         where = vars(module) if name == "deep" else space
         where[name] = types.SimpleNamespace(py_func=where[name])
@@ -46,19 +45,18 @@ def test_change_of_a_part_changes_the_stamp(change):
     assert stamp(made(**change)) != stamp(made())
 
 
-def test_what_is_reached_through_an_address_is_left_out():
+def test_a_unit_is_left_out():
     assert stamp(made(unit="2.0 * x")) == stamp(made())
-    assert choice.by_address(made()).parts == ()
 
 
 def test_the_whole_loop_is_reached():
     """A unit and what it calls, over several files."""
     from carom._compiled import cache_key
-    from carom.persistent.contact_step import press_unit
+    from carom.persistent.contact_step import press
 
-    if not hasattr(press_unit, "py_func"):
+    if not hasattr(press, "compiled"):
         pytest.skip("not compiled: there is no cache")
-    names = list(cache_key._reached(press_unit.py_func, set()))
+    names = list(cache_key._reached(press.compiled.py_func, set()))
     for name in (
         "persistent.contact_step.impose",
         "dynamics.several_points.spread_all",

@@ -29,37 +29,32 @@ from numba.extending import intrinsic
 from carom._compiled.by_reference import refer_to
 from carom._compiled.decorators import INSIDE, RULES, jit, keep_on_disk
 
-_RETURNS = {None: types.none, float: types.float64, int: types.int64, bool: types.boolean}
+_RETURNS = {"float": types.float64, "int": types.int64, "bool": types.boolean}
 _FINDER = "carom_find_unit"  # symbol of the function that compiled code asks
 
 
 class NotCompiled(RuntimeError):
-    """A unit that compiled code has called could not be compiled; `Failure.cause` says why."""
+    """A unit that compiled code has called could not be compiled; its cause says why."""
 
+    stopped_by: BaseException | None = (
+        None  # the last compile; an error has no way through compiled code
+    )
 
-class Failure:
-    """The error that stopped the last compile of a unit: it has no way through compiled code."""
-
-    cause: BaseException | None = None
-
-    @classmethod
-    def take(cls) -> BaseException | None:
-        """Return the error, and forget it."""
-        cause, cls.cause = cls.cause, None
-        return cause
+    def __init__(self, name: str):
+        super().__init__(f"{name} could not be compiled")
+        self.__cause__, NotCompiled.stopped_by = NotCompiled.stopped_by, None
 
 
 def unit(function):
     """Compile `function` on its own; kernels call it like any other kernel.
 
-    It returns nothing, or what its annotation says: `float`, `int` or `bool`.
+    It returns nothing, or what its annotation says: `float`, `int`, `bool`, or a tuple of these.
     """
     if getattr(config, "DISABLE_JIT", 0):
         return function
     compiled = keep_on_disk(jit(**RULES, **INSIDE)(function), function)
     given = inspect.signature(function)
-    returned = {"float": float, "int": int, "bool": bool}.get(given.return_annotation)
-    result = _RETURNS[returned]
+    result = _returned(given.return_annotation)
 
     def call(typing, *arguments):
         kinds = tuple(types.unliteral(kind) for kind in arguments)
@@ -81,6 +76,15 @@ def unit(function):
     made.compiled, made.returned = compiled, result
     UNITS[name] = made
     return made
+
+
+def _returned(annotation) -> types.Type:
+    """Return the type of what a unit returns, from the text of its annotation."""
+    if annotation is inspect.Signature.empty:
+        return types.none
+    if annotation.startswith("tuple["):
+        return types.Tuple([_RETURNS[part.strip()] for part in annotation[6:-1].split(",")])
+    return _RETURNS[annotation]
 
 
 def _call(context, builder, name, result, kinds, values):
@@ -141,7 +145,7 @@ def _find(name, packed, size):
             name.decode(), pickle.loads(zlib.decompress(ctypes.string_at(packed, size)))
         )
     except BaseException as error:  # Ctrl-C too: it has no way through compiled code
-        Failure.cause = error
+        NotCompiled.stopped_by = error
         return 0
 
 
@@ -192,4 +196,4 @@ class Entries:
         try:
             return _ENTRIES[key](*arguments)
         except NotCompiled as error:
-            raise (Failure.take() or error) from None
+            raise (error.__cause__ or error) from None

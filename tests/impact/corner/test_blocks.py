@@ -5,8 +5,7 @@ import pytest
 
 from carom.impact.api import resolve_impact
 from carom.impact.multiple.api import resolve_impacts
-from carom.impact.multiple.layout import CornerSettings, new_corner_result
-from carom.impact.multiple.work import new_corner_work
+from carom.impact.multiple.layout import CornerSettings, corner_arrays, new_corner_result
 from references.painleve import impact_without_collision
 
 
@@ -55,7 +54,7 @@ SLIPS = np.array([0.0, 1.0, 0.0])
 
 
 def jam(e, law, mu=1.6):
-    settings, scratch, out = CornerSettings(), new_corner_work(1), new_corner_result(1)
+    settings, scratch, out = CornerSettings(), corner_arrays(1), new_corner_result(1)
     one = np.ones(1)
     result = impact_without_collision(
         1, ROD, SLIPS, mu * one, e * one, np.array([law]), one, settings, scratch, out

@@ -1,20 +1,10 @@
-"""Impacts at a corner made smaller: contacts that nothing presses, and code that is compiled when asked for."""
+"""Impacts at a corner made smaller: contacts that nothing presses."""
 
 import numpy as np
 import pytest
 from corner_cases import CORNERS, DIE, Body
 
-from carom.impact.multiple import work as corner_work
 from carom.impact.multiple.api import resolve_impacts
-from carom.impact.multiple.layout import (
-    MISSING,
-    NEEDS_UNITS,
-    OK,
-    CornerSettings,
-    corner_arrays,
-    new_corner_result,
-)
-from carom.impact.multiple.resolve import resolve_corner
 
 EDGE = Body(
     CORNERS[:2]
@@ -79,17 +69,3 @@ def test_energy_of_one_that_is_left_is_capped():
     assert impact.capped
     assert impact.energy_change <= 0
     assert impact.velocity_after[0, 0] < 0.9
-
-
-def test_what_is_missing_is_asked_for(monkeypatch):
-    # e = 0 is a plastic event, which the first units do not have.
-    monkeypatch.setattr(corner_work, "_WANTED", False)
-    scratch, out = corner_work.with_units(corner_arrays(2)), new_corner_result(2)
-    assert scratch.units.plastic == MISSING
-    u, one = np.array([-1.0, 0.1, 0, -0.5, 0.1, 0]), np.ones(2)
-    law = np.full(2, 2)
-    given = EDGE.W, u, 0.2 * one, 0.0 * one, law, one, CornerSettings()
-    assert resolve_corner(2, *given, scratch, out) == NEEDS_UNITS
-    scratch = corner_work.with_units(scratch)
-    assert resolve_corner(2, *given, scratch, out) == OK
-    assert out.velocity[::3].min() >= -1e-12

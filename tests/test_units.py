@@ -1,0 +1,89 @@
+"""Units are compiled when compiled code first calls them, once for each type of arguments."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from numba.core import config
+
+from carom._compiled.decorators import entry, kernel
+from carom._compiled.units import UNITS, Entries, unit
+
+compiled = pytest.mark.skipif(bool(config.DISABLE_JIT), reason="nothing is compiled")
+
+
+@unit
+def twice(x, out):
+    out[0] = 2.0 * x
+
+
+@unit
+def norm(x, y) -> float:
+    return math.sqrt(x * x + y * y)
+
+
+@unit
+def broken(x, out):
+    out[0] = x.there_is_no_such_thing
+
+
+@kernel
+def both(x, out):
+    twice(x, out)
+    twice(out[0], out)
+    return norm(3.0 * x, out[0])
+
+
+@entry
+def of_units(x, out):
+    return both(x, out)
+
+
+@entry
+def sometimes(x, out):
+    if x > 0.0:
+        broken(out, out)
+    return x
+
+
+@pytest.mark.plain
+def test_a_unit_is_called_like_a_kernel():
+    out = np.zeros(1)
+    assert of_units(1.0, out) == 5.0
+    assert out[0] == 4.0
+
+
+@compiled
+def test_each_is_compiled_once():
+    of_units(1.0, np.zeros(1))
+    for made in (twice, norm):
+        assert len(made.compiled.overloads) == 1
+    assert UNITS["test_units:twice"] is twice
+
+
+@compiled
+def test_what_is_not_called_is_not_compiled():
+    call, out = Entries(()), np.zeros(1)
+    assert call(sometimes, -1.0, out) == -1.0
+    assert not broken.compiled.overloads
+
+
+@compiled
+def test_what_stops_a_compile_is_raised():
+    call, out = Entries(()), np.zeros(1)
+    with pytest.raises(Exception, match="test_units:broken"):
+        call(sometimes, 1.0, out)
+    assert of_units(1.0, out) == 5.0  # others go on
+
+
+@compiled
+def test_an_interrupt_while_a_unit_is_compiled_is_raised(monkeypatch):
+    def interrupted(*arguments):
+        raise KeyboardInterrupt
+
+    call, out = Entries(()), np.zeros(1)
+    monkeypatch.setattr(broken.compiled, "get_compile_result", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        call(sometimes, 2.0, out)
