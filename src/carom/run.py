@@ -14,7 +14,6 @@ from carom.impact.multiple.layout import MULTIPLE, CornerSettings
 from carom.impact.workspace import new_cluster, new_corner
 from carom.model import records as r
 from carom.model.answers import check_answers
-from carom.model.arrays import Relations
 from carom.model.compile import compile_scene
 from carom.model.controls import LOCATE, PROJECT, WORK, Controls
 from carom.model.data import Data, Model
@@ -242,8 +241,7 @@ class Run:
             held.points[: held.count[0]] = islands.points[: held.count[0]]
             islands.begun[0] = 0
             relations = self.compiled.system.relations
-            if isinstance(relations, Relations):
-                relations.coordinates["reference"] = relations.coordinates["begun"]
+            relations.coordinates["reference"] = relations.coordinates["begun"]
         else:
             return
         self.clock[:] = islands.clock

@@ -83,17 +83,16 @@ class Hulls(NamedTuple):
     corners: np.ndarray  # (K,) vertices of the faces, counted from the first of the hull
 
 
-class NoHulls(NamedTuple):
-    """Stands for the hulls where no two bodies may touch: kernels of pairs are not compiled then."""
-
-    count: int
-
-
 class PairWork(NamedTuple):
     """Scratch of one pair at a time."""
 
     state: np.recarray  # (1,) PAIR_STATE
     found: np.recarray  # (96,) TOUCH_POINT, in axes of B, points on the cores
+
+
+def no_hulls() -> Hulls:
+    """Return the hulls of a scene in which no two bodies may touch."""
+    return Hulls(np.zeros((0, 3)), table(FACE, 0), np.zeros(0, dtype=np.int64))
 
 
 def new_pair_work() -> PairWork:

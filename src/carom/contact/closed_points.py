@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import inlined, kernel
+from carom._compiled.units import unit
 from carom.contact.gap import along_normal, gap_and_rate, plane_in_body, round_off
 from carom.contact.groups import unite
 from carom.contact.pair_point import (
@@ -17,7 +18,6 @@ from carom.contact.rim import OTHER_SIDE, closed_rim, way_round
 from carom.contact.stop import is_held_stop, place_stop
 from carom.kinematics.contact_point import place
 from carom.model.arrays import STOP
-from carom.model.choice import only_with_pairs
 
 #: part of the step in which a rim that turns flat is flat, as far as the step can tell
 RIM_TIME = 1.0 / 64.0
@@ -128,8 +128,8 @@ def add_stop(system, held, contact, c, near, state, k, cluster):
     return k + 1
 
 
-@kernel
-def _add_touches(system, controls, contact, c, near, state, k, cluster, work, strikes):
+@unit
+def _add_touches(system, controls, contact, c, near, state, k, cluster, work, strikes) -> int:
     """Add the points of two solids that are closed; return the new count, -1 if there is no room."""
     count = find_touches(system, contact, state, REACH * smaller(contact), work)
     if strikes:
@@ -147,30 +147,28 @@ def _add_touches(system, controls, contact, c, near, state, k, cluster, work, st
     return k
 
 
-@kernel
-def _add_none(system, controls, contact, c, near, state, k, cluster, work, strikes):
-    """No kernels of pairs are needed."""
+@inlined
+def add_touches(system, controls, contact, c, near, state, k, cluster, work, strikes):
+    """Add the points of two solids that are closed; return the new count, -1 if there is no room."""
+    if system.solids.shape[0] > 0:
+        return _add_touches(system, controls, contact, c, near, state, k, cluster, work, strikes)
     return k
 
 
-add_touches = only_with_pairs(_add_touches, _add_none)
-
-
-@kernel
-def _seat_stays(system, hold, point, state, work):
+@unit
+def _seat_stays(system, hold, point, state, work) -> bool:
     """Return whether a closed point with the feature of a held one is the same point."""
     contact, r, n = system.contacts[hold.contact], point.arm_a, point.axes[0]
     way = way_round(system, contact, n, r[0], r[1], r[2], hold.point, state)
     return way < OTHER_SIDE
 
 
-@kernel
-def _stays(system, hold, point, state, work):
-    """No kernels of pairs are needed."""
+@inlined
+def seat_stays(system, hold, point, state, work):
+    """Return whether a closed point with the feature of a held one is the same point."""
+    if system.solids.shape[0] > 0:
+        return _seat_stays(system, hold, point, state, work)
     return True
-
-
-seat_stays = only_with_pairs(_seat_stays, _stays)
 
 
 @kernel

@@ -10,7 +10,8 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import inlined, kernel
+from carom._compiled.units import unit
 from carom.contact.closed_points import RIM_TIME, round_off_of_both
 from carom.contact.continuous_detection import (
     BELOW,
@@ -31,7 +32,6 @@ from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.kinematics.flight import point_bound
 from carom.kinematics.wrench import point_velocity
 from carom.model.arrays import FREE, RESTS
-from carom.model.choice import only_with_pairs
 
 SHORT = 0.25  # way past each other, as a part of the smaller body, in which no body gets through another
 
@@ -179,8 +179,8 @@ def flat_rim_strikes(system, contact, state, time, work):
     return False
 
 
-@kernel
-def _lowest_pair(system, contact, c, held, state, work):
+@unit
+def _lowest_pair(system, contact, c, held, state, work) -> tuple[float, float]:
     """Return the gap of two solids, of points that are not held, and its rate."""
     count = find_touches(system, contact, state, REACH * smaller(contact), work)
     return lowest_open(system, contact, c, count, held, state, work)
@@ -205,8 +205,8 @@ def far_apart(system, contact, start, end, h, work):
     return most
 
 
-@kernel
-def _passage_pair(system, controls, held, c, start, h, work):
+@unit
+def _passage_pair(system, controls, held, c, start, h, work) -> tuple[int, float]:
     """Return CLEAR, BELOW (they overlap at the end), UNSURE or FLAT_RIM, and a time before any contact.
 
     The end is the trial state. Of a rim that wobbles only steps up to `longest` may follow its lowest point far
@@ -286,17 +286,17 @@ def way_past(contact, start, end, h):
     return h * math.sqrt(most)
 
 
-@kernel
-def _no_gap(system, contact, c, held, state, work):
-    """No kernels of pairs are needed."""
+@inlined
+def lowest_pair(system, contact, c, held, state, work):
+    """Return the gap of two solids, of points that are not held, and its rate."""
+    if system.solids.shape[0] > 0:
+        return _lowest_pair(system, contact, c, held, state, work)
     return 0.0, 0.0
 
 
-@kernel
-def _no_passage(system, controls, held, c, start, h, work):
-    """No kernels of pairs are needed."""
+@inlined
+def passage_pair(system, controls, held, c, start, h, work):
+    """Return CLEAR, BELOW (they overlap at the end), UNSURE or FLAT_RIM, and a time before any contact."""
+    if system.solids.shape[0] > 0:
+        return _passage_pair(system, controls, held, c, start, h, work)
     return CLEAR, h
-
-
-lowest_pair = only_with_pairs(_lowest_pair, _no_gap)
-passage_pair = only_with_pairs(_passage_pair, _no_passage)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import inlined, kernel
+from carom._compiled.units import unit
 from carom.contact.closed_points import apart, round_off_of_both
 from carom.contact.gap import lowest
 from carom.contact.pair_point import find_touches, smaller
 from carom.contact.stop import stop_gap
 from carom.model.arrays import STOP
-from carom.model.choice import only_with_pairs
 
 
 @kernel
@@ -34,8 +34,8 @@ def least_gap(system, contact, state, work):
     return lowest(contact, system.vertices, state)[0]
 
 
-@kernel
-def _least_of_touches(system, contact, state, work):
+@unit
+def _least_of_touches(system, contact, state, work) -> float:
     """Return the least gap of the points of two solids."""
     least = 0.0
     for i in range(find_touches(system, contact, state, 0.0, work)):
@@ -43,10 +43,9 @@ def _least_of_touches(system, contact, state, work):
     return least
 
 
-@kernel
-def _none_touch(system, contact, state, work):
-    """No kernels of pairs are needed."""
+@inlined
+def least_of_touches(system, contact, state, work):
+    """Return the least gap of the points of two solids."""
+    if system.solids.shape[0] > 0:
+        return _least_of_touches(system, contact, state, work)
     return 0.0
-
-
-least_of_touches = only_with_pairs(_least_of_touches, _none_touch)

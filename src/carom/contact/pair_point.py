@@ -7,14 +7,14 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import inlined, kernel
+from carom._compiled.units import unit
 from carom.collision.plane import plane_unit
 from carom.collision.touch import touch_unit
 from carom.contact.rim import same_point
 from carom.contact.roll import roll_on_plane
 from carom.geometry.rotation import exp, multiply, normalize, rotate, rotate_back
 from carom.kinematics.wrench import point_velocity
-from carom.model.choice import only_with_pairs
 
 REACH = 1e-3  # of the smaller body: points that are looked for beyond the nearest
 HELD_REACH = 0.2  # the same for points that are held, which stay so while a step is found in rounds
@@ -123,7 +123,7 @@ def which_touch(system, contact, count, feature, p, state, work):
     return chosen
 
 
-@kernel
+@unit
 def _place_pair(system, contact, feature, p, state, point, work):
     """Write the point that has the feature, or took its place."""
     count = find_touches(system, contact, state, HELD_REACH * smaller(contact), work)
@@ -163,8 +163,8 @@ def advance(start, t, end):
     end.Q[0], end.Q[1], end.Q[2], end.Q[3] = normalize(q[0], q[1], q[2], q[3])
 
 
-@kernel
-def _drift(system, contact, feature, p, point, state, work):
+@unit
+def _drift(system, contact, feature, p, point, state, work) -> tuple[float, float, float]:
     """Return (d/dt G) v, contact axes: how the velocity at the point changes as the bodies go on unchanged.
 
     On a half-space in closed form. Of two bodies a central difference over a way of 1e-5 of the smaller one:
@@ -203,16 +203,16 @@ def _drift(system, contact, feature, p, point, state, work):
     )
 
 
-@kernel
-def _no_pair(system, contact, feature, p, state, point, work):
-    """No kernels of pairs are needed."""
+@inlined
+def place_pair(system, contact, feature, p, state, point, work):
+    """Write the point that has the feature, or took its place."""
+    if system.solids.shape[0] > 0:
+        _place_pair(system, contact, feature, p, state, point, work)
 
 
-@kernel
-def _no_drift(system, contact, feature, p, point, state, work):
-    """No kernels of pairs are needed."""
+@inlined
+def drift(system, contact, feature, p, point, state, work):
+    """Return (d/dt G) v, contact axes: how the velocity at the point changes as the bodies go on unchanged."""
+    if system.solids.shape[0] > 0:
+        return _drift(system, contact, feature, p, point, state, work)
     return 0.0, 0.0, 0.0
-
-
-place_pair = only_with_pairs(_place_pair, _no_pair)
-drift = only_with_pairs(_drift, _no_drift)

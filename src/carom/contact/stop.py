@@ -7,7 +7,8 @@ solution gives angles and torques (`carom.results.assemble`).
 
 from __future__ import annotations
 
-from carom._compiled.decorators import entry, kernel
+from carom._compiled.decorators import entry, inlined, kernel
+from carom._compiled.units import unit
 from carom.contact.continuous_detection import BELOW, CLEAR, MISSED, UNSURE, cubic_clears
 from carom.contact.gap import round_off, slow
 from carom.contact.pair_point import tangents
@@ -16,10 +17,9 @@ from carom.kinematics.coordinate import drift, value
 from carom.kinematics.joints import arm, axis, parent_arm
 from carom.model.actions import HOLD, NOTHING, STRIKE
 from carom.model.arrays import PRISMATIC, STOP
-from carom.model.choice import only_with_coordinates
 
 
-@kernel
+@unit
 def _place_stop(system, contact, state, point):
     """Write the point, axes and gap of a stop."""
     c = system.relations.coordinates[contact.solid]
@@ -40,44 +40,41 @@ def _place_stop(system, contact, state, point):
     point.turns, point.length = 4 if c.kind == PRISMATIC else 3, abs(contact.side)
 
 
-@kernel
-def _no_place(system, contact, state, point):
-    """There are none."""
+@inlined
+def place_stop(system, contact, state, point):
+    """Write the point, axes and gap of a stop."""
+    if system.relations.there == 1:
+        _place_stop(system, contact, state, point)
 
 
-place_stop = only_with_coordinates(_place_stop, _no_place)
-
-
-@kernel
-def _stop_gap(system, contact, state, work):
+@unit
+def _stop_gap(system, contact, state, work) -> tuple[float, float]:
     """Return the gap of a stop and its rate."""
     _place_stop(system, contact, state, work.point[0])
     return work.point[0].gap, contact_velocity(work.point[0], state)[0]
 
 
-@kernel
-def _no_gap(system, contact, state, work):
-    """There are none."""
+@inlined
+def stop_gap(system, contact, state, work):
+    """Return the gap of a stop and its rate."""
+    if system.relations.there == 1:
+        return _stop_gap(system, contact, state, work)
     return 1.0, 0.0
 
 
-stop_gap = only_with_coordinates(_stop_gap, _no_gap)
-
-
-@kernel
-def _stop_drift(system, contact, state, work):
+@unit
+def _stop_drift(system, contact, state, work) -> float:
     """Return (d/dt G) v of the row of a stop."""
     c = system.relations.coordinates[contact.solid]
     return contact.side * drift(c, state, work.joint[0].target)
 
 
-@kernel
-def _no_drift(system, contact, state, work):
-    """There are none."""
+@inlined
+def stop_drift(system, contact, state, work):
+    """Return (d/dt G) v of the row of a stop."""
+    if system.relations.there == 1:
+        return _stop_drift(system, contact, state, work)
     return 0.0
-
-
-stop_drift = only_with_coordinates(_stop_drift, _no_drift)
 
 
 @kernel

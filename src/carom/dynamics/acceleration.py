@@ -23,30 +23,28 @@ from carom.dynamics.elements import acceleration_bias, driven_power
 from carom.dynamics.forces import applied_wrenches
 from carom.dynamics.friction import slip_force, stick_force
 from carom.dynamics.joint_friction import joint_friction
-from carom.dynamics.solve import solve_directly
+from carom.dynamics.solve import solve
 from carom.dynamics.stiff import add_stiff
 from carom.kinematics.contact_point import (
     contact_acceleration,
     contact_velocity,
 )
-from carom.model.choice import only_with_joints
 
 OPEN, SLIP, STICK = range(3)
 
 
-@kernel
+@unit
 def _bias_joints(system, state, work):
     """Write the bias of the relative acceleration of each joint."""
     for j in range(system.joints.shape[0]):
         acceleration_bias(system, j, state, work)
 
 
-@kernel
-def _no_joints(system, state, work):
-    """Without joints there is none."""
-
-
-bias_joints = only_with_joints(_bias_joints, _no_joints)
+@inlined
+def bias_joints(system, state, work):
+    """Write the bias of the relative acceleration of each joint."""
+    if system.joints.shape[0] > 0:
+        _bias_joints(system, state, work)
 
 
 @unit
@@ -62,7 +60,7 @@ def accelerations(system, state, held, work, stage):
     applied += add_stiff(system, state, work)
     bias_joints(system, state, work)
     friction = joint_friction(system, state, work)
-    solve_directly(system, state, work)
+    solve(system, state, True, work)
     applied += driven_power(system, state, work)
     for b in range(system.bodies.shape[0]):
         motion, rate = work.body[b].motion, stage[b].rate

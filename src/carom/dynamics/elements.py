@@ -6,7 +6,8 @@ six numbers (`carom.kinematics.joints`); the others write one number a row.
 
 from __future__ import annotations
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import inlined
+from carom._compiled.units import unit
 from carom.dynamics.relations import (
     prescribed,
     push_relation,
@@ -26,17 +27,10 @@ from carom.dynamics.user_rows import (
 )
 from carom.kinematics import joints
 from carom.kinematics.rows import inverse_inertias, joint_rows, joint_target
-from carom.model.arrays import RELATION, STIFF, USER_ROWS
-from carom.model.choice import only_with_relations
+from carom.model.arrays import LOOPS, RELATION, STIFF, USER_ROWS
 
 
-@kernel
-def _joint_position(system, j, state, work):
-    """Write the error of position of a joint to its bias."""
-    joints.position_error(system.joints[j], state, work.joint[j].bias)
-
-
-@kernel
+@unit
 def _position(system, j, state, work):
     """Write the error of position of an element to its bias."""
     joint, bias, t = system.joints[j], work.joint[j].bias, work.result[0].time
@@ -52,13 +46,7 @@ def _position(system, j, state, work):
         bias[0] = relation_error(system, system.relations.relations[joint.number], state, t)
 
 
-@kernel
-def _joint_velocity(system, j, state, work):
-    """Write the relative velocity of a joint to its bias."""
-    joints.velocity_error(system.joints[j], state, work.joint[j].bias)
-
-
-@kernel
+@unit
 def _velocity(system, j, state, work):
     """Write the error of velocity of an element to its bias."""
     joint, bias, t = system.joints[j], work.joint[j].bias, work.result[0].time
@@ -73,13 +61,7 @@ def _velocity(system, j, state, work):
         bias[0] = relation_speed(system, system.relations.relations[joint.number], state, t)
 
 
-@kernel
-def _joint_acceleration(system, j, state, work):
-    """Write the bias of the relative acceleration of a joint."""
-    joints.acceleration_bias(system.joints[j], state, work.joint[j].bias)
-
-
-@kernel
+@unit
 def _acceleration(system, j, state, work):
     """Write what the rows of an element ask of the accelerations."""
     joint, record, t = system.joints[j], work.joint[j], work.result[0].time
@@ -94,13 +76,7 @@ def _acceleration(system, j, state, work):
         record.bias[0] = relation_bias(system, relation, state, t, record.target)
 
 
-@kernel
-def _joint_target(system, j, state, relative, out):
-    """Write what each row of a joint says of a relative motion."""
-    joint_target(system.joints[j], state, relative, out)
-
-
-@kernel
+@unit
 def _target(system, j, state, relative, out):
     """Write what each row of an element says of its errors."""
     if system.joints[j].kind < RELATION:
@@ -110,15 +86,7 @@ def _target(system, j, state, relative, out):
         out[r] = relative[r]
 
 
-@kernel
-def _build_joints(system, state, work):
-    """Write A and A M^-1 of all joints into the solver's arrays."""
-    inverse_inertias(system, state, work)
-    for j in range(system.joints.shape[0]):
-        joint_rows(system, j, state, work)
-
-
-@kernel
+@unit
 def _build_all(system, state, work):
     """Write A and A M^-1 of all elements into the solver's arrays."""
     inverse_inertias(system, state, work)
@@ -134,7 +102,7 @@ def _build_all(system, state, work):
             relation_rows(system, j, state, work)
 
 
-@kernel
+@unit
 def _prescribed_speeds(system, j, state, work, out):
     """Write b of the rows a v = b of an element."""
     joint, t = system.joints[j], work.result[0].time
@@ -146,15 +114,8 @@ def _prescribed_speeds(system, j, state, work, out):
         out[0] = prescribed(system.relations, system.relations.relations[joint.number], t)[1]
 
 
-@kernel
-def _no_speeds(system, j, state, work, out):
-    """Joints prescribe none."""
-    for k in range(6):
-        out[k] = 0.0
-
-
-@kernel
-def _driven_power(system, state, work):
+@unit
+def _driven_power(system, state, work) -> float:
     """Return the power of what is prescribed, multiplier times b, of the last solve of accelerations."""
     power = 0.0
     for j in range(system.joints.shape[0]):
@@ -166,13 +127,7 @@ def _driven_power(system, state, work):
     return power
 
 
-@kernel
-def _none_driven(system, state, work):
-    """Joints take no energy and give none."""
-    return 0.0
-
-
-@kernel
+@unit
 def _push_other(system, j, state, multiplier, work):
     """Add A^T multiplier of an element that is no joint to the wrenches."""
     joint, t = system.joints[j], work.result[0].time
@@ -183,16 +138,73 @@ def _push_other(system, j, state, multiplier, work):
         push_relation(system, relation, state, multiplier[0], work)
 
 
-@kernel
-def _push_none(system, j, state, multiplier, work):
-    """There are joints only."""
+@inlined
+def position_error(system, j, state, work):
+    """Write the error of position of an element to its bias."""
+    if system.joints[j].kind >= RELATION:
+        _position(system, j, state, work)
+    else:
+        joints.position_error(system.joints[j], state, work.joint[j].bias)
 
 
-position_error = only_with_relations(_position, _joint_position)
-velocity_error = only_with_relations(_velocity, _joint_velocity)
-acceleration_bias = only_with_relations(_acceleration, _joint_acceleration)
-row_target = only_with_relations(_target, _joint_target)
-build_rows = only_with_relations(_build_all, _build_joints)
-driven_power = only_with_relations(_driven_power, _none_driven)
-prescribed_speeds = only_with_relations(_prescribed_speeds, _no_speeds)
-push_other = only_with_relations(_push_other, _push_none)
+@inlined
+def velocity_error(system, j, state, work):
+    """Write the error of velocity of an element to its bias."""
+    if system.joints[j].kind >= RELATION:
+        _velocity(system, j, state, work)
+    else:
+        joints.velocity_error(system.joints[j], state, work.joint[j].bias)
+
+
+@inlined
+def acceleration_bias(system, j, state, work):
+    """Write what the rows of an element ask of the accelerations."""
+    if system.joints[j].kind >= RELATION:
+        _acceleration(system, j, state, work)
+    else:
+        joints.acceleration_bias(system.joints[j], state, work.joint[j].bias)
+
+
+@inlined
+def row_target(system, j, state, relative, out):
+    """Write what each row of an element says of its errors."""
+    if system.joints[j].kind >= RELATION:
+        _target(system, j, state, relative, out)
+    else:
+        joint_target(system.joints[j], state, relative, out)
+
+
+@inlined
+def build_rows(system, state, work):
+    """Write A and A M^-1 of all elements into the solver's arrays."""
+    if system.relations.there == 1 and system.solver.kind == LOOPS:
+        _build_all(system, state, work)
+    else:
+        inverse_inertias(system, state, work)
+        for j in range(system.joints.shape[0]):
+            joint_rows(system, j, state, work)
+
+
+@inlined
+def driven_power(system, state, work):
+    """Return the power of what is prescribed, multiplier times b, of the last solve of accelerations."""
+    if system.relations.there == 1 and system.solver.kind == LOOPS:
+        return _driven_power(system, state, work)
+    return 0.0
+
+
+@inlined
+def prescribed_speeds(system, j, state, work, out):
+    """Write b of the rows a v = b of an element."""
+    if system.relations.there == 1 and system.solver.kind == LOOPS:
+        _prescribed_speeds(system, j, state, work, out)
+    else:
+        for k in range(6):
+            out[k] = 0.0
+
+
+@inlined
+def push_other(system, j, state, multiplier, work):
+    """Add A^T multiplier of an element that is no joint to the wrenches."""
+    if system.joints[j].kind >= RELATION:
+        _push_other(system, j, state, multiplier, work)

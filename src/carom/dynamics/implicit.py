@@ -29,7 +29,6 @@ from carom.dynamics.solve import solve
 from carom.dynamics.stiff import along_row, stretch
 from carom.geometry.rotation import exp, multiply, normalize
 from carom.model.arrays import STIFF
-from carom.model.choice import only_with_relations
 
 GAMMA = 1.0 - math.sqrt(0.5)
 CONSTRAINTS_LOST = 7
@@ -124,7 +123,7 @@ def accelerate(system, state, h, s, work):
 
 
 @kernel
-def _bias_springs(system, state, h, s, work):
+def bias_springs(system, state, h, s, work):
     """Put the springs in as rows."""
     g = GAMMA * h
     for j in range(system.joints.shape[0]):
@@ -143,7 +142,7 @@ def _bias_springs(system, state, h, s, work):
 
 
 @kernel
-def _release_springs(system, state, h, s, work):
+def release_springs(system, state, h, s, work):
     """Take the springs out again, and note what the stage does along them."""
     for j in range(system.joints.shape[0]):
         if system.joints[j].kind == STIFF:
@@ -156,7 +155,7 @@ def _release_springs(system, state, h, s, work):
 
 
 @kernel
-def _damper_work(system, start, h, end):
+def damper_work(system, start, h, end):
     """Return the work of the dampers: their impulse in the step times the mean rate of its ends.
 
     In each stage a damper sees the rate s' + g h J a, so that its impulse is -c h/2 times the sum of both. (The
@@ -170,19 +169,3 @@ def _damper_work(system, start, h, end):
             _, last = stretch(system, one, end)
             total -= 0.25 * h * one.damping * (one.speed + first) * (first + last)
     return total
-
-
-@kernel
-def _no_springs(system, state, h, s, work):
-    """There are none."""
-
-
-@kernel
-def _no_work(system, start, h, end):
-    """There is none."""
-    return 0.0
-
-
-bias_springs = only_with_relations(_bias_springs, _no_springs)
-damper_work = only_with_relations(_damper_work, _no_work)
-release_springs = only_with_relations(_release_springs, _no_springs)

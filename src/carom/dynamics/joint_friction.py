@@ -14,13 +14,13 @@ A mode ends where d q' or bound - |F| crosses zero; the loop locates that instan
 
 from __future__ import annotations
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import inlined, kernel
+from carom._compiled.units import unit
 from carom.dynamics.contact_impulse import clear_wrenches, gain
 from carom.dynamics.forces import applied_wrenches
 from carom.dynamics.several_points import factor, substitute
 from carom.dynamics.solve import free_body, solve
 from carom.kinematics.coordinate import drift, motion_along, push, rate, speeds_of
-from carom.model.choice import only_with_coordinates
 
 DEPENDENT = 1e-10  # of a diagonal: what sticks already through others takes no force
 ROUND_OFF = 1e-13  # of J M^-1 J^T: what joints and motors leave of it where they leave no freedom
@@ -93,8 +93,8 @@ def drive(system, one, state):
         one.force = -BEYOND * one.bound if towards > 0.0 else BEYOND * one.bound
 
 
-@kernel
-def _joint_friction(system, state, work):
+@unit
+def _joint_friction(system, state, work) -> float:
     """Add the wrenches of friction in joints; return their power.
 
     The wrenches of all other forces, and the bias of the joints, are in place.
@@ -123,13 +123,7 @@ def _joint_friction(system, state, work):
     return push_all(system, state, work)
 
 
-@kernel
-def _no_friction(system, state, work):
-    """There is none."""
-    return 0.0
-
-
-@kernel
+@unit
 def _stay_stuck(system, state, work):
     """Take the speeds of those that stick out of a state, in the kinetic metric."""
     relations = system.relations
@@ -147,13 +141,8 @@ def _stay_stuck(system, state, work):
         gain(work.body[b].motion, state[b])
 
 
-@kernel
-def _none_stuck(system, state, work):
-    """There is none."""
-
-
-@kernel
-def _slip_power(system, state):
+@unit
+def _slip_power(system, state) -> float:
     """Return the power of friction in those joints that slip."""
     relations, power = system.relations, 0.0
     for i in range(relations.frictions.shape[0]):
@@ -162,12 +151,24 @@ def _slip_power(system, state):
     return power
 
 
-@kernel
-def _no_power(system, state):
-    """There is none."""
+@inlined
+def slip_power(system, state):
+    """Return the power of friction in those joints that slip."""
+    if system.relations.there == 1:
+        return _slip_power(system, state)
     return 0.0
 
 
-slip_power = only_with_coordinates(_slip_power, _no_power)
-joint_friction = only_with_coordinates(_joint_friction, _no_friction)
-stay_stuck = only_with_coordinates(_stay_stuck, _none_stuck)
+@inlined
+def joint_friction(system, state, work):
+    """Add the wrenches of friction in joints; return their power."""
+    if system.relations.there == 1:
+        return _joint_friction(system, state, work)
+    return 0.0
+
+
+@inlined
+def stay_stuck(system, state, work):
+    """Take the speeds of those that stick out of a state, in the kinetic metric."""
+    if system.relations.there == 1:
+        _stay_stuck(system, state, work)

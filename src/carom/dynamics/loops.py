@@ -13,11 +13,10 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import inlined, kernel
 from carom.dynamics.elements import build_rows, row_target
 from carom.kinematics.rows import times_inverse_mass
-from carom.model.arrays import FreeSolver, LoopSolver, TreeSolver
-from carom.model.choice import by_solver
+from carom.model.arrays import LOOPS
 
 
 @kernel
@@ -241,13 +240,7 @@ def _dropped_rows(system, part):
     return count
 
 
-@kernel
-def _none_dropped(system, part):
-    """Only the loops' back end leaves rows out."""
-    return 0
-
-
-#: dropped_rows(system, part): how many rows the last solve left out, or all but left out
-dropped_rows = by_solver(
-    {FreeSolver: _none_dropped, TreeSolver: _none_dropped, LoopSolver: _dropped_rows}
-)
+@inlined
+def dropped_rows(system, part):
+    """Return how many rows the last solve left out, or all but left out; only that of loops does."""
+    return _dropped_rows(system, part) if system.solver.kind == LOOPS else 0

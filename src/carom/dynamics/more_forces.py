@@ -7,13 +7,13 @@ of the user's         wrenches = f(t, states),            U if a potential is gi
 
 from __future__ import annotations
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import inlined, kernel
+from carom._compiled.units import unit
 from carom._compiled.user_functions import call_function
 from carom.dynamics.curve import curve, find_piece
 from carom.geometry.rotation import multiply
 from carom.kinematics.coordinate import push, rate, value
 from carom.model.arrays import PRISMATIC
-from carom.model.choice import only_with_coordinates
 
 FAR = 1.5  # turn [rad] in a trial step, by the rates at its ends: less than half a turn on the way
 
@@ -45,8 +45,8 @@ def read_states(system, force, state):
         i += 13
 
 
-@kernel
-def _add_more_forces(system, state, work):
+@unit
+def _add_more_forces(system, state, work) -> float:
     """Add the wrenches; return the power of those without potential."""
     power, t, relations = 0.0, work.result[0].time, system.relations
     for i in range(relations.pushes.shape[0]):
@@ -72,14 +72,8 @@ def _add_more_forces(system, state, work):
     return power
 
 
-@kernel
-def _no_more_forces(system, state, work):
-    """There are none."""
-    return 0.0
-
-
-@kernel
-def _more_energy(system, state, t):
+@unit
+def _more_energy(system, state, t) -> float:
     """Return their potential energy [J]."""
     total, relations = 0.0, system.relations
     for i in range(relations.pushes.shape[0]):
@@ -96,22 +90,10 @@ def _more_energy(system, state, t):
 
 
 @kernel
-def _no_more_energy(system, state, t):
-    """There is none."""
-    return 0.0
-
-
-@kernel
-def _curve_tension(system, spring, length):
+def tension(system, spring, length):
     """Return the tension of a spring, by its curve if it has one."""
     if spring.last_piece > spring.piece:
         return curve(system.relations.pieces, spring.piece, spring.last_piece, length)[0]
-    return spring.stiffness * (length - spring.rest_length)
-
-
-@kernel
-def _tension(system, spring, length):
-    """Return the tension of a spring."""
     return spring.stiffness * (length - spring.rest_length)
 
 
@@ -130,20 +112,14 @@ def integral(pieces, first, last, t):
 
 
 @kernel
-def _curve_energy(system, spring, length):
+def spring_energy(system, spring, length):
     """Return the energy of a spring."""
     if spring.last_piece > spring.piece:
         return integral(system.relations.pieces, spring.piece, spring.last_piece, length)
     return 0.5 * spring.stiffness * (length - spring.rest_length) ** 2
 
 
-@kernel
-def _energy(system, spring, length):
-    """Return the energy of a spring."""
-    return 0.5 * spring.stiffness * (length - spring.rest_length) ** 2
-
-
-@kernel
+@unit
 def _note_turns(system, state):
     """Keep the whole turns of all angles, where a trial step has become the present."""
     for i in range(system.relations.coordinates.shape[0]):
@@ -152,31 +128,21 @@ def _note_turns(system, state):
 
 
 @kernel
-def _no_turns(system, state):
-    """There are none."""
-
-
-@kernel
-def _begin_turns(system):
+def begin_turns(system):
     """Keep the angles of the start of a step."""
     for i in range(system.relations.coordinates.shape[0]):
         system.relations.coordinates[i].begun = system.relations.coordinates[i].reference
 
 
 @kernel
-def _forget_turns(system):
+def forget_turns(system):
     """Go back to them."""
     for i in range(system.relations.coordinates.shape[0]):
         system.relations.coordinates[i].reference = system.relations.coordinates[i].begun
 
 
-@kernel
-def _none_begun(system):
-    """There are none."""
-
-
-@kernel
-def _turns_round(system, start, end, h):
+@unit
+def _turns_round(system, start, end, h) -> bool:
     """Return whether an angle may turn so far in a step that its whole turns are not known."""
     for i in range(system.relations.coordinates.shape[0]):
         c = system.relations.coordinates[i]
@@ -185,17 +151,32 @@ def _turns_round(system, start, end, h):
     return False
 
 
-@kernel
-def _never_round(system, start, end, h):
-    """There are none."""
+@inlined
+def add_more_forces(system, state, work):
+    """Add the wrenches; return the power of those without potential."""
+    if system.relations.there == 1:
+        return _add_more_forces(system, state, work)
+    return 0.0
+
+
+@inlined
+def more_energy(system, state, t):
+    """Return their potential energy [J]."""
+    if system.relations.there == 1:
+        return _more_energy(system, state, t)
+    return 0.0
+
+
+@inlined
+def note_turns(system, state):
+    """Keep the whole turns of all angles, where a trial step has become the present."""
+    if system.relations.there == 1:
+        _note_turns(system, state)
+
+
+@inlined
+def turns_round(system, start, end, h):
+    """Return whether an angle may turn so far in a step that its whole turns are not known."""
+    if system.relations.there == 1:
+        return _turns_round(system, start, end, h)
     return False
-
-
-add_more_forces = only_with_coordinates(_add_more_forces, _no_more_forces)
-more_energy = only_with_coordinates(_more_energy, _no_more_energy)
-tension = only_with_coordinates(_curve_tension, _tension)
-spring_energy = only_with_coordinates(_curve_energy, _energy)
-note_turns = only_with_coordinates(_note_turns, _no_turns)
-begin_turns = only_with_coordinates(_begin_turns, _none_begun)
-forget_turns = only_with_coordinates(_forget_turns, _none_begun)
-turns_round = only_with_coordinates(_turns_round, _never_round)

@@ -10,18 +10,18 @@ xi = (x_1 - x_0, rotation vector of Q_1 Q_0^-1), minus itself for the way back: 
 
 from __future__ import annotations
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import inlined, kernel
+from carom._compiled.units import unit
 from carom.dynamics.elements import velocity_error
 from carom.dynamics.explicit import keep
 from carom.dynamics.project import largest_position_error
 from carom.geometry.rotation import log, multiply, rotate, rotate_back
 from carom.kinematics.joints import axis
 from carom.model.arrays import KNIFE_EDGE, RELATION, ROLLING, SLIDING, USER_ROWS
-from carom.model.choice import only_with_joints, only_with_relations
 
 
-@kernel
-def _error_of_move(system, start, t, h, end, work):
+@unit
+def _error_of_move(system, start, t, h, end, work) -> float:
     """Bias all elements by minus their error at the end, in axes of the start; return the largest."""
     work.result[0].time = t + h
     error, ready = largest_position_error(system, end, work), False
@@ -49,20 +49,11 @@ def turn_on(p, q, a):
 
 
 @kernel
-def _joint_without(system, joint):
-    """Return whether a joint has rows that restrict velocities only."""
-    return joint.kind == KNIFE_EDGE or joint.kind in ROLLING
-
-
-@kernel
-def _without(system, joint):
+def without_position(system, joint):
     """Return whether an element has rows that restrict velocities only."""
     if joint.kind == USER_ROWS:
         return system.relations.user[joint.number].position_address == 0
     return joint.kind == KNIFE_EDGE or joint.kind in ROLLING
-
-
-without_position = only_with_relations(_without, _joint_without)
 
 
 @kernel
@@ -122,10 +113,9 @@ def along_rows(joint, start, state, bias):
         turn_on(start[joint.parent].Q, state[joint.parent].Q, bias[3:])
 
 
-@kernel
-def _no_error(system, start, t, h, end, work):
-    """Without joints there is none."""
+@inlined
+def error_of_move(system, start, t, h, end, work):
+    """Bias all elements by minus their error at the end, in axes of the start; return the largest."""
+    if system.joints.shape[0] > 0:
+        return _error_of_move(system, start, t, h, end, work)
     return 0.0
-
-
-error_of_move = only_with_joints(_error_of_move, _no_error)

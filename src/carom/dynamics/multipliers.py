@@ -31,7 +31,7 @@ from carom.dynamics.mounts import mount_wrench
 from carom.geometry import quaternion
 from carom.model import arrays as kinds
 from carom.model import records as r
-from carom.model.arrays import DISTANCE, KNIFE_EDGE, Relations, System
+from carom.model.arrays import DISTANCE, KNIFE_EDGE, System
 from carom.model.compile import compile_scene
 
 
@@ -86,7 +86,7 @@ def second_order_multipliers(solution) -> Multipliers:
     """
     if not solution.scene.joints:
         raise ValueError("solution must be of a scene with joints, got none")
-    if solution.scene.constraints or isinstance(solution._run.compiled.system.relations, Relations):
+    if solution.scene.constraints or solution._run.compiled.system.relations.there:
         raise ValueError(
             "solution must be without constraints beyond joints, and without forces along coordinates, by "
             "curves or functions, got some"

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import entry, kernel
+from carom._compiled.decorators import entry, inlined, kernel
+from carom._compiled.units import unit
 from carom.dynamics.contact_impulse import clear_wrenches
 from carom.dynamics.elements import position_error, velocity_error
 from carom.dynamics.solve import solve, solve_near
 from carom.geometry.rotation import exp, multiply, normalize
-from carom.model.choice import only_with_joints
 
 ROUND_OFF = 4.4e-16  # two units in the last place
 LOST = 1e-9  # of a body: an error of position that cannot be returned from
@@ -51,8 +51,8 @@ def largest_position_error(system, state, work):
     return largest
 
 
-@kernel
-def _project_position(system, state, near, tolerance, work):
+@unit
+def _project_position(system, state, near, tolerance, work) -> float:
     """Bring the positions back to the joints; return the relative error that is left.
 
     With `near` the last solve was in a position nearby, and serves for the first correction.
@@ -75,7 +75,7 @@ def _project_position(system, state, near, tolerance, work):
     return error
 
 
-@kernel
+@unit
 def _project_velocity(system, state, work):
     """Take from the velocities what the joints forbid."""
     for j in range(system.joints.shape[0]):
@@ -104,16 +104,16 @@ def project_start(system, state, work):
     return error
 
 
-@kernel
-def _position_is_free(system, state, near, tolerance, work):
-    """Without joints there is no error of position."""
+@inlined
+def project_position(system, state, near, tolerance, work):
+    """Bring the positions back to the joints; return the relative error that is left."""
+    if system.joints.shape[0] > 0:
+        return _project_position(system, state, near, tolerance, work)
     return 0.0
 
 
-@kernel
-def _velocity_is_free(system, state, work):
-    """Without joints nothing is forbidden."""
-
-
-project_position = only_with_joints(_project_position, _position_is_free)
-project_velocity = only_with_joints(_project_velocity, _velocity_is_free)
+@inlined
+def project_velocity(system, state, work):
+    """Take from the velocities what the joints forbid."""
+    if system.joints.shape[0] > 0:
+        _project_velocity(system, state, work)

@@ -36,12 +36,7 @@ from carom.dynamics.kick import add_momentum, first_kick, second_kick
 from carom.dynamics.loops import dropped_rows, solve_factored
 from carom.dynamics.move_error import error_of_move
 from carom.dynamics.solve import joint_wrench, solve, solve_near
-from carom.model.arrays import RELATION, FreeSolver, LoopSolver, TreeSolver
-from carom.model.choice import (
-    by_solver,
-    only_with_joints,
-    only_with_relations,
-)
+from carom.model.arrays import LOOPS, RELATION
 
 NO_CONVERGENCE = 1
 DONE, STALLED, TOO_FAR = range(3)  # how a part of a step ended
@@ -180,12 +175,6 @@ def move_all(system, start, h, end, work):
     return True
 
 
-@inlined
-def _solve(system, state, work):
-    """Solve with biased joints."""
-    solve(system, state, True, work)
-
-
 @kernel
 def _solve_factored(system, state, work):
     """Do the same with the factor that is there."""
@@ -197,26 +186,23 @@ def _solve_factored(system, state, work):
 
 
 @kernel
-def _keep_multipliers(system, state, work):
+def keep_multipliers(system, state, work):
     """Keep the multipliers of what is no joint: what is prescribed does work."""
     for j in range(system.joints.shape[0]):
         if system.joints[j].kind >= RELATION:
             joint_wrench(system.joints[j], state, system.solver.rows[j].rhs, work.joint[j].reaction)
 
 
-@kernel
-def _none_kept(system, state, work):
-    """Joints do none."""
+@inlined
+def solve_again(system, state, work):
+    """Solve with biased joints in the position of the last solve."""
+    if system.solver.kind == LOOPS:
+        _solve_factored(system, state, work)
+    else:
+        solve(system, state, True, work)
 
 
-keep_multipliers = only_with_relations(_keep_multipliers, _none_kept)
-
-
-#: solve_again(system, state, work): solve with biased joints in the position of the last solve
-solve_again = by_solver({FreeSolver: _solve, TreeSolver: _solve, LoopSolver: _solve_factored})
-
-
-@kernel
+@unit
 def _correct(system, start, h, work):
     """Change the momenta of the middle by reactions at the start that take out the error."""
     for j in range(system.joints.shape[0]):
@@ -229,9 +215,8 @@ def _correct(system, start, h, work):
         add_momentum(system.bodies[b], start[b].Q, 1.0, work.body[b])
 
 
-@kernel
-def _nothing(system, start, h, work):
-    """Nothing is to be corrected."""
-
-
-correct = only_with_joints(_correct, _nothing)
+@inlined
+def correct(system, start, h, work):
+    """Change the momenta of the middle by reactions at the start that take out the error."""
+    if system.joints.shape[0] > 0:
+        _correct(system, start, h, work)

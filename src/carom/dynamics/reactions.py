@@ -19,13 +19,7 @@ from carom.dynamics.loops import add_reactions, factor, free_motion, substitute,
 from carom.dynamics.solve import joint_wrench, solve
 from carom.dynamics.stiff import add_stiff
 from carom.dynamics.tree import joint_wrenches
-from carom.model.arrays import FreeSolver, LoopSolver, TreeSolver
-from carom.model.choice import by_solver
-
-
-@kernel
-def no_shares(system, augment, state, work):
-    """Without joints there are none."""
+from carom.model.arrays import FOREST, LOOPS
 
 
 @kernel
@@ -102,7 +96,13 @@ def swap(system, work):
 
 
 #: share reactions that are not unique with least norm; wrenches and bias must be in place
-share = by_solver({FreeSolver: no_shares, TreeSolver: of_forest, LoopSolver: least_norm})
+@kernel
+def share(system, augment, state, work):
+    """Write the wrenches of all joints."""
+    if system.solver.kind == FOREST:
+        of_forest(system, augment, state, work)
+    elif system.solver.kind == LOOPS:
+        least_norm(system, augment, state, work)
 
 
 @kernel

@@ -17,13 +17,13 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import inlined, kernel
+from carom._compiled.units import unit
 from carom.dynamics.acceleration import accelerations
 from carom.dynamics.loops import dropped_rows
 from carom.dynamics.project import project_position, project_velocity
 from carom.geometry.rotation import exp, multiply
-from carom.model.arrays import ONE, RESTS, FreeSolver, LoopSolver, TreeSolver
-from carom.model.choice import by_solver
+from carom.model.arrays import LOOPS, ONE, RESTS
 
 SINGULAR = 1e-5  # of a row's diagonal: the square of the angle to the rows before it
 NEAR, FARTHER, TRIES = (
@@ -40,7 +40,7 @@ def steps(system, b, work):
     return status == ONE or (status != RESTS and system.bodies[b].ballistic == 0)
 
 
-@kernel
+@unit
 def _return_stage(system, stage, work):
     """Bring a stage to the joints, positions and velocities."""
     project_position(system, stage, False, 1e-14, work)
@@ -55,7 +55,7 @@ def _is_singular(system, least, most):
     return most > usual[0]
 
 
-@kernel
+@unit
 def _pass_round(system, stage, held, sums, work, rates):
     """Write the accelerations of a stage in a singular position from those before and after it on its way.
 
@@ -121,25 +121,21 @@ def go_on(start, dt, out):
     Q[0], Q[1], Q[2], Q[3] = multiply(r[0], r[1], r[2], r[3], p[0], p[1], p[2], p[3])
 
 
-@kernel
-def _never(system, least, most):
-    """Without loops no rows are left out."""
-    return False
+@inlined
+def is_singular(system, least, most):
+    """Return whether a step, whose stages left out so many rows, came near a singular position."""
+    return system.solver.kind == LOOPS and _is_singular(system, least, most)
 
 
-@kernel
-def _no_stage(system, stage, work):
-    """Without loops there are no such positions."""
+@inlined
+def return_stage(system, stage, work):
+    """Bring a stage to the joints, positions and velocities, where there are loops."""
+    if system.solver.kind == LOOPS:
+        _return_stage(system, stage, work)
 
 
-@kernel
-def _no_round(system, stage, held, sums, work, rates):
-    """Without loops there are no such positions."""
-
-
-#: is_singular(system, least, most)
-is_singular = by_solver({FreeSolver: _never, TreeSolver: _never, LoopSolver: _is_singular})
-#: return_stage(system, stage, work)
-return_stage = by_solver({FreeSolver: _no_stage, TreeSolver: _no_stage, LoopSolver: _return_stage})
-#: pass_round(system, stage, held, sums, work, rates)
-pass_round = by_solver({FreeSolver: _no_round, TreeSolver: _no_round, LoopSolver: _pass_round})
+@inlined
+def pass_round(system, stage, held, sums, work, rates):
+    """Write the accelerations of a stage in a singular position from those before and after it on its way."""
+    if system.solver.kind == LOOPS:
+        _pass_round(system, stage, held, sums, work, rates)

@@ -6,12 +6,11 @@ from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
 from carom.dynamics.light_bodies import factor_light, solve_light
 from carom.dynamics.loops import factor, solve_factored
-from carom.dynamics.tree import solve_tree, walk_tree
+from carom.dynamics.tree import solve_tree
 from carom.geometry.rotation import rotate, rotate_back
 from carom.kinematics.pose import keep_pose, same_pose
 from carom.kinematics.rows import direction
-from carom.model.arrays import RELATION, FreeSolver, LoopSolver, TreeSolver
-from carom.model.choice import by_solver
+from carom.model.arrays import FOREST, NO_JOINTS, RELATION
 
 
 @unit
@@ -76,15 +75,16 @@ def joint_wrench(joint, state, multiplier, reaction):
 
 
 @inlined
-def _solve_loops(system, state, biased, near, work):
-    """Solve closed loops, with 31 digits where a light body needs them."""
-    if system.solver.scaled.shape[0] > 0:
+def _solve(system, state, biased, near, work):
+    """Solve by the back end of the system; closed loops with 31 digits where a light body needs them."""
+    if system.solver.kind == NO_JOINTS:
+        solve_free(system, state, biased, near, work)
+    elif system.solver.kind == FOREST:
+        solve_tree(system, state, biased, near, work)
+    elif system.solver.scaled.shape[0] > 0:
         solve_spread(system, state, biased, near, work)
     else:
         solve_loops(system, state, biased, near, work)
-
-
-_solve = by_solver({FreeSolver: solve_free, TreeSolver: solve_tree, LoopSolver: _solve_loops})
 
 
 @inlined
@@ -95,29 +95,6 @@ def solve(system, state, biased, work):
     `carom.dynamics.tree` for the meaning.
     """
     _solve(system, state, biased, False, work)
-
-
-@inlined
-def _solve_at_once(system, state, work):
-    """Solve with biased joints, as part of the caller."""
-    walk_tree(system, state, True, False, work)
-
-
-@inlined
-def _solve_unit(system, state, work):
-    """Solve with biased joints."""
-    solve(system, state, True, work)
-
-
-#: solve_directly(system, state, work): solve with biased joints where a run spends its time. A call by address
-#: hands on some 300 numbers, as much as four links of a tree; what is called directly is compiled again.
-solve_directly = by_solver(
-    {
-        FreeSolver: _solve_unit,
-        TreeSolver: _solve_at_once,
-        LoopSolver: _solve_unit,
-    }
-)
 
 
 @inlined

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import inlined, kernel
+from carom._compiled.units import unit
 from carom.geometry.rotation import cross
 from carom.kinematics.coordinate import add_rows, motion_along, push, rate, value
 from carom.kinematics.rows import times_inverse_mass
 from carom.kinematics.wrench import add_force, point, point_velocity
-from carom.model.arrays import STIFF
-from carom.model.choice import only_with_relations
+from carom.model.arrays import LOOPS, STIFF
 
 
 @kernel
@@ -90,8 +90,8 @@ def stiff_rows(system, j, state, work):
             side.Y[0, k] = y[k]
 
 
-@kernel
-def _add_stiff(system, state, work):
+@unit
+def _add_stiff(system, state, work) -> float:
     """Add the wrenches that these springs have now; return the power of their dampers."""
     power = 0.0
     for j in range(system.joints.shape[0]):
@@ -110,8 +110,8 @@ def _add_stiff(system, state, work):
     return power
 
 
-@kernel
-def _stiff_energy(system, state):
+@unit
+def _stiff_energy(system, state) -> float:
     """Return the potential energy of these springs [J]."""
     total = 0.0
     for j in range(system.joints.shape[0]):
@@ -122,17 +122,17 @@ def _stiff_energy(system, state):
     return total
 
 
-@kernel
-def _none(system, state, work):
-    """There are none."""
+@inlined
+def add_stiff(system, state, work):
+    """Add the wrenches that these springs have now; return the power of their dampers."""
+    if system.relations.there == 1 and system.solver.kind == LOOPS:
+        return _add_stiff(system, state, work)
     return 0.0
 
 
-@kernel
-def _no_energy(system, state):
-    """There are none."""
+@inlined
+def stiff_energy(system, state):
+    """Return the potential energy of these springs [J]."""
+    if system.relations.there == 1 and system.solver.kind == LOOPS:
+        return _stiff_energy(system, state)
     return 0.0
-
-
-add_stiff = only_with_relations(_add_stiff, _none)
-stiff_energy = only_with_relations(_stiff_energy, _no_energy)

@@ -47,8 +47,7 @@ from carom.geometry.rotation import exp, multiply, normalize, rotate, rotate_bac
 from carom.kinematics.joints import child_arm, parent_arm
 from carom.kinematics.rows import direction
 from carom.kinematics.wrench import add_force
-from carom.model.arrays import RELATION, RESTS, FreeSolver, LoopSolver
-from carom.model.choice import by_solver
+from carom.model.arrays import LOOPS, RELATION, RESTS
 
 NO_CONVERGENCE = 1
 
@@ -262,7 +261,12 @@ def driven_work(system, start, h, end, work):
     return total
 
 
-velocity_block = by_solver({FreeSolver: velocity_block_free, LoopSolver: velocity_block_loops})
+@kernel
+def velocity_block(system, method, h, end, work):
+    """Write the velocities at the end; return the largest change."""
+    if system.solver.kind == LOOPS:
+        return velocity_block_loops(system, method, h, end, work)
+    return velocity_block_free(system, method, h, end, work)
 
 
 @kernel

@@ -7,16 +7,17 @@ Where rows prescribe a speed, a v = b, their impulses Lambda do work, Lambda . b
 
 from __future__ import annotations
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import inlined, kernel
+from carom._compiled.units import unit
 from carom.geometry.rotation import rotate_back
-from carom.model.choice import only_with_relations
+from carom.model.arrays import LOOPS
 
 BLOCKED = 15  # Status
 ROUND_OFF = 1e-13
 
 
-@kernel
-def _driven_work(system, state, first, clock, records):
+@unit
+def _driven_work(system, state, first, clock, records) -> float:
     """Return the work of motors in the impact whose rows begin at `first` and whose event is being written."""
     work = 0.0
     for b in range(state.shape[0]):
@@ -34,12 +35,6 @@ def _driven_work(system, state, first, clock, records):
 
 
 @kernel
-def _none(system, state, first, clock, records):
-    """Joints take no energy and give none."""
-    return 0.0
-
-
-@kernel
 def _blocked(system, point, inverse_mass):
     """Return whether what is prescribed leaves a point no way along its normal: W_nn is round-off of 1/m."""
     free = 1.0 / system.bodies[point.a].mass
@@ -48,11 +43,17 @@ def _blocked(system, point, inverse_mass):
     return inverse_mass <= ROUND_OFF * free
 
 
-@kernel
-def _never(system, point, inverse_mass):
-    """Joints alone leave a point that moves a way."""
+@inlined
+def driven_work(system, state, first, clock, records):
+    """Return the work of motors in the impact whose rows begin at `first` and whose event is being written."""
+    if system.relations.there == 1 and system.solver.kind == LOOPS:
+        return _driven_work(system, state, first, clock, records)
+    return 0.0
+
+
+@inlined
+def blocked(system, point, inverse_mass):
+    """Return whether what is prescribed leaves a point no way along its normal: W_nn is round-off of 1/m."""
+    if system.relations.there == 1 and system.solver.kind == LOOPS:
+        return _blocked(system, point, inverse_mass)
     return False
-
-
-driven_work = only_with_relations(_driven_work, _none)
-blocked = only_with_relations(_blocked, _never)

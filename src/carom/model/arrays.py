@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom.collision.layout import Hulls, NoHulls, PairWork
+from carom.collision.layout import Hulls, PairWork
 
 #: kinds of joints in kernels
 SPHERICAL, REVOLUTE, FIXED, PRISMATIC, DISTANCE, KNIFE_EDGE = range(6)
@@ -437,22 +437,18 @@ HIT = [
 FIRST, WIDTH = 52, 14
 
 
-class FreeSolver(NamedTuple):
-    """No joints: every body answers for itself."""
-
-    count: int  # of joints
+#: kinds of back ends: every body answers for itself; articulated-body elimination; sparse Cholesky factor
+NO_JOINTS, FOREST, LOOPS = range(3)
 
 
-class TreeSolver(NamedTuple):
-    """A forest of joints, solved by articulated-body elimination."""
+class Solver(NamedTuple):
+    """What the constrained solve works with: what its kind does not need is empty."""
 
+    kind: int  # NO_JOINTS, FOREST or LOOPS
+    # forest: articulated-body elimination (`carom.dynamics.tree`)
     links: np.recarray  # (N,) LINK
     scratch: np.ndarray  # (N, FIRST + WIDTH times the most freedoms) written by each solve
-
-
-class LoopSolver(NamedTuple):
-    """Closed loops: block-sparse Cholesky factor of A M^-1 A^T, joints in an order of low fill."""
-
+    # closed loops: block-sparse Cholesky factor of A M^-1 A^T, joints in an order of low fill
     order: np.ndarray  # (J,) joints in the order of elimination
     column: np.ndarray  # (J+1,) ranges of the blocks below the diagonal, by place in the order
     row: np.ndarray  # (B,) joint of each block below the diagonal
@@ -464,24 +460,18 @@ class LoopSolver(NamedTuple):
     block: np.ndarray  # (J+B, 6, 6) diagonal blocks, then the others
     drop: float  # pivots below this part of the row's diagonal are dropped
     pose: np.ndarray  # (N, 7) that was factored, or (0, 7): rows depend on more than the pose
-    usual: (
-        np.ndarray
-    )  # (1,) how many rows depend on others away from singular positions; -1: not known yet
+    #: (1,) how many rows depend on others away from singular positions; -1: not known yet
+    usual: np.ndarray
     # scratch of `carom.dynamics.light_bodies`, empty where masses are alike: high and low parts
     fine: np.ndarray  # (2, J+B, 6, 6) blocks
     digits: np.ndarray  # (J, 4, 6) 1/pivots, multipliers
     scaled: np.ndarray  # (N, 3, 6) scaled motions, and attitudes
 
 
-class NoRelations(NamedTuple):
-    """Of a scene in which nothing is said of coordinates of joints, and no rows are the user's own."""
-
-    none: int
-
-
 class Relations(NamedTuple):
     """Coordinates of joints, relations between them, and rows of the user's own."""
 
+    there: int  # 1 where anything is said here; else all is empty
     coordinates: np.recarray  # COORDINATE
     relations: np.recarray  # RELATION_ROW
     terms: np.recarray  # TERM
@@ -506,15 +496,15 @@ class System(NamedTuple):
     joints: (
         np.recarray
     )  # (J,) JOINT; relations and rows of the user's come after the joints of the scene
-    relations: Relations | NoRelations
+    relations: Relations
     springs: np.recarray  # SPRING
     loads: np.recarray  # LOAD
     bushings: np.recarray  # BUSHING
     contacts: np.recarray  # (C,) CONTACT
     vertices: np.ndarray  # (V, 3) of all contacts, body axes
     solids: np.recarray  # SOLID of `carom.collision`, of bodies that may touch each other
-    hulls: Hulls | NoHulls
-    solver: FreeSolver | TreeSolver | LoopSolver
+    hulls: Hulls
+    solver: Solver
 
 
 class Held(NamedTuple):

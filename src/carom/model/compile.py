@@ -165,7 +165,7 @@ def _anchors(joint, flipped):
 def _joints(scene, moments, placement, elements, options, loops):
     defined = scene.joints
     if not defined and not elements.kinds:
-        return table(JOINT, 0), np.zeros(0, dtype=bool), arrays.FreeSolver(0)
+        return table(JOINT, 0), np.zeros(0, dtype=bool), solvers.no_joints()
     count, number = len(scene.bodies), len(defined)
     kind = np.array([KIND[type(j.definition)] for j in defined], dtype=np.int64)
     parent = np.array([j.parent.index for j in defined], dtype=np.int64)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from carom._compiled.record_arrays import table
-from carom.collision.layout import SOLID, NoHulls, solid_table
+from carom.collision.layout import SOLID, no_hulls, solid_table
 from carom.model.arrays import (
     CONTACT,
 )
@@ -96,7 +96,7 @@ def _write_solids(rows: np.recarray, which: Rows, scene: Scene, to_principal: np
     """Write the solids of each row, and return the table of all, with their hulls."""
     rows["solid"] = which.core["piece"]
     if not rows["touches"].any():
-        return table(SOLID, 0), NoHulls(0)
+        return table(SOLID, 0), no_hulls()
     found = np.append(rows.body[rows.touches == 1], rows.other[rows.other >= 0])
     bodies, first = np.unique(found, return_index=True)
     shaped = bodies[np.argsort(first)]

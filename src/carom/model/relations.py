@@ -21,7 +21,6 @@ from carom.model.arrays import (
     USER_FORCE,
     USER_ROW,
     USER_ROWS,
-    NoRelations,
     Relations,
 )
 from carom.model.frames import triad
@@ -165,10 +164,8 @@ class Elements:
         else:
             made.address = functions.address(_of_time(d.motion), (1,), (3,))
 
-    def arrays(self, solver, more: MoreForces) -> Relations | NoRelations:
-        """Return the tables, with the sides that `solver` gave to the bodies; nothing where nothing is said."""
-        if not self.kinds and not self.coordinates.rows and not more.any:
-            return NoRelations(0)
+    def arrays(self, solver, more: MoreForces) -> Relations:
+        """Return the tables, with the sides that `solver` gave to the bodies."""
         terms = []
         relation = iter(range(len(self.relations)))
         first_side = solver.rows.first[-len(self.kinds) :] if self.kinds else []
@@ -197,7 +194,9 @@ class Elements:
         listed = table(TERM, len(terms))
         for t, values in zip(listed, terms):
             t.coordinate, t.factor, t.child_side, t.parent_side = values
+        there = bool(self.kinds or self.coordinates.rows or more.any)
         return Relations(
+            int(there),
             rows,
             _joined(RELATION_ROW, self.relations),
             listed,

@@ -7,13 +7,15 @@ import numpy as np
 from carom._compiled.record_arrays import table
 from carom.model.arrays import (
     FIRST,
+    FOREST,
     LINK,
+    LOOPS,
+    NO_JOINTS,
     ROW,
     ROWS,
     SIDE,
     WIDTH,
-    LoopSolver,
-    TreeSolver,
+    Solver,
 )
 from carom.model.graph import elimination
 
@@ -23,7 +25,32 @@ SPREAD = (
 LIMIT = 1e24  # of masses, from which on nothing is left of 31 digits
 
 
-def tree_solver(joints: np.recarray, order: np.ndarray, joint: np.ndarray) -> TreeSolver:
+def no_joints() -> Solver:
+    """Return the back end of bodies without joints."""
+    number = np.zeros(0, dtype=np.int64)
+    return Solver(
+        kind=NO_JOINTS,
+        links=table(LINK, 0),
+        scratch=np.zeros((0, 0)),
+        order=number,
+        column=number,
+        row=number,
+        update=number,
+        triple=np.zeros((0, 3), dtype=np.int64),
+        term=np.zeros((0, 3), dtype=np.int64),
+        rows=table(ROW, 0),
+        sides=table(SIDE, 0),
+        block=np.zeros((0, 6, 6)),
+        drop=0.0,
+        pose=np.zeros((0, 7)),
+        usual=np.full(1, -1),
+        fine=np.zeros((2, 0, 6, 6)),
+        digits=np.zeros((0, 4, 6)),
+        scaled=np.zeros((0, 3, 6)),
+    )
+
+
+def tree_solver(joints: np.recarray, order: np.ndarray, joint: np.ndarray) -> Solver:
     """Return the solver of a forest; `order` and `joint` are those of `forest_order`."""
     links = table(LINK, order.size)
     links.order, links.joint = order, joint
@@ -38,7 +65,8 @@ def tree_solver(joints: np.recarray, order: np.ndarray, joint: np.ndarray) -> Tr
     most = max(
         1, int(np.max(links.freedoms[(links.joint >= 0) | (links.has_child == 1)], initial=0))
     )
-    return TreeSolver(links, np.full((order.size, FIRST + WIDTH * most), np.nan))
+    scratch = np.full((order.size, FIRST + WIDTH * most), np.nan)
+    return no_joints()._replace(kind=FOREST, links=links, scratch=scratch)
 
 
 def spread(touching: list[list[int]], mass, moments, extent) -> tuple[float, int, int]:
@@ -69,7 +97,7 @@ def spread(touching: list[list[int]], mass, moments, extent) -> tuple[float, int
     return max(((float(most[k] / least[i]), i, k) for i, k in ends), default=(1.0, 0, 0))
 
 
-def loop_solver(touching: list[list[int]], drop: float, poses: int, bodies: int) -> LoopSolver:
+def loop_solver(touching: list[list[int]], drop: float, poses: int, bodies: int) -> Solver:
     """Return the solver of a scene with closed loops: the symbolic factor of A M^-1 A^T.
 
     `touching` has the bodies of each element, joints first: the child, then the parent if it is a body. `poses`
@@ -112,7 +140,8 @@ def loop_solver(touching: list[list[int]], drop: float, poses: int, bodies: int)
         for t in near
         if place[element[s]] >= place[element[t]]
     ]
-    return LoopSolver(
+    return no_joints()._replace(
+        kind=LOOPS,
         order=np.array(order, dtype=np.int64),
         column=np.array(column, dtype=np.int64),
         row=np.array(row, dtype=np.int64),

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import inlined, kernel
+from carom._compiled.units import unit
 from carom.contact.closed_points import closed_within
 from carom.contact.gap import slow
 from carom.contact.groups import label_groups
@@ -18,7 +19,6 @@ from carom.contact.pair_point import (
 from carom.contact.place import place_any
 from carom.contact.rim import same_point
 from carom.impact.effective_restitution import TIRED
-from carom.model.choice import only_with_pairs
 
 
 @kernel
@@ -142,8 +142,8 @@ def is_held(system, held, c, touch, state):
     return False
 
 
-@kernel
-def _refresh_pairs(system, controls, held, state, work):
+@unit
+def _refresh_pairs(system, controls, held, state, work) -> bool:
     """Let points whose features are no more give way to those that took their place.
 
     As faces slide on each other the corners of their overlap change; the set stays that of the closed
@@ -190,10 +190,9 @@ def enlist_touch(contact, c, touch, mode, state, held):
     own_point(contact, touch, state, hold.point)
 
 
-@kernel
-def _refresh_none(system, controls, held, state, work):
-    """No kernels of pairs are needed."""
+@inlined
+def refresh_pairs(system, controls, held, state, work):
+    """Let points whose features are no more give way to those that took their place."""
+    if system.solids.shape[0] > 0:
+        return _refresh_pairs(system, controls, held, state, work)
     return False
-
-
-refresh_pairs = only_with_pairs(_refresh_pairs, _refresh_none)

@@ -6,19 +6,19 @@ let go, until none is.
 
 from __future__ import annotations
 
-from carom._compiled.decorators import entry, kernel
+from carom._compiled.decorators import entry, inlined, kernel
+from carom._compiled.units import unit
 from carom.dynamics.acceleration import acceleration
 from carom.dynamics.joint_friction import any_sticks, stay_stuck
 from carom.kinematics.coordinate import drift, motion_along, rate, speeds_of
-from carom.model.choice import only_with_coordinates
 
 STOPS, BREAKS = 5, 6  # events, after those of held contacts
 STILL = 1e-12  # of the speeds of both sides: no speed
 ABOVE = 1e-10  # of a bound: round-off of a force
 
 
-@kernel
-def _find_joint_event(system, held, state, work):
+@unit
+def _find_joint_event(system, held, state, work) -> tuple[int, int]:
     """Return (event, number) of the first friction in a joint whose mode has ended in `state`; -1 if none."""
     relations = system.relations
     for i in range(relations.frictions.shape[0]):
@@ -34,14 +34,8 @@ def _find_joint_event(system, held, state, work):
     return 0, -1
 
 
-@kernel
-def _find_none(system, held, state, work):
-    """There is none."""
-    return 0, -1
-
-
-@kernel
-def _joint_event_value(system, kind, i, held, state, work):
+@unit
+def _joint_event_value(system, kind, i, held, state, work) -> float:
     """Return the event function, negative after the event."""
     one = system.relations.frictions[i]
     if kind == STOPS:
@@ -50,13 +44,7 @@ def _joint_event_value(system, kind, i, held, state, work):
     return one.bound - abs(one.force)
 
 
-@kernel
-def _no_value(system, kind, i, held, state, work):
-    """There is none."""
-    return 0.0
-
-
-@kernel
+@unit
 def _turn_joint(system, kind, i, held, now, work):
     """Carry out the event of friction i."""
     one = system.relations.frictions[i]
@@ -88,11 +76,6 @@ def change(system, one, held, state, work):
 
 
 @kernel
-def _none_turns(system, kind, i, held, now, work):
-    """There is none."""
-
-
-@kernel
 def let_go(system, held, now, work):
     """Let slip, one after the other, what its friction cannot keep from it."""
     relations = system.relations
@@ -110,7 +93,7 @@ def let_go(system, held, now, work):
         relations.frictions[which].mode = -1 if relations.frictions[which].force > 0.0 else 1
 
 
-@kernel
+@unit
 def _review_joints(system, held, now, work):
     """Find the mode of each anew: at the start, and after velocities have jumped."""
     relations = system.relations
@@ -126,15 +109,34 @@ def _review_joints(system, held, now, work):
     let_go(system, held, now, work)
 
 
-@kernel
-def _none_to_review(system, held, now, work):
-    """There is none."""
+@inlined
+def find_joint_event(system, held, state, work):
+    """Return (event, number) of the first friction in a joint whose mode has ended in `state`; -1 if none."""
+    if system.relations.there == 1:
+        return _find_joint_event(system, held, state, work)
+    return 0, -1
 
 
-find_joint_event = only_with_coordinates(_find_joint_event, _find_none)
-joint_event_value = only_with_coordinates(_joint_event_value, _no_value)
-turn_joint = only_with_coordinates(_turn_joint, _none_turns)
-review_joints = only_with_coordinates(_review_joints, _none_to_review)
+@inlined
+def joint_event_value(system, kind, i, held, state, work):
+    """Return the event function, negative after the event."""
+    if system.relations.there == 1:
+        return _joint_event_value(system, kind, i, held, state, work)
+    return 0.0
+
+
+@inlined
+def turn_joint(system, kind, i, held, now, work):
+    """Carry out the event of friction i."""
+    if system.relations.there == 1:
+        _turn_joint(system, kind, i, held, now, work)
+
+
+@inlined
+def review_joints(system, held, now, work):
+    """Find the mode of each anew: at the start, and after velocities have jumped."""
+    if system.relations.there == 1:
+        _review_joints(system, held, now, work)
 
 
 @entry

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import inlined, kernel
+from carom._compiled.decorators import inlined
+from carom._compiled.units import unit
 from carom.contact.closed_points import apart, closed_within
 from carom.contact.continuous_detection import greatest_acceleration
 from carom.contact.gap import gap_and_rate, plane_in_body, slow
@@ -23,7 +24,6 @@ from carom.kinematics.contact_point import contact_velocity
 from carom.model import records as r
 from carom.model.actions import HOLD, NOTHING, SETTLE, STRIKE
 from carom.model.arrays import FREE, STOP
-from carom.model.choice import only_with_pairs
 from carom.model.controls import LOCATE
 from carom.persistent.active_set import (
     is_held,
@@ -279,8 +279,8 @@ def strayed(system, now, dt, work):
     return False
 
 
-@kernel
-def _look_at_pair(system, controls, held, contact, c, now, still, work):
+@unit
+def _look_at_pair(system, controls, held, contact, c, now, still, work) -> int:
     """Return whether a closed point of two bodies is to be struck or held."""
     near = closed_within(controls, contact, now)
     if apart(contact, now, near):
@@ -297,13 +297,12 @@ def _look_at_pair(system, controls, held, contact, c, now, still, work):
     return action
 
 
-@kernel
-def _look_at_none(system, controls, held, contact, c, now, still, work):
-    """No kernels of pairs are needed."""
+@inlined
+def look_at_pair(system, controls, held, contact, c, now, still, work):
+    """Return whether a closed point of two bodies is to be struck or held."""
+    if system.solids.shape[0] > 0:
+        return _look_at_pair(system, controls, held, contact, c, now, still, work)
     return NOTHING
-
-
-look_at_pair = only_with_pairs(_look_at_pair, _look_at_none)
 
 
 @inlined

@@ -15,7 +15,6 @@ import numpy as np
 
 from carom import checks
 from carom.model import records as r
-from carom.model.arrays import Relations
 
 #: arrays that are the same in every run of a scene, or hold addresses
 FIXED = {
@@ -142,10 +141,9 @@ def _arrays(run) -> Iterator[tuple[str, np.ndarray]]:
     system = run.compiled.system
     roots = {
         "now": run.now, "clock": run.clock, "held": run.held, "work": run.work,
-        "islands": run.islands, "solver": system.solver, "watch": run.watch,
+        "islands": run.islands, "solver": system.solver, "relations": system.relations,
+        "watch": run.watch,
     }  # fmt: skip
-    if isinstance(system.relations, Relations):
-        roots["relations"] = system.relations
     for name, root in roots.items():
         yield from _walk(name, root)
 

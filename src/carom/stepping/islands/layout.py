@@ -16,7 +16,6 @@ from carom.model.arrays import (
     HELD,
     STATE,
     Held,
-    Relations,
     System,
 )
 from carom.model.records import CLOCK
@@ -91,9 +90,7 @@ class NoIslands(NamedTuple):
 
 def has_events(system: System) -> bool:
     """Return whether steps may have events, which could follow each other too fast: contacts, dry friction."""
-    relations = system.relations
-    frictions = relations.frictions if isinstance(relations, Relations) else ()
-    return system.contacts.size > 0 or len(frictions) > 0
+    return system.contacts.size > 0 or system.relations.frictions.size > 0
 
 
 def no_islands(system: System, held: Held) -> NoIslands:
