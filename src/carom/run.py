@@ -27,7 +27,7 @@ from carom.status import Status
 from carom.stepping import record, time_loop
 from carom.stepping.crowd.layout import SPOTS, new_heap, no_heap, roomier_heap
 from carom.stepping.energy_balance import SHARE, new_watch
-from carom.stepping.islands.layout import Islands, has_events, new_islands, no_islands, roomier
+from carom.stepping.islands.layout import has_events, new_islands, no_islands, roomier
 
 LOCATIONS = {"locate": LOCATE, "project": PROJECT, "work": WORK}
 
@@ -161,7 +161,6 @@ class Run:
         elif what == r.FULL_ROWS:
             self.records = r.more_rows(self.records)
         elif what == r.FULL_PAIRS:
-            assert isinstance(self.islands, Islands)
             self.islands = roomier(self.islands)
         elif what == r.FULL_CORNER:
             self.corner = new_corner(len(self.cluster.mu), self.corner.settings)
@@ -230,21 +229,22 @@ class Run:
     def go_back(self) -> None:
         """Go back to the start of a step in the middle of which the run was interrupted."""
         islands, held, search = self.islands, self.held, self.work.search
-        if isinstance(islands, Islands):
+        start = islands.together
+        if islands.apart:
             if islands.plan[0].planned == 0:
                 return
             islands.plan["planned"], islands.plan["entered"] = 0, 0
             islands.carried[0] = 0
-        elif islands.begun[0] == 1:
-            self.now[:], held.brinks[:] = islands.state, islands.brinks
-            held.count[0] = islands.count[0]
-            held.points[: held.count[0]] = islands.points[: held.count[0]]
-            islands.begun[0] = 0
+        elif start.begun[0] == 1:
+            self.now[:], held.brinks[:] = start.state, start.brinks
+            held.count[0] = start.count[0]
+            held.points[: held.count[0]] = start.points[: held.count[0]]
+            start.begun[0] = 0
             relations = self.compiled.system.relations
             relations.coordinates["reference"] = relations.coordinates["begun"]
         else:
             return
-        self.clock[:] = islands.clock
+        self.clock[:] = (islands if islands.apart else start).clock
         search["pending"], held.carries[:] = 0, 0
         points = held.points[: held.count[0]]
         held.carries[points["feature"][points["touches"] == 0]] = 1

@@ -8,7 +8,6 @@ free flight skip all of it (`carom.kinematics.flight`).
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
@@ -24,6 +23,7 @@ from carom.dynamics.singular_positions import SINGULAR, is_singular, pass_round,
 from carom.geometry.rotation import multiply, normalize
 from carom.kinematics.flight import free_flight
 from carom.model.arrays import FREE, ONE, RESTS, SEVERAL
+from carom.model.method import Method, explicit
 
 CONSTRAINTS_LOST = 7
 MANY = 1 << 30  # rows, more than there are
@@ -31,27 +31,11 @@ MANY = 1 << 30  # rows, more than there are
 TURN, MOST_PARTS, TINY = 0.075, 100, 1e-300
 
 
-class Tableau(NamedTuple):
-    """Coefficients of a Runge-Kutta method, as those of `Explicit`."""
-
-    A: np.ndarray
-    b: np.ndarray
-    E: np.ndarray
-
-
-class Explicit(NamedTuple):
-    """A Runge-Kutta method: strictly lower triangular A, weights b, and those of its errors."""
-
-    A: np.ndarray  # (S, S)
-    b: np.ndarray  # (S,)
-    E: np.ndarray  # (0, S) none; (1, S); (2, S) of orders 5 and 3
-
-
 #: names of the explicit methods
 EXPLICIT = ("rk4", "rk5", "rk8")
 
 
-def tableau(name: str) -> Explicit:
+def tableau(name: str) -> Method:
     """Return an explicit method: `"rk4"`, the classical one (Kutta 1901); `"rk5"`, `"rk8"`.
 
     Order 5 with 6 stages (Dormand and Prince 1980), order 8 with 12 (Hairer, Norsett and Wanner 1993, DOP853).
@@ -60,17 +44,17 @@ def tableau(name: str) -> Explicit:
         A = np.zeros((4, 4))
         A[1, 0] = A[2, 1] = 0.5
         A[3, 2] = 1.0
-        return Explicit(A, np.array([1.0, 2.0, 2.0, 1.0]) / 6.0, np.zeros((0, 4)))
+        return explicit(A, np.array([1.0, 2.0, 2.0, 1.0]) / 6.0, np.zeros((0, 4)))
     from scipy.integrate import DOP853, RK45
 
     chosen = {"rk5": RK45, "rk8": DOP853}[name]
     stages = len(chosen.B)
     A = np.zeros((stages, stages))
     A[:, : chosen.A.shape[1]] = chosen.A[:stages]
-    return Explicit(A, np.array(chosen.B), np.zeros((0, stages)))
+    return explicit(A, np.array(chosen.B), np.zeros((0, stages)))
 
 
-def with_error(name: str) -> Explicit:
+def with_error(name: str) -> Method:
     """Return `"rk5"` (with a seventh stage, at the end) or `"rk8"`, and the weights of its error."""
     from scipy.integrate import DOP853, RK45
 
@@ -95,21 +79,20 @@ def explicit_step(method, system, held, start, h, end, work):
 @inlined
 def constrained(method, system, held, start, h, end, work):
     """Step the bodies that are joined, loaded or held; as `explicit_step` gives back."""
-    tableau = Tableau(method.A, method.b, method.E)
-    whole_step(tableau, system, held, start, h, end, work)
+    whole_step(method, system, held, start, h, end, work)
     result = work.result[0]
     return result.applied, result.friction, result.code
 
 
 @unit
-def whole_step(tableau, system, held, start, h, end, work):
+def whole_step(method, system, held, start, h, end, work):
     """Step at once, or in parts in which no body turns far.
 
     The length of a part depends on where it starts alone, so that the end is a continuous function of h.
     """
     result = work.result[0]
     begin, left, first = result.start, h, start
-    stages, estimates = tableau.b.size, tableau.E.shape[0] > 0
+    stages, estimates = method.b.size, method.E.shape[0] > 0
     applied, friction = 0.0, 0.0
     forget_bounds(work)
     aim(system, held, start, work)
@@ -118,7 +101,7 @@ def whole_step(tableau, system, held, start, h, end, work):
         if not estimates and part < MOST_PARTS - 1:
             dt = min(left, TURN * stages / max(fastest_spin(system, first, work), TINY))
         result.begin = begin + (h - left)
-        with_care(tableau, system, held, first, dt, end, work)
+        with_care(method, system, held, first, dt, end, work)
         applied, friction = applied + result.applied, friction + result.friction
         left -= dt
         if not (left > 0.0 and result.code == 0):

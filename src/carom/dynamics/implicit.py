@@ -14,9 +14,6 @@ is a row with a compliance: with d = g h c + (g h)^2 k its force mu in the stage
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
-
-import numpy as np
 
 from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
@@ -32,14 +29,6 @@ from carom.model.arrays import STIFF
 
 GAMMA = 1.0 - math.sqrt(0.5)
 CONSTRAINTS_LOST = 7
-
-
-class Implicit(NamedTuple):
-    """The implicit step, and the explicit method for held contacts."""
-
-    A: np.ndarray
-    b: np.ndarray
-    E: np.ndarray
 
 
 @inlined

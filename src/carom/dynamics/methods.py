@@ -4,36 +4,34 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom.dynamics.explicit import EXPLICIT, Explicit, tableau, with_error
-from carom.dynamics.implicit import Implicit
-from carom.dynamics.rattle import SYMPLECTIC, Rattle, composition
-from carom.dynamics.three_field import ThreeField
+from carom.dynamics.explicit import EXPLICIT, tableau, with_error
+from carom.dynamics.rattle import SYMPLECTIC, composition
+from carom.model.method import IMPLICIT, RATTLE, THREE_FIELD, Method
 from carom.options import Options
 
 ORDERS = {"rk5": 5, "rk8": 8}  # of the error of a step, for the length of the next
 FIRST = 1e-3  # of the longest step: the first
 
 
-def make_method(
-    name: str, options: Options, adapts: bool = False
-) -> Explicit | Rattle | ThreeField | Implicit:
+def make_method(name: str, options: Options, adapts: bool = False) -> Method:
     """Return the settings of a method by its name."""
     if adapts:
         return with_error(name)
     if name in EXPLICIT:
         return tableau(name)
     if name in SYMPLECTIC:
-        return Rattle(composition(name), *tableau("rk8" if name == "rattle6" else "rk4"))
+        on = tableau("rk8" if name == "rattle6" else "rk4")
+        return on._replace(kind=RATTLE, parts=composition(name))
     if name == "implicit":
-        return Implicit(*tableau("rk4"))
-    return ThreeField(
-        int(name == "paper-ode"),
-        options.natural_frequency,
-        options.damping_ratio,
-        options.augmentation,
-        options.residual_tolerance,
-        options.max_iterations,
-        *tableau("rk4"),
+        return tableau("rk4")._replace(kind=IMPLICIT)
+    return tableau("rk4")._replace(
+        kind=THREE_FIELD,
+        ode=int(name == "paper-ode"),
+        beta=options.natural_frequency,
+        zeta=options.damping_ratio,
+        augment=options.augmentation,
+        tolerance=options.residual_tolerance,
+        most=options.max_iterations,
     )
 
 

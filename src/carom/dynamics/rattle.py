@@ -22,7 +22,6 @@ at the other, the explicit method takes the step.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
@@ -41,15 +40,6 @@ from carom.model.arrays import LOOPS, RELATION
 NO_CONVERGENCE = 1
 DONE, STALLED, TOO_FAR = range(3)  # how a part of a step ended
 MOST = 60  # solves for Lam
-
-
-class Rattle(NamedTuple):
-    """Parts of a step, and the explicit method for held contacts and singular positions."""
-
-    parts: np.ndarray  # (S,) of h, sum 1
-    A: np.ndarray
-    b: np.ndarray
-    E: np.ndarray
 
 
 #: names of the symplectic methods

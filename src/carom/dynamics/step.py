@@ -2,20 +2,32 @@
 
 from __future__ import annotations
 
-from carom._compiled.choice import by_method
-from carom.dynamics.explicit import Explicit, explicit_step
-from carom.dynamics.implicit import Implicit, implicit_step
-from carom.dynamics.rattle import Rattle, rattle_step
-from carom.dynamics.three_field import ThreeField, three_field_step
+from carom._compiled.decorators import inlined
+from carom._compiled.units import unit
+from carom.dynamics.explicit import explicit_step
+from carom.dynamics.implicit import implicit_step
+from carom.dynamics.rattle import rattle_step
+from carom.dynamics.three_field import three_field_step
+from carom.model.method import IMPLICIT, RATTLE, RUNGE_KUTTA
 
-#: step(method, system, held, start, h, end, work): write the state a time h after `start` into `end`; return
-#: the work of loads without potential, the work of friction in held contacts, and 0 or the number of a
-#: `Status`.
-step = by_method(
-    {
-        Explicit: explicit_step,
-        Rattle: rattle_step,
-        ThreeField: three_field_step,
-        Implicit: implicit_step,
-    }
-)
+
+@inlined
+def step(method, system, held, start, h, end, work):
+    """Write the state a time h after `start` into `end`.
+
+    Returns the work of loads without potential, the work of friction in contacts that persist, and 0 or the
+    number of a `Status`.
+    """
+    if method.kind == RUNGE_KUTTA:
+        return explicit_step(method, system, held, start, h, end, work)
+    return other_step(method, system, held, start, h, end, work)
+
+
+@unit
+def other_step(method, system, held, start, h, end, work) -> tuple[float, float, int]:
+    """Do so by a method that is not explicit."""
+    if method.kind == RATTLE:
+        return rattle_step(method, system, held, start, h, end, work)
+    if method.kind == IMPLICIT:
+        return implicit_step(method, system, held, start, h, end, work)
+    return three_field_step(method, system, held, start, h, end, work)

@@ -26,11 +26,9 @@ momentum are exact. Held contacts move by the explicit method.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
-
-import numpy as np
 
 from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
 from carom.dynamics.elements import (
     position_error,
     prescribed_speeds,
@@ -52,22 +50,8 @@ from carom.model.arrays import LOOPS, RELATION, RESTS
 NO_CONVERGENCE = 1
 
 
-class ThreeField(NamedTuple):
-    """Settings of the paper's scheme, and the explicit method for held contacts."""
-
-    ode: int  # 1: second-order equations of the multipliers, 0: exact constraints
-    beta: float  # natural frequency times the step
-    zeta: float
-    augment: float  # eps as a part of the diagonal of A M^-1 A^T
-    tolerance: float
-    most: int  # iterations
-    A: np.ndarray
-    b: np.ndarray
-    E: np.ndarray
-
-
-@kernel
-def three_field_step(method, system, held, start, h, end, work):
+@unit
+def three_field_step(method, system, held, start, h, end, work) -> tuple[float, float, int]:
     """Write the state a time h after `start` into `end`; return work of loads, of friction, a status."""
     for i in range(held.count[0]):
         if held.points[i].rest == 0:

@@ -4,10 +4,7 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.choice import (
-    by_method,
-)
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
 from carom.contact.closed_points import concerns, gather_closed
 from carom.contact.gap import round_off, slow, strike_point
@@ -16,12 +13,8 @@ from carom.dynamics.contact_impulse import (
     add_velocity,
     spread,
 )
-from carom.dynamics.explicit import Explicit
 from carom.dynamics.forces import potential_energy
-from carom.dynamics.implicit import Implicit
 from carom.dynamics.project import project_velocity
-from carom.dynamics.rattle import Rattle
-from carom.dynamics.three_field import ThreeField
 from carom.impact import layout
 from carom.impact.driven import BLOCKED, blocked, driven_work
 from carom.impact.effective_restitution import what_is_left
@@ -35,6 +28,7 @@ from carom.impact.work_mode import restore_work
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.controls import LOCATE, WORK
 from carom.model.event_rows import begin_event, end_event
+from carom.model.method import THREE_FIELD
 from carom.model.records import FULL_CORNER, GROW, IMPACT, JAMS
 
 RETURN_MAP_FAILED, IMPACT_FAILED, TOO_MANY_POINTS = 5, 6, 10
@@ -174,22 +168,18 @@ def strike_one(model, data, method, c):
     add_velocity(system, point, work, state)
 
 
-@kernel
-def by_impulse(method, controls, contact, hit, history):
-    """Solve the impact to round-off."""
+@inlined
+def collide(method, controls, contact, hit, history):
+    """Resolve the impact in work.hit the way the method does it: to round-off, or as the paper does."""
+    if method.kind == THREE_FIELD:
+        return by_layer(controls, contact, hit, history)
     return resolve_one(hit.W, hit.u, hit.friction, hit.restitution, contact.law, hit.out)
 
 
-@kernel
-def by_layer(method, controls, contact, hit, history):
-    """Pass the boundary layer by cubic splines, as the paper does."""
+@unit
+def by_layer(controls, contact, hit, history) -> int:
+    """Pass the boundary layer by cubic splines."""
     return traverse(
         hit.W, hit.u, hit.friction, hit.restitution, contact.law, contact.width,
         contact.penetration, controls.layer_steps, history, hit.out,
     )  # fmt: skip
-
-
-#: collide(method, controls, contact, hit, history): resolve the impact in work.hit the way the method does it
-collide = by_method(
-    {Explicit: by_impulse, Rattle: by_impulse, Implicit: by_impulse, ThreeField: by_layer}
-)

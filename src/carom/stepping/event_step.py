@@ -52,8 +52,8 @@ NO_CONVERGENCE, TOO_MANY, NOT_FINITE = 1, 3, 4
 MOST_AT_ONCE = 50  # events at the end of a part of a step that is taken in parts
 
 
-@inlined
-def advance(model, data, method):
+@unit
+def advance(model, data, method) -> int:
     """Move the bodies of an island to the end of the step. Returns 0, or what `run` is to return.
 
     Propose a step, find the first event in it, accept the motion up to there, and act on the event.

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from carom._compiled.by_reference import refer
-from carom._compiled.choice import by_method
 from carom._compiled.decorators import entry, inlined, kernel
+from carom._compiled.units import unit
 from carom.contact.depth import watch_depth
 from carom.dynamics.adapt import begin_step
 from carom.impact.driven import BLOCKED
@@ -18,8 +18,9 @@ from carom.stepping.crowd.step import step_heap
 from carom.stepping.energy_balance import watch_step
 from carom.stepping.event_step import NOT_FINITE, advance, is_whole, strayed
 from carom.stepping.islands import one_island, parts
-from carom.stepping.islands.layout import Islands, NoIslands
 from carom.stepping.record import finite, grow, save, still
+
+AGAIN = -1  # the step is to be done again
 
 
 @entry
@@ -41,28 +42,55 @@ def run(model, data, method, islands, until):
         else:
             clock.begin = clock.step * controls.step
             clock.length = min(controls.step, controls.duration - clock.begin)
-        if not start(islands, model, data):
-            return grow(clock, r.FULL_PAIRS)
-        code = move_islands(model, data, method, islands)
-        if code != 0:
-            if not lost(islands, model, data, code):
-                return code
+        if islands.apart == 1:
+            code = step_apart(model, data, method, islands)
+        else:
+            code = step_together(model, data, method, islands.together)
+        if code == AGAIN:
             continue
+        if code != 0:
+            return code
         if clock.touched + data.held.points.shape[0] > data.records.touch.shape[0]:
             return grow(clock, r.FULL_EVENTS)
-        end(islands, model, data)
+        if islands.apart == 1:
+            end_islands(model, data, islands)
+        else:
+            islands.together.begun[0] = 0
         code = finish_step(model, data)
         if code != 0:
             return code
     return 0
 
 
-@inlined
-def move_islands(model, data, method, islands):
-    """Move one island after the other to the end of the step; return 0 or a code."""
-    code, clock = 0, data.clocks[0]
-    while code == 0 and some_left(islands, clock):
-        system, held, state, work = take(islands, model, data)
+@kernel
+def step_together(model, data, method, start):
+    """Move all bodies to the end of the step together; return 0, AGAIN, or a code."""
+    clock = data.clocks[0]
+    one_island.begin_together(model.system, data.held, data.state, data.clocks, start)
+    code = 0
+    while code == 0 and clock.spent < clock.length:
+        code = move_together(model, data, method, start)
+        if code == 0:
+            pay(clock)
+    return AGAIN if code != 0 and together_again(model, data, start, code) else code
+
+
+@unit
+def step_apart(model, data, method, islands) -> int:
+    """Move the bodies to the end of the step, island by island; return 0, AGAIN, or a code."""
+    clock, plan = data.clocks[0], islands.plan[0]
+    if plan.planned == 0:
+        plan.widen = max(1.0, plan.widen)
+        if not parts.begin_step(
+            model.system, data.held, data.state, clock.length, data.clocks, data.work, islands
+        ):
+            return grow(clock, r.FULL_PAIRS)
+    code = 0
+    while code == 0 and plan.at < plan.count:
+        i = plan.at
+        system = parts.part_system(model.system, islands, i)
+        held, work = parts.part_held(data.held, islands, i), parts.part_work(data.work, islands, i)
+        state = islands.state[islands.first[0, i] : islands.first[0, i + 1]]
         part = refer(Model(refer(system), model.controls))
         own = refer(
             Data(
@@ -70,12 +98,20 @@ def move_islands(model, data, method, islands):
                 data.records, data.watch,
             )
         )  # fmt: skip
-        enter(islands, part, own, data.held)
-        code = move(islands, part, own, method)
+        if plan.entered == 0:  # not done before the loop was left
+            parts.enter(part.system, own.held, data.held, own.work, islands, clock.begin, clock)
+            clock.first_touch = clock.touched
+        code = move_island(part, own, method)
         if code == 0:
-            leave(islands, own)
-            clock.credit, clock.effort = max(0.0, clock.credit - clock.effort), 0.0
-    return code
+            parts.leave(own.held, islands)
+            pay(clock)
+    return AGAIN if code != 0 and apart_again(model, data, islands, code) else code
+
+
+@inlined
+def pay(clock):
+    """Take the work of what was moved from what steps may take."""
+    clock.credit, clock.effort = max(0.0, clock.credit - clock.effort), 0.0
 
 
 @inlined
@@ -124,75 +160,12 @@ def earn(now, clock, work):
     clock.credit = min(min(r.SAVED, r.OWN * now.shape[0]), clock.credit + r.EACH)
 
 
-@kernel
-def _start_all(islands, model, data):
-    """Begin a step of all bodies together."""
-    one_island.begin_together(model.system, data.held, data.state, data.clocks, islands)
-    return True
-
-
-@kernel
-def _start_islands(islands, model, data):
-    """Begin a step: find its islands, unless it has begun already; return False if there is no room."""
-    if islands.plan[0].planned == 1:
-        return True
-    islands.plan[0].widen = max(1.0, islands.plan[0].widen)
-    return parts.begin_step(
-        model.system, data.held, data.state, data.clocks[0].length, data.clocks, data.work, islands
-    )
-
-
-@kernel
-def _all_left(islands, clock):
-    """Return whether the step has not ended."""
-    return clock.spent < clock.length
-
-
-@kernel
-def _islands_left(islands, clock):
-    """Return whether an island has not been moved."""
-    return islands.plan[0].at < islands.plan[0].count
-
-
-@kernel
-def _take_all(islands, model, data):
-    """Return the whole scene unchanged: it is one island."""
-    return model.system, data.held, data.state, data.work
-
-
-@kernel
-def _take_island(islands, model, data):
-    """Return the island at hand as a system, with what it holds, its state and its scratch."""
-    i = islands.plan[0].at
-    state = islands.state[islands.first[0, i] : islands.first[0, i + 1]]
-    return (
-        parts.part_system(model.system, islands, i),
-        parts.part_held(data.held, islands, i),
-        state,
-        parts.part_work(data.work, islands, i),
-    )
-
-
-@kernel
-def _enter_all(islands, part, own, held):
-    """All bodies are there already."""
-
-
-@kernel
-def _enter_island(islands, part, own, held):
-    """Begin with an island, unless that was done before the loop was left."""
-    if islands.plan[0].entered == 0:
-        clock = own.clocks[0]
-        parts.enter(part.system, own.held, held, own.work, islands, clock.begin, clock)
-        clock.first_touch = clock.touched
-
-
 @inlined
-def _move_all(islands, model, data, method):
+def move_together(model, data, method, start):
     """Move all bodies to the end of the step: event by event, or whole if that did not get on."""
     system, work = model.system, data.work
     step = data.clocks[0].step
-    if islands.free == 0 or not is_whole(step, work):
+    if start.free == 0 or not is_whole(step, work):
         parts.recover(system, step, work)
         return advance(model, data, method)
     step_heap(model, data)
@@ -201,7 +174,7 @@ def _move_all(islands, model, data, method):
 
 
 @inlined
-def _move_island(islands, model, data, method):
+def move_island(model, data, method):
     """Move an island to the end of the step: event by event, or whole if it is large."""
     system, controls, work = model.system, model.controls, data.work
     step = data.clocks[0].step
@@ -210,26 +183,13 @@ def _move_island(islands, model, data, method):
         return advance(model, data, method)
     step_heap(model, data)
     code = work.result[0].code
-    return (
-        r.STRAYED
-        if code == 0 and strayed(system, data.state, data.clocks[0].length, work)
-        else code
-    )
+    if code == 0 and strayed(system, data.state, data.clocks[0].length, work):
+        return r.STRAYED
+    return code
 
 
-@kernel
-def _leave_all(islands, own):
-    """Nothing is to be put back."""
-
-
-@kernel
-def _leave_island(islands, own):
-    """End with an island."""
-    parts.leave(own.held, islands)
-
-
-@kernel
-def _all_lost(islands, model, data, code):
+@inlined
+def together_again(model, data, start, code):
     """Go back to the start of a step that could not be taken from event to event; return whether so."""
     clock = data.clocks[0]
     if code >= r.GROW or code == BLOCKED or model.controls.retry == 0:
@@ -237,14 +197,14 @@ def _all_lost(islands, model, data, code):
     if not one_island.tire_together(clock.step, data.work):
         return False
     spent = clock.effort
-    one_island.forget_together(model.system, data.held, data.state, data.clocks, data.work, islands)
+    one_island.forget_together(model.system, data.held, data.state, data.clocks, data.work, start)
     clock.whole += 1
     clock.credit = max(0.0, clock.credit - spent)
     return True
 
 
-@kernel
-def _island_lost(islands, model, data, code):
+@inlined
+def apart_again(model, data, islands, code):
     """Go back to the start of the step; return whether it is to be done again.
 
     With more room for bodies that have left theirs; with islands as heaps where one could not go from event
@@ -265,24 +225,8 @@ def _island_lost(islands, model, data, code):
     return again
 
 
-@kernel
-def _end_all(islands, model, data):
-    """All bodies are there already."""
-    islands.begun[0] = 0
-
-
-@kernel
-def _end_islands(islands, model, data):
+@unit
+def end_islands(model, data, islands):
     """Put all islands back."""
     clock = data.clocks[0]
     parts.end_step(model.system, data.held, data.state, clock.length, clock, data.work, islands)
-
-
-start = by_method({Islands: _start_islands, NoIslands: _start_all})
-some_left = by_method({Islands: _islands_left, NoIslands: _all_left})
-take = by_method({Islands: _take_island, NoIslands: _take_all})
-enter = by_method({Islands: _enter_island, NoIslands: _enter_all})
-move = by_method({Islands: _move_island, NoIslands: _move_all})
-leave = by_method({Islands: _leave_island, NoIslands: _leave_all})
-lost = by_method({Islands: _island_lost, NoIslands: _all_lost})
-end = by_method({Islands: _end_islands, NoIslands: _end_all})

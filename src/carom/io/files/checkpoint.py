@@ -53,17 +53,15 @@ class Checkpoint(NamedTuple):
 
 def capture(run) -> Checkpoint | None:
     """Return where a run stands; None in the middle of a step."""
-    from carom.stepping.islands.layout import Islands  # with kernels: not needed to read a file
-
     clock, search = run.clock[0], run.work.search[0]
-    islands = run.islands if isinstance(run.islands, Islands) else None
+    islands = run.islands
     inside = clock.spent != 0.0 or search.pending != 0
-    if inside or (islands is not None and islands.plan[0].planned != 0):
+    if inside or (islands.plan[0].planned != 0):
         return None
     found = {
         "corner": len(run.corner.e),
         "spots": len(run.heap.spots),
-        "room": 0 if islands is None else len(islands.which),
+        "room": len(islands.which),
     }
     return Checkpoint(found, {name: array.copy() for name, array in _arrays(run)})
 
@@ -76,14 +74,12 @@ def restore(run, checkpoint: Checkpoint, records: r.Records) -> None:
     ValueError
         If the arrays are not those of this version of carom.
     """
-    from carom.stepping.islands.layout import Islands
-
     found = checkpoint.found
     while len(run.corner.e) < found["corner"]:
         run.grow(r.FULL_CORNER)
     while len(run.heap.spots) < found["spots"]:
         run.grow(r.FULL_SPOTS)
-    while isinstance(run.islands, Islands) and len(run.islands.which) < found["room"]:
+    while len(run.islands.which) < found["room"]:
         run.grow(r.FULL_PAIRS)
     here = dict(_arrays(run))
     if layout_of(here) != layout_of(checkpoint.arrays):

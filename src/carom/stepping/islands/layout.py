@@ -46,8 +46,29 @@ MEMBER = [
 ]
 
 
+class Together(NamedTuple):
+    """All bodies together: one of them, or joined. What a step begins with is kept, to go back to.
+
+    No state is kept where a step is not done in another way: nothing touches, and no joint sticks.
+    """
+
+    free: int  # 1 where gravity and contacts alone act
+    begun: np.ndarray  # (1,) 1 while a step is going on
+    state: np.recarray  # (N,) STATE
+    brinks: np.recarray  # (M,) BRINK
+    points: np.recarray  # (P,) HELD
+    count: np.ndarray  # (1,) number of held points
+    clock: np.recarray  # (1,) CLOCK
+
+
 class Islands(NamedTuple):
-    """N bodies in slots, island by island, and M contacts that may act in the step."""
+    """N bodies in slots, island by island, and M contacts that may act in the step.
+
+    Where all bodies move together the slots are empty.
+    """
+
+    apart: int  # 1 where bodies may move apart from each other, in islands of their own
+    together: Together
 
     plan: np.recarray  # (1,) PLAN
     member: np.recarray  # (N,) MEMBER
@@ -73,30 +94,15 @@ class Islands(NamedTuple):
     plane_first: np.ndarray  # (N + 1,)
 
 
-class NoIslands(NamedTuple):
-    """All bodies together: one of them, or joined. What a step begins with is kept, to go back to.
-
-    No state is kept where a step is not done in another way: nothing touches, and no joint sticks.
-    """
-
-    free: int  # 1 where gravity and contacts alone act
-    begun: np.ndarray  # (1,) 1 while a step is going on
-    state: np.recarray  # (N,) STATE
-    brinks: np.recarray  # (M,) BRINK
-    points: np.recarray  # (P,) HELD
-    count: np.ndarray  # (1,) number of held points
-    clock: np.recarray  # (1,) CLOCK
-
-
 def has_events(system: System) -> bool:
     """Return whether steps may have events, which could follow each other too fast: contacts, dry friction."""
     return system.contacts.size > 0 or system.relations.frictions.size > 0
 
 
-def no_islands(system: System, held: Held) -> NoIslands:
+def new_together(system: System, held: Held) -> Together:
     """Return the scratch for bodies that are stepped together."""
     keeps = has_events(system)
-    return NoIslands(
+    return Together(
         free=int(system.bodies["ballistic"].all()),
         begun=np.zeros(1, dtype=np.int64),
         state=table(STATE, system.bodies.size if keeps else 0),
@@ -107,7 +113,26 @@ def no_islands(system: System, held: Held) -> NoIslands:
     )
 
 
-def new_islands(system: System, held: Held) -> Islands | NoIslands:
+_NOWHERE = Together(
+    free=1,
+    begun=np.zeros(1, dtype=np.int64),
+    state=table(STATE, 0),
+    brinks=table(BRINK, 0),
+    points=table(HELD, 0),
+    count=np.zeros(1, dtype=np.int64),
+    clock=table(CLOCK, 1),
+)
+
+
+def no_islands(system: System, held: Held) -> Islands:
+    """Return the scratch for bodies that are stepped together."""
+    none = np.zeros(0, dtype=np.int64)
+    return _islands(0, (none, none, none), (none, none), 0, 0)._replace(
+        together=new_together(system, held)
+    )
+
+
+def new_islands(system: System, held: Held) -> Islands:
     """Return the scratch for a scene whose bodies may move apart from each other."""
     n = system.bodies.size
     if n == 1 or not system.bodies["ballistic"].all():
@@ -120,9 +145,21 @@ def new_islands(system: System, held: Held) -> Islands | NoIslands:
     order = np.lexsort((pairs, high, low))
     planes = rows[contacts.other < 0]
     planes = planes[np.argsort(contacts.body[planes], kind="stable")]
+    room = min(rows.size, 8 * n + 64)
+    partner = low[order], high[order], pairs[order]
+    return _islands(n, partner, (contacts.body[planes], planes), room, len(held.points))
+
+
+def _islands(n: int, partners: tuple, grounded: tuple, room: int, points: int) -> Islands:
+    """Return islands of `n` bodies.
+
+    `partners`: two bodies and their row of contacts; `grounded`: a body and its row with a half-space.
+    """
+    (low, high, pairs), (body, planes) = partners, grounded
     numbers = np.arange(n + 1)
-    room, points = min(rows.size, 8 * n + 64), len(held.points)
     return Islands(
+        apart=int(n > 0),
+        together=_NOWHERE,
         plan=table(PLAN, 1),
         member=table(MEMBER, n),
         first=np.zeros((3, n + 1), dtype=np.int64),
@@ -141,10 +178,10 @@ def new_islands(system: System, held: Held) -> Islands | NoIslands:
         radius=np.zeros(n),
         pair=np.zeros((8 * n + 64, 2), dtype=np.int64),
         sweep=new_sweep_work(n),
-        partner=np.stack([high[order], pairs[order]]),
-        partner_first=np.searchsorted(low[order], numbers),
+        partner=np.stack([high, pairs]),
+        partner_first=np.searchsorted(low, numbers),
         plane=planes,
-        plane_first=np.searchsorted(contacts.body[planes], numbers),
+        plane_first=np.searchsorted(body, numbers),
     )
 
 

@@ -11,25 +11,25 @@ from carom.stepping.islands.parts import tire_body
 
 
 @kernel
-def begin_together(system, held, now, clocks, islands):
+def begin_together(system, held, now, clocks, start):
     """Begin a step, unless it has begun already."""
-    if islands.begun[0] == 1:
+    if start.begun[0] == 1:
         return
     clock = clocks[0]
     clock.first_touch, clock.tries, clock.effort = 0, 0, 0.0
     clock.before = clock.impacts
-    if islands.state.shape[0] == 0:  # it is not done in another way
+    if start.state.shape[0] == 0:  # it is not done in another way
         return
     for c in range(held.brinks.shape[0]):
         held.brinks[c].blows = 0
-        islands.brinks[c] = held.brinks[c]
+        start.brinks[c] = held.brinks[c]
     for b in range(now.shape[0]):
-        keep(now[b], islands.state[b])
+        keep(now[b], start.state[b])
     for i in range(held.count[0]):
-        islands.points[i] = held.points[i]
+        start.points[i] = held.points[i]
     begin_turns(system)
-    islands.count[0], islands.begun[0] = held.count[0], 1
-    islands.clock[0] = clocks[0]
+    start.count[0], start.begun[0] = held.count[0], 1
+    start.clock[0] = clocks[0]
 
 
 @kernel
@@ -43,19 +43,19 @@ def tire_together(step, work):
 
 
 @kernel
-def forget_together(system, held, now, clocks, work, islands):
+def forget_together(system, held, now, clocks, work, start):
     """Go back to the start of the step, as if nothing had happened in it."""
     mark_vertices(held, 0)
     for c in range(held.brinks.shape[0]):
-        held.brinks[c] = islands.brinks[c]
+        held.brinks[c] = start.brinks[c]
     for b in range(now.shape[0]):
-        keep(islands.state[b], now[b])
-    held.count[0] = islands.count[0]
+        keep(start.state[b], now[b])
+    held.count[0] = start.count[0]
     for i in range(held.count[0]):
-        held.points[i] = islands.points[i]
+        held.points[i] = start.points[i]
     mark_vertices(held, 1)
-    clocks[0] = islands.clock[0]
-    islands.begun[0] = 0
+    clocks[0] = start.clock[0]
+    start.begun[0] = 0
     forget_turns(system)
     work.search[0].pending = 0
     regroup(system, held, work)

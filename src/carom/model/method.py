@@ -1,0 +1,32 @@
+"""The method of the free phase, as kernels see it: one type for all of them."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+#: kinds: explicit Runge-Kutta; symplectic, in parts; implicit for stiff springs; the paper's three fields
+RUNGE_KUTTA, RATTLE, IMPLICIT, THREE_FIELD = range(4)
+
+
+class Method(NamedTuple):
+    """Coefficients of an explicit method, and of another that is built on it: for contacts that persist."""
+
+    kind: int
+    A: np.ndarray  # (S, S) strictly lower triangular
+    b: np.ndarray  # (S,) weights
+    E: np.ndarray  # those of its errors: (0, S) none; (1, S); (2, S) of orders 5 and 3
+    parts: np.ndarray  # RATTLE: (P,) of h, sum 1
+    # THREE_FIELD
+    ode: int  # 1: second-order equations of the multipliers, 0: exact constraints
+    beta: float  # natural frequency times the step
+    zeta: float
+    augment: float  # eps as a part of the diagonal of A M^-1 A^T
+    tolerance: float
+    most: int  # iterations
+
+
+def explicit(A: np.ndarray, b: np.ndarray, E: np.ndarray) -> Method:
+    """Return an explicit Runge-Kutta method."""
+    return Method(RUNGE_KUTTA, A, b, E, np.zeros(0), 0, 0.0, 0.0, 0.0, 0.0, 0)
