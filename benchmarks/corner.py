@@ -64,8 +64,7 @@ class Case:
     """One impact, with scratch, called in a compiled loop."""
 
     def __init__(self, problem, mu=0.0, e=0.5, law=STRONGE, kappa=None, repeat=200, **settings):
-        from carom.impact.multiple.layout import CornerSettings, new_corner_result
-        from carom.impact.multiple.layout import corner_arrays
+        from carom.impact.multiple.layout import CornerSettings, corner_arrays, new_corner_result
 
         W, u = problem
         k = len(u) // 3

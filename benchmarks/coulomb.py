@@ -9,7 +9,7 @@ import numba
 import numpy as np
 
 from carom.friction.arrays import new_island_work
-from carom.friction.layout import new_cone_work
+from carom.friction.layout import new_contact_work
 from carom.friction.solve import solve_cones
 from common import clock, report, seconds, spread
 
@@ -81,7 +81,7 @@ def by_W(island):
     W, c = dense(island)
     k = len(c) // 3
     given = np.full(k, MU), np.zeros(k, dtype=np.int64), np.zeros((k, 2))
-    work, p = new_cone_work(k), np.zeros(3 * k)
+    work, p = new_contact_work(k), np.zeros(3 * k)
 
     def solve(times, part, start):
         return many_dense(times, k, W, part * c, *given, start, p, work), p.copy()

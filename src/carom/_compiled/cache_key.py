@@ -18,7 +18,6 @@ _RULES = (
     "target.py",
     "units.py",
     "link_only.py",
-    "choice.py",
     "cache_key.py",
     "composed.py",
     "user_functions.py",

@@ -42,7 +42,7 @@ class NotCompiled(RuntimeError):
 
     def __init__(self, name: str):
         super().__init__(f"{name} could not be compiled")
-        self.__cause__, NotCompiled.stopped_by = NotCompiled.stopped_by, None
+        self.__cause__ = NotCompiled.stopped_by
 
 
 def unit(function):

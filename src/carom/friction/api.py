@@ -106,7 +106,7 @@ def solve_contacts(
     >>> solution.impulse
     array([[ 0.1 , -0.05,  0.  ]])
     """
-    from carom.friction.layout import MESSAGES, SOLVED, new_cone_work
+    from carom.friction.layout import MESSAGES, SOLVED, new_contact_work
     from carom.friction.residual import measure
     from carom.friction.solve import solve_cones
 
@@ -125,7 +125,7 @@ def solve_contacts(
     p = np.zeros(3 * k) if start is None else _triples("start", start, k, "N s")
     with np.errstate(over="ignore", invalid="ignore"):  # what does not converge says so itself
         status, residual, iterations = solve_cones(
-            k, W, c, mu, code, direction, p, new_cone_work(k)
+            k, W, c, mu, code, direction, p, new_contact_work(k)
         )
         _, _, penetration, violation, product = measure(k, W, c, mu, code, direction, p)
         velocity = W @ p + c

@@ -12,13 +12,14 @@ comes back in the next iteration, which starts from the true residual.
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
+from carom._compiled.units import unit
 from carom.friction import layout as o
 from carom.friction.blocks import factor_blocks, substitute_blocks
 from carom.friction.cone import slope
 from carom.friction.local import solve_local
 
 
-@kernel
+@unit
 def multiply(work, k, x, out):
     """Add W x to `out`."""
     _impart(work, k, x)
@@ -35,8 +36,8 @@ def impart(work, k):
     _impart(work, k, work.vector[o.P])
 
 
-@kernel
-def magnitude(work, k):
+@unit
+def magnitude(work, k) -> float:
     """Return the greatest (|G| |M^-1 G^T| |p|)_i / s_i, at least (|W| |p|)_i / s_i."""
     _rest(work)
     most, p = 0.0, work.vector[o.P]
@@ -61,7 +62,7 @@ def magnitude(work, k):
     return most
 
 
-@kernel
+@unit
 def sweep(work, k, backward):
     """Solve each contact in turn, the others held."""
     p, c = work.vector[o.P], work.vector[o.C]
@@ -83,7 +84,7 @@ def sweep(work, k, backward):
             _push(work, i, x0 - q0, x1 - q1, x2 - q2)
 
 
-@kernel
+@unit
 def factor_newton(work, k, eps):
     """Factor for J = I - D + eps D, D the slope of the projection at p, w."""
     p, w = work.vector[o.P], work.vector[o.VELOCITY]
@@ -111,7 +112,7 @@ def factor_newton(work, k, eps):
     work.count[o.ROWS] = 3 * k
 
 
-@kernel
+@unit
 def solve_newton(work, k):
     """Write the step for the f at hand."""
     f, step, rhs = work.vector[o.F], work.vector[o.STEP], work.vector[o.RHS]
@@ -122,7 +123,7 @@ def solve_newton(work, k):
         step[i] = rhs[i]
 
 
-@kernel
+@unit
 def factor_shifted(work, k, sigma):
     """Factor for W + sigma: J = sigma, D = I."""
     for i in range(k):
@@ -134,7 +135,7 @@ def factor_shifted(work, k, sigma):
     factor_blocks(work)
 
 
-@kernel
+@unit
 def solve_shifted(work, k):
     """Rhs r becomes x of J x + D W x = r."""
     x = work.vector[o.RHS]

@@ -1,4 +1,4 @@
-"""Codes of the solver of contacts, and its work arrays for an inverse mass stored whole."""
+"""Codes of the solver of contacts, and its work arrays."""
 
 from __future__ import annotations
 
@@ -59,30 +59,75 @@ NEAR = 2  # 1: of several solutions the one near the start is wanted, not that o
 ENOUGH = 1
 
 
-class ConeWork(NamedTuple):
-    """Work arrays of `carom.friction.solve.solve_cones` for up to K contacts."""
+#: a place in the order of elimination
+PLACE = [
+    ("body", "i8"),
+    ("pair", "i8"),  # its pairs: from, to
+    ("pairs_end", "i8"),
+    ("update", "i8"),  # its rows of `target`: from, to
+    ("updates_end", "i8"),
+]
 
+#: a contact and its bodies
+LINK = [
+    ("body", "i8", 2),
+    ("corner", "i8", (2, 2)),
+    ("rows", "f8", (2, 3, 6)),  # scaled G
+    ("response", "f8", (2, 6, 3)),  # M^-1 G^T
+    ("local", "f8", 6),  # upper triangle of the diagonal block of W
+    ("compliance", "f8", (3, 3)),  # inverse of J
+    ("stiffness", "f8", (3, 3)),  # J^-1 D
+]
+
+ISLAND_BODY = [("motion", "f8", 6), ("pivot", "i8", 6)]
+
+
+#: how the Delassus operator W is kept: whole; or by bodies, as G and M^-1, W itself never formed
+DENSE, BY_BODIES = range(2)
+
+
+class ContactWork(NamedTuple):
+    """Work arrays of a contact problem of up to K contacts; what its kind does not need is empty."""
+
+    kind: int  # DENSE or BY_BODIES
     contact: np.recarray  # (K,) CONTACT
     vector: np.ndarray  # (VECTORS, 3K)
     count: np.ndarray  # (5,) int64
     mismatch: np.ndarray  # (2,) |f| that Newton reached, and one that is ENOUGH
-    W: np.ndarray  # (3K, 3K) scaled inverse mass: each diagonal block has trace 3
+    # DENSE
+    W: np.ndarray  # (3K, 3K) scaled: each diagonal block has trace 3
     matrix: np.ndarray  # (3K, 3K) of a linear system, and its factors
     pivot: np.ndarray  # (3K,) int64, rows exchanged
     active: np.ndarray  # (3K,) int64, rows of `matrix`
+    # BY_BODIES
+    link: np.recarray  # (K,) LINK
+    body: np.recarray  # (N,) ISLAND_BODY
+    place: np.recarray  # (N,) PLACE
+    later: np.ndarray  # as in `carom.friction.arrays.IslandGraph`
+    target: np.ndarray
+    block: np.ndarray  # (N + 2 pairs, 6, 6)
+    sums: np.ndarray  # (2, N, 6) for the residual
 
 
-def new_cone_work(capacity: int) -> ConeWork:
-    """Return work arrays for up to `capacity` contacts."""
+def new_contact_work(capacity: int) -> ContactWork:
+    """Return work arrays for up to `capacity` contacts whose W is given whole."""
     contacts = max(capacity, 1)
     n = 3 * contacts
-    return ConeWork(
-        table(CONTACT, contacts),
-        np.zeros((VECTORS, n)),
-        np.zeros(5, dtype=np.int64),
-        np.zeros(2),
-        np.zeros((n, n)),
-        np.zeros((n, n)),
-        np.zeros(n, dtype=np.int64),
-        np.zeros(n, dtype=np.int64),
+    return ContactWork(
+        kind=DENSE,
+        contact=table(CONTACT, contacts),
+        vector=np.zeros((VECTORS, n)),
+        count=np.zeros(5, dtype=np.int64),
+        mismatch=np.zeros(2),
+        W=np.zeros((n, n)),
+        matrix=np.zeros((n, n)),
+        pivot=np.zeros(n, dtype=np.int64),
+        active=np.zeros(n, dtype=np.int64),
+        link=table(LINK, 0),
+        body=table(ISLAND_BODY, 0),
+        place=table(PLACE, 0),
+        later=np.zeros(0, dtype=np.int64),
+        target=np.zeros((0, 3), dtype=np.int64),
+        block=np.zeros((0, 6, 6)),
+        sums=np.zeros((2, 0, 6)),
     )

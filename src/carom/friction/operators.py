@@ -1,33 +1,73 @@
-"""What the solver asks of W, for the two ways in which it is stored.
+"""What the solver asks of the Delassus operator W, for the two ways in which it is kept.
 
-`ConeWork`: W itself (`dense`). `IslandWork`: bodies and rows, W never formed (`island`). All in scaled
-variables; k contacts.
+DENSE: W itself (`dense`). BY_BODIES: bodies and rows, W never formed (`island`). All in scaled variables; k
+contacts.
 """
 
 from __future__ import annotations
 
-from carom._compiled.choice import by_method
+from carom._compiled.decorators import inlined
 from carom.friction import dense, island
-from carom.friction.arrays import IslandWork
-from carom.friction.layout import ConeWork
+from carom.friction.layout import DENSE
 
-#: multiply(work, k, x, out): out += W x
-multiply = by_method({ConeWork: dense.multiply, IslandWork: island.multiply})
 
-#: magnitude(work, k): greatest (|W| |p|)_i, in units of velocity (unscaled but for gamma)
-magnitude = by_method({ConeWork: dense.magnitude, IslandWork: island.magnitude})
+@inlined
+def multiply(work, k, x, out):
+    """Add W x to `out`."""
+    if work.kind == DENSE:
+        dense.multiply(work, k, x, out)
+    else:
+        island.multiply(work, k, x, out)
 
-#: sweep(work, k, backward): each contact in turn solved exactly
-sweep = by_method({ConeWork: dense.sweep, IslandWork: island.sweep})
 
-#: factor(work, k, eps): of I - D + D (W + eps) at p, w; D the slope of the projection
-factor = by_method({ConeWork: dense.factor_newton, IslandWork: island.factor_newton})
+@inlined
+def magnitude(work, k):
+    """Return the greatest (|W| |p|)_i, in units of velocity (unscaled but for gamma)."""
+    if work.kind == DENSE:
+        return dense.magnitude(work, k)
+    return island.magnitude(work, k)
 
-#: solve(work, k): write the step, with the factors at hand
-solve = by_method({ConeWork: dense.solve_newton, IslandWork: island.solve_newton})
 
-#: factor_shifted(work, k, sigma): of W + sigma
-factor_shifted = by_method({ConeWork: dense.factor_shifted, IslandWork: island.factor_shifted})
+@inlined
+def sweep(work, k, backward):
+    """Solve each contact in turn exactly."""
+    if work.kind == DENSE:
+        dense.sweep(work, k, backward)
+    else:
+        island.sweep(work, k, backward)
 
-#: solve_shifted(work, k): rhs becomes (W + sigma)^-1 rhs
-solve_shifted = by_method({ConeWork: dense.solve_shifted, IslandWork: island.solve_shifted})
+
+@inlined
+def factor(work, k, eps):
+    """Factor I - D + D (W + eps) at p, w; D is the slope of the projection."""
+    if work.kind == DENSE:
+        dense.factor_newton(work, k, eps)
+    else:
+        island.factor_newton(work, k, eps)
+
+
+@inlined
+def solve(work, k):
+    """Write the step, with the factors at hand."""
+    if work.kind == DENSE:
+        dense.solve_newton(work, k)
+    else:
+        island.solve_newton(work, k)
+
+
+@inlined
+def factor_shifted(work, k, sigma):
+    """Factor W + sigma."""
+    if work.kind == DENSE:
+        dense.factor_shifted(work, k, sigma)
+    else:
+        island.factor_shifted(work, k, sigma)
+
+
+@inlined
+def solve_shifted(work, k):
+    """Write (W + sigma)^-1 rhs over the right-hand side."""
+    if work.kind == DENSE:
+        dense.solve_shifted(work, k)
+    else:
+        island.solve_shifted(work, k)

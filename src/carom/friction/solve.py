@@ -18,7 +18,7 @@ def solve_cones(k, W, c, mu, kind, heading, p, scratch):
 
     Rows (n, t1, t2) of k contacts; arrays for K >= k of them, the leading part is used. `W` (3K, 3K) is
     symmetric, `c` (3K,) the velocity without impulses, `mu` (K,) the friction, `p` (3K,) the start and then
-    the solution, `scratch` from `layout.new_cone_work(K)`. `kind` (K,) int64: CONE, friction against
+    the solution, `scratch` from `layout.new_contact_work(K)`. `kind` (K,) int64: CONE, friction against
     w_t; SLIDING, p_t = -mu p_n heading, `heading` (K, 2); STICKING, w_t = 0 whatever force that takes, even
     where p_n = 0. Status: SOLVED; NOT_SOLVED, p is the best that was found; BAD_INPUT, p is 0. The
     residual is that of `residual.measure`.

@@ -195,7 +195,7 @@ class Contacts:
     def settle(self, chosen, closed, kind: int, marked: int, free: np.ndarray) -> int:
         """Hold `chosen`: find stick or slip of each from the accelerations; return a status."""
         from carom.friction.layout import CONE as FREE
-        from carom.friction.layout import SLIDING, SOLVED, new_cone_work
+        from carom.friction.layout import SLIDING, SOLVED, new_contact_work
         from carom.friction.solve import solve_cones
 
         run, n, held = self.run, self.run.n, self.run.held
@@ -227,7 +227,7 @@ class Contacts:
                     kinds[i], heading[i] = SLIDING, -pull / np.linalg.norm(pull)
             p = np.zeros(3 * k)
             if self.cones is None:
-                self.cones = new_cone_work(len(self.friction))
+                self.cones = new_contact_work(len(self.friction))
             status, _, _ = solve_cones(k, W, c0, mu, kinds, heading, p, self.cones)
             if status != SOLVED:
                 jams = [

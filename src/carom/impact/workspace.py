@@ -8,7 +8,7 @@ import numpy as np
 
 from carom._compiled.record_arrays import table
 from carom.collision.layout import MOST_POINTS
-from carom.friction.layout import ConeWork, new_cone_work
+from carom.friction.layout import ContactWork, new_contact_work
 from carom.impact.multiple.layout import (
     CornerResult,
     CornerScratch,
@@ -60,7 +60,7 @@ class Cluster(NamedTuple):
     heading: np.ndarray  # (K, 2)
     member: np.ndarray  # (N,) bodies of the group
     flight: np.recarray  # (N,) STATE at the end of the step without the contacts
-    cone: ConeWork
+    cone: ContactWork
 
 
 class Corner(NamedTuple):
@@ -100,7 +100,7 @@ def new_cluster(system: System) -> Cluster:
         heading=np.zeros((k, 2)),
         member=np.zeros(n, dtype=np.int64),
         flight=table(STATE, n),
-        cone=new_cone_work(k),
+        cone=new_contact_work(k),
     )
 
 

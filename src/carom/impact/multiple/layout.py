@@ -8,7 +8,7 @@ import numpy as np
 
 from carom._compiled.record_arrays import table
 from carom._compiled.simd import LANES
-from carom.friction.layout import ConeWork, new_cone_work
+from carom.friction.layout import ContactWork, new_contact_work
 from carom.impact import layout as one
 
 SIMULTANEOUS, SEQUENTIAL, BY_NEWTON = 0, 1, 2
@@ -120,7 +120,7 @@ class CornerScratch(NamedTuple):
     """Scratch of `resolve_corner` for up to K contacts."""
 
     work: CornerWork
-    cones: ConeWork
+    cones: ContactWork
 
 
 #: rows of `index`: class of a contact, first member of a class, its size, its group, members of
@@ -209,4 +209,4 @@ def corner_arrays(capacity: int) -> CornerScratch:
         stage=np.zeros((2, 6, n)),
         single=np.zeros(one.SIZE),
     )
-    return CornerScratch(work, new_cone_work(k))
+    return CornerScratch(work, new_contact_work(k))

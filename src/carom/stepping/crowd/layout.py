@@ -8,8 +8,16 @@ from typing import NamedTuple
 import numpy as np
 
 from carom._compiled.record_arrays import table
-from carom.friction.arrays import ISLAND_BODY, LINK, PLACE, IslandWork
-from carom.friction.layout import CONTACT, VECTORS
+from carom.friction.layout import (
+    BY_BODIES,
+    CONTACT,
+    ISLAND_BODY,
+    LINK,
+    PLACE,
+    VECTORS,
+    ContactWork,
+    new_contact_work,
+)
 from carom.model.arrays import (
     HELD,
     POINT,
@@ -61,7 +69,7 @@ class Heap(NamedTuple):
     points: np.recarray  # (2, K) POINT: in the middle of the step; at its end
     c: np.ndarray  # (3K,) velocities without impulses, less their bounds
     p: np.ndarray  # (3K,) impulses
-    problem: IslandWork
+    problem: ContactWork
     graph: Graph
     flight: np.recarray  # (N,) STATE at the end of the step without contacts
     held: np.recarray  # (P,) HELD, as it will be
@@ -74,12 +82,11 @@ def new_heap(bodies: int, held: int, points: int) -> Heap:
     """Return the scratch for `points` points that may touch, and `held` that may be held."""
     # what 500 spheres in a box need is half of this; where it is not enough there are sweeps only
     pairs, updates = 4 * points, 128 * points
-    problem = IslandWork(
+    problem = new_contact_work(0)._replace(
+        kind=BY_BODIES,
         contact=table(CONTACT, points),
         link=table(LINK, points),
         vector=np.zeros((VECTORS, 3 * points)),
-        count=np.zeros(5, dtype=np.int64),
-        mismatch=np.zeros(2),
         body=table(ISLAND_BODY, bodies),
         place=table(PLACE, bodies),
         later=np.zeros(pairs, dtype=np.int64),

@@ -10,8 +10,8 @@ from __future__ import annotations
 from carom._compiled.by_reference import refer
 from carom._compiled.decorators import kernel
 from carom.friction import layout as o
-from carom.friction.arrays import IslandWork
 from carom.friction.island import impart
+from carom.friction.layout import ContactWork
 from carom.friction.solve import scale_vectors
 from carom.friction.strategy import polished, release
 from carom.stepping.crowd.graph import find_order
@@ -95,12 +95,17 @@ def newton_on_graph(heap, k, n, least, enough, most):
 @kernel
 def part(work, n, pairs, updates):
     """Return the problem with its arrays as long as the bodies and blocks at hand are many."""
-    return IslandWork(
+    return ContactWork(
+        work.kind,
         work.contact,
-        work.link,
         work.vector,
         work.count,
         work.mismatch,
+        work.W,
+        work.matrix,
+        work.pivot,
+        work.active,
+        work.link,
         work.body[:n],
         work.place[:n],
         work.later[:pairs],
