@@ -11,7 +11,8 @@ from functools import lru_cache
 import numpy as np
 
 from carom._compiled.record_arrays import table
-from carom.friction.arrays import PLACE, IslandGraph
+from carom.friction.arrays import IslandGraph
+from carom.friction.layout import PLACE
 
 
 def island_graph(bodies: int, body: np.ndarray) -> IslandGraph:
