@@ -3,7 +3,7 @@ PYTHON ?= python3
 VENV ?= .venv
 BIN := $(VENV)/bin
 
-.PHONY: paper test lint docs bench history release-check clean
+.PHONY: paper test lint docs bench history release-check wheel clean
 
 $(VENV)/installed-%: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -40,6 +40,10 @@ docs: $(VENV)/installed-docs ## the pages; the examples of the gallery are run a
 release-check: $(VENV)/installed-test ## build wheel and sdist, look inside, install the wheel in an empty environment, run it
 	$(BIN)/python -m pip install --quiet build
 	$(BIN)/python tools/check_release.py
+
+wheel: $(VENV)/installed-test ## a wheel for this platform with everything compiled: its first run compiles nothing
+	$(BIN)/python -m pip install --quiet build wheel
+	$(BIN)/python tools/build_wheel.py
 
 clean:
 	rm -rf $(VENV) out docs/gallery

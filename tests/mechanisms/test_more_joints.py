@@ -13,7 +13,7 @@ from test_forests import wrench_on_centre
 
 import carom
 from carom import GROUND, Scene, joints
-from carom.model.arrays import LoopSolver, TreeSolver
+from carom.model.arrays import FOREST, LOOPS
 
 BOTH = pytest.mark.parametrize("looped", [False, True], ids=["tree", "loop"])
 UP = (0, 0, 1)
@@ -22,10 +22,10 @@ UP = (0, 0, 1)
 SHARP = carom.Options(augmentation=1e-6)
 
 
-def moved(scene, duration, step, solver=TreeSolver):
+def moved(scene, duration, step, solver=FOREST):
     """Run, see that it was by this back end and that the joints hold to round-off."""
     solution = carom.simulate(scene, duration, step=step, options=SHARP)
-    assert isinstance(solution._run.compiled.system.solver, solver)
+    assert solution._run.compiled.system.solver.kind == solver
     position, velocity = solution.constraint_errors
     size = 1.0 + np.max(np.abs(solution.velocity[:, 0]))
     assert np.max(position) < 1e-13 * size**2
@@ -35,7 +35,7 @@ def moved(scene, duration, step, solver=TreeSolver):
 
 def either(looped, scene, duration, step):
     """Run in either back end."""
-    pair = (with_loop(scene), LoopSolver) if looped else (scene, TreeSolver)
+    pair = (with_loop(scene), LOOPS) if looped else (scene, FOREST)
     return moved(pair[0], duration, step, pair[1])
 
 
@@ -254,7 +254,7 @@ def test_back_ends_orders_and_flips_move_alike(seed):
     """A line or plane that would be walked from its point takes the loops' back end."""
     rows, rng = forest(seed), np.random.default_rng(seed)
     tree = moved(build(rows), 0.1, 1e-3)
-    loop = moved(with_loop(build(rows)), 0.1, 1e-3, LoopSolver)
+    loop = moved(with_loop(build(rows)), 0.1, 1e-3, LOOPS)
     bodies, edges, n = rng.permutation(len(rows)), rng.permutation(len(rows)), len(rows)
     names = [k for k in range(n) if rows[k]["kind"] not in ("PointOnLine", "PointOnPlane")]
     mixed = moved(build(rows, bodies=bodies, edges=edges, flips=set(names)), 0.1, 1e-3)
@@ -272,7 +272,7 @@ def test_back_ends_orders_and_flips_move_alike(seed):
     twice = build(rows)  # every joint once more: half the rows are redundant
     for joint in twice.joints:
         twice.add_joint(joint.definition, joint.parent, joint.child)
-    double = moved(twice, 0.1, 1e-3, LoopSolver)
+    double = moved(twice, 0.1, 1e-3, LOOPS)
     np.testing.assert_allclose(double.position[-1], tree.position[-1], rtol=0, atol=1e-10)
     fine = carom.simulate(build(rows), 0.1, step=5e-4)
     drift = [np.max(np.abs(s.ledger.residual)) for s in (tree, fine)]
@@ -293,7 +293,7 @@ def test_line_of_the_child_takes_the_loops_back_end():
             )  # fmt: skip
         hole = joints.PointOnLine((0.5, 0, 0), (1, 0, 0))
         scene.add_joint(hole, scene["wire"], scene["bead"], name="hole")
-        found.append(moved(scene, 1.0, 0.01, LoopSolver if names[0] == "bead" else TreeSolver))
+        found.append(moved(scene, 1.0, 0.01, LOOPS if names[0] == "bead" else FOREST))
     np.testing.assert_allclose(
         found[1].position[:, ::-1], found[0].position, rtol=0, atol=1e-12
     )  # fmt: skip

@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import warnings
 from functools import cached_property
+from pathlib import Path
 
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 
@@ -28,11 +29,25 @@ class StampedCache(FunctionCache):
     def load_overload(self, sig, target_context):
         """Load a compiled function; a file that is broken is as good as none, and is written anew."""
         try:
-            return super().load_overload(sig, target_context)
+            found = super().load_overload(sig, target_context)
         except Exception:  # cut short by a crash or a full disk: whatever unpickling makes of it
             with contextlib.suppress(OSError):
                 self.flush()
             return None
+        return self._load_shipped(sig, target_context) if found is None else found
+
+    def _load_shipped(self, sig, target_context):
+        """Load what a wheel has brought, where its folder cannot be written and so is not that of the cache."""
+        place = Path(self._kept.__code__.co_filename).parent / "__pycache__"
+        if place == Path(self._cache_path) or not any(place.glob("*.nbi")):
+            return None
+        written, self._cache_file = self._cache_file, self._file_at(str(place))
+        try:
+            return super().load_overload(sig, target_context)
+        except Exception:
+            return None
+        finally:
+            self._cache_file = written
 
     def save_overload(self, sig, data):
         """Keep a compiled function; where that fails say so, once."""
@@ -50,8 +65,11 @@ class StampedCache(FunctionCache):
 
     @cached_property
     def _cache_file(self):
+        return self._file_at(self._cache_path)
+
+    def _file_at(self, place: str):
         return IndexDataCacheFile(
-            cache_path=self._cache_path,
+            cache_path=place,
             filename_base=self._impl.filename_base,
             source_stamp=stamp(self._kept),
         )
