@@ -90,6 +90,7 @@ def _returned(annotation) -> types.Type:
 def _call(context, builder, name, result, kinds, values):
     """Generate the call of a unit: look into the slot, fill it if it is empty, call."""
     pointer, number = ir.IntType(8).as_pointer(), ir.IntType(64)
+    ASKED[name, kinds] = None
     packed = zlib.compress(pickle.dumps(kinds))
     digest = hashlib.sha256(packed).hexdigest()[:16]
     slot = _global(builder.module, f"slot.{name}.{digest}", ir.Constant(pointer, None), False)
@@ -126,9 +127,11 @@ def _global(module, name, value, constant):
 
 #: all units, by module and name
 UNITS: dict[str, Any] = {}
+#: what code that was compiled in this process may call: name and types of arguments
+ASKED: dict[tuple[str, tuple], None] = {}
 
 
-def _address(name: str, kinds: tuple) -> int:
+def address(name: str, kinds: tuple) -> int:
     """Return the address of a unit for arguments of these types, loaded or compiled."""
     if name not in UNITS:
         importlib.import_module(name.partition(":")[0])

@@ -54,31 +54,41 @@ def compile_all(workers: int | None = None) -> list[dict]:
     from concurrent.futures import ProcessPoolExecutor, as_completed
 
     workers = min(workers or os.cpu_count() or 1, len(TOGETHER))
-    total, rows = len(work()), []
+    total, rows, asked = len(work()), [], set()
     with show.progress("compile", total) as bar:
-        if workers == 1:
-            for kinds in TOGETHER:
-                rows += compile_kinds(kinds)
-                bar(len(rows), total)
-            return rows
         context = multiprocessing.get_context("spawn")
         with ProcessPoolExecutor(workers, mp_context=context) as pool:
             for done in as_completed([pool.submit(compile_kinds, kinds) for kinds in TOGETHER]):
-                rows += done.result()
+                new, more = done.result()
+                rows, asked = rows + new, asked | more
                 bar(len(rows), total)
+            known: set = set()
+            while asked - known:  # what no scene above has called
+                parts = [sorted(asked - known, key=str)[k::workers] for k in range(workers)]
+                known |= asked
+                asked = asked.union(*pool.map(compile_units, parts))
     order = {kind: k for k, kind in enumerate(kind for kinds in TOGETHER for kind in kinds)}
     return sorted(rows, key=lambda row: order[row["kind"]])
 
 
-def compile_kinds(kinds: tuple[str, ...]) -> list[dict]:
-    """Compile some kinds of work in this process."""
+def compile_units(wanted: list) -> set:
+    """Compile units by name and types of arguments; return all that compiled code of this process may call."""
+    from carom._compiled.units import ASKED, address
+
+    for name, kinds in wanted:
+        address(name, kinds)
+    return set(ASKED)
+
+
+def compile_kinds(kinds: tuple[str, ...]) -> tuple[list[dict], set]:
+    """Compile some kinds of work in this process; return times, and all units that it may call."""
     rows = []
     for kind, method, do in work():
         if kind in kinds:
             begin = time.perf_counter()
             do()
             rows.append({"kind": kind, "method": method, "seconds": time.perf_counter() - begin})
-    return rows
+    return rows, compile_units([])
 
 
 def work() -> list[tuple[str, str, Callable[[], object]]]:
