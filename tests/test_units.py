@@ -73,7 +73,7 @@ def test_what_is_not_called_is_not_compiled():
 @compiled
 def test_what_stops_a_compile_is_raised():
     call, out = Entries(()), np.zeros(1)
-    with pytest.raises(Exception, match="test_units:broken"):
+    with pytest.raises(Exception, match="there_is_no_such_thing"):
         call(sometimes, 1.0, out)
     assert of_units(1.0, out) == 5.0  # others go on
 
@@ -87,3 +87,21 @@ def test_an_interrupt_while_a_unit_is_compiled_is_raised(monkeypatch):
     monkeypatch.setattr(broken.compiled, "get_compile_result", interrupted)
     with pytest.raises(KeyboardInterrupt):
         call(sometimes, 2.0, out)
+
+
+@compiled
+def test_each_unit_has_one_type_for_all_scenes_and_methods():
+    """Compiles are functions: nothing is compiled anew for another kind of scene, or another method."""
+    import carom
+    from carom.cli import warmup
+    from carom.stepping import time_loop
+
+    for scene in warmup.scenes().values():
+        for method in ("rk4", "rk8", "rattle", "implicit", "paper", "paper-ode"):
+            carom.simulate(scene, 0.01, step=5e-3, method=method, throw=False)
+        carom.simulate(scene, 0.01, step="auto", throw=False)
+    for scene, _ in warmup.contact_scenes().values():
+        carom.simulate(scene, 0.02, step=5e-3, throw=False)
+    assert len(time_loop.run.overloads) == 1
+    ours = {name: made for name, made in UNITS.items() if name.startswith("carom.")}
+    assert [name for name, made in ours.items() if len(made.compiled.overloads) > 1] == []

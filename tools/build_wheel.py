@@ -41,6 +41,7 @@ def build(out: Path) -> Path:
         }
         environment["PYTHONPATH"] = str(tree)
         python("-m", "carom.cli", "warmup", env=environment, cwd=place)
+        (tree / "carom" / "_compiled" / "shipped").touch()
         for code in tree.rglob("*.pyc"):
             code.unlink()
         compiled = len(list(tree.rglob("*.nbc")))

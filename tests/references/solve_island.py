@@ -26,7 +26,7 @@ def solve_island(k, island, mu, kind, heading, p, scratch):
         for i in range(3 * k):
             p[i] = 0.0
         return BAD_INPUT, math.inf, 0
-    search(scratch.address, scratch, k)
+    search(scratch, k)
     for i in range(3 * k):
         p[i] = gamma * scratch.contact[i // 3].scale * scratch.vector[o.P, i]
     residual, tolerance, _, _, _ = measure_island(k, island, mu, kind, heading, p, scratch.sums)

@@ -16,6 +16,10 @@ from numba.core.caching import FunctionCache, IndexDataCacheFile
 from carom._compiled.cache_key import stamp
 
 
+#: is there where a wheel has brought compiled code (`tools/build_wheel.py`)
+SHIPPED = Path(__file__).parent / "shipped"
+
+
 class StampedCache(FunctionCache):
     """A function cache that is valid as long as the stamp of its function."""
 
@@ -39,7 +43,7 @@ class StampedCache(FunctionCache):
     def _load_shipped(self, sig, target_context):
         """Load what a wheel has brought, where its folder cannot be written and so is not that of the cache."""
         place = Path(self._kept.__code__.co_filename).parent / "__pycache__"
-        if place == Path(self._cache_path) or not any(place.glob("*.nbi")):
+        if not SHIPPED.exists() or place == Path(self._cache_path):
             return None
         written, self._cache_file = self._cache_file, self._file_at(str(place))
         try:

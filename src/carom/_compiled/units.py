@@ -144,9 +144,7 @@ def address(name: str, kinds: tuple) -> int:
 def _find(name, packed, size):
     """Return the address of a unit to compiled code, or 0 if it could not be compiled."""
     try:
-        return address(
-            name.decode(), pickle.loads(zlib.decompress(ctypes.string_at(packed, size)))
-        )
+        return address(name.decode(), pickle.loads(zlib.decompress(ctypes.string_at(packed, size))))
     except BaseException as error:  # Ctrl-C too: it has no way through compiled code
         NotCompiled.stopped_by = error
         return 0
