@@ -3,7 +3,7 @@
     python tools/build_wheel.py [--out out/wheel]
 
 Takes the wheel that has sources only, compiles everything in a copy of it (``carom warmup``), and packs both
-under the tag of this Python and platform. Compiled code is that of the baseline processor (`carom._compiled.target`)
+under the tag of this Python and platform. Compiled code is that of the baseline (`carom._compiled.target`)
 and of the Numba that is installed; with another Numba it is compiled again, as from sources. Needs `build` and
 `wheel`.
 """

@@ -15,7 +15,6 @@ from numba.core.caching import FunctionCache, IndexDataCacheFile
 
 from carom._compiled.cache_key import stamp
 
-
 #: is there where a wheel has brought compiled code (`tools/build_wheel.py`)
 SHIPPED = Path(__file__).parent / "shipped"
 
