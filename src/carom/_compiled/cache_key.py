@@ -62,12 +62,15 @@ def _reached(function: Callable, seen: set[int]) -> Iterator[str]:
 
 
 def _value(name: str, value: object, seen: set[int]) -> Iterator[str]:
-    """Yield what a global stands for: a constant, a kernel, or one of several that a type chooses."""
+    """Yield what a global stands for: a constant, a kernel, a unit."""
     if isinstance(value, _CONSTANTS):
         yield f"{name}={value!r}"
+    if hasattr(
+        value, "compiled"
+    ):  # a unit is not linked in; what it returns is known to its callers
+        yield f"{name} -> {getattr(value, 'returned', None)}"
     for part in getattr(value, "parts", ()):
-        if not hasattr(part, "compiled"):  # a unit is not linked in
-            yield from _reached(getattr(part, "py_func", part), seen)
+        yield from _reached(getattr(part, "py_func", part), seen)
     inner = getattr(value, "py_func", None)
     if inner is not None:
         yield from _reached(inner, seen)

@@ -145,7 +145,9 @@ def take_up_momentum(J, q, w, memory):
 
 @kernel
 def momenta(system, start, h, work):
-    """Turn the wrenches into p0 + h f + Abar^T Lam: momenta at the end, about each centre, world.
+    """Turn the wrenches into momenta at the end, about each centre, in world axes (paper, Eqs. (4)-(7)).
+
+    That is p0 + h f + Abar^T Lam.
 
     Keeps in `bound` the measure of convergence: the speed each body would have without reactions, at
     least that of 1e-6 of its size a step (round-off of positions is 1e-10 of that).
@@ -247,7 +249,7 @@ def driven_work(system, start, h, end, work):
 
 @kernel
 def velocity_block(system, method, h, end, work):
-    """Write the velocities at the end; return the largest change."""
+    """Write the velocities at the end; return the largest change (paper, Eqs. (4)-(7))."""
     if system.solver.kind == LOOPS:
         return velocity_block_loops(system, method, h, end, work)
     return velocity_block_free(system, method, h, end, work)
@@ -276,7 +278,10 @@ def wanted_rate(system, j, method, h, end, work, rhs):
 
 @kernel
 def position_block(system, method, start, h, end, work):
-    """q1 = Exp_q0(h vbar), returned to the joints; return the largest move, relative to the body."""
+    """Move to q1 = Exp_q0(h vbar) and return to the joints (paper, Eqs. (4)-(7)).
+
+    Returns the largest move, relative to the body.
+    """
     last, change = work.stage, 0.0
     for b in range(start.shape[0]):
         keep(end[b], last[b])

@@ -27,7 +27,7 @@ from carom.kinematics.contact_point import (
 
 @kernel
 def return_map(system, contact, state, work, tie, tolerance):
-    """Move `state` onto the surface of the contact. Returns the number of iterations, or -1.
+    """Move `state` onto the surface of the contact. Returns the number of iterations, or -1 (paper, Eq. (10)).
 
     The point that is brought back stays the same until it is on the surface; if the turn of the body has
     then brought another one lower, it is the next.

@@ -32,9 +32,9 @@ def gauss(i):
 
 @kernel
 def force(m, accel, t1, t2):
-    """Return N and k for the ratio (t1, t2): N = accel / k (law A, II.9), or 1 if `accel` is 0.
+    """Return N (paper, Eq. (8)) and k for the ratio (t1, t2): N = accel / k (law A, II.9), or 1.
 
-    With N = 1 the time of the step is the normal impulse; `layer` scales it afterwards (II.10).
+    N is 1 if `accel` is 0. With N = 1 the time of the step is the normal impulse; `layer` scales it afterwards (II.10).
     """
     k = m[0] + m[1] * t1 + m[2] * t2
     return (accel / k if accel > 0.0 else 1.0), k
@@ -49,7 +49,7 @@ def slip_ratio(mu, x, y):
 
 @kernel
 def solve_slip(m, mu, accel, x0, y0, d, to_rest):
-    """Return 1 if the step of length `d` in slip from (x0, y0) was solved, U and Y.
+    """Return 1 if the step of length `d` in slip from (x0, y0) was solved, U and Y (paper, Eq. (9)).
 
     `to_rest` says that slip is known to end with the step: then U starts at 0.
     """
