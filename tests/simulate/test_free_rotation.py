@@ -12,10 +12,8 @@ from carom._compiled.record_arrays import table
 from carom.geometry import quaternion
 from carom.kinematics.flight import point_bound
 from carom.kinematics.flight_arrays import torque_free
-from carom.model.arrays import (
-    BODY,
-    BODY_WORK,
-)
+from carom.model.arrays import BODY
+from carom.model.workspace import BODY_WORK
 from references.free_rotation import angle_between, free_rotation
 
 CASES = json.loads((Path(__file__).parents[1] / "data/free_flight/free_flight.json").read_text())

@@ -12,11 +12,17 @@ from __future__ import annotations
 import contextlib
 from typing import Any
 
+import numba
 from numba.core import config
 
-from carom._compiled.cache import StampedCache
-from carom._compiled.link_only import PartCompiler
-from carom._compiled.target import compiled as _compiled
+try:  # inner parts of Numba that the versions we have tried hold (pyproject.toml)
+    from carom._compiled.cache import StampedCache
+    from carom._compiled.link_only import PartCompiler
+    from carom._compiled.target import compiled as _compiled
+except (ImportError, AttributeError) as error:
+    raise ImportError(
+        f"carom does not know Numba {numba.__version__} ({error}); install numba>=0.61,<0.69"
+    ) from error
 
 RULES: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
 INSIDE: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}

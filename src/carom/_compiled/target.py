@@ -193,7 +193,7 @@ class Dispatcher(dispatcher.Dispatcher):
     targetdescr = Target(NAME)
 
     def __init__(self, py_func, locals=None, targetoptions=None, pipeline_class=compiler.Compiler):
-        super().__init__(py_func, locals, targetoptions, pipeline_class)
+        super().__init__(py_func, locals or {}, targetoptions, pipeline_class)
         self._compiler = _Compiler(
             py_func, self.targetdescr, self.targetoptions, self.locals, pipeline_class
         )
@@ -233,7 +233,7 @@ def compiled(function=None, **options):
     options.pop("nopython", None)
     pipeline = options.pop("pipeline_class", compiler.Compiler)
     chosen = {"nopython": True, "boundscheck": None, **options}
-    return Dispatcher(function, targetoptions=chosen, pipeline_class=pipeline)
+    return Dispatcher(function, {}, chosen, pipeline)
 
 
 target_registry[NAME] = CaromCPU

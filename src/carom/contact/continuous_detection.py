@@ -18,7 +18,7 @@ import math
 from carom._compiled.decorators import inlined
 from carom.contact.gap import along_normal, gap_and_rate, plane_in_body, round_off
 from carom.kinematics.flight import point_bound
-from carom.model.arrays import FREE, RESTS
+from carom.model.workspace import FREE, RESTS
 
 #: verdicts on a step: nothing was touched; something is inside at the end; too long to say; a rim that was held
 #: on one side goes through flat; the same once more, by the implicit method

@@ -31,7 +31,7 @@ from carom.contact.rim import OTHER_SIDE, SMOOTH, closed_rim, longest_way, same_
 from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.kinematics.flight import point_bound
 from carom.kinematics.wrench import point_velocity
-from carom.model.arrays import FREE, RESTS
+from carom.model.workspace import FREE, RESTS
 
 SHORT = 0.25  # way past each other, as a part of the smaller body, in which no body gets through another
 

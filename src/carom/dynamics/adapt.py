@@ -23,7 +23,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.geometry.rotation import multiply, norm
-from carom.model.arrays import ONE, SEVERAL
+from carom.model.workspace import ONE, SEVERAL
 
 SAFETY, LEAST, MOST = 0.9, 0.2, 10.0
 NOTHING_LEFT = 1e-14  # of the time that is left: no step is shorter

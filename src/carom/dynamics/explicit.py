@@ -22,8 +22,8 @@ from carom.dynamics.return_to_surface import return_held, stay_held
 from carom.dynamics.singular_positions import SINGULAR, is_singular, pass_round, return_stage, steps
 from carom.geometry.rotation import multiply, normalize
 from carom.kinematics.flight import free_flight
-from carom.model.arrays import FREE, ONE, RESTS, SEVERAL
 from carom.model.method import Method, explicit
+from carom.model.workspace import FREE, ONE, RESTS, SEVERAL
 
 CONSTRAINTS_LOST = 7
 MANY = 1 << 30  # rows, more than there are

@@ -23,7 +23,8 @@ from carom.dynamics.acceleration import accelerations
 from carom.dynamics.loops import dropped_rows
 from carom.dynamics.project import project_position, project_velocity
 from carom.geometry.rotation import exp, multiply
-from carom.model.arrays import LOOPS, ONE, RESTS
+from carom.model.arrays import LOOPS
+from carom.model.workspace import ONE, RESTS
 
 SINGULAR = 1e-5  # of a row's diagonal: the square of the angle to the rows before it
 NEAR, FARTHER, TRIES = (

@@ -45,7 +45,8 @@ from carom.geometry.rotation import exp, multiply, normalize, rotate, rotate_bac
 from carom.kinematics.joints import child_arm, parent_arm
 from carom.kinematics.rows import direction
 from carom.kinematics.wrench import add_force
-from carom.model.arrays import LOOPS, RELATION, RESTS
+from carom.model.arrays import LOOPS, RELATION
+from carom.model.workspace import RESTS
 
 NO_CONVERGENCE = 1
 

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from carom import checks
-
-LAWS = ("newton", "poisson", "stronge")
+from carom.scene.materials import IMPACT_LAWS
 
 
 @dataclass(frozen=True)
@@ -29,7 +28,7 @@ def checked_contact(
     """Return a contact; refuse numbers out of range and a name that `others` have."""
     e = checks.number("restitution", restitution, least=0.0, most=1.0)
     mu = checks.number("friction", friction, least=0.0)
-    checks.choice("impact_law", impact_law, LAWS)
+    checks.choice("impact_law", impact_law, IMPACT_LAWS)
     if mu > 0.0 and tangent is None:
         raise ValueError(
             f"friction needs a tangent, got friction {checks.shown(friction)} without one"

@@ -34,7 +34,7 @@ def gauss(i):
 def force(m, accel, t1, t2):
     """Return N (paper, Eq. (8)) and k for the ratio (t1, t2): N = accel / k (law A, II.9), or 1.
 
-    N is 1 if `accel` is 0. With N = 1 the time of the step is the normal impulse; `layer` scales it afterwards (II.10).
+    N is 1 if `accel` is 0: the time of the step is the normal impulse then, scaled later by `layer` (II.10).
     """
     k = m[0] + m[1] * t1 + m[2] * t2
     return (accel / k if accel > 0.0 else 1.0), k

@@ -16,11 +16,8 @@ from carom.impact.multiple.layout import (
     corner_arrays,
     new_corner_result,
 )
-from carom.model.arrays import (
-    POINT,
-    STATE,
-    System,
-)
+from carom.model.arrays import STATE, System
+from carom.model.workspace import POINT
 
 #: most points that are solved for together
 MOST = 192

@@ -8,9 +8,7 @@ from carom._compiled.decorators import entry
 from carom._compiled.record_arrays import table
 from carom.geometry import quaternion
 from carom.kinematics.flight import tumble
-from carom.model.arrays import (
-    BODY_WORK,
-)
+from carom.model.workspace import BODY_WORK
 
 
 @entry

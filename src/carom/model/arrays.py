@@ -1,4 +1,4 @@
-"""A compiled scene, and what a run writes to: one structured array for each noun.
+"""A compiled scene: one structured array for each noun. What a run writes is in `carom.model.workspace`.
 
 N bodies, J joints, C contacts. Index -1 stands for the ground. Kernels read ``bodies[b].mass``; Python
 sees the same arrays as columns, ``bodies.mass``.
@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom.collision.layout import Hulls, PairWork
+from carom.collision.layout import Hulls
 
 #: kinds of joints in kernels
 SPHERICAL, REVOLUTE, FIXED, PRISMATIC, DISTANCE, KNIFE_EDGE = range(6)
@@ -256,181 +256,8 @@ SIDE = [
     ("Y", "f8", (6, 6)),  # A M^-1
 ]
 
-#: a contact between looks
-BRINK = [
-    ("seen", "i8"),  # scratch: while a group is gathered; 1 + first held point, in a heap
-    ("near", "i8"),  # 1 where something happened at the last event: look before stepping
-    ("jams", "i8"),  # 1 where a held point of it jams: an impact without collision is due
-    ("leaving", "i8"),  # 1 where the body lifts off without speed: it may touch at the start
-    ("blows", "i8"),  # impacts in this step
-    ("step", "i8"),  # the last in which the two were near each other, plus 1
-]
-
-#: a point that is held, over time (see `carom.persistent`)
-HELD = [
-    ("contact", "i8"),
-    ("feature", "i8"),  # what touches, the same as long as it does: number of the vertex
-    ("body", "i8"),  # of the contact
-    ("other", "i8"),
-    ("touches", "i8"),
-    ("mode", "i8"),  # 0 open, 1 slipping, 2 sticking
-    ("next", "i8"),  # mode after the step on trial
-    ("settles", "i8"),  # 1 where that step puts the body to rest
-    ("several", "i8"),  # 1 where it shares its bodies with other held points
-    ("rest", "i8"),  # 1 where the body does not move at all
-    ("jams", "i8"),  # 1 where it slips and no finite force keeps it closed
-    ("point", "f8", 3),  # point of the core that carries the contact, body axes
-    ("anchor", "f8", 3),  # where it is in the world since it sticks
-    ("force", "f8", 3),  # of the last solve, contact axes
-    ("heading", "f8", 2),  # direction of slip at the start of the step, or in which it starts
-    ("speed", "f8"),  # of slip at the start of the step
-    ("stop", "f8"),  # time in which slip will stop under the last forces, where several are held
-    ("lift", "f8"),  # of one of several: how far from opening at the end of a step, below 0: open
-    ("grip", "f8"),  # the same of slip
-    ("due", "i8"),  # 1 where the event that is looked for may be its own too
-    ("turn_stop", "f8", 2),  # the same of rolling and of pivoting
-    ("torque", "f8", 3),  # of rolling and pivoting friction, contact axes
-    ("W", "f8", (3, 3)),  # effective inverse mass of the last solve
-]
-
-#: a point of contact as it is in one state
-POINT = [
-    ("a", "i8"),  # body on the side that the normal points to
-    ("b", "i8"),  # the other, -1 for the ground
-    ("arm_a", "f8", 3),  # from the mass centre, world axes
-    ("arm_b", "f8", 3),
-    (
-        "core",
-        "f8",
-        3,
-    ),  # from the mass centre of a: the part of the arm that turns with it; 0 if it rolls on
-    ("axes", "f8", (3, 3)),  # rows n, t1, t2
-    ("gap", "f8"),
-    # 0; rows of relative rotation: 1 rolling (t1, t2), 2 pivoting (t1), 3 a stop that ends a turn (n);
-    # 4: the normal row alone, of a stop that ends a slide
-    ("turns", "i8"),
-    ("length", "f8"),  # that makes a speed of an angular velocity
-]
-
-#: the flight that a body is on, or was on last (`carom.kinematics.flight`, `carom.kinematics.torque_free_top`)
-FLIGHT = [
-    (
-        "known_attitude",
-        "f8",
-        (2, 4),
-    ),  # states of it whose times are known: where a step starts, and ends
-    ("known_spin", "f8", (2, 3)),
-    ("age", "f8", (2, 2)),  # their times since it began, each as a sum of two numbers
-    ("turn", "f8", 4),  # attitude at its start, less the turn that `attitude` gives for that
-    ("axes", "i8", 3),  # place of each principal axis in Jacobi's order
-    ("sign", "f8", 3),  # by place: -1 where the axis is turned round
-    ("magnitude", "f8"),  # of the angular momentum
-    ("amplitude", "f8", 3),  # of its direction in the body
-    ("rate", "f8", 2),  # of half the turn about the momentum, and of the argument
-    ("phase", "f8"),  # argument at the start
-    ("kind", "i8"),  # how elliptic functions are worked out
-    ("series", "f8", 14),
-    ("fastest", "f8"),  # bound of the acceleration of a point, over its distance from the centre
-]
-
-BODY_WORK = [
-    ("wrench", "f8", 6),  # what a solve takes: force and torque, or impulse
-    ("motion", "f8", 6),  # what a solve gives: linear, angular
-    ("bound", "f8", 3),  # greatest linear, angular acceleration and spin of the last step
-    ("miss", "f8", 3),  # two estimates of the error of a step [m], and what they are measured by
-    ("inverse", "f8", 6),  # inverse inertia, world axes
-    ("group", "i8"),  # bodies with the same number move each other: joined, or held to each other
-    ("holds", "i8"),  # of the body that its group is named after: held points of the group
-    ("status", "i8"),  # FREE, ONE, RESTS or SEVERAL held points
-    ("push", "f8", 6),  # change of momentum (linear, angular about the centre) in a step
-    (
-        "spin",
-        "f8",
-        3,
-    ),  # angular velocity that the momentum below goes with, in the three-field step
-    ("momentum", "f8", 3),  # spatial angular momentum
-    *FLIGHT,
-    ("whole_until", "i8"),  # steps up to this are taken whole
-    ("whole_for", "i8"),  # for so many steps, when that was last found
-    ("home", "f8", 3),  # centre at the start of the step
-    ("room", "f8"),  # how far from it the centre may go in this step
-]
-
-JOINT_WORK = [
-    ("bias", "f8", 6),  # relative motion that a solve shall give: angular, linear
-    ("reaction", "f8", 6),  # wrench on the child at its anchor: force, torque
-    ("multiplier", "f8", 6),  # impulses of the rows in the three-field step
-    ("target", "f8", 6),
-]
-
-#: one stage of a Runge-Kutta step, for one body
-STAGE = [("speed", "f8", 6), ("rate", "f8", 6), ("attitude", "f8", 4)]
-
-#: what a step of joined, loaded or held bodies gives back
-RESULT = [
-    ("applied", "f8"),
-    ("friction", "f8"),
-    ("code", "i8"),
-    ("power", "f8"),  # of loads, and of friction, with the last accelerations
-    ("drag", "f8"),
-    ("residual", "f8"),  # greatest of the groups held at several points
-    ("unnamed", "f8"),  # the same: energy lost without a name, as a part of what may be
-    ("parts", "i8"),  # more parts of steps in which bodies turned far than steps
-    ("fallen", "i8"),  # steps of a symplectic method that the explicit one has taken
-    ("start", "f8"),  # time at which the step on trial starts
-    ("begin", "f8"),  # of the part of it at hand
-    ("time", "f8"),  # of the state that is looked at: what is prescribed depends on it
-]
-
-#: search for an event inside a step
-SEARCH = [
-    ("active", "i8"),
-    ("kind", "i8"),
-    ("contact", "i8"),
-    ("side", "i8"),  # which end of the bracket moved last
-    ("low", "f8"),
-    ("high", "f8"),
-    ("f_low", "f8"),
-    ("f_high", "f8"),
-    ("t", "f8"),  # last trial
-    ("f", "f8"),
-    ("rate", "f8"),
-    ("d1", "f8"),  # direction of slip at the start
-    ("d2", "f8"),
-    ("width", "f8"),
-    ("tolerance", "f8"),
-    ("eager", "i8"),  # 0 where events of several points are left to the end of the step
-    ("pending", "i8"),  # an action that waits for its unit to be compiled
-    ("horizon", "f8"),  # time in which bounces may end
-    ("left", "f8"),  # time to the end of the step
-    ("dt", "f8"),  # the trial step,
-    ("pace", "f8"),  # the longest that may be taken,
-    ("cuts", "i8"),  # how often it was cut,
-    ("again", "i8"),  # whether one was refused for its error,
-    ("code", "i8"),  # of the step without contacts,
-    ("applied", "f8"),  # work of loads and of friction in it,
-    ("friction", "f8"),
-    ("alone", "f8"),  # of points that are held one to a body,
-    ("found", "i8"),  # whether an event is at its end
-]
-
 #: of `touches`: a stop in a joint
 STOP = 2
-
-#: what a body does: FREE flight, held at ONE point, RESTS, held at SEVERAL points
-FREE, ONE, RESTS, SEVERAL = range(4)
-
-#: an impact in the making
-HIT = [
-    ("W", "f8", (3, 3)),
-    ("u", "f8", 3),
-    ("friction", "f8"),
-    ("point", "f8", 3),
-    ("out", "f8", 32),
-    ("restitution", "f8"),
-    ("closed", "i8"),
-    ("code", "i8"),
-]
 
 
 #: of a row of the scratch of a forest: where the freedoms begin, and numbers for each (`carom.dynamics.tree`)
@@ -505,33 +332,3 @@ class System(NamedTuple):
     solids: np.recarray  # SOLID of `carom.collision`, of bodies that may touch each other
     hulls: Hulls
     solver: Solver
-
-
-class Held(NamedTuple):
-    """What is held, and what may be: the first `count[0]` of `points` are in use."""
-
-    points: np.recarray  # (P,) HELD
-    brinks: np.recarray  # (C,) BRINK
-    carries: np.ndarray  # (V,) 1 for vertices that carry a held contact
-    count: np.ndarray  # (1,)
-
-
-class Work(NamedTuple):
-    """Scratch of one run: made once, never grown."""
-
-    body: np.recarray  # (N,) BODY_WORK
-    joint: np.recarray  # (J,) JOINT_WORK
-    stages: np.recarray  # (S, N) STAGE
-    stage: np.recarray  # (N,) STATE
-    trial: np.recarray  # (N,) STATE
-    middle: np.recarray  # (N,) STATE
-    first: np.recarray  # (N,) STATE
-    point: np.recarray  # (1,) POINT, the one that strikes, or is looked at
-    pair: PairWork
-    touches: np.recarray  # (8,) TOUCH_POINT of the last pair
-    solid_pose: np.ndarray  # (2, 7) of its solids
-    solid_rate: np.ndarray  # (2, 3) velocities at its point, before and after
-    hit: np.recarray  # (1,) HIT
-    result: np.recarray  # (1,) RESULT
-    search: np.recarray  # (1,) SEARCH
-    history: np.ndarray  # (0, 16) no history inside the loop

@@ -10,15 +10,7 @@ from carom._compiled.record_arrays import table
 from carom._compiled.user_functions import Functions
 from carom.geometry import quaternion
 from carom.model import arrays, graph, solvers
-from carom.model.arrays import (
-    BODY,
-    BUSHING,
-    JOINT,
-    LOAD,
-    SPRING,
-    STATE,
-    System,
-)
+from carom.model.arrays import BODY, BUSHING, JOINT, LOAD, SPRING, STATE, System
 from carom.model.contacts import compile_contacts
 from carom.model.frames import triad
 from carom.model.more_forces import MoreForces, Pieces

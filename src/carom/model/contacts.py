@@ -6,9 +6,7 @@ import numpy as np
 
 from carom._compiled.record_arrays import table
 from carom.collision.layout import SOLID, no_hulls, solid_table
-from carom.model.arrays import (
-    CONTACT,
-)
+from carom.model.arrays import CONTACT
 from carom.model.contact_rows import Rows, contact_rows, touching_pairs
 from carom.model.cores import Cores, new_cores, singly, swollen_alike
 from carom.model.frames import contact_axes

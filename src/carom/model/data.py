@@ -6,9 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom.model.arrays import Held, System, Work
+from carom.model.arrays import System
 from carom.model.controls import Controls
 from carom.model.records import Records
+from carom.model.workspace import Held, Work
 
 
 class Model(NamedTuple):

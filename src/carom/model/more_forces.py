@@ -7,12 +7,7 @@ import numpy as np
 from carom._compiled.composed import is_compiled, joined
 from carom._compiled.record_arrays import Columns, table
 from carom._compiled.user_functions import Functions
-from carom.model.arrays import (
-    FRICTION,
-    PIECE,
-    PUSH,
-    USER_FORCE,
-)
+from carom.model.arrays import FRICTION, PIECE, PUSH, USER_FORCE
 from carom.scene.more_forces import CurveSpring, JointForce, JointFriction, JointSpring, UserForce
 
 DEGREE = 5

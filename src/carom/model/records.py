@@ -8,7 +8,8 @@ import numpy as np
 
 from carom._compiled.record_arrays import Columns, table
 from carom.collision.layout import new_pair_work, new_points
-from carom.model.arrays import (
+from carom.model.arrays import STATE, System
+from carom.model.workspace import (
     BODY_WORK,
     BRINK,
     HELD,
@@ -18,9 +19,7 @@ from carom.model.arrays import (
     RESULT,
     SEARCH,
     STAGE,
-    STATE,
     Held,
-    System,
     Work,
 )
 

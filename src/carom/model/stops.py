@@ -5,10 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from carom._compiled.record_arrays import Columns, table
-from carom.model.arrays import (
-    CONTACT,
-    STOP,
-)
+from carom.model.arrays import CONTACT, STOP
 from carom.scene.constraints import coordinate_kind
 from carom.scene.materials import IMPACT_LAWS
 

@@ -11,7 +11,7 @@ import math
 from carom._compiled.decorators import inlined, kernel
 from carom.geometry.rotation import norm
 from carom.model import records as r
-from carom.model.arrays import ONE
+from carom.model.workspace import ONE
 from carom.persistent.middle_state import spin_momentum
 
 # what a step of several bodies may lose: this part of the kinetic energy at its start, and of what a fall of a

@@ -12,9 +12,10 @@ from carom.impact.layout import WEDGED
 from carom.model import records as r
 from carom.model.arrays import STOP
 from carom.results.accuracy import sentences
-from carom.results.event_tables import LAWS, ContactTable, EventTable, ImpactTable, contact_table
+from carom.results.event_tables import ContactTable, EventTable, ImpactTable, contact_table
 from carom.results.ledger import Ledger
 from carom.scene.forces import AppliedForce
+from carom.scene.materials import IMPACT_LAWS
 from carom.status import Status
 
 #: what tables say of contacts (an ensemble changes them from run to run)
@@ -124,7 +125,7 @@ def impact_table(solution) -> ImpactTable:
         relative_velocity_before=rows.before / arm[:, None],
         relative_velocity_after=rows.after / arm[:, None],
         penetration=contacts["penetration"][c] * contacts["width"][c] / arm,
-        law=np.array(LAWS)[contacts["law"][c]],
+        law=np.array(IMPACT_LAWS)[contacts["law"][c]],
         inverse_mass=rows.W / arm[:, None, None] ** 2,
         impulse=rows.impulse * arm[:, None],
         restitution=contacts["restitution"][c],

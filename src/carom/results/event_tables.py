@@ -10,7 +10,6 @@ import numpy as np
 
 from carom._compiled.record_arrays import Columns
 
-LAWS = ("newton", "poisson", "stronge")
 CURVED = 1 << 40  # features of curved pieces are above, numbers of vertices below
 
 

@@ -23,8 +23,9 @@ from carom.impact.strike import strike
 from carom.kinematics.contact_point import contact_velocity
 from carom.model import records as r
 from carom.model.actions import HOLD, NOTHING, SETTLE, STRIKE
-from carom.model.arrays import FREE, STOP
+from carom.model.arrays import STOP
 from carom.model.controls import LOCATE
+from carom.model.workspace import FREE
 from carom.persistent.active_set import (
     is_held,
     let_go,

@@ -13,7 +13,7 @@ import numpy as np
 from carom._compiled.record_arrays import table as new_table
 from carom.model import records as r
 from carom.model.arrays import STATE
-from carom.results.event_tables import LAWS
+from carom.scene.materials import IMPACT_LAWS
 
 GROUP = "records"
 FIELDS = {
@@ -48,7 +48,7 @@ SAME = {
 }  # fmt: skip
 #: variables of words, of which there are ten at most
 WORDS = {
-    "impact_law": LAWS, "event_kind": r.EVENTS, "interval_mode": ("open", "slipping", "sticking"),
+    "impact_law": IMPACT_LAWS, "event_kind": r.EVENTS, "interval_mode": ("open", "slipping", "sticking"),
 }  # fmt: skip
 
 

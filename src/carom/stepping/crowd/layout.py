@@ -18,11 +18,8 @@ from carom.friction.layout import (
     ContactWork,
     new_contact_work,
 )
-from carom.model.arrays import (
-    HELD,
-    POINT,
-    STATE,
-)
+from carom.model.arrays import STATE
+from carom.model.workspace import HELD, POINT
 from carom.stepping.crowd.graph import WORD
 
 #: a point that may touch in the step

@@ -8,17 +8,9 @@ import numpy as np
 
 from carom._compiled.record_arrays import table
 from carom.collision.sweep import SweepWork, new_sweep_work
-from carom.model.arrays import (
-    BODY,
-    BODY_WORK,
-    BRINK,
-    CONTACT,
-    HELD,
-    STATE,
-    Held,
-    System,
-)
+from carom.model.arrays import BODY, CONTACT, STATE, System
 from carom.model.records import CLOCK
+from carom.model.workspace import BODY_WORK, BRINK, HELD, Held
 
 #: what a body does in a step: nothing, flies with nothing near, or takes part in an island
 ASLEEP, FLIES, MEETS = range(3)

@@ -5,7 +5,8 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom.dynamics.explicit import keep, mark_held
 from carom.kinematics.flight import free_flight
-from carom.model.arrays import Held, System, Work
+from carom.model.arrays import System
+from carom.model.workspace import Held, Work
 from carom.persistent.active_set import regroup
 from carom.stepping.islands.layout import ASLEEP, FLIES
 from carom.stepping.islands.plan import number, root, seek

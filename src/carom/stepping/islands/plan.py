@@ -12,7 +12,7 @@ from carom._compiled.decorators import kernel
 from carom.collision.sweep import sweep
 from carom.contact.gap import along_normal
 from carom.geometry.rotation import norm
-from carom.model.arrays import FREE, RESTS
+from carom.model.workspace import FREE, RESTS
 from carom.stepping.islands.layout import ASLEEP, FLIES, MEETS
 
 SLACK = 1e-6  # of a ball: what touches overlaps
