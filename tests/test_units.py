@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import numba
 import numpy as np
 import pytest
 from numba.core import config
@@ -61,6 +62,28 @@ def test_each_is_compiled_once():
     for made in (twice, norm):
         assert len(made.compiled.overloads) == 1
     assert UNITS["test_units:twice"] is twice
+
+
+@compiled
+def test_functions_of_others_and_ours_may_share_what_numba_writes_as_overloads():
+    """Numba keeps one implementation of ``max`` for all targets: that of the last one that asked."""
+
+    def largest(x, y):
+        return max(x, y) + min(x, y) + int(x)
+
+    mine = [kernel(largest) for _ in range(2)]
+
+    assert entry(_calls(mine[0]))(1.5, 2.0) == 4.5
+    assert numba.njit(largest)(1.5, 2.0) == 4.5
+    assert entry(_calls(mine[1]))(1.5, 2.0) == 4.5
+    assert numba.njit(lambda x, y: max(x, y))(1.5, 2.0) == 2.0
+
+
+def _calls(function):
+    def call(x, y):
+        return function(x, y)
+
+    return call
 
 
 @compiled

@@ -83,17 +83,20 @@ class TypingContext(numba.core.typing.context.Context):
         self._found: dict[tuple, Any] = {}
 
     def resolve_function_type(self, func, args, kws):
-        """Return the signature of a call."""
-        if (
-            kws
-            or not isinstance(func, types.Function)
-            or not all(isinstance(a, self._plain) for a in args)
-        ):
-            return super().resolve_function_type(func, args, kws)
+        """Return the signature of a call.
+
+        What Numba writes as an overload (``max``, ``int``) is resolved each time: it keeps one implementation
+        for all targets, that of the last one that asked.
+        """
         key = func, args
-        if key not in self._found:
-            self._found[key] = super().resolve_function_type(func, args, kws)
-        return self._found[key]
+        if key in self._found and not kws:
+            return self._found[key]
+        found = super().resolve_function_type(func, args, kws)
+        plain = not kws and all(isinstance(a, self._plain) for a in args)
+        if plain and isinstance(func, types.Function):
+            if not any(hasattr(template, "_compiled_overloads") for template in func.templates):
+                self._found[key] = found
+        return found
 
 
 class TargetContext(cpu.CPUContext):
