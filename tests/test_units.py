@@ -71,19 +71,23 @@ def test_functions_of_others_and_ours_may_share_what_numba_writes_as_overloads()
     def largest(x, y):
         return max(x, y) + min(x, y) + int(x)
 
-    mine = [kernel(largest) for _ in range(2)]
+    def again(x, y):
+        return max(x, y) - min(x, y) - int(x)
 
-    assert entry(_calls(mine[0]))(1.5, 2.0) == 4.5
+    before, after = kernel(largest), kernel(again)
+
+    @entry
+    def call_before(x, y):
+        return before(x, y)
+
+    @entry
+    def call_after(x, y):
+        return after(x, y)
+
+    assert call_before(1.5, 2.0) == 4.5
     assert numba.njit(largest)(1.5, 2.0) == 4.5
-    assert entry(_calls(mine[1]))(1.5, 2.0) == 4.5
-    assert numba.njit(lambda x, y: max(x, y))(1.5, 2.0) == 2.0
-
-
-def _calls(function):
-    def call(x, y):
-        return function(x, y)
-
-    return call
+    assert call_after(1.5, 2.0) == -0.5
+    assert numba.njit(again)(1.5, 2.0) == -0.5
 
 
 @compiled
