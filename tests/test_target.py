@@ -9,6 +9,7 @@ import numba
 import pytest
 from numba.core import config, itanium_mangler, types
 from numba.core.targetconfig import TargetConfig
+from numba.np import linalg
 
 from carom._compiled.by_reference import Reference, type_of
 from carom.model.controls import Controls
@@ -39,7 +40,7 @@ def test_nothing_is_replaced_in_numba():
 
     for one in (
         TargetConfig.__eq__, TargetConfig.__hash__, types.Function.get_call_type, itanium_mangler.mangle_args,
-        numba.core.typing.typeof.typeof_impl.dispatch(tuple), numba.np.linalg.ensure_blas,
+        numba.core.typing.typeof.typeof_impl.dispatch(tuple), linalg.ensure_blas,
     ):  # fmt: skip
         assert one.__module__.startswith("numba.")
 
