@@ -88,14 +88,15 @@ class TypingContext(numba.core.typing.context.Context):
         What Numba writes as an overload (``max``, ``int``) is resolved each time: it keeps one implementation
         for all targets, that of the last one that asked.
         """
+        plain = not kws and isinstance(func, types.Function)
+        if not (plain and all(isinstance(a, self._plain) for a in args)):
+            return super().resolve_function_type(func, args, kws)
         key = func, args
-        if key in self._found and not kws:
+        if key in self._found:
             return self._found[key]
         found = super().resolve_function_type(func, args, kws)
-        plain = not kws and all(isinstance(a, self._plain) for a in args)
-        if plain and isinstance(func, types.Function):
-            if not any(hasattr(template, "_compiled_overloads") for template in func.templates):
-                self._found[key] = found
+        if not any(hasattr(template, "_compiled_overloads") for template in func.templates):
+            self._found[key] = found
         return found
 
 
