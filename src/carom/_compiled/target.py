@@ -85,8 +85,8 @@ class TypingContext(numba.core.typing.context.Context):
     def resolve_function_type(self, func, args, kws):
         """Return the signature of a call.
 
-        What Numba writes as an overload (``max``, ``int``) is resolved each time: it keeps one implementation
-        for all targets, that of the last one that asked.
+        What Numba writes as an overload or an intrinsic (``max``, ``int``) is resolved each time: it keeps one
+        implementation for all targets, that of the last one that asked.
         """
         plain = not kws and isinstance(func, types.Function)
         if not (plain and all(isinstance(a, self._plain) for a in args)):
@@ -95,7 +95,8 @@ class TypingContext(numba.core.typing.context.Context):
         if key in self._found:
             return self._found[key]
         found = super().resolve_function_type(func, args, kws)
-        if not any(hasattr(template, "_compiled_overloads") for template in func.templates):
+        shared = "_compiled_overloads", "_overload_cache"  # of overloads, of intrinsics
+        if not any(hasattr(template, name) for template in func.templates for name in shared):
             self._found[key] = found
         return found
 

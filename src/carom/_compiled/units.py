@@ -61,7 +61,7 @@ def unit(function):
 
         def generate(context, builder, signature, values):
             pairs = [refer_to(builder, kind, value) for kind, value in zip(kinds, values)]
-            taken, values = zip(*pairs)
+            taken, values = zip(*((_as_array(kind), value) for kind, value in pairs))
             return _call(context, builder, name, result, taken, values)
 
         return result(*kinds), generate
@@ -76,6 +76,13 @@ def unit(function):
     made.compiled, made.returned = compiled, result
     UNITS[name] = made
     return made
+
+
+def _as_array(kind) -> types.Type:
+    """Return the type of an array for one that is a field of a record: in memory they are alike."""
+    if isinstance(kind, types.NestedArray):
+        return types.Array(kind.dtype, kind.ndim, "C")
+    return kind
 
 
 def _returned(annotation) -> types.Type:
