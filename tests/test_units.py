@@ -128,3 +128,34 @@ def test_each_unit_has_one_type_for_all_scenes_and_methods():
     assert len(time_loop.run.overloads) == 1
     ours = {name: made for name, made in UNITS.items() if name.startswith("carom.")}
     assert [name for name, made in ours.items() if len(made.compiled.overloads) > 1] == []
+
+
+STOPPED = """
+import carom, numpy as np
+from carom.persistent.lifecycle import hold_contact
+
+scene = carom.Scene()
+ground = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1))
+ball = scene.add_body(carom.Sphere(0.1), mass=1.0, position=(0, 0, 0.15))
+scene.add_contact(ball, ground, restitution=0.3, friction=0.2)
+
+asked = hold_contact.compiled.get_compile_result
+def stopped(signature):
+    hold_contact.compiled.get_compile_result = asked
+    raise KeyboardInterrupt
+hold_contact.compiled.get_compile_result = stopped
+
+part = carom.simulate(scene, 0.3, step=1e-2, throw=False)
+whole = carom.simulate(scene, 0.3, step=1e-2)
+n = len(part.t)
+print(part.status.name, 1 < n < len(whole.t), np.array_equal(part.position, whole.position[:n]))
+"""
+
+
+@compiled
+def test_a_run_that_is_interrupted_while_a_unit_is_compiled_keeps_its_steps():
+    """Ctrl-C while what holds a contact is compiled: the steps so far, and the next run goes to its end."""
+    told = subprocess.run(
+        [sys.executable, "-c", STOPPED], capture_output=True, text=True, check=True
+    )
+    assert told.stdout.split() == ["INTERRUPTED", "True", "True"]
