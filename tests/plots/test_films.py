@@ -11,7 +11,8 @@ from carom.visual.films import still
 from carom.visual.films.camera import axes_of, fitted
 from carom.visual.films.film import frame_times
 from carom.visual.films.marks import pair_axes
-from carom.visual.films.raster import paint
+from carom.visual.films.models import Model
+from carom.visual.films.raster import Buffer, paint, shade
 from carom.visual.films.stage import Stage
 
 ffmpeg = pytest.importorskip("imageio_ffmpeg")
@@ -48,6 +49,12 @@ def pictures(path):
     width, height = SMALL
     frames = np.frombuffer(done.stdout, np.uint8).reshape(-1, height, width, 3)
     return frames, len(frames) / ffmpeg.count_frames_and_secs(path)[1]
+
+
+def empty(height, width):
+    """Return a buffer in which nothing has been painted."""
+    image, depth = np.zeros((height, width, 3), np.uint8), np.zeros((height, width), np.float32)
+    return Buffer(image, depth, np.zeros((height, width), np.uint8))
 
 
 @pytest.fixture(scope="module")
@@ -106,19 +113,31 @@ def test_what_is_near_hides_what_is_far(order):
     near = [(2.0, 2.0, 1.0), (2.0, 8.0, 1.0), (8.0, 8.0, 1.0)]
     far = [(0.0, 0.0, 0.5), (0.0, 10.0, 0.5), (10.0, 10.0, 0.5)]
     corners, colours = np.array([near, far])[order], np.array([(1.0, 0, 0), (0, 0, 1.0)])[order]
-    image, depth = np.zeros((10, 10, 3), np.uint8), np.zeros((10, 10), np.float32)
+    buffer = empty(10, 10)
     towards = np.array([0, 0, 1.0])
-    normals, edges = np.tile(towards, (2, 3, 1)), np.zeros((2, 3), np.int8)
-    paint(corners, normals, colours, edges, towards, towards, 0.5, image, depth)
-    assert np.argmax(image[6, 4]) == 0
-    assert np.argmax(image[8, 1]) == 2
-    assert not image[1, 8].any()
-    assert depth[6, 4] == 1.0
-    assert depth[8, 1] == 0.5
-    back = corners[:, ::-1].copy()  # turned away: nothing is painted
-    image[:], depth[:] = 0, 0
-    paint(back, normals, colours, edges, towards, towards, 0.5, image, depth)
-    assert not image.any()
+    model = Model(corners, np.tile(towards, (2, 3, 1)), colours, np.zeros((2, 3), np.int8))
+    paint(model, towards, towards, 0.5, buffer)
+    assert np.argmax(buffer.image[6, 4]) == 0
+    assert np.argmax(buffer.image[8, 1]) == 2
+    assert not buffer.image[1, 8].any()
+    assert buffer.depth[6, 4] == 1.0
+    assert buffer.depth[8, 1] == 0.5
+    buffer = empty(10, 10)  # turned away: nothing is painted
+    paint(model._replace(corners=corners[:, ::-1].copy()), towards, towards, 0.5, buffer)
+    assert not buffer.image.any()
+
+
+@pytest.mark.plain
+def test_a_shadow_is_cast_once_and_on_its_own_plane_only():
+    # Two triangles that overlap on plane 1; the last column of pixels shows plane 2.
+    buffer = empty(8, 8)
+    buffer.image[:], buffer.plane[:], buffer.plane[:, 7] = 200, 1, 2
+    half = [(0.0, 0.0, 1.0), (0.0, 8.0, 1.0), (8.0, 8.0, 1.0)]
+    shade(np.array([half, half[::-1]]), 0.5, 1, buffer)
+    assert buffer.image[5, 2].tolist() == [100, 100, 100]
+    assert buffer.image[2, 5].tolist() == [200, 200, 200]
+    assert buffer.image[7, 7].tolist() == [200, 200, 200]
+    assert buffer.plane[5, 2] == 0
 
 
 def test_the_ground_has_a_shadow_below_the_ball(ball):

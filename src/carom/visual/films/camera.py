@@ -42,6 +42,13 @@ class Camera(NamedTuple):
         """Focal length [pixels]."""
         return 0.5 * min(self.height, self.width) / OPENING
 
+    @property
+    def rays(self) -> np.ndarray:
+        """Change of the line of sight with the column, with the row, and it in the first pixel: columns."""
+        right, down = self.axes.right / self.focal, -self.axes.up / self.focal
+        corner = 0.5 * (1.0 - self.width) * right + 0.5 * (1.0 - self.height) * down
+        return np.stack([right, down, corner - self.axes.towards], axis=1)
+
     def project(self, points: np.ndarray) -> np.ndarray:
         """Return pixel x, pixel y and inverse distance (..., 3) of points (..., 3)."""
         apart = points - self.eye

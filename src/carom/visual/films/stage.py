@@ -9,7 +9,7 @@ import numpy as np
 from carom import checks
 from carom.geometry import quaternion
 from carom.scene.joints import Distance
-from carom.scene.shapes import Sphere
+from carom.scene.revolved import Cylinder
 from carom.visual.films import marks
 from carom.visual.films.camera import Camera, axes_of, fitted, vertical
 from carom.visual.films.models import Model, anchors, model_of, models, rgb, turned_to
@@ -82,10 +82,8 @@ class Stage:
         scene = self.solution.scene
         held = [j for j in scene.joints if isinstance(j.definition, Distance)]
         self.links = anchors([*held, *(f for f in scene.forces if f.kind == "Spring")])
-        n = 12
-        angle = 2.0 * np.pi / n * np.arange(n)
-        self.ring = np.stack([np.cos(angle), np.sin(angle), np.zeros(n)], axis=1)
-        self.ball = model_of(*surface(Sphere(1.0), 16), None)
+        rod = model_of(*surface(Cylinder(1.0, 1.0), 12), None)
+        self.rod = rod._replace(colours=rod.colours + LINK, edges=0 * rod.edges)
 
     def _place_planes(self, places) -> None:
         up, _, _ = vertical(self.solution.scene)
@@ -118,39 +116,37 @@ class Stage:
         x, Q, _, _ = self.solution.evaluate(t)
         if self.followed is not None:
             camera = camera._replace(centre=x[self.followed[0].index])
-        image, depth, seen = (one.copy() for one in self._empty(camera))
-        axes, world = camera.axes, self._world(x, Q)
+        world, buffer = self._world(x, Q), self._empty(camera)
         for number, (plane, _) in enumerate(self.planes, 1):
             falls = self.light @ plane[1]
             if falls > 0.1:
                 above = (world.corners - plane[0]) @ plane[1]
                 cast = world.corners - (np.maximum(above, 0.0) / falls)[..., None] * self.light
-                shade(camera.project(cast), SHADOW, number, image, seen)
+                shade(camera.project(cast), SHADOW, number, buffer)
+        halfway = self.light + camera.axes.towards
+        halfway /= max(float(np.linalg.norm(halfway)), 1e-12)
         half_line = max(0.5, 0.5 * LINE * camera.height)
-        paint(camera.project(world.corners), world.normals, world.colours, world.edges, self.light,
-              axes.towards, half_line, image, depth)  # fmt: skip
-        return self._finished(image, depth, camera, t, clock)
+        seen = world._replace(corners=camera.project(world.corners))
+        paint(seen, self.light, halfway, half_line, buffer)
+        return self._finished(buffer, camera, t, clock)
 
     def _empty(self, camera):
-        """Return picture, depth and marks of the planes alone; made once if the camera stands still."""
-        from carom.visual.films.raster import ground
+        """Return a buffer with the planes alone; painted once if the camera stands still."""
+        from carom.visual.films.raster import Buffer, ground
 
-        if self.followed is None and self._kept is not None:
-            return self._kept
-        shape = camera.height, camera.width
-        image = np.full((*shape, 3), 255, np.uint8)
-        depth, seen = np.zeros(shape, np.float32), np.zeros(shape, np.uint8)
-        axes = camera.axes
-        for number, (plane, grid) in enumerate(self.planes, 1):
-            if self.followed is not None:
-                plane = plane.copy()
-                plane[0] += _steps(camera.centre - plane[0], plane[2:], grid[0])
-            bright = DIM + (1.0 - DIM) * max(0.0, float(plane[1] @ self.light))
-            colours = np.array([bright * PLANE, bright * GRID, BACKGROUND])
-            ground(camera.eye, axes.right, axes.up, -axes.towards, camera.focal, plane, grid, colours,
-                   image, depth, seen, number)  # fmt: skip
-        self._kept = image, depth, seen
-        return self._kept
+        if self.followed is not None or self._kept is None:
+            shape = camera.height, camera.width
+            image, depth = np.full((*shape, 3), 255, np.uint8), np.zeros(shape, np.float32)
+            self._kept = Buffer(image, depth, np.zeros(shape, np.uint8))
+            for number, (plane, grid) in enumerate(self.planes, 1):
+                middle = plane[0]
+                if self.followed is not None:
+                    middle = middle + _steps(camera.centre - middle, plane[2:], grid[0])
+                bright = DIM + (1.0 - DIM) * max(0.0, float(plane[1] @ self.light))
+                colours = np.array([bright * PLANE, bright * GRID, BACKGROUND])
+                eye, sight = plane[1:] @ (camera.eye - middle), plane[1:] @ camera.rays
+                ground(eye, sight, grid, colours, number, self._kept)
+        return Buffer(*(one.copy() for one in self._kept))
 
     def _world(self, x, Q) -> Model:
         """Return all triangles where they are."""
@@ -163,15 +159,24 @@ class Stage:
             for part, at in self.links
         ]
         for a, b in zip(ends[::2], ends[1::2]):
-            parts.append(_rod(np.asarray(a), np.asarray(b), 0.004 * self.length, self.ring))
+            parts.append(self._link(np.asarray(a), np.asarray(b)))
         return Model(*(np.ascontiguousarray(np.concatenate(column)) for column in zip(*parts)))
 
-    def _finished(self, image, depth, camera, t: float, clock: bool) -> np.ndarray:
+    def _link(self, a, b) -> Model:
+        """Return a thin rod from one point to another."""
+        length = float(np.linalg.norm(b - a))
+        if not length > 0.0:
+            return Model(*(column[:0] for column in self.rod))
+        turn, radius = turned_to((b - a) / length).T, 0.004 * self.length
+        corners = self.rod.corners * (radius, radius, length) @ turn + 0.5 * (a + b)
+        return self.rod._replace(corners=corners, normals=self.rod.normals @ turn)
+
+    def _finished(self, buffer, camera, t: float, clock: bool) -> np.ndarray:
         """Return the picture with arrows and clock, in its own size."""
         Image, ImageDraw, ImageFont = pillow()
-        large = Image.fromarray(image)
+        large = Image.fromarray(buffer.image)
         pen = ImageDraw.Draw(large)
-        self.marks.draw(pen, camera, depth, t)
+        self.marks.draw(pen, camera, buffer.depth, t)
         if clock:
             height = max(12, camera.height // 20)
             font = ImageFont.load_default(height)
@@ -246,29 +251,6 @@ def pillow() -> tuple[Any, Any, Any]:
     except ImportError:
         raise ImportError('films need pillow: pip install "carom[film]"') from None
     return Image, ImageDraw, ImageFont
-
-
-def _rod(a, b, radius: float, ring) -> Model:
-    """Return a thin rod from one point to another."""
-    length = float(np.linalg.norm(b - a))
-    if not length > 0.0:
-        none = np.zeros((0, 3, 3))
-        return Model(none, none, np.zeros((0, 3)), np.zeros((0, 3), np.int8))
-    out = ring @ turned_to((b - a) / length).T
-    low, high = a + radius * out, b + radius * out
-    after = np.roll(np.arange(len(ring)), -1)
-    corners = np.concatenate(
-        [
-            np.stack([low, low[after], high[after]], axis=1),
-            np.stack([low, high[after], high], axis=1),
-        ]
-    )
-    normals = np.concatenate(
-        [np.stack([out, out[after], out[after]], axis=1), np.stack([out, out[after], out], axis=1)]
-    )
-    return Model(
-        corners, normals, np.tile(LINK, (len(corners), 1)), np.zeros((len(corners), 3), np.int8)
-    )
 
 
 def _steps(apart, directions, spacing: float) -> np.ndarray:
