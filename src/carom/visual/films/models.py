@@ -17,6 +17,7 @@ from carom.visual.surfaces import surface
 COLOURS = (style.BLUE, style.ORANGE, style.GREEN, style.RED, style.PURPLE, style.SKY)
 SHARP = np.cos(np.radians(35.0))  # of the angle from which an edge is one
 FACET = np.cos(np.radians(1.0))  # the same of a polyhedron, whose faces are all flat
+NARROW = 0.8  # inner radius by outer radius from which a ring has no room for lines at its edges
 PALE = 0.55  # of the second colour of round bodies, which shows how they turn
 ROD = 0.012  # thickness of a rod that stands for a body without a shape, by the size of the scene
 
@@ -69,6 +70,8 @@ def model_of(vertices, triangles, shape) -> Model:
         if unit[f] @ unit[other] < alike and not (flat[f] or flat[other]):
             opposite = next(k for k in range(3) if triangles[f, k] not in (i, j))
             edges[f, opposite] = 1
+    if isinstance(shape, Disc) and shape.inner_radius > NARROW * shape.radius:
+        edges[:] = 0
     around: list[list[int]] = [[] for _ in vertices]
     for f, triangle in enumerate(triangles):
         for v in triangle:

@@ -43,16 +43,17 @@ def paint(seen, light, halfway, half_line, buffer):
     buffer : Buffer
     """
     image, depth = buffer.image, buffer.depth
-    for f in range(len(seen.corners)):
-        at, near, area = _triangle(seen.corners[f])
+    corners, normals, colours, edges = seen.corners, seen.normals, seen.colours, seen.edges
+    for f in range(len(corners)):
+        at, near, area = _triangle(corners[f])
         # counter-clockwise from outside is clockwise in numbers, where y points down
         if not (area > 1e-9 and near[0] > 0.0 and near[1] > 0.0 and near[2] > 0.0):
             continue
         x0, y0, x1, y1, x2, y2 = at
         # distance of a corner from the side opposite, and how much of it a line takes; edges are 0 or 1
-        ink0 = seen.edges[f, 0] * half_line * math.hypot(x2 - x1, y2 - y1) / area
-        ink1 = seen.edges[f, 1] * half_line * math.hypot(x0 - x2, y0 - y2) / area
-        ink2 = seen.edges[f, 2] * half_line * math.hypot(x1 - x0, y1 - y0) / area
+        ink0 = edges[f, 0] * half_line * math.hypot(x2 - x1, y2 - y1) / area
+        ink1 = edges[f, 1] * half_line * math.hypot(x0 - x2, y0 - y2) / area
+        ink2 = edges[f, 2] * half_line * math.hypot(x1 - x0, y1 - y0) / area
         top, bottom, left, right = _extent(at, depth.shape)
         for row in range(top, bottom):
             for column in range(left, right):
@@ -65,9 +66,9 @@ def paint(seen, light, halfway, half_line, buffer):
                 depth[row, column] = here
                 bright, shine = INK, 0.0
                 if l0 >= ink0 and l1 >= ink1 and l2 >= ink2:
-                    bright, shine = _lit(seen.normals[f], (l0, l1, l2), light, halfway)
+                    bright, shine = _lit(normals[f], (l0, l1, l2), light, halfway)
                 for k in range(3):
-                    value = min(1.0, bright * seen.colours[f, k] + shine)
+                    value = min(1.0, bright * colours[f, k] + shine)
                     image[row, column, k] = int(255.0 * value + 0.5)
 
 
@@ -90,7 +91,7 @@ def ground(eye, sight, grid, colours, number, buffer):
         Of the plane in `buffer`.
     buffer : Buffer
     """
-    image, depth = buffer.image, buffer.depth
+    image, depth, plane = buffer.image, buffer.depth, buffer.plane
     spacing, begin, end = grid
     for row in range(depth.shape[0]):
         for column in range(depth.shape[1]):
@@ -100,17 +101,17 @@ def ground(eye, sight, grid, colours, number, buffer):
                 continue
             u = eye[1] + s * _linear(sight[1], column, row)
             v = eye[2] + s * _linear(sight[2], column, row)
-            fade = min(1.0, max(0.0, (math.hypot(u, v) - begin) / (end - begin)))
+            fade = min(1.0, max(0.0, (math.sqrt(u * u + v * v) - begin) / (end - begin)))
             if not fade < 1.0:
                 continue
-            depth[row, column], buffer.plane[row, column] = 1.0 / s, number
+            depth[row, column], plane[row, column] = 1.0 / s, number
             line = 0.0
             for k in range(1, 3):
                 along = _linear(sight[k], column, row)
                 # how far the coordinate goes from one pixel to the next, to the right and down
                 p = s * (sight[k, 0] - along * sight[0, 0] / falls)
                 q = s * (sight[k, 1] - along * sight[0, 1] / falls)
-                pixel = max(math.hypot(p, q), 1e-12 * spacing)
+                pixel = max(math.sqrt(p * p + q * q), 1e-12 * spacing)
                 at = (eye[k] + s * along) / spacing
                 apart = abs(at - math.floor(at + 0.5)) * spacing / pixel
                 seen = min(1.0, max(0.0, 1.5 - apart)) * min(1.0, 0.25 * spacing / pixel)
