@@ -11,16 +11,17 @@ from carom.geometry.rotation import matrix, multiply, rotate
 
 
 @kernel
-def enter(s, xa, qa, xb, qb):
+def enter(s, placed_a, placed_b):
     """Write the pose of A in axes of B, and the pose of B, to the scratch `s`."""
-    a = matrix(qa[0], qa[1], qa[2], qa[3])
-    b = matrix(qb[0], qb[1], qb[2], qb[3])
-    dx, dy, dz = xa[0] - xb[0], xa[1] - xb[1], xa[2] - xb[2]
+    p, q, x, o = placed_a.Q, placed_b.Q, placed_a.x, placed_b.x
+    a = matrix(p[0], p[1], p[2], p[3])
+    b = matrix(q[0], q[1], q[2], q[3])
+    dx, dy, dz = x[0] - o[0], x[1] - o[1], x[2] - o[2]
     for i in range(3):
         u, v, w = b[i], b[3 + i], b[6 + i]  # column i of B
         s.p[i] = u * dx + v * dy + w * dz
         s.world[0, i], s.world[1, i], s.world[2, i] = u, v, w
-        s.origin[i], s.shift[i] = xb[i], 0.0
+        s.origin[i], s.shift[i] = o[i], 0.0
         for j in range(3):
             s.R[i, j] = u * a[j] + v * a[3 + j] + w * a[6 + j]
 

@@ -9,6 +9,8 @@ import math
 
 from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
+from carom.collision.frame import place
+from carom.collision.layout import Placed, Plane
 from carom.collision.plane import plane_unit
 from carom.collision.touch import touch_unit
 from carom.contact.rim import same_point
@@ -20,35 +22,24 @@ REACH = 1e-3  # of the smaller body: points that are looked for beyond the neare
 HELD_REACH = 0.2  # the same for points that are held, which stay so while a step is found in rounds
 
 
-@kernel
-def pose_solid(solid, body, pose):
-    """Write the world pose (x, Q) of a solid of a body."""
-    q, x, p, s = body.Q, body.x, solid.x, solid.Q
-    r = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
-    t = multiply(q[0], q[1], q[2], q[3], s[0], s[1], s[2], s[3])
-    for k in range(3):
-        pose[k] = x[k] + r[k]
-    pose[3], pose[4], pose[5], pose[6] = t
+@inlined
+def place_solid(solid, body, pose):
+    """Return a solid of a body with its world pose, which is written to `pose` (x, Q)."""
+    place(solid, body.x, body.Q, pose[:3], pose[3:])
+    return Placed(solid, pose[:3], pose[3:])
 
 
 @kernel
 def find_touches(system, contact, state, reach, work):
     """Write the points of a contact into work.touches; return how many."""
-    a, pose = system.solids[contact.solid], work.solid_pose
-    pose_solid(a, state[contact.body], pose[0])
+    pose, pair, hulls = work.solid_pose, work.pair, system.hulls
+    a = place_solid(system.solids[contact.solid], state[contact.body], pose[0])
     if contact.other < 0:
-        plane_unit(
-            a, system.hulls, pose[0, :3], pose[0, 3:], contact.axes[0],
-            contact.offset, reach, work.pair, work.touches,
-        )  # fmt: skip
+        plane_unit(a, Plane(contact.axes[0], contact.offset), hulls, reach, pair, work.touches)
     else:
-        b = system.solids[contact.other_solid]
-        pose_solid(b, state[contact.other], pose[1])
-        touch_unit(
-            a, b, system.hulls, pose[0, :3], pose[0, 3:], pose[1, :3],
-            pose[1, 3:], reach, work.pair, work.touches,
-        )  # fmt: skip
-    return work.pair.state[0].total
+        b = place_solid(system.solids[contact.other_solid], state[contact.other], pose[1])
+        touch_unit(a, b, hulls, reach, pair, work.touches)
+    return pair.state[0].total
 
 
 @kernel
