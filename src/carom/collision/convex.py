@@ -96,7 +96,7 @@ def _search(pair, size, accuracy):
 
 @kernel
 def _candidate(s, k):
-    """Return direction k of a few in which two overlapping cores may part, of any length.
+    """Return candidate k for the direction in which two overlapping cores part; it may have any length.
 
     The line of centres, the normals of the simplex, the axes of both.
     """

@@ -1,4 +1,4 @@
-"""The points found for one pair, in axes of B, and the choice of those that are handed on."""
+"""The points found for one pair, in axes of B, and the choice of those that are returned."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ def enter(s, placed_a, placed_b):
 
 @entry
 def place(solid, x, q, out_x, out_q):
-    """Write the world pose of a solid that has its place in a body with the pose x, q."""
+    """Write the world pose of a solid whose body has the pose x, q."""
     p, o = solid.x, solid.Q
     u, v, w = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
     out_x[0], out_x[1], out_x[2] = x[0] + u, x[1] + v, x[2] + w

@@ -70,7 +70,7 @@ def tangents(n0, n1, n2, axes):
 
 @kernel
 def write_touch(contact, touch, state, point):
-    """Write a point that was found as a point of contact."""
+    """Write a found point as a point of contact."""
     n = touch.normal
     point.a, point.b, point.gap, point.turns = contact.body, contact.other, touch.gap, 0
     for k in range(3):
@@ -90,7 +90,7 @@ def write_touch(contact, touch, state, point):
 
 @kernel
 def own_point(contact, touch, state, p):
-    """Write where a point that was found is on the first body, in its axes."""
+    """Write the place of a found point on the first body, in axes of that body."""
     q, x, s = state[contact.body].Q, state[contact.body].x, touch.on_a
     r = rotate_back(q[0], q[1], q[2], q[3], s[0] - x[0], s[1] - x[1], s[2] - x[2])
     p[0], p[1], p[2] = r
@@ -116,7 +116,7 @@ def which_touch(system, contact, count, feature, p, state, work):
 
 @unit
 def _place_pair(system, contact, feature, p, state, point, work):
-    """Write the point that has the feature, or took its place."""
+    """Write the found point that has the feature, or the one that took its place."""
     count = find_touches(system, contact, state, HELD_REACH * smaller(contact), work)
     i = which_touch(system, contact, count, feature, p, state, work)
     write_touch(contact, work.touches[i], state, point)
@@ -124,7 +124,7 @@ def _place_pair(system, contact, feature, p, state, point, work):
 
 @kernel
 def touch_rate(contact, touch, state):
-    """Return the rate of the gap at a point that was found."""
+    """Return the rate of the gap at a found point."""
     n = touch.normal
     ux, uy, uz = slip_velocity(contact, touch, state)
     return n[0] * ux + n[1] * uy + n[2] * uz
@@ -196,7 +196,7 @@ def _drift(system, contact, feature, p, point, state, work) -> tuple[float, floa
 
 @inlined
 def place_pair(system, contact, feature, p, state, point, work):
-    """Write the point that has the feature, or took its place."""
+    """Write the found point that has the feature, or the one that took its place."""
     if system.solids.shape[0] > 0:
         _place_pair(system, contact, feature, p, state, point, work)
 

@@ -78,7 +78,7 @@ def explicit_step(method, system, held, start, h, end, work):
 
 @inlined
 def constrained(method, system, held, start, h, end, work):
-    """Step the bodies that are joined, loaded or held; as `explicit_step` gives back."""
+    """Step the bodies that are joined, loaded or held; return what `explicit_step` does."""
     whole_step(method, system, held, start, h, end, work)
     result = work.result[0]
     return result.applied, result.friction, result.code

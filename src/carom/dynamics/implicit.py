@@ -113,7 +113,7 @@ def accelerate(system, state, h, s, work):
 
 @kernel
 def bias_springs(system, state, h, s, work):
-    """Put the springs in as rows."""
+    """Add the springs as rows of the solver."""
     g = GAMMA * h
     for j in range(system.joints.shape[0]):
         if system.joints[j].kind != STIFF:
@@ -132,7 +132,7 @@ def bias_springs(system, state, h, s, work):
 
 @kernel
 def release_springs(system, state, h, s, work):
-    """Take the springs out again, and note what the stage does along them."""
+    """Remove the springs from the rows again, and note what the stage does along them."""
     for j in range(system.joints.shape[0]):
         if system.joints[j].kind == STIFF:
             one, row = system.relations.stiff[system.joints[j].number], system.solver.rows[j]
