@@ -85,9 +85,9 @@ def gather_closed(system, controls, held, c, state, cluster, work, strikes):
                 continue
             before = k
             if contact.touches == 0:
-                k = add_vertices(system, held, contact, i, near, state, k, cluster)
+                k = add_vertices(system, held, i, near, state, k, cluster)
             elif contact.touches == STOP:
-                k = add_stop(system, held, contact, i, near, state, k, cluster)
+                k = add_stop(system, held, i, near, state, k, cluster)
             else:
                 k = add_touches(system, i, near, rim_time, state, k, cluster, work)
                 if k > before and contact.other >= 0:
@@ -100,8 +100,9 @@ def gather_closed(system, controls, held, c, state, cluster, work, strikes):
 
 
 @kernel
-def add_vertices(system, held, contact, c, near, state, k, cluster):
+def add_vertices(system, held, c, near, state, k, cluster):
     """Add the vertices that are closed to a half-space; return the new count, -1 if there is no room."""
+    contact = system.contacts[c]
     plane = plane_in_body(contact, state)
     for i in range(contact.first, contact.last):
         z, _ = gap_and_rate(plane, system.vertices[i])
@@ -115,12 +116,12 @@ def add_vertices(system, held, contact, c, near, state, k, cluster):
 
 
 @kernel
-def add_stop(system, held, contact, c, near, state, k, cluster):
+def add_stop(system, held, c, near, state, k, cluster):
     """Add a stop that is closed or held; return the new count, -1 if there is no room."""
     if k == cluster.seats.shape[0]:
         return -1
     point = cluster.points[0][k]
-    place_stop(system, contact, state, point)
+    place_stop(system, system.contacts[c], state, point)
     if point.gap > near and not is_held_stop(held, c):
         return k
     take_seat(c, 0, point.core, cluster.seats[k])
@@ -162,7 +163,7 @@ def add_touches(system, c, near, rim_time, state, k, cluster, work):
 def _seat_stays(system, hold, point, state, work) -> bool:
     """Return whether a closed point with the feature of a held one is the same point."""
     contact, r, n = system.contacts[hold.contact], point.arm_a, point.axes[0]
-    way = way_round(system, contact, n, r[0], r[1], r[2], hold.point, state)
+    way = way_round(system, contact, n, (r[0], r[1], r[2]), hold.point, state)
     return way < OTHER_SIDE
 
 

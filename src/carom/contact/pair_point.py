@@ -22,24 +22,21 @@ REACH = 1e-3  # of the smaller body: points that are looked for beyond the neare
 HELD_REACH = 0.2  # the same for points that are held, which stay so while a step is found in rounds
 
 
-@inlined
-def place_solid(solid, body, pose):
-    """Return a solid of a body with its world pose, which is written to `pose` (x, Q)."""
-    place(solid, body.x, body.Q, pose[:3], pose[3:])
-    return Placed(solid, pose[:3], pose[3:])
-
-
 @kernel
 def find_touches(system, contact, state, reach, work):
     """Write the points of a contact into work.touches; return how many."""
-    pose, pair, hulls = work.solid_pose, work.pair, system.hulls
-    a = place_solid(system.solids[contact.solid], state[contact.body], pose[0])
+    solid, body, pose = system.solids[contact.solid], state[contact.body], work.solid_pose
+    place(solid, body.x, body.Q, pose[0, :3], pose[0, 3:])
+    a = Placed(solid, pose[0, :3], pose[0, 3:])
     if contact.other < 0:
-        plane_unit(a, Plane(contact.axes[0], contact.offset), hulls, reach, pair, work.touches)
+        plane = Plane(contact.axes[0], contact.offset)
+        plane_unit(a, plane, system.hulls, reach, work.pair, work.touches)
     else:
-        b = place_solid(system.solids[contact.other_solid], state[contact.other], pose[1])
-        touch_unit(a, b, hulls, reach, pair, work.touches)
-    return pair.state[0].total
+        other, body = system.solids[contact.other_solid], state[contact.other]
+        place(other, body.x, body.Q, pose[1, :3], pose[1, 3:])
+        b = Placed(other, pose[1, :3], pose[1, 3:])
+        touch_unit(a, b, system.hulls, reach, work.pair, work.touches)
+    return work.pair.state[0].total
 
 
 @kernel

@@ -67,14 +67,15 @@ def _pass_round(system, stage, held, sums, work, rates):
     for _ in range(TRIES if pace > 0.0 else 0):
         power, drag, most = _sum_rates(system, stage, held, sums, work, rates, reach, pace)
         result.time = time
-        if most <= usual[0]:
-            for b in range(stage.shape[0]):
-                if steps(system, b, work):
-                    for k in range(3):
-                        rates[b].rate[k], rates[b].rate[3 + k] = sums[b].v[k], sums[b].w[k]
-            result.power, result.drag = power, drag
-            return
-        reach *= FARTHER
+        if most > usual[0]:
+            reach *= FARTHER
+            continue
+        for b in range(stage.shape[0]):
+            if steps(system, b, work):
+                for k in range(3):
+                    rates[b].rate[k], rates[b].rate[3 + k] = sums[b].v[k], sums[b].w[k]
+        result.power, result.drag = power, drag
+        return
     usual[0] = dropped
     accelerations(system, stage, held, work, rates)
 
