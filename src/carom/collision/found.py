@@ -27,7 +27,7 @@ def known(found, count, feature):
 
 
 @kernel
-def _swap(found, i, j):
+def swap(found, i, j):
     """Exchange two points."""
     a, b = found[i], found[j]
     a.gap, b.gap = b.gap, a.gap
@@ -59,7 +59,7 @@ def spread(found, count):
     for k in range(1, count):
         if found[k].gap < found[least].gap:
             least = k
-    _swap(found, 0, least)
+    swap(found, 0, least)
     for kept in range(1, MOST_POINTS):
         best, where = -1.0, kept
         for k in range(kept, count):
@@ -68,7 +68,7 @@ def spread(found, count):
                 near = min(near, _apart(found, k, i))
             if near > best:
                 best, where = near, k
-        _swap(found, kept, where)
+        swap(found, kept, where)
     return MOST_POINTS
 
 

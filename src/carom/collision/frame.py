@@ -38,14 +38,25 @@ def place(solid, x, q, out_x, out_q):
 
 
 @inlined
-def from_a(s, x, y, z):
-    """Return a vector of axes of A in axes of B."""
-    r = s.R
+def _times(r, x, y, z):
+    """Return the product of a matrix and a vector."""
     return (
         r[0, 0] * x + r[0, 1] * y + r[0, 2] * z,
         r[1, 0] * x + r[1, 1] * y + r[1, 2] * z,
         r[2, 0] * x + r[2, 1] * y + r[2, 2] * z,
     )
+
+
+@inlined
+def from_a(s, x, y, z):
+    """Return a vector of axes of A in axes of B."""
+    return _times(s.R, x, y, z)
+
+
+@inlined
+def to_world(s, x, y, z):
+    """Return a vector of axes of B in world axes."""
+    return _times(s.world, x, y, z)
 
 
 @inlined
@@ -56,15 +67,4 @@ def to_a(s, x, y, z):
         r[0, 0] * x + r[1, 0] * y + r[2, 0] * z,
         r[0, 1] * x + r[1, 1] * y + r[2, 1] * z,
         r[0, 2] * x + r[1, 2] * y + r[2, 2] * z,
-    )
-
-
-@inlined
-def to_world(s, x, y, z):
-    """Return a vector of axes of B in world axes."""
-    r = s.world
-    return (
-        r[0, 0] * x + r[0, 1] * y + r[0, 2] * z,
-        r[1, 0] * x + r[1, 1] * y + r[1, 2] * z,
-        r[2, 0] * x + r[2, 1] * y + r[2, 2] * z,
     )

@@ -17,7 +17,7 @@ from carom.collision.clip import overlap
 from carom.collision.convex import closest
 from carom.collision.faces import load_face
 from carom.collision.features import EDGES
-from carom.collision.found import hand_on
+from carom.collision.found import hand_on, swap
 from carom.collision.frame import enter
 from carom.collision.layout import BOX, POINT, SEGMENT, Pair
 from carom.collision.round import point_point, point_segment, segment_segment
@@ -138,14 +138,5 @@ def _without_first(found, count, most, enough):
         near += found[k].gap <= most
     if near < enough:
         return count
-    _copy(found, count - 1, 0)
+    swap(found, 0, count - 1)
     return count - 1
-
-
-@kernel
-def _copy(found, source, target):
-    """Copy a point to another row."""
-    a, b = found[source], found[target]
-    b.gap, b.feature = a.gap, a.feature
-    for i in range(3):
-        b.normal[i], b.on_a[i], b.on_b[i] = a.normal[i], a.on_a[i], a.on_b[i]
