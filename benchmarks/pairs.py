@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import itertools
 
-import numba
 import numpy as np
 
+from carom._compiled.decorators import entry
 from carom.collision.layout import Placed, new_pair_work, new_points, solid_table
 from carom.collision.sweep import new_sweep_work, sweep
 from carom.collision.touch import touch
@@ -28,7 +28,7 @@ SHAPES = {
 }
 
 
-@numba.njit(_nrt=False, error_model="numpy")
+@entry
 def touch_all(a, b, hulls, X, Q, work, out):
     """Touch A at each pose (X[k], Q[k]), B at the origin."""
     zero, one = X[-1], Q[-1]

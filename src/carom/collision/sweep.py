@@ -38,7 +38,9 @@ def new_sweep_work(count: int) -> SweepWork:
     while cells < 2 * count:
         cells *= 2
     sizes = ((cells + 2,), (count,), (count, 5), (LEVELS + 1,), (2,))
-    return SweepWork(*(np.zeros(size, dtype=np.int64) for size in sizes), np.zeros(LEVELS + 1))
+    return SweepWork(
+        *(np.zeros(size, dtype=np.int64) for size in sizes), width=np.zeros(LEVELS + 1)
+    )
 
 
 @entry
