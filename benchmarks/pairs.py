@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import itertools
 
-import numba
 import numpy as np
 
-from carom.collision.layout import new_pair_work, new_points, solid_table
+from carom._compiled.decorators import entry
+from carom.collision.layout import Placed, new_pair_work, new_points, solid_table
 from carom.collision.sweep import new_sweep_work, sweep
 from carom.collision.touch import touch
 from carom.scene import Box, Capsule, Convex, Cylinder, Disc, Ellipsoid, Sphere
@@ -28,12 +28,12 @@ SHAPES = {
 }
 
 
-@numba.njit(_nrt=False, error_model="numpy")
+@entry
 def touch_all(a, b, hulls, X, Q, work, out):
     """Touch A at each pose (X[k], Q[k]), B at the origin."""
     zero, one = X[-1], Q[-1]
     for k in range(len(X) - 1):
-        touch(a, b, hulls, X[k], Q[k], zero, one, 1e-3, work, out)
+        touch(Placed(a, X[k], Q[k]), Placed(b, zero, one), hulls, 1e-3, work, out)
 
 
 def pair(first, second):
@@ -48,7 +48,8 @@ def pair(first, second):
     X[-1] = 0
     touching = X.copy()
     for k in range(POSES):
-        touch(*solids, hulls, X[k], Q[k], X[-1], Q[-1], 0.0, work, out)
+        moved, fixed = Placed(solids[0], X[k], Q[k]), Placed(solids[1], X[-1], Q[-1])
+        touch(moved, fixed, hulls, 0.0, work, out)
         touching[k] -= out[0].gap * out[0].normal
     result = []
     for gap in GAPS:

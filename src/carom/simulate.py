@@ -9,10 +9,10 @@ from typing import overload
 from carom import checks
 from carom.generalized.solution import GeneralizedSolution
 from carom.generalized.system import GeneralizedSystem
+from carom.io.run_to_end import finish
 from carom.options import Options
 from carom.results.solution import Solution
 from carom.scene.scene import Scene
-from carom.stepping.run_to_end import finish
 from carom.stepping.settings import (
     LOCATIONS,
     METHODS,

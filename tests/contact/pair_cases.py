@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from hypothesis import strategies as st
 
-from carom.collision.layout import new_pair_work, new_points, solid_table
+from carom.collision.layout import Placed, new_pair_work, new_points, solid_table
 from carom.collision.touch import touch
 from carom.geometry import quaternion
 from carom.scene import Box, Capsule, Convex, Cylinder, Disc, Ellipsoid, Sphere
@@ -49,7 +49,8 @@ def touching(a, b, pose_a, pose_b=ORIGIN, reach=0.0):
     solids, hulls = solid_table([a, b])
     out = new_points()
     first, second = (Pose(np.array(p.x, float), np.array(p.q, float)) for p in (pose_a, pose_b))
-    count = touch(solids[0], solids[1], hulls, *first, *second, reach, new_pair_work(), out)
+    placed = Placed(solids[0], *first), Placed(solids[1], *second)
+    count = touch(*placed, hulls, reach, new_pair_work(), out)
     points = out[:count]
     k = int(np.argmin(points.gap))
     return Touch(points, points.gap[k], points.normal[k], points.on_a[k], points.on_b[k])

@@ -85,6 +85,6 @@ def test_cost_is_linear(ratio):
         centres = rng.uniform(0, side, (count, 3))
         pairs, work = np.zeros((60 * count, 2), dtype=np.int64), new_sweep_work(count)
         sweep(centres, radii, pairs, work)
-        costs.append(work.used[-1] / count)
+        costs.append(work.made[0] / count)
     assert costs[1] < 1.4 * costs[0]  # fewer of the smaller heap lie inside it
     assert costs[1] < 150

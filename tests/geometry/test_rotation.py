@@ -30,7 +30,7 @@ def test_spin_tensor(q, J):
     moments = np.linalg.eigvalsh(J)
     R = quaternion.matrix(q)
     full = R @ np.diag(moments) @ R.T
-    got = rotation.spin_tensor(*R.ravel(), *moments)
+    got = rotation.spin_tensor(tuple(R.ravel()), tuple(moments))
     assert_allclose(got, full[np.triu_indices(3)], atol=6 * ROUND)  # moments up to 6
 
 

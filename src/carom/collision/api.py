@@ -65,6 +65,7 @@ def contact_points(shape_a, pose_a, shape_b, pose_b, reach: float) -> np.recarra
 def _touches(shape_a, pose_a, shape_b, pose_b, reach):
     """Yield the points of each pair of pieces."""
     from carom.collision.frame import place
+    from carom.collision.layout import Placed
     from carom.collision.touch import touch
 
     poses = [pair_pose(name, pose) for name, pose in (("pose_a", pose_a), ("pose_b", pose_b))]
@@ -75,7 +76,7 @@ def _touches(shape_a, pose_a, shape_b, pose_b, reach):
         place(a, *poses[0], xa, qa)
         for b in solids[solids.body == 1]:
             place(b, *poses[1], xb, qb)
-            count = touch(a, b, hulls, xa, qa, xb, qb, reach, work, out)
+            count = touch(Placed(a, xa, qa), Placed(b, xb, qb), hulls, reach, work, out)
             yield out[:count].copy()
 
 

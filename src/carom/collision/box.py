@@ -19,9 +19,9 @@ def clamp(x, h):
 
 
 @kernel
-def point_box(s, a, b, found):
+def point_box(pair):
     """Find the points of a ball and a box; inside it the nearest face counts."""
-    p, g = s.p, b.half
+    p, g = pair.state.p, pair.b.half
     px, py, pz = p[0], p[1], p[2]
     qx, qy, qz = clamp(px, g[0]), clamp(py, g[1]), clamp(pz, g[2])
     nx, ny, nz = px - qx, py - qy, pz - qz
@@ -40,9 +40,8 @@ def point_box(s, a, b, found):
             sense if axis == 2 else 0.0,
         )
         qx, qy, qz = px - d * nx, py - d * ny, pz - d * nz
-    gap = d - a.radius - b.radius
-    put(found, 0, gap, nx, ny, nz, px, py, pz, qx, qy, qz, of_vertex_a(0))
-    return gap
+    gap = d - pair.a.radius - pair.b.radius
+    put(pair.found[0], gap, (nx, ny, nz), (px, py, pz), (qx, qy, qz), of_vertex_a(0))
 
 
 @kernel
@@ -83,23 +82,21 @@ def nearest_on_line(c, u, g, h):
 
 
 @kernel
-def segment_box(s, a, b, found):
+def segment_box(pair):
     """Find the nearest points of a capsule and a box."""
-    c, g, h = s.p, b.half, a.half[2]
-    u = s.w[0]  # a row that nobody else uses here
+    s, g, h = pair.state, pair.b.half, pair.a.half[2]
+    c, u = s.p, s.w[0]  # the direction of the capsule in a row that nobody else uses here
     u[0], u[1], u[2] = from_a(s, 0.0, 0.0, 1.0)
-    radii = a.radius + b.radius
     t = nearest_on_line(c, u, g, h)
     ax, ay, az = c[0] + t * u[0], c[1] + t * u[1], c[2] + t * u[2]
     bx, by, bz = clamp(ax, g[0]), clamp(ay, g[1]), clamp(az, g[2])
     nx, ny, nz = ax - bx, ay - by, az - bz
     d = math.sqrt(nx * nx + ny * ny + nz * nz)
-    if d > TOUCHING * (h + g[0] + g[1] + g[2]):
-        nx, ny, nz = nx / d, ny / d, nz / d
-        feature = _feature(ax, ay, az, g, t, h)
-        put(found, 0, d - radii, nx, ny, nz, ax, ay, az, bx, by, bz, feature)
-        return d - radii
-    return _through(c, u, g, h, radii, found)
+    if not d > TOUCHING * (h + g[0] + g[1] + g[2]):
+        _through(pair, u)
+        return
+    n, gap = (nx / d, ny / d, nz / d), d - (pair.a.radius + pair.b.radius)
+    put(pair.found[0], gap, n, (ax, ay, az), (bx, by, bz), _feature(ax, ay, az, g, t, h))
 
 
 @inlined
@@ -125,11 +122,12 @@ def _feature(x, y, z, g, t, h):
 
 
 @kernel
-def _through(c, u, g, h, radii, found):
-    """Find the way out of a segment that touches or passes the box: the least of six directions.
+def _through(pair, u):
+    """Find the way out of a segment along u that touches or passes the box: the least of six directions.
 
     Separating axes: the faces, and the cross products of the segment with the edges.
     """
+    c, g, h = pair.state.p, pair.b.half, pair.a.half[2]
     best, axis, cross = -math.inf, 0, False
     for i in range(3):
         gap = abs(c[i]) - g[i] - h * abs(u[i])
@@ -142,7 +140,7 @@ def _through(c, u, g, h, radii, found):
             off = abs(u[j] * c[k] - u[k] * c[j]) - g[j] * abs(u[k]) - g[k] * abs(u[j])
             if off / size > best + 1e-13 * (h + g[0] + g[1] + g[2]):
                 best, axis, cross = off / size, i, True
-    n = found[0].normal
+    n = pair.found[0].normal
     n[0], n[1], n[2] = 0.0, 0.0, 0.0
     if cross:
         j, k = (axis + 1) % 3, (axis + 2) % 3
@@ -157,7 +155,7 @@ def _through(c, u, g, h, radii, found):
         n[axis] = 1.0 if c[axis] > 0.0 else -1.0
         t = -h if u[axis] * n[axis] > 0.0 else h
     ax, ay, az = c[0] + t * u[0], c[1] + t * u[1], c[2] + t * u[2]
-    gap = best - radii
-    put(found, 0, gap, n[0], n[1], n[2], ax, ay, az, ax - best * n[0], ay - best * n[1],
-        az - best * n[2], 0 if cross else of_vertex_a(1 if t > 0.0 else 0))  # fmt: skip
-    return gap
+    gap = best - (pair.a.radius + pair.b.radius)
+    on_b = (ax - best * n[0], ay - best * n[1], az - best * n[2])
+    feature = 0 if cross else of_vertex_a(1 if t > 0.0 else 0)
+    put(pair.found[0], gap, (n[0], n[1], n[2]), (ax, ay, az), on_b, feature)

@@ -18,13 +18,13 @@ def _sense(x):
 
 
 @kernel
-def best_axis(s, a, b):
+def best_axis(pair):
     """Return the greatest separation of two boxes over the fifteen axes, and the number of the axis.
 
     0-2 faces of B, 3-5 faces of A, 6 + 3 i + j the cross product of edges i of B and j of A. The
     separation never exceeds the distance of the cores; negative, it is the depth.
     """
-    R, p, g, h = s.R, s.p, b.half, a.half
+    R, p, g, h = pair.state.R, pair.state.p, pair.b.half, pair.a.half
     size = g[0] + g[1] + g[2] + h[0] + h[1] + h[2]
     best, axis = -math.inf, 0
     for i in range(3):
@@ -54,15 +54,16 @@ def best_axis(s, a, b):
 
 
 @kernel
-def edge_pair(s, a, b, best, axis, radii, found):
+def edge_pair(pair, best, axis):
     """Write the nearest points of two edges that cross; return True if both lie on the edges.
 
     The lines are those of the edges which the boxes turn to each other along the common normal.
     """
-    R, p, g, h = s.R, s.p, b.half, a.half
+    s = pair.state
+    R, p, g, h = s.R, s.p, pair.b.half, pair.a.half
     i, j = (axis - 6) // 3, (axis - 6) % 3
     i1, i2 = (i + 1) % 3, (i + 2) % 3
-    n = found[0].normal
+    n = pair.found[0].normal
     sine = math.sqrt(R[i1, j] * R[i1, j] + R[i2, j] * R[i2, j])
     n[i], n[i1], n[i2] = 0.0, -R[i2, j] / sine, R[i1, j] / sine
     if not n[i1] * p[i1] + n[i2] * p[i2] > 0.0:
@@ -87,31 +88,30 @@ def edge_pair(s, a, b, best, axis, radii, found):
     corner_b = (4 >> i1) * (n[i1] > 0.0) + (4 >> i2) * (n[i2] > 0.0)
     corner_a = (4 >> j1) * (s1 > 0.0) + (4 >> j2) * (s2 > 0.0)
     feature = of_edges(corner_a, corner_a + (4 >> j), corner_b, corner_b + (4 >> i))
-    nx, ny, nz = n[0], n[1], n[2]
-    put(found, 0, best - radii, nx, ny, nz, ax, ay, az, ax - best * nx, ay - best * ny,
-        az - best * nz, feature)  # fmt: skip
+    gap = best - (pair.a.radius + pair.b.radius)
+    on_b = (ax - best * n[0], ay - best * n[1], az - best * n[2])
+    put(pair.found[0], gap, (n[0], n[1], n[2]), (ax, ay, az), on_b, feature)
     return inside
 
 
 @kernel
-def face_or_edges(s, a, b, found):
+def face_or_edges(pair):
     """Write the separation along the best axis as the first point; return False if it is not the distance.
 
     Of a face only the normal is written, with the feature 0: its points are those of the overlap.
     """
-    R, p, radii = s.R, s.p, a.radius + b.radius
-    best, axis = best_axis(s, a, b)
+    R, p = pair.state.R, pair.state.p
+    best, axis = best_axis(pair)
     if axis >= 6:
-        return edge_pair(s, a, b, best, axis, radii, found)
+        return edge_pair(pair, best, axis)
     if axis < 3:
-        x, y, z = (
-            1.0 if axis == 0 else 0.0,
-            1.0 if axis == 1 else 0.0,
-            1.0 if axis == 2 else 0.0,
-        )
+        x = 1.0 if axis == 0 else 0.0
+        y = 1.0 if axis == 1 else 0.0
+        z = 1.0 if axis == 2 else 0.0
     else:
         x, y, z = R[0, axis - 3], R[1, axis - 3], R[2, axis - 3]
     if not x * p[0] + y * p[1] + z * p[2] > 0.0:
         x, y, z = -x, -y, -z
-    put(found, 0, best - radii, x, y, z, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0)
+    nowhere = (0.0, 0.0, 0.0)
+    put(pair.found[0], best - (pair.a.radius + pair.b.radius), (x, y, z), nowhere, nowhere, 0)
     return True

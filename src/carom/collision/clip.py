@@ -73,12 +73,12 @@ def _cut(s, ref, source, count, j, tolerance):
 
 
 @kernel
-def overlap(s, ref, radii, least, most, found, count):
+def overlap(pair, ref, least, most, count):
     """Add the corners of the overlap with gaps from `least` to `most`; return the new count.
 
     `ref`: 0 if the face of A is the reference, 1 if that of B.
     """
-    inc = 1 - ref
+    s, found, inc = pair.state, pair.found, 1 - ref
     corners = s.count[inc]
     scale = 0.0
     for k in range(corners):
@@ -97,12 +97,13 @@ def overlap(s, ref, radii, least, most, found, count):
     for k in range(corners):
         x = s.ring[source, k]
         height = (x[0] - p[0]) * n[0] + (x[1] - p[1]) * n[1] + (x[2] - p[2]) * n[2]
-        gap, label = height - radii, s.label[source, k]
+        gap, label = height - (pair.a.radius + pair.b.radius), s.label[source, k]
         if least <= gap <= most and count < len(found) and not known(found, count, label):
-            fx, fy, fz = x[0] - height * n[0], x[1] - height * n[1], x[2] - height * n[2]
+            foot = (x[0] - height * n[0], x[1] - height * n[1], x[2] - height * n[2])
+            corner = (x[0], x[1], x[2])
             if ref == 1:
-                put(found, count, gap, n[0], n[1], n[2], x[0], x[1], x[2], fx, fy, fz, label)
+                put(found[count], gap, (n[0], n[1], n[2]), corner, foot, label)
             else:
-                put(found, count, gap, -n[0], -n[1], -n[2], fx, fy, fz, x[0], x[1], x[2], label)
+                put(found[count], gap, (-n[0], -n[1], -n[2]), foot, corner, label)
             count += 1
     return count

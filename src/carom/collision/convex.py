@@ -23,9 +23,7 @@ from carom.collision.support import separation
 
 CLEAR = 1e-3  # distance of the cores, relative to the smaller, that gives a direction to round-off
 DIRECTED = 1e-9  # relative to the smaller, from which on the distance has a direction at all
-CLIMBS = (
-    9  # starts from which the way out of an overlap is sought; all sharp hulls tried need no more
-)
+CLIMBS = 9  # starts from which the way out of an overlap is sought; more helped no sharp hull
 CLIMBS_CURVED = 3  # each takes longer there
 ELSEWHERE = 0.95  # cosine below which a start is another one
 NEARER = 30.0  # clearance relative to the depth
@@ -36,16 +34,17 @@ FACE = 1e-12  # relative to the size: by so much a face's normal may be worse an
 
 
 @unit
-def closest(s, a, b, hulls, found):
+def closest(pair):
     """Write the nearest points of two convex solids as the first point.
 
     Overlap must be slight, less than about half of either core: deeper, the way out may not be the least.
     """
+    s, a, b = pair.state, pair.a, pair.b
     size = min(a.extent, b.extent)
     curved = a.kind >= CYLINDER or b.kind >= CYLINDER
-    best, nx, ny, nz = _search(s, a, b, hulls, size, ROUGH if curved else EXACT)
+    best, nx, ny, nz = _search(pair, size, ROUGH if curved else EXACT)
     feature = _feature(s)
-    value, x, y, z, polished = polish(s, a, b, hulls, nx, ny, nz)
+    value, x, y, z, polished = polish(pair, nx, ny, nz)
     bx, by, bz = s.on_b[4, 0], s.on_b[4, 1], s.on_b[4, 2]
     if polished == 1:
         best, nx, ny, nz = value, x, y, z
@@ -53,15 +52,15 @@ def closest(s, a, b, hulls, found):
     flat = False
     for side in (1, 0):
         f = 1.0 if side == 1 else -1.0
-        aligned = load_face(s, side, b if side == 1 else a, hulls, f * nx, f * ny, f * nz)
+        aligned = load_face(pair, side, f * nx, f * ny, f * nz)
         n = s.normal[side]
         if not flat and aligned > 1.0 - 1e-6:
-            value = separation(s, a, b, hulls, f * n[0], f * n[1], f * n[2])
+            value = separation(pair, f * n[0], f * n[1], f * n[2])
             if value >= best - FACE * size:
                 best, nx, ny, nz, flat = value, f * n[0], f * n[1], f * n[2], True
     if flat or polished == 0:
         if curved:  # not where the method above ends: a point inside a face, or parallel edges
-            value, x, y, z = _search(s, a, b, hulls, size, EXACT)
+            value, x, y, z = _search(pair, size, EXACT)
             feature = _feature(s)
             if not flat:
                 best, nx, ny, nz = value, x, y, z
@@ -72,33 +71,32 @@ def closest(s, a, b, hulls, found):
     e = b.inner
     bx, by, bz = bx + e * nx, by + e * ny, bz + e * nz
     core = best - a.inner - b.inner
-    ax, ay, az = bx + core * nx, by + core * ny, bz + core * nz
+    on_a = (bx + core * nx, by + core * ny, bz + core * nz)
     gap = core - a.radius - b.radius
-    put(found, 0, gap, nx, ny, nz, ax, ay, az, bx, by, bz, feature)
+    put(pair.found[0], gap, (nx, ny, nz), on_a, (bx, by, bz), feature)
 
 
 @kernel
-def _search(s, a, b, hulls, size, accuracy):
+def _search(pair, size, accuracy):
     """Return separation and normal of the cores; the simplex is that of the end, where A may be moved."""
-    clear = CLEAR * size
-    p = s.p
-    x, y, z = p[0], p[1], p[2]
+    s, clear = pair.state, CLEAR * size
+    x, y, z = s.p[0], s.p[1], s.p[2]
     if x * x + y * y + z * z == 0.0:
         z = 1.0
-    d, nx, ny, nz = distance(s, a, b, hulls, accuracy, x, y, z)
+    d, nx, ny, nz = distance(pair, accuracy, x, y, z)
     if d > clear:
         return d, nx / d, ny / d, nz / d
     if d > DIRECTED * size:
-        best, nx, ny, nz = _climb(s, a, b, hulls, accuracy, nx / d, ny / d, nz / d, clear)
+        best, nx, ny, nz = _climb(pair, accuracy, clear, nx / d, ny / d, nz / d)
     else:
-        best, nx, ny, nz = _way_out(s, a, b, hulls, accuracy, clear)
+        best, nx, ny, nz = _way_out(pair, accuracy, clear)
     s.shift[0], s.shift[1], s.shift[2] = 0.0, 0.0, 0.0
     return best, nx, ny, nz
 
 
 @kernel
 def _candidate(s, k):
-    """Return direction k of a few in which two overlapping cores may part, of any length.
+    """Return candidate k for the direction in which two overlapping cores part; it may have any length.
 
     The line of centres, the normals of the simplex, the axes of both.
     """
@@ -128,8 +126,9 @@ def _candidate(s, k):
 
 
 @kernel
-def _way_out(s, a, b, hulls, accuracy, clear):
+def _way_out(pair, accuracy, clear):
     """Return the greatest separation, and its direction, that the best few of 15 candidates lead to."""
+    s = pair.state
     start = s.start
     for k in range(15):
         x, y, z = _candidate(s, k)
@@ -137,9 +136,9 @@ def _way_out(s, a, b, hulls, accuracy, clear):
         start[k, 3] = -math.inf
         if size > 0.0:
             start[k, 0], start[k, 1], start[k, 2] = x / size, y / size, z / size
-            start[k, 3] = separation(s, a, b, hulls, x / size, y / size, z / size)
+            start[k, 3] = separation(pair, x / size, y / size, z / size)
     best, nx, ny, nz = -math.inf, 0.0, 0.0, 1.0
-    curved = a.kind >= CYLINDER or b.kind >= CYLINDER
+    curved = pair.a.kind >= CYLINDER or pair.b.kind >= CYLINDER
     for _ in range(CLIMBS_CURVED if curved else CLIMBS):
         chosen = 0
         for k in range(1, 15):
@@ -150,22 +149,23 @@ def _way_out(s, a, b, hulls, accuracy, clear):
         x, y, z = start[chosen, 0], start[chosen, 1], start[chosen, 2]
         start[chosen, 3] = -math.inf
         if best == -math.inf or x * nx + y * ny + z * nz < ELSEWHERE:
-            value, x, y, z = _climb(s, a, b, hulls, accuracy, x, y, z, clear)
+            value, x, y, z = _climb(pair, accuracy, clear, x, y, z)
             if value > best:
                 best, nx, ny, nz = value, x, y, z
     # The simplex is to be that of the best.
-    return _climb(s, a, b, hulls, accuracy, nx, ny, nz, clear)
+    return _climb(pair, accuracy, clear, nx, ny, nz)
 
 
 @kernel
-def _climb(s, a, b, hulls, accuracy, nx, ny, nz, clear):
+def _climb(pair, accuracy, clear, nx, ny, nz):
     """Return the greatest separation near a direction, and its direction; the simplex is that of the end.
 
     A step turns the normal by about the depth over the clearance; where the depth is small the clearance
     is too for a while.
     """
+    s = pair.state
     s.shift[0], s.shift[1], s.shift[2] = 0.0, 0.0, 0.0
-    best = separation(s, a, b, hulls, nx, ny, nz)
+    best = separation(pair, nx, ny, nz)
     for phase in range(3):
         gap = clear
         if phase == 1:
@@ -177,12 +177,12 @@ def _climb(s, a, b, hulls, accuracy, nx, ny, nz, clear):
         for _ in range(ROUNDS):
             move = gap - best
             s.shift[0], s.shift[1], s.shift[2] = move * nx, move * ny, move * nz
-            d, x, y, z = distance(s, a, b, hulls, accuracy, nx, ny, nz)
+            d, x, y, z = distance(pair, accuracy, nx, ny, nz)
             if not d > 0.0:
                 break
             x, y, z = x / d, y / d, z / d
             # The row of proposals holds points of A as moved.
-            value = separation(s, a, b, hulls, x, y, z) - move * (nx * x + ny * y + nz * z)
+            value = separation(pair, x, y, z) - move * (nx * x + ny * y + nz * z)
             if not value > best:
                 break
             last, best = best, value

@@ -69,8 +69,9 @@ def _box_face(s, side, half, axis, sense):
 
 
 @kernel
-def _hull_face(s, side, solid, hulls, x, y, z):
+def _hull_face(pair, side, x, y, z):
     """Write the face of a hull whose normal is nearest to (x, y, z); return the cosine."""
+    s, solid, hulls = pair.state, pair.a if side == 0 else pair.b, pair.hulls
     best, chosen = -2.0, solid.first_face
     for f in range(solid.first_face, solid.last_face):
         n = hulls.faces[f].normal
@@ -110,11 +111,12 @@ def _cylinder_face(s, side, half, x, y, z):
 
 
 @kernel
-def load_face(s, side, solid, hulls, x, y, z):
+def load_face(pair, side, x, y, z):
     """Write the face of a solid that looks most along (x, y, z), axes of B; return the cosine.
 
     `side` is 0 for A, 1 for B. The cosine is 0 where there is no face but an edge or a point.
     """
+    s, solid = pair.state, pair.a if side == 0 else pair.b
     if side == 0:
         x, y, z = to_a(s, x, y, z)
     kind, half = solid.kind, solid.half
@@ -128,7 +130,7 @@ def load_face(s, side, solid, hulls, x, y, z):
         _box_face(s, side, half, axis, 1.0 if value > 0.0 else -1.0)
         return largest
     if kind == HULL:
-        return _hull_face(s, side, solid, hulls, x, y, z)
+        return _hull_face(pair, side, x, y, z)
     if kind == CYLINDER:
         return _cylinder_face(s, side, half, x, y, z)
     s.count[side] = 1

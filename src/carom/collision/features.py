@@ -19,7 +19,7 @@ def of_vertex_a(i):
 
 @inlined
 def vertex_a(feature):
-    """Return i of such a feature."""
+    """Return the vertex i of a feature that `of_vertex_a` made."""
     return (feature >> 45) & 0x7FFF
 
 

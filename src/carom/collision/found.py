@@ -1,4 +1,4 @@
-"""The points found for one pair, in axes of B, and the choice of those that are handed on."""
+"""The points found for one pair, in axes of B, and the choice of those that are returned."""
 
 from __future__ import annotations
 
@@ -9,13 +9,12 @@ from carom.collision.layout import MOST_POINTS
 
 
 @inlined
-def put(found, k, gap, nx, ny, nz, ax, ay, az, bx, by, bz, feature):
-    """Write point k: gap, normal from B to A, points of the cores, feature."""
-    row = found[k]
+def put(row, gap, n, on_a, on_b, feature):
+    """Write a point: its gap, the normal from B to A, the points of the two cores, the feature."""
     row.gap, row.feature = gap, feature
-    row.normal[0], row.normal[1], row.normal[2] = nx, ny, nz
-    row.on_a[0], row.on_a[1], row.on_a[2] = ax, ay, az
-    row.on_b[0], row.on_b[1], row.on_b[2] = bx, by, bz
+    row.normal[0], row.normal[1], row.normal[2] = n
+    row.on_a[0], row.on_a[1], row.on_a[2] = on_a
+    row.on_b[0], row.on_b[1], row.on_b[2] = on_b
 
 
 @kernel
@@ -28,7 +27,7 @@ def known(found, count, feature):
 
 
 @kernel
-def _swap(found, i, j):
+def swap(found, i, j):
     """Exchange two points."""
     a, b = found[i], found[j]
     a.gap, b.gap = b.gap, a.gap
@@ -60,7 +59,7 @@ def spread(found, count):
     for k in range(1, count):
         if found[k].gap < found[least].gap:
             least = k
-    _swap(found, 0, least)
+    swap(found, 0, least)
     for kept in range(1, MOST_POINTS):
         best, where = -1.0, kept
         for k in range(kept, count):
@@ -69,31 +68,27 @@ def spread(found, count):
                 near = min(near, _apart(found, k, i))
             if near > best:
                 best, where = near, k
-        _swap(found, kept, where)
+        swap(found, kept, where)
     return MOST_POINTS
 
 
 @kernel
-def hand_on(s, found, count, radius_a, radius_b, flip, out):
-    """Write the points to `out` in world axes, on the surfaces; with `flip` A and B are exchanged."""
+def hand_on(pair, count, flip, out):
+    """Write the points found to `out`, in world axes and on the surfaces; with `flip` A and B are exchanged."""
+    s, found = pair.state, pair.found
     count = spread(found, count)
     for k in range(count):
         row, point = found[k], out[k]
         n = row.normal
         nx, ny, nz = to_world(s, n[0], n[1], n[2])
-        p, r = row.on_a, radius_a
+        p, r = row.on_a, pair.a.radius
         ax, ay, az = to_world(s, p[0] - r * n[0], p[1] - r * n[1], p[2] - r * n[2])
-        p, r = row.on_b, radius_b
+        p, r = row.on_b, pair.b.radius
         bx, by, bz = to_world(s, p[0] + r * n[0], p[1] + r * n[1], p[2] + r * n[2])
         o = s.origin
-        ax, ay, az = ax + o[0], ay + o[1], az + o[2]
-        bx, by, bz = bx + o[0], by + o[1], bz + o[2]
-        point.gap, point.feature = row.gap, row.feature
+        a, b = (ax + o[0], ay + o[1], az + o[2]), (bx + o[0], by + o[1], bz + o[2])
         if flip:
-            nx, ny, nz = -nx, -ny, -nz
-            ax, ay, az, bx, by, bz = bx, by, bz, ax, ay, az
-            point.feature = exchanged(row.feature)
-        point.normal[0], point.normal[1], point.normal[2] = nx, ny, nz
-        point.on_a[0], point.on_a[1], point.on_a[2] = ax, ay, az
-        point.on_b[0], point.on_b[1], point.on_b[2] = bx, by, bz
+            put(point, row.gap, (-nx, -ny, -nz), b, a, exchanged(row.feature))
+        else:
+            put(point, row.gap, (nx, ny, nz), a, b, row.feature)
     return count

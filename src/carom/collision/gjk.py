@@ -19,13 +19,14 @@ MOST_STEPS = 100
 
 
 @kernel
-def distance(s, a, b, hulls, accuracy, x, y, z):
+def distance(pair, accuracy, x, y, z):
     """Return |v| and v, from B to A, of the cores; 0 where they overlap.
 
     The search starts in direction (x, y, z), any vector but zero, and ends where a step gains no more than
     `accuracy` of the distance. The simplex and its weights stay in the scratch: they give the two points.
     """
-    propose(s, a, b, hulls, x, y, z)
+    s = pair.state
+    propose(pair, x, y, z)
     move_corner(s, 4, 0)
     s.points, s.weight[0] = 1, 1.0
     vx, vy, vz = s.w[0, 0], s.w[0, 1], s.w[0, 2]
@@ -34,7 +35,7 @@ def distance(s, a, b, hulls, accuracy, x, y, z):
         scale = size_of(s)
         if not v2 > (INSIDE * scale) ** 2:
             return 0.0, 0.0, 0.0, 0.0
-        propose(s, a, b, hulls, vx, vy, vz)
+        propose(pair, vx, vy, vz)
         w = s.w[4]
         gain = v2 - (vx * w[0] + vy * w[1] + vz * w[2])
         if not gain > accuracy * v2:

@@ -90,6 +90,31 @@ class PairWork(NamedTuple):
     found: np.recarray  # (96,) TOUCH_POINT, in axes of B, points on the cores
 
 
+class Placed(NamedTuple):
+    """A solid and its world pose."""
+
+    solid: np.record  # SOLID
+    x: np.ndarray  # (3,)
+    Q: np.ndarray  # (4,)
+
+
+class Plane(NamedTuple):
+    """The surface of a half-space, in the world."""
+
+    normal: np.ndarray  # (3,) unit, out of the half-space
+    offset: float  # normal . point [m]
+
+
+class Pair(NamedTuple):
+    """Two solids whose contact is sought, the kind of A not above that of B, and the scratch for it."""
+
+    a: np.record  # SOLID
+    b: np.record
+    hulls: Hulls
+    state: np.record  # PAIR_STATE
+    found: np.recarray  # (96,) TOUCH_POINT, in axes of B, points on the cores
+
+
 def no_hulls() -> Hulls:
     """Return the hulls of a scene in which no two bodies may touch."""
     return Hulls(np.zeros((0, 3)), table(FACE, 0), np.zeros(0, dtype=np.int64))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import entry, kernel
+from carom._compiled.decorators import entry, inlined, kernel
 from carom._compiled.units import unit
 from carom.collision.faces import RIM, rim_point
 from carom.collision.features import of_vertex_a
@@ -17,103 +17,102 @@ UPRIGHT = 1e-12  # sine of the tilt of a rim up to which no point of it is lowes
 LOWEST = 2 * RIM  # number of the lowest point of a rim; the fixed ones of both rims are below
 
 
+@inlined
+def _seen(a, plane):
+    """Return a half-space in axes of a solid: its normal, and the height of the solid's origin above it."""
+    x, q, n = a.x, a.Q, plane.normal
+    ux, uy, uz = rotate_back(q[0], q[1], q[2], q[3], n[0], n[1], n[2])
+    return ux, uy, uz, x[0] * n[0] + x[1] * n[1] + x[2] * n[2] - plane.offset
+
+
 @entry
-def plane_gap(a, hulls, x, q, normal, offset):
+def plane_gap(a, plane, hulls):
     """Return the distance of a solid from a half-space, negative inside.
 
     Parameters
     ----------
-    a : SOLID
+    a : Placed
+    plane : Plane
     hulls : Hulls
-    x, q : (3,), (4,)
-        World pose of the solid.
-    normal : (3,)
-        Unit, out of the half-space.
-    offset : float
-        Of its plane: normal . point [m].
     """
-    ux, uy, uz = rotate_back(q[0], q[1], q[2], q[3], normal[0], normal[1], normal[2])
-    px, py, pz, _ = support(a, hulls, -ux, -uy, -uz)
-    height = x[0] * normal[0] + x[1] * normal[1] + x[2] * normal[2] - offset
-    return height + (px * ux + py * uy + pz * uz) - a.inner - a.radius
+    ux, uy, uz, height = _seen(a, plane)
+    px, py, pz, _ = support(a.solid, hulls, -ux, -uy, -uz)
+    return height + (px * ux + py * uy + pz * uz) - a.solid.inner - a.solid.radius
 
 
 @entry
-def touch_plane(a, hulls, x, q, normal, offset, reach, work, out):
+def touch_plane(a, plane, hulls, reach, work, out):
     """Write the points of the contact of a solid with a half-space to `out` (8,); return how many.
 
     Arguments as of `plane_gap` and `touch.touch`. Vertices keep their numbers as features. A rim has up to
     four points: its lowest, which rolls (left out when the rim is flat on the plane), and points
-    fixed in the body at quarters of a turn. (With eighths an impact flat on the ground takes fifty times
-    longer: the more rows depend on each other, the more often they open and close.)
+    fixed in the body at quarters of a turn. More would make an impact flat on the ground slow: their rows
+    depend on each other, so that they open and close by turns.
     """
-    found = work.found
-    nx, ny, nz = normal[0], normal[1], normal[2]
-    ux, uy, uz = rotate_back(q[0], q[1], q[2], q[3], nx, ny, nz)
-    height = x[0] * nx + x[1] * ny + x[2] * nz - offset - a.radius
-    if a.kind == CYLINDER:
-        count = _rims(a, height, ux, uy, uz, reach, found)
+    found, x, q, n, r = work.found, a.x, a.Q, plane.normal, a.solid.radius
+    ux, uy, uz, height = _seen(a, plane)
+    if a.solid.kind == CYLINDER:
+        count = _rims(a.solid, (ux, uy, uz, height - r), reach, found)
     else:
-        count = _vertices(a, hulls, height, ux, uy, uz, reach, found)
+        count = _vertices(a.solid, hulls, (ux, uy, uz, height - r), reach, found)
     count = spread(found, count)
     for k in range(count):
-        p, point = found[k].on_a, out[k]
+        p, gap = found[k].on_a, found[k].gap
         px, py, pz = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
-        gap, r = found[k].gap, a.radius
-        px, py, pz = x[0] + px - r * nx, x[1] + py - r * ny, x[2] + pz - r * nz
-        point.gap, point.feature = gap, found[k].feature
-        point.normal[0], point.normal[1], point.normal[2] = nx, ny, nz
-        point.on_a[0], point.on_a[1], point.on_a[2] = px, py, pz
-        point.on_b[0], point.on_b[1], point.on_b[2] = px - gap * nx, py - gap * ny, pz - gap * nz
+        px, py, pz = x[0] + px - r * n[0], x[1] + py - r * n[1], x[2] + pz - r * n[2]
+        foot = (px - gap * n[0], py - gap * n[1], pz - gap * n[2])
+        put(out[k], gap, (n[0], n[1], n[2]), (px, py, pz), foot, found[k].feature)
     return count
 
 
 @unit
-def plane_unit(a, hulls, x, q, normal, offset, reach, work, out):
+def plane_unit(a, plane, hulls, reach, work, out):
     """As `touch_plane`, compiled once; the number of points goes to ``work.state[0].total``."""
-    work.state[0].total = touch_plane(a, hulls, x, q, normal, offset, reach, work, out)
+    work.state[0].total = touch_plane(a, plane, hulls, reach, work, out)
 
 
 @kernel
-def _add(found, count, height, ux, uy, uz, px, py, pz, most, number):
+def _add(found, count, seen, p, most, number):
     """Add a point of the core, in axes of the body, if its gap is at most `most`; return the new count."""
-    gap = height + px * ux + py * uy + pz * uz
+    gap = seen[3] + p[0] * seen[0] + p[1] * seen[1] + p[2] * seen[2]
     if not gap <= most or count >= len(found):
         return count
-    put(found, count, gap, 0.0, 0.0, 0.0, px, py, pz, px, py, pz, of_vertex_a(number))
+    put(found[count], gap, (0.0, 0.0, 0.0), p, p, of_vertex_a(number))
     return count + 1
 
 
 @kernel
-def _vertices(a, hulls, height, ux, uy, uz, reach, found):
+def _vertices(a, hulls, seen, reach, found):
     """Add the lowest point of the core, and the vertices that are as low to within the reach."""
+    ux, uy, uz, height = seen
     px, py, pz, number = support(a, hulls, -ux, -uy, -uz)
     # Of an ellipsoid the lowest point itself, not that of the body inside it.
     px, py, pz = px - a.inner * ux, py - a.inner * uy, pz - a.inner * uz
     most = height + px * ux + py * uy + pz * uz
-    count = _add(found, 0, height, ux, uy, uz, px, py, pz, math.inf, number)
+    count = _add(found, 0, seen, (px, py, pz), math.inf, number)
     most, h = most + reach, a.half
     if a.kind == SEGMENT:
         z = h[2] if number == 0 else -h[2]
-        return _add(found, count, height, ux, uy, uz, 0.0, 0.0, z, most, 1 - number)
+        return _add(found, count, seen, (0.0, 0.0, z), most, 1 - number)
     if a.kind == BOX:
         for i in range(8):
             if i != number:
                 x = h[0] if i & 4 else -h[0]
                 y = h[1] if i & 2 else -h[1]
                 z = h[2] if i & 1 else -h[2]
-                count = _add(found, count, height, ux, uy, uz, x, y, z, most, i)
+                count = _add(found, count, seen, (x, y, z), most, i)
     elif a.kind == HULL:
         for i in range(a.last - a.first):
             if i != number:
                 p = hulls.vertices[a.first + i]
-                count = _add(found, count, height, ux, uy, uz, p[0], p[1], p[2], most, i)
+                count = _add(found, count, seen, (p[0], p[1], p[2]), most, i)
     return count
 
 
 @kernel
-def _rims(a, height, ux, uy, uz, reach, found):
+def _rims(a, seen, reach, found):
     """Add the points of the rims of a cylinder; a disc has one rim."""
+    ux, uy, uz, height = seen
     r, h = a.half[0], a.half[2]
     across = math.sqrt(ux * ux + uy * uy)
     tilted = across > UPRIGHT
@@ -126,10 +125,9 @@ def _rims(a, height, ux, uy, uz, reach, found):
         if side != lower and abs(uz) > 0.5:
             continue  # far above the lower rim, but on a thin disc still within the reach
         if tilted:
-            count = _add(found, count, height, ux, uy, uz, r * cx, r * cy, z, most, LOWEST + side)
+            count = _add(found, count, seen, (r * cx, r * cy, z), most, LOWEST + side)
         for k in range(0, RIM if abs(uz) > 0.5 else 0, 2):  # of a steep rim only its lowest
             if not (tilted and k == near):  # that one is as good as the lowest
                 c, s = rim_point(k)
-                number = side * RIM + k
-                count = _add(found, count, height, ux, uy, uz, r * c, r * s, z, most, number)
+                count = _add(found, count, seen, (r * c, r * s, z), most, side * RIM + k)
     return count

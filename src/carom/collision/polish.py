@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import inlined, kernel
 from carom.collision.frame import from_a, to_a
 from carom.collision.layout import CYLINDER, ELLIPSOID
 from carom.collision.support import propose, separation
@@ -29,34 +29,57 @@ def _normalized(x, y, z):
 
 
 @kernel
-def _edges(s, a, b):
+def _cross(a, b):
+    (ax, ay, az), (bx, by, bz) = a, b
+    return _normalized(ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx)
+
+
+@inlined
+def _along(s, k):
+    """Return the direction of edge k."""
+    return s.edge[k, 0], s.edge[k, 1], s.edge[k, 2]
+
+
+@kernel
+def _edge(pair, side, k):
+    """Return the direction of the edge of a solid between corners 0 and k of the simplex."""
+    s = pair.state
+    if (pair.a.kind if side == 0 else pair.b.kind) == CYLINDER:
+        return (0.0, 0.0, 1.0) if side == 1 else from_a(s, 0.0, 0.0, 1.0)
+    p, q = (s.on_a[0], s.on_a[k]) if side == 0 else (s.on_b[0], s.on_b[k])
+    return _normalized(q[0] - p[0], q[1] - p[1], q[2] - p[2])
+
+
+@kernel
+def _parallel(s, count, side, e):
+    """Return 1 if e is parallel to one of the edges so far, -1 if to one of the other solid, 0 if to none."""
+    found = 0
+    for i in range(count):
+        c = s.edge[i, 0] * e[0] + s.edge[i, 1] * e[1] + s.edge[i, 2] * e[2]
+        if 1.0 - c * c < STRAIGHT * STRAIGHT:
+            if s.owner[i] != side:
+                return -1
+            found = 1
+    return found
+
+
+@kernel
+def _edges(pair):
     """Write the directions of the edges in the simplex to rows of `edge`, with their owners; return how many.
 
-    -1: a face, or more than two directions.
+    -1: a face, more than two directions, or parallel edges, which do not determine the points.
     """
-    count = 0
+    s, count = pair.state, 0
     for side in range(2):
-        solid = a if side == 0 else b
         for k in range(1, s.points):
             if s.ids[k, side] == s.ids[0, side]:
                 continue
-            if solid.kind == CYLINDER:
-                x, y, z = (0.0, 0.0, 1.0) if side == 1 else from_a(s, 0.0, 0.0, 1.0)
-            else:
-                p, q = (s.on_a[0], s.on_a[k]) if side == 0 else (s.on_b[0], s.on_b[k])
-                x, y, z = _normalized(q[0] - p[0], q[1] - p[1], q[2] - p[2])
-            new = True
-            for i in range(count):
-                e = s.edge[i]
-                c = e[0] * x + e[1] * y + e[2] * z
-                if 1.0 - c * c < STRAIGHT * STRAIGHT:
-                    if s.owner[i] != side:
-                        return -1  # parallel edges: the points are not determined
-                    new = False
-            if new and count == 2:
+            e = _edge(pair, side, k)
+            known = _parallel(s, count, side, e)
+            if known < 0 or (known == 0 and count == 2):
                 return -1
-            if new:
-                s.edge[count, 0], s.edge[count, 1], s.edge[count, 2] = x, y, z
+            if known == 0:
+                s.edge[count, 0], s.edge[count, 1], s.edge[count, 2] = e
                 s.owner[count] = side
                 count += 1
     if count == 2 and s.owner[0] == s.owner[1]:
@@ -65,8 +88,9 @@ def _edges(s, a, b):
 
 
 @kernel
-def _bend(solid, x, y, z, ux, uy, uz, vx, vy, vz):
-    """Return u^T H v of the support function at the unit vector (x, y, z), all in the solid's own axes."""
+def _bend(solid, n, u, v):
+    """Return u^T H v of the support function at the unit vector n, all in the solid's own axes."""
+    (x, y, z), (ux, uy, uz), (vx, vy, vz) = n, u, v
     h = solid.half
     if solid.kind == CYLINDER:
         across = math.sqrt(x * x + y * y)
@@ -86,39 +110,37 @@ def _bend(solid, x, y, z, ux, uy, uz, vx, vy, vz):
 
 
 @kernel
-def _curvature(s, a, b, nx, ny, nz, ux, uy, uz, vx, vy, vz):
+def _curvature(pair, n, u, v):
     """Return u^T H v of both support functions at the normal n, axes of B."""
-    x, y, z = to_a(s, -nx, -ny, -nz)
-    px, py, pz = to_a(s, ux, uy, uz)
-    qx, qy, qz = to_a(s, vx, vy, vz)
-    total = _bend(a, x, y, z, px, py, pz, qx, qy, qz)
-    return total + _bend(b, nx, ny, nz, ux, uy, uz, vx, vy, vz)
+    s = pair.state
+    back = to_a(s, -n[0], -n[1], -n[2])
+    total = _bend(pair.a, back, to_a(s, u[0], u[1], u[2]), to_a(s, v[0], v[1], v[2]))
+    return total + _bend(pair.b, n, u, v)
 
 
 @kernel
-def _step(s, a, b, hulls, edges, nx, ny, nz):
+def _step(pair, edges, n):
     """Return the normal after one step of Newton's method; zero where it has no peak (sharp corners)."""
-    propose(s, a, b, hulls, nx, ny, nz)
+    nx, ny, nz = n
+    s = pair.state
+    propose(pair, nx, ny, nz)
     vx, vy, vz = s.w[4, 0], s.w[4, 1], s.w[4, 2]
     d = vx * nx + vy * ny + vz * nz
-    e = s.edge[0]
     if edges == 1:  # n is across the edge, t across both
-        tx, ty, tz = _normalized(
-            e[1] * nz - e[2] * ny, e[2] * nx - e[0] * nz, e[0] * ny - e[1] * nx
-        )
-        k = d + _curvature(s, a, b, nx, ny, nz, tx, ty, tz, tx, ty, tz)
+        t = _cross(_along(s, 0), n)
+        k = d + _curvature(pair, n, t, t)
         if not k > 0.0:
             return 0.0, 0.0, 0.0
-        f = (tx * vx + ty * vy + tz * vz) / k
-        return _normalized(nx + f * tx, ny + f * ty, nz + f * tz)
+        f = (t[0] * vx + t[1] * vy + t[2] * vz) / k
+        return _normalized(nx + f * t[0], ny + f * t[1], nz + f * t[2])
     if abs(nx) < 0.6:
-        tx, ty, tz = _normalized(0.0, -nz, ny)
+        tx, ty, tz = t = _normalized(0.0, -nz, ny)
     else:
-        tx, ty, tz = _normalized(nz, 0.0, -nx)
-    ux, uy, uz = ny * tz - nz * ty, nz * tx - nx * tz, nx * ty - ny * tx
-    k11 = d + _curvature(s, a, b, nx, ny, nz, tx, ty, tz, tx, ty, tz)
-    k12 = _curvature(s, a, b, nx, ny, nz, tx, ty, tz, ux, uy, uz)
-    k22 = d + _curvature(s, a, b, nx, ny, nz, ux, uy, uz, ux, uy, uz)
+        tx, ty, tz = t = _normalized(nz, 0.0, -nx)
+    ux, uy, uz = u = (ny * tz - nz * ty, nz * tx - nx * tz, nx * ty - ny * tx)
+    k11 = d + _curvature(pair, n, t, t)
+    k12 = _curvature(pair, n, t, u)
+    k22 = d + _curvature(pair, n, u, u)
     r1, r2 = tx * vx + ty * vy + tz * vz, ux * vx + uy * vy + uz * vz
     determinant = k11 * k22 - k12 * k12
     if not (determinant > 1e-12 * k11 * k22 and k11 > 0.0):
@@ -128,51 +150,45 @@ def _step(s, a, b, hulls, edges, nx, ny, nz):
 
 
 @kernel
-def _iterate(s, a, b, hulls, edges, x, y, z):
+def _iterate(pair, edges, n):
     """Return the normal where Newton's method ends; zero where it does not."""
     for _ in range(STEPS):
-        px, py, pz = x, y, z
-        x, y, z = _step(s, a, b, hulls, edges, x, y, z)
+        x, y, z = _step(pair, edges, n)
         # The step before the last leaves the square of this, times lengths over curvatures.
-        if (x - px) ** 2 + (y - py) ** 2 + (z - pz) ** 2 < 1e-18:
+        if (x - n[0]) ** 2 + (y - n[1]) ** 2 + (z - n[2]) ** 2 < 1e-18:
             return x, y, z
+        n = x, y, z
     return 0.0, 0.0, 0.0
 
 
 @kernel
-def polish(s, a, b, hulls, nx, ny, nz):
+def polish(pair, nx, ny, nz):
     """Return the greatest separation near n and its direction, and 1 where the points are polished too.
 
     The two points are then left in row 4 of the simplex.
     """
-    edges = _edges(s, a, b)
-    best = separation(s, a, b, hulls, nx, ny, nz)
+    s, edges = pair.state, _edges(pair)
+    best = separation(pair, nx, ny, nz)
     if edges < 0:
         return best, nx, ny, nz, 0
+    x, y, z = nx, ny, nz
     if edges == 2:
-        e, g = s.edge[0], s.edge[1]
-        x, y, z = _normalized(
-            e[1] * g[2] - e[2] * g[1], e[2] * g[0] - e[0] * g[2], e[0] * g[1] - e[1] * g[0]
-        )
+        x, y, z = _cross(_along(s, 0), _along(s, 1))
         if x * nx + y * ny + z * nz < 0.0:
             x, y, z = -x, -y, -z
     elif edges == 1:
         e = s.edge[0]
         along = e[0] * nx + e[1] * ny + e[2] * nz
         x, y, z = _normalized(nx - along * e[0], ny - along * e[1], nz - along * e[2])
-    else:
-        x, y, z = nx, ny, nz
     if edges < 2:
-        x, y, z = _iterate(s, a, b, hulls, edges, x, y, z)
-    done = 0
-    if x * nx + y * ny + z * nz > NEAR:
-        value = separation(s, a, b, hulls, x, y, z)
-        if value >= best - ROUNDING * min(a.extent, b.extent):
-            nx, ny, nz, done = x, y, z, 1
-    if done == 1:
-        best = separation(s, a, b, hulls, nx, ny, nz)
-        _points(s, edges, best, nx, ny, nz)
-    return best, nx, ny, nz, done
+        x, y, z = _iterate(pair, edges, (x, y, z))
+    if not x * nx + y * ny + z * nz > NEAR:
+        return best, nx, ny, nz, 0
+    value = separation(pair, x, y, z)
+    if not value >= best - ROUNDING * min(pair.a.extent, pair.b.extent):
+        return best, nx, ny, nz, 0
+    _points(s, edges, value, x, y, z)
+    return value, x, y, z, 1
 
 
 @kernel

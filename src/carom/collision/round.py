@@ -1,6 +1,6 @@
 """Nearest points of balls and capsules, in closed form: cores that are points and segments.
 
-Each function writes the nearest pair as the first of the points `found` and returns its gap.
+Each function writes the nearest pair as the first of the points `found`.
 """
 
 from __future__ import annotations
@@ -24,39 +24,36 @@ def direction(x, y, z, ex, ey, ez):
 
 
 @kernel
-def point_point(s, a, b, found):
+def point_point(pair):
     """Find the points of two balls."""
-    p = s.p
+    p = pair.state.p
     d, nx, ny, nz = direction(p[0], p[1], p[2], 0.0, 0.0, 1.0)
-    gap = d - a.radius - b.radius
-    put(found, 0, gap, nx, ny, nz, p[0], p[1], p[2], 0.0, 0.0, 0.0, of_vertex_a(0))
-    return gap
+    gap = d - pair.a.radius - pair.b.radius
+    put(
+        pair.found[0], gap, (nx, ny, nz), (p[0], p[1], p[2]), (0.0, 0.0, 0.0), of_vertex_a(0)
+    )  # fmt: skip
 
 
 @kernel
-def point_segment(s, a, b, found):
+def point_segment(pair):
     """Find the points of a ball and a capsule."""
-    p = s.p
-    z = max(-b.half[2], min(b.half[2], p[2]))
+    p, h = pair.state.p, pair.b.half[2]
+    z = max(-h, min(h, p[2]))
     d, nx, ny, nz = direction(p[0], p[1], p[2] - z, 1.0, 0.0, 0.0)
-    gap = d - a.radius - b.radius
-    put(found, 0, gap, nx, ny, nz, p[0], p[1], p[2], 0.0, 0.0, z, of_vertex_a(0))
-    return gap
+    gap = d - pair.a.radius - pair.b.radius
+    put(pair.found[0], gap, (nx, ny, nz), (p[0], p[1], p[2]), (0.0, 0.0, z), of_vertex_a(0))
 
 
 @kernel
-def segment_segment(s, a, b, found):
+def segment_segment(pair):
     """Find the nearest points of two capsules."""
+    s = pair.state
     ux, uy, uz = from_a(s, 0.0, 0.0, 1.0)
-    c = s.p
-    g, h = a.half[2], b.half[2]
+    c, g, h = s.p, pair.a.half[2], pair.b.half[2]
     for k in range(2):
         t, z = (2 * k - 1) * g, (2 * k - 1) * h
-        s.corner[0, k, 0], s.corner[0, k, 1], s.corner[0, k, 2] = (
-            c[0] + t * ux,
-            c[1] + t * uy,
-            c[2] + t * uz,
-        )
-        s.corner[1, k, 0], s.corner[1, k, 1], s.corner[1, k, 2] = 0.0, 0.0, z
+        p, q = s.corner[0, k], s.corner[1, k]
+        p[0], p[1], p[2] = c[0] + t * ux, c[1] + t * uy, c[2] + t * uz
+        q[0], q[1], q[2] = 0.0, 0.0, z
         s.number[0, k], s.number[1, k] = k, k
-    return edge_on_edge(s, 0, 1, 0, 1, a.radius + b.radius, found)
+    edge_on_edge(pair, (0, 1), (0, 1))

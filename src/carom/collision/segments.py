@@ -1,13 +1,13 @@
 """Two segments: their nearest points, and the ends of the line along which parallel ones touch.
 
-The segments join corners i, j of the face of A and k, l of that of B, in the scratch of the pair.
+A segment joins two corners of the face of A, or of B, that the scratch of the pair holds.
 """
 
 from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import inlined, kernel
 from carom.collision.features import of_edges, of_vertex_a, of_vertex_b
 from carom.collision.found import known, put
 
@@ -17,28 +17,46 @@ BESIDE = 0.99  # cosine of the normals of an end and of the nearest points
 
 
 @kernel
-def _line(s, side, i, j):
+def _line(s, side, ends):
     """Return first corner, direction and length of a segment; length 0 has no direction."""
-    p, q = s.corner[side, i], s.corner[side, j]
+    p, q = s.corner[side, ends[0]], s.corner[side, ends[1]]
     x, y, z = q[0] - p[0], q[1] - p[1], q[2] - p[2]
     d = math.sqrt(x * x + y * y + z * z)
     f = 1.0 / d if d > 0.0 else 0.0
-    return p[0], p[1], p[2], f * x, f * y, f * z, d
+    return (p[0], p[1], p[2]), (f * x, f * y, f * z), d
+
+
+@inlined
+def _minus(a, b):
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2]
+
+
+@inlined
+def _dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@inlined
+def _cross(a, b):
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
+
+
+@inlined
+def _at(p, t, u):
+    """Return p + t u."""
+    return p[0] + t * u[0], p[1] + t * u[1], p[2] + t * u[2]
 
 
 @kernel
-def nearest(dx, dy, dz, ux, uy, uz, g, wx, wy, wz, h):
+def nearest(d, u, g, w, h):
     """Return t in [0, g] and z in [0, h] that bring d + t u and z w nearest; u, w unit vectors or zero.
 
     The square of the distance is convex: its free minimum in t, then z and t brought into their
     intervals in turn (Ericson, *Real-Time Collision Detection*, 2005, 5.1.9). Parallel segments are
     nearest all along their overlap: then one end of it.
     """
-    c = ux * wx + uy * wy + uz * wz
-    nx, ny, nz = uy * wz - uz * wy, uz * wx - ux * wz, ux * wy - uy * wx
-    across = nx * nx + ny * ny + nz * nz
-    du = dx * ux + dy * uy + dz * uz
-    dw = dx * wx + dy * wy + dz * wz
+    c, n = _dot(u, w), _cross(u, w)
+    across, du, dw = _dot(n, n), _dot(d, u), _dot(d, w)
     if across > PARALLEL:
         t = (c * dw - du) / across
     else:
@@ -50,69 +68,61 @@ def nearest(dx, dy, dz, ux, uy, uz, g, wx, wy, wz, h):
 
 
 @kernel
-def edge_on_edge(s, i, j, k, l, radii, found):
-    """Write the nearest points of two segments as the first point; return its gap."""
-    px, py, pz, ux, uy, uz, g = _line(s, 0, i, j)
-    qx, qy, qz, wx, wy, wz, h = _line(s, 1, k, l)
-    t, z = nearest(px - qx, py - qy, pz - qz, ux, uy, uz, g, wx, wy, wz, h)
-    ax, ay, az = px + t * ux, py + t * uy, pz + t * uz
-    bx, by, bz = qx + z * wx, qy + z * wy, qz + z * wz
-    nx, ny, nz = ax - bx, ay - by, az - bz
-    d = math.sqrt(nx * nx + ny * ny + nz * nz)
-    if d > 0.0:
-        nx, ny, nz = nx / d, ny / d, nz / d
-    else:  # they cross: along their common normal, which has two senses
-        nx, ny, nz = uy * wz - uz * wy, uz * wx - ux * wz, ux * wy - uy * wx
-        f = math.sqrt(nx * nx + ny * ny + nz * nz)
-        if f > 0.0:
-            nx, ny, nz = nx / f, ny / f, nz / f
-        else:
-            nx, ny, nz = 0.0, 0.0, 1.0
+def edge_on_edge(pair, ends_a, ends_b):
+    """Write the nearest points of two segments, given by their corners, as the first point."""
+    s, (i, j), (k, l) = pair.state, ends_a, ends_b
+    p, u, g = _line(s, 0, ends_a)
+    q, w, h = _line(s, 1, ends_b)
+    t, z = nearest(_minus(p, q), u, g, w, h)
+    on_a, on_b = _at(p, t, u), _at(q, z, w)
+    n = _minus(on_a, on_b)
+    d = math.sqrt(_dot(n, n))
+    size = d
+    if not d > 0.0:  # they cross: along their common normal, which has two senses
+        n = _cross(u, w)
+        size = math.sqrt(_dot(n, n))
+    n = (n[0] / size, n[1] / size, n[2] / size) if size > 0.0 else (0.0, 0.0, 1.0)
     feature = of_edges(s.number[0, i], s.number[0, j], s.number[1, k], s.number[1, l])
     if t == 0.0 or t == g:
         feature = of_vertex_a(s.number[0, i] if t == 0.0 else s.number[0, j])
     elif z == 0.0 or z == h:
         feature = of_vertex_b(s.number[1, k] if z == 0.0 else s.number[1, l])
-    put(found, 0, d - radii, nx, ny, nz, ax, ay, az, bx, by, bz, feature)
-    return d - radii
+    put(pair.found[0], d - (pair.a.radius + pair.b.radius), n, on_a, on_b, feature)
 
 
 @kernel
-def ends_of_line(s, i, j, k, l, radii, least, most, found, count):
+def ends_of_line(pair, ends_a, ends_b, least, most, count):
     """Add the ends of each segment that lie beside the inside of the other, with gaps up to `most`.
 
     They carry a contact along a line. Each has its own distance and normal, which must be near that of
     the first point found: an end that overhangs another edge is no contact. Return the new count.
     """
-    px, py, pz, ux, uy, uz, g = _line(s, 0, i, j)
-    qx, qy, qz, wx, wy, wz, h = _line(s, 1, k, l)
-    du = (px - qx) * ux + (py - qy) * uy + (pz - qz) * uz
-    dw = (px - qx) * wx + (py - qy) * wy + (pz - qz) * wz
-    c = ux * wx + uy * wy + uz * wz
-    n0 = found[0].normal
+    s, found, radii = pair.state, pair.found, pair.a.radius + pair.b.radius
+    p, u, g = _line(s, 0, ends_a)
+    q, w, h = _line(s, 1, ends_b)
+    d, c = _minus(p, q), _dot(u, w)
+    du, dw = _dot(d, u), _dot(d, w)
+    first = found[0].normal
     for end in range(4):
         if end < 2:
             t = g * end
             z = dw + c * t
-            inside = 0.0 < z < h
-            feature = of_vertex_a(s.number[0, i] if end == 0 else s.number[0, j])
+            inside, feature = 0.0 < z < h, of_vertex_a(s.number[0, ends_a[end]])
         else:
             z = h * (end - 2)
             t = c * z - du
-            inside = 0.0 < t < g
-            feature = of_vertex_b(s.number[1, k] if end == 2 else s.number[1, l])
-        ax, ay, az = px + t * ux, py + t * uy, pz + t * uz
-        bx, by, bz = qx + z * wx, qy + z * wy, qz + z * wz
-        nx, ny, nz = ax - bx, ay - by, az - bz
-        d = math.sqrt(nx * nx + ny * ny + nz * nz)
-        if d > TOUCHING * (g + h):
-            nx, ny, nz = nx / d, ny / d, nz / d
+            inside, feature = 0.0 < t < g, of_vertex_b(s.number[1, ends_b[end - 2]])
+        on_a, on_b = _at(p, t, u), _at(q, z, w)
+        n = _minus(on_a, on_b)
+        size = math.sqrt(_dot(n, n))
+        gap = size - radii
+        if size > TOUCHING * (g + h):
+            n = n[0] / size, n[1] / size, n[2] / size
         else:  # sharp edges that touch: their distance has no direction
-            nx, ny, nz = n0[0], n0[1], n0[2]
-        gap = d - radii
-        beside = nx * n0[0] + ny * n0[1] + nz * n0[2] > BESIDE
+            n = first[0], first[1], first[2]
+        beside = n[0] * first[0] + n[1] * first[1] + n[2] * first[2] > BESIDE
         inside = inside and beside and least <= gap <= most
         if inside and not known(found, count, feature):
-            put(found, count, gap, nx, ny, nz, ax, ay, az, bx, by, bz, feature)
+            put(found[count], gap, n, on_a, on_b, feature)
             count += 1
     return count

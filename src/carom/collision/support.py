@@ -51,14 +51,15 @@ def support(solid, hulls, x, y, z):
 
 
 @kernel
-def propose(s, a, b, hulls, x, y, z):
+def propose(pair, x, y, z):
     """Write the point of A - B that is farthest along -(x, y, z), axes of B, as row 4 of the simplex."""
+    s = pair.state
     dx, dy, dz = to_a(s, x, y, z)
-    ax, ay, az, i = support(a, hulls, -dx, -dy, -dz)
+    ax, ay, az, i = support(pair.a, pair.hulls, -dx, -dy, -dz)
     ax, ay, az = from_a(s, ax, ay, az)
     p, d = s.p, s.shift
     ax, ay, az = ax + p[0] + d[0], ay + p[1] + d[1], az + p[2] + d[2]
-    bx, by, bz, j = support(b, hulls, x, y, z)
+    bx, by, bz, j = support(pair.b, pair.hulls, x, y, z)
     w, on_a, on_b = s.w[4], s.on_a[4], s.on_b[4]
     on_a[0], on_a[1], on_a[2] = ax, ay, az
     on_b[0], on_b[1], on_b[2] = bx, by, bz
@@ -67,8 +68,8 @@ def propose(s, a, b, hulls, x, y, z):
 
 
 @kernel
-def separation(s, a, b, hulls, x, y, z):
+def separation(pair, x, y, z):
     """Return how far the cores are apart along the unit vector (x, y, z): never more than their distance."""
-    propose(s, a, b, hulls, x, y, z)
-    w = s.w[4]
+    propose(pair, x, y, z)
+    w = pair.state.w[4]
     return w[0] * x + w[1] * y + w[2] * z

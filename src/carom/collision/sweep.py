@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom._compiled.decorators import entry, kernel
+from carom._compiled.decorators import entry, inlined, kernel
 
 LEVELS = 40  # sizes down to 2^-40 of the largest ball; smaller ones share the last level
 MOST = 2**62  # a coordinate in cells is kept within this
@@ -24,10 +24,12 @@ LOW = 2**28 - 1  # bits of it that are hashed
 class SweepWork(NamedTuple):
     """Scratch for up to n balls."""
 
-    first: np.ndarray  # (cells + 1,) where the balls of a cell begin in `ball`
+    first: np.ndarray  # (cells + 2,) where the balls of cell c begin in `ball`: at first[c + 1]
     ball: np.ndarray  # (n,) balls, cell by cell
     place: np.ndarray  # (n, 5) level, -1 left out; three whole coordinates; hashed cell
-    used: np.ndarray  # (LEVELS + 2,) balls on each level; then the comparisons made in all
+    used: np.ndarray  # (LEVELS + 1,) balls on each level
+    made: np.ndarray  # (2,) comparisons, pairs
+    width: np.ndarray  # (LEVELS + 1,) of the cells of each level
 
 
 def new_sweep_work(count: int) -> SweepWork:
@@ -35,8 +37,10 @@ def new_sweep_work(count: int) -> SweepWork:
     cells = 1
     while cells < 2 * count:
         cells *= 2
-    sizes = ((cells + 1,), (count,), (count, 5), (LEVELS + 2,))
-    return SweepWork(*(np.zeros(size, dtype=np.int64) for size in sizes))
+    sizes = ((cells + 2,), (count,), (count, 5), (LEVELS + 1,), (2,))
+    return SweepWork(
+        *(np.zeros(size, dtype=np.int64) for size in sizes), width=np.zeros(LEVELS + 1)
+    )
 
 
 @entry
@@ -59,46 +63,48 @@ def sweep(centres, radii, pairs, work):
     int
         Number of pairs.
     """
-    n = len(radii)
-    mask = len(work.first) - 2
     widest = 0.0
     for r in radii:
         widest = max(widest, r)
-    widest = widest if widest > 0.0 else 1.0
+    _fill(centres, radii, widest if widest > 0.0 else 1.0, work)
+    work.made[0], work.made[1] = 0, 0
+    for i in range(len(radii)):
+        if work.place[i, 0] >= 0:
+            for e in range(work.place[i, 0], LEVELS + 1):
+                if work.used[e] > 0:
+                    _around(i, e, centres, radii, pairs, work)
+    return work.made[1]
+
+
+@kernel
+def _fill(centres, radii, widest, work):
+    """Put the balls into the cells of their levels."""
+    n, mask = len(radii), len(work.first) - 3
     for c in range(len(work.first)):
         work.first[c] = 0
-    for e in range(LEVELS + 2):
+    for e in range(LEVELS + 1):
         work.used[e] = 0
-    total = 0
+        # A little more than the balls are wide.
+        work.width[e] = math.ldexp(2.0 * (1.0 + 1e-9) * widest, e - LEVELS)
     for i in range(n):
         place = work.place[i]
         place[0] = -1
         if radii[i] >= 0.0:
             e = _level(radii[i], widest)
-            width = _width(e, widest)
             place[0] = e
             for k in range(3):
-                place[1 + k] = _cell(centres[i, k], width)
+                place[1 + k] = _cell(centres[i, k], work.width[e])
             place[4] = _hash(e, place[1], place[2], place[3], mask)
             work.first[place[4] + 1] += 1
             work.used[e] += 1
-            total += 1
     for c in range(mask + 1):
         work.first[c + 1] += work.first[c]
+    work.first[mask + 2] = work.first[mask + 1]
     for i in range(n - 1, -1, -1):  # each cell is filled from its end: its balls rise
         if work.place[i, 0] >= 0:
             c = work.place[i, 4] + 1
             work.first[c] -= 1
             work.ball[work.first[c]] = i
-    # Now cell c begins at first[c + 1], and ends where the next begins.
-    count = 0
-    for i in range(n):
-        if work.place[i, 0] >= 0:
-            for e in range(work.place[i, 0], LEVELS + 1):
-                if work.used[e] > 0:
-                    width = _width(e, widest)
-                    count = _around(i, e, width, total, mask, centres, radii, pairs, count, work)
-    return count
 
 
 @kernel
@@ -108,12 +114,6 @@ def _level(r, widest):
         return 0
     part, power = math.frexp(r / widest)
     return max(0, LEVELS + power - (part == 0.5))
-
-
-@kernel
-def _width(e, widest):
-    """Return the width of the cells of a level; a little more than that of its balls."""
-    return math.ldexp(2.0 * (1.0 + 1e-9) * widest, e - LEVELS)
 
 
 @kernel
@@ -129,32 +129,35 @@ def _hash(e, x, y, z, mask):
     return ((x * 73856093) ^ (y * 19349663) ^ (z * 83492791) ^ (e * 2654435761)) & mask
 
 
+@inlined
+def _overlap(i, j, centres, radii):
+    """Return whether two balls overlap or touch."""
+    u = centres[i, 0] - centres[j, 0]
+    v = centres[i, 1] - centres[j, 1]
+    w = centres[i, 2] - centres[j, 2]
+    r = radii[i] + radii[j]
+    return u * u + v * v + w * w <= r * r
+
+
 @kernel
-def _around(i, e, width, total, mask, centres, radii, pairs, count, work):
-    """Write the pairs of ball i with those of level e in the 27 cells around it; return the new count."""
-    gx = _cell(centres[i, 0], width)
-    gy = _cell(centres[i, 1], width)
-    gz = _cell(centres[i, 2], width)
-    same = work.place[i, 0] == e
+def _around(i, e, centres, radii, pairs, work):
+    """Write the pairs of ball i with those of level e in the 27 cells around it."""
+    gx = _cell(centres[i, 0], work.width[e])
+    gy = _cell(centres[i, 1], work.width[e])
+    gz = _cell(centres[i, 2], work.width[e])
+    same, made = work.place[i, 0] == e, work.made
     for k in range(14 if same else 27):  # k = 13 is the cell of the ball itself
         x, y, z = gx + k // 9 - 1, gy + (k // 3) % 3 - 1, gz + k % 3 - 1
-        c = _hash(e, x, y, z, mask)
-        begin = work.first[c + 1]
-        end = work.first[c + 2] if c < mask else total
-        work.used[LEVELS + 1] += end - begin
+        c = _hash(e, x, y, z, len(work.first) - 3)
+        begin, end = work.first[c + 1], work.first[c + 2]
+        made[0] += end - begin
         for at in range(begin, end):
             j = work.ball[at]
-            if same and k == 13 and j <= i:
-                continue
-            # Another place of the grid may share the cell: it is not this neighbour.
             p = work.place[j]
-            if p[0] == e and p[1] == x and p[2] == y and p[3] == z:
-                u = centres[i, 0] - centres[j, 0]
-                v = centres[i, 1] - centres[j, 1]
-                w = centres[i, 2] - centres[j, 2]
-                r = radii[i] + radii[j]
-                if u * u + v * v + w * w <= r * r:
-                    if count < len(pairs):
-                        pairs[count, 0], pairs[count, 1] = min(i, j), max(i, j)
-                    count += 1
-    return count
+            # Another place of the grid may share the cell: it is not this neighbour.
+            there = p[0] == e and p[1] == x and p[2] == y and p[3] == z
+            if not there or (same and k == 13 and j <= i) or not _overlap(i, j, centres, radii):
+                continue
+            if made[1] < len(pairs):
+                pairs[made[1], 0], pairs[made[1], 1] = min(i, j), max(i, j)
+            made[1] += 1

@@ -8,6 +8,7 @@ of points always in it.
 
 from __future__ import annotations
 
+from carom._compiled.by_reference import refer
 from carom._compiled.decorators import entry, kernel
 from carom._compiled.units import unit
 from carom.collision.box import point_box, segment_box
@@ -16,9 +17,9 @@ from carom.collision.clip import overlap
 from carom.collision.convex import closest
 from carom.collision.faces import load_face
 from carom.collision.features import EDGES
-from carom.collision.found import hand_on
+from carom.collision.found import hand_on, swap
 from carom.collision.frame import enter
-from carom.collision.layout import BOX, POINT, SEGMENT
+from carom.collision.layout import BOX, POINT, SEGMENT, Pair
 from carom.collision.round import point_point, point_segment, segment_segment
 from carom.collision.segments import ends_of_line
 from carom.collision.support import separation
@@ -30,16 +31,15 @@ ON_FACE = 1.0 - 1e-12  # from which on the normal is the face's
 
 
 @entry
-def touch(a, b, hulls, xa, qa, xb, qb, reach, work, out):
+def touch(a, b, hulls, reach, work, out):
     """Write the points of the contact of two solids to `out` (8,); return how many.
 
     Parameters
     ----------
-    a, b : SOLID
-        Records of a table of `layout.solid_table`.
+    a, b : Placed
+        Records of a table of `layout.solid_table`, with world poses (of the bodies combined with `x`, `Q`
+        of the solids).
     hulls : Hulls
-    xa, qa, xb, qb : (3,), (4,)
-        World poses of the solids (of the bodies combined with `x`, `Q` of the solids).
     reach : float
         Points with gaps up to the least gap plus `reach` are given [m]; 0 gives the ones at the least gap.
     work : PairWork
@@ -47,50 +47,47 @@ def touch(a, b, hulls, xa, qa, xb, qb, reach, work, out):
         The normal points from B to A. The least of the gaps is the distance of the two solids, negative
         where they overlap slightly.
     """
-    s, found = work.state[0], work.found
-    flip = a.kind > b.kind
+    flip = a.solid.kind > b.solid.kind
     if flip:
         a, b = b, a
-        xa, qa, xb, qb = xb, qb, xa, qa
-    enter(s, xa, qa, xb, qb)
-    count = _ordered(s, a, b, hulls, reach, found)
-    return hand_on(s, found, count, a.radius, b.radius, flip, out)
+    enter(work.state[0], a, b)
+    pair = refer(Pair(a.solid, b.solid, hulls, work.state[0], work.found))
+    return hand_on(pair, _ordered(pair, reach), flip, out)
 
 
 @unit
-def touch_unit(a, b, hulls, xa, qa, xb, qb, reach, work, out):
+def touch_unit(a, b, hulls, reach, work, out):
     """As `touch`, compiled once; the number of points goes to ``work.state[0].total``."""
-    work.state[0].total = touch(a, b, hulls, xa, qa, xb, qb, reach, work, out)
+    work.state[0].total = touch(a, b, hulls, reach, work, out)
 
 
 @kernel
-def _ordered(s, a, b, hulls, reach, found):
-    """Find the points of a pair whose first kind is not above its second."""
+def _ordered(pair, reach):
+    """Find the points of a pair whose first kind is not above its second; return how many."""
+    a, b = pair.a, pair.b
     boxes = a.kind == BOX and b.kind == BOX
     if b.kind <= SEGMENT:
         if b.kind == POINT:
-            point_point(s, a, b, found)
+            point_point(pair)
             return 1
         if a.kind == POINT:
-            point_segment(s, a, b, found)
+            point_segment(pair)
             return 1
-        segment_segment(s, a, b, found)
+        segment_segment(pair)
     elif b.kind == BOX and a.kind == POINT:
-        point_box(s, a, b, found)
+        point_box(pair)
         return 1
     elif b.kind == BOX and a.kind == SEGMENT:
-        segment_box(s, a, b, found)
-    elif not boxes:
-        closest(s, a, b, hulls, found)
-    elif not face_or_edges(s, a, b, found):
-        closest(s, a, b, hulls, found)
+        segment_box(pair)
+    elif not (boxes and face_or_edges(pair)):
+        closest(pair)
         boxes = False
     while True:
-        count = _manifold(s, a, b, hulls, reach, found)
-        if not (boxes and found[0].feature == 0):
+        count = _manifold(pair, reach)
+        if not (boxes and pair.found[0].feature == 0):
             return count
         # No points of the two faces are as near as the axis says: vertices or edges beside them are nearest.
-        closest(s, a, b, hulls, found)
+        closest(pair)
         boxes = False
 
 
@@ -107,27 +104,27 @@ def _lowest_side(s, side, nx, ny, nz):
 
 
 @kernel
-def _manifold(s, a, b, hulls, reach, found):
+def _manifold(pair, reach):
     """Add to the nearest points, the first found, those that carry the contact with them."""
+    s, a, b, found = pair.state, pair.a, pair.b, pair.found
     n = found[0].normal
     nx, ny, nz, least = n[0], n[1], n[2], found[0].gap
     tolerance = ROUNDING * min(a.extent, b.extent)
-    on_a = load_face(s, 0, a, hulls, -nx, -ny, -nz)
-    on_b = load_face(s, 1, b, hulls, nx, ny, nz)
+    on_a = load_face(pair, 0, -nx, -ny, -nz)
+    on_b = load_face(pair, 1, nx, ny, nz)
     if s.count[0] < 2 or s.count[1] < 2:
         return 1
-    radii, most, count = a.radius + b.radius, least + reach, 1
+    most, count = least + reach, 1
     if max(on_a, on_b) > ALIGNED:
         ref = 1 if on_b + 1e-9 >= on_a else 0
         m, f = s.normal[ref], 2.0 * ref - 1.0
-        apart = separation(s, a, b, hulls, f * m[0], f * m[1], f * m[2])
-        if apart - a.inner - b.inner - radii >= least - reach - tolerance:
-            count = overlap(s, ref, radii, least - tolerance, most, found, count)
+        apart = separation(pair, f * m[0], f * m[1], f * m[2])
+        if apart - a.inner - b.inner - (a.radius + b.radius) >= least - reach - tolerance:
+            count = overlap(pair, ref, least - tolerance, most, count)
     if not max(on_a, on_b) > ON_FACE:
-        i, j = _lowest_side(s, 0, nx, ny, nz)
-        k, l = _lowest_side(s, 1, -nx, -ny, -nz)
+        ends_a, ends_b = _lowest_side(s, 0, nx, ny, nz), _lowest_side(s, 1, -nx, -ny, -nz)
         before = count
-        count = ends_of_line(s, i, j, k, l, radii, least - tolerance, most, found, count)
+        count = ends_of_line(pair, ends_a, ends_b, least - tolerance, most, count)
         if found[0].feature >> 60 == EDGES and count == before + 2:
             return _without_first(found, count, least + tolerance, 2)
     return _without_first(found, count, least + tolerance, 1) if found[0].feature == 0 else count
@@ -141,14 +138,5 @@ def _without_first(found, count, most, enough):
         near += found[k].gap <= most
     if near < enough:
         return count
-    _copy(found, count - 1, 0)
+    swap(found, 0, count - 1)
     return count - 1
-
-
-@kernel
-def _copy(found, source, target):
-    """Copy a point to another row."""
-    a, b = found[source], found[target]
-    b.gap, b.feature = a.gap, a.feature
-    for i in range(3):
-        b.normal[i], b.on_a[i], b.on_b[i] = a.normal[i], a.on_a[i], a.on_b[i]

@@ -1,1 +1,1 @@
-"""Unilateral constraints: gap, exclusion of contact between two states, return map."""
+"""Unilateral constraints: gap functions, continuous collision detection, rims, stops in joints."""

@@ -1,4 +1,4 @@
-"""The closed points of a group of bodies: vertices on a surface, points of two solids, all that is held."""
+"""The closed points of a group of bodies: vertices on a surface, points of two solids, active contacts."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def closed_within(controls, contact, state):
 
 @kernel
 def round_off_of_both(contact, state):
-    """Return the round-off of a gap, of the coordinates of both bodies."""
+    """Return the round-off of a gap that the coordinates of both bodies cause [m]."""
     tiny = round_off(contact, state)
     if contact.other < 0:
         return tiny
@@ -61,13 +61,14 @@ def apart(contact, state, near):
 
 @kernel
 def gather_closed(system, controls, held, c, state, cluster, work, strikes):
-    """List what is closed in `state` with contact c; return how many points, -1 if they are too many.
+    """List the points that are closed in `state` together with contact c; return how many, -1 for too many.
 
     Closed: within the tolerance of ties or of a located gap, or held; where it `strikes`, a rim that is as good
     as flat, too. Writes seats and points. Bodies that closed points link become one group, in which all
     closed points count.
     """
     first, k, more = system.contacts[c].body, 0, True
+    rim_time = RIM_TIME * controls.step if strikes else 0.0
     if system.contacts[c].other >= 0:
         unite(work, first, system.contacts[c].other)
     for i in range(system.contacts.shape[0]):
@@ -84,13 +85,11 @@ def gather_closed(system, controls, held, c, state, cluster, work, strikes):
                 continue
             before = k
             if contact.touches == 0:
-                k = add_vertices(system, held, contact, i, near, state, k, cluster)
+                k = add_vertices(system, held, i, near, state, k, cluster)
             elif contact.touches == STOP:
-                k = add_stop(system, held, contact, i, near, state, k, cluster)
+                k = add_stop(system, held, i, near, state, k, cluster)
             else:
-                k = add_touches(
-                    system, controls, contact, i, near, state, k, cluster, work, strikes
-                )
+                k = add_touches(system, i, near, rim_time, state, k, cluster, work)
                 if k > before and contact.other >= 0:
                     unite(work, contact.body, contact.other)
                     more = True
@@ -101,8 +100,9 @@ def gather_closed(system, controls, held, c, state, cluster, work, strikes):
 
 
 @kernel
-def add_vertices(system, held, contact, c, near, state, k, cluster):
+def add_vertices(system, held, c, near, state, k, cluster):
     """Add the vertices that are closed to a half-space; return the new count, -1 if there is no room."""
+    contact = system.contacts[c]
     plane = plane_in_body(contact, state)
     for i in range(contact.first, contact.last):
         z, _ = gap_and_rate(plane, system.vertices[i])
@@ -116,12 +116,12 @@ def add_vertices(system, held, contact, c, near, state, k, cluster):
 
 
 @kernel
-def add_stop(system, held, contact, c, near, state, k, cluster):
+def add_stop(system, held, c, near, state, k, cluster):
     """Add a stop that is closed or held; return the new count, -1 if there is no room."""
     if k == cluster.seats.shape[0]:
         return -1
     point = cluster.points[0][k]
-    place_stop(system, contact, state, point)
+    place_stop(system, system.contacts[c], state, point)
     if point.gap > near and not is_held_stop(held, c):
         return k
     take_seat(c, 0, point.core, cluster.seats[k])
@@ -129,12 +129,16 @@ def add_stop(system, held, contact, c, near, state, k, cluster):
 
 
 @unit
-def _add_touches(system, controls, contact, c, near, state, k, cluster, work, strikes) -> int:
-    """Add the points of two solids that are closed; return the new count, -1 if there is no room."""
+def _add_touches(system, c, near, rim_time, state, k, cluster, work) -> int:
+    """Add the points of two solids that are closed; return the new count, -1 if there is no room.
+
+    A rim that is flat within `rim_time` counts as flat.
+    """
+    contact = system.contacts[c]
     count = find_touches(system, contact, state, REACH * smaller(contact), work)
-    if strikes:
-        n, time = work.touches[0].normal, RIM_TIME * controls.step
-        near = max(near, closed_rim(system, contact, n, state, time))
+    if rim_time > 0.0:
+        n = work.touches[0].normal
+        near = max(near, closed_rim(system, contact, n, state, rim_time))
     for i in range(count):
         touch = work.touches[i]
         if touch.gap <= near:
@@ -148,10 +152,10 @@ def _add_touches(system, controls, contact, c, near, state, k, cluster, work, st
 
 
 @inlined
-def add_touches(system, controls, contact, c, near, state, k, cluster, work, strikes):
+def add_touches(system, c, near, rim_time, state, k, cluster, work):
     """Add the points of two solids that are closed; return the new count, -1 if there is no room."""
     if system.solids.shape[0] > 0:
-        return _add_touches(system, controls, contact, c, near, state, k, cluster, work, strikes)
+        return _add_touches(system, c, near, rim_time, state, k, cluster, work)
     return k
 
 
@@ -159,7 +163,7 @@ def add_touches(system, controls, contact, c, near, state, k, cluster, work, str
 def _seat_stays(system, hold, point, state, work) -> bool:
     """Return whether a closed point with the feature of a held one is the same point."""
     contact, r, n = system.contacts[hold.contact], point.arm_a, point.axes[0]
-    way = way_round(system, contact, n, r[0], r[1], r[2], hold.point, state)
+    way = way_round(system, contact, n, (r[0], r[1], r[2]), hold.point, state)
     return way < OTHER_SIDE
 
 
@@ -208,7 +212,7 @@ def gather_held(system, held, group, state, cluster, work):
 
 @kernel
 def place_seats(system, k, state, cluster, points, work):
-    """Write the points of all seats in a state."""
+    """Write the points of all seats, as they are in a state."""
     for i in range(k):
         seat = cluster.seats[i]
         place_any(

@@ -48,7 +48,7 @@ def spin_bound(body, extent, state, memory):
 
 @kernel
 def core_extent(solid):
-    """Return how far core points may be from the mass centre: the ball that swells them does not turn."""
+    """Return the greatest distance of a core point from the mass centre: the ball around it does not turn."""
     x = solid.x
     return math.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]) + solid.extent - solid.radius
 
@@ -73,47 +73,43 @@ def relative_bound(system, contact, state, work):
 
 
 @kernel
-def balls_apart(s0, s1, s2, u0, u1, u2, radii, sign, a):
+def balls_apart(s, u, radii, sign, a):
     """Return how long two balls stay apart, centres s apart and moving apart at u; -inf if they overlap."""
-    d = math.sqrt(s0 * s0 + s1 * s1 + s2 * s2)
+    d = math.sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2])
     if not d > radii:
         return -math.inf
-    return reach(d - radii, sign * (s0 * u0 + s1 * u1 + s2 * u2) / d, a)
+    return reach(d - radii, sign * (s[0] * u[0] + s[1] * u[1] + s[2] * u[2]) / d, a)
 
 
 @kernel
 def balls_clear(contact, start, end, h, centres):
-    """Return whether the balls around both keep apart."""
+    """Return whether the balls around both bodies stay apart during the step."""
     a, b, radii = contact.body, contact.other, contact.extent + contact.other_extent
     time = 0.0
     for side in range(2):
         state, sign = (start, 1.0) if side == 0 else (end, -1.0)
         x, y, v, w = state[a].x, state[b].x, state[a].v, state[b].v
-        time += balls_apart(
-            x[0] - y[0], x[1] - y[1], x[2] - y[2], v[0] - w[0], v[1] - w[1], v[2] - w[2],
-            radii, sign, centres,
-        )  # fmt: skip
+        s, u = (x[0] - y[0], x[1] - y[1], x[2] - y[2]), (v[0] - w[0], v[1] - w[1], v[2] - w[2])
+        time += balls_apart(s, u, radii, sign, centres)
     return time >= h
 
 
 @kernel
 def solids_clear(system, contact, start, end, h, most):
-    """Return whether the balls around two pieces of bodies keep apart."""
+    """Return whether the balls around two pieces of bodies stay apart during the step."""
     a, b = contact.body, contact.other
     p, q = system.solids[contact.solid], system.solids[contact.other_solid]
     time = 0.0
     for side in range(2):
         state, sign = (start, 1.0) if side == 0 else (end, -1.0)
-        ra = rotate_by(state[a], p.x)
-        rb = rotate_by(state[b], q.x)
-        ua = point_velocity(state, a, ra[0], ra[1], ra[2])
-        ub = point_velocity(state, b, rb[0], rb[1], rb[2])
         x, y = state[a].x, state[b].x
-        time += balls_apart(
-            x[0] - y[0] + (ra[0] - rb[0]), x[1] - y[1] + (ra[1] - rb[1]),
-            x[2] - y[2] + (ra[2] - rb[2]), ua[0] - ub[0], ua[1] - ub[1], ua[2] - ub[2],
-            p.extent + q.extent, sign, most,
-        )  # fmt: skip
+        r = rotate_by(state[a], p.x)
+        t = rotate_by(state[b], q.x)
+        v = point_velocity(state, a, r[0], r[1], r[2])
+        w = point_velocity(state, b, t[0], t[1], t[2])
+        s = (x[0] - y[0] + (r[0] - t[0]), x[1] - y[1] + (r[1] - t[1]), x[2] - y[2] + (r[2] - t[2]))
+        u = (v[0] - w[0], v[1] - w[1], v[2] - w[2])
+        time += balls_apart(s, u, p.extent + q.extent, sign, most)
     return time >= h
 
 
@@ -168,6 +164,16 @@ def lowest_open(system, contact, c, count, held, state, work):
 
 
 @kernel
+def nearest_touch(work, count):
+    """Return the point in work.touches with the least gap."""
+    nearest = work.touches[0]
+    for i in range(1, count):
+        if work.touches[i].gap < nearest.gap:
+            nearest = work.touches[i]
+    return nearest
+
+
+@kernel
 def flat_rim_strikes(system, contact, state, time, work):
     """Return whether a point of a rim that is as good as flat approaches the other body."""
     count = find_touches(system, contact, state, REACH * smaller(contact), work)
@@ -181,7 +187,7 @@ def flat_rim_strikes(system, contact, state, time, work):
 
 @unit
 def _lowest_pair(system, contact, c, held, state, work) -> tuple[float, float]:
-    """Return the gap of two solids, of points that are not held, and its rate."""
+    """Return the least gap of two solids, over points that are not held, and its rate."""
     count = find_touches(system, contact, state, REACH * smaller(contact), work)
     return lowest_open(system, contact, c, count, held, state, work)
 
@@ -223,10 +229,7 @@ def _passage_pair(system, controls, held, c, start, h, work) -> tuple[int, float
     tiny = 4.0 * max(controls.gap * smaller(contact), round_off_of_both(contact, end))
     count = find_touches(system, contact, end, REACH * smaller(contact), work)
     least, rate = lowest_open(system, contact, c, count, held, end, work)
-    nearest = work.touches[0]
-    for i in range(1, count):
-        if work.touches[i].gap < nearest.gap:
-            nearest = work.touches[i]
+    nearest = nearest_touch(work, count)
     if touching:
         way = longest_way(system, contact, c, count, held, end, work)
         if way > SMOOTH and h > longest:
@@ -255,10 +258,7 @@ def _passage_pair(system, controls, held, c, start, h, work) -> tuple[int, float
     if last >= h:
         return CLEAR, h
     count = find_touches(system, contact, start, 0.0, work)
-    nearest = work.touches[0]
-    for i in range(1, count):
-        if work.touches[i].gap < nearest.gap:
-            nearest = work.touches[i]
+    nearest = nearest_touch(work, count)
     first = time_apart(system, contact, nearest.normal, 1.0, start, most, h)
     sag = 0.125 * most * h * h
     rate0 = touch_rate(contact, nearest, start)
@@ -288,7 +288,7 @@ def way_past(contact, start, end, h):
 
 @inlined
 def lowest_pair(system, contact, c, held, state, work):
-    """Return the gap of two solids, of points that are not held, and its rate."""
+    """Return the least gap of two solids, over points that are not held, and its rate."""
     if system.solids.shape[0] > 0:
         return _lowest_pair(system, contact, c, held, state, work)
     return 0.0, 0.0

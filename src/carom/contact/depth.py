@@ -1,4 +1,4 @@
-"""How far bodies are in each other or in a half-space, and joints beyond their stops."""
+"""How deep bodies overlap each other or a half-space, and how far joints are beyond their stops."""
 
 from __future__ import annotations
 

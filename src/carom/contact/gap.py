@@ -69,7 +69,7 @@ def speed_of(b, extent, state):
 
 @kernel
 def slow(contact, state):
-    """Return the speed [m/s] that counts as none: round-off of the speeds of the body, or of both.
+    """Return the speed [m/s] that counts as zero: the round-off of the speeds of the body, or of both.
 
     At least that of the speed that gravity gives over the size of the body: what all but rests in a heap has no
     speeds of its own to compare with.

@@ -9,6 +9,8 @@ import math
 
 from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
+from carom.collision.frame import place
+from carom.collision.layout import Placed, Plane
 from carom.collision.plane import plane_unit
 from carom.collision.touch import touch_unit
 from carom.contact.rim import same_point
@@ -21,33 +23,19 @@ HELD_REACH = 0.2  # the same for points that are held, which stay so while a ste
 
 
 @kernel
-def pose_solid(solid, body, pose):
-    """Write the world pose (x, Q) of a solid of a body."""
-    q, x, p, s = body.Q, body.x, solid.x, solid.Q
-    r = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
-    t = multiply(q[0], q[1], q[2], q[3], s[0], s[1], s[2], s[3])
-    for k in range(3):
-        pose[k] = x[k] + r[k]
-    pose[3], pose[4], pose[5], pose[6] = t
-
-
-@kernel
 def find_touches(system, contact, state, reach, work):
     """Write the points of a contact into work.touches; return how many."""
-    a, pose = system.solids[contact.solid], work.solid_pose
-    pose_solid(a, state[contact.body], pose[0])
+    solid, body, pose = system.solids[contact.solid], state[contact.body], work.solid_pose
+    place(solid, body.x, body.Q, pose[0, :3], pose[0, 3:])
+    a = Placed(solid, pose[0, :3], pose[0, 3:])
     if contact.other < 0:
-        plane_unit(
-            a, system.hulls, pose[0, :3], pose[0, 3:], contact.axes[0],
-            contact.offset, reach, work.pair, work.touches,
-        )  # fmt: skip
+        plane = Plane(contact.axes[0], contact.offset)
+        plane_unit(a, plane, system.hulls, reach, work.pair, work.touches)
     else:
-        b = system.solids[contact.other_solid]
-        pose_solid(b, state[contact.other], pose[1])
-        touch_unit(
-            a, b, system.hulls, pose[0, :3], pose[0, 3:], pose[1, :3],
-            pose[1, 3:], reach, work.pair, work.touches,
-        )  # fmt: skip
+        other, body = system.solids[contact.other_solid], state[contact.other]
+        place(other, body.x, body.Q, pose[1, :3], pose[1, 3:])
+        b = Placed(other, pose[1, :3], pose[1, 3:])
+        touch_unit(a, b, system.hulls, reach, work.pair, work.touches)
     return work.pair.state[0].total
 
 
@@ -79,7 +67,7 @@ def tangents(n0, n1, n2, axes):
 
 @kernel
 def write_touch(contact, touch, state, point):
-    """Write a point that was found as a point of contact."""
+    """Write a found point as a point of contact."""
     n = touch.normal
     point.a, point.b, point.gap, point.turns = contact.body, contact.other, touch.gap, 0
     for k in range(3):
@@ -99,7 +87,7 @@ def write_touch(contact, touch, state, point):
 
 @kernel
 def own_point(contact, touch, state, p):
-    """Write where a point that was found is on the first body, in its axes."""
+    """Write the place of a found point on the first body, in axes of that body."""
     q, x, s = state[contact.body].Q, state[contact.body].x, touch.on_a
     r = rotate_back(q[0], q[1], q[2], q[3], s[0] - x[0], s[1] - x[1], s[2] - x[2])
     p[0], p[1], p[2] = r
@@ -125,7 +113,7 @@ def which_touch(system, contact, count, feature, p, state, work):
 
 @unit
 def _place_pair(system, contact, feature, p, state, point, work):
-    """Write the point that has the feature, or took its place."""
+    """Write the found point that has the feature, or the one that took its place."""
     count = find_touches(system, contact, state, HELD_REACH * smaller(contact), work)
     i = which_touch(system, contact, count, feature, p, state, work)
     write_touch(contact, work.touches[i], state, point)
@@ -133,7 +121,7 @@ def _place_pair(system, contact, feature, p, state, point, work):
 
 @kernel
 def touch_rate(contact, touch, state):
-    """Return the rate of the gap at a point that was found."""
+    """Return the rate of the gap at a found point."""
     n = touch.normal
     ux, uy, uz = slip_velocity(contact, touch, state)
     return n[0] * ux + n[1] * uy + n[2] * uz
@@ -205,7 +193,7 @@ def _drift(system, contact, feature, p, point, state, work) -> tuple[float, floa
 
 @inlined
 def place_pair(system, contact, feature, p, state, point, work):
-    """Write the point that has the feature, or took its place."""
+    """Write the found point that has the feature, or the one that took its place."""
     if system.solids.shape[0] > 0:
         _place_pair(system, contact, feature, p, state, point, work)
 

@@ -22,7 +22,7 @@ def place_any(system, contact, feature, p, state, point, work):
 
 @kernel
 def place_held(system, hold, state, point, work):
-    """Write the point of one that is held: never a stop."""
+    """Write the point of a held contact that is no stop."""
     contact = system.contacts[hold.contact]
     if contact.touches == 0:
         place(contact, hold.point, state, point)

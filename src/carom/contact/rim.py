@@ -52,14 +52,14 @@ def tilt_of(solid, state, contact, side, n):
 
 
 @kernel
-def way_round(system, contact, n, arm0, arm1, arm2, p, state):
+def way_round(system, contact, n, arm, p, state):
     """Return the square of the way from p (body axes) to an arm (world), relative to r; 0 if steep."""
     radius, _ = flat_rim(system, contact, n, state)
     if radius == 0.0:
         return 0.0
     q = state[contact.body].Q
     r = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
-    d = (arm0 - r[0]) ** 2 + (arm1 - r[1]) ** 2 + (arm2 - r[2]) ** 2
+    d = (arm[0] - r[0]) ** 2 + (arm[1] - r[1]) ** 2 + (arm[2] - r[2]) ** 2
     return d / (radius * radius)
 
 
@@ -67,7 +67,8 @@ def way_round(system, contact, n, arm0, arm1, arm2, p, state):
 def way_to(system, contact, touch, p, state):
     """Return `way_round` to a point that was found."""
     x, s = state[contact.body].x, touch.on_a
-    return way_round(system, contact, touch.normal, s[0] - x[0], s[1] - x[1], s[2] - x[2], p, state)
+    arm = (s[0] - x[0], s[1] - x[1], s[2] - x[2])
+    return way_round(system, contact, touch.normal, arm, p, state)
 
 
 @kernel

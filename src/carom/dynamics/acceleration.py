@@ -55,7 +55,7 @@ def acceleration_unit(system, state, held, work, stage):
 
 @kernel
 def accelerations(system, state, held, work, stage):
-    """Do so as part of the caller."""
+    """Write what `acceleration_unit` does, compiled as a part of the caller."""
     applied = applied_wrenches(system, state, True, work)
     applied += add_stiff(system, state, work)
     bias_joints(system, state, work)

@@ -1,4 +1,4 @@
-"""Energies of a state: kinetic, potential, and what they are known to."""
+"""Energies of a state: kinetic, potential, and the size of their terms, which bounds the round-off."""
 
 from __future__ import annotations
 

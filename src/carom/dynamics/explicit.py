@@ -77,8 +77,17 @@ def explicit_step(method, system, held, start, h, end, work):
 
 
 @inlined
+def any_held(held):
+    """Return whether a contact is held that is not at rest."""
+    for i in range(held.count[0]):
+        if held.points[i].rest == 0:
+            return True
+    return False
+
+
+@inlined
 def constrained(method, system, held, start, h, end, work):
-    """Step the bodies that are joined, loaded or held; as `explicit_step` gives back."""
+    """Step the bodies that are joined, loaded or held; return what `explicit_step` does."""
     whole_step(method, system, held, start, h, end, work)
     result = work.result[0]
     return result.applied, result.friction, result.code

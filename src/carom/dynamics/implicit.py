@@ -19,7 +19,14 @@ from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
 from carom.dynamics.acceleration import bias_joints
 from carom.dynamics.elements import driven_power
-from carom.dynamics.explicit import bound_accelerations, constrained, fly, forget_bounds, keep
+from carom.dynamics.explicit import (
+    any_held,
+    bound_accelerations,
+    constrained,
+    fly,
+    forget_bounds,
+    keep,
+)
 from carom.dynamics.forces import applied_wrenches
 from carom.dynamics.project import LOST, project_position, project_velocity
 from carom.dynamics.solve import solve
@@ -39,9 +46,8 @@ def implicit_step(method, system, held, start, h, end, work):
     """
     if not fly(system, held, start, h, end, work):
         return 0.0, 0.0, 0
-    for i in range(held.count[0]):
-        if held.points[i].rest == 0:
-            return constrained(method, system, held, start, h, end, work)
+    if any_held(held):
+        return constrained(method, system, held, start, h, end, work)
     whole_step(system, held, start, h, end, work)
     return work.result[0].applied, 0.0, work.result[0].code
 
@@ -113,7 +119,7 @@ def accelerate(system, state, h, s, work):
 
 @kernel
 def bias_springs(system, state, h, s, work):
-    """Put the springs in as rows."""
+    """Add the springs as rows of the solver."""
     g = GAMMA * h
     for j in range(system.joints.shape[0]):
         if system.joints[j].kind != STIFF:
@@ -132,7 +138,7 @@ def bias_springs(system, state, h, s, work):
 
 @kernel
 def release_springs(system, state, h, s, work):
-    """Take the springs out again, and note what the stage does along them."""
+    """Remove the springs from the rows again, and note what the stage does along them."""
     for j in range(system.joints.shape[0]):
         if system.joints[j].kind == STIFF:
             one, row = system.relations.stiff[system.joints[j].number], system.solver.rows[j]

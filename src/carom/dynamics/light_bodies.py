@@ -83,16 +83,23 @@ def factor_light(system, state, work):
             m, c = joints[solver.row[s]].rows, count + s
             divide(high[c], low[c], high[k], low[k], root, rest, m, n)
         for t in range(solver.update[place], solver.update[place + 1]):
-            a, b, c = count + solver.triple[t, 0], count + solver.triple[t, 1], solver.triple[t, 2]
-            m, q = joints[solver.row[a - count]].rows, joints[solver.row[b - count]].rows
-            for i in range(m):
-                for j in range(q):
-                    x, y = high[c, i, j], low[c, i, j]
-                    for s in range(n):
-                        x, y = subtract_product(
-                            x, y, high[a, i, s], low[a, i, s], high[b, j, s], low[b, j, s]
-                        )
-                    high[c, i, j], low[c, i, j] = x, y
+            update_block(solver, joints, t, n)
+
+
+@kernel
+def update_block(solver, joints, t, n):
+    """Subtract a product of two blocks of a column n wide from its block of the factor: c -= a b^T."""
+    high, low, count, triple = solver.fine[0], solver.fine[1], joints.shape[0], solver.triple[t]
+    m, q = joints[solver.row[triple[0]]].rows, joints[solver.row[triple[1]]].rows
+    a, b, c = count + triple[0], count + triple[1], triple[2]
+    for i in range(m):
+        for j in range(q):
+            x, y = high[c, i, j], low[c, i, j]
+            for s in range(n):
+                x, y = subtract_product(
+                    x, y, high[a, i, s], low[a, i, s], high[b, j, s], low[b, j, s]
+                )
+            high[c, i, j], low[c, i, j] = x, y
 
 
 @kernel

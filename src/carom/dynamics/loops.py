@@ -36,7 +36,7 @@ def factor(system, state, augment, work):
 
 @kernel
 def forget_pose(solver):
-    """Begin a factor: the caller may say of which pose it is."""
+    """Forget the pose of the last factor; the caller may note that of the next one."""
     for b in range(solver.pose.shape[0]):
         solver.pose[b, 0] = math.nan
 
@@ -179,12 +179,8 @@ def substitute(system):
 def free_motion(system, work):
     """Write motion = M^-1 wrench of each body."""
     for b in range(system.bodies.shape[0]):
-        f, out = work.body[b].wrench, work.body[b].motion
-        y = times_inverse_mass(
-            system.bodies[b].mass, work.body[b].inverse, f[0], f[1], f[2], f[3], f[4], f[5]
-        )
-        for k in range(6):
-            out[k] = y[k]
+        body = work.body[b]
+        times_inverse_mass(system.bodies[b].mass, body.inverse, body.wrench, body.motion)
 
 
 @kernel

@@ -47,7 +47,7 @@ def read_states(system, force, state):
 
 @unit
 def _add_more_forces(system, state, work) -> float:
-    """Add the wrenches; return the power of those without potential."""
+    """Add the wrenches of these forces; return the power of those without potential."""
     power, t, relations = 0.0, work.result[0].time, system.relations
     for i in range(relations.pushes.shape[0]):
         one = relations.pushes[i]
@@ -74,7 +74,7 @@ def _add_more_forces(system, state, work) -> float:
 
 @unit
 def _more_energy(system, state, t) -> float:
-    """Return their potential energy [J]."""
+    """Return the potential energy of these forces [J]."""
     total, relations = 0.0, system.relations
     for i in range(relations.pushes.shape[0]):
         one = relations.pushes[i]
@@ -136,7 +136,7 @@ def begin_turns(system):
 
 @kernel
 def forget_turns(system):
-    """Go back to them."""
+    """Go back to the angles of the start of the step."""
     for i in range(system.relations.coordinates.shape[0]):
         system.relations.coordinates[i].reference = system.relations.coordinates[i].begun
 
@@ -153,7 +153,7 @@ def _turns_round(system, start, end, h) -> bool:
 
 @inlined
 def add_more_forces(system, state, work):
-    """Add the wrenches; return the power of those without potential."""
+    """Add the wrenches of these forces; return the power of those without potential."""
     if system.relations.there == 1:
         return _add_more_forces(system, state, work)
     return 0.0
@@ -161,7 +161,7 @@ def add_more_forces(system, state, work):
 
 @inlined
 def more_energy(system, state, t):
-    """Return their potential energy [J]."""
+    """Return the potential energy of these forces [J]."""
     if system.relations.there == 1:
         return _more_energy(system, state, t)
     return 0.0

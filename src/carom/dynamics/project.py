@@ -77,7 +77,7 @@ def _project_position(system, state, near, tolerance, work) -> float:
 
 @unit
 def _project_velocity(system, state, work):
-    """Take from the velocities what the joints forbid."""
+    """Remove from the velocities what the joints forbid."""
     for j in range(system.joints.shape[0]):
         bias = work.joint[j].bias
         velocity_error(system, j, state, work)
@@ -114,6 +114,6 @@ def project_position(system, state, near, tolerance, work):
 
 @inlined
 def project_velocity(system, state, work):
-    """Take from the velocities what the joints forbid."""
+    """Remove from the velocities what the joints forbid."""
     if system.joints.shape[0] > 0:
         _project_velocity(system, state, work)

@@ -30,7 +30,7 @@ from carom._compiled.units import unit
 from carom.dynamics.contact_impulse import clear_wrenches
 from carom.dynamics.discrete_rotation import turn_by_momentum
 from carom.dynamics.elements import driven_power
-from carom.dynamics.explicit import constrained, fly, keep
+from carom.dynamics.explicit import any_held, constrained, fly, keep
 from carom.dynamics.kick import add_momentum, first_kick, second_kick
 from carom.dynamics.loops import dropped_rows, solve_factored
 from carom.dynamics.move_error import error_of_move
@@ -68,9 +68,8 @@ def rattle_step(method, system, held, start, h, end, work):
     """
     if not fly(system, held, start, h, end, work):
         return 0.0, 0.0, 0
-    for i in range(held.count[0]):
-        if held.points[i].rest == 0:
-            return constrained(method, system, held, start, h, end, work)
+    if any_held(held):
+        return constrained(method, system, held, start, h, end, work)
     result = work.result[0]
     whole_step(method.parts, system, start, h, end, work)
     if result.code == STALLED:

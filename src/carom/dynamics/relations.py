@@ -11,7 +11,7 @@ from carom._compiled.decorators import kernel
 from carom._compiled.user_functions import call_function
 from carom.dynamics.curve import curve
 from carom.kinematics.coordinate import add_rows, drift, push, rate, value
-from carom.kinematics.rows import times_inverse_mass
+from carom.kinematics.rows import mass_row
 
 
 @kernel
@@ -40,14 +40,7 @@ def relation_rows(system, j, state, work):
         child = solver.sides[max(0, term.child_side)].A
         add_rows(c, state, term.factor, child, solver.sides[max(0, term.parent_side)].A)
     for s in range(solver.rows[j].first, solver.rows[j].last):
-        side = solver.sides[s]
-        a, b = side.A, side.body
-        y = times_inverse_mass(
-            system.bodies[b].mass, work.body[b].inverse,
-            a[0, 0], a[0, 1], a[0, 2], a[0, 3], a[0, 4], a[0, 5],
-        )  # fmt: skip
-        for k in range(6):
-            side.Y[0, k] = y[k]
+        mass_row(system, solver.sides[s], 0, work)
 
 
 @kernel

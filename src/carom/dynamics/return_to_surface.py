@@ -40,7 +40,7 @@ def shift_reached(system, point, state, work):
 
 @kernel
 def return_held(system, held, state, work):
-    """Bring the points that are held one to a body back to the surface."""
+    """Bring held points, where a body has a single one, back to the surface."""
     point = work.point[0]
     for i in range(held.count[0]):
         hold = held.points[i]
@@ -59,7 +59,7 @@ def return_held(system, held, state, work):
 
 @kernel
 def stay_held(system, held, state, work):
-    """Take from the velocities what the points that are held one to a body forbid."""
+    """Remove from the velocities what held points, where a body has a single one, forbid."""
     point = work.point[0]
     for i in range(held.count[0]):
         hold = held.points[i]

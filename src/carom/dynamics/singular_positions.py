@@ -27,16 +27,13 @@ from carom.model.arrays import LOOPS
 from carom.model.workspace import ONE, RESTS
 
 SINGULAR = 1e-5  # of a row's diagonal: the square of the angle to the rows before it
-NEAR, FARTHER, TRIES = (
-    1e-2,
-    3.0,
-    2,
-)  # T turns bodies by this angle; if rows still depend on each other, by more
+# T turns bodies by this angle; if rows still depend on each other, by more
+NEAR, FARTHER, TRIES = 1e-2, 3.0, 2
 
 
 @kernel
 def steps(system, b, work):
-    """Return whether a body moves by the step, and not by free flight, or not at all."""
+    """Return whether the stages of the step move a body: it is neither at rest nor in free flight."""
     status = work.body[b].status
     return status == ONE or (status != RESTS and system.bodies[b].ballistic == 0)
 
@@ -63,52 +60,67 @@ def _pass_round(system, stage, held, sums, work, rates):
     `sums` is scratch: the velocities of the bodies that step. What has no other position on its way stays as
     it is.
     """
-    dropped, usual, result, pace = (
-        dropped_rows(system, SINGULAR),
-        system.solver.usual,
-        work.result[0],
-        0.0,
-    )
+    dropped, usual, result = dropped_rows(system, SINGULAR), system.solver.usual, work.result[0]
     if dropped <= usual[0]:
         return
+    pace, time, reach = turning_pace(system, stage), result.time, NEAR
+    for _ in range(TRIES if pace > 0.0 else 0):
+        power, drag, most = _sum_rates(system, stage, held, sums, work, rates, reach, pace)
+        result.time = time
+        if most > usual[0]:
+            reach *= FARTHER
+            continue
+        for b in range(stage.shape[0]):
+            if steps(system, b, work):
+                for k in range(3):
+                    rates[b].rate[k], rates[b].rate[3 + k] = sums[b].v[k], sums[b].w[k]
+        result.power, result.drag = power, drag
+        return
+    usual[0] = dropped
+    accelerations(system, stage, held, work, rates)
+
+
+@kernel
+def turning_pace(system, stage):
+    """Return the greatest angular velocity of a body, that of its centre about its far end with it."""
+    pace = 0.0
     for b in range(stage.shape[0]):
         v, w = stage[b].v, stage[b].w
         speed = math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) / system.bodies[b].extent
         pace = max(pace, speed + math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2]))
-    time, reach = result.time, NEAR
-    for _ in range(TRIES if pace > 0.0 else 0):
-        power, drag, most = 0.0, 0.0, 0
+    return pace
+
+
+@kernel
+def _sum_rates(system, stage, held, sums, work, rates, reach, pace):
+    """Write the weighted sums of the accelerations before and after, with T = reach/pace.
+
+    Return the same sums of power and of drag, and the greatest number of rows that were left out.
+    """
+    power, drag, most, time = 0.0, 0.0, 0, work.result[0].time
+    for b in range(stage.shape[0]):
+        if steps(system, b, work):
+            for k in range(3):
+                sums[b].v[k], sums[b].w[k] = 0.0, 0.0
+    for i in range(6):
+        k = 2 + i // 2
+        share = 6.0 / 5.0 if k == 2 else -32.0 / 35.0 if k == 3 else 3.0 / 14.0
+        ahead = (k if i % 2 == 0 else -k) * reach / pace
+        for b in range(stage.shape[0]):
+            go_on(stage[b], ahead, work.middle[b])
+        work.result[0].time = time + ahead
+        _return_stage(system, work.middle, work)
+        accelerations(system, work.middle, held, work, rates)
+        most = max(most, dropped_rows(system, SINGULAR))
+        power += share * work.result[0].power
+        drag += share * work.result[0].drag
         for b in range(stage.shape[0]):
             if steps(system, b, work):
-                for k in range(3):
-                    sums[b].v[k], sums[b].w[k] = 0.0, 0.0
-        for i in range(6):
-            k = 2 + i // 2
-            share = 6.0 / 5.0 if k == 2 else -32.0 / 35.0 if k == 3 else 3.0 / 14.0
-            ahead = (k if i % 2 == 0 else -k) * reach / pace
-            for b in range(stage.shape[0]):
-                go_on(stage[b], ahead, work.middle[b])
-            result.time = time + ahead
-            _return_stage(system, work.middle, work)
-            accelerations(system, work.middle, held, work, rates)
-            most = max(most, dropped_rows(system, SINGULAR))
-            power, drag = power + share * result.power, drag + share * result.drag
-            for b in range(stage.shape[0]):
-                if steps(system, b, work):
-                    rate = rates[b].rate
-                    for j in range(3):
-                        sums[b].v[j] += share * rate[j]
-                        sums[b].w[j] += share * rate[3 + j]
-        if most <= usual[0]:
-            for b in range(stage.shape[0]):
-                if steps(system, b, work):
-                    for k in range(3):
-                        rates[b].rate[k], rates[b].rate[3 + k] = sums[b].v[k], sums[b].w[k]
-            result.time, result.power, result.drag = time, power, drag
-            return
-        reach *= FARTHER
-    usual[0], result.time = dropped, time
-    accelerations(system, stage, held, work, rates)
+                rate = rates[b].rate
+                for j in range(3):
+                    sums[b].v[j] += share * rate[j]
+                    sums[b].w[j] += share * rate[3 + j]
+    return power, drag, most
 
 
 @kernel

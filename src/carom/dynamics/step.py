@@ -25,7 +25,7 @@ def step(method, system, held, start, h, end, work):
 
 @unit
 def other_step(method, system, held, start, h, end, work) -> tuple[float, float, int]:
-    """Do so by a method that is not explicit."""
+    """Write the state at the end of a step by a method that is not explicit."""
     if method.kind == RATTLE:
         return rattle_step(method, system, held, start, h, end, work)
     if method.kind == IMPLICIT:

@@ -13,7 +13,7 @@ from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
 from carom.geometry.rotation import cross
 from carom.kinematics.coordinate import add_rows, motion_along, push, rate, value
-from carom.kinematics.rows import times_inverse_mass
+from carom.kinematics.rows import mass_row
 from carom.kinematics.wrench import add_force, point, point_velocity
 from carom.model.arrays import LOOPS, STIFF
 
@@ -31,7 +31,7 @@ def line_of(one, state):
 
 @kernel
 def stretch(system, one, state):
-    """Return s and s'."""
+    """Return the stretch s of a spring and its rate."""
     if one.coordinate >= 0:
         c = system.relations.coordinates[one.coordinate]
         return value(c, state) - one.rest, rate(c, state)
@@ -80,14 +80,7 @@ def stiff_rows(system, j, state, work):
                 A[0, 0], A[0, 1], A[0, 2] = s * ex, s * ey, s * ez
                 A[0, 3], A[0, 4], A[0, 5] = s * tx, s * ty, s * tz
     for s in range(first, last):
-        side = solver.sides[s]
-        a = side.A
-        y = times_inverse_mass(
-            system.bodies[side.body].mass, work.body[side.body].inverse,
-            a[0, 0], a[0, 1], a[0, 2], a[0, 3], a[0, 4], a[0, 5],
-        )  # fmt: skip
-        for k in range(6):
-            side.Y[0, k] = y[k]
+        mass_row(system, solver.sides[s], 0, work)
 
 
 @unit

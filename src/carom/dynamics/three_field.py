@@ -36,7 +36,7 @@ from carom.dynamics.elements import (
     row_target,
     velocity_error,
 )
-from carom.dynamics.explicit import constrained, fly, keep, mark_held
+from carom.dynamics.explicit import any_held, constrained, fly, keep, mark_held
 from carom.dynamics.forces import applied_wrenches
 from carom.dynamics.loops import factor, substitute, subtract_rows
 from carom.dynamics.project import project_position
@@ -54,11 +54,10 @@ NO_CONVERGENCE = 1
 @unit
 def three_field_step(method, system, held, start, h, end, work) -> tuple[float, float, int]:
     """Write the state a time h after `start` into `end`; return work of loads, of friction, a status."""
-    for i in range(held.count[0]):
-        if held.points[i].rest == 0:
-            if not fly(system, held, start, h, end, work):
-                return 0.0, 0.0, 0
-            return constrained(method, system, held, start, h, end, work)
+    if any_held(held):
+        if not fly(system, held, start, h, end, work):
+            return 0.0, 0.0, 0
+        return constrained(method, system, held, start, h, end, work)
     mark_held(system, held, work)
     first_guess(system, start, h, end, work)
     if method.ode == 1:

@@ -43,21 +43,24 @@ from carom.model.arrays import (
 
 
 @kernel
-def dot(a0, a1, a2, a3, a4, a5, b0, b1, b2, b3, b4, b5):
+def dot(a, b):
     """Return a.b, summed in pairs: along a chain each sum waits for the last, and their latency is the cost."""
-    return (a0 * b0 + a1 * b1) + (a2 * b2 + a3 * b3) + (a4 * b4 + a5 * b5)
+    return (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3]) + (a[4] * b[4] + a[5] * b[5])
+
+
+@kernel
+def six(row, k):
+    """Return six numbers of a row, from place k on."""
+    return row[k], row[k + 1], row[k + 2], row[k + 3], row[k + 4], row[k + 5]
 
 
 @kernel
 def own_inertia(body, state, row):
     """Start the row of a body: its pose, and its own inertia in world axes."""
     keep_pose(state, row)
-    q, m = state.Q, body.mass
+    q, m, i = state.Q, body.mass, body.inertia
     R = matrix(q[0], q[1], q[2], q[3])
-    xx, xy, xz, yy, yz, zz = spin_tensor(
-        R[0], R[1], R[2], R[3], R[4], R[5], R[6], R[7], R[8],
-        body.inertia[0], body.inertia[1], body.inertia[2],
-    )  # fmt: skip
+    xx, xy, xz, yy, yz, zz = spin_tensor(R, (i[0], i[1], i[2]))
     row[7], row[8], row[9], row[10], row[11], row[12] = xx, xy, xz, yy, yz, zz
     row[19], row[20], row[21], row[22], row[23], row[24] = m, 0.0, 0.0, m, 0.0, m
     for k in range(25, 34):
@@ -111,14 +114,14 @@ def eliminate(row, count):
     i0, i1, i2, i3, i4, i5 = row[34], row[35], row[36], row[37], row[38], row[39]
     for k in range(count):
         f = FIRST + WIDTH * k
-        s0, s1, s2, s3, s4, s5 = row[f], row[f + 1], row[f + 2], row[f + 3], row[f + 4], row[f + 5]
-        u0 = dot(m0, m1, m2, h0, h1, h2, s0, s1, s2, s3, s4, s5)
-        u1 = dot(m1, m3, m4, h3, h4, h5, s0, s1, s2, s3, s4, s5)
-        u2 = dot(m2, m4, m5, h6, h7, h8, s0, s1, s2, s3, s4, s5)
-        u3 = dot(h0, h3, h6, i0, i1, i2, s0, s1, s2, s3, s4, s5)
-        u4 = dot(h1, h4, h7, i1, i3, i4, s0, s1, s2, s3, s4, s5)
-        u5 = dot(h2, h5, h8, i2, i4, i5, s0, s1, s2, s3, s4, s5)
-        g = 1.0 / dot(s0, s1, s2, s3, s4, s5, u0, u1, u2, u3, u4, u5)
+        s = six(row, f)
+        u0 = dot((m0, m1, m2, h0, h1, h2), s)
+        u1 = dot((m1, m3, m4, h3, h4, h5), s)
+        u2 = dot((m2, m4, m5, h6, h7, h8), s)
+        u3 = dot((h0, h3, h6, i0, i1, i2), s)
+        u4 = dot((h1, h4, h7, i1, i3, i4), s)
+        u5 = dot((h2, h5, h8, i2, i4, i5), s)
+        g = 1.0 / dot(s, (u0, u1, u2, u3, u4, u5))
         row[f + 6], row[f + 7], row[f + 8] = u0, u1, u2
         row[f + 9], row[f + 10], row[f + 11] = u3, u4, u5
         row[f + 12] = g
@@ -240,10 +243,7 @@ def inward(system):
         p0, p1, p2, p3, p4, p5 = row[46], row[47], row[48], row[49], row[50], row[51]
         for k in range(link.freedoms):
             f = FIRST + WIDTH * k
-            u = dot(
-                row[f], row[f + 1], row[f + 2], row[f + 3], row[f + 4], row[f + 5],
-                p0, p1, p2, p3, p4, p5,
-            )  # fmt: skip
+            u = dot(six(row, f), (p0, p1, p2, p3, p4, p5))
             row[f + 13] = -u
             u *= -row[f + 12]
             p0, p1, p2 = p0 + row[f + 6] * u, p1 + row[f + 7] * u, p2 + row[f + 8] * u
@@ -277,10 +277,7 @@ def outward(system, biased, work):
             a0, a1, a2 = up[46] + tx, up[47] + ty, up[48] + tz
         for k in range(link.freedoms - 1, -1, -1):
             f = FIRST + WIDTH * k
-            s = dot(
-                row[f + 6], row[f + 7], row[f + 8], row[f + 9], row[f + 10], row[f + 11],
-                a0, a1, a2, a3, a4, a5,
-            )  # fmt: skip
+            s = dot(six(row, f + 6), (a0, a1, a2, a3, a4, a5))
             qdd = (row[f + 13] - s) * row[f + 12]
             a0, a1, a2 = a0 + row[f] * qdd, a1 + row[f + 1] * qdd, a2 + row[f + 2] * qdd
             a3, a4, a5 = a3 + row[f + 3] * qdd, a4 + row[f + 4] * qdd, a5 + row[f + 5] * qdd
@@ -313,7 +310,7 @@ def solve_tree(system, state, biased, near, work):
 
 @kernel
 def walk_tree(system, state, biased, near, work):
-    """Do so as part of the caller."""
+    """Write what `solve_tree` does, compiled as a part of the caller."""
     if not near and not same_pose(system.solver.scratch, state):
         articulate(system, state)
     respond(system, biased, work)

@@ -16,7 +16,7 @@ import math
 from carom._compiled.decorators import kernel
 from carom._compiled.user_functions import call_function
 from carom.geometry.rotation import exp, multiply
-from carom.kinematics.rows import write_row
+from carom.kinematics.rows import mass_row
 
 WAY = 1e-5  # of the size of a body
 
@@ -56,22 +56,21 @@ def write_speeds(system, j, state, t, ahead, out):
 
 @kernel
 def user_rows(system, j, state, t, work):
-    """Write A and A M^-1."""
+    """Write A and A M^-1 of the user's rows."""
     user = read_poses(system, j, state, t, 0.0)
     answer, width = system.relations.write, 6 * (user.last - user.first) + 1
     call_function(user.address, t, system.relations.read, answer)
     for r in range(system.joints[j].rows):
         for s in range(user.first, user.last):
             side, i = system.solver.sides[s], r * width + 6 * (s - user.first)
-            write_row(
-                side, system.bodies[side.body].mass, work.body[side.body].inverse, r,
-                answer[i], answer[i + 1], answer[i + 2], answer[i + 3], answer[i + 4], answer[i + 5],
-            )  # fmt: skip
+            for k in range(6):
+                side.A[r, k] = answer[i + k]
+            mass_row(system, side, r, work)
 
 
 @kernel
 def user_speeds(system, j, state, t, out):
-    """Write b (rows,)."""
+    """Write b (rows,), the speeds that the rows prescribe."""
     user = read_poses(system, j, state, t, 0.0)
     answer, width = system.relations.write, 6 * (user.last - user.first) + 1
     call_function(user.address, t, system.relations.read, answer)

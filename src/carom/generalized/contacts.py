@@ -39,7 +39,7 @@ class Contacts:
         self.cones: Any = None  # scratch of the contact problem, made when it is first needed
 
     def new_step(self) -> None:
-        """Forget the blows of the last step."""
+        """Forget the impacts of the last step."""
         self.blows[:] = 0
 
     # --- what the state says -------------------------------------------------------------------
@@ -70,7 +70,7 @@ class Contacts:
         return [int(c) for c in held.contact[: held.count[0]]]
 
     def closed(self, struck: int) -> list[int]:
-        """Return the contacts that are closed: held, just located, or with a gap that is nothing."""
+        """Return the contacts that are closed: held, just located, or with a gap that counts as zero."""
         scale = self.run.options.tie_tolerance * self.run.work.gap_scale
         gap = self.seen.gap
         held = self.held()
@@ -79,7 +79,7 @@ class Contacts:
     # --- one event --------------------------------------------------------------------------------
 
     def resolve(self, kind: int, index: int) -> int:
-        """Resolve what has been located (0: the start); return a status."""
+        """Resolve the located event (kind 0: the start of the run); return a status."""
         run = self.run
         if run.system.size[3] == 0:
             return 0
@@ -119,7 +119,7 @@ class Contacts:
         return Status.RETURN_MAP_FAILED if code == 0 and steps < 0 else code
 
     def let_go(self, contact: int) -> None:
-        """Take a contact from the held ones."""
+        """Remove a contact from the held ones."""
         held = self.run.held
         keep = [i for i, c in enumerate(self.held()) if c != contact]
         for array in (held.contact, held.mode, held.heading, held.force, held.yields):
@@ -194,20 +194,22 @@ class Contacts:
 
     def settle(self, chosen, closed, kind: int, marked: int, free: np.ndarray) -> int:
         """Hold `chosen`: find stick or slip of each from the accelerations; return a status."""
-        from carom.friction.layout import CONE as FREE
-        from carom.friction.layout import SLIDING, SOLVED, new_contact_work
+        from carom.friction.layout import SOLVED, new_contact_work
         from carom.friction.solve import solve_cones
 
         run, n, held = self.run, self.run.n, self.run.held
-        old = {c: held.heading[i].copy() for i, c in enumerate(self.held())}
-        forces = {c: held.force[i].copy() for i, c in enumerate(self.held())}
-        was = {c: int(held.mode[i]) for i, c in enumerate(self.held())}
+        was = {
+            c: (int(held.mode[i]), held.heading[i].copy(), held.force[i].copy())
+            for i, c in enumerate(self.held())
+        }
+        if self.cones is None:
+            self.cones = new_contact_work(len(self.friction))
         for _ in range(ROUNDS):
             k = len(chosen)
             held.count[0] = k
             if k == 0:
                 return 0
-            self.take_out(chosen, kind, marked, forces)
+            self.take_out(chosen, kind, marked, was)
             driven = [c for c in closed if c not in chosen and self.u[c, 0] < -10.0 * self.still[c]]
             if driven:  # by what was taken out of the others
                 chosen = chosen + driven
@@ -215,59 +217,75 @@ class Contacts:
             G = self.seen.G[chosen].reshape(3 * k, n)
             W = G @ self.P @ G.T
             c0 = G @ free + self.seen.G_rate[chosen].reshape(3 * k)
-            mu = self.friction[chosen]
-            kinds, heading = np.full(k, FREE), np.zeros((k, 2))
-            for i, c in enumerate(chosen):
-                slip = self.u[c, 1:]
-                size = float(np.linalg.norm(slip))
-                if mu[i] > 0.0 and size > 10.0 * self.still[c]:
-                    kinds[i], heading[i] = SLIDING, slip / size
-                elif c == marked and kind == CONE and mu[i] > 0.0:  # stick has just given way
-                    pull = forces[c][1:]
-                    kinds[i], heading[i] = SLIDING, -pull / np.linalg.norm(pull)
-            p = np.zeros(3 * k)
-            if self.cones is None:
-                self.cones = new_contact_work(len(self.friction))
+            mu, p = self.friction[chosen], np.zeros(3 * k)
+            kinds, heading = self.slips(chosen, kind, marked, was)
             status, _, _ = solve_cones(k, W, c0, mu, kinds, heading, p, self.cones)
             if status != SOLVED:
-                jams = [
-                    c for i, c in enumerate(chosen)
-                    if kinds[i] == SLIDING and W[3 * i, 3 * i] - mu[i] * heading[i]
-                    @ W[3 * i, 3 * i + 1 : 3 * i + 3] <= 0.0
-                ]  # fmt: skip
-                if jams:
-                    code = self.strike.all(chosen, float(run.clock[0].now), jams[0])
-                    if code != 0:
-                        return code
-                    self.look()
-                    chosen = [c for c in chosen if not self.u[c, 0] > 10.0 * self.still[c]]
-                    free = self.free_acceleration()
-                    continue
-                return Status.NO_CONVERGENCE
+                jam = self.jam(chosen, W, mu, heading)
+                if jam < 0:
+                    return Status.NO_CONVERGENCE
+                code = self.strike.all(chosen, float(run.clock[0].now), jam)
+                if code != 0:
+                    return code
+                self.look()
+                chosen = [c for c in chosen if not self.u[c, 0] > 10.0 * self.still[c]]
+                free = self.free_acceleration()
+                continue
             p = p.reshape(k, 3)
             w = (W @ p.ravel() + c0).reshape(k, 3)
-            pressed = [
-                p[i, 0] > 0.0 or abs(w[i, 0]) <= 1e-12 * np.max(np.abs(c0)) for i in range(k)
-            ]
-            if not all(pressed):
-                chosen = [c for c, is_pressed in zip(chosen, pressed) if is_pressed]
+            least = 1e-12 * np.max(np.abs(c0))
+            pressed = [c for i, c in enumerate(chosen) if p[i, 0] > 0.0 or abs(w[i, 0]) <= least]
+            if len(pressed) < k:
+                chosen = pressed
                 continue
-            for i, c in enumerate(chosen):
-                held.contact[i], held.mode[i], held.force[i] = c, SLIP, p[i]
-                held.heading[i] = heading[i]
-                if kinds[i] == FREE and mu[i] > 0.0:
-                    pull = float(np.linalg.norm(p[i, 1:]))
-                    if pull <= mu[i] * p[i, 0] * (1.0 - 1e-10) or was.get(c) == STICK:
-                        held.mode[i] = STICK
-                    elif pull > 0.0:
-                        held.heading[i] = -p[i, 1:] / pull
-                    elif c in old:
-                        held.heading[i] = old[c]
+            self.write_held(chosen, p, heading, was)
             return settle_rates(run.system, held, float(run.clock[0].now), run.x, run.work)
         return Status.NO_CONVERGENCE
 
-    def take_out(self, chosen, kind, marked, forces) -> None:
-        """Take out normal velocities of contacts to be held, and slip that has stopped."""
+    def slips(self, chosen, kind: int, marked: int, was: dict):
+        """Return kinds (k,) and directions (k, 2) for the solver: sliding, or free to stick or slip."""
+        from carom.friction.layout import CONE as FREE
+        from carom.friction.layout import SLIDING
+
+        kinds, heading = np.full(len(chosen), FREE), np.zeros((len(chosen), 2))
+        for i, c in enumerate(chosen):
+            slip = self.u[c, 1:]
+            size = float(np.linalg.norm(slip))
+            if self.friction[c] > 0.0 and size > 10.0 * self.still[c]:
+                kinds[i], heading[i] = SLIDING, slip / size
+            elif c == marked and kind == CONE and self.friction[c] > 0.0:
+                pull = was[c][2][1:]  # stick has just given way
+                kinds[i], heading[i] = SLIDING, -pull / np.linalg.norm(pull)
+        return kinds, heading
+
+    @staticmethod
+    def jam(chosen, W: np.ndarray, mu: np.ndarray, heading: np.ndarray) -> int:
+        """Return the first contact that jams, where friction of the slip outweighs W_nn; -1 if none does."""
+        for i, c in enumerate(chosen):
+            if heading[i].any():
+                pressing = mu[i] * heading[i] @ W[3 * i, 3 * i + 1 : 3 * i + 3]
+                if W[3 * i, 3 * i] - pressing <= 0.0:
+                    return c
+        return -1
+
+    def write_held(self, chosen, p: np.ndarray, heading: np.ndarray, was: dict) -> None:
+        """Write the contacts that are held from now on, with forces p (k, 3), and whether each sticks."""
+        held = self.run.held
+        for i, c in enumerate(chosen):
+            held.contact[i], held.mode[i], held.force[i] = c, SLIP, p[i]
+            held.heading[i] = heading[i]
+            if heading[i].any() or not self.friction[c] > 0.0:
+                continue
+            pull, most = float(np.linalg.norm(p[i, 1:])), self.friction[c] * p[i, 0]
+            if pull <= most * (1.0 - 1e-10) or (c in was and was[c][0] == STICK):
+                held.mode[i] = STICK
+            elif pull > 0.0:
+                held.heading[i] = -p[i, 1:] / pull
+            elif c in was:
+                held.heading[i] = was[c][1]
+
+    def take_out(self, chosen, kind: int, marked: int, was: dict) -> None:
+        """Remove the normal velocities of contacts to be held, and slip that has stopped."""
         run, n = self.run, self.run.n
         rows = []
         for c in chosen:
@@ -275,13 +293,11 @@ class Contacts:
             if self.friction[c] > 0.0:
                 slip = float(np.linalg.norm(self.u[c, 1:]))
                 stop = 10.0 * self.still[c]
-                if (
-                    c == marked and kind == REVERSE
-                ):  # what friction takes away in a thousandth of a step
+                if c == marked and kind == REVERSE:
+                    # what friction takes away in a thousandth of a step
                     W_tt = np.einsum("in,nm,im->", self.seen.G[c, 1:], self.P, self.seen.G[c, 1:])
-                    stop = max(
-                        stop, 1e-3 * run.plan.step * self.friction[c] * abs(forces[c][0]) * W_tt
-                    )
+                    force = abs(was[c][2][0])
+                    stop = max(stop, 1e-3 * run.plan.step * self.friction[c] * force * W_tt)
                 if slip <= stop:
                     rows.extend(self.seen.G[c, 1:])
         R = np.array(rows)

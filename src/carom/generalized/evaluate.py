@@ -68,7 +68,7 @@ class Evaluation:
         )  # fmt: skip
 
     def failed(self) -> None:
-        """Raise what a function of the user's has raised."""
+        """Raise the error that a function of the user's has raised."""
         error, self.functions.failed = self.functions.failed, None
         if error is not None:
             self.raised = error

@@ -26,7 +26,7 @@ from carom.generalized.layout import (
     TOUCHES,
     N,
 )
-from carom.generalized.motion import NOT_FINITE, acceleration, copy_row, find_contacts, slip_of
+from carom.generalized.motion import NOT_FINITE, acceleration, find_contacts, slip_of
 from carom.generalized.step import take
 
 ROUND_OFF = 1e-15  # of the gap's own terms
@@ -51,7 +51,7 @@ def note_start(system, t, x, work):
 
 @kernel
 def examine(system, held, t, x, work):
-    """Work out at `x` all that `value` reads; return a status."""
+    """Evaluate at `x` all that `value` reads; return a status."""
     if system.size[TOUCHES] == 0:
         return 0
     find_contacts(system, t, x, work)
@@ -156,23 +156,21 @@ def dips(system, held, h, x, work):
 
 
 @kernel
-def find_root(system, method, held, kind, i, t, x, low, high, end, work):
-    """Return (s, status): the time s in (low, high] where an event function crosses zero; its state in `end`.
+def find_root(motion, kind, i, t, x, high):
+    """Return (s, status): the time s in (0, high] where an event function crosses zero, `work.end` its state.
 
-    Positive at `low` (or zero there: then a later time where it is positive is looked for first), negative at
+    Positive at 0 (or zero there: then a later time where it is positive is looked for first), negative at
     `high`. Regula falsi with the weights of Anderson and Bjorck (1973), halving where that is slow.
     """
-    f_low, f_high, length = 0.0, 0.0, high - low
+    low, f_low, f_high, length = 0.0, 0.0, 0.0, high
     for _ in range(40):  # from the end of the step down to where it is still positive
-        code = state_at(system, method, held, t, x, high, end, work)
+        f_high, none, code = value_at(motion, kind, i, t, x, high)
         if code != 0:
             return high, code
-        f_high, none = value(system, held, kind, i, end, work)
         s = low + 0.5 * (high - low)
-        code = state_at(system, method, held, t, x, s, end, work)
+        f_low, none, code = value_at(motion, kind, i, t, x, s)
         if code != 0:
             return s, code
-        f_low, none = value(system, held, kind, i, end, work)
         if f_low > none:
             low = s
             break
@@ -183,10 +181,9 @@ def find_root(system, method, held, kind, i, t, x, low, high, end, work):
         s = low - f_low * (high - low) / (f_high - f_low)
         if not low < s < high or turn % 4 == 3:
             s = low + 0.5 * (high - low)
-        code = state_at(system, method, held, t, x, s, end, work)
+        f, none, code = value_at(motion, kind, i, t, x, s)
         if code != 0:
             return s, code
-        f, none = value(system, held, kind, i, end, work)
         if abs(f) <= none or not high - low > 4e-16 * (t + high):
             break
         if f > 0.0:
@@ -201,18 +198,32 @@ def find_root(system, method, held, kind, i, t, x, low, high, end, work):
 
 
 @kernel
-def state_at(system, method, held, t, x, s, end, work):
-    """Write the state a time s after `x` into `end`, with all that `value` reads."""
-    code = take(system, method, held, t, x, s, end, work)
-    return max(code, 0 if code != 0 else examine(system, held, t + s, end, work))
+def state_at(motion, t, x, s):
+    """Write the state a time s after `x` as the end of the step, with all that `value` reads."""
+    code = take(motion, t, x, s)
+    if code != 0:
+        return code
+    return examine(motion.system, motion.held, t + s, motion.work.end, motion.work)
 
 
 @kernel
-def locate(system, method, held, t, x, h, end, work):
-    """Look for the first event of the step h from `x`, whose end is in `end`; return (s, kind, index, status).
+def value_at(motion, kind, i, t, x, s):
+    """Return (event function, what counts as zero of it, status) a time s after `x`."""
+    code = state_at(motion, t, x, s)
+    if code != 0:
+        return 0.0, 0.0, code
+    f, none = value(motion.system, motion.held, kind, i, motion.work.end, motion.work)
+    return f, none, 0
 
-    `end` is then the state at s. Kind NOTHING: there is none, and s = h.
+
+@kernel
+def locate(motion, t, x, h):
+    """Look for the first event of the step h from `x`, whose end is there; return (s, kind, index, status).
+
+    The end is then the state at s. Kind NOTHING: there is none, and s = h.
     """
+    system, held, work = motion.system, motion.held, motion.work
+    end = work.end
     code = examine(system, held, t + h, end, work)
     if code != 0:
         return h, NOTHING, -1, code
@@ -222,15 +233,14 @@ def locate(system, method, held, t, x, h, end, work):
         c = dips(system, held, h, end, work)
         if c < 0:
             return h, NOTHING, -1, 0
-        high, code = find_root(system, method, held, RATE, c, t, x, 0.0, h, end, work)
+        high, code = find_root(motion, RATE, c, t, x, h)
         if code == 0 and violated(system, held, GAP, c, end, work):
             kind, i = GAP, c
         else:
-            code = max(code, state_at(system, method, held, t, x, h, end, work))
-            return h, NOTHING, -1, code
+            return h, NOTHING, -1, max(code, state_at(motion, t, x, h))
     s = high
     for _ in range(20):
-        s, code = find_root(system, method, held, kind, i, t, x, 0.0, high, end, work)
+        s, code = find_root(motion, kind, i, t, x, high)
         if code != 0:
             break
         other, j = first_violated(system, held, end, work)
@@ -238,9 +248,3 @@ def locate(system, method, held, t, x, h, end, work):
             break
         kind, i, high = other, j, s
     return s, kind, i, code
-
-
-@kernel
-def keep(end, x):
-    """Make the end of a step the state."""
-    copy_row(end, x, x.size)

@@ -10,6 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom.model.method import Method
+
 # The four functions, by their place in `Coordinates.address`.
 INERTIA = 0  #: M (n, n), Gamma_kij v_i v_j (n,), first kind
 LOADS = 1  #: V, generalised forces Q - dV (n,), power Q.v of those that have no potential
@@ -83,8 +85,17 @@ class Work(NamedTuple):
     spent: np.ndarray  # (2,) work of loads and of friction in the last step
 
 
+class Motion(NamedTuple):
+    """All that a step needs beside the state: the system, the method, the held contacts, scratch."""
+
+    system: Coordinates
+    method: Method
+    held: Held
+    work: Work
+
+
 class Plan(NamedTuple):
-    """What is to be run."""
+    """The length of a run, its step, and which states it saves."""
 
     duration: float
     step: float
@@ -100,6 +111,14 @@ CLOCK = [
 
 #: one saved state, beside the state itself
 SERIES = [("t", "f8"), ("loads", "f8"), ("impacts", "f8"), ("friction", "f8"), ("bounces", "f8")]
+
+
+class Record(NamedTuple):
+    """The clock of a run and the states that it has saved."""
+
+    clock: np.recarray  # (1,) CLOCK
+    series: np.recarray  # (rows,) SERIES
+    states: np.ndarray  # (rows, 2n)
 
 
 def new_held(contacts: int) -> Held:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from carom._compiled.decorators import entry, kernel
 from carom._compiled.user_functions import call_function
-from carom.generalized.events import keep, locate, note_start, turned
+from carom.generalized.events import locate, note_start, turned
 from carom.generalized.layout import DONE, EVENT, LOADS, NOTHING, PAUSE, TOUCHES, N
-from carom.generalized.motion import find_metric
+from carom.generalized.motion import copy_row, find_metric
 from carom.generalized.step import take
 
 CUTS = 12  # most halvings of a step in which slip turns
@@ -14,14 +14,14 @@ LONG = 20_000  # trial steps, times the square of the coordinates, after which t
 
 
 @entry
-def march(system, method, held, x, plan, until, work, clock, series, states):
-    """Go on to step number `until`; return DONE, EVENT (`clock` says which) or a status of failure.
+def march(motion, x, plan, until, record):
+    """Go on to step number `until`; return DONE, EVENT (the clock says which) or a status of failure.
 
     PAUSE after much work: so that Ctrl-C is seen.
     """
-    c, h = clock[0], plan.step
-    n = system.size[N]
-    most = c.trials + LONG // (n * n) + 1
+    system, work = motion.system, motion.work
+    c, h = record.clock[0], plan.step
+    most = c.trials + LONG // (system.size[N] * system.size[N]) + 1
     while c.step < until:
         if c.trials > most:
             return PAUSE
@@ -30,19 +30,13 @@ def march(system, method, held, x, plan, until, work, clock, series, states):
         left = target - c.now
         if left > 1e-13 * h:
             note_start(system, c.now, x, work)
-            part = left
-            for cut in range(CUTS):
-                code = take(system, method, held, c.now, x, part, work.end, work)
-                if code != 0:
-                    return code
-                c.trials += 1
-                if cut + 1 == CUTS or not turned(system, held, c.now + part, work.end, work):
-                    break
-                part *= 0.5
-            s, kind, index, code = locate(system, method, held, c.now, x, part, work.end, work)
+            part, code = first_part(motion, x, left, c)
             if code != 0:
                 return code
-            keep(work.end, x)
+            s, kind, index, code = locate(motion, c.now, x, part)
+            if code != 0:
+                return code
+            copy_row(work.end, x, x.size)
             c.loads += work.spent[0]
             c.friction += work.spent[1]
             if kind != NOTHING:
@@ -55,24 +49,40 @@ def march(system, method, held, x, plan, until, work, clock, series, states):
         c.now = target
         c.step += 1
         if c.step % plan.every == 0 or last:
-            save(x, c, series, states)
+            save(x, record)
     return DONE
 
 
 @kernel
-def save(x, clock, series, states):
+def first_part(motion, x, left, c):
+    """Take a step, halved until slip does not turn in it; return (its length, status)."""
+    part, work = left, motion.work
+    for cut in range(CUTS):
+        code = take(motion, c.now, x, part)
+        if code != 0:
+            return part, code
+        c.trials += 1
+        if cut + 1 == CUTS or not turned(motion.system, motion.held, c.now + part, work.end, work):
+            break
+        part *= 0.5
+    return part, 0
+
+
+@kernel
+def save(x, record):
     """Write the state into the next row."""
-    row = series[clock.saved]
+    clock = record.clock[0]
+    row = record.series[clock.saved]
     row.t, row.loads, row.impacts = clock.now, clock.loads, clock.impacts
     row.friction, row.bounces = clock.friction, clock.bounces
-    keep(x, states[clock.saved])
+    copy_row(x, record.states[clock.saved], x.size)
     clock.saved += 1
 
 
 @entry
-def save_now(x, clock, series, states):
+def save_now(x, record):
     """`save`, for Python: at the start, and after a failure."""
-    save(x, clock[0], series, states)
+    save(x, record)
 
 
 @entry

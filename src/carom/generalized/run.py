@@ -16,7 +16,9 @@ from carom.generalized.layout import (
     EVENT,
     PAUSE,
     SERIES,
+    Motion,
     Plan,
+    Record,
     new_held,
     new_work,
 )  # fmt: skip
@@ -51,12 +53,14 @@ class GeneralizedRun:
         self.system = self.made.system
         n, h, k, C = (int(one) for one in self.system.size)
         self.n = n
-        self.method = tableau(method)
-        self.held, self.work = new_held(C), new_work(n, h, k, C, len(self.method.b))
+        stages = tableau(method)
+        self.held, self.work = new_held(C), new_work(n, h, k, C, len(stages.b))
+        self.motion = Motion(self.system, stages, self.held, self.work)
         self.x = np.concatenate([system.position, system.velocity])
         self.clock = table(CLOCK, 1)
         rows = -(-steps // save_every) + 3
         self.series, self.states = table(SERIES, rows), np.zeros((rows, 2 * n))
+        self.record = Record(self.clock, self.series, self.states)
         self.nodes: list[tuple[float, np.ndarray, np.ndarray]] = []  # time, state before, after
         self.contacts = Contacts(self)
         self.counts = {"located events": 0, "impacts": 0, "holds": 0}
@@ -106,16 +110,13 @@ class GeneralizedRun:
 
     def save_now(self) -> None:
         """Write the present state into the records."""
-        save_now(self.x, self.clock, self.series, self.states)
+        save_now(self.x, self.record)
 
     def go_on(self, until: float) -> Status:
         """Go on to step number `until`, or to a failure."""
         code = self.start_code
         while code == 0:
-            code = march(
-                self.system, self.method, self.held, self.x, self.plan, int(until), self.work,
-                self.clock, self.series, self.states,
-            )  # fmt: skip
+            code = march(self.motion, self.x, self.plan, int(until), self.record)
             if code == PAUSE and self.made.functions.failed is None:
                 code = 0  # here Ctrl-C is raised
                 continue

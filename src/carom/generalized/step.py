@@ -23,8 +23,10 @@ _NONE = 4e-16  # of its terms: error of a row that cannot be smaller
 
 
 @kernel
-def take(system, method, held, t, x, h, end, work):
-    """Write the state a time h after `x` into `end`; return a status. Works go to `work.spent`."""
+def take(motion, t, x, h):
+    """Write the state a time h after `x` into `work.end`; return a status. Works go to `work.spent`."""
+    system, method, held, work = motion.system, motion.method, motion.held, motion.work
+    end = work.end
     n, stages = system.size[N], method.b.size
     aim(system, held, t, x, work)
     loads, friction = 0.0, 0.0

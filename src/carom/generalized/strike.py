@@ -67,10 +67,13 @@ class Strike:
             return Status.IMPACT_FAILED
         impulse = out[o.IMPULSE : o.IMPULSE + 3].copy()
         self.apply(G, impulse)
-        self.write(
-            c, now, 1, W, e, u, out[o.VELOCITY : o.VELOCITY + 3], impulse, out[o.ENERGY_CHANGE],
-            out[o.WORK_C], out[o.WORK_R], out[o.FRICTION_LOSS], int(out[o.PHASES]) & o.WEDGED != 0,
-        )  # fmt: skip
+        self.write(c, now, {
+            "relative_velocity_before": u, "relative_velocity_after": out[o.VELOCITY : o.VELOCITY + 3],
+            "impulse": impulse, "energy_change": float(out[o.ENERGY_CHANGE]),
+            "inverse_mass": W, "restitution": e, "compression_work": float(out[o.WORK_C]),
+            "restitution_work": float(out[o.WORK_R]), "friction_loss": float(out[o.FRICTION_LOSS]),
+            "together": 1, "wedged": int(int(out[o.PHASES]) & o.WEDGED != 0),
+        })  # fmt: skip
         return 0
 
     def several(self, closed: list[int], now: float, jams: int) -> int:
@@ -114,10 +117,15 @@ class Strike:
         works = out.compression + out.restitution - out.friction
         for i, c in enumerate(closed):
             if np.any(p[i] != 0.0):
-                self.write(
-                    c, now, k, W[3 * i : 3 * i + 3, 3 * i : 3 * i + 3], e[i], u[i], after[i], p[i],
-                    works[i], out.compression[i], out.restitution[i], out.friction[i], out.wedged[i] != 0,
-                )  # fmt: skip
+                self.write(c, now, {
+                    "relative_velocity_before": u[i], "relative_velocity_after": after[i],
+                    "impulse": p[i], "energy_change": float(works[i]),
+                    "inverse_mass": W[3 * i : 3 * i + 3, 3 * i : 3 * i + 3],
+                    "restitution": float(e[i]), "compression_work": float(out.compression[i]),
+                    "restitution_work": float(out.restitution[i]),
+                    "friction_loss": float(out.friction[i]), "together": k,
+                    "wedged": int(out.wedged[i] != 0),
+                })  # fmt: skip
         return 0
 
     def apply(self, G: np.ndarray, impulse: np.ndarray) -> None:
@@ -128,35 +136,14 @@ class Strike:
         run.x[n:] += self.contacts.P @ (G.T @ impulse)
         run.clock[0].impacts += 0.5 * (run.x[n:] - v) @ M @ (run.x[n:] + v)
 
-    def write(
-        self,
-        c,
-        now,
-        together,
-        W,
-        e,
-        before,
-        after,
-        impulse,
-        energy,
-        compression,
-        restitution,
-        loss,
-        wedged,
-    ) -> None:
-        """Keep the record of an impact."""
+    def write(self, c: int, now: float, blow: dict[str, Any]) -> None:
+        """Keep the record of an impact: what the blow did, and where."""
         here = self.contacts
         here.run.counts["impacts"] += 1
         here.events.append((now, "impact", c))
         self.records.append(
             {
                 "time": now, "contact": c, "position": here.run.x[: here.run.n].copy(),
-                "relative_velocity_before": before.copy(), "relative_velocity_after": after.copy(),
-                "impulse": impulse.copy(), "energy_change": float(energy),
-                "law": here.run.user.contacts[c].impact_law, "inverse_mass": W.copy(),
-                "restitution": float(e), "friction": float(here.friction[c]),
-                "compression_work": float(compression), "restitution_work": float(restitution),
-                "friction_loss": float(loss), "together": together,
-                "wedged": int(wedged),
+                "law": here.run.user.contacts[c].impact_law, "friction": float(here.friction[c]), **blow,
             }
         )  # fmt: skip

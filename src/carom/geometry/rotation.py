@@ -115,13 +115,13 @@ def log(w, x, y, z):
 
 
 @entry
-def spin_tensor(R00, R01, R02, R10, R11, R12, R20, R21, R22, i1, i2, i3):
-    """Return the six entries xx, xy, xz, yy, yz, zz of R diag(i1, i2, i3) R^T."""
+def spin_tensor(R, i):
+    """Return the six entries xx, xy, xz, yy, yz, zz of R diag(i) R^T, R as `matrix` gives it."""
     return (
-        R00 * R00 * i1 + R01 * R01 * i2 + R02 * R02 * i3,
-        R00 * R10 * i1 + R01 * R11 * i2 + R02 * R12 * i3,
-        R00 * R20 * i1 + R01 * R21 * i2 + R02 * R22 * i3,
-        R10 * R10 * i1 + R11 * R11 * i2 + R12 * R12 * i3,
-        R10 * R20 * i1 + R11 * R21 * i2 + R12 * R22 * i3,
-        R20 * R20 * i1 + R21 * R21 * i2 + R22 * R22 * i3,
+        R[0] * R[0] * i[0] + R[1] * R[1] * i[1] + R[2] * R[2] * i[2],
+        R[0] * R[3] * i[0] + R[1] * R[4] * i[1] + R[2] * R[5] * i[2],
+        R[0] * R[6] * i[0] + R[1] * R[7] * i[1] + R[2] * R[8] * i[2],
+        R[3] * R[3] * i[0] + R[4] * R[4] * i[1] + R[5] * R[5] * i[2],
+        R[3] * R[6] * i[0] + R[4] * R[7] * i[1] + R[5] * R[8] * i[2],
+        R[6] * R[6] * i[0] + R[7] * R[7] * i[1] + R[8] * R[8] * i[2],
     )

@@ -69,56 +69,50 @@ def inverse_inertias(system, state, work):
     """Write the inverse inertia (xx, xy, xz, yy, yz, zz) of each body in world axes."""
     for b in range(system.bodies.shape[0]):
         J, q, inverse = system.bodies[b].inertia, state[b].Q, work.body[b].inverse
-        R = matrix(q[0], q[1], q[2], q[3])
-        t = spin_tensor(
-            R[0], R[1], R[2], R[3], R[4], R[5], R[6], R[7], R[8],
-            1.0 / J[0], 1.0 / J[1], 1.0 / J[2],
-        )  # fmt: skip
-        for k in range(6):
-            inverse[k] = t[k]
+        i = (1.0 / J[0], 1.0 / J[1], 1.0 / J[2])
+        t = spin_tensor(matrix(q[0], q[1], q[2], q[3]), i)
+        inverse[0], inverse[1], inverse[2], inverse[3], inverse[4], inverse[5] = t
 
 
 @kernel
-def times_inverse_mass(mass, i, f0, f1, f2, t0, t1, t2):
-    """Return M^-1 of a body (mass, inverse inertia i) times a wrench (force, torque)."""
+def times_inverse_mass(mass, i, f, out):
+    """Write M^-1 of a body (mass, inverse inertia i) times a wrench f (force, torque)."""
     g = 1.0 / mass
-    return (
-        g * f0,
-        g * f1,
-        g * f2,
-        i[0] * t0 + i[1] * t1 + i[2] * t2,
-        i[1] * t0 + i[3] * t1 + i[4] * t2,
-        i[2] * t0 + i[4] * t1 + i[5] * t2,
-    )
+    out[0], out[1], out[2] = g * f[0], g * f[1], g * f[2]
+    out[3] = i[0] * f[3] + i[1] * f[4] + i[2] * f[5]
+    out[4] = i[1] * f[3] + i[3] * f[4] + i[4] * f[5]
+    out[5] = i[2] * f[3] + i[4] * f[4] + i[5] * f[5]
 
 
 @kernel
 def joint_rows(system, j, state, work):
     """Write A and A M^-1 of a joint into the solver's arrays."""
-    bodies, joint, first = system.bodies, system.joints[j], system.solver.rows[j].first
-    c, p = joint.child, joint.parent
+    joint, sides, first = system.joints[j], system.solver.sides, system.solver.rows[j].first
     cx, cy, cz = child_arm(joint, state)
     px, py, pz = parent_arm(joint, state)
     for r in range(joint.rows):
         ax, ay, az, lx, ly, lz = direction(joint, r, state)
         tx, ty, tz = cross(cx, cy, cz, lx, ly, lz)
-        inverse, side = work.body[c].inverse, system.solver.sides[first]
-        write_row(side, bodies[c].mass, inverse, r, lx, ly, lz, tx + ax, ty + ay, tz + az)
-        if p >= 0:
+        write_row(system, sides[first], r, (lx, ly, lz, tx + ax, ty + ay, tz + az), work)
+        if joint.parent >= 0:
             tx, ty, tz = cross(px, py, pz, lx, ly, lz)
-            inverse, side = work.body[p].inverse, system.solver.sides[first + 1]
-            write_row(side, bodies[p].mass, inverse, r, -lx, -ly, -lz, -tx - ax, -ty - ay, -tz - az)
+            row = (-lx, -ly, -lz, -tx - ax, -ty - ay, -tz - az)
+            write_row(system, sides[first + 1], r, row, work)
 
 
 @kernel
-def write_row(side, mass, inverse, r, f0, f1, f2, t0, t1, t2):
+def write_row(system, side, r, row, work):
     """Store one row for one body, and the row times M^-1."""
-    A, Y = side.A, side.Y
-    A[r, 0], A[r, 1], A[r, 2] = f0, f1, f2
-    A[r, 3], A[r, 4], A[r, 5] = t0, t1, t2
-    y = times_inverse_mass(mass, inverse, f0, f1, f2, t0, t1, t2)
-    for k in range(6):
-        Y[r, k] = y[k]
+    A = side.A
+    A[r, 0], A[r, 1], A[r, 2], A[r, 3], A[r, 4], A[r, 5] = row
+    mass_row(system, side, r, work)
+
+
+@kernel
+def mass_row(system, side, r, work):
+    """Write the row times M^-1 of a row that is in place."""
+    b = side.body
+    times_inverse_mass(system.bodies[b].mass, work.body[b].inverse, side.A[r], side.Y[r])
 
 
 @kernel

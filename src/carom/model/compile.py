@@ -42,7 +42,7 @@ KIND = {
 
 
 class Compiled(NamedTuple):
-    """A scene as arrays, and what is needed to speak of it in the scene's own words again."""
+    """A scene as arrays, and the maps from these back to the parts and axes of the scene."""
 
     system: System
     start: np.recarray  # (N,) STATE

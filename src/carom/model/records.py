@@ -273,5 +273,5 @@ def written(records: Records, clock: np.recarray) -> Records:
 
 
 def told(clock: np.recarray) -> dict:
-    """Return what the clock says as numbers of Python, by name."""
+    """Return the fields of the clock as Python numbers, by name."""
     return dict(zip(clock.dtype.names or (), clock[0].item()))

@@ -1,4 +1,4 @@
-"""What is said of a run whose balance of energy is off, or in which a body gets into what it touches."""
+"""The warnings of a run whose balance of energy is off, or in which a body gets into what it touches."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ _WHAT = {
 
 
 def beyond(i: int, watch: np.record, times: float = 1.0) -> bool:
-    """Return whether energy of a kind without a name is beyond the tolerance, or that so many times."""
+    """Return whether the unnamed energy of a kind is beyond so many times the tolerance."""
     allowed = watch.tolerance * watch.exchanged * times + ROUND_OFF * watch.size
     return not abs(watch.amount[i]) <= allowed
 
@@ -116,7 +116,7 @@ def watched(t, ledger: Ledger, given, tolerance: float) -> np.record:
 
 
 def energy_error(watch: np.record) -> float:
-    """Return the greatest energy without a name as a part of the largest exchanged; round-off is none."""
+    """Return the greatest unnamed energy as a part of the largest exchanged; round-off counts as zero."""
     amount, of = abs(float(watch.amount[ALL])), float(watch.exchanged)
     if amount <= ROUND_OFF * float(watch.size):
         return 0.0

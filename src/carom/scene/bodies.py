@@ -1,4 +1,4 @@
-"""What moves and what stands: bodies, the ground, half-spaces."""
+"""Bodies, half-spaces, and the ground."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What can be the inertia of a rigid body."""
+"""The inertia of a rigid body, checked."""
 
 from __future__ import annotations
 

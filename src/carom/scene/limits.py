@@ -1,4 +1,4 @@
-"""What a scene may state and a method of `simulate` does not do: refused before a run, never left out."""
+"""Checks that a method of `simulate` can do all that a scene states; nothing is silently left out."""
 
 from __future__ import annotations
 

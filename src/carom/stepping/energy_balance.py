@@ -108,7 +108,7 @@ def watch_step(system, now, clock, records, watch):
 
 @inlined
 def compare(i, amount, t, watch):
-    """Note an amount without a name if it is the greatest of its kind so far; one that is no number stays."""
+    """Note an amount without a name if it is the greatest of its kind so far; a NaN stays noted."""
     greatest = watch.amount[i]
     if not (abs(amount) <= abs(greatest)) and greatest == greatest:
         watch.amount[i], watch.time[i] = amount, t
@@ -116,25 +116,30 @@ def compare(i, amount, t, watch):
 
 @kernel
 def given_by_law(system, clock, records, watch):
-    """Return what the new impacts have given where Newton's law with friction may (V8)."""
+    """Return the energy that the new impacts have added, where Newton's law with friction may add some (V8)."""
     total = 0.0
     for k in range(watch.struck, clock.struck):
         row = records.impact[k]
         given = max(row.energy_change, row.compression_work + row.restitution_work)
-        if given > 0.0:
-            for c in range(system.contacts.shape[0]):
-                contact = system.contacts[c]
-                if contact.number == row.contact:
-                    if contact.law == laws.NEWTON and contact.friction > 0.0:
-                        total += given
-                    break
+        if given > 0.0 and may_give(system, row.contact):
+            total += given
     watch.struck = clock.struck
     return total
 
 
+@kernel
+def may_give(system, number):
+    """Return whether the contact with this number in the scene has Newton's law and friction."""
+    for c in range(system.contacts.shape[0]):
+        contact = system.contacts[c]
+        if contact.number == number:
+            return contact.law == laws.NEWTON and contact.friction > 0.0
+    return False
+
+
 @inlined
 def imbalance(system, held, start, end, named, t, h, watch):
-    """Return the energy of a step that has no name, as a part of what it may have; and if it multiplies energy.
+    """Return the unnamed energy of a step, as a part of what is allowed, and whether the step multiplies it.
 
     Bodies that only gravity acts on are exact in flight, and watched where they are held
     (`carom.persistent.step_control`).
@@ -158,7 +163,7 @@ def speeds_known(system, state, h):
 
 @kernel
 def unbalanced(system, held, start, end, named, t, h, watch):
-    """Return so of bodies that are joined or loaded; `named` is the work of loads and of friction.
+    """Return what `imbalance` does, for joined or loaded bodies; `named` is the work of loads and friction.
 
     A step multiplies energy if it gains as much as it exchanges, and more than is tolerated, from nobody: what
     explicit methods do with springs and dampers that are too stiff for them.

@@ -85,7 +85,7 @@ def begin_search(search, kind, contact, low, high, d1, d2):
 
 @kernel
 def narrow(search, t, f, rate):
-    """Take in the value f at t. Returns 1 if that is the event, 0 if not yet, -1 if f is not a number."""
+    """Narrow the bracket by the value f at t; return 1 if that is the event, 0 if not yet, -1 if f is NaN."""
     search.t, search.f, search.rate = t, f, rate
     if search.f_low < 0.0:  # the first value; nothing is known at the low end but the sign
         search.f_low = abs(f)

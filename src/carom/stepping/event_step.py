@@ -281,12 +281,12 @@ def strayed(system, now, dt, work):
 
 
 @unit
-def _look_at_pair(system, controls, held, contact, c, now, still, work) -> int:
+def _look_at_pair(system, controls, held, c, now, work) -> int:
     """Return whether a closed point of two bodies is to be struck or held."""
-    near = closed_within(controls, contact, now)
+    contact, action = system.contacts[c], NOTHING
+    near, still = closed_within(controls, contact, now), slow(contact, now)
     if apart(contact, now, near):
         return NOTHING
-    action = NOTHING
     for i in range(find_touches(system, contact, now, REACH * smaller(contact), work)):
         touch = work.touches[i]
         if touch.gap <= near:
@@ -299,11 +299,29 @@ def _look_at_pair(system, controls, held, contact, c, now, still, work) -> int:
 
 
 @inlined
-def look_at_pair(system, controls, held, contact, c, now, still, work):
+def look_at_pair(system, controls, held, c, now, work):
     """Return whether a closed point of two bodies is to be struck or held."""
     if system.solids.shape[0] > 0:
-        return _look_at_pair(system, controls, held, contact, c, now, still, work)
+        return _look_at_pair(system, controls, held, c, now, work)
     return NOTHING
+
+
+@inlined
+def look_at_vertices(system, controls, held, contact, now):
+    """Return whether a closed vertex on a half-space is to be struck or held."""
+    near, still, plane = (
+        controls.tie * contact.extent,
+        slow(contact, now),
+        plane_in_body(contact, now),
+    )
+    action = NOTHING
+    for i in range(contact.first, contact.last):
+        z, rate = gap_and_rate(plane, system.vertices[i])
+        if z <= near and rate < -still:
+            return STRIKE
+        if z <= near and rate <= still and held.carries[i] == 0:
+            action = HOLD
+    return action
 
 
 @inlined
@@ -313,21 +331,12 @@ def look_near(system, controls, held, now, work):
         brink, contact = held.brinks[c], system.contacts[c]
         if brink.near == 0:
             continue
-        near, still = controls.tie * contact.extent, slow(contact, now)
-        action = NOTHING
         if contact.touches == 1:
-            action = look_at_pair(system, controls, held, contact, c, now, still, work)
+            action = look_at_pair(system, controls, held, c, now, work)
         elif contact.touches == STOP:
             action = look_at_stop(system, controls, held, contact, c, now, work)
         else:
-            plane = plane_in_body(contact, now)
-            for i in range(contact.first, contact.last):
-                z, rate = gap_and_rate(plane, system.vertices[i])
-                if z <= near:
-                    if rate < -still:
-                        action = STRIKE
-                    elif rate <= still and held.carries[i] == 0 and action == NOTHING:
-                        action = HOLD
+            action = look_at_vertices(system, controls, held, contact, now)
         brink.near = 0
         if brink.jams == 1:
             brink.jams, action = 0, STRIKE

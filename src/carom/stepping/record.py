@@ -14,7 +14,7 @@ from carom.stepping.energy_balance import begin_watch, note_energies
 
 @inlined
 def finite(state):
-    """Return whether the state is made of numbers."""
+    """Return whether all numbers of the state are finite."""
     s = 0.0
     for b in range(state.shape[0]):
         for k in range(3):

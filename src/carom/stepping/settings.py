@@ -18,7 +18,7 @@ _DEFAULT = Options()
 
 
 def check_handling(progress, throw, save_seconds) -> None:
-    """Refuse what is wrong with how a run is watched, saved and ended."""
+    """Raise for invalid settings of how a run is watched, saved and ended."""
     if not (progress is None or isinstance(progress, bool) or callable(progress)):
         raise TypeError(f"progress must be True, False or a function, got {checks.shown(progress)}")
     if not isinstance(throw, bool):
@@ -61,7 +61,7 @@ def checked_settings(
 
 
 def check_scene(scene: Scene, method: str, location: str) -> None:
-    """Refuse a scene that cannot start, or not by this method."""
+    """Raise for a scene that cannot start, or cannot start with this method."""
     scene.validate()
     check_location(scene, location)
     check_method(scene, method)

@@ -110,7 +110,7 @@ def step_apart(model, data, method, islands) -> int:
 
 @inlined
 def pay(clock):
-    """Take the work of what was moved from what steps may take."""
+    """Subtract the work that was done from the credit of the steps."""
     clock.credit, clock.effort = max(0.0, clock.credit - clock.effort), 0.0
 
 
@@ -140,7 +140,7 @@ def finish_step(model, data):
 
 @kernel
 def settle_up(clock):
-    """Put down to the impacts of a step what friction gave as bounces were dropped, and has not taken back.
+    """Book as energy of impacts what friction gave in the step as bounces were dropped, and has not taken back.
 
     Impacts, bounces and hold together have mu times their normal impulse of friction: where the hold ends early
     it is the impacts that took less.
@@ -153,7 +153,7 @@ def settle_up(clock):
 
 @kernel
 def earn(now, clock, work):
-    """Note that later steps may take more work, as this one was allowed some: not where it was given up."""
+    """Add the credit of one step, unless a body takes the step whole."""
     for b in range(now.shape[0]):
         if work.body[b].whole_until >= clock.step:
             return
@@ -162,7 +162,7 @@ def earn(now, clock, work):
 
 @inlined
 def move_together(model, data, method, start):
-    """Move all bodies to the end of the step: event by event, or whole if that did not get on."""
+    """Move all bodies to the end of the step: event by event, or at once where that made no progress."""
     system, work = model.system, data.work
     step = data.clocks[0].step
     if start.free == 0 or not is_whole(step, work):
@@ -227,6 +227,6 @@ def apart_again(model, data, islands, code):
 
 @unit
 def end_islands(model, data, islands):
-    """Put all islands back."""
+    """Write all islands back into the whole system."""
     clock = data.clocks[0]
     parts.end_step(model.system, data.held, data.state, clock.length, clock, data.work, islands)

@@ -112,7 +112,7 @@ def trial_step(model, data, method, late):
 
 @inlined
 def fits(model, data):
-    """Return 0 if the trial step is as short as its error and its joints ask for; else ONCE_MORE or a code."""
+    """Return 0 if the trial step is short enough for its error and its joints; else ONCE_MORE or a code."""
     system, controls, work = model.system, model.controls, data.work
     clock, search, code = data.clocks[0], work.search[0], work.search[0].code
     dt = search.dt

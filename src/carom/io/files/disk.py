@@ -41,14 +41,14 @@ def put(path: Path, parts: Iterable[bytes | memoryview]) -> None:
 
 
 def settle(folder: Path) -> None:
-    """Have all that is in a folder on the disk, where the system can do that."""
+    """Flush a folder and all that is in it to the disk, where the system can do that."""
     for one in folder.rglob("*"):
         _settle(one)
     _settle(folder)
 
 
 def _settle(place: Path) -> None:
-    """Have a file, or the names in a folder, on the disk."""
+    """Flush a file, or the names in a folder, to the disk."""
     with contextlib.suppress(OSError):
         number = os.open(place, os.O_RDONLY)
         try:

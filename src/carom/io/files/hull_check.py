@@ -1,4 +1,4 @@
-"""What is looked at in the hulls, meshes and compounds of a file: shapes, sizes, numbers of vertices."""
+"""Checks of the hulls, meshes and compounds in a file: shapes, sizes, numbers of vertices."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ CORES = ("point", "segment", "box", "hull", "cylinder", "ellipsoid")
 
 
 def check_convex(shape: Convex) -> None:
-    """Refuse a hull whose fields are not those of one."""
+    """Raise for a hull whose fields do not fit each other."""
     points = _rows("points", shape.points)
     vertices = _rows("_vertices", shape._vertices)
     checks.number("radius", shape.radius, least=0.0)
@@ -25,7 +25,7 @@ def check_convex(shape: Convex) -> None:
 
 
 def check_mesh(shape: Mesh) -> None:
-    """Refuse a mesh whose fields are not those of one."""
+    """Raise for a mesh whose fields do not fit each other."""
     points, faces = _rows("points", shape.points), shape.faces
     if not (isinstance(faces, np.ndarray) and faces.dtype == np.int64 and faces.shape[1:] == (3,)):
         raise ValueError("faces must be whole numbers of shape (k, 3)")
@@ -37,7 +37,7 @@ def check_mesh(shape: Mesh) -> None:
 
 
 def check_compound(shape: Compound) -> None:
-    """Refuse a compound whose fields are not those of one."""
+    """Raise for a compound whose fields do not fit each other."""
     if not isinstance(shape.parts, tuple) or not shape.parts:
         raise ValueError("parts must be a tuple of at least one")
     for part, position, orientation in shape.parts:
@@ -51,7 +51,7 @@ def check_compound(shape: Compound) -> None:
 
 
 def check_piece(piece: Piece) -> None:
-    """Refuse a piece whose fields are not those of one."""
+    """Raise for a piece whose fields do not fit each other."""
     checks.choice("kind", piece.kind, CORES)
     if not np.all(checks.finite_array("half", piece.half, (3,)) >= 0.0):
         raise ValueError(f"half must be at least 0, got {piece.half!r}")

@@ -1,4 +1,4 @@
-"""What a solution from a file has in the place of its run."""
+"""The records of a run that a solution from a file holds in the place of the run itself."""
 
 from __future__ import annotations
 

@@ -102,7 +102,7 @@ def _fields(file: Sealed, scene, missing: list[str]) -> dict[str, Any]:
 
 
 def _settings(given: dict, options: Options) -> dict:
-    """Return the settings of a run, looked at as those of `simulate` are."""
+    """Return the settings of a run, checked as those of `simulate` are."""
     checked_settings(
         given["duration"], given["step"], given["method"], given["impact_location"],
         given.get("rtol"), given.get("atol"), given["save_every"], options,
@@ -170,7 +170,7 @@ class _Arrays:
 
 
 def check_numbers(records: r.Records, contacts: int) -> None:
-    """Refuse numbers of rows that there are not: of contacts, bodies, saved times, events, snapshots.
+    """Raise for row numbers out of range: of contacts, bodies, saved times, events, snapshots.
 
     Raises
     ------

@@ -48,7 +48,7 @@ def resume(
         If the run fails later on and `throw` is True.
     """
     from carom.io.files.keeper import Keeper
-    from carom.stepping.run_to_end import finish
+    from carom.io.run_to_end import finish
     from carom.stepping.settings import check_handling
 
     check_handling(progress, throw, save_seconds)

@@ -1,4 +1,4 @@
-"""What is looked at in a scene that comes from a file: what is when its parts are added by hand.
+"""Checks of a scene that comes from a file: the same as when its parts are added by hand.
 
 Records in a file are made without their constructors, which would change last digits. Here they are made once
 more with them, and what they then hold must be what the file says, up to rounding. Of hulls, meshes and
@@ -67,7 +67,7 @@ def check_part(scene: Scene, part: Any) -> None:
 
 
 def check_pair(pair: frozenset) -> frozenset:
-    """Return a pair of parts that may touch, or be left out; refuse what is none."""
+    """Return a pair of parts that may touch, or be left out; raise for anything else."""
     allowed = (*KINDS, bodies.Ground)
     if len(pair) != 2 or not all(isinstance(one, allowed) for one in pair):
         raise ValueError(f"a pair must be two bodies, or a body and a half-space, got {set(pair)}")

@@ -100,7 +100,7 @@ def _put_pairs(scene: Scene, data: dict, decoder: Decoder) -> None:
 
 @contextmanager
 def told(where: str) -> Iterator[None]:
-    """Say of whatever goes wrong with a part of a scene that it is that one."""
+    """Name the part of a scene in the message of an error that it causes."""
     try:
         yield
     except Exception as error:

@@ -1,4 +1,4 @@
-"""What is at hand while a scene is made from a model: both, the names that are taken, what was made of what."""
+"""A scene in the making from a model: both, the names in use, and the part that each part became."""
 
 from __future__ import annotations
 

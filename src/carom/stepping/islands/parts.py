@@ -145,7 +145,7 @@ def slot_of(islands, i, c):
 
 @kernel
 def is_heap(part, least, step, work):
-    """Return whether an island takes its step whole: large, or of late unable to go from event to event."""
+    """Return whether an island takes its step whole: it is large, or event by event made no progress lately."""
     n = part.bodies.shape[0]
     heap = n >= least
     for b in range(n):
@@ -201,7 +201,7 @@ def leave(own, islands):
 
 @kernel
 def end_step(system, held, now, length, clock, work, islands):
-    """Put all islands back; move what flies with nothing near."""
+    """Write all islands back; move the bodies in free flight that have nothing near."""
     plan, member = islands.plan[0], islands.member
     for b in range(system.bodies.shape[0]):
         if member[b].kind == FLIES:

@@ -113,14 +113,7 @@ def number(system, held, now, work, islands):
     member, plan, n = islands.member, islands.plan[0], system.bodies.shape[0]
     for b in range(n):
         member[b].island = -1
-        member[b].kind = ASLEEP
-        if member[root(member, b)].awake == 1:
-            member[b].kind = MEETS
-            if member[root(member, b)].bodies == 1 and work.body[b].status == FREE:
-                member[b].kind = FLIES
-                for q in range(islands.plane_first[b], islands.plane_first[b + 1]):
-                    if near_plane(system, islands.plane[q], now, work):
-                        member[b].kind = MEETS
+        member[b].kind = kind_of(system, b, now, work, islands)
     plan.count = 0
     for b in range(n):  # roots are the lowest of their sets
         if member[b].kind == MEETS and root(member, b) == b:
@@ -129,78 +122,80 @@ def number(system, held, now, work, islands):
     for s in range(3):
         for i in range(plan.count + 1):
             islands.first[s, i] = 0
-    give_slots(n, islands)
-    # count, then fill; half-spaces first, as `set_contact_default` numbers them
-    for phase in range(2):
-        for b in range(n):
-            if member[b].kind == MEETS:
-                for q in range(islands.plane_first[b], islands.plane_first[b + 1]):
-                    if near_plane(system, islands.plane[q], now, work):
-                        put(islands, phase, member[root(member, b)].island, islands.plane[q])
-        for p in range(plan.pairs):
-            i, j = islands.pair[p, 0], islands.pair[p, 1]
-            island = member[root(member, i)].island
-            q = first_contact(islands, i, j)
-            if island < 0 or q < 0 or root(member, j) != root(member, i):
-                continue
-            while q < islands.partner_first[i + 1] and islands.partner[0, q] == j:
-                put(islands, phase, island, islands.partner[1, q])
-                q += 1
-        if phase == 0:
-            plan.used = ranges(islands, 1)
-            if plan.used > islands.which.shape[0]:
-                return False
-        else:
-            sort_contacts(islands)
-    for phase in range(2):
-        for i in range(held.count[0]):
-            island = member[root(member, held.points[i].body)].island
-            if island >= 0 and phase == 0:
-                islands.first[2, island] += 1
-            elif island >= 0:
-                islands.held_of[islands.first[2, island]] = i
-                islands.first[2, island] += 1
-        if phase == 0:
-            ranges(islands, 2)
-        else:
-            back(islands, 2)
+    for phase in range(2):  # count, then fill
+        list_bodies(system, held, islands, phase)
+        list_contacts(system, now, work, islands, phase)
+        for s in range(3 if phase == 0 else 0):
+            ranges(islands, s)
+        plan.used = islands.first[1, plan.count]
+        if plan.used > islands.which.shape[0]:
+            return False
+    for s in range(3):
+        back(islands, s)
+    for slot in range(islands.first[0, plan.count]):
+        member[islands.body_of[slot]].place = slot
+    sort_contacts(islands)
     return True
 
 
 @kernel
-def give_slots(n, islands):
-    """Put the bodies of each island next to each other, in their own order."""
+def kind_of(system, b, now, work, islands):
+    """Return the state of a body in the step: ASLEEP, FLIES (nothing is near), or MEETS (in an island)."""
+    whole = islands.member[root(islands.member, b)]
+    if whole.awake != 1:
+        return ASLEEP
+    if whole.bodies != 1 or work.body[b].status != FREE:
+        return MEETS
+    for q in range(islands.plane_first[b], islands.plane_first[b + 1]):
+        if near_plane(system, islands.plane[q], now, work):
+            return MEETS
+    return FLIES
+
+
+@kernel
+def list_contacts(system, now, work, islands, phase):
+    """Count (phase 0) or write (1) the contacts of islands; half-spaces first, as they are numbered."""
+    member, plan = islands.member, islands.plan[0]
+    for b in range(system.bodies.shape[0]):
+        if member[b].kind == MEETS:
+            for q in range(islands.plane_first[b], islands.plane_first[b + 1]):
+                if near_plane(system, islands.plane[q], now, work):
+                    put(islands, 1, phase, member[root(member, b)].island, islands.plane[q])
+    for p in range(plan.pairs):
+        i, j = islands.pair[p, 0], islands.pair[p, 1]
+        island = member[root(member, i)].island
+        q = first_contact(islands, i, j)
+        if island < 0 or q < 0 or root(member, j) != root(member, i):
+            continue
+        while q < islands.partner_first[i + 1] and islands.partner[0, q] == j:
+            put(islands, 1, phase, island, islands.partner[1, q])
+            q += 1
+
+
+@kernel
+def list_bodies(system, held, islands, phase):
+    """Count (phase 0) or write (1) the bodies and the held points of islands, in their own order."""
     member = islands.member
-    for phase in range(2):
-        for b in range(n):
-            island = member[root(member, b)].island
-            if island < 0:
-                continue
-            if phase == 1:
-                member[b].place = islands.first[0, island]
-                islands.body_of[member[b].place] = b
-            islands.first[0, island] += 1
-        if phase == 0:
-            ranges(islands, 0)
-        else:
-            back(islands, 0)
+    for b in range(system.bodies.shape[0]):
+        put(islands, 0, phase, member[root(member, b)].island, b)
+    for i in range(held.count[0]):
+        put(islands, 2, phase, member[root(member, held.points[i].body)].island, i)
 
 
 @kernel
 def ranges(islands, s):
-    """Turn counts into beginnings; return the sum."""
+    """Turn the counts of the islands into first places; the last one is the sum."""
     total = 0
     for i in range(islands.plan[0].count):
         count = islands.first[s, i]
         islands.first[s, i] = total
         total += count
     islands.first[s, islands.plan[0].count] = total
-    return total
 
 
 @kernel
 def back(islands, s):
-    """Turn ends back into beginnings."""
+    """Turn the last places, where filling has ended, back into first places."""
     for i in range(islands.plan[0].count - 1, 0, -1):
         islands.first[s, i] = islands.first[s, i - 1]
     if islands.plan[0].count > 0:
@@ -208,17 +203,19 @@ def back(islands, s):
 
 
 @kernel
-def put(islands, phase, island, c):
-    """Count a contact of an island, or write it into the next slot."""
+def put(islands, s, phase, island, i):
+    """Count a body, a contact or a held point (s = 0, 1, 2) of an island, or write it into the next slot."""
+    if island < 0:
+        return
     if phase == 1:
-        islands.which[islands.first[1, island]] = c
-    islands.first[1, island] += 1
+        slots = islands.body_of if s == 0 else islands.which if s == 1 else islands.held_of
+        slots[islands.first[s, island]] = i
+    islands.first[s, island] += 1
 
 
 @kernel
 def sort_contacts(islands):
     """Put the contacts of each island into the order of the scene: by insertion, as they are few."""
-    back(islands, 1)
     for island in range(islands.plan[0].count):
         first = islands.first[1, island]
         for i in range(first + 1, islands.first[1, island + 1]):

@@ -8,9 +8,9 @@ from collections.abc import Callable, Iterator, Mapping
 import numpy as np
 
 from carom import checks
+from carom.io.run_to_end import reporter
 from carom.options import Options
 from carom.scene.scene import Scene
-from carom.stepping.run_to_end import reporter
 from carom.stepping.settings import (
     check_handling,
     check_scene,

@@ -93,6 +93,7 @@ class _Finder:
 
     def __call__(self, bodies: list[Moving], change: np.ndarray):
         from carom.collision.frame import place
+        from carom.collision.layout import Placed, Plane
         from carom.collision.plane import touch_plane
         from carom.collision.touch import touch
 
@@ -105,14 +106,12 @@ class _Finder:
             Q = quaternion.from_matrix(quaternion.matrix(quaternion.exp(d[3:])) @ body.R)
             place(solids[k], x, Q, *self.poses[k])
             centres.append(x)
-        (xa, qa), (xb, qb) = self.poses
+        a, b = (Placed(solid, *pose) for solid, pose in zip(solids, self.poses))
         if len(bodies) == 1:
-            n = np.ascontiguousarray(row.axes[0])
-            count = touch_plane(
-                solids[0], system.hulls, xa, qa, n, float(row.offset), 0.0, self.work, self.out
-            )
+            plane = Plane(np.ascontiguousarray(row.axes[0]), float(row.offset))
+            count = touch_plane(a, plane, system.hulls, 0.0, self.work, self.out)
         else:
-            count = touch(*solids, system.hulls, xa, qa, xb, qb, 0.0, self.work, self.out)
+            count = touch(a, b, system.hulls, 0.0, self.work, self.out)
         if count < 1:
             return None
         best = self.out[int(np.argmin(self.out["gap"][:count]))]
