@@ -64,8 +64,8 @@ def gather_closed(system, controls, held, c, state, cluster, work, strikes):
     """List the points that are closed in `state` together with contact c; return how many, -1 for too many.
 
     Closed: within the tolerance of ties or of a located gap, or held; where it `strikes`, a rim that is as good
-    as flat, too. Writes seats and points. Bodies that closed points link become one group, in which all
-    closed points count.
+    as flat, too. Writes the closed points and where they are. Bodies that closed points link become one group,
+    in which all closed points count.
     """
     first, k, more = system.contacts[c].body, 0, True
     rim_time = RIM_TIME * controls.step if strikes else 0.0

@@ -88,7 +88,7 @@ def is_held_stop(held, c):
 
 @kernel
 def look_at_stop(system, controls, held, contact, c, now, work):
-    """Return whether a closed stop is to be struck or held."""
+    """Return the action that a closed stop asks for."""
     z, rate = stop_gap(system, contact, now, work)
     still = slow(contact, now)
     if z > controls.tie * contact.extent or rate > still:

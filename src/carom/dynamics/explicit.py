@@ -188,7 +188,7 @@ def mark_held(system, held, work):
 
 @kernel
 def constrained_step(tableau, system, held, start, care, h, end, work):
-    """Step the bodies that are joined, loaded or held, from `result.begin`; the others are in `end` already.
+    """Step the bodies that are joined, loaded or held from `result.begin`; the others have reached `end`.
 
     With `care` the stages return to the joints first, and those in singular positions are passed round. Returns
     work of loads, of friction, a status, and the least and the most rows that stages left out, or nearly.

@@ -1,4 +1,4 @@
-"""Scratch for the closed points of one group of bodies, taken together: made once for a run."""
+"""Workspace for the closed points of one group of bodies: made once for a run."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class Cluster(NamedTuple):
 
 
 class Corner(NamedTuple):
-    """What the impact of several points needs beyond that, and its result."""
+    """Workspace and result of a multiple impact, beyond that of the group."""
 
     scratch: CornerScratch
     settings: CornerSettings

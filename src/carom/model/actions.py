@@ -1,3 +1,3 @@
-"""What the loop is to do with a closed point."""
+"""Actions of the loop on a closed point."""
 
 NOTHING, STRIKE, HOLD, SETTLE = range(4)

@@ -20,7 +20,7 @@ class Model(NamedTuple):
 
 
 class Data(NamedTuple):
-    """All that a step changes: where bodies are, what is held, scratch, clock and records.
+    """All that a step changes: state, active set, workspace, clock and records.
 
     The arrays of an island are parts of those of the run.
     """
@@ -28,9 +28,9 @@ class Data(NamedTuple):
     state: np.recarray  # (N,) STATE, the present
     held: Held
     work: Work
-    cluster: tuple  # `carom.impact.workspace.Cluster`: scratch of several closed points
-    corner: tuple  # `carom.impact.multiple.layout.Corner`: scratch of an impact of several points
-    heap: tuple  # `carom.stepping.crowd.layout.Heap`: scratch of a step that is taken whole
+    cluster: tuple  # `carom.impact.workspace.Cluster`: the closed points of a group
+    corner: tuple  # `carom.impact.workspace.Corner`: scratch of a multiple impact
+    heap: tuple  # `carom.stepping.crowd.layout.Heap`: scratch of a time-stepping step
     clocks: np.recarray  # (1,) CLOCK
     records: Records
     watch: np.recarray  # (1,) WATCH

@@ -170,7 +170,7 @@ def new_clock() -> np.recarray:
 
 
 def new_held(system: System) -> Held:
-    """Return an empty active set: all contacts are to be looked at first."""
+    """Return an empty active set: all contacts are to be checked first."""
     contacts = system.contacts
     grounded = int(np.count_nonzero((contacts["touches"] == 1) & (contacts["other"] < 0)))
     between = max(len(system.bodies), len(system.solids))  # bodies, or pieces of them

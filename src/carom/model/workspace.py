@@ -8,7 +8,7 @@ import numpy as np
 
 from carom.collision.layout import PairWork
 
-#: a contact between looks
+#: state of a contact between events
 BRINK = [
     ("seen", "i8"),  # scratch: while a group is gathered; 1 + first held point, in a heap
     ("near", "i8"),  # 1 where something happened at the last event: look before stepping
@@ -18,7 +18,7 @@ BRINK = [
     ("step", "i8"),  # the last in which the two were near each other, plus 1
 ]
 
-#: a point that is held, over time (see `carom.persistent`)
+#: an active point: a point of persistent contact, over time (see `carom.persistent`)
 HELD = [
     ("contact", "i8"),
     ("feature", "i8"),  # what touches, the same as long as it does: number of the vertex
@@ -118,7 +118,7 @@ JOINT_WORK = [
 #: one stage of a Runge-Kutta step, for one body
 STAGE = [("speed", "f8", 6), ("rate", "f8", 6), ("attitude", "f8", 4)]
 
-#: what a step of joined, loaded or held bodies gives back
+#: results of a step of bodies that are joined, loaded or held
 RESULT = [
     ("applied", "f8"),
     ("friction", "f8"),
@@ -166,7 +166,7 @@ SEARCH = [
     ("found", "i8"),  # whether an event is at its end
 ]
 
-#: what a body does: FREE flight, held at ONE point, RESTS, held at SEVERAL points
+#: state of a body: in FREE flight, in contact at ONE point, at rest (RESTS), in contact at SEVERAL points
 FREE, ONE, RESTS, SEVERAL = range(4)
 
 #: an impact in the making
@@ -183,7 +183,7 @@ HIT = [
 
 
 class Held(NamedTuple):
-    """What is held, and what may be: the first `count[0]` of `points` are in use."""
+    """The active set and the states of all contacts: the first `count[0]` of `points` are in use."""
 
     points: np.recarray  # (P,) HELD
     brinks: np.recarray  # (C,) BRINK
@@ -192,7 +192,7 @@ class Held(NamedTuple):
 
 
 class Work(NamedTuple):
-    """Scratch of one run: made once, never grown."""
+    """Workspace of one run: made once, never grown."""
 
     body: np.recarray  # (N,) BODY_WORK
     joint: np.recarray  # (J,) JOINT_WORK

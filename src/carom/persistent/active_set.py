@@ -1,4 +1,4 @@
-"""The list of held points: taking a point in, striking it off, and which of them share their bodies."""
+"""The active set: adding a point, removing it, and which of its points share their bodies."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def begin_point(hold, contact, c, feature, mode):
 
 @kernel
 def enlist(system, held, seat, mode, state, work):
-    """Add a closed point to the list; return its place."""
+    """Add a closed point to the active set; return its place."""
     i = held.count[0]
     held.count[0] = i + 1
     hold, contact = held.points[i], system.contacts[seat.contact]
@@ -65,7 +65,7 @@ def set_anchor(system, hold, state, work):
 
 @kernel
 def strike_off(held, i):
-    """Take point i off the list, the others keep their order."""
+    """Remove point i from the active set; the others keep their order."""
     if held.points[i].touches == 0:
         held.carries[held.points[i].feature] = 0
     held.brinks[held.points[i].contact].leaving = 1
@@ -77,7 +77,7 @@ def strike_off(held, i):
 
 @kernel
 def let_go(held):
-    """Strike off all points that share bodies: they are struck, and held again, at the end of the next step."""
+    """Remove all points that share bodies: they strike, and persist again, at the end of the next step."""
     for i in range(held.count[0] - 1, -1, -1):
         hold = held.points[i]
         if hold.several == 1:
@@ -183,7 +183,7 @@ def _refresh_pairs(system, controls, held, state, work) -> bool:
 
 @kernel
 def enlist_touch(contact, c, touch, mode, state, held):
-    """Add a point that was found to the list, without an event."""
+    """Add a point that was found to the active set, without an event."""
     hold = held.points[held.count[0]]
     held.count[0] += 1
     begin_point(hold, contact, c, touch.feature, mode)

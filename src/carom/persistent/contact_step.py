@@ -1,4 +1,4 @@
-"""A step of bodies that are held at several points: midpoint rows carry the impulse, end rows the constraint.
+"""A step of bodies held at several points: midpoint rows carry the impulse, end rows the constraint.
 
 The step without the contacts is known (any method). With the impulses p of all k points,
 

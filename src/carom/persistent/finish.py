@@ -1,4 +1,4 @@
-"""The end of a step of bodies that are held at several points: rest, modes, forces, and when slip stops."""
+"""The end of a step of bodies held at several points: rest, modes, forces, and when slip stops."""
 
 from __future__ import annotations
 

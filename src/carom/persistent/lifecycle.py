@@ -1,13 +1,13 @@
-"""When a contact is held, whether it slips or sticks, and when it is at rest.
+"""When a contact becomes persistent, whether it slips or sticks, and when it is at rest.
 
 After an impact with exit speed u_n, a contact whose free acceleration of approach is g_i bounces on for
 
     t_i = 2 u_n / (g_i (1 - e)),
 
-exactly, as long as g_i is constant. If that ends within the present step the contact is held from now
-on: u_n is taken out in the kinetic metric and the energy this drops goes to the ledger. There is no threshold
-of speed: a smaller step holds later. Of several closed points each is judged by the acceleration that it has
-while those that do not leave are kept.
+exactly, as long as g_i is constant. If that ends within the present step the contact is persistent from now
+on: u_n is taken out in the kinetic metric and the energy this takes goes to the ledger. There is no threshold
+of speed: with a smaller step it becomes so later. Of several closed points each is judged by the acceleration
+that it has while those that do not leave are kept.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ TOO_MANY_POINTS = 10
 
 @unit
 def hold_contact(model, data, c, horizon):
-    """Hold what is closed in the group of contact c, does not approach, and shall be held by the rule."""
+    """Let the closed points in the group of contact c persist that do not approach and fulfil the rule."""
     system, controls = model.system, model.controls
     held, state, cluster, work = data.held, data.state, data.cluster, data.work
     contact, hit = system.contacts[c], work.hit[0]

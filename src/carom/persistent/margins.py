@@ -83,7 +83,7 @@ def note_due(held, search, work):
 
 @kernel
 def meet_due(held, search):
-    """Give the points that are due, where the event has been located, their new mode; return whether so."""
+    """Give the points whose event has been located their new mode; return whether there are any."""
     if held.points[search.contact].several == 0:
         return False
     for i in range(held.count[0]):

@@ -30,7 +30,7 @@ from carom.persistent.jam import JAMMED, note_jam, presses, yields
 
 @kernel
 def hold_one(model, data, horizon):
-    """Hold the one closed point, in seat 0, if it does not approach and the rule says so."""
+    """Let the only closed point persist if it does not approach and fulfils the rule."""
     system = model.system
     held, state, cluster, work, clock, records = (
         data.held,

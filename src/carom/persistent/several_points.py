@@ -1,4 +1,4 @@
-"""Several closed points of one group: which of them are held from now on, which open."""
+"""Several closed points of one group: which of them persist from now on, which open."""
 
 from __future__ import annotations
 
@@ -274,7 +274,7 @@ def set_modes(model, data, k):
 
 @kernel
 def first_forces(model, data, group):
-    """Put the forces of all held points of the group into the list, and the times at which their slip stops."""
+    """Note the forces of all held points of the group, and the times at which their slip stops."""
     system, controls = model.system, model.controls
     held, state, cluster, work = data.held, data.state, data.cluster, data.work
     k = gather_held(system, held, group, state, cluster, work)
@@ -292,7 +292,7 @@ def first_forces(model, data, group):
 
 @kernel
 def look_again(system, held, k, state, cluster):
-    """Have contacts with a closed point that still approaches looked at; the others were judged just now."""
+    """Mark contacts to be checked where a closed point still approaches; the others were judged just now."""
     for i in range(k):
         held.brinks[cluster.seats[i].contact].near = 0
     for i in range(k):
@@ -305,7 +305,7 @@ def look_again(system, held, k, state, cluster):
 
 @kernel
 def strike_off_open(model, data, k, group):
-    """Strike off the held points of the group that do not stay."""
+    """Remove the held points of the group that do not stay."""
     system = model.system
     held, state, cluster, work, clock, records = (
         data.held,

@@ -181,7 +181,7 @@ def arms(contacts) -> np.ndarray:
 
 
 def contact_sums(touch: np.recarray, saved: int, contacts: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return modes (T, C) and forces (T, C, 3) of contacts: the largest, and the sum, of their held points."""
+    """Return the largest mode (T, C) and the total force (T, C, 3) of the held points of each contact."""
     mode = np.zeros((saved, contacts), dtype=np.int64)
     force = np.zeros((saved, contacts, 3))
     np.maximum.at(mode, (touch.saved, touch.contact), touch.mode)

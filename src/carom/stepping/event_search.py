@@ -22,7 +22,7 @@ from carom.persistent.margins import LEAST, NEAR
 
 @inlined
 def examine(system, controls, held, now, dt, work):
-    """Look at the step from `now` to work.trial: verdict, event, contact, a time before it, slip."""
+    """Return the first event of the step on trial: verdict, event, contact, a time before it, slip."""
     found, which, low = CLEAR, -1, 0.0
     for c in range(held.brinks.shape[0]):
         contact = system.contacts[c]
@@ -56,7 +56,7 @@ def examine(system, controls, held, now, dt, work):
 
 @kernel
 def event_value(system, controls, held, search, state, work):
-    """Return the event function and, for a gap, its rate; forces of held contacts are those of `state`."""
+    """Return the event function and, for a gap, its rate; forces are those of held contacts at `state`."""
     if search.kind == GAP:
         contact = system.contacts[search.contact]
         search.tolerance = max(controls.gap * smaller(contact), round_off(contact, state))

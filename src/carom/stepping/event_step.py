@@ -326,7 +326,7 @@ def look_at_vertices(system, controls, held, contact, now):
 
 @inlined
 def look_near(system, controls, held, now, work):
-    """Find a closed point that is not held, at the start or after an event: strike or hold it."""
+    """Find a closed point that is not active, at the start or after an event, and the action it asks for."""
     for c in range(held.brinks.shape[0]):
         brink, contact = held.brinks[c], system.contacts[c]
         if brink.near == 0:

@@ -94,8 +94,8 @@ def step_apart(model, data, method, islands) -> int:
         part = refer(Model(refer(system), model.controls))
         own = refer(
             Data(
-                state, refer(held), refer(work), data.cluster, data.corner, data.heap, data.clocks,
-                data.records, data.watch,
+                state, refer(held), refer(work), data.cluster, data.corner, data.heap,
+                data.clocks, data.records, data.watch,
             )
         )  # fmt: skip
         if plan.entered == 0:  # not done before the loop was left
@@ -142,8 +142,8 @@ def finish_step(model, data):
 def settle_up(clock):
     """Book as energy of impacts what friction gave in the step as bounces were dropped, and has not taken back.
 
-    Impacts, bounces and hold together have mu times their normal impulse of friction: where the hold ends early
-    it is the impacts that took less.
+    Impacts, bounces and persistent contact together have mu times their normal impulse of friction: where the
+    contact ends early it is the impacts that took less.
     """
     part = min(clock.owed, max(0.0, clock.before - clock.impacts))
     clock.impacts += part

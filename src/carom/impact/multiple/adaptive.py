@@ -1,4 +1,4 @@
-"""The layer at a corner, passed with steps of controlled error; each change of mode is located."""
+"""The layers of a multiple impact in steps of controlled error; each change of mode is located."""
 
 from __future__ import annotations
 

@@ -53,7 +53,8 @@ def resolve_contacts(k, W, u, mu, e, law, kappa, settings, scratch, out):
     `W` (3K, 3K) symmetric inverse mass, often singular, and `u` (3K,) velocities before, rows (n, t1, t2) of
     each contact, approach negative; of contacts that touch or are held u_n = 0. `mu`, `e`, `law` and
     `kappa` (K,): friction, restitution, its law as in `carom.impact.laws`, stiffness (only ratios matter).
-    `settings`: `CornerSettings`; `scratch` from `corner_arrays`, `out` from `new_corner_result`, for K >= k.
+    `settings`: `CornerSettings`; `scratch` is from `corner_arrays`, `out` from `new_corner_result`, with room
+    for K >= k contacts.
     """
     scale = _check(k, W, u, mu, e, law, kappa)
     if not scale >= 0.0:

@@ -1,1 +1,1 @@
-"""Heaps: a large island takes its step whole, all its contacts in one problem (Moreau's time-stepping)."""
+"""Crowds: a large island takes a time-stepping step (Moreau), with all its contacts in one problem."""

@@ -90,7 +90,7 @@ def write_impact(model, data, i, k, w, pressure, rubbing):
 
 @kernel
 def list_held(model, data, k, h, tolerance):
-    """Write the points that press and did not strike into `heap.held`, with their events; return how many."""
+    """Write the points that press without a strike into `heap.held`, and their events; return how many."""
     system = model.system
     held, end, heap, clock, records = (
         data.held,

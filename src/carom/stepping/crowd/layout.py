@@ -1,4 +1,4 @@
-"""Scratch of a step of a heap: made when the first one is met, longer where it has more points."""
+"""Workspace of a step of a crowd: made for the first one, and longer where one has more points."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ def new_heap(bodies: int, held: int, points: int) -> Heap:
 
 @cache
 def no_heap() -> Heap:
-    """Return what stands for the scratch while no heap was met: nothing is written to it."""
+    """Return the workspace of a run without a crowd: nothing is written to it."""
     return new_heap(1, 1, 1)  # fewer spots than `SPOTS`
 
 

@@ -12,7 +12,7 @@ from carom.model.arrays import BODY, CONTACT, STATE, System
 from carom.model.records import CLOCK
 from carom.model.workspace import BODY_WORK, BRINK, HELD, Held
 
-#: what a body does in a step: nothing, flies with nothing near, or takes part in an island
+#: state of a body in a step: asleep, in free flight, or in an island
 ASLEEP, FLIES, MEETS = range(3)
 
 PLAN = [
@@ -39,7 +39,7 @@ MEMBER = [
 
 
 class Together(NamedTuple):
-    """All bodies together: one of them, or joined. What a step begins with is kept, to go back to.
+    """All bodies as one island: a single body, or joined bodies. The start of a step is kept, to go back to.
 
     No state is kept where a step is not done in another way: nothing touches, and no joint sticks.
     """

@@ -1,4 +1,4 @@
-"""A step of all bodies together: what it begins with is kept, so that it can be done again another way."""
+"""A step of all bodies as one island: its start is kept, so that it can be done again another way."""
 
 from __future__ import annotations
 
