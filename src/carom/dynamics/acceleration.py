@@ -1,4 +1,4 @@
-"""Accelerations of all bodies: applied forces, joints, and the force of a contact held at one point.
+"""Accelerations of all bodies: applied forces, joints, and the force of a contact at one point.
 
 A held contact answers with lam = (N, T). While it slips, T = -mu N u_t/|u_t| and the normal row of
 du/dt vanishes; while it sticks (or rolls) all three rows vanish. Where several points share their bodies

@@ -23,7 +23,7 @@ OF_MOTION, OF_FALL, OF_SIZE = 1e-6, 1e-2, 1e-7
 MUCH, LEAST = 1e3, 1e-4
 CAREFUL = 0.01
 SURE = 1.0 / 32.0  # of that: what a step may lose for the next to be twice as long (order 4: 2^5)
-# of one body: these parts of its kinetic energy and of m g times its size, held at one point and at several
+# of one body: these parts of its kinetic energy and of m g times its size, at one point and at several
 OF_ONE, OF_SEVERAL = 1e-9, 2e-8
 # ... and how far it may turn: the methods are of use for less than a radian
 TURN = 0.5

@@ -56,7 +56,7 @@ def examine(system, controls, held, now, dt, work):
 
 @kernel
 def event_value(system, controls, held, search, state, work):
-    """Return the event function and, for a gap, its rate; forces are those of held contacts at `state`."""
+    """Return the event function and, for a gap, its rate; contact forces are those of `state`."""
     if search.kind == GAP:
         contact = system.contacts[search.contact]
         search.tolerance = max(controls.gap * smaller(contact), round_off(contact, state))

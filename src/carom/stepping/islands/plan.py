@@ -109,7 +109,7 @@ def near_plane(system, c, now, work):
 
 @kernel
 def number(system, held, now, work, islands):
-    """Give each island a number, and bodies, contacts, held points a slot; return False if there is no room."""
+    """Give islands numbers, and bodies, contacts, held points slots; return False if there is no room."""
     member, plan, n = islands.member, islands.plan[0], system.bodies.shape[0]
     for b in range(n):
         member[b].island = -1
