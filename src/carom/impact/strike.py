@@ -179,7 +179,7 @@ def collide(method, controls, contact, hit, history):
 @unit
 def by_layer(controls, contact, hit, history) -> int:
     """Pass the boundary layer by cubic splines."""
+    layer = (contact.width, contact.penetration, controls.layer_steps)
     return traverse(
-        hit.W, hit.u, hit.friction, hit.restitution, contact.law, contact.width,
-        contact.penetration, controls.layer_steps, history, hit.out,
-    )  # fmt: skip
+        hit.W, hit.u, hit.friction, hit.restitution, contact.law, layer, history, hit.out
+    )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from carom._compiled.by_reference import refer
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.contact.gap import slow
@@ -12,7 +13,7 @@ from carom.dynamics.several_points import inverse_masses, velocities
 from carom.impact.driven import BLOCKED, blocked
 from carom.impact.effective_restitution import what_is_left
 from carom.impact.layout import WEDGED
-from carom.impact.multiple.layout import OK
+from carom.impact.multiple.layout import OK, CornerContacts
 from carom.impact.multiple.resolve import resolve_contacts
 from carom.impact.workspace import U
 
@@ -24,10 +25,9 @@ STEP = 30.0  # cost of a step through the layers, of a point [us]
 @unit
 def at_corner(k, W, u, mu, corner):
     """Resolve the impact of k points; its code goes to the clock of the scratch."""
-    corner.scratch.work.clock[0].code = resolve_contacts(
-        k, W, u, mu, corner.e, corner.law, corner.kappa, corner.settings, corner.scratch,
-        corner.result,
-    )  # fmt: skip
+    contacts = refer(CornerContacts(k, W, u, mu, corner.e, corner.law, corner.kappa))
+    code = resolve_contacts(contacts, corner.settings, corner.scratch, corner.result)
+    corner.scratch.work.clock[0].code = code
 
 
 @kernel

@@ -46,6 +46,20 @@ class CornerSettings(NamedTuple):
     max_rounds: int = 40  # of the outer iteration of Newton's and Poisson's law
 
 
+class CornerContacts(NamedTuple):
+    """The contacts of an impact: the first `k` of each array; (n, t1, t2) of each are rows of W and u."""
+
+    k: int
+    W: np.ndarray  # (3K, 3K) inverse mass, symmetric, often singular
+    u: (
+        np.ndarray
+    )  # (3K,) velocity before, approach negative; u_n = 0 where contacts touch or are held
+    friction: np.ndarray  # (K,)
+    restitution: np.ndarray  # (K,)
+    law: np.ndarray  # (K,) of `carom.impact.laws`
+    stiffness: np.ndarray  # (K,), only ratios matter
+
+
 #: one contact, or a class of contacts that move alike, in scaled variables
 CONTACT = [
     ("mu", "f8"),
