@@ -143,5 +143,5 @@ def factor_shifted(work, k, sigma):
 
 @kernel
 def solve_shifted(work, k):
-    """Rhs becomes (W + sigma)^-1 rhs."""
+    """Replace the right-hand side r by (W + sigma)^-1 r."""
     substitute(work.matrix, 3 * k, work.pivot, work.vector[o.RHS])

@@ -147,7 +147,7 @@ def factor_shifted(work, k, sigma):
 
 @unit
 def solve_shifted(work, k):
-    """Rhs r becomes x of J x + D W x = r."""
+    """Replace the right-hand side r by the solution x of J x + D W x = r."""
     x = work.vector[o.RHS]
     _rest(work)
     for i in range(k):

@@ -1,4 +1,4 @@
-"""Closed points that move alike are one: an edge or a face that strikes evenly is a single contact at its mean.
+"""Closed points that move alike are one contact: an edge or a face that strikes evenly, at its mean point.
 
 If all points of a contact have the same velocity u, and an impulse at their mean gives all of them the same
 change as their mean, they stay together all through the boundary layer and share the impulse. In planar
@@ -12,17 +12,9 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.contact.gap import slow
-from carom.dynamics.contact_impulse import (
-    effective_inverse_mass,
-    spread,
-)
+from carom.dynamics.contact_impulse import effective_inverse_mass, spread
 from carom.dynamics.several_points import inverse_masses_of_one, of_one_body
-from carom.kinematics.contact_point import (
-    contact_motion,
-    contact_velocity,
-    copy_point,
-    place,
-)
+from carom.kinematics.contact_point import contact_motion, contact_velocity, copy_point, place
 
 SAME = 1e-12  # relative to W_nn: round-off of a difference of two answers
 

@@ -210,5 +210,5 @@ def _project(m, radius, t):
 
 @unit
 def friction(m, A, J, vector, index, tolerance):
-    """Solve as `solve_discs`."""
+    """Solve for the friction of `m` discs as `solve_discs` does, compiled on its own."""
     solve_discs(m, A, J, vector, index, tolerance)

@@ -1,7 +1,7 @@
-"""What makes an impact smaller, exactly.
+"""Exact reductions of a multiple impact.
 
-Contacts that move alike are one, those that no force presses take no part, and contacts that do not reach each
-other are solved apart.
+Contacts that move alike are solved as one, contacts that no force presses take no part, and groups of contacts
+that do not act on each other are solved one after the other.
 
 Contacts of equal velocity, friction, restitution, law and stiffness whose coupling to each class of such
 contacts is equal have the same history in the layer. m of them are one contact, with the impulse shared

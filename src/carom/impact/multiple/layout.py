@@ -1,4 +1,4 @@
-"""Settings, work arrays and results of impacts at a corner."""
+"""What is given of a multiple impact, settings, workspace and result."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ REPELLED = 32  #: the impulse was scaled back by round-off, so that energy does 
 
 
 class CornerSettings(NamedTuple):
-    """Numbers that say how an impact at a corner is resolved."""
+    """Settings of the resolver of multiple impacts."""
 
     multiple: int = SIMULTANEOUS
     rtol: float = 1e-8  # relative error of velocities
@@ -102,7 +102,7 @@ RESULT = [
 
 
 class CornerResult(NamedTuple):
-    """What `resolve_corner` writes, K contacts."""
+    """Result of an impact of K contacts."""
 
     impulse: np.ndarray  # (3K,)
     velocity: np.ndarray  # (3K,) after
@@ -114,7 +114,7 @@ class CornerResult(NamedTuple):
 
 
 class CornerWork(NamedTuple):
-    """Scratch of the passage of a group, K contacts: few arrays, as each costs at every call."""
+    """Workspace for the passage of a group of K contacts, in few arrays: each costs at every call."""
 
     contact: np.recarray  # (K,) CONTACT
     saved: np.recarray  # (K,) CONTACT, at the first unloading
@@ -131,7 +131,7 @@ class CornerWork(NamedTuple):
 
 
 class CornerScratch(NamedTuple):
-    """Scratch of `resolve_corner` for up to K contacts."""
+    """Workspace for impacts of up to K contacts."""
 
     work: CornerWork
     cones: ContactWork
