@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from carom._compiled.decorators import entry, kernel
+from carom._compiled.decorators import entry, inlined, kernel
 from carom.friction.rays import outgoing, solve_tangential, stick_ratio
 from carom.impact import laws
 from carom.impact import layout as o
@@ -107,7 +107,7 @@ def resolve_one(W, u, mu, e, law, out):
     return o.OK
 
 
-@kernel
+@inlined
 def _follow(contact, u, e, law):
     """Follow the velocity from `u` to the end of restitution, piece by piece.
 
@@ -169,7 +169,7 @@ def _follow(contact, u, e, law):
     return o.TOO_MANY_STEPS, steps, phases, s, before, slip_end
 
 
-@kernel
+@inlined
 def _from_rest(contact):
     """Return the line along which the contact goes on from u_t = 0 (II.9, 2 and 3).
 
@@ -183,7 +183,7 @@ def _from_rest(contact):
     return Line(_STRAIGHT if growth > 0.0 else _STICK, -mu * c, -mu * n, growth)
 
 
-@kernel
+@inlined
 def _straightened(contact, s):
     """Return the line of slip if it keeps its direction from here on to round-off, else the curve.
 
@@ -239,7 +239,7 @@ def _along_curve(contact, phase, s):
     return new, _WITHIN if slips else _AT_STOP, marks
 
 
-@kernel
+@inlined
 def _along_line(contact, phase, line, s):
     """Go to the end of the phase or of slip: return the new state, how that ended, and marks of the phases."""
     m, mu, law, t1, t2, growth = contact.m, contact.mu, phase.law, line.t1, line.t2, line.growth
