@@ -209,7 +209,7 @@ def _straightened(contact, s):
     return Line(_STRAIGHT, -mu * c, -mu * n, g)
 
 
-@kernel
+@inlined
 def _turning(m, mu, c, n):
     """Return the turning of slip in the direction (c, n), |u_t| dtheta/dp, and its growth d|u_t|/dp."""
     fx = m[1] - mu * (m[3] * c + m[4] * n)

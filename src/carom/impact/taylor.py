@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import inlined, kernel
 
 ORDER = 16
 
@@ -96,7 +96,7 @@ def series(rate, x0, y0):
     # fmt: on
 
 
-@kernel
+@inlined
 def _next(rate, r, x, y, part):
     """Return the coefficients of u_t of order n from those of order n - 1; `part` is 1/n."""
     a1, a2, m11, m12, m22 = rate
