@@ -64,12 +64,17 @@ class Case:
     """One impact, with scratch, called in a compiled loop."""
 
     def __init__(self, problem, mu=0.0, e=0.5, law=STRONGE, kappa=None, repeat=200, **settings):
-        from carom.impact.multiple.layout import CornerSettings, corner_arrays, new_corner_result
+        from carom.impact.multiple.layout import (
+            CornerContacts,
+            CornerSettings,
+            corner_arrays,
+            new_corner_result,
+        )
 
         W, u = problem
         k = len(u) // 3
         ones = np.ones(k)
-        self.arguments = (
+        self.contacts = CornerContacts(
             k, np.ascontiguousarray(W), np.ascontiguousarray(u), mu * ones, e * ones,
             np.full(k, law), ones if kappa is None else np.array(kappa, float),
         )  # fmt: skip
@@ -79,12 +84,12 @@ class Case:
     def run(self, loop, rtol, **more):
         """Return microseconds, steps, rounds, velocities after."""
         settings = self.settings(rtol=rtol, **{**self.given, **more})
-        arguments = (*self.arguments, settings, self.scratch, self.out)
+        arguments = (self.contacts, settings, self.scratch, self.out)
         code = loop(1, *arguments)
         assert code == 0
         times = seconds(lambda: loop(self.repeat, *arguments), rounds=3)
         summary = self.out.summary[0]
-        after = self.out.velocity[: 3 * self.arguments[0]].copy()
+        after = self.out.velocity[: 3 * self.contacts.k].copy()
         return min(times) / self.repeat / US, int(summary["steps"]), int(summary["rounds"]), after
 
 
@@ -93,10 +98,10 @@ def compiled_loop():
     from carom.impact.multiple.resolve import resolve_corner
 
     @numba.njit
-    def loop(count, k, W, u, mu, e, law, kappa, settings, scratch, out):
+    def loop(count, contacts, settings, scratch, out):
         code = 0
         for _ in range(count):
-            code = max(code, resolve_corner(k, W, u, mu, e, law, kappa, settings, scratch, out))
+            code = max(code, resolve_corner(contacts, settings, scratch, out))
         return code
 
     return loop

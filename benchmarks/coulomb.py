@@ -8,7 +8,6 @@ from pathlib import Path
 import numba
 import numpy as np
 
-from carom.friction.arrays import new_island_work
 from carom.friction.layout import new_contact_work
 from carom.friction.solve import solve_cones
 from common import clock, report, seconds, spread
@@ -17,6 +16,7 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "friction"))
 from contact_problems import dense, pile, stack, wall
 
+from references.island_arrays import new_island_work
 from references.island_graph import island_graph
 from references.solve_island import solve_island
 

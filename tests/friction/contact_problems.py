@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom.friction.arrays import Island, new_island_work
 from carom.friction.layout import new_contact_work
 from carom.friction.residual import measure
 from carom.friction.solve import solve_cones
+from references.island_arrays import Island, new_island_work
 from references.island_graph import island_graph
 from references.solve_island import solve_island
 
@@ -52,7 +52,7 @@ def island(contacts, masses, inertias, free):
     inverse = np.array(
         [np.diag([1 / m] * 3 + [1 / j for j in J]) for m, J in zip(masses, inertias)]
     )
-    return Island(body, rows, inverse, c.ravel())
+    return Island(body, rows, inverse, c.ravel(), np.zeros((2, len(masses), 6)))
 
 
 def gravity(count, slope=0.0):
@@ -124,8 +124,9 @@ def pile(layers, radius=0.05):
         sum(row @ free[b] for row, b in zip(pair, ends) if b >= 0) for pair, ends in zip(rows, body)
     ]
     return Island(
-        np.array(body), np.array(rows), np.tile(inverse, (len(at), 1, 1)), np.concatenate(c)
-    )
+        np.array(body), np.array(rows), np.tile(inverse, (len(at), 1, 1)), np.concatenate(c),
+        np.zeros((2, len(at), 6)),
+    )  # fmt: skip
 
 
 def dense(isle):

@@ -93,7 +93,8 @@ def random_island(seed):
         for side, b in enumerate(ends):
             if b >= 0:
                 c[i] += rows[i, side] @ free[b]
-    return isle._replace(body=body, rows=rows, inverse_mass=inverse, c=c.ravel())
+    motion = np.zeros((2, bodies, 6))
+    return isle._replace(body=body, rows=rows, inverse_mass=inverse, c=c.ravel(), motion=motion)
 
 
 @pytest.mark.parametrize("mu", [0.1, 0.5, 1.0])

@@ -11,8 +11,8 @@ from functools import lru_cache
 import numpy as np
 
 from carom._compiled.record_arrays import table
-from carom.friction.arrays import IslandGraph
 from carom.friction.layout import PLACE
+from references.island_arrays import IslandGraph
 
 
 def island_graph(bodies: int, body: np.ndarray) -> IslandGraph:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 
+from carom._compiled.by_reference import refer
 from carom._compiled.decorators import entry, kernel
-from carom.impact.multiple.layout import OK, SEEDED
+from carom.impact.multiple.layout import OK, SEEDED, CornerContacts
 from carom.impact.multiple.resolve import resolve_corner
 
 _SEED = 1e-7  # speed of approach given to a jammed contact, as a part of its slip
@@ -26,12 +27,13 @@ def jams(W, u, mu, i):
 
 
 @entry
-def impact_without_collision(k, W, u, mu, e, law, kappa, settings, scratch, out):
+def impact_without_collision(contacts, settings, scratch, out):
     """Resolve the impact of held contacts that jam; return (code, number of contacts that jam).
 
     Arguments as of `resolve_corner`. A jammed contact begins with u_n = -1e-7 |u_t|: its depth grows like
     an exponential until slip stops, and the result does not depend on that seed (to 1e-7).
     """
+    k, W, u, mu = contacts.k, contacts.W, contacts.u, contacts.friction
     v, count = scratch.work.vector[SEEDED], 0
     for i in range(3 * k):
         v[i] = u[i]
@@ -40,7 +42,10 @@ def impact_without_collision(k, W, u, mu, e, law, kappa, settings, scratch, out)
         if u[n] > -_SEED * (abs(u[n + 1]) + abs(u[n + 2])) and jams(W, u, mu[i], i):
             v[n] = -_SEED * math.sqrt(u[n + 1] * u[n + 1] + u[n + 2] * u[n + 2])
             count += 1
-    code = resolve_corner(k, W, v, mu, e, law, kappa, settings, scratch, out)
+    seeded = refer(
+        CornerContacts(k, W, v, mu, contacts.restitution, contacts.law, contacts.stiffness)
+    )
+    code = resolve_corner(seeded, settings, scratch, out)
     if code == OK:
         for i in range(3 * k):  # u+ = u + W P holds for what was given
             out.velocity[i] += u[i] - v[i]

@@ -7,7 +7,7 @@ import math
 from carom._compiled.decorators import entry, kernel
 from carom.friction import layout as o
 from carom.friction.layout import BAD_INPUT, NOT_SOLVED, SOLVED
-from carom.friction.residual import measure_island
+from carom.friction.residual import NOTHING, summary, with_contact
 from carom.friction.solve import scale_link, scale_vectors
 from carom.friction.strategy import search
 
@@ -17,7 +17,7 @@ def solve_island(k, island, mu, kind, heading, p, scratch):
     """Solve the contact problem of an `Island`; return (status, residual, iterations).
 
     As `carom.friction.solve.solve_cones`, with W = G M^-1 G^T given by bodies and rows. `scratch` is from
-    `arrays.new_island_work` for the graph of these contacts.
+    `island_arrays.new_island_work` for the graph of these contacts.
     """
     if k == 0:
         return SOLVED, 0.0, 0
@@ -29,7 +29,7 @@ def solve_island(k, island, mu, kind, heading, p, scratch):
     search(scratch, k)
     for i in range(3 * k):
         p[i] = gamma * scratch.contact[i // 3].scale * scratch.vector[o.P, i]
-    residual, tolerance, _, _, _ = measure_island(k, island, mu, kind, heading, p, scratch.sums)
+    residual, tolerance, _, _, _ = measure_island(k, island, mu, kind, heading, p)
     return SOLVED if residual <= tolerance else NOT_SOLVED, residual, scratch.count[o.ITERATIONS]
 
 
@@ -55,3 +55,59 @@ def _load(work, k, island, mu, kind, heading, p):
         if not scale_link(link, work.contact[i], mu[i], kind[i], heading[i]):
             return math.nan
     return scale_vectors(work, k, island.c, p)
+
+
+@entry
+def measure_island(k, island, mu, kind, heading, p):
+    """Return the same as `carom.friction.residual.measure` for an island.
+
+    (|W| |p|)_i is replaced by its bound (|G| |M^-1| |G|^T |p|)_i.
+    """
+    motion = island.motion
+    _impart(k, island, p)
+    greatest = NOTHING
+    for i in range(k):
+        n, trace, size = 3 * i, 0.0, 0.0
+        w0, w1, w2 = island.c[n], island.c[n + 1], island.c[n + 2]
+        for side in range(2):
+            b = island.body[i, side]
+            if b < 0:
+                continue
+            G, M = island.rows[i, side], island.inverse_mass[b]
+            for j in range(6):
+                w0 += G[0, j] * motion[0, b, j]
+                w1 += G[1, j] * motion[0, b, j]
+                w2 += G[2, j] * motion[0, b, j]
+            for r in range(3):
+                s = 0.0
+                for j in range(6):
+                    s += abs(G[r, j]) * motion[1, b, j]
+                    for m in range(6):
+                        trace += G[r, j] * M[j, m] * G[r, m]
+                size = max(size, s)
+        scale = trace, max(abs(island.c[n]), abs(island.c[n + 1]), abs(island.c[n + 2])), size
+        cone = kind[i], mu[i], heading[i, 0], heading[i, 1]
+        greatest = with_contact(greatest, cone, scale, (p[n], p[n + 1], p[n + 2]), (w0, w1, w2))
+    return summary(greatest)
+
+
+@kernel
+def _impart(k, island, p):
+    """Write the motion of the bodies that impulses p cause, and a bound of it without cancellation."""
+    motion = island.motion
+    for b in range(motion.shape[1]):
+        for j in range(6):
+            motion[0, b, j] = motion[1, b, j] = 0.0
+    for i in range(k):
+        for side in range(2):
+            b = island.body[i, side]
+            if b < 0:
+                continue
+            G, M = island.rows[i, side], island.inverse_mass[b]
+            for j in range(6):
+                g = G[0, j] * p[3 * i] + G[1, j] * p[3 * i + 1] + G[2, j] * p[3 * i + 2]
+                a = abs(G[0, j] * p[3 * i]) + abs(G[1, j] * p[3 * i + 1])
+                a += abs(G[2, j] * p[3 * i + 2])
+                for r in range(6):
+                    motion[0, b, r] += M[r, j] * g
+                    motion[1, b, r] += abs(M[r, j]) * a

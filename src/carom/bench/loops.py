@@ -22,6 +22,6 @@ def traverse_many(W, u, mu, e, law, history, out):
     """Take each impact through the layer; return how many failed."""
     failed = 0
     for i in range(u.shape[0]):
-        if traverse(W[i], u[i], mu, e, law, 1e-6, 0.2, 2, history, out) != 0:
+        if traverse(W[i], u[i], mu, e, law, (1e-6, 0.2, 2), history, out) != 0:
             failed += 1
     return failed

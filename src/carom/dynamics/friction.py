@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.friction.one_contact import solve_one
+from carom.friction.one_contact import solve_one, upper_triangle
 
 _EMPTY = 1e-13  # of a diagonal of W_tt: pivots below it are round-off, nothing moves that way
 
@@ -57,5 +57,5 @@ def slip_force(W, an, a1, a2, u1, u2, mu):
         return n, -mu * n * e1, -mu * n * e2
     if not an < 0.0:
         return -an / W[0, 0], 0.0, 0.0
-    _, n, t1, t2 = solve_one(W[0, 0], W[0, 1], W[0, 2], W[1, 1], W[1, 2], W[2, 2], an, a1, a2, mu)
+    _, n, t1, t2 = solve_one(upper_triangle(W), (an, a1, a2), mu)
     return n, t1, t2

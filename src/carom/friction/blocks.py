@@ -69,7 +69,7 @@ def _factor_diagonal(A, pivot):
 
 @kernel
 def _solve_diagonal(A, pivot, x):
-    """X <- A^-1 x."""
+    """Replace x by A^-1 x."""
     for k in range(6):
         row = pivot[k]
         if row != k:
@@ -87,7 +87,7 @@ def _solve_diagonal(A, pivot, x):
 
 @kernel
 def _divide(X, A, pivot):
-    """X <- X A^-1, row by row."""
+    """Replace X by X A^-1, row by row."""
     for r in range(6):
         x = X[r]
         for k in range(6):  # times U^-1
@@ -107,7 +107,7 @@ def _divide(X, A, pivot):
 
 @kernel
 def _subtract_product(S, X, Y):
-    """S <- S - X Y."""
+    """Subtract X Y from S."""
     for i in range(6):
         for k in range(6):
             t = X[i, k]
@@ -117,7 +117,7 @@ def _subtract_product(S, X, Y):
 
 @kernel
 def _subtract_image(y, A, x):
-    """Y <- y - A x."""
+    """Subtract A x from y."""
     for i in range(6):
         s = 0.0
         for j in range(6):

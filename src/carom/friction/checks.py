@@ -1,4 +1,4 @@
-"""Checks of what is given of several contacts: their inverse masses, and numbers of each."""
+"""Checks of the input of several contacts: their inverse masses, and one number of each."""
 
 from __future__ import annotations
 

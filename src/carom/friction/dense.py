@@ -49,11 +49,11 @@ def sweep(work, k, backward):
             c1 += r1[j] * q
             c2 += r2[j] * q
         q0, q1, q2 = p[n], p[n + 1], p[n + 2]
-        w00, w01, w02, w11, w12, w22 = r0[n], r0[n + 1], r0[n + 2], r1[n + 1], r1[n + 2], r2[n + 2]
-        c0 -= w00 * q0 + w01 * q1 + w02 * q2
-        c1 -= w01 * q0 + w11 * q1 + w12 * q2
-        c2 -= w02 * q0 + w12 * q1 + w22 * q2
-        found, x0, x1, x2 = solve_local(work.contact[i], w00, w01, w02, w11, w12, w22, c0, c1, c2)
+        W = r0[n], r0[n + 1], r0[n + 2], r1[n + 1], r1[n + 2], r2[n + 2]
+        c0 -= W[0] * q0 + W[1] * q1 + W[2] * q2
+        c1 -= W[1] * q0 + W[3] * q1 + W[4] * q2
+        c2 -= W[2] * q0 + W[4] * q1 + W[5] * q2
+        found, x0, x1, x2 = solve_local(work.contact[i], W, (c0, c1, c2))
         if found:
             p[n], p[n + 1], p[n + 2] = x0, x1, x2
 
@@ -143,5 +143,5 @@ def factor_shifted(work, k, sigma):
 
 @kernel
 def solve_shifted(work, k):
-    """Rhs becomes (W + sigma)^-1 rhs."""
+    """Replace the right-hand side r by (W + sigma)^-1 r."""
     substitute(work.matrix, 3 * k, work.pivot, work.vector[o.RHS])

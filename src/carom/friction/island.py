@@ -40,26 +40,37 @@ def impart(work, k):
 def magnitude(work, k) -> float:
     """Return the greatest (|G| |M^-1 G^T| |p|)_i / s_i, at least (|W| |p|)_i / s_i."""
     _rest(work)
-    most, p = 0.0, work.vector[o.P]
+    most = 0.0
     for i in range(k):
-        link = work.link[i]
-        for side in range(2):
-            if link.body[side] >= 0:
-                Y, v = link.response[side], work.body[link.body[side]].motion
-                for r in range(6):
-                    for a in range(3):
-                        v[r] += abs(Y[r, a] * p[3 * i + a])
+        _push_size(work, i)
     for i in range(k):
-        link = work.link[i]
         for a in range(3):
-            s = 0.0
-            for side in range(2):
-                if link.body[side] >= 0:
-                    G, v = link.rows[side], work.body[link.body[side]].motion
-                    for j in range(6):
-                        s += abs(G[a, j]) * v[j]
-            most = max(most, s / work.contact[i].scale)
+            most = max(most, _pull_size(work, i, a) / work.contact[i].scale)
     return most
+
+
+@kernel
+def _push_size(work, i):
+    """Add the absolute values of the motion that the impulse of contact i causes."""
+    link, p = work.link[i], work.vector[o.P]
+    for side in range(2):
+        if link.body[side] >= 0:
+            Y, v = link.response[side], work.body[link.body[side]].motion
+            for r in range(6):
+                for a in range(3):
+                    v[r] += abs(Y[r, a] * p[3 * i + a])
+
+
+@kernel
+def _pull_size(work, i, a):
+    """Return component `a` of the velocity of contact i, in absolute values."""
+    link, s = work.link[i], 0.0
+    for side in range(2):
+        if link.body[side] >= 0:
+            G, v = link.rows[side], work.body[link.body[side]].motion
+            for j in range(6):
+                s += abs(G[a, j]) * v[j]
+    return s
 
 
 @unit
@@ -70,15 +81,14 @@ def sweep(work, k, backward):
     for place in range(k):
         i = k - 1 - place if backward else place
         n = 3 * i
-        W = work.link[i].local
+        row = work.link[i].local
+        W = row[0], row[1], row[2], row[3], row[4], row[5]
         q0, q1, q2 = p[n], p[n + 1], p[n + 2]
         u0, u1, u2 = _pull(work, i)
         c0 = c[n] + u0 - (W[0] * q0 + W[1] * q1 + W[2] * q2)
         c1 = c[n + 1] + u1 - (W[1] * q0 + W[3] * q1 + W[4] * q2)
         c2 = c[n + 2] + u2 - (W[2] * q0 + W[4] * q1 + W[5] * q2)
-        found, x0, x1, x2 = solve_local(
-            work.contact[i], W[0], W[1], W[2], W[3], W[4], W[5], c0, c1, c2
-        )
+        found, x0, x1, x2 = solve_local(work.contact[i], W, (c0, c1, c2))
         if found:
             p[n], p[n + 1], p[n + 2] = x0, x1, x2
             _push(work, i, x0 - q0, x1 - q1, x2 - q2)
@@ -137,7 +147,7 @@ def factor_shifted(work, k, sigma):
 
 @unit
 def solve_shifted(work, k):
-    """Rhs r becomes x of J x + D W x = r."""
+    """Replace the right-hand side r by the solution x of J x + D W x = r."""
     x = work.vector[o.RHS]
     _rest(work)
     for i in range(k):
@@ -169,19 +179,24 @@ def _assemble(work, k):
         if K[0, 0] == 0.0 and K[1, 1] == 0.0 and K[2, 2] == 0.0:
             continue  # open
         for side in range(2):
-            if link.body[side] < 0:
+            if link.body[side] >= 0:
+                _add_columns(work, link, side)
+
+
+@kernel
+def _add_columns(work, link, side):
+    """Add M^-1 G^T K G of a contact: the columns of its body `side`, the rows of both."""
+    G, K = link.rows[side], link.stiffness
+    for j in range(6):
+        a = K[0, 0] * G[0, j] + K[0, 1] * G[1, j] + K[0, 2] * G[2, j]
+        b = K[1, 0] * G[0, j] + K[1, 1] * G[1, j] + K[1, 2] * G[2, j]
+        c = K[2, 0] * G[0, j] + K[2, 1] * G[1, j] + K[2, 2] * G[2, j]
+        for other in range(2):
+            if link.body[other] < 0:
                 continue
-            G = link.rows[side]
-            for j in range(6):
-                a = K[0, 0] * G[0, j] + K[0, 1] * G[1, j] + K[0, 2] * G[2, j]
-                b = K[1, 0] * G[0, j] + K[1, 1] * G[1, j] + K[1, 2] * G[2, j]
-                c = K[2, 0] * G[0, j] + K[2, 1] * G[1, j] + K[2, 2] * G[2, j]
-                for other in range(2):
-                    if link.body[other] < 0:
-                        continue
-                    Y, A = link.response[other], work.block[link.corner[other, side]]
-                    for r in range(6):
-                        A[r, j] += Y[r, 0] * a + Y[r, 1] * b + Y[r, 2] * c
+            Y, A = link.response[other], work.block[link.corner[other, side]]
+            for r in range(6):
+                A[r, j] += Y[r, 0] * a + Y[r, 1] * b + Y[r, 2] * c
 
 
 @kernel

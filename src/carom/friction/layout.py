@@ -103,10 +103,11 @@ class ContactWork(NamedTuple):
     link: np.recarray  # (K,) LINK
     body: np.recarray  # (N,) ISLAND_BODY
     place: np.recarray  # (N,) PLACE
-    later: np.ndarray  # as in `carom.friction.arrays.IslandGraph`
-    target: np.ndarray
+    later: np.ndarray  # (pairs,) the body of a pair that is eliminated later
+    target: (
+        np.ndarray
+    )  # (updates, 3) pair s, pair t, block from which below[s] right[t] is subtracted
     block: np.ndarray  # (N + 2 pairs, 6, 6)
-    sums: np.ndarray  # (2, N, 6) for the residual
 
 
 def new_contact_work(capacity: int) -> ContactWork:
@@ -129,5 +130,4 @@ def new_contact_work(capacity: int) -> ContactWork:
         later=np.zeros(0, dtype=np.int64),
         target=np.zeros((0, 3), dtype=np.int64),
         block=np.zeros((0, 6, 6)),
-        sums=np.zeros((2, 0, 6)),
     )

@@ -9,13 +9,15 @@ from carom.friction.rays import solve_tangential
 
 
 @kernel
-def solve_local(contact, w00, w01, w02, w11, w12, w22, c0, c1, c2):
-    """Return (found, p_n, p_1, p_2) of w = W p + c; W by its upper triangle."""
+def solve_local(contact, W, c):
+    """Return (found, p_n, p_1, p_2) of w = W p + c; W by its upper triangle (W_nn, W_n1, W_n2, W_11, ...)."""
     kind, mu = contact.kind, contact.mu
+    w00, w01, w02, w11, w12, w22 = W
+    c0, c1, c2 = c
     if kind == CONE:
-        return solve_one(w00, w01, w02, w11, w12, w22, c0, c1, c2, mu)
+        return solve_one(W, c, mu)
     if kind == DISC:
-        return solve_one(1.0, 0.0, 0.0, w11, w12, w22, -contact.h1, c1, c2, 1.0)
+        return solve_one((1.0, 0.0, 0.0, w11, w12, w22), (-contact.h1, c1, c2), 1.0)
     if kind == SLIDING:
         h1, h2 = contact.h1, contact.h2
         if c0 >= 0.0:

@@ -23,7 +23,7 @@ _CHORD = 0.1  # factors are kept for another step if the last one reduced f by t
 
 @unit
 def newton(work, k, eps, patient):
-    """Iterate from p; leave in work how often (added to `ITERATIONS`), and |f|.
+    """Iterate from p; add the steps to `ITERATIONS`, and write the |f| that was reached to `mismatch`.
 
     A step must reduce |f|; or, if `patient`, the greatest of the last four: the way past a kink. Factors at
     hand (work.count[ROWS] >= 0) are tried first.

@@ -28,12 +28,18 @@ def eigenbasis(a11, a12, a22):
 @entry
 def one_contact(W, c, mu):
     """Return (found, p_n, p_1, p_2) that solves w = W p + c in the Coulomb cone; W (3, 3), c (3,)."""
-    return solve_one(W[0, 0], W[0, 1], W[0, 2], W[1, 1], W[1, 2], W[2, 2], c[0], c[1], c[2], mu)
+    return solve_one(upper_triangle(W), (c[0], c[1], c[2]), mu)
 
 
 @kernel
-def solve_one(wnn, wn1, wn2, w11, w12, w22, cn, c1, c2, mu):
-    """Return (found, p_n, p_1, p_2).
+def upper_triangle(W):
+    """Return (W_nn, W_n1, W_n2, W_11, W_12, W_22) of a symmetric matrix (3, 3)."""
+    return W[0, 0], W[0, 1], W[0, 2], W[1, 1], W[1, 2], W[2, 2]
+
+
+@kernel
+def solve_one(W, velocity, mu):
+    """Return (found, p_n, p_1, p_2) for W by its upper triangle and the velocity without impulses.
 
     Slip with w_t = -alpha p_t, alpha > 0: p_t = -(A + alpha)^-1 b, with the normal eliminated. In the
     eigenbasis of A the condition |p_t| = mu p_n, freed of denominators D_i = a_i + alpha, reads
@@ -41,6 +47,8 @@ def solve_one(wnn, wn1, wn2, w11, w12, w22, cn, c1, c2, mu):
     concave quadratic. With the former replaced by its tangent the root of the quadratic lies left of the
     least root of h: the iteration rises to that root, quadratically, and never passes it.
     """
+    wnn, wn1, wn2, w11, w12, w22 = W
+    cn, c1, c2 = velocity
     if cn >= 0.0:
         return True, 0.0, 0.0, 0.0
     if not wnn > 0.0:
@@ -60,14 +68,15 @@ def solve_one(wnn, wn1, wn2, w11, w12, w22, cn, c1, c2, mu):
     if not d2 > least:
         d2 = 0.0
         b2 = b2 if abs(b2) > tiny else 0.0
-    found, p1, p2 = _tangential(d1, d2, b1, b2, g1, g2, cn, wnn, mu)
+    found, p1, p2 = _tangential((d1, d2), (b1, b2), (g1, g2), wnn, cn, mu)
     pn = -(cn + g1 * p1 + g2 * p2) / wnn
     return found, pn, c * p1 - s * p2, s * p1 + c * p2
 
 
 @kernel
-def _tangential(d1, d2, b1, b2, g1, g2, cn, wnn, mu):
-    """Return (found, p_1, p_2) in the eigenbasis."""
+def _tangential(d, b, g, wnn, cn, mu):
+    """Return (found, p_1, p_2) in the eigenbasis: eigenvalues `d` of A, components of b and of W_tn = g."""
+    (d1, d2), (b1, b2), (g1, g2) = d, b, g
     if (d1 > 0.0 or b1 == 0.0) and (d2 > 0.0 or b2 == 0.0):
         p1 = -b1 / d1 if d1 > 0.0 else 0.0
         p2 = -b2 / d2 if d2 > 0.0 else 0.0

@@ -1,4 +1,4 @@
-"""What the solver asks of the Delassus operator W, for the two ways in which it is kept.
+"""The operations of the solver on the Delassus operator W, which is stored in one of two ways.
 
 DENSE: W itself (`dense`). BY_BODIES: bodies and rows, W never formed (`island`). All in scaled variables; k
 contacts.

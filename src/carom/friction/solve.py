@@ -8,6 +8,7 @@ from carom._compiled.decorators import entry, kernel
 from carom.friction import layout as o
 from carom.friction.layout import BAD_INPUT, NOT_SOLVED, SOLVED
 from carom.friction.local import solve_local
+from carom.friction.one_contact import upper_triangle
 from carom.friction.residual import measure
 from carom.friction.strategy import search
 
@@ -32,19 +33,8 @@ def solve_cones(k, W, c, mu, kind, heading, p, scratch):
         return BAD_INPUT, math.inf, 0
     iterations, q = 0, scratch.vector[o.P]
     if k == 1:
-        w, b = scratch.W, scratch.vector[o.C]
-        _, q[0], q[1], q[2] = solve_local(
-            scratch.contact[0],
-            w[0, 0],
-            w[0, 1],
-            w[0, 2],
-            w[1, 1],
-            w[1, 2],
-            w[2, 2],
-            b[0],
-            b[1],
-            b[2],
-        )
+        alone, b = upper_triangle(scratch.W), scratch.vector[o.C]
+        _, q[0], q[1], q[2] = solve_local(scratch.contact[0], alone, (b[0], b[1], b[2]))
     else:
         search(scratch, k)
         iterations = scratch.count[o.ITERATIONS]

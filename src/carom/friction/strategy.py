@@ -1,4 +1,4 @@
-"""How the solvers go about it: Newton first; where that fails, from other starting points."""
+"""The strategy of the solver: Newton's method first; where it fails, again from other starting points."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ _RELEASES = 60
 
 @unit
 def search(work, k):
-    """Leave in work the best p that is found from one starting point after the other, and the iterations.
+    """Try one starting point after the other; the best p that is found and the iterations are left in `work`.
 
     Start 0: what was given, to the solution of least norm (unless one that is near is wanted). Start 1: what
     was given, if anything was, to a solution that is near. Then in turn: after sweeps, after alternating
@@ -70,7 +70,7 @@ def search(work, k):
 
 @kernel
 def spent(work):
-    """Return whether a search has had the iterations that it was given."""
+    """Return whether a search has used up its budget of iterations."""
     return 0 < work.count[o.BUDGET] <= work.count[o.ITERATIONS]
 
 
@@ -96,7 +96,7 @@ def _approach(work, k, way, again):
 
 @kernel
 def release(work, k):
-    """Newton with a strong proximal term, which is weakened while that succeeds."""
+    """Apply Newton's method with a strong proximal term, which is weakened as long as that succeeds."""
     p, kept, centre = work.vector[o.P], work.vector[o.KEPT], work.vector[o.CENTRE]
     for i in range(3 * k):
         kept[i] = p[i]
@@ -122,7 +122,7 @@ def release(work, k):
 
 @kernel
 def polished(work, k, least_norm, patient):
-    """Newton until the proximal term has no effect; return (residual, goal, tolerance).
+    """Iterate Newton's method until the proximal term has no effect; return (residual, goal, tolerance).
 
     The term is centred at 0, for the solution of least norm, or at p; then it is moved to each new solution
     until its bias is gone. p is the best of the rounds.

@@ -81,6 +81,7 @@ class Strike:
         from carom.impact.multiple.layout import (
             MULTIPLE,
             OK,
+            CornerContacts,
             CornerSettings,
             corner_arrays,
             new_corner_result,
@@ -105,10 +106,10 @@ class Strike:
         if self.room is None:
             self.room = corner_arrays(len(here.friction))
         out = new_corner_result(k)
-        code = resolve_corner(
-            k, W, u.reshape(-1), here.friction[closed], e, here.law[closed], np.ones(k), settings,
-            self.room, out,
-        )  # fmt: skip
+        contacts = CornerContacts(
+            k, W, u.reshape(-1), here.friction[closed], e, here.law[closed], np.ones(k)
+        )
+        code = resolve_corner(contacts, settings, self.room, out)
         if code != OK:
             return Status.IMPACT_FAILED
         p = out.impulse.reshape(k, 3)

@@ -1,4 +1,4 @@
-"""What motors give in an impact, and impacts that they leave no way out of.
+"""Work of motors in an impact, and contacts that prescribed motions block.
 
 Where rows prescribe a speed, a v = b, their impulses Lambda do work, Lambda . b with b = a v before the impact:
 
@@ -36,7 +36,7 @@ def _driven_work(system, state, first, clock, records) -> float:
 
 @kernel
 def _blocked(system, point, inverse_mass):
-    """Return whether what is prescribed leaves a point no way along its normal: W_nn is round-off of 1/m."""
+    """Return whether prescribed motions leave a point none along its normal: W_nn is round-off of 1/m."""
     free = 1.0 / system.bodies[point.a].mass
     if point.b >= 0:
         free += 1.0 / system.bodies[point.b].mass
@@ -53,7 +53,7 @@ def driven_work(system, state, first, clock, records):
 
 @inlined
 def blocked(system, point, inverse_mass):
-    """Return whether what is prescribed leaves a point no way along its normal: W_nn is round-off of 1/m."""
+    """Return whether prescribed motions leave a point none along its normal: W_nn is round-off of 1/m."""
     if system.relations.there == 1 and system.solver.kind == LOOPS:
         return _blocked(system, point, inverse_mass)
     return False

@@ -1,8 +1,8 @@
-"""Blows without end in a finite time: inelastic collapse.
+"""Inelastic collapse: infinitely many impacts within a finite time.
 
-A body between two others may be struck without end before a finite time, and no single contact comes to an
-end of its bounces there (McNamara and Young 1992). Once a contact has struck n times within a step, and
-e^n is next to nothing, its next blow is plastic: alone it would have come to rest long before.
+A body between two others may be struck infinitely often within a finite time, though the bounces of each single
+contact do not end there (McNamara and Young 1992). When a contact has struck n times within a step and e^n is
+negligible, its next impact is plastic: alone it would have come to rest long before.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ TIRED = 1 << 40  # blows after which the next is plastic even with e = 1
 
 
 @kernel
-def what_is_left(contact, brink):
-    """Return the restitution of a contact for its next blow in this step."""
+def effective_restitution(contact, brink):
+    """Return the restitution of a contact for its next impact in this step."""
     e = contact.restitution
     if brink.blows >= TIRED:
         return 0.0

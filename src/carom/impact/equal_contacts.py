@@ -1,4 +1,4 @@
-"""Closed points that move alike are one: an edge or a face that strikes evenly is a single contact at its mean.
+"""Closed points that move alike are one contact: an edge or a face that strikes evenly, at its mean point.
 
 If all points of a contact have the same velocity u, and an impulse at their mean gives all of them the same
 change as their mean, they stay together all through the boundary layer and share the impulse. In planar
@@ -12,17 +12,9 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.contact.gap import slow
-from carom.dynamics.contact_impulse import (
-    effective_inverse_mass,
-    spread,
-)
+from carom.dynamics.contact_impulse import effective_inverse_mass, spread
 from carom.dynamics.several_points import inverse_masses_of_one, of_one_body
-from carom.kinematics.contact_point import (
-    contact_motion,
-    contact_velocity,
-    copy_point,
-    place,
-)
+from carom.kinematics.contact_point import contact_motion, contact_velocity, copy_point, place
 
 SAME = 1e-12  # relative to W_nn: round-off of a difference of two answers
 
@@ -60,10 +52,10 @@ def as_one(system, k, state, cluster, work):
                 return False
     W, tiny = hit.W, SAME * hit.W[0, 0]
     # directions: the normal; then any tangent, or only the one along which all happens
-    if not answers_alike(system, k, 1.0, 0.0, 0.0, tiny, state, cluster, work):
+    if not answers_alike(system, k, (1.0, 0.0, 0.0), state, cluster, work):
         return False
-    if answers_alike(system, k, 0.0, 1.0, 0.0, tiny, state, cluster, work) and answers_alike(
-        system, k, 0.0, 0.0, 1.0, tiny, state, cluster, work
+    if answers_alike(system, k, (0.0, 1.0, 0.0), state, cluster, work) and answers_alike(
+        system, k, (0.0, 0.0, 1.0), state, cluster, work
     ):
         return True
     d1, d2 = hit.u[1], hit.u[2]
@@ -76,7 +68,7 @@ def as_one(system, k, state, cluster, work):
     d1, d2 = d1 / speed, d2 / speed
     t1, t2 = W[1, 1] * d1 + W[1, 2] * d2, W[2, 1] * d1 + W[2, 2] * d2
     planar = abs(W[2, 0] * d1 - W[1, 0] * d2) <= tiny and abs(t2 * d1 - t1 * d2) <= tiny
-    return planar and answers_alike(system, k, 0.0, d1, d2, tiny, state, cluster, work)
+    return planar and answers_alike(system, k, (0.0, d1, d2), state, cluster, work)
 
 
 @kernel
@@ -90,10 +82,10 @@ def _inverse_mass(system, state, work):
 
 
 @kernel
-def answers_alike(system, k, ln, l1, l2, tiny, state, cluster, work):
+def answers_alike(system, k, impulse, state, cluster, work):
     """Return whether an impulse at the mean point changes the velocity of all points equally."""
-    point = work.point[0]
-    spread(system, point, state, ln, l1, l2, work)
+    point, tiny = work.point[0], SAME * work.hit[0].W[0, 0]
+    spread(system, point, state, impulse[0], impulse[1], impulse[2], work)
     mean = contact_motion(point, work)
     for i in range(k):
         u = contact_motion(cluster.points[0][i], work)

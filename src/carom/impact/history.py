@@ -148,10 +148,10 @@ def impact_layer(
     steps = checks.integer("steps", steps, least=2, most=MOST_STEPS)
     out = np.zeros(o.SIZE)
     rows = np.zeros((steps + 32, COLUMNS))
-    raise_for(traverse(W, u, mu, e, number, b, delta, steps, rows, out))
+    raise_for(traverse(W, u, mu, e, number, (b, delta, steps), rows, out))
     if out[o.KNOTS] > len(rows):  # steps were halved: there are more knots than foreseen
         rows = np.zeros((int(out[o.KNOTS]), COLUMNS))
-        raise_for(traverse(W, u, mu, e, number, b, delta, steps, rows, out))
+        raise_for(traverse(W, u, mu, e, number, (b, delta, steps), rows, out))
     rows = rows[: int(out[o.KNOTS])]
     return LayerHistory(
         t=rows[:, 0].copy(),

@@ -15,37 +15,41 @@ spline's own.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 from carom._compiled.decorators import entry, kernel
 from carom.friction.rays import outgoing, stick_ratio
 from carom.impact import laws
 from carom.impact import layout as o
-from carom.impact.phase import replay, run, shoot, write
-from carom.impact.resolve import resolve_one
-from carom.impact.spline import force, slip_ratio
+from carom.impact.phase import Friction, Span, ratio, replay, run, shoot
+from carom.impact.phase import write as write_knot
+from carom.impact.resolve import resolve_one, write
+from carom.impact.spline import Contact, force
 
 _AT_REST = 1e-12  # as in `resolve`
 _DOUBLINGS = 8  # of the steps, if a phase was not solved
 E_MIN = 1e-6  # below this restitution the impact ends with compression: T_r = T_c/e
 
 
-@kernel
-def _final_friction(m, mu):
-    """Return the constant friction ratio once u_t = 0, and whether it is that of stick."""
-    if not mu > 0.0:
-        return 0.0, 0.0, False
-    f1, f2 = stick_ratio(m[1], m[2], m[3], m[4], m[5])
-    if math.sqrt(f1 * f1 + f2 * f2) <= mu:
-        return f1, f2, True
-    c, s, _ = outgoing(m[1], m[2], m[3], m[4], m[5], mu)
-    return -mu * c, -mu * s, False
+class Passage(NamedTuple):
+    """One passage through the layer: what is given, and what the resolver says of it."""
+
+    m: tuple  # W, as in `slip_step`
+    mu: float
+    u: tuple  # velocity before, normal first
+    e: float
+    law: int
+    depth: float  # b l
+    steps: int  # of a phase
+    timed: bool  # law A: steps in time; else in the normal impulse
+    wedged: bool  # no law says where the phases end then: the resolver does
 
 
 @entry
-def traverse(W, u, mu, e, law, b, delta, steps, history, out):
-    """Pass one impact through the layer of width `b`, to the depth `delta` b, in `steps` steps.
+def traverse(W, u, mu, e, law, layer, history, out):
+    """Pass one impact through the layer (width b, penetration delta, steps of the spline).
 
-    As `resolve`, with the same `out`. `steps` are shared equally by compression and restitution
+    As `resolve`, with the same `out`. The steps are shared equally by compression and restitution
     (one each at least). Knots go to the rows of `history` (t, s, u_n, u_1, u_2, x^2, x^3, N, T_1,
     T_2), as many as there is room for; their number to ``out[KNOTS]``. Forces are those right of
     the knot, at the last one those left of it.
@@ -53,119 +57,135 @@ def traverse(W, u, mu, e, law, b, delta, steps, history, out):
     code = resolve_one(W, u, mu, e, law, out)
     if code != o.OK:
         return code
-    jam = (int(out[o.PHASES]) & (o.JAM | o.WEDGED)) != 0
+    b, delta, steps = layer
+    m, before = (W[0, 0], W[0, 1], W[0, 2], W[1, 1], W[1, 2], W[2, 2]), (u[0], u[1], u[2])
+    depth, phases = -b * math.log1p(-delta), int(out[o.PHASES])
+    wedged = phases & o.WEDGED != 0
     code = o.NO_CONVERGENCE
     for _ in range(_DOUBLINGS):
-        if law == laws.NEWTON and not jam:
-            code = _pass(W, u, mu, e, law, False, b, delta, steps, history, out)
+        n = max(1, steps // 2)
+        if law == laws.NEWTON and phases & (o.JAM | o.WEDGED) == 0:
+            given = Passage(m, mu, before, e, law, depth, n, True, wedged)
+            code = _pass(given, history, out)
         if code != o.OK:  # or so near a jam that law A fails at this number of steps
-            code = _pass(W, u, mu, e, law, True, b, delta, steps, history, out)
+            given = Passage(m, mu, before, e, law, depth, n, False, wedged)
+            code = _pass(given, history, out)
         if code == o.OK:
+            out[o.X_MIN] = b * (1.0 - delta)
             return code
         steps *= 2  # slip passes too near u_t = 0 for steps of this length
     return code
 
 
 @kernel
-def _pass(W, u, mu, e, law, impulse_form, b, delta, steps, history, out):
-    """Run both phases, in time (law A) or in normal impulse; `out` holds what `resolve` says."""
-    m = (W[0, 0], W[0, 1], W[0, 2], W[1, 1], W[1, 2], W[2, 2])
-    v0 = -u[0]
-    depth = -b * math.log1p(-delta)  # b l
-    n = max(1, steps // 2)
-    slip_end_p, slip_end_u = out[o.SLIP_END_P], out[o.SLIP_END_UN]
-    p_c, p_f = out[o.P_C], out[o.IMPULSE]
-    wedged = (
-        int(out[o.PHASES]) & o.WEDGED
-    ) != 0  # no law says where the phases end: the resolver does
-    ends_in_c = 0.0 <= slip_end_p <= p_c
+def _friction(given):
+    """Return the friction from the start on, and whether its constant ratio, once u_t = 0, is that of stick."""
+    m, mu, (u0, u1, u2) = given.m, given.mu, given.u
+    if not mu > 0.0:
+        return Friction(True, 0.0, 0.0), False
+    at_rest = not math.sqrt(u1 * u1 + u2 * u2) > _AT_REST * math.sqrt(u0 * u0 + u1 * u1 + u2 * u2)
+    t1, t2 = stick_ratio(m[1], m[2], m[3], m[4], m[5])
+    if math.sqrt(t1 * t1 + t2 * t2) <= mu:
+        return Friction(at_rest, t1, t2), True
+    c, s, _ = outgoing(m[1], m[2], m[3], m[4], m[5], mu)
+    return Friction(at_rest, -mu * c, -mu * s), False
 
-    size = math.sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2])
-    at_rest = not math.sqrt(u[1] * u[1] + u[2] * u[2]) > _AT_REST * size
-    fixed = at_rest or mu == 0.0
-    f1, f2, sticks = _final_friction(m, mu)
+
+@kernel
+def _pass(given, history, out):
+    """Run both phases; `out` holds what `resolve` says, and then the results."""
+    u, e, v0, depth, timed = given.u, given.e, -given.u[0], given.depth, given.timed
+    friction, sticks = _friction(given)
 
     # Compression, from u_n = -v0 to 0.
-    start = (u[1], u[2], u[0])
-    if impulse_form:
-        accel, split = 0.0, slip_end_p if ends_in_c else -1.0
-        if wedged:
-            result = run(m, mu, 0.0, start, p_c, n, split, fixed, f1, f2, history, 0)
-        else:
-            result = shoot(m, mu, laws.NEWTON, 0.0, start, p_c, n, split, fixed, f1, f2, history, 0)
-    else:
-        accel = 0.5 * v0 * v0 / depth
-        split = min((slip_end_u + v0) / accel, v0 / accel) if ends_in_c else -1.0
-        result = run(m, mu, accel, start, v0 / accel, n, split, fixed, f1, f2, history, 0)
-    ok, state, fixed, total, row = result
+    accel = 0.5 * v0 * v0 / depth if timed else 0.0
+    ok, end, fixed, total, row = _compress(given, accel, friction, history, out)
     if ok == 0:
         return o.NO_CONVERGENCE
-    x1, y1, u_end = state[0], state[1], 0.0
-    if fixed and sticks:
-        x1, y1 = 0.0, 0.0  # not the round-off of W (1, tau)
-    c0, c1, c2 = total[3], total[4], total[5]
-    energy = 0.5 * (c0 * u[0] + c1 * (u[1] + x1) + c2 * (u[2] + y1))
-    # The work of the normal force: of the spline's s in the impulse form, so that s_min = -b l.
-    work_c = total[0] if impulse_form and mu > 0.0 else energy + total[6]
-    loss = work_c - energy
-    factor = -work_c / depth if impulse_form else 1.0
-    time = c0 / factor if impulse_form else v0 / accel
-    sx, sy, s_end = total[1] / factor, total[2] / factor, -depth
-    replay(history, 0, row, 0.0, 0.0, 0.0, 0.0, factor)
+    before = (u[1], u[2], u[0])
+    # In stick u_t is 0, and not the round-off of W (1, tau).
+    state = (0.0, 0.0, 0.0) if fixed and sticks else (end[0], end[1], 0.0)
+    work_c, loss = _works(given, before, state, total)
+    C = P = (total[3], total[4], total[5])
+    factor, work_r = 1.0 if timed else -work_c / depth, 0.0
+    time = v0 / accel if timed else P[0] / factor
+    place = (-depth, total[1] / factor, total[2] / factor)
+    replay(history, 0, row, (0.0, 0.0, 0.0, 0.0), factor)
 
     # Restitution, to where the law ends it.
-    p0, p1, p2, work_r = c0, c1, c2, 0.0
-    if e >= E_MIN and not (wedged and p_f <= p_c):
-        first, start = row, (x1, y1, 0.0)
-        later = slip_end_p >= 0.0 and not fixed
-        if impulse_form:
-            split = max(slip_end_p - p_c, 0.0) if later else -1.0
-            goal = laws.goal(law, e, v0, c0, work_c)
-            length = p_f - p_c
-            if wedged:
-                result = run(m, mu, 0.0, start, length, n, split, fixed, f1, f2, history, row)
-            else:
-                result = shoot(
-                    m, mu, law, goal, start, length, n, split, fixed, f1, f2, history, row
-                )
-        else:
-            accel *= e * e
-            length = e * v0 / accel
-            split = min(max(slip_end_u / accel, 0.0), length) if later else -1.0
-            result = run(m, mu, accel, start, length, n, split, fixed, f1, f2, history, row)
-        ok, state, fixed, total, row = result
+    friction = Friction(fixed, friction.t1, friction.t2)
+    if e >= E_MIN and not (given.wedged and out[o.IMPULSE] <= out[o.P_C]):
+        first, before = row, state
+        accel *= e * e
+        goal = laws.goal(given.law, e, v0, C[0], work_c)
+        ok, end, fixed, total, row = _restore(
+            given, accel, goal, before, friction, history, row, out
+        )
         if ok == 0:
             return o.NO_CONVERGENCE
-        x2, y2, u_end = state[0], state[1], state[2] if impulse_form else e * v0
-        if fixed and sticks:
-            x2, y2 = 0.0, 0.0
-        r0, r1, r2 = total[3], total[4], total[5]
-        energy = 0.5 * (r0 * u_end + r1 * (x1 + x2) + r2 * (y1 + y2))
-        work_r = total[0] if impulse_form and mu > 0.0 else energy + total[6]
-        loss += work_r - energy
-        if wedged and not work_r > _AT_REST * -work_c:
+        friction = Friction(fixed, friction.t1, friction.t2)
+        u_n = e * v0 if timed else end[2]
+        state = (0.0, 0.0, u_n) if fixed and sticks else (end[0], end[1], u_n)
+        work_r, lost = _works(given, before, state, total)
+        loss += lost
+        P = (C[0] + total[3], C[1] + total[4], C[2] + total[5])
+        if given.wedged and not work_r > _AT_REST * -work_c:
             row = first  # an impulse that moves nothing takes no time
         else:
-            factor = work_r / depth if impulse_form else 1.0
-            replay(history, first, row, time, s_end, sx, sy, factor)
-            time += r0 / factor if impulse_form else length
-            sx, sy, s_end = sx + total[1] / factor, sy + total[2] / factor, 0.0
-        p0, p1, p2 = p0 + r0, p1 + r1, p2 + r2
-        x1, y1 = x2, y2
+            factor = 1.0 if timed else work_r / depth
+            replay(history, first, row, (time, place[0], place[1], place[2]), factor)
+            time += e * v0 / accel if timed else total[3] / factor
+            place = (0.0, place[1] + total[1] / factor, place[2] + total[2] / factor)
 
-    t1, t2 = f1, f2
-    if not fixed:
-        t1, t2 = slip_ratio(mu, x1, y1)
-    normal, _ = force(m, accel, t1, t2)
-    row = write(history, row, time, s_end, u_end, x1, y1, sx, sy, normal * factor, t1, t2)
-
-    out[o.VELOCITY], out[o.VELOCITY + 1], out[o.VELOCITY + 2] = u_end, x1, y1
-    out[o.IMPULSE], out[o.IMPULSE + 1], out[o.IMPULSE + 2] = p0, p1, p2
-    out[o.COMPRESSION], out[o.COMPRESSION + 1], out[o.COMPRESSION + 2] = c0, c1, c2
-    out[o.WORK_C], out[o.WORK_R], out[o.FRICTION_LOSS] = work_c, work_r, loss
-    out[o.ENERGY_CHANGE] = 0.5 * (p0 * (u[0] + u_end) + p1 * (u[1] + x1) + p2 * (u[2] + y1))
-    out[o.P_C] = c0
-    out[o.STEPS] = row - 1
-    out[o.DURATION], out[o.X_MIN] = time, b * (1.0 - delta)
-    out[o.KNOTS] = row
+    # The last knot, and the results.
+    contact = Contact(given.m, given.mu, accel)
+    t1, t2 = ratio(contact, friction, state)
+    normal, _ = force(contact, t1, t2)
+    row = write_knot(history, row, time, state, place, (normal * factor, t1, t2))
+    after = (state[0], state[1], state[2], 0.0, 0.0, 0.0, 0.0, work_r)
+    write(out, 1.0, 1.0, u, after, P, (C[0], C[1], C[2], loss, work_c))
+    out[o.STEPS], out[o.DURATION], out[o.KNOTS] = row - 1, time, row
     return o.OK
+
+
+@kernel
+def _compress(given, accel, friction, history, out):
+    """Run compression (see `run`)."""
+    slip_end_p, p_c, v0 = out[o.SLIP_END_P], out[o.P_C], -given.u[0]
+    contact, start = Contact(given.m, given.mu, accel), (given.u[1], given.u[2], given.u[0])
+    ends = 0.0 <= slip_end_p <= p_c
+    if given.timed:
+        split = min((out[o.SLIP_END_UN] + v0) / accel, v0 / accel) if ends else -1.0
+        return run(contact, Span(start, given.steps, v0 / accel, split), friction, history, 0)
+    span = Span(start, given.steps, p_c, slip_end_p if ends else -1.0)
+    if given.wedged:
+        return run(contact, span, friction, history, 0)
+    return shoot(contact, laws.NEWTON, 0.0, span, friction, history, 0)
+
+
+@kernel
+def _restore(given, accel, goal, start, friction, history, row, out):
+    """Run restitution (see `run`)."""
+    p_c = out[o.P_C]
+    contact = Contact(given.m, given.mu, accel)
+    later = out[o.SLIP_END_P] >= 0.0 and not friction.fixed
+    if given.timed:
+        length = given.e * -given.u[0] / accel
+        split = min(max(out[o.SLIP_END_UN] / accel, 0.0), length) if later else -1.0
+        return run(contact, Span(start, given.steps, length, split), friction, history, row)
+    split = max(out[o.SLIP_END_P] - p_c, 0.0) if later else -1.0
+    span = Span(start, given.steps, out[o.IMPULSE] - p_c, split)
+    if given.wedged:
+        return run(contact, span, friction, history, row)
+    return shoot(contact, given.law, goal, span, friction, history, row)
+
+
+@kernel
+def _works(given, before, after, total):
+    """Return the work of the normal force in a phase and the loss by friction."""
+    P0, P1, P2 = total[3], total[4], total[5]
+    energy = P0 * (before[2] + after[2]) + P1 * (before[0] + after[0]) + P2 * (before[1] + after[1])
+    energy *= 0.5
+    # In the impulse form it is that of the spline's s, so that s_min = -b l.
+    work = energy + total[6] if given.timed or not given.mu > 0.0 else total[0]
+    return work, work - energy

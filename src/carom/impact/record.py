@@ -13,7 +13,7 @@ _NOT_LAW_A = layout.JAM | layout.WEDGED
 
 @kernel
 def write_impact(contact, c, state, point, hit, clock, records):
-    """Write what the boundary layer was given and what it gave."""
+    """Write the row of one impact: what was given, and what the resolver or the layer returned."""
     row, x, out = records.impact[clock.struck], state[point.a].x, hit.out
     row.time = clock.now
     row.contact, row.together = contact.number, 1
@@ -36,10 +36,10 @@ def write_impact(contact, c, state, point, hit, clock, records):
 
 @kernel
 def layer_time(contact, hit, out):
-    """Return the duration in the layer.
+    """Return the time that the impact takes in the layer.
 
-    Newton: law A, T_c = 2 b l/v_0, T_r = T_c/e. Else (and after a jam): constant N in each phase,
-    N_c = |A_c|/(b l), N_r = A_r/(b l). What is wedged has no restitution.
+    With Newton's law it is that of law A, T_c = 2 b l/v_0, T_r = T_c/e. With the others, and after a jam, N is
+    constant in each phase, N_c = |A_c|/(b l) and N_r = A_r/(b l). A wedged pair has no restitution.
     """
     depth = -contact.width * math.log1p(-contact.penetration)
     if contact.law == laws.NEWTON and (int(out[layout.PHASES]) & _NOT_LAW_A) == 0:

@@ -9,8 +9,9 @@ impulse moves anything any more (`wedge`) the velocity that was reached stays.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
-from carom._compiled.decorators import entry, kernel
+from carom._compiled.decorators import entry, inlined, kernel
 from carom.friction.rays import outgoing, solve_tangential, stick_ratio
 from carom.impact import laws
 from carom.impact import layout as o
@@ -26,38 +27,43 @@ _LEFT = 1e-9  # greatest impulse that takes such slip, relative to that of the i
 _FARTHEST = 1e6  # longest step in p, in units of size / W_nn: round-off of u grows with p
 _MAX_STEPS = 2000
 
-# What the contact does.
-_CURVED, _STRAIGHT, _STICK = 0, 1, 2
+# What the contact does: it slips along a curve or along a line, or it sticks.
+_CURVED, _STRAIGHT, _STICK = range(3)
+
+# How a piece of the path ended: within the phase, where slip stops, at the goal of the phase, where no impulse
+# moves anything any more, or not at all.
+_WITHIN, _AT_STOP, _AT_GOAL, _CAUGHT, _ENDLESS = range(5)
 
 
-@kernel
-def _direction(m, mu, s, size):
-    """Return 1 if slip keeps its direction from here on to round-off, the direction, and its rate.
+class Contact(NamedTuple):
+    """The contact of an impact, in units of W and u of its own."""
 
-    f is the turning of slip, |u_t| dtheta/dp, and g its growth d|u_t|/dp. A ray that attracts
-    (df/dtheta < 0) is taken as soon as the distance of u_t from it is round-off: waiting longer
-    would cost many steps where slip grows or fades slowly.
-    """
-    x, y = s[0], s[1]
-    r = math.sqrt(x * x + y * y)
-    c, n = x / r, y / r
-    fx = m[1] - mu * (m[3] * c + m[4] * n)
-    fy = m[2] - mu * (m[4] * c + m[5] * n)
-    f, g = c * fy - n * fx, c * fx + n * fy
-    if abs(f) <= _ON_RAY * (abs(m[1]) + abs(m[2]) + mu * (m[3] + m[5])):
-        return 1, c, n, g
-    slope = mu * ((m[3] - m[5]) * (c * c - n * n) + 4.0 * m[4] * c * n) - (m[1] * c + m[2] * n)
-    if slope < 0.0 and abs(f) * r <= -1e-14 * slope * size and abs(f) <= -1e-3 * slope:
-        for _ in range(3):  # Newton onto the ray itself
-            turn = -f / slope
-            c, n = c - turn * n, n + turn * c
-            norm = math.sqrt(c * c + n * n)
-            c, n = c / norm, n / norm
-            fx = m[1] - mu * (m[3] * c + m[4] * n)
-            fy = m[2] - mu * (m[4] * c + m[5] * n)
-            f, g = c * fy - n * fx, c * fx + n * fy
-        return 1, c, n, g
-    return 0, c, n, g
+    m: tuple  # W, as in `slip_step`
+    mu: float
+    size: float  # speed of impact |u|
+    still: float  # speed that counts as none
+
+
+class Phase(NamedTuple):
+    """Compression, which ends at u_n = 0, or restitution, which ends as its law says."""
+
+    law: int
+    goal: float  # value of the law's measure at the end
+    restitution: bool
+    taken: float  # energy that compression took
+
+
+class Line(NamedTuple):
+    """A piece of the path along which u is linear in p."""
+
+    mode: int  # _STRAIGHT or _STICK; _CURVED: there is none
+    t1: float  # friction impulse per normal impulse
+    t2: float
+    growth: float  # d|u_t|/dp
+
+
+_COMPRESSION = Phase(laws.NEWTON, 0.0, False, 0.0)
+_CURVE = Line(_CURVED, 0.0, 0.0, 0.0)
 
 
 @entry
@@ -84,135 +90,10 @@ def resolve_one(W, u, mu, e, law, out):
     v = power_of_two(max(abs(u[0]), abs(u[1]), abs(u[2])))
     m = (W[0, 0] / w, W[0, 1] / w, W[0, 2] / w, W[1, 1] / w, W[1, 2] / w, W[2, 2] / w)
     u0, u1, u2 = u[0] / v, u[1] / v, u[2] / v
-    size = math.sqrt(u0 * u0 + u1 * u1 + u2 * u2)
-    s = (u1, u2, u0, 0.0, 0.0, 0.0, 0.0, 0.0)
-
-    t1, t2, c, n, grow = 0.0, 0.0, 0.0, 0.0, 0.0
-    phases, steps = 0, 0
-    slip_end_p, slip_end_u = -1.0, 0.0
-    compressing, now, goal = True, laws.NEWTON, 0.0
-    before = (0.0, 0.0, 0.0, 0.0, 0.0)  # p, P_1, P_2, loss, work at the end of compression
-    resting = not math.sqrt(u1 * u1 + u2 * u2) > _AT_REST * size
-    mode = _CURVED
-    if mu == 0.0:
-        mode = _STRAIGHT
-        phases = o.SLIP if not resting else 0
-        resting = False
-
-    while True:
-        steps += 1
-        if steps > _MAX_STEPS:
-            return o.TOO_MANY_STEPS
-
-        # At u_t = 0 (II.9, 2 and 3): stick to the end, or start again along the outgoing ray.
-        if resting:
-            resting = False
-            if phases & o.SLIP:
-                slip_end_p, slip_end_u = before[0] + s[3], s[2]
-            s = _without_slip(m, s, size)
-            t1, t2 = stick_ratio(m[1], m[2], m[3], m[4], m[5])
-            mode, grow = _STICK, 0.0
-            if not math.sqrt(t1 * t1 + t2 * t2) <= mu:
-                c, n, grow = outgoing(m[1], m[2], m[3], m[4], m[5], mu)
-                t1, t2 = -mu * c, -mu * n
-            if grow > 0.0:
-                phases |= o.RESTART if phases & o.SLIP else 0
-                mode = _STRAIGHT
-            else:
-                phases |= o.STICK
-        elif mode == _CURVED:
-            constant, c, n, grow = _direction(m, mu, s, size)
-            if constant:
-                mode = _STRAIGHT
-        if mode != _STICK and mu > 0.0:
-            phases |= o.SLIP
-
-        # One piece: to the end of the phase, to the end of slip, or one step.
-        done, stuck = False, False
-        if mode == _CURVED:
-            _, k = normal_rate(m, mu, s)
-            if k <= 0.0:
-                phases |= o.JAM
-            t = expand(m, mu, s)
-            r = math.sqrt(s[0] * s[0] + s[1] * s[1])
-            h = reach(t[0], t[1], _ACCURACY * math.sqrt(size * r))
-            # Hardly any friction: not far beyond the end that is to be seen from here.
-            unit = size / m[0]
-            left = laws.remaining(now, goal, s[2], s[3], s[7])
-            end = min(laws.straight(now, left, s[2], k), _FARTHEST * unit) if k > 0.0 else 0.0
-            h = min(h, 4.0 * max(end, unit) / r)
-            new = moved(m, mu, s, t, h)
-            if laws.remaining(now, goal, new[2], new[3], new[7]) <= 0.0:
-                s = land(m, mu, now, goal, s, new, t, h)
-                done = True
-            else:
-                s = new
-                resting = not math.sqrt(s[0] * s[0] + s[1] * s[1]) > 1e-3 * _AT_REST * size
-                if not compressing and drowned(m, s[3], s[4], s[5], before[3] - before[4]):
-                    done = stuck = True
-                    phases |= o.WEDGED
-        else:
-            if mode == _STRAIGHT:
-                t1, t2 = -mu * c, -mu * n
-            k = m[0] + m[1] * t1 + m[2] * t2
-            f1, f2 = m[1] + m[3] * t1 + m[4] * t2, m[2] + m[4] * t1 + m[5] * t2
-            left = laws.remaining(now, goal, s[2], s[3], s[7])
-            length = laws.straight(now, left, s[2], k) if left > 0.0 else 0.0
-            stuck = moves_nothing(m, t1, t2, k, grow)
-            if not compressing and now != laws.POISSON and not (stuck or grow < 0.0):
-                p, p1, p2 = s[3] + length, s[4] + length * t1, s[5] + length * t2
-                stuck = drowned(m, p, p1, p2, before[3] - before[4])
-            if stuck:
-                if pushed(s[2], size, out[o.STILL] / v):
-                    return o.NO_END
-                # Wedged: the velocity stays. Only Poisson's law knows how much impulse is to come.
-                k, f1, f2, grow = max(0.0, k), 0.0, 0.0, 0.0
-                length = left if now == laws.POISSON else 0.0
-                if not compressing:
-                    phases |= o.WEDGED
-            if k <= 0.0 and mode == _STRAIGHT and not stuck:
-                phases |= o.JAM
-            if mode == _STICK and not abs(f1) + abs(f2) > _ROUND_OFF * (abs(m[1]) + abs(m[2])):
-                f1, f2 = 0.0, 0.0  # else W_tt is so thin that stick leaves some creep
-            done = True
-            r = math.sqrt(s[0] * s[0] + s[1] * s[1])
-            if mode == _STRAIGHT and mu > 0.0 and grow < 0.0 and r <= -grow * length:
-                length = -r / grow
-                done = False
-                resting = True
-            if not length < math.inf:
-                return o.NO_END
-            loss = mu * length * (r + 0.5 * grow * length) if mode == _STRAIGHT else 0.0
-            s = (
-                s[0] + length * f1,
-                s[1] + length * f2,
-                s[2] + length * k,
-                s[3] + length,
-                s[4] + length * t1,
-                s[5] + length * t2,
-                s[6] + loss,
-                s[7] + length * (s[2] + 0.5 * k * length),
-            )
-
-        if not compressing and not stuck and s[2] < -_AT_REST * size:
-            # Driven together again before restitution was over (jam): compression goes on, and
-            # what came back counts to it. So p_c and A_c belong to the last zero of u_n.
-            compressing, now, goal, done = True, laws.NEWTON, 0.0, False
-            s = (s[0], s[1], s[2], s[3] + before[0], s[4] + before[1], s[5] + before[2],
-                 s[6] + before[3], s[7] + before[4])  # fmt: skip
-            before = (0.0, 0.0, 0.0, 0.0, 0.0)
-        if not done:
-            continue
-        if not compressing:
-            break
-        compressing = False
-        before = (s[3], s[4], s[5], s[6], s[7])
-        s = (s[0], s[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-        if not e > 0.0:
-            break
-        now = law
-        goal = laws.goal(law, e, -u0, before[0], before[4])
-
+    contact = Contact(m, mu, math.sqrt(u0 * u0 + u1 * u1 + u2 * u2), out[o.STILL] / v)
+    code, steps, phases, s, before, slip_end = _follow(contact, (u0, u1, u2), e, law)
+    if code != o.OK:
+        return code
     s = (s[0], s[1], max(0.0, s[2]), s[3], s[4], s[5], s[6], s[7])
     P = (before[0] + s[3], before[1] + s[4], before[2] + s[5])
     if not 0.0 < P[0] < math.inf:
@@ -220,10 +101,188 @@ def resolve_one(W, u, mu, e, law, out):
     write(out, v, w, (u0, u1, u2), s, P, before)
     out[o.PHASES] = phases
     out[o.STEPS] = steps
-    out[o.SLIP_END_P] = slip_end_p * (v / w) if slip_end_p >= 0.0 else -1.0
-    out[o.SLIP_END_UN] = slip_end_u * v
+    out[o.SLIP_END_P] = slip_end[0] * (v / w) if slip_end[0] >= 0.0 else -1.0
+    out[o.SLIP_END_UN] = slip_end[1] * v
     out[o.DURATION], out[o.X_MIN], out[o.KNOTS] = 0.0, 0.0, 0.0
     return o.OK
+
+
+@inlined
+def _follow(contact, u, e, law):
+    """Follow the velocity from `u` to the end of restitution, piece by piece.
+
+    Returns a code, the number of pieces, the mask of the phases passed, the state at the end, what compression
+    gave (p, P_1, P_2, loss, work; the state counts from there), and p and u_n where slip first stopped.
+    """
+    mu, at_rest = contact.mu, _AT_REST * contact.size
+    s, before = (u[1], u[2], u[0], 0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0)
+    phase, line, slip_end = _COMPRESSION, _CURVE, (-1.0, 0.0)
+    phases, steps, stopped = 0, 0, not math.sqrt(u[1] * u[1] + u[2] * u[2]) > at_rest
+    if mu == 0.0:
+        line = Line(_STRAIGHT, 0.0, 0.0, 0.0)
+        phases, stopped = 0 if stopped else o.SLIP, False
+
+    while steps < _MAX_STEPS:
+        steps += 1
+        # What the contact does from here on.
+        if stopped:
+            if phases & o.SLIP:
+                slip_end = (before[0] + s[3], s[2])
+            s = _without_slip(contact.m, s, contact.size)
+            line = _from_rest(contact)
+            if line.mode == _STICK:
+                phases |= o.STICK
+            elif phases & o.SLIP:
+                phases |= o.RESTART
+        elif line.mode == _CURVED:
+            line = _straightened(contact, s)
+        if line.mode != _STICK and mu > 0.0:
+            phases |= o.SLIP
+
+        # One piece: to the end of the phase, to the end of slip, or one step.
+        if line.mode == _CURVED:
+            s, ended, marks = _along_curve(contact, phase, s)
+        else:
+            s, ended, marks = _along_line(contact, phase, line, s)
+        phases |= marks
+        if ended == _ENDLESS:
+            return o.NO_END, steps, phases, s, before, slip_end
+        stopped = ended == _AT_STOP
+
+        # The next phase.
+        if phase.restitution and ended != _CAUGHT and s[2] < -at_rest:
+            # Driven together again before restitution was over (jam): compression goes on, and
+            # what came back counts to it. So p_c and A_c belong to the last zero of u_n.
+            phase = _COMPRESSION
+            s = (s[0], s[1], s[2], s[3] + before[0], s[4] + before[1], s[5] + before[2],
+                 s[6] + before[3], s[7] + before[4])  # fmt: skip
+            before = (0.0, 0.0, 0.0, 0.0, 0.0)
+        elif ended in (_AT_GOAL, _CAUGHT):
+            if phase.restitution:
+                return o.OK, steps, phases, s, before, slip_end
+            before = (s[3], s[4], s[5], s[6], s[7])
+            s = (s[0], s[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+            if not e > 0.0:
+                return o.OK, steps, phases, s, before, slip_end
+            goal = laws.goal(law, e, -u[0], before[0], before[4])
+            phase = Phase(law, goal, True, before[3] - before[4])
+    return o.TOO_MANY_STEPS, steps, phases, s, before, slip_end
+
+
+@inlined
+def _from_rest(contact):
+    """Return the line along which the contact goes on from u_t = 0 (II.9, 2 and 3).
+
+    It sticks to the end, or slip starts again along the outgoing ray.
+    """
+    m, mu = contact.m, contact.mu
+    t1, t2 = stick_ratio(m[1], m[2], m[3], m[4], m[5])
+    if math.sqrt(t1 * t1 + t2 * t2) <= mu:
+        return Line(_STICK, t1, t2, 0.0)
+    c, n, growth = outgoing(m[1], m[2], m[3], m[4], m[5], mu)
+    return Line(_STRAIGHT if growth > 0.0 else _STICK, -mu * c, -mu * n, growth)
+
+
+@inlined
+def _straightened(contact, s):
+    """Return the line of slip if it keeps its direction from here on to round-off, else the curve.
+
+    A ray that attracts (df/dtheta < 0) is taken as soon as the distance of u_t from it is round-off: waiting
+    longer would cost many steps where slip grows or fades slowly.
+    """
+    m, mu, x, y = contact.m, contact.mu, s[0], s[1]
+    r = math.sqrt(x * x + y * y)
+    c, n = x / r, y / r
+    f, g = _turning(m, mu, c, n)
+    if abs(f) <= _ON_RAY * (abs(m[1]) + abs(m[2]) + mu * (m[3] + m[5])):
+        return Line(_STRAIGHT, -mu * c, -mu * n, g)
+    slope = mu * ((m[3] - m[5]) * (c * c - n * n) + 4.0 * m[4] * c * n) - (m[1] * c + m[2] * n)
+    near = abs(f) * r <= -1e-14 * slope * contact.size and abs(f) <= -1e-3 * slope
+    if not (slope < 0.0 and near):
+        return _CURVE
+    for _ in range(3):  # Newton onto the ray itself
+        turn = -f / slope
+        c, n = c - turn * n, n + turn * c
+        norm = math.sqrt(c * c + n * n)
+        c, n = c / norm, n / norm
+        f, g = _turning(m, mu, c, n)
+    return Line(_STRAIGHT, -mu * c, -mu * n, g)
+
+
+@inlined
+def _turning(m, mu, c, n):
+    """Return the turning of slip in the direction (c, n), |u_t| dtheta/dp, and its growth d|u_t|/dp."""
+    fx = m[1] - mu * (m[3] * c + m[4] * n)
+    fy = m[2] - mu * (m[4] * c + m[5] * n)
+    return c * fy - n * fx, c * fx + n * fy
+
+
+@kernel
+def _along_curve(contact, phase, s):
+    """Take one step of slip that turns: return the new state, how the step ended, and marks of the phases."""
+    m, mu, size, law, goal = contact.m, contact.mu, contact.size, phase.law, phase.goal
+    r, k = normal_rate(m, mu, s)
+    marks = o.JAM if k <= 0.0 else 0
+    t = expand(m, mu, s)
+    h = reach(t[0], t[1], _ACCURACY * math.sqrt(size * r))
+    # Hardly any friction: not far beyond the end that is to be seen from here.
+    unit = size / m[0]
+    left = laws.remaining(law, goal, s[2], s[3], s[7])
+    end = min(laws.straight(law, left, s[2], k), _FARTHEST * unit) if k > 0.0 else 0.0
+    h = min(h, 4.0 * max(end, unit) / r)
+    new = moved(m, mu, s, t, h)
+    if laws.remaining(law, goal, new[2], new[3], new[7]) <= 0.0:
+        return land(m, mu, law, goal, s, new, t, h), _AT_GOAL, marks
+    if phase.restitution and drowned(m, new[3], new[4], new[5], phase.taken):
+        return new, _CAUGHT, marks | o.WEDGED
+    slips = math.sqrt(new[0] * new[0] + new[1] * new[1]) > 1e-3 * _AT_REST * size
+    return new, _WITHIN if slips else _AT_STOP, marks
+
+
+@inlined
+def _along_line(contact, phase, line, s):
+    """Go to the end of the phase or of slip: return the new state, how that ended, and marks of the phases."""
+    m, mu, law, t1, t2, growth = contact.m, contact.mu, phase.law, line.t1, line.t2, line.growth
+    k = m[0] + m[1] * t1 + m[2] * t2
+    f1, f2 = m[1] + m[3] * t1 + m[4] * t2, m[2] + m[4] * t1 + m[5] * t2
+    left = laws.remaining(law, phase.goal, s[2], s[3], s[7])
+    length = laws.straight(law, left, s[2], k) if left > 0.0 else 0.0
+
+    # Where nothing moves the velocity stays. Only Poisson's law knows how much impulse is to come.
+    caught, marks, ended = moves_nothing(m, t1, t2, k, growth), 0, _AT_GOAL
+    if phase.restitution and law != laws.POISSON and not (caught or growth < 0.0):
+        p, p1, p2 = s[3] + length, s[4] + length * t1, s[5] + length * t2
+        caught = drowned(m, p, p1, p2, phase.taken)
+    if caught:
+        if pushed(s[2], contact.size, contact.still):
+            return s, _ENDLESS, marks
+        k, f1, f2, growth = max(0.0, k), 0.0, 0.0, 0.0
+        length = left if law == laws.POISSON else 0.0
+        marks, ended = o.WEDGED if phase.restitution else 0, _CAUGHT
+    elif k <= 0.0 and line.mode == _STRAIGHT:
+        marks = o.JAM
+    if line.mode == _STICK and not abs(f1) + abs(f2) > _ROUND_OFF * (abs(m[1]) + abs(m[2])):
+        f1, f2 = 0.0, 0.0  # else W_tt is so thin that stick leaves some creep
+
+    # As far as slip lasts.
+    r, loss = math.sqrt(s[0] * s[0] + s[1] * s[1]), 0.0
+    if line.mode == _STRAIGHT:
+        if mu > 0.0 and growth < 0.0 and r <= -growth * length:
+            length, ended = -r / growth, _AT_STOP
+        loss = mu * length * (r + 0.5 * growth * length)
+    if not length < math.inf:
+        return s, _ENDLESS, marks
+    s = (
+        s[0] + length * f1,
+        s[1] + length * f2,
+        s[2] + length * k,
+        s[3] + length,
+        s[4] + length * t1,
+        s[5] + length * t2,
+        s[6] + loss,
+        s[7] + length * (s[2] + 0.5 * k * length),
+    )
+    return s, ended, marks
 
 
 @kernel

@@ -13,16 +13,10 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.contact.gap import strike_point
-from carom.dynamics.contact_impulse import (
-    alone,
-    spread,
-)
+from carom.dynamics.contact_impulse import alone, spread
 from carom.dynamics.project import project_position
 from carom.geometry.rotation import exp, multiply, normalize
-from carom.kinematics.contact_point import (
-    contact_motion,
-    place,
-)
+from carom.kinematics.contact_point import contact_motion, place
 
 
 @kernel

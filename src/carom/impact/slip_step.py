@@ -23,7 +23,7 @@ def normal_rate(m, mu, s):
 @kernel
 def expand(m, mu, s):
     """Return the Taylor series of slip from the state `s`."""
-    return series(m[1], m[2], mu * m[3], mu * m[4], mu * m[5], s[0], s[1])
+    return series((m[1], m[2], mu * m[3], mu * m[4], mu * m[5]), s[0], s[1])
 
 
 @kernel

@@ -9,15 +9,12 @@ from carom._compiled.units import unit
 from carom.contact.closed_points import concerns, gather_closed
 from carom.contact.gap import round_off, slow, strike_point
 from carom.contact.groups import label_groups
-from carom.dynamics.contact_impulse import (
-    add_velocity,
-    spread,
-)
+from carom.dynamics.contact_impulse import add_velocity, spread
 from carom.dynamics.forces import potential_energy
 from carom.dynamics.project import project_velocity
 from carom.impact import layout
 from carom.impact.driven import BLOCKED, blocked, driven_work
-from carom.impact.effective_restitution import what_is_left
+from carom.impact.effective_restitution import effective_restitution
 from carom.impact.equal_contacts import as_one
 from carom.impact.layer import traverse
 from carom.impact.record import write_impact
@@ -57,13 +54,8 @@ def onto_surface(system, controls, c, state, work):
         project_velocity(system, state, work)
     strike_point(contact, system.vertices, state, tie, point)
     if controls.location == WORK:
-        restore_work(
-            system,
-            contact,
-            state,
-            before - potential_energy(system, state, work.result[0].time),
-            work,
-        )
+        drop = before - potential_energy(system, state, work.result[0].time)
+        restore_work(system, contact, state, drop, work)
     return 0
 
 
@@ -75,15 +67,10 @@ def strike(model, data, method, c):
     Velocities of `state` change; its position only by the return map.
     """
     system, controls = model.system, model.controls
-    held, state, cluster, work, clocks, records = (
-        data.held,
-        data.state,
-        data.cluster,
-        data.work,
-        data.clocks,
-        data.records,
-    )
-    contact, hit, clock = system.contacts[c], work.hit[0], clocks[0]
+    held, state, cluster, work, records = (
+        data.held, data.state, data.cluster, data.work, data.records,
+    )  # fmt: skip
+    contact, hit, clock = system.contacts[c], work.hit[0], data.clocks[0]
     hit.closed = 0
     hit.code = onto_surface(system, controls, c, state, work)
     if hit.code != 0:
@@ -133,7 +120,7 @@ def strike(model, data, method, c):
 
 @kernel
 def forget_jams(held, k, cluster):
-    """Note that what jammed has been resolved."""
+    """Clear the mark of the held points whose jam this impact has resolved."""
     for i in range(k):
         if cluster.seats[i].held >= 0:
             held.points[cluster.seats[i].held].jams = 0
@@ -143,18 +130,10 @@ def forget_jams(held, k, cluster):
 def strike_one(model, data, method, c):
     """Resolve the impact of the one point in work.point, with W and u in work.hit."""
     system, controls = model.system, model.controls
-    held, state, work, clock, records = (
-        data.held,
-        data.state,
-        data.work,
-        data.clocks[0],
-        data.records,
-    )
+    held, state, work, clock = data.held, data.state, data.work, data.clocks[0]
     contact, hit, point = system.contacts[c], work.hit[0], work.point[0]
-    hit.restitution, hit.out[layout.STILL] = (
-        what_is_left(contact, held.brinks[c]),
-        slow(contact, state),
-    )
+    hit.restitution = effective_restitution(contact, held.brinks[c])
+    hit.out[layout.STILL] = slow(contact, state)
     if blocked(system, point, hit.W[0, 0]):
         hit.code = BLOCKED
         return
@@ -162,7 +141,7 @@ def strike_one(model, data, method, c):
     if collide(method, controls, contact, hit, work.history) != layout.OK:
         hit.code = IMPACT_FAILED
         return
-    write_impact(contact, c, state, point, hit, clock, records)
+    write_impact(contact, c, state, point, hit, clock, data.records)
     out, P = hit.out, layout.IMPULSE
     spread(system, point, state, out[P], out[P + 1], out[P + 2], work)
     add_velocity(system, point, work, state)
@@ -179,7 +158,7 @@ def collide(method, controls, contact, hit, history):
 @unit
 def by_layer(controls, contact, hit, history) -> int:
     """Pass the boundary layer by cubic splines."""
+    layer = (contact.width, contact.penetration, controls.layer_steps)
     return traverse(
-        hit.W, hit.u, hit.friction, hit.restitution, contact.law, contact.width,
-        contact.penetration, controls.layer_steps, history, hit.out,
-    )  # fmt: skip
+        hit.W, hit.u, hit.friction, hit.restitution, contact.law, layer, history, hit.out
+    )

@@ -1,18 +1,19 @@
-"""An impact where several points are closed: a corner of the manifold, resolved for all of them together."""
+"""A multiple impact within a run: all closed points of a group, at a corner of the manifold, together."""
 
 from __future__ import annotations
 
 import math
 
+from carom._compiled.by_reference import refer
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.contact.gap import slow
 from carom.dynamics.contact_impulse import add_velocity, spread
 from carom.dynamics.several_points import inverse_masses, velocities
 from carom.impact.driven import BLOCKED, blocked
-from carom.impact.effective_restitution import what_is_left
+from carom.impact.effective_restitution import effective_restitution
 from carom.impact.layout import WEDGED
-from carom.impact.multiple.layout import OK
+from carom.impact.multiple.layout import OK, CornerContacts
 from carom.impact.multiple.resolve import resolve_contacts
 from carom.impact.workspace import U
 
@@ -24,10 +25,9 @@ STEP = 30.0  # cost of a step through the layers, of a point [us]
 @unit
 def at_corner(k, W, u, mu, corner):
     """Resolve the impact of k points; its code goes to the clock of the scratch."""
-    corner.scratch.work.clock[0].code = resolve_contacts(
-        k, W, u, mu, corner.e, corner.law, corner.kappa, corner.settings, corner.scratch,
-        corner.result,
-    )  # fmt: skip
+    contacts = refer(CornerContacts(k, W, u, mu, corner.e, corner.law, corner.kappa))
+    code = resolve_contacts(contacts, corner.settings, corner.scratch, corner.result)
+    corner.scratch.work.clock[0].code = code
 
 
 @kernel
@@ -37,15 +37,8 @@ def strike_several(model, data, c, k):
     A point that jams begins with a little approach (mathematics page, VI.6).
     """
     system = model.system
-    held, state, cluster, corner, work, clock, records = (
-        data.held,
-        data.state,
-        data.cluster,
-        data.corner,
-        data.work,
-        data.clocks[0],
-        data.records,
-    )
+    held, state, cluster, corner = data.held, data.state, data.cluster, data.corner
+    work, clock = data.work, data.clocks[0]
     hit, u = work.hit[0], cluster.v[U]
     inverse_masses(system, k, cluster.points[0], state, work, cluster.m[0])
     velocities(k, cluster.points[0], state, u)
@@ -57,7 +50,7 @@ def strike_several(model, data, c, k):
             hit.code = BLOCKED
             return
         j, brink = cluster.seats[i].held, held.brinks[cluster.seats[i].contact]
-        cluster.mu[i], corner.e[i] = contact.friction, what_is_left(contact, brink)
+        cluster.mu[i], corner.e[i] = contact.friction, effective_restitution(contact, brink)
         if j >= 0 and held.points[j].jams == 1:
             u[3 * i] -= SEED * math.sqrt(u[3 * i + 1] ** 2 + u[3 * i + 2] ** 2)
             cluster.mu[i] = contact.friction_held
@@ -75,7 +68,7 @@ def strike_several(model, data, c, k):
     for i in range(k):
         n, t1, t2 = P[3 * i], P[3 * i + 1], P[3 * i + 2]
         if n != 0.0:
-            write_share(system, i, k, state, cluster, corner, clock, records)
+            write_share(system, i, k, state, cluster, corner, clock, data.records)
             spread(system, cluster.points[0][i], state, n, t1, t2, work)
             add_velocity(system, cluster.points[0][i], work, state)
 

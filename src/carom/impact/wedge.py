@@ -25,7 +25,7 @@ _PUSHED = 1e-9
 
 @kernel
 def moves_nothing(m, t1, t2, k, grow):
-    """Return whether the impulse p (1, t1, t2) changes no velocity, `m` as in `slip`.
+    """Return whether the impulse p (1, t1, t2) changes no velocity, `m` as in `slip_step`.
 
     k = du_n/dp, judged by the products of z.W z from which it is left, and `grow` = d|u_t|/dp (0 in stick).
     """

@@ -10,15 +10,8 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.dynamics.contact_impulse import (
-    add_velocity,
-    effective_inverse_mass,
-    spread,
-)
-from carom.kinematics.contact_point import (
-    contact_velocity,
-    place,
-)
+from carom.dynamics.contact_impulse import add_velocity, effective_inverse_mass, spread
+from carom.kinematics.contact_point import contact_velocity, place
 
 
 @kernel

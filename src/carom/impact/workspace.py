@@ -1,4 +1,4 @@
-"""Workspace for the closed points of one group of bodies: made once for a run."""
+"""Workspace for the closed points of one group of bodies, made once for a run."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ U, C, P, OLD, BACK = range(5)
 
 
 class Cluster(NamedTuple):
-    """K points at most, of N bodies; few arrays, as each costs at every call.
+    """Workspace for up to K points of N bodies, in few arrays: each costs at every call.
 
     Vectors (3K,) and matrices (3K, 3K) have rows n, t1, t2 a point.
     """
@@ -61,7 +61,7 @@ class Cluster(NamedTuple):
 
 
 class Corner(NamedTuple):
-    """Workspace and result of a multiple impact, beyond that of the group."""
+    """Workspace, settings and result of a multiple impact of up to K points."""
 
     scratch: CornerScratch
     settings: CornerSettings

@@ -5,7 +5,12 @@ import pytest
 
 from carom.impact.api import resolve_impact
 from carom.impact.multiple.api import resolve_impacts
-from carom.impact.multiple.layout import CornerSettings, corner_arrays, new_corner_result
+from carom.impact.multiple.layout import (
+    CornerContacts,
+    CornerSettings,
+    corner_arrays,
+    new_corner_result,
+)
 from references.painleve import impact_without_collision
 
 
@@ -56,10 +61,8 @@ SLIPS = np.array([0.0, 1.0, 0.0])
 def jam(e, law, mu=1.6):
     settings, scratch, out = CornerSettings(), corner_arrays(1), new_corner_result(1)
     one = np.ones(1)
-    result = impact_without_collision(
-        1, ROD, SLIPS, mu * one, e * one, np.array([law]), one, settings, scratch, out
-    )
-    return result, out
+    contacts = CornerContacts(1, ROD, SLIPS, mu * one, e * one, np.array([law]), one)
+    return impact_without_collision(contacts, settings, scratch, out), out
 
 
 def test_painleve_rod():

@@ -78,7 +78,7 @@ def resume(k, work, p):
 
 @inlined
 def drift(k, work, apart, p):
-    """Return 1 if all is over. Where no force acts, go on with constant velocities to the next closure."""
+    """Return 1 if the event is over. Where no force acts, move with constant velocities to the next closure."""
     u, d = work.vector[U], work.vector[D]
     for i in range(k):
         c = work.contact[i]
@@ -167,5 +167,5 @@ def traverse(k, work, rtol, p, max_events, max_steps):
 
 @unit
 def pass_layer(k, work, rtol, p, max_events, max_steps):
-    """Traverse; the code goes to the clock."""
+    """Traverse the layer; the code goes to the clock."""
     work.clock[0].code = traverse(k, work, rtol, p, max_events, max_steps)

@@ -99,19 +99,26 @@ def first_turn(k, work, degree, end):
         for s in range(_SAMPLES):
             high = end * ((s + 1) / _SAMPLES)
             if _along(S, i, degree, high) <= 0.0:
-                for _ in range(60):
-                    x = 0.5 * (low + high)
-                    if _along(S, i, degree, x) > 0.0:
-                        low = x
-                    else:
-                        high = x
-                    if high - low <= 1e-15 * end:
-                        break
+                high = _turn_between(S, i, degree, low, high, 1e-15 * end)
                 first = min(first, high)
                 end = min(end, high)
                 break
             low = high
     return first
+
+
+@kernel
+def _turn_between(S, i, degree, low, high, tolerance):
+    """Return where between `low` and `high` slip has turned by a right angle, by bisection."""
+    for _ in range(60):
+        x = 0.5 * (low + high)
+        if _along(S, i, degree, x) > 0.0:
+            low = x
+        else:
+            high = x
+        if high - low <= tolerance:
+            break
+    return high
 
 
 @kernel

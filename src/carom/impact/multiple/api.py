@@ -129,6 +129,7 @@ def resolve_impacts(
         MESSAGES,
         MULTIPLE,
         OK,
+        CornerContacts,
         CornerSettings,
         corner_arrays,
         new_corner_result,
@@ -154,9 +155,9 @@ def resolve_impacts(
     )
     out = new_corner_result(k)
     scratch = corner_arrays(k)
-    code = resolve_corner(
-        k, W, np.ascontiguousarray(u).reshape(-1), mu, e, numbers, kappa, settings, scratch, out
-    )
+    velocities = np.ascontiguousarray(u).reshape(-1)
+    contacts = CornerContacts(k, W, velocities, mu, e, numbers, kappa)
+    code = resolve_corner(contacts, settings, scratch, out)
     if code != OK:
         raise ValueError(f"the impact was not resolved: {MESSAGES[code]}")
     summary = out.summary[0]

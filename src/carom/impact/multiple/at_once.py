@@ -35,8 +35,9 @@ def unsound(k, u, scale, out):
 
 
 @unit
-def solve_at_once(k, u, mu, e, scratch, out):
+def solve_at_once(contacts, scratch, out):
     """Write impulses and works of all contacts."""
+    k, u, mu, e = contacts.k, contacts.u, contacts.friction, contacts.restitution
     work = scratch.work
     W, c, p = work.matrix[CLEAN], work.vector[SCRATCH], work.vector[TRY]
     heading, kind = work.matrix[FACTOR], work.index[STACK]

@@ -18,7 +18,10 @@ _STIFF = 100.0  # rate at which a slow direction relaxes, in units of the fastes
 
 @inlined
 def series_step(k, work, rtol):
-    """One step by series, cut at the first change; return its length, or -1 if stages must do it."""
+    """Take a step by series, cut at the first change of mode; return its length and whether a mode changes.
+
+    The length is -1 where the step has to be taken by stages.
+    """
     clock, when, u = work.clock[0], work.vector[WHEN], work.vector[U]
     least = max(AT_REST, 0.1 * rtol)
     captured = False

@@ -18,7 +18,7 @@ _AT_CHANGE = 0.02  # part of the tolerance where a contact begins or ceases to s
 
 @unit
 def by_stages(k, work, rtol, p):
-    """One implicit step, cut at the first change of mode; its length and any change go to the clock."""
+    """Take an implicit step, cut at the first change of mode; its length and any change go to the clock."""
     m = gather_discs(k, work)
     work.clock[0].stretched = 0
     h, changes = stages_step(k, m, work, rtol, p)
@@ -27,7 +27,7 @@ def by_stages(k, work, rtol, p):
 
 @kernel
 def stages_step(k, m, work, rtol, p):
-    """One implicit step, cut at the first change of mode; return its length and whether one changes."""
+    """Take an implicit step, cut at the first change of mode; return its length and whether a mode changes."""
     clock, when, tolerance = work.clock[0], work.vector[WHEN], 1e-3 * rtol
     h, slow = clock.step, max(AT_REST, 0.01 * rtol)
     force = work.stage[FORCE]

@@ -114,9 +114,10 @@ def mismatch(m, A, radius, t, w, f):
 
 
 @kernel
-def _newton_step(m, A, J, pivot, radius, t, w, f, step):
+def _newton_step(m, A, J, vector, index):
     """Write the step: (I - M + s M (A + eps)) step = -f, M the derivative of the projection."""
-    n = 2 * m
+    n, pivot, radius, step = 2 * m, index[PIVOT], vector[RADIUS], vector[DISC_STEP]
+    t, w, f = vector[DISC_T], vector[DISC_W], vector[DISC_F]
     for i in range(m):
         a, b = 2 * i, 2 * i + 1
         trace = A[a, a] + A[b, b]
@@ -148,7 +149,7 @@ def solve_discs(m, A, J, vector, index, tolerance):
 
     A, and room J for Newton's matrix; rows of `vector` and `index` as in `layout`.
     """
-    n, pivot, radius, c = 2 * m, index[PIVOT], vector[RADIUS], vector[DISC_C]
+    n, radius, c = 2 * m, vector[RADIUS], vector[DISC_C]
     t, w, f = vector[DISC_T], vector[DISC_W], vector[DISC_F]
     step, trial = vector[DISC_STEP], vector[DISC_TRY]
     for i in range(m):
@@ -170,7 +171,7 @@ def solve_discs(m, A, J, vector, index, tolerance):
             if error <= tolerance or m == 1:
                 break
         for _ in range(_NEWTON):
-            _newton_step(m, A, J, pivot, radius, t, w, f, step)
+            _newton_step(m, A, J, vector, index)
             count += 1
             length, better = 1.0, False
             while length > 0.1:
@@ -209,5 +210,5 @@ def _project(m, radius, t):
 
 @unit
 def friction(m, A, J, vector, index, tolerance):
-    """Solve as `solve_discs`."""
+    """Solve for the friction of `m` discs as `solve_discs` does, compiled on its own."""
     solve_discs(m, A, J, vector, index, tolerance)

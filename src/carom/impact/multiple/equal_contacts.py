@@ -1,7 +1,7 @@
-"""What makes an impact smaller, exactly.
+"""Exact reductions of a multiple impact.
 
-Contacts that move alike are one, those that no force presses take no part, and contacts that do not reach each
-other are solved apart.
+Contacts that move alike are solved as one, contacts that no force presses take no part, and groups of contacts
+that do not act on each other are solved one after the other.
 
 Contacts of equal velocity, friction, restitution, law and stiffness whose coupling to each class of such
 contacts is equal have the same history in the layer. m of them are one contact, with the impulse shared
@@ -23,11 +23,30 @@ _NONE = 1e-13  # coupling below this part of the diagonal is round-off
 
 
 @kernel
-def clean(k, W, mu, out):
-    """Copy W, without what rounds to nothing and without tangents where there is no friction."""
-    largest = 0.0
+def reduce(given, acting, scale, index):
+    """Write W and friction as far as they act, and the classes of contacts; return how many classes.
+
+    `acting` are the same contacts as `given`, with room for these W and friction; `scale`: greatest velocity.
+    """
+    if nothing_slips(given, scale):
+        for i in range(given.k):
+            acting.friction[i] = 0.0
+        largest = clean(given, acting)
+        count = find_classes(acting, largest, scale, index)
+        if friction_sleeps(given, count, largest, index):
+            return count
+    for i in range(given.k):
+        acting.friction[i] = given.friction[i]
+    largest = clean(given, acting)
+    return find_classes(acting, largest, scale, index)
+
+
+@kernel
+def clean(given, acting):
+    """Copy W, without what rounds to nothing and without tangents where no friction acts; return its scale."""
+    k, W, mu, largest = given.k, given.W, acting.friction, 0.0
     for a in range(3 * k):
-        row, new = W[a], out[a]
+        row, new = W[a], acting.W[a]
         rough = a % 3 == 0 or mu[a // 3] > 0.0
         largest = max(largest, abs(row[a]))
         for b in range(3 * k):
@@ -41,43 +60,26 @@ def clean(k, W, mu, out):
 
 
 @kernel
-def find_classes(k, W, u, mu, e, law, kappa, scale_W, scale_u, index):
+def find_classes(contacts, scale_W, scale_u, index):
     """Write the class of each contact, the first member and the size of each class; return how many."""
-    cls, first = index[CLASS], index[FIRST]
-    count = 0
+    k, cls, first, count = contacts.k, index[CLASS], index[FIRST], 0
     for i in range(k):
         cls[i] = -1
         for q in range(count):
-            j = first[q]
-            if (
-                mu[i] == mu[j] and e[i] == e[j] and law[i] == law[j] and kappa[i] == kappa[j]
-                and _same_velocity(u, i, j, mu[i] > 0.0, SAME * scale_u)
-            ):  # fmt: skip
+            if _same_kind(contacts, i, first[q], SAME * scale_u):
                 cls[i] = q
                 break
         if cls[i] < 0:
             cls[i] = count
             first[count] = i
             count += 1
-    split = True
-    while split and count < k:
-        split = False
-        for q in range(count):
-            new = -1
-            for i in range(first[q] + 1, k):
-                if cls[i] != q or _same_coupling(k, W, cls, count, i, first[q], SAME * scale_W):
-                    continue
-                if new < 0:
-                    new = count
-                    first[new] = i
-                cls[i] = -1 - new  # counts as its old class until all members are compared
-            if new >= 0:
-                for i in range(k):
-                    if cls[i] == -1 - new:
-                        cls[i] = new
-                count += 1
-                split = True
-                break
+    q = 0
+    while q < count < k:
+        if _split(contacts, q, count, SAME * scale_W, index):
+            count += 1
+            q = 0  # members of other classes may be coupled to the two parts in different ways
+        else:
+            q += 1
     for q in range(count):
         index[SIZE, q] = 0
     for i in range(k):
@@ -86,57 +88,89 @@ def find_classes(k, W, u, mu, e, law, kappa, scale_W, scale_u, index):
 
 
 @kernel
-def friction_sleeps(k, W, mu, count, scale_W, index):
+def _split(contacts, q, count, tolerance, index):
+    """Make a new class `count` of the members of class `q` that are not coupled as its first; return if any."""
+    cls, first, found = index[CLASS], index[FIRST], False
+    for i in range(first[q] + 1, contacts.k):
+        if cls[i] == q and not _same_coupling(contacts, count, i, first[q], tolerance, cls):
+            if not found:
+                found = True
+                first[count] = i
+            cls[i] = -1 - count  # counts as its old class until all members are compared
+    for i in range(contacts.k):
+        if cls[i] == -1 - count:
+            cls[i] = count
+    return found
+
+
+@kernel
+def friction_sleeps(contacts, count, scale_W, index):
     """Return whether friction never acts on contacts that do not slip: no normal force makes them slip.
 
     `index` has the classes of contacts without friction, whose normal forces are equal.
     """
-    for i in range(k):
-        if not mu[i] > 0.0:
-            continue
-        for r in range(1, 3):
+    for i in range(contacts.k):
+        for r in range(1, 3 if contacts.friction[i] > 0.0 else 1):
+            row = contacts.W[3 * i + r]
             for q in range(count):
-                total = 0.0
-                for j in range(k):
-                    if index[CLASS, j] == q:
-                        total += W[3 * i + r, 3 * j]
-                if not abs(total) <= SAME * scale_W:
+                if not abs(_of_class(contacts.k, row, q, index[CLASS])) <= SAME * scale_W:
                     return False
     return True
 
 
 @kernel
-def nothing_slips(k, u, mu, scale_u):
+def _of_class(k, row, q, cls):
+    """Return the sum of a row of W over the normals of class `q`."""
+    total = 0.0
+    for j in range(k):
+        if cls[j] == q:
+            total += row[3 * j]
+    return total
+
+
+@kernel
+def nothing_slips(contacts, scale_u):
     """Return whether no contact with friction slips."""
-    for i in range(k):
+    u = contacts.u
+    for i in range(contacts.k):
         slip = abs(u[3 * i + 1]) + abs(u[3 * i + 2])
-        if mu[i] > 0.0 and not slip <= SAME * scale_u:
+        if contacts.friction[i] > 0.0 and not slip <= SAME * scale_u:
             return False
     return True
 
 
 @kernel
-def _same_velocity(u, i, j, rough, tolerance):
-    same = abs(u[3 * i] - u[3 * j]) <= tolerance
-    for r in range(1, 3 if rough else 1):
+def _same_kind(contacts, i, j, tolerance):
+    """Return whether contacts i and j have the same velocity, friction, restitution, law and stiffness."""
+    u, mu, e = contacts.u, contacts.friction, contacts.restitution
+    law, kappa = contacts.law, contacts.stiffness
+    same = mu[i] == mu[j] and e[i] == e[j] and law[i] == law[j] and kappa[i] == kappa[j]
+    for r in range(3 if mu[i] > 0.0 else 1):
         same = same and abs(u[3 * i + r] - u[3 * j + r]) <= tolerance
     return same
 
 
 @kernel
-def _same_coupling(k, W, cls, count, i, j, tolerance):
+def _same_coupling(contacts, count, i, j, tolerance, cls):
     """Return whether contacts i and j are coupled to each class in the same way."""
+    k, W = contacts.k, contacts.W
     for q in range(count):
         for r in range(3):
             for s in range(3):
-                difference = 0.0
-                for b in range(k):
-                    c = cls[b]
-                    if c == q or (c < 0 and cls[j] == q):
-                        difference += W[3 * i + r, 3 * b + s] - W[3 * j + r, 3 * b + s]
+                difference = _difference(k, W[3 * i + r], W[3 * j + r], s, q, cls[j] == q, cls)
                 if not abs(difference) <= tolerance:
                     return False
     return True
+
+
+@kernel
+def _difference(k, row, other, s, q, own, cls):
+    """Return the difference of two rows of W, summed over class `q`; if `own`, over those that leave it too."""
+    total = 0.0
+    for b in range(k):
+        if cls[b] == q or (own and cls[b] < 0):
+            total += row[3 * b + s] - other[3 * b + s]
+    return total
 
 
 @kernel
@@ -162,8 +196,9 @@ def coupled(W, i, j):
 
 
 @kernel
-def find_pressed(k, W, u, mu, least, index):
+def find_pressed(contacts, least, index):
     """Note the contacts that approach faster than `least`, and those that forces of such can press."""
+    k, W, u, mu = contacts.k, contacts.W, contacts.u, contacts.friction
     pressed, stack, height = index[PRESSED], index[STACK], 0
     for i in range(k):
         pressed[i] = 0
@@ -199,28 +234,33 @@ def find_groups(k, count, W, index):
 
     Classes that nothing presses are of no group (-1).
     """
-    group, stack, cls, pressed, first = (
-        index[GROUP], index[STACK], index[CLASS], index[PRESSED], index[FIRST],
-    )  # fmt: skip
+    group, stack = index[GROUP], index[STACK]
     for q in range(count):
         group[q] = -1
     groups = 0
     for start in range(count):
-        if group[start] >= 0 or pressed[first[start]] == 0:
+        if group[start] >= 0 or index[PRESSED, index[FIRST, start]] == 0:
             continue
         group[start] = groups
         stack[0] = start
         height = 1
         while height > 0:
-            height -= 1
-            q = stack[height]
-            for i in range(k):
-                if cls[i] != q:
-                    continue
-                for j in range(k):
-                    if group[cls[j]] < 0 and pressed[j] == 1 and coupled(W, i, j):
-                        group[cls[j]] = groups
-                        stack[height] = cls[j]
-                        height += 1
+            height = _push_neighbours(k, W, height - 1, index)
         groups += 1
     return groups
+
+
+@kernel
+def _push_neighbours(k, W, height, index):
+    """Push the classes that the one at `height` of the stack reaches, with its group; return the new height."""
+    group, stack, cls, pressed = index[GROUP], index[STACK], index[CLASS], index[PRESSED]
+    q = stack[height]
+    for i in range(k):
+        if cls[i] != q:
+            continue
+        for j in range(k):
+            if group[cls[j]] < 0 and pressed[j] == 1 and coupled(W, i, j):
+                group[cls[j]] = group[q]
+                stack[height] = cls[j]
+                height += 1
+    return height

@@ -59,7 +59,7 @@ def traverse_fixed(k, work, n, p, max_events, max_steps):
 
 @unit
 def pass_fixed(k, work, n, p, max_events, max_steps):
-    """Traverse; the code goes to the clock."""
+    """Traverse the layer; the code goes to the clock."""
     work.clock[0].code = traverse_fixed(k, work, n, p, max_events, max_steps)
 
 

@@ -215,6 +215,20 @@ def excess(c, i, S, degree, x):
 
 
 @kernel
+def _last_hold(c, i, S, degree, low, high, tolerance):
+    """Return the last x between `low` and `high` where a contact still sticks, by bisection."""
+    for _ in range(50):
+        x = 0.5 * (low + high)
+        if excess(c, i, S, degree, x) > 0.0:
+            high = x
+        else:
+            low = x
+        if high - low <= tolerance:
+            break
+    return low
+
+
+@kernel
 def first_slip(z, work, degree, end):
     """Return the first x in [0, end] where a contact can no longer stick, or 2 end."""
     first, S = 2.0 * end, work.series
@@ -225,14 +239,7 @@ def first_slip(z, work, degree, end):
         for s in range(_SAMPLES):
             high = end * ((s + 1) / _SAMPLES)
             if excess(c, i, S, degree, high) > 0.0:
-                for _ in range(50):
-                    x = 0.5 * (low + high)
-                    if excess(c, i, S, degree, x) > 0.0:
-                        high = x
-                    else:
-                        low = x
-                    if high - low <= 1e-12 * end:
-                        break
+                low = _last_hold(c, i, S, degree, low, high, 1e-12 * end)
                 first = min(first, low)
                 end = min(end, max(low, 1e-300))
                 break

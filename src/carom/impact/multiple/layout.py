@@ -1,4 +1,4 @@
-"""Settings, work arrays and results of impacts at a corner."""
+"""What is given of a multiple impact, settings, workspace and result."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ REPELLED = 32  #: the impulse was scaled back by round-off, so that energy does 
 
 
 class CornerSettings(NamedTuple):
-    """Numbers that say how an impact at a corner is resolved."""
+    """Settings of the resolver of multiple impacts."""
 
     multiple: int = SIMULTANEOUS
     rtol: float = 1e-8  # relative error of velocities
@@ -44,6 +44,20 @@ class CornerSettings(NamedTuple):
     max_events: int = 200  # changes of mode, a contact
     max_steps: int = 2000  # a contact
     max_rounds: int = 40  # of the outer iteration of Newton's and Poisson's law
+
+
+class CornerContacts(NamedTuple):
+    """The contacts of an impact: the first `k` of each array; (n, t1, t2) of each are rows of W and u."""
+
+    k: int
+    W: np.ndarray  # (3K, 3K) inverse mass, symmetric, often singular
+    u: (
+        np.ndarray
+    )  # (3K,) velocity before, approach negative; u_n = 0 where contacts touch or are held
+    friction: np.ndarray  # (K,)
+    restitution: np.ndarray  # (K,)
+    law: np.ndarray  # (K,) of `carom.impact.laws`
+    stiffness: np.ndarray  # (K,), only ratios matter
 
 
 #: one contact, or a class of contacts that move alike, in scaled variables
@@ -88,7 +102,7 @@ RESULT = [
 
 
 class CornerResult(NamedTuple):
-    """What `resolve_corner` writes, K contacts."""
+    """Result of an impact of K contacts."""
 
     impulse: np.ndarray  # (3K,)
     velocity: np.ndarray  # (3K,) after
@@ -100,7 +114,7 @@ class CornerResult(NamedTuple):
 
 
 class CornerWork(NamedTuple):
-    """Scratch of the passage of a group, K contacts: few arrays, as each costs at every call."""
+    """Workspace for the passage of a group of K contacts, in few arrays: each costs at every call."""
 
     contact: np.recarray  # (K,) CONTACT
     saved: np.recarray  # (K,) CONTACT, at the first unloading
@@ -117,7 +131,7 @@ class CornerWork(NamedTuple):
 
 
 class CornerScratch(NamedTuple):
-    """Scratch of `resolve_corner` for up to K contacts."""
+    """Workspace for impacts of up to K contacts."""
 
     work: CornerWork
     cones: ContactWork

@@ -37,7 +37,7 @@ def pass_group(k, work, cones, settings, result):
     if ended != ENDED and fixed == 0 and work.clock[0].steps >= settings.max_steps * k:
         fixed = settings.fixed_steps
         ended = run(k, work, settings, settings.rtol, fixed, True)
-    if r.any_aims(k, work) and ended == ENDED:
+    if r.any_targets(k, work) and ended == ENDED:
         ended = meet_laws(k, work, settings, fixed, result)
     if fixed > 0:
         result.marks |= FIXED

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from carom._compiled.by_reference import refer
 from carom._compiled.decorators import entry, kernel
 from carom.impact import laws
 from carom.impact import layout as one
@@ -30,6 +31,7 @@ from carom.impact.multiple.layout import (
     SIZE,
     TRY,
     U0,
+    CornerContacts,
     P,
 )
 from carom.impact.multiple.one import resolve_single
@@ -41,77 +43,55 @@ _TOUCHES = 1e-13  # approach below this part of the greatest velocity is none
 
 
 @entry
-def resolve_corner(k, W, u, mu, e, law, kappa, settings, scratch, out):
-    """Resolve an impact of `k` contacts as `resolve_contacts`, for calls from Python."""
-    return resolve_contacts(k, W, u, mu, e, law, kappa, settings, scratch, out)
+def resolve_corner(contacts, settings, scratch, out):
+    """Resolve an impact as `resolve_contacts`, for calls from Python."""
+    return resolve_contacts(contacts, settings, scratch, out)
 
 
 @kernel
-def resolve_contacts(k, W, u, mu, e, law, kappa, settings, scratch, out):
-    """Resolve an impact of `k` contacts; return OK or BAD_INPUT (nothing is written then).
+def resolve_contacts(contacts, settings, scratch, out):
+    """Resolve an impact of `CornerContacts`; return OK or BAD_INPUT (nothing is written then).
 
-    `W` (3K, 3K) symmetric inverse mass, often singular, and `u` (3K,) velocities before, rows (n, t1, t2) of
-    each contact, approach negative; of contacts that touch or are held u_n = 0. `mu`, `e`, `law` and
-    `kappa` (K,): friction, restitution, its law as in `carom.impact.laws`, stiffness (only ratios matter).
-    `settings`: `CornerSettings`; `scratch` is from `corner_arrays`, `out` from `new_corner_result`, with room
-    for K >= k contacts.
+    `settings`: `CornerSettings`; `scratch` from `corner_arrays`, `out` from `new_corner_result`, for K >= k.
     """
-    scale = _check(k, W, u, mu, e, law, kappa)
+    scale = _check(contacts)
     if not scale >= 0.0:
         return BAD_INPUT
-    result, index, clean = out.summary[0], scratch.work.index, scratch.work.matrix[CLEAN]
-    result.energy_change, result.plastic_change = 0.0, 0.0
-    result.error, result.miss = 0.0, 0.0
-    result.steps, result.events, result.rounds, result.classes, result.marks = 0, 0, 0, 0, 0
-    for i in range(k):
-        out.compression[i], out.restitution[i], out.friction[i] = 0.0, 0.0, 0.0
-        out.wedged[i] = 0
-    for i in range(3 * k):
-        out.impulse[i] = 0.0
-        out.velocity[i] = u[i]
+    k, u, still, result = contacts.k, contacts.u, _TOUCHES * scale, out.summary[0]
+    _clear(contacts, out)
     approaches = False
     for i in range(k):
-        approaches = approaches or u[3 * i] < -_TOUCHES * scale
+        approaches = approaches or u[3 * i] < -still
     if not approaches:
         return OK
-    friction, count = scratch.work.vector[FRICTION], 0
-    if equal_contacts.nothing_slips(k, u, mu, scale):
-        for i in range(k):
-            friction[i] = 0.0
-        largest = equal_contacts.clean(k, W, friction, clean)
-        count = equal_contacts.find_classes(
-            k, clean, u, friction, e, law, kappa, largest, scale, index
+    work = scratch.work
+    index, clean = work.index, work.matrix[CLEAN]
+    acting = refer(
+        CornerContacts(
+            k, clean, u, work.vector[FRICTION], contacts.restitution, contacts.law,
+            contacts.stiffness,
         )
-        if not equal_contacts.friction_sleeps(k, W, mu, count, largest, index):
-            count = 0
-    if count == 0:
-        for i in range(k):
-            friction[i] = mu[i]
-        largest = equal_contacts.clean(k, W, friction, clean)
-        count = equal_contacts.find_classes(
-            k, clean, u, friction, e, law, kappa, largest, scale, index
-        )
-    result.classes = count
-    equal_contacts.find_pressed(k, clean, u, friction, _TOUCHES * scale, index)
-    groups = equal_contacts.find_groups(k, count, clean, index)
+    )  # fmt: skip
+    result.classes = equal_contacts.reduce(contacts, acting, scale, index)
+    equal_contacts.find_pressed(acting, still, index)
+    groups = equal_contacts.find_groups(k, result.classes, clean, index)
     code = NOT_RESOLVED if settings.multiple == BY_NEWTON else OK
     for g in range(groups if code == OK else 0):
-        one_code = _group(k, g, count, u, friction, e, law, kappa, scale, settings, scratch, out)
-        code = max(code, one_code)
+        code = max(code, _group(g, acting, still, settings, scratch, out))
     if code == OK:
-        _finish(k, W, u, scale, out)
+        _finish(contacts, out)
     exact = (result.marks & EXACT) != 0  # that of one contact may gain energy, by Newton's law
     if code != OK or (not exact and unsound(k, u, scale, out)):
         result.marks, result.miss, result.plastic_change = AT_ONCE, 0.0, 0.0
-        solve_at_once(k, u, mu, e, scratch, out)
-        _finish(k, W, u, scale, out)
+        solve_at_once(contacts, scratch, out)
+        _finish(contacts, out)
     return OK
 
 
 @kernel
-def _check(k, W, u, mu, e, law, kappa):
+def _check(contacts):
     """Return the greatest velocity, or NaN where the input is unsound."""
-    total, scale = 0.0, 0.0
+    k, W, u, total, scale = contacts.k, contacts.W, contacts.u, 0.0, 0.0
     for a in range(3 * k):
         row = W[a]
         scale = max(scale, abs(u[a]))
@@ -119,58 +99,50 @@ def _check(k, W, u, mu, e, law, kappa):
         for b in range(3 * k):
             total += row[b]
     for i in range(k):
-        total += mu[i] + e[i] + kappa[i]
-        sound = mu[i] >= 0.0 and 0.0 <= e[i] <= 1.0 and kappa[i] > 0.0 and 0 <= law[i] <= 2
+        mu, e, kappa = contacts.friction[i], contacts.restitution[i], contacts.stiffness[i]
+        total += mu + e + kappa
+        sound = mu >= 0.0 and 0.0 <= e <= 1.0 and kappa > 0.0 and 0 <= contacts.law[i] <= 2
         if not (sound and W[3 * i, 3 * i] >= 0.0):
             return math.nan
     return scale if math.isfinite(total) else math.nan
 
 
 @kernel
-def _group(k, g, count, u, mu, e, law, kappa, scale, settings, scratch, out):
+def _clear(contacts, out):
+    """Write the result of contacts of which none strikes."""
+    result = out.summary[0]
+    result.energy_change, result.plastic_change = 0.0, 0.0
+    result.error, result.miss = 0.0, 0.0
+    result.steps, result.events, result.rounds, result.classes, result.marks = 0, 0, 0, 0, 0
+    for i in range(contacts.k):
+        out.compression[i], out.restitution[i], out.friction[i] = 0.0, 0.0, 0.0
+        out.wedged[i] = 0
+    for i in range(3 * contacts.k):
+        out.impulse[i] = 0.0
+        out.velocity[i] = contacts.u[i]
+
+
+@kernel
+def _group(g, contacts, still, settings, scratch, out):
     """Resolve the classes of group `g`; write impulses and works of their contacts."""
-    work = scratch.work
-    index, mass_matrix = work.index, work.matrix[MASS]
-    n, strikes = 0, False
-    for q in range(count):
-        if index[GROUP, q] == g:
-            index[MEMBER, n] = q
-            n += 1
-            strikes = strikes or u[3 * index[FIRST, q]] < -_TOUCHES * scale
-    if not strikes:
+    work, summary = scratch.work, out.summary[0]
+    n = _gather(g, contacts, still, summary.classes, work)
+    if n == 0 or (n == 1 and _exactly(contacts, still, work, out) == OK):
         return OK
-    for a in range(n):
-        p = index[MEMBER, a]
-        for b in range(n):
-            q = index[MEMBER, b]
-            for r in range(3):
-                for s in range(3):
-                    mass_matrix[3 * a + r, 3 * b + s] = equal_contacts.class_coupling(
-                        k, work.matrix[CLEAN], index, p, q, r, s
-                    )
-    if n == 1:
-        i = index[FIRST, index[MEMBER, 0]]
-        parts = equal_contacts.parts_others(k, work.matrix[CLEAN], i, index)
-        gives = e[i] > 0.0 or not parts  # several that give nothing back are one plastic event
-        if gives and _exactly(k, i, parts, u, mu, e, law, scale, work, out) == OK:
-            return OK
-    mass, speed, rate = _fill(n, u, mu, e, law, kappa, scale, settings.exponent, work)
+    mass, speed, rate = _fill(n, contacts, still, settings.exponent, work)
     if not (mass > 0.0 and rate > 0.0):
         return NOT_RESOLVED
-    summary = out.summary[0]
     plastic, error = summary.plastic_change, summary.error
     summary.plastic_change, summary.error = 0.0, 0.0
     if settings.multiple == SEQUENTIAL:
         blow_by_blow(n, work, scratch.cones, settings, summary)
     else:
         pass_group(n, work, scratch.cones, settings, summary)
-    energy = speed * speed / mass
-    for a in range(n):
-        q = index[MEMBER, a]
-        share = 1.0 / index[SIZE, q]
-        c = work.contact[a]
-        for i in range(k):
-            if index[CLASS, i] == q:
+    energy, index = speed * speed / mass, work.index
+    for i in range(contacts.k):
+        for a in range(n):
+            if index[CLASS, i] == index[MEMBER, a]:
+                c, share = work.contact[a], 1.0 / index[SIZE, index[MEMBER, a]]
                 for r in range(3):
                     out.impulse[3 * i + r] = work.vector[P, 3 * a + r] * share * speed / mass
                 out.compression[i] = -max(0.0, c.absorbed) * share * energy
@@ -183,8 +155,31 @@ def _group(k, g, count, u, mu, e, law, kappa, scale, settings, scratch, out):
 
 
 @kernel
-def _fill(n, u, mu, e, law, kappa, scale, exponent, work):
+def _gather(g, contacts, still, classes, work):
+    """List the classes of group `g` and write W between them; return how many, 0 if none of them strikes."""
+    index, n, strikes = work.index, 0, False
+    for q in range(classes):
+        if index[GROUP, q] == g:
+            index[MEMBER, n] = q
+            n += 1
+            strikes = strikes or contacts.u[3 * index[FIRST, q]] < -still
+    if not strikes:
+        return 0
+    for a in range(n):
+        for b in range(n):
+            p, q = index[MEMBER, a], index[MEMBER, b]
+            for r in range(3):
+                for s in range(3):
+                    work.matrix[MASS, 3 * a + r, 3 * b + s] = equal_contacts.class_coupling(
+                        contacts.k, contacts.W, index, p, q, r, s
+                    )
+    return n
+
+
+@kernel
+def _fill(n, contacts, still, exponent, work):
     """Scale the group and fill in its contacts; return the scales of W and u, and a positive rate."""
+    u, mu, kappa = contacts.u, contacts.friction, contacts.stiffness
     index, W = work.index, work.matrix[MASS]
     mass, speed, most, stiff = 0.0, 0.0, 0.0, 0.0
     for a in range(n):
@@ -205,42 +200,46 @@ def _fill(n, u, mu, e, law, kappa, scale, exponent, work):
         q = index[MEMBER, a]
         i = index[FIRST, q]
         c = work.contact[a]
-        c.mu, c.restitution, c.law, c.members = mu[i], e[i], law[i], index[SIZE, q]
+        c.mu, c.restitution, c.law = mu[i], contacts.restitution[i], contacts.law[i]
+        c.e, c.members = c.restitution, index[SIZE, q]
         c.root = (kappa[i] * index[SIZE, q] * mass / stiff) ** (1.0 / exponent)
-        c.e = e[i]
         c.grip = mu[i] * (W[3 * a + 1, 3 * a + 1] + W[3 * a + 2, 3 * a + 2])
         for r in range(3):
             work.vector[U0, 3 * a + r] = u[3 * i + r] / speed if r == 0 or mu[i] > 0.0 else 0.0
-        u_n = u[3 * i]
-        if abs(u_n) <= _TOUCHES * scale:
+        if abs(u[3 * i]) <= still:
             work.vector[U0, 3 * a] = 0.0
         c.approach = max(0.0, -work.vector[U0, 3 * a])
     return mass, speed, stiff
 
 
 @kernel
-def _exactly(k, i, parts, u, mu, e, law, scale, work, out):
-    """Resolve a group that is one contact, number `i` and those like it; NOT_RESOLVED if nothing stops it.
+def _exactly(contacts, still, work, out):
+    """Resolve a group of one class as one contact; NOT_RESOLVED if nothing stops it.
 
-    If it `parts` others, it gives back no more than it took, as each of several contacts.
+    If it parts others it gives back no more than it took, as each of several contacts; and if it gives nothing
+    back then, all of them are one plastic event, which is left to others.
     """
     index, W, before = work.index, work.matrix[SINGLE], work.vector[TRY]
-    q = index[CLASS, i]
+    q = index[MEMBER, 0]
+    i = index[FIRST, q]
+    mu, e, law = contacts.friction[i], contacts.restitution[i], contacts.law[i]
+    parts = equal_contacts.parts_others(contacts.k, contacts.W, i, index)
+    if parts and not e > 0.0:
+        return NOT_RESOLVED
     for r in range(3):
-        before[r] = u[3 * i + r] if r == 0 or mu[i] > 0.0 else 0.0
+        before[r] = contacts.u[3 * i + r] if r == 0 or mu > 0.0 else 0.0
         for s in range(3):
             W[r, s] = work.matrix[MASS, r, s]
-    single = work.single
-    clock = work.clock
-    single[one.STILL] = _TOUCHES * scale
-    resolve_single(clock, W, before, mu[i], e[i], law[i], single)
+    single, clock, summary = work.single, work.clock, out.summary[0]
+    single[one.STILL] = still
+    resolve_single(clock, W, before, mu, e, law, single)
     if parts and clock[0].code == one.OK and single[one.WORK_R] > -single[one.WORK_C]:
-        resolve_single(clock, W, before, mu[i], 1.0, laws.STRONGE, single)
-        out.summary[0].marks |= CAPPED
+        resolve_single(clock, W, before, mu, 1.0, laws.STRONGE, single)
+        summary.marks |= CAPPED
     if clock[0].code != one.OK:
         return NOT_RESOLVED
     share = 1.0 / index[SIZE, q]
-    for j in range(k):
+    for j in range(contacts.k):
         if index[CLASS, j] == q:
             for r in range(3):
                 out.impulse[3 * j + r] = single[one.IMPULSE + r] * share
@@ -249,14 +248,15 @@ def _exactly(k, i, parts, u, mu, e, law, scale, work, out):
             out.friction[j] = single[one.FRICTION_LOSS] * share
             out.wedged[j] = 1 if int(single[one.PHASES]) & one.WEDGED != 0 else 0
     if not parts:
-        out.summary[0].marks |= EXACT
-    out.summary[0].steps += int(single[one.STEPS])
+        summary.marks |= EXACT
+    summary.steps += int(single[one.STEPS])
     return OK
 
 
 @kernel
-def _finish(k, W, u, scale, out):
+def _finish(contacts, out):
     """Write u+ = u + W P and the energy; take back what round-off added to it."""
+    k, W, u = contacts.k, contacts.W, contacts.u
     n, result = 3 * k, out.summary[0]
     P_, after = out.impulse, out.velocity
     most = 0.0

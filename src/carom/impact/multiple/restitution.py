@@ -38,7 +38,7 @@ def energetic(k, work):
 
 
 @kernel
-def aims(c):
+def has_target(c):
     """Return whether the contact has a law of its own to meet."""
     if c.law == laws.STRONGE or not c.restitution > 0.0:
         return False
@@ -46,10 +46,10 @@ def aims(c):
 
 
 @kernel
-def any_aims(k, work):
+def any_targets(k, work):
     """Return whether any contact has a law of its own to meet."""
     for i in range(k):
-        if aims(work.contact[i]):
+        if has_target(work.contact[i]):
             return True
     return False
 
@@ -61,7 +61,7 @@ def misses(k, work, out):
     for i in range(k):
         out[i] = 0.0
         c = work.contact[i]
-        if not aims(c) or c.wedged == 1:  # no e_* would part what friction holds
+        if not has_target(c) or c.wedged == 1:  # no e_* would part what friction holds
             continue
         if c.law == laws.NEWTON:
             target, reached = c.restitution * c.approach, work.vector[U, 3 * i]

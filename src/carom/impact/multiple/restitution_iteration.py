@@ -82,6 +82,6 @@ def meet_laws(k, work, settings, fixed, result):
 
 @kernel
 def again(k, work, settings, rtol, fixed):
-    """Run with other coefficients, from the first unloading on where that was saved."""
+    """Pass the layer with other coefficients, from the first unloading on if the state there was saved."""
     anew = fixed > 0 or work.clock[0].branched == 0
     return run(k, work, settings, rtol, fixed, anew)

@@ -89,7 +89,6 @@ def new_heap(bodies: int, held: int, points: int) -> Heap:
         later=np.zeros(pairs, dtype=np.int64),
         target=np.zeros((updates, 3), dtype=np.int64),
         block=np.zeros((bodies + 2 * pairs, 6, 6)),
-        sums=np.zeros((2, bodies, 6)),
     )
     return Heap(
         spots=table(SPOT, points),

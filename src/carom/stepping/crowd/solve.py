@@ -111,5 +111,4 @@ def part(work, n, pairs, updates):
         work.later[:pairs],
         work.target[:updates],
         work.block[: n + 2 * pairs],
-        work.sums,
     )

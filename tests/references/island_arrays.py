@@ -29,10 +29,11 @@ class Island(NamedTuple):
     rows: np.ndarray  # (k, 2, 3, 6) G of each contact and body; (n, t1, t2)
     inverse_mass: np.ndarray  # (N, 6, 6) symmetric
     c: np.ndarray  # (3k,) velocity of the contacts without impulses
+    motion: np.ndarray  # (2, N, 6) scratch
 
 
 class IslandGraph(NamedTuple):
-    """Which blocks there are and in which order bodies are eliminated; made by `carom.stepping.crowd.graph`."""
+    """Which blocks there are and in which order bodies are eliminated; made by `island_graph`."""
 
     place: np.recarray  # (N,) PLACE
     later: np.ndarray  # (pairs,) the body of a pair that is eliminated later
@@ -57,5 +58,4 @@ def new_island_work(graph: IslandGraph, body: np.ndarray) -> ContactWork:
         later=graph.later,
         target=graph.target,
         block=np.zeros((bodies + 2 * pairs, 6, 6)),
-        sums=np.zeros((2, bodies, 6)),
     )
