@@ -159,15 +159,15 @@ def resolve_one(W, u, mu, e, law, out):
             left = laws.remaining(now, goal, s[2], s[3], s[7])
             length = laws.straight(now, left, s[2], k) if left > 0.0 else 0.0
             stuck = moves_nothing(m, t1, t2, k, grow)
-            if not compressing and now != laws.POISSON and not (stuck or grow < 0.0):
+            if not compressing and now not in laws.BY_IMPULSE and not (stuck or grow < 0.0):
                 p, p1, p2 = s[3] + length, s[4] + length * t1, s[5] + length * t2
                 stuck = drowned(m, p, p1, p2, before[3] - before[4])
             if stuck:
                 if pushed(s[2], size, out[o.STILL] / v):
                     return o.NO_END
-                # Wedged: the velocity stays. Only Poisson's law knows how much impulse is to come.
+                # Wedged: the velocity stays. Only a law of impulses knows how much impulse is to come.
                 k, f1, f2, grow = max(0.0, k), 0.0, 0.0, 0.0
-                length = left if now == laws.POISSON else 0.0
+                length = left if now in laws.BY_IMPULSE else 0.0
                 if not compressing:
                     phases |= o.WEDGED
             if k <= 0.0 and mode == _STRAIGHT and not stuck:

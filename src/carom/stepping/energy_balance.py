@@ -116,7 +116,7 @@ def compare(i, amount, t, watch):
 
 @kernel
 def given_by_law(system, clock, records, watch):
-    """Return what the new impacts have given where Newton's law with friction may (V8)."""
+    """Return what the new impacts have given where their law with friction may (V8)."""
     total = 0.0
     for k in range(watch.struck, clock.struck):
         row = records.impact[k]
@@ -125,7 +125,7 @@ def given_by_law(system, clock, records, watch):
             for c in range(system.contacts.shape[0]):
                 contact = system.contacts[c]
                 if contact.number == row.contact:
-                    if contact.law == laws.NEWTON and contact.friction > 0.0:
+                    if contact.law in laws.GAINING and contact.friction > 0.0:
                         total += given
                     break
     watch.struck = clock.struck

@@ -119,7 +119,7 @@ def _check(k, W, u, mu, e, law, kappa):
             total += row[b]
     for i in range(k):
         total += mu[i] + e[i] + kappa[i]
-        sound = mu[i] >= 0.0 and 0.0 <= e[i] <= 1.0 and kappa[i] > 0.0 and 0 <= law[i] <= 2
+        sound = mu[i] >= 0.0 and 0.0 <= e[i] <= 1.0 and kappa[i] > 0.0 and 0 <= law[i] < laws.COUNT
         if not (sound and W[3 * i, 3 * i] >= 0.0):
             return math.nan
     return scale if math.isfinite(total) else math.nan
