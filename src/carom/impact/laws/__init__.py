@@ -3,8 +3,8 @@
 A law says what is measured during restitution, and the value of it at which restitution ends:
 
 - `MEASURE`: "speed" (u_n), "impulse" (the normal impulse of restitution), or "work" (that of its normal force);
-- `goal(e, v0, p_c, work_c)`: from the restitution, the speed of approach [m/s], the normal impulse of compression
-  [N s] and the work of its normal force [J], below zero. Homogeneous of degree 1 in what is measured;
+- `goal(e, v0, p_c, work_c)`: from the restitution, the speed of approach [m/s], the normal impulse [N s] of
+  compression and the work [J] of its normal force, below zero. It is proportional to what is measured;
 - `GAINS`: whether the law may raise the energy where there is friction.
 
 Compression is Newton's law with the goal u_n = 0.
@@ -34,29 +34,26 @@ GAINING = _numbers(lambda law: law.GAINS)
 COUNT = len(LAWS)
 
 
-def _goal(number: int):
-    """Return the kernel that asks the law of its own number, and before it those of lower numbers."""
-    of_law = LAWS[number].goal
-    if number == 0:
-
-        @kernel
-        def goal(law, e, v0, p_c, work_c):
-            return of_law(e, v0, p_c, work_c)
-
-        return goal
-    of_others = _goal(number - 1)
+def _goal_up_to(number: int):
+    """Return the kernel that asks the law of its number, as far as `number`."""
+    own = LAWS[number].goal
+    others = _goal_up_to(number - 1) if number > 0 else own
 
     @kernel
-    def goal(law, e, v0, p_c, work_c):
-        """Return the value of the law's measure at which restitution ends."""
+    def first(law, e, v0, p_c, work_c):
+        return own(e, v0, p_c, work_c)
+
+    @kernel
+    def later(law, e, v0, p_c, work_c):
         if law == number:
-            return of_law(e, v0, p_c, work_c)
-        return of_others(law, e, v0, p_c, work_c)
+            return own(e, v0, p_c, work_c)
+        return others(law, e, v0, p_c, work_c)
 
-    return goal
+    return later if number > 0 else first
 
 
-goal = _goal(len(LAWS) - 1)
+#: `goal(law, e, v0, p_c, work_c)`: the value of the law's measure at which restitution ends
+goal = _goal_up_to(COUNT - 1)
 
 
 @kernel
