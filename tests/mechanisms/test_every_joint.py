@@ -42,9 +42,9 @@ def joined(kind):
 @pytest.mark.parametrize("kind", JOINTS, ids=lambda kind: kind.__name__)
 def test_what_a_joint_keeps(kind):
     scene, joint = joined(kind)
-    s = carom.simulate(scene, 0.5, step=5e-3)
-    # The forces of a joint do no work, and are equal and opposite. Order 4: h^4 = 6e-10.
-    np.testing.assert_allclose(s.total_energy, s.total_energy[0], rtol=0, atol=1e-7)
+    s = carom.simulate(scene, 0.5, step=5e-3, method="rk8")
+    # The forces of a joint do no work, and are equal and opposite. Of order 8: h^8 is round-off.
+    np.testing.assert_allclose(s.total_energy, s.total_energy[0], rtol=0, atol=1e-11)
     if kind is not KnifeEdge:
         mass, R = np.array([b.mass for b in scene.bodies]), carom.geometry.quaternion
         inertia = np.array([b.inertia for b in scene.bodies])
@@ -53,7 +53,7 @@ def test_what_a_joint_keeps(kind):
         linear = mass[:, None] * s.velocity
         angular = spin + np.cross(s.position, linear)
         for momentum in (linear.sum(axis=1), angular.sum(axis=1)):
-            np.testing.assert_allclose(momentum, momentum[:1] + 0 * momentum, rtol=0, atol=1e-7)
+            np.testing.assert_allclose(momentum, momentum[:1] + 0 * momentum, rtol=0, atol=1e-11)
     for error in s.constraint_errors:  # returned to round-off in each step
         assert np.max(error) < 1e-12
     # Coordinates are as many as are named, and their rates are their derivatives.
@@ -61,4 +61,4 @@ def test_what_a_joint_keeps(kind):
     if kind.coordinates:
         assert q.shape == (len(s.t), len(kind.coordinates))
         slope = (q[2:] - q[:-2]) / 0.01
-        np.testing.assert_allclose(slope, rate[1:-1], rtol=0, atol=1e-3)  # h^2 q'''/6
+        np.testing.assert_allclose(slope, rate[1:-1], rtol=0, atol=5e-3)  # h^2 q'''/6

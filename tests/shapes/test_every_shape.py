@@ -37,7 +37,7 @@ def test_a_shape_is_its_surface(kind):
     volume, first, second = of_triangles(vertices[triangles])
     assert volume == pytest.approx(shape.volume, rel=rtol, abs=1e-12)
     if kind is not Disc:
-        np.testing.assert_allclose(first / volume, 0, atol=1e-4 * shape.size)
+        np.testing.assert_allclose(first / volume, 0, atol=rtol * shape.size)
         inertia = np.trace(second) * np.eye(3) - second
         theirs = shape.inertia(volume)
         np.testing.assert_allclose(inertia, theirs, rtol=0, atol=2 * rtol * np.trace(theirs))
