@@ -29,6 +29,7 @@ from carom.scene import (
     forces,
     joints,
 )
+from carom.scene import shapes as _shapes
 from carom.simulate import simulate
 from carom.status import AccuracyWarning, SimulationError, Status
 
@@ -134,6 +135,8 @@ _PACKAGES = {
 def __getattr__(name: str):
     if name in _LAZY:
         return getattr(importlib.import_module(_LAZY[name]), name)
+    if name in {shape.__name__ for shape in _shapes.SHAPES}:  # one that is not named above
+        return getattr(_shapes, name)
     if name in _PACKAGES:
         return importlib.import_module(_PACKAGES[name])
     raise AttributeError(f"module 'carom' has no attribute {name!r}")

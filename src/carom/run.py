@@ -6,8 +6,8 @@ import numpy as np
 
 from carom._compiled.units import Entries
 from carom.contact.stop import write_stop_gaps
-from carom.dynamics.explicit import EXPLICIT
-from carom.dynamics.methods import FIRST, ORDERS, make_method, time_of_bounces
+from carom.dynamics.adapt import FIRST, time_of_bounces
+from carom.dynamics.methods import EXPLICIT, METHODS, make_method
 from carom.dynamics.project import project_start
 from carom.dynamics.reactions import start_errors, start_speeds
 from carom.impact.multiple.layout import MULTIPLE, CornerSettings
@@ -17,6 +17,7 @@ from carom.model.answers import check_answers
 from carom.model.compile import compile_scene
 from carom.model.controls import LOCATE, PROJECT, WORK, Controls
 from carom.model.data import Data, Model
+from carom.model.method import IMPLICIT, THREE_FIELD
 from carom.options import Options
 from carom.persistent.joint_events import first_modes
 from carom.results.accuracy import judge
@@ -52,8 +53,8 @@ class Run:
             "duration": duration, "step": step, "method": method,
             "impact_location": impact_location, "save_every": save_every,
         }  # fmt: skip
-        paper = method.startswith("paper")
-        self.compiled = compile_scene(scene, options, paper, implicit=method == "implicit")
+        kind = METHODS[method].kind
+        self.compiled = compile_scene(scene, options, kind == THREE_FIELD, kind == IMPLICIT)
         system = self.compiled.system
         self.method = make_method(method, options, tolerances is not None)
         longest = step
@@ -76,7 +77,7 @@ class Run:
             max_cuts=options.max_cuts,
             heap=options.heap,
             retry=0,
-            order=0 if tolerances is None else ORDERS[method],
+            order=0 if tolerances is None else METHODS[method].order,
             rtol=tolerances[0] if tolerances else 0.0,
             atol=tolerances[1] if tolerances else 0.0,
             longest=longest,
@@ -92,7 +93,7 @@ class Run:
         self.held = r.new_held(system)
         self.work = r.new_work(system, self.method.b.size)
         located = self.settings["impact_location"] == "locate"
-        apart = located and tolerances is None and not method.startswith("paper")
+        apart = located and tolerances is None and METHODS[method].kind != THREE_FIELD
         self.islands = (new_islands if apart else no_islands)(system, self.held)
         again = apart and options.hold and has_events(system)
         whole = 1 if system.bodies["ballistic"].all() else 2

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import overload
 
 from carom import checks
+from carom.dynamics.methods import EXPLICIT
 from carom.generalized.solution import GeneralizedSolution
 from carom.generalized.system import GeneralizedSystem
 from carom.io.run_to_end import finish
@@ -15,7 +16,6 @@ from carom.results.solution import Solution
 from carom.scene.scene import Scene
 from carom.stepping.settings import (
     LOCATIONS,
-    METHODS,
     check_handling,
     check_scene,
     checked_settings,
@@ -153,7 +153,7 @@ def simulate(
             raise ValueError(
                 f"save must be left out with a system in coordinates, got {checks.shown(save)}"
             )
-        checks.choice("method of a system in coordinates", method, METHODS[:3])
+        checks.choice("method of a system in coordinates", method, EXPLICIT)
         checks.choice("impact_location of a system in coordinates", impact_location, LOCATIONS[:1])
 
         from carom.generalized.run import GeneralizedRun

@@ -8,7 +8,7 @@ import pytest
 import carom
 from carom.collision.api import nearest_points
 from carom.geometry import quaternion
-from carom.model.frames import contact_axes
+from carom.geometry.frames import contact_axes
 
 #: whole steps of heaps are of order 1: friction that rises by 1e-3 of the energy in a step, and says so
 pytestmark = pytest.mark.filterwarnings("ignore::carom.AccuracyWarning")

@@ -6,8 +6,11 @@ from pathlib import Path
 import numpy as np
 from hypothesis import strategies as st
 
+from carom.scene.materials import IMPACT_LAWS
+
 DATA = Path(__file__).parent.parent / "data" / "impacts"
-LAWS = ("newton", "poisson", "stronge")
+LAWS = IMPACT_LAWS
+KNOWN = ("newton", "poisson", "stronge")  # of the tables; equal where slip keeps its direction
 
 # A fixed problem in space: critical friction 0.3207123399.
 W_SPACE = np.array([[1.6, 0.5, -0.3], [0.5, 2.4, 0.4], [-0.3, 0.4, 1.9]])

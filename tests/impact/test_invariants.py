@@ -5,11 +5,12 @@ import sys
 
 import numpy as np
 import pytest
-from cases import LAWS, U_SPACE, W_SPACE, problems
+from cases import KNOWN, LAWS, U_SPACE, W_SPACE, problems
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from carom.impact.api import resolve_impact
+from carom.impact.laws import GAINING, NUMBERS
 from carom.impact.slip_directions import critical_friction, invariant_directions
 
 laws = st.sampled_from(LAWS)
@@ -47,7 +48,7 @@ def test_momentum_work_energy_and_cone(problem, law):
 @given(problem=problems())
 def test_each_law_says_what_it_says(problem):
     W, u, mu, e = problem
-    newton, poisson, stronge = (resolve_impact(W, u, mu, e, law) for law in LAWS)
+    newton, poisson, stronge = (resolve_impact(W, u, mu, e, law) for law in KNOWN)
     assert newton.velocity_after[0] == pytest.approx(-e * u[0], rel=1e-11, abs=1e-14)
     p_c = poisson.compression_impulse[0]
     assert poisson.impulse[0] == pytest.approx((1 + e) * p_c, rel=1e-11)
@@ -57,7 +58,7 @@ def test_each_law_says_what_it_says(problem):
 
 
 @few
-@given(problem=problems(), law=st.sampled_from(["poisson", "stronge"]))
+@given(problem=problems(), law=laws.filter(lambda law: NUMBERS[law] not in GAINING))
 def test_energy_never_grows(problem, law):
     # Stronge: A_r = e^2 |A_c| <= |A_c| and friction dissipates. Poisson: proven for one contact.
     W, u, mu, e = problem
@@ -94,9 +95,9 @@ def test_units_do_not_matter(problem, law, mass, speed):
 
 
 @few
-@given(problem=problems(), law=laws)
+@given(problem=problems(), law=st.sampled_from(KNOWN))
 def test_without_friction(problem, law):
-    # mu = 0: P = (1+e) |u_n|/W_nn along the normal, every law.
+    # mu = 0: P = (1+e) |u_n|/W_nn along the normal, each law.
     W, u, _, e = problem
     impact = resolve_impact(W, u, 0.0, e, law)
     np.testing.assert_allclose(impact.impulse, [-(1 + e) * u[0] / W[0, 0], 0, 0], rtol=1e-12)

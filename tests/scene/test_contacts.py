@@ -56,7 +56,7 @@ def test_gap_at_the_start(shape, orientation, lowest):
 
 
 def test_tilted_plane_far_from_the_origin():
-    # Touching up to the rounding of coordinates of 1e3 m.
+    # Shape up to the rounding of coordinates of 1e3 m.
     normal, far = np.array([0.48, 0.6, 0.64]), np.array([1e3, -7e2, 3e2])
     along = np.cross(normal, (1, 0, 0))
     for k in range(20):

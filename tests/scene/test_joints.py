@@ -121,6 +121,8 @@ def test_bad_partners_are_refused():
         scene.add_joint(ball, a, pair()[1])
     with pytest.raises(ValueError, match=r"KnifeEdge must be carom.GROUND, got Body\('a'"):
         scene.add_joint(joints.KnifeEdge((0, 0, 0), (1, 0, 0)), a, b)
-    with pytest.raises(TypeError, match=r"definition must be a Revolute or .*, got <class"):
+    with pytest.raises(
+        TypeError, match=r"definition must be a Spherical or Revolute or .*, got <class"
+    ):
         scene.add_joint(joints.Revolute, GROUND, a)
     assert scene.joints == ()

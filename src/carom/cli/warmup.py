@@ -94,7 +94,7 @@ def compile_kinds(kinds: tuple[str, ...]) -> tuple[list[dict], set]:
 def work() -> list[tuple[str, str, Callable[[], object]]]:
     """Return all that is to be compiled: kind of scene, method, and what compiles it."""
     import carom
-    from carom.stepping.settings import METHODS
+    from carom.dynamics.methods import METHODS
 
     def simulating(scene, duration, method):
         return lambda: carom.simulate(scene, duration, step=5e-3, method=method, throw=False)

@@ -21,11 +21,14 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from carom._compiled.decorators import kernel
 from carom.geometry.rotation import multiply, norm
 from carom.model.workspace import ONE, SEVERAL
 
 SAFETY, LEAST, MOST = 0.9, 0.2, 10.0
+FIRST = 1e-3  # of the longest step: the first
 NOTHING_LEFT = 1e-14  # of the time that is left: no step is shorter
 
 
@@ -145,3 +148,16 @@ def begin_step(controls, clock):
     clock.begin, clock.length = clock.now, min(clock.ahead, left)
     if clock.length < left < 2.0 * clock.length:
         clock.length = 0.5 * left
+
+
+def time_of_bounces(system, tolerances: tuple[float, float], longest: float) -> float:
+    """Return the time of a bounce as high as the tolerance, sqrt(8 tol/g): shorter ones are not resolved.
+
+    It takes the place of the step wherever that is a measure of time: for what is held, and what rests.
+    """
+    g = float(np.linalg.norm(system.gravity))
+    if not system.contacts.size or g == 0.0:
+        return longest
+    rtol, atol = tolerances
+    size = float(np.min(system.bodies.extent[system.contacts.body]))
+    return min(longest, float(np.sqrt(8.0 * (atol + rtol * size) / g)))

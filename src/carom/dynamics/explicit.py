@@ -9,8 +9,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
 from carom.dynamics.acceleration import accelerations, aim
@@ -22,48 +20,12 @@ from carom.dynamics.return_to_surface import return_held, stay_held
 from carom.dynamics.singular_positions import SINGULAR, is_singular, pass_round, return_stage, steps
 from carom.geometry.rotation import multiply, normalize
 from carom.kinematics.flight import free_flight
-from carom.model.method import Method, explicit
 from carom.model.workspace import FREE, ONE, RESTS, SEVERAL
 
 CONSTRAINTS_LOST = 7
 MANY = 1 << 30  # rows, more than there are
 #: turn of a body [rad] for each stage of a part of a step (0.3 of `rk4`), and how many parts there are at most
 TURN, MOST_PARTS, TINY = 0.075, 100, 1e-300
-
-
-#: names of the explicit methods
-EXPLICIT = ("rk4", "rk5", "rk8")
-
-
-def tableau(name: str) -> Method:
-    """Return an explicit method: `"rk4"`, the classical one (Kutta 1901); `"rk5"`, `"rk8"`.
-
-    Order 5 with 6 stages (Dormand and Prince 1980), order 8 with 12 (Hairer, Norsett and Wanner 1993, DOP853).
-    """
-    if name == "rk4":
-        A = np.zeros((4, 4))
-        A[1, 0] = A[2, 1] = 0.5
-        A[3, 2] = 1.0
-        return explicit(A, np.array([1.0, 2.0, 2.0, 1.0]) / 6.0, np.zeros((0, 4)))
-    from scipy.integrate import DOP853, RK45
-
-    chosen = {"rk5": RK45, "rk8": DOP853}[name]
-    stages = len(chosen.B)
-    A = np.zeros((stages, stages))
-    A[:, : chosen.A.shape[1]] = chosen.A[:stages]
-    return explicit(A, np.array(chosen.B), np.zeros((0, stages)))
-
-
-def with_error(name: str) -> Method:
-    """Return `"rk5"` (with a seventh stage, at the end) or `"rk8"`, and the weights of its error."""
-    from scipy.integrate import DOP853, RK45
-
-    method = tableau(name)
-    if name == "rk8":
-        return method._replace(E=np.array([DOP853.E5[:-1], DOP853.E3[:-1]]))
-    A = np.zeros((7, 7))
-    A[:6, :6], A[6, :6] = method.A, method.b
-    return method._replace(A=A, b=np.append(method.b, 0.0), E=np.array([RK45.E]))
 
 
 @inlined

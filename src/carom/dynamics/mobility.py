@@ -119,7 +119,7 @@ def _nonholonomic(element) -> int:
     """Return how many rows of an element restrict velocities only."""
     if element.kind == "Rows":
         return element.rows if element.definition.position is None else 0
-    return {"KnifeEdge": 1, "RollingSphere": 2, "RollingDisc": 2}.get(element.kind, 0)
+    return getattr(element.definition, "nonholonomic", 0)
 
 
 def _dependent(A, owner, system) -> tuple[int, np.ndarray]:

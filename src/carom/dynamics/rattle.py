@@ -23,8 +23,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
 from carom.dynamics.contact_impulse import clear_wrenches
@@ -40,24 +38,6 @@ from carom.model.arrays import LOOPS, RELATION
 NO_CONVERGENCE = 1
 DONE, STALLED, TOO_FAR = range(3)  # how a part of a step ended
 MOST = 60  # solves for Lam
-
-
-#: names of the symplectic methods
-SYMPLECTIC = ("rattle", "rattle4", "rattle6")
-
-
-def composition(name: str) -> np.ndarray:
-    """Return the parts of a step: 1; 5 of order 4 (Suzuki 1990); 9 of order 6 (Kahan and Li 1997)."""
-    if name == "rattle":
-        return np.ones(1)
-    if name == "rattle4":
-        g = 1.0 / (4.0 - 4.0 ** (1.0 / 3.0))
-        return np.array([g, g, 1.0 - 4.0 * g, g, g])
-    half = [
-        0.39216144400731413927925056, 0.33259913678935943859974864, -0.70624617255763935980996482,
-        0.08221359629355080023149045,
-    ]  # fmt: skip
-    return np.array([*half, 1.0 - 2.0 * sum(half), *half[::-1]])
 
 
 @inlined

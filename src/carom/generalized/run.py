@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom._compiled.record_arrays import table
-from carom.dynamics.explicit import tableau
+from carom.dynamics.methods import make_method
 from carom.generalized.contacts import Contacts
 from carom.generalized.evaluate import Evaluation
 from carom.generalized.layout import (
@@ -53,9 +53,9 @@ class GeneralizedRun:
         self.system = self.made.system
         n, h, k, C = (int(one) for one in self.system.size)
         self.n = n
-        stages = tableau(method)
-        self.held, self.work = new_held(C), new_work(n, h, k, C, len(stages.b))
-        self.motion = Motion(self.system, stages, self.held, self.work)
+        self.method = make_method(method, options)
+        self.held, self.work = new_held(C), new_work(n, h, k, C, len(self.method.b))
+        self.motion = Motion(self.system, self.method, self.held, self.work)
         self.x = np.concatenate([system.position, system.velocity])
         self.clock = table(CLOCK, 1)
         rows = -(-steps // save_every) + 3

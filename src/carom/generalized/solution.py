@@ -13,6 +13,7 @@ from carom import checks
 from carom.results.drawn import Drawn
 from carom.results.event_tables import EventTable
 from carom.results.ledger import Ledger
+from carom.scene.materials import IMPACT_LAWS
 from carom.status import Status
 
 if TYPE_CHECKING:
@@ -83,8 +84,11 @@ class CoordinateImpactTable:
 
 
 def given_by_law(t: np.ndarray, impacts: CoordinateImpactTable) -> np.ndarray:
-    """Return what impacts have given until each time (T,) where Newton's law with friction may (V8)."""
-    may = (impacts.law == "newton") & (impacts.friction > 0.0)
+    """Return what impacts have given until each time (T,) where their law with friction may (V8)."""
+    from carom.impact.laws import GAINING
+
+    named = np.array(IMPACT_LAWS)[list(GAINING)]
+    may = np.isin(impacts.law, named) & (impacts.friction > 0.0)
     given = np.where(may, np.maximum(impacts.energy_change, 0.0), 0.0)
     before = np.concatenate([[0.0], np.cumsum(given)])
     return before[np.searchsorted(impacts.time, t, side="right")]

@@ -248,16 +248,16 @@ def _along_line(contact, phase, line, s):
     left = laws.remaining(law, phase.goal, s[2], s[3], s[7])
     length = laws.straight(law, left, s[2], k) if left > 0.0 else 0.0
 
-    # Where nothing moves the velocity stays. Only Poisson's law knows how much impulse is to come.
+    # Where nothing moves the velocity stays. Only a law of impulses knows how much impulse is to come.
     caught, marks, ended = moves_nothing(m, t1, t2, k, growth), 0, _AT_GOAL
-    if phase.restitution and law != laws.POISSON and not (caught or growth < 0.0):
+    if phase.restitution and law not in laws.BY_IMPULSE and not (caught or growth < 0.0):
         p, p1, p2 = s[3] + length, s[4] + length * t1, s[5] + length * t2
         caught = drowned(m, p, p1, p2, phase.taken)
     if caught:
         if pushed(s[2], contact.size, contact.still):
             return s, _ENDLESS, marks
         k, f1, f2, growth = max(0.0, k), 0.0, 0.0, 0.0
-        length = left if law == laws.POISSON else 0.0
+        length = left if law in laws.BY_IMPULSE else 0.0
         marks, ended = o.WEDGED if phase.restitution else 0, _CAUGHT
     elif k <= 0.0 and line.mode == _STRAIGHT:
         marks = o.JAM

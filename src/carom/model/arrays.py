@@ -15,30 +15,40 @@ from typing import NamedTuple
 import numpy as np
 
 from carom.collision.layout import Hulls
+from carom.scene import joints
 
 #: kinds of joints in kernels
-SPHERICAL, REVOLUTE, FIXED, PRISMATIC, DISTANCE, KNIFE_EDGE = range(6)
-CYLINDRICAL, UNIVERSAL, PLANAR, POINT_ON_LINE, POINT_ON_PLANE, SCREW = range(6, 12)
-ROLLING_SPHERE, ROLLING_DISC = range(12, 14)
-#: what is no joint but stands among them: a relation of coordinates of joints, rows of the user's own
-RELATION, USER_ROWS = range(14, 16)
-#: a spring and damper as a row, for the implicit step
-STIFF = 16
-#: numbers of constraint rows of joints, by kind
-ROWS = (3, 5, 6, 5, 1, 1, 4, 4, 3, 2, 1, 5, 3, 3)
+KIND = {definition: number for number, definition in enumerate(joints.JOINTS)}
+REVOLUTE, PRISMATIC = KIND[joints.Revolute], KIND[joints.Prismatic]
+DISTANCE, KNIFE_EDGE = KIND[joints.Distance], KIND[joints.KnifeEdge]
+UNIVERSAL, SCREW = KIND[joints.Universal], KIND[joints.Screw]
+ROLLING_SPHERE, ROLLING_DISC = KIND[joints.RollingSphere], KIND[joints.RollingDisc]
+#: what is no joint but stands among them: a relation of coordinates of joints, rows of the user's own; a spring
+#: and damper as a row, for the implicit step
+RELATION, USER_ROWS, STIFF = range(len(KIND), len(KIND) + 3)
+
+
+def _kinds(chosen) -> tuple[int, ...]:
+    return tuple(number for definition, number in KIND.items() if chosen(definition))
+
+
 #: the child's anchor moves along the first direction of the parent's frame
-ALONG = (PRISMATIC, CYLINDRICAL, POINT_ON_LINE, SCREW)
+ALONG = _kinds(lambda joint: joint.guide == "line")
 #: it moves in the plane across it
-WITHIN = (PLANAR, POINT_ON_PLANE)
+WITHIN = _kinds(lambda joint: joint.guide == "plane")
 SLIDING = ALONG + WITHIN
 #: the child rolls on a plane of the parent
 ROLLING = (ROLLING_SPHERE, ROLLING_DISC)
 #: the child turns about the first direction alone
-TURNING = (REVOLUTE, CYLINDRICAL, PLANAR, SCREW)
+TURNING = _kinds(lambda joint: joint.turn == "axis")
 #: it turns freely
-BALL = (SPHERICAL, POINT_ON_LINE, POINT_ON_PLANE, ROLLING_SPHERE, ROLLING_DISC)
+BALL = _kinds(lambda joint: joint.turn == "ball")
 #: it does not turn
-RIGID = (FIXED, PRISMATIC)
+RIGID = _kinds(lambda joint: joint.turn == "rigid")
+#: they do not carry their child in a tree
+LOOSE = _kinds(lambda joint: not joint.in_trees)
+#: they do so from parent to child only: the line or plane is of one body
+ONE_WAY = _kinds(lambda joint: joint.turn == "ball" and joint.guide != "point")
 
 #: absolute coordinates, world axes; Q takes principal axes of inertia to the world
 STATE = [("x", "f8", 3), ("Q", "f8", 4), ("v", "f8", 3), ("w", "f8", 3)]

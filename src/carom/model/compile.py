@@ -9,36 +9,17 @@ import numpy as np
 from carom._compiled.record_arrays import table
 from carom._compiled.user_functions import Functions
 from carom.geometry import quaternion
-from carom.model import arrays, graph, solvers
-from carom.model.arrays import BODY, BUSHING, JOINT, LOAD, SPRING, STATE, System
+from carom.geometry.frames import triad
+from carom.model import graph, solvers
+from carom.model.arrays import BODY, BUSHING, JOINT, KIND, LOAD, SPRING, STATE, System
 from carom.model.contacts import compile_contacts
-from carom.model.frames import triad
 from carom.model.more_forces import MoreForces, Pieces
 from carom.model.placement import Placement
 from carom.model.relations import Coordinates, Elements
 from carom.model.stops import with_stops
 from carom.options import Options
-from carom.scene import joints as definitions
 from carom.scene.forces import Bushing, CurveSpring, Force, Spring, Torque
-from carom.scene.joints import Distance, KnifeEdge, RollingDisc, RollingSphere, Universal
 from carom.scene.scene import Scene
-
-KIND = {
-    definitions.Spherical: arrays.SPHERICAL,
-    definitions.Revolute: arrays.REVOLUTE,
-    definitions.Fixed: arrays.FIXED,
-    definitions.Prismatic: arrays.PRISMATIC,
-    definitions.Distance: arrays.DISTANCE,
-    definitions.KnifeEdge: arrays.KNIFE_EDGE,
-    definitions.Cylindrical: arrays.CYLINDRICAL,
-    definitions.Universal: arrays.UNIVERSAL,
-    definitions.Planar: arrays.PLANAR,
-    definitions.PointOnLine: arrays.POINT_ON_LINE,
-    definitions.PointOnPlane: arrays.POINT_ON_PLANE,
-    definitions.Screw: arrays.SCREW,
-    definitions.RollingSphere: arrays.ROLLING_SPHERE,
-    definitions.RollingDisc: arrays.ROLLING_DISC,
-}
 
 
 class Compiled(NamedTuple):
@@ -129,31 +110,6 @@ def attitudes(orientation: np.ndarray, to_principal: np.ndarray) -> np.ndarray:
     return Q / np.linalg.norm(Q, axis=1, keepdims=True)
 
 
-def _anchors(joint, flipped):
-    """World anchors of the scene's parent and child, and the joint's frame, of a definition."""
-    d = joint.definition
-    if isinstance(d, Distance):
-        return d.anchor_parent, d.anchor_child, np.eye(3)
-    if isinstance(d, RollingDisc):  # columns: the normal of the plane, the axis of the disc
-        frame = np.stack([d.normal, d.axis, np.cross(d.normal, d.axis)], axis=1)
-        return d.contact(joint.child.position), joint.child.position, frame
-    if isinstance(d, RollingSphere):
-        return d.contact(joint.child.position), joint.child.position, triad(d.normal)
-    anchor = joint.anchor()
-    if isinstance(d, KnifeEdge):
-        along = np.cross(d.lateral, d.normal)
-        return anchor, anchor, np.stack([along, d.lateral, d.normal], axis=1)
-    if isinstance(d, Universal):  # first the axis of the (walked) parent, then that of the child
-        first, second = d.axis_parent, d.axis_child
-        if flipped:
-            first, second = second, first
-        return anchor, anchor, np.stack([first, second, np.cross(first, second)], axis=1)
-    for name in ("axis", "normal", "direction"):
-        if hasattr(d, name):
-            return anchor, anchor, triad(getattr(d, name))
-    return anchor, anchor, np.eye(3)
-
-
 def _joints(scene, moments, placement, elements, options, loops):
     defined = scene.joints
     if not defined and not elements.kinds:
@@ -174,14 +130,16 @@ def _joints(scene, moments, placement, elements, options, loops):
     joints = table(JOINT, number + len(elements.kinds))
     joints.parent[:number], joints.child[:number] = parent, child
     joints.kind = [*kind, *elements.kinds]
-    joints.rows = [*(arrays.ROWS[k] for k in kind), *elements.rows]
+    joints.rows = [*(j.definition.rows for j in defined), *elements.rows]
     for j, joint in enumerate(defined):
-        first, second, world = _anchors(joint, flipped[j])
+        definition = joint.definition
+        first, second = definition.anchors(joint.anchor(), joint.child.position)
+        world = definition.frame(bool(flipped[j]))
         sides = [(placement.side(joint, 0), first), (placement.side(joint, 1), second)]
         (p, a), (c, b) = sides[::-1] if flipped[j] else sides
         joints.parent_anchor[j], joints.child_anchor[j] = p.point(a), c.point(b)
         joints.parent_frame[j], joints.child_frame[j] = p.axes(world), c.axes(world)
-        joints.length[j] = _length(joint.definition)
+        joints.length[j] = definition.scale()
     touching = [[b for b in (c, p) if b >= 0] for p, c in zip(parent.tolist(), child.tolist())]
     for j, bodies in enumerate(elements.touching, start=number):
         joints.number[j] = elements.numbers[j - number]
@@ -204,14 +162,6 @@ def _joints(scene, moments, placement, elements, options, loops):
             count if ratio > solvers.SPREAD else 0,
         )  # fmt: skip
     return joints, flipped, solver
-
-
-def _length(definition):
-    if isinstance(definition, definitions.Screw):
-        return definition.pitch / (2.0 * np.pi)
-    if isinstance(definition, (RollingSphere, RollingDisc)):
-        return definition.radius
-    return getattr(definition, "length", 0.0)
 
 
 def _springs(scene, frames, more, implicit):

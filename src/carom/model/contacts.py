@@ -6,10 +6,10 @@ import numpy as np
 
 from carom._compiled.record_arrays import table
 from carom.collision.layout import SOLID, no_hulls, solid_table
+from carom.geometry.frames import contact_axes
 from carom.model.arrays import CONTACT
 from carom.model.contact_rows import Rows, contact_rows, touching_pairs
 from carom.model.cores import Cores, new_cores, singly, swollen_alike
-from carom.model.frames import contact_axes
 from carom.options import Options
 from carom.scene.all_pairs import PairTable
 from carom.scene.contacts import IMPACT_LAWS

@@ -7,19 +7,12 @@ from collections import deque
 
 import numpy as np
 
-from carom.model.arrays import (
-    DISTANCE,
-    KNIFE_EDGE,
-    POINT_ON_LINE,
-    POINT_ON_PLANE,
-    ROLLING_DISC,
-    ROLLING_SPHERE,
-)
+from carom.model.arrays import LOOSE, ONE_WAY
 
 
 def is_forest(count: int, kind, parent, child) -> bool:
     """Return whether no joint closes a loop (the ground is one node) and each carries its child."""
-    if any(k in (DISTANCE, KNIFE_EDGE) for k in kind):
+    if any(k in LOOSE for k in kind):
         return False
     root = list(range(count + 1))
 
@@ -39,7 +32,7 @@ def is_forest(count: int, kind, parent, child) -> bool:
 
 def cannot_flip(kind) -> np.ndarray:
     """Return (J,) which joints carry a tree from parent to child only: a line or plane of one body."""
-    return np.isin(kind, (POINT_ON_LINE, POINT_ON_PLANE, ROLLING_SPHERE, ROLLING_DISC))
+    return np.isin(kind, ONE_WAY)
 
 
 def forest_order(count: int, parent, child) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

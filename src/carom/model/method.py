@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
+
+from carom.options import Options
 
 #: kinds: explicit Runge-Kutta; symplectic, in parts; implicit for stiff springs; the paper's three fields
 RUNGE_KUTTA, RATTLE, IMPLICIT, THREE_FIELD = range(4)
@@ -27,6 +30,15 @@ class Method(NamedTuple):
     most: int  # iterations
 
 
-def explicit(A: np.ndarray, b: np.ndarray, E: np.ndarray) -> Method:
-    """Return an explicit Runge-Kutta method."""
-    return Method(RUNGE_KUTTA, A, b, E, np.zeros(0), 0, 0.0, 0.0, 0.0, 0.0, 0)
+def explicit(A: np.ndarray, b: np.ndarray) -> Method:
+    """Return an explicit Runge-Kutta method without an estimate of its error."""
+    return Method(RUNGE_KUTTA, A, b, np.zeros((0, len(b))), np.zeros(0), 0, 0.0, 0.0, 0.0, 0.0, 0)
+
+
+class Definition(NamedTuple):
+    """A method as it is registered in `carom.dynamics.methods`."""
+
+    kind: int
+    order: int  # of convergence
+    coefficients: Callable[[Options], Method]
+    with_error: Callable[[], Method] | None = None  # with E: for steps of varying length

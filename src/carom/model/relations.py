@@ -23,12 +23,11 @@ from carom.model.arrays import (
     USER_ROWS,
     Relations,
 )
-from carom.model.frames import triad
 from carom.model.more_forces import MoreForces, Pieces
 from carom.model.placement import Placement
 from carom.scene.constraints import Coupling, Rows, coordinate_kind
 from carom.scene.forces import Spring
-from carom.scene.joints import Joint, Planar, PointOnLine, PointOnPlane, Universal
+from carom.scene.joints import Joint
 from carom.scene.more_forces import JointSpring
 
 
@@ -62,8 +61,8 @@ class Coordinates:
         row = made[0]
         turns = coordinate_kind(joint, coordinate) == "turn"
         first, second = (self.placement.side(joint, k) for k in range(2))
-        frame = _frame(d, coordinate)
-        if isinstance(d, Universal) and coordinate == 1:  # seen from the child
+        frame = d.coordinate_frame(coordinate)
+        if d.turn == "cross" and coordinate == 1:  # seen from the child
             first, second = second, first
         anchor = joint.anchor()
         row.kind = REVOLUTE if turns else PRISMATIC
@@ -71,18 +70,6 @@ class Coordinates:
         row.parent_anchor[:], row.child_anchor[:] = first.point(anchor), second.point(anchor)
         row.parent_frame[:], row.child_frame[:] = first.axes(frame), second.axes(frame)
         return made
-
-
-def _frame(d, coordinate: int) -> np.ndarray:
-    """Return columns: the axis of a coordinate, and two across it."""
-    if isinstance(d, Universal):
-        a, b = d.axis_parent, d.axis_child
-        columns = (a, b, np.cross(a, b)) if coordinate == 0 else (-b, a, np.cross(a, b))
-        return np.stack(columns, axis=1)
-    if isinstance(d, (Planar, PointOnPlane)):
-        frame = triad(d.normal)
-        return frame if coordinate == 2 else triad(frame[:, 1 + coordinate])
-    return triad(d.direction if isinstance(d, PointOnLine) else d.axis)
 
 
 class Elements:

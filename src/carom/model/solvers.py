@@ -12,7 +12,6 @@ from carom.model.arrays import (
     LOOPS,
     NO_JOINTS,
     ROW,
-    ROWS,
     SIDE,
     WIDTH,
     Solver,
@@ -58,7 +57,7 @@ def tree_solver(joints: np.recarray, order: np.ndarray, joint: np.ndarray) -> So
     for b, j in enumerate(joint):
         if j >= 0:
             links.parent[b] = p = joints.parent[j]
-            links.freedoms[b] = 6 - ROWS[int(joints.kind[j])]
+            links.freedoms[b] = 6 - joints.rows[j]
             if p >= 0:
                 links.has_child[p] = 1
     # no wider than it must be: memory is what a solve of 1000 links waits for

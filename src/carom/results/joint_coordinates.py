@@ -8,7 +8,6 @@ import numpy as np
 
 from carom import checks
 from carom.geometry import quaternion
-from carom.model.frames import triad
 from carom.scene import joints as j
 from carom.scene.joints import Joint
 
@@ -48,23 +47,15 @@ def coordinates_of(motion: Motion, joint: Joint) -> tuple[np.ndarray, np.ndarray
 
 
 def _columns(sides, joint):
-    """Pairs (coordinate, rate) of joints with one direction that is fixed in the parent."""
-    d = joint.definition
-    if isinstance(d, (j.Fixed, j.KnifeEdge, j.RollingSphere, j.RollingDisc)):
-        return []
-    if isinstance(d, j.Revolute):
-        return [sides.turn(d.axis)]
-    anchor = joint.anchor()
-    if isinstance(d, (j.Planar, j.PointOnPlane)):
-        slides = [sides.slide(anchor, e) for e in triad(d.normal).T[1:]]
-        return [*slides, sides.turn(d.normal)] if isinstance(d, j.Planar) else slides
-    along, speed = sides.slide(anchor, d.direction if isinstance(d, j.PointOnLine) else d.axis)
-    if isinstance(d, j.Cylindrical):
-        return [sides.turn(d.axis), (along, speed)]
+    """Pairs (coordinate, rate) of joints whose axes of coordinates are fixed in the parent."""
+    d, anchor, columns = joint.definition, joint.anchor(), []
+    for k, kind in enumerate(d.coordinates):
+        axis = d.coordinate_frame(k)[:, 0]
+        columns.append(sides.turn(axis) if kind == "turn" else sides.slide(anchor, axis))
     if isinstance(d, j.Screw):  # the slide knows all turns
-        advance = d.pitch / (2.0 * np.pi)
-        return [(along / advance, sides.turn(d.axis)[1]), (along, speed)]
-    return [(along, speed)]
+        (_, rate), (along, speed) = columns
+        return [(along / d.scale(), rate), (along, speed)]
+    return columns
 
 
 def _of_scene(scene, joint) -> Joint:

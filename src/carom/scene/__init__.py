@@ -1,6 +1,6 @@
 """What the user states: shapes, bodies, contacts, joints, forces. NumPy only, no motion."""
 
-from carom.scene import constraints, forces, joints
+from carom.scene import constraints, forces, joints, shapes
 from carom.scene.bodies import GROUND, Body, Ground, HalfSpace
 from carom.scene.constraints import Constraint
 from carom.scene.contacts import Contact
@@ -46,4 +46,5 @@ __all__ = [
     "constraints",
     "forces",
     "joints",
+    "shapes",
 ]

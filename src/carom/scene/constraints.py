@@ -9,28 +9,15 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 from carom import checks
-from carom.scene import joints as kinds
 from carom.scene.bodies import Body
 from carom.scene.joints import Joint
 from carom.scene.values import keep
-
-#: coordinates of each joint that has some: "turn" [rad] or "slide" [m]
-COORDINATES = {
-    kinds.Revolute: ("turn",),
-    kinds.Prismatic: ("slide",),
-    kinds.Cylindrical: ("turn", "slide"),
-    kinds.Screw: ("turn", "slide"),
-    kinds.Universal: ("turn", "turn"),
-    kinds.Planar: ("slide", "slide", "turn"),
-    kinds.PointOnLine: ("slide",),
-    kinds.PointOnPlane: ("slide", "slide"),
-}
 
 
 def coordinate_kind(joint: Joint, coordinate: int, name: str = "joint") -> str:
     """Return "turn" or "slide"; refuse a coordinate that the joint does not have."""
     checks.instance(name, joint, (Joint,))
-    own = COORDINATES.get(type(joint.definition), ())
+    own = joint.definition.coordinates
     if not own:
         raise ValueError(
             f"{name} must have coordinates of its own (Revolute, Prismatic, ...), got {checks.shown(joint)}"

@@ -1,19 +1,8 @@
-"""Checks that a method of `simulate` can do all that a scene states; nothing is silently left out."""
+"""What a scene may state and a way to locate impacts does not do: refused before a run, never left out."""
 
 from __future__ import annotations
 
 from carom.scene.bodies import Body
-from carom.scene.more_forces import JointFriction
-
-
-def check_method(scene, method: str) -> None:
-    """Refuse dry friction in joints for methods that do not know it."""
-    if not method.startswith("rk") and any(
-        isinstance(f.definition, JointFriction) for f in scene.forces
-    ):
-        raise ValueError(
-            f'method must be "rk4", "rk5" or "rk8" where joints have dry friction, got {method!r}'
-        )
 
 
 def check_location(scene, impact_location: str) -> None:

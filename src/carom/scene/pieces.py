@@ -5,6 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -96,13 +97,25 @@ class Piece:
         )
 
 
-class Touching(ABC):
-    """What all shapes have in common: pieces to touch with, and what follows from them."""
+class Shape(ABC):
+    """What all shapes have in common: pieces to touch with, and what follows from them.
+
+    A shape has besides, as fields or properties, `volume` [m^3] and `size` [m], the largest distance of a point
+    from the mass centre.
+    """
+
+    if TYPE_CHECKING:
+        volume: Any
+        size: Any
 
     @property
     @abstractmethod
     def pieces(self) -> tuple[Piece, ...]:
         """The convex pieces of the shape."""
+
+    @abstractmethod
+    def inertia(self, mass: float) -> np.ndarray:
+        """Return the inertia (3,3) [kg m^2] about the mass centre, for a `mass` [kg]."""
 
     def support(self, direction: ArrayLike) -> np.ndarray:
         """Return the point (3,) of the shape [m] farthest along `direction` (3,), in body axes."""

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import math
+from typing import TypeVar
 
 import numpy as np
 
 from carom import checks
+
+T = TypeVar("T")
 
 
 def keep(record, **fields) -> None:
@@ -32,3 +35,9 @@ def apart(anchor_parent, anchor_child) -> tuple[np.ndarray, np.ndarray, float]:
 def optional_point(name: str, value) -> np.ndarray | None:
     """Return `value` as a point (3,), or None."""
     return None if value is None else point(name, value)
+
+
+def subclasses_in(names: dict, base: type[T]) -> tuple[type[T], ...]:
+    """Return the subclasses of `base` among the names of a module, in the order in which they came there."""
+    found = (one for one in names.values() if isinstance(one, type) and issubclass(one, base))
+    return tuple(one for one in found if one is not base)

@@ -116,7 +116,7 @@ def compare(i, amount, t, watch):
 
 @kernel
 def given_by_law(system, clock, records, watch):
-    """Return the energy that the new impacts have added, where Newton's law with friction may add some (V8)."""
+    """Return the energy that the new impacts have added, where their law with friction may add some (V8)."""
     total = 0.0
     for k in range(watch.struck, clock.struck):
         row = records.impact[k]
@@ -133,7 +133,7 @@ def may_give(system, number):
     for c in range(system.contacts.shape[0]):
         contact = system.contacts[c]
         if contact.number == number:
-            return contact.law == laws.NEWTON and contact.friction > 0.0
+            return contact.law in laws.GAINING and contact.friction > 0.0
     return False
 
 

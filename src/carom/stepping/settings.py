@@ -5,14 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from carom import checks
+from carom.dynamics.methods import ADAPTIVE, EXPLICIT, METHODS
 from carom.options import Options
-from carom.scene.limits import check_location, check_method
+from carom.scene.limits import check_location
+from carom.scene.more_forces import JointFriction
 from carom.scene.scene import Scene
 
-METHODS = (
-    "rk4", "rk5", "rk8", "rattle", "rattle4", "rattle6", "implicit", "paper", "paper-ode",
-)  # fmt: skip
-ADAPTIVE = ("rk5", "rk8")  # methods with an estimate of their error
 LOCATIONS = ("locate", "project", "work")
 _DEFAULT = Options()
 
@@ -65,6 +63,22 @@ def check_scene(scene: Scene, method: str, location: str) -> None:
     scene.validate()
     check_location(scene, location)
     check_method(scene, method)
+
+
+def check_method(scene: Scene, method: str) -> None:
+    """Refuse dry friction in joints for methods that do not know it."""
+    if method not in EXPLICIT and any(
+        isinstance(f.definition, JointFriction) for f in scene.forces
+    ):
+        raise ValueError(
+            f"method must be {either(EXPLICIT)} where joints have dry friction, got {method!r}"
+        )
+
+
+def either(names) -> str:
+    """Return names as `"a", "b" or "c"`."""
+    *first, last = (f'"{name}"' for name in names)
+    return " or ".join([*([", ".join(first)] if first else []), last])
 
 
 def check_tolerances(adapts: bool, method: str, location: str, rtol, atol):

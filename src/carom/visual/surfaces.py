@@ -8,12 +8,14 @@ import numpy as np
 
 from carom import checks
 from carom.geometry import quaternion
-from carom.scene.compound import Compound
-from carom.scene.convex import Convex
-from carom.scene.mesh import Mesh
-from carom.scene.revolved import Capsule, Cylinder, Disc
-from carom.scene.shapes import SHAPES, Box, Ellipsoid, Sphere
+from carom.scene.pieces import Piece
+from carom.scene.shapes import SHAPES, Box
+from carom.scene.shapes.compound import Compound
+from carom.scene.shapes.mesh import Mesh
+from carom.scene.shapes.revolved import Disc
 
+#: kinds of pieces without edges or corners that turn with them
+ROUND = ("point", "segment", "cylinder", "ellipsoid")
 HOOP = (
     0.94  # inner radius by outer radius with which a hoop is drawn, which has no width of its own
 )
@@ -47,26 +49,37 @@ def surface(shape, fineness: int = 32) -> tuple[np.ndarray, np.ndarray]:
     n = math.ceil(
         checks.integer("fineness", fineness, least=4) / 4
     )  # sides of a quarter of a circle
-    if isinstance(shape, Sphere):
-        return _swollen_box(np.zeros(3), shape.radius, n)
-    if isinstance(shape, Capsule):
-        return _swollen_box(np.array([0.0, 0.0, 0.5 * shape.length]), shape.radius, n)
-    if isinstance(shape, Box):
-        return _swollen_box(shape.half, shape.radius, n)
-    if isinstance(shape, Ellipsoid):
-        vertices, triangles = _swollen_box(np.zeros(3), 1.0, n)
-        return vertices * [shape.a, shape.b, shape.c], triangles
-    if isinstance(shape, Cylinder):
-        r, z = shape.radius, 0.5 * shape.length
-        return _turned([(0.0, -z), (r, -z), (r, z), (0.0, z)], 4 * n)
     if isinstance(shape, Disc):
         return _disc(shape.radius, shape.inner_radius, 4 * n)
-    if isinstance(shape, Convex):
-        return _swollen_hull(shape, n) if shape.radius else _fans(shape)
     if isinstance(shape, Mesh):
         used, faces = np.unique(shape.faces, return_inverse=True)
         return shape.points[used] - shape.centroid, faces.reshape(-1, 3).astype(np.int64)
-    return _compound(shape, 4 * n)
+    if isinstance(shape, Compound):
+        return _union(
+            (*surface(part, 4 * n), position - shape.centroid, orientation)
+            for part, position, orientation in shape.parts
+        )
+    if len(shape.pieces) == 1:
+        return _of_piece(shape.pieces[0], n)
+    return _union((*_of_piece(p, n), p.position, p.orientation) for p in shape.pieces)
+
+
+def is_round(shape) -> bool:
+    """Return whether nothing but a pattern would show that a body of this shape turns."""
+    return shape.pieces[0].kind in ROUND and not isinstance(shape, (Box, Compound))
+
+
+def _of_piece(piece: Piece, n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the surface of a piece in its own axes."""
+    if piece.kind == "cylinder":
+        r, z = piece.half[0], piece.half[2]
+        return _turned([(0.0, -z), (r, -z), (r, z), (0.0, z)], 4 * n)
+    if piece.kind == "ellipsoid":
+        vertices, triangles = _swollen_box(np.zeros(3), 1.0, n)
+        return vertices * piece.half, triangles
+    if piece.kind == "hull":
+        return _swollen_hull(piece, n) if piece.radius else _fans(piece)
+    return _swollen_box(piece.half, piece.radius, n)
 
 
 def _swollen_box(half: np.ndarray, radius: float, n: int) -> tuple[np.ndarray, np.ndarray]:
@@ -173,7 +186,7 @@ def _disc(radius: float, hole: float, n: int) -> tuple[np.ndarray, np.ndarray]:
     return _turned([(middle, 0.0), (radius, 0.0), (middle, 0.0), (hole, 0.0)], n, closed=True)
 
 
-def _fans(shape: Convex) -> tuple[np.ndarray, np.ndarray]:
+def _fans(shape: Piece) -> tuple[np.ndarray, np.ndarray]:
     """Return a sharp hull: each face as a fan of triangles."""
     fans = [
         (ring[0], ring[k], ring[k + 1]) for _, ring in shape.faces for k in range(1, len(ring) - 1)
@@ -181,7 +194,7 @@ def _fans(shape: Convex) -> tuple[np.ndarray, np.ndarray]:
     return np.array(shape.vertices), np.array(fans, dtype=np.int64)
 
 
-def _swollen_hull(shape: Convex, n: int) -> tuple[np.ndarray, np.ndarray]:
+def _swollen_hull(shape: Piece, n: int) -> tuple[np.ndarray, np.ndarray]:
     """Return a hull swollen by a ball: faces moved out, parts of cylinders at edges, of balls at corners.
 
     The part of a ball at a corner is bounded by arcs from the normal of one face to that of the next; it is
@@ -266,12 +279,11 @@ def _filled(vertex: int, outer: list, directions, n: int, put) -> list:
     return faces + [(outer[m - 1], outer[m], top) for m in range(len(outer))]
 
 
-def _compound(shape: Compound, fineness: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the surfaces of all parts."""
+def _union(parts) -> tuple[np.ndarray, np.ndarray]:
+    """Return the surfaces of all parts: vertices, triangles, position and orientation of each."""
     points, faces, count = [], [], 0
-    for part, position, orientation in shape.parts:
-        vertices, triangles = surface(part, fineness)
-        points.append(position - shape.centroid + quaternion.rotate(orientation, vertices))
+    for vertices, triangles, position, orientation in parts:
+        points.append(position + quaternion.rotate(orientation, vertices))
         faces.append(triangles + count)
         count += len(vertices)
     return np.concatenate(points), np.concatenate(faces)

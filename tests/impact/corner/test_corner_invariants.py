@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from carom.impact.multiple.api import resolve_impacts
+from carom.scene.materials import IMPACT_LAWS
 
 few = settings(max_examples=60, deadline=None, derandomize=True)
 
@@ -37,7 +38,7 @@ def check(W, u, mu, e, impact, rtol):
 
 
 @few
-@given(problem=problems(), law=st.sampled_from(["newton", "poisson", "stronge"]))
+@given(problem=problems(), law=st.sampled_from(IMPACT_LAWS))
 def test_simultaneous(problem, law):
     W, u, mu, e, kappa = problem
     impact = resolve_impacts(W, u, mu, e, law, stiffness=kappa, rtol=1e-6)
@@ -45,7 +46,7 @@ def test_simultaneous(problem, law):
 
 
 @few
-@given(problem=problems(), law=st.sampled_from(["newton", "poisson", "stronge"]))
+@given(problem=problems(), law=st.sampled_from(IMPACT_LAWS))
 def test_sequential(problem, law):
     W, u, mu, e, _ = problem
     check(W, u, mu, e, resolve_impacts(W, u, mu, e, law, multiple="sequential"), 1e-8)

@@ -101,7 +101,7 @@ def _check(contacts):
     for i in range(k):
         mu, e, kappa = contacts.friction[i], contacts.restitution[i], contacts.stiffness[i]
         total += mu + e + kappa
-        sound = mu >= 0.0 and 0.0 <= e <= 1.0 and kappa > 0.0 and 0 <= contacts.law[i] <= 2
+        sound = mu >= 0.0 and 0.0 <= e <= 1.0 and kappa > 0.0 and 0 <= contacts.law[i] < laws.COUNT
         if not (sound and W[3 * i, 3 * i] >= 0.0):
             return math.nan
     return scale if math.isfinite(total) else math.nan

@@ -31,18 +31,21 @@ _FARTHEST = 1.5  # greatest |ln(target/reached)| and step that is believed
 
 @kernel
 def energetic(k, work):
-    """Set e_* = e: Stronge's law, and the first guess for the others."""
+    """Set e_*: that of laws of work, (A_r/-A_c)^1/2, and e as the first guess for the others."""
     for i in range(k):
         c = work.contact[i]
-        c.e = min(1.0, max(E_MIN, c.restitution))
+        e = c.restitution
+        if c.law in laws.BY_WORK:
+            e = math.sqrt(laws.goal(c.law, e, 0.0, 0.0, -1.0))
+        c.e = min(1.0, max(E_MIN, e))
 
 
 @kernel
 def has_target(c):
     """Return whether the contact has a law of its own to meet."""
-    if c.law == laws.STRONGE or not c.restitution > 0.0:
+    if c.law in laws.BY_WORK or not c.restitution > 0.0:
         return False
-    return c.law == laws.POISSON or c.approach > 0.0
+    return c.law in laws.BY_IMPULSE or c.approach > 0.0
 
 
 @kernel
@@ -63,10 +66,8 @@ def misses(k, work, out):
         c = work.contact[i]
         if not has_target(c) or c.wedged == 1:  # no e_* would part what friction holds
             continue
-        if c.law == laws.NEWTON:
-            target, reached = c.restitution * c.approach, work.vector[U, 3 * i]
-        else:
-            target, reached = c.restitution * c.loading, c.unloading
+        target = laws.goal(c.law, c.restitution, c.approach, c.loading, 0.0)
+        reached = work.vector[U, 3 * i] if c.law in laws.BY_SPEED else c.unloading
         if not target > 0.0:
             continue
         miss = _FARTHEST

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from carom import checks
-from carom.scene.compound import Compound
-from carom.scene.convex import Convex
-from carom.scene.mesh import Mesh
-from carom.scene.pieces import Piece, Touching
+from carom.scene.pieces import Piece, Shape
+from carom.scene.shapes.compound import Compound
+from carom.scene.shapes.convex import Convex
+from carom.scene.shapes.mesh import Mesh
 
 CORES = ("point", "segment", "box", "hull", "cylinder", "ellipsoid")
 
@@ -41,7 +41,7 @@ def check_compound(shape: Compound) -> None:
     if not isinstance(shape.parts, tuple) or not shape.parts:
         raise ValueError("parts must be a tuple of at least one")
     for part, position, orientation in shape.parts:
-        checks.instance("a part", part, (Touching,))
+        checks.instance("a part", part, (Shape,))
         checks.finite_array("position of a part", position, (3,))
         checks.unit_quaternion("orientation of a part", orientation)
     _solid(shape, flat=True)

@@ -60,12 +60,12 @@ class KeptRun:
 
     @cached_property
     def _as_at_start(self):
+        from carom.dynamics.methods import METHODS
         from carom.model.compile import compile_scene
+        from carom.model.method import IMPLICIT, THREE_FIELD
 
-        method = self.settings["method"]
-        return compile_scene(
-            self.scene, self.options, method.startswith("paper"), method == "implicit"
-        )
+        kind = METHODS[self.settings["method"]].kind
+        return compile_scene(self.scene, self.options, kind == THREE_FIELD, kind == IMPLICIT)
 
     @property
     def bodies(self):

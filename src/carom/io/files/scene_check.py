@@ -18,13 +18,13 @@ import numpy as np
 from carom import checks
 from carom.io.files.hull_check import check_compound, check_convex, check_mesh, check_piece
 from carom.scene import bodies, contacts, forces, joints, stops
-from carom.scene.compound import Compound
 from carom.scene.constraints import CONSTRAINTS, Constraint, Coupling, Gear, coordinate_kind
-from carom.scene.convex import Convex
 from carom.scene.materials import ContactLaw
-from carom.scene.mesh import Mesh
 from carom.scene.pieces import Piece
 from carom.scene.scene import Scene
+from carom.scene.shapes.compound import Compound
+from carom.scene.shapes.convex import Convex
+from carom.scene.shapes.mesh import Mesh
 
 ROUNDING = 1e-9  # of what is worked out once more: of unit vectors, lengths, inertias
 KINDS = (bodies.Body, bodies.HalfSpace)

@@ -41,7 +41,7 @@ from carom.scene.values import keep
 
 #: parts that have a name in the scene
 PARTS = (HalfSpace, Body, Joint, AppliedForce, Constraint, Stop, Contact)
-TYPES = {
+TYPES: dict[str, type[Any]] = {
     kind.__name__: kind
     for kind in (*PARTS, *SHAPES, *JOINTS, *FORCES, *CONSTRAINTS, Gear, ContactLaw, Material, Piece)
 }

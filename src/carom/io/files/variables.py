@@ -23,7 +23,6 @@ from carom.io.files.layout import (
 )
 from carom.io.files.scene_parts import scene_to_text
 from carom.model.contact_rows import touching_pairs
-from carom.scene.constraints import COORDINATES
 from carom.scene.joints import Distance, Spherical
 
 
@@ -180,7 +179,7 @@ def coordinate_units(joint) -> list[str]:
         return ["m"]
     if isinstance(d, Spherical):
         return ["rad"] * 3
-    return ["rad" if kind == "turn" else "m" for kind in COORDINATES.get(type(d), ())]
+    return ["rad" if kind == "turn" else "m" for kind in d.coordinates]
 
 
 def _constraints(solution) -> list[Variable]:

@@ -10,9 +10,9 @@ from carom.geometry import quaternion
 from carom.io.models.links import IDENTITY, name_of, pose_on_link
 from carom.io.models.needs import need_mujoco
 from carom.io.models.report import Report
-from carom.scene.convex import Convex
-from carom.scene.revolved import Capsule, Cylinder
 from carom.scene.shapes import Box, Compound, Ellipsoid, Shape, Sphere
+from carom.scene.shapes.convex import Convex
+from carom.scene.shapes.revolved import Capsule, Cylinder
 
 SAME = 1e-12  # of the size: a shape that lies in the mass centre, along the axes of its body
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from carom import checks
+from carom.dynamics.methods import METHODS
+from carom.model.method import THREE_FIELD
 from carom.results.solution import Solution
 from carom.studies.gradient.parameters import make_parameters
 from carom.studies.gradient.result import Sensitivities
@@ -87,7 +89,7 @@ def sensitivities(
         )
     differences = by == "differences" or bool(parts)
     settings, run = solution.settings, solution._run
-    if settings["method"].startswith("paper") or settings["impact_location"] != "locate":
+    if METHODS[settings["method"]].kind == THREE_FIELD or settings["impact_location"] != "locate":
         raise ValueError(
             "solution must be of a run with located impacts and not by the paper's methods, got "
             f"method={settings['method']!r}, impact_location={settings['impact_location']!r}"

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from carom.impact import layout as o
+from carom.impact.laws import BY_SPEED
 
 UPPER = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
 INPUTS = 11  # the six of W, u, mu, e
@@ -111,7 +112,7 @@ def _same_course(found, base, z, law) -> bool:
     if not int(base[5]) & o.SLIP:  # it sticks from the start: others slip a little before they do
         return bool(int(found[5]) & ~o.SLIP == int(base[5]))
     same = found[5] == base[5] and (found[3] >= 0.0) == (base[3] >= 0.0)
-    if z[10] == 0.0 or law == 0:  # what e = 0 ends with compression, Newton's law does not look at
+    if z[10] == 0.0 or law in BY_SPEED:  # what e = 0 ends with compression, they do not look at
         return bool(same)
     return bool(same and (found[4] < 0.0) == (base[4] < 0.0))
 

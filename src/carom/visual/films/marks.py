@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from carom.geometry.frames import contact_axes
 from carom.model.contact_rows import touching_pairs
-from carom.model.frames import contact_axes
 from carom.visual.plots import style
 
 LINGER = 0.15  # how long an arrow is seen [s of the film]

@@ -8,11 +8,11 @@ import numpy as np
 
 from carom.geometry import quaternion
 from carom.scene.bodies import GROUND
-from carom.scene.convex import Convex
-from carom.scene.revolved import Capsule, Cylinder, Disc
-from carom.scene.shapes import Ellipsoid, Sphere
+from carom.scene.shapes import Sphere
+from carom.scene.shapes.convex import Convex
+from carom.scene.shapes.revolved import Capsule
 from carom.visual.plots import style
-from carom.visual.surfaces import surface
+from carom.visual.surfaces import is_round, surface
 
 COLOURS = (style.BLUE, style.ORANGE, style.GREEN, style.RED, style.PURPLE, style.SKY)
 SHARP = np.cos(np.radians(35.0))  # of the angle from which an edge is one
@@ -84,9 +84,9 @@ def model_of(vertices, triangles, shape) -> Model:
             mean = normals[near].sum(axis=0)
             smooth[f, k] = mean / max(float(np.linalg.norm(mean)), 1e-300)
     pale = np.zeros((len(triangles), 3))
-    if isinstance(shape, (Sphere, Ellipsoid, Capsule, Cylinder, Disc)):
+    if shape is not None and is_round(shape):
         middle = corners.mean(axis=1)
-        kept = slice(0, 3 if isinstance(shape, (Sphere, Ellipsoid)) else 2)
+        kept = slice(0, 3 if shape.pieces[0].kind in ("point", "ellipsoid") else 2)
         pale[np.prod(np.sign(middle[:, kept]), axis=1) < 0.0] = PALE
     return Model(corners, smooth, pale, edges)
 

@@ -11,12 +11,11 @@ from carom.scene.bodies import Body
 from carom.scene.forces import Spring
 from carom.scene.joints import Distance, Joint, RollingDisc, RollingSphere
 from carom.scene.more_forces import CurveSpring
-from carom.scene.revolved import Capsule, Cylinder, Disc
-from carom.scene.shapes import Box, Ellipsoid, Sphere
+from carom.scene.shapes import Box, Sphere
+from carom.scene.shapes.revolved import Cylinder
 from carom.visual import surfaces
 from carom.visual.viewer.frames import Outline
 
-ROUND = (Sphere, Capsule, Cylinder, Disc, Ellipsoid)  # a pattern shows that they turn
 ROD = 0.012  # radius of rods of bodies without a shape, by that of the whole place
 TOP = 0.15  # how far walls go above the motion, by the radius of the place
 LEVEL = 0.9  # cosine of the slope from which a half-space is a wall
@@ -60,10 +59,9 @@ def parts_of(scene, radius: float) -> list[Part]:
         if shape is None:
             pieces = _without_shape(scene, body, ROD * radius)
         else:
-            key = shape if isinstance(shape, (*ROUND, Box)) else id(shape)
-            if key not in known:
-                known[key] = surfaces.surface(shape, fineness)
-            pieces = [(*known[key], "round" if isinstance(shape, ROUND) else "solid")]
+            if shape not in known:
+                known[shape] = surfaces.surface(shape, fineness)
+            pieces = [(*known[shape], "round" if surfaces.is_round(shape) else "solid")]
         for vertices, triangles, look in pieces:
             key = (vertices.tobytes(), triangles.tobytes(), look)
             parts.setdefault(key, Part(vertices, triangles, [], look)).bodies.append(body.index)

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom.geometry.frames import contact_axes
 from carom.model.contact_rows import touching_pairs
-from carom.model.frames import contact_axes
 from carom.scene.constraints import coordinate_kind
 
 LISTED = 1000  # impacts in the list: the strongest

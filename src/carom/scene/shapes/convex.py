@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from carom import checks
 from carom.scene.moments import about_centroid, of_swollen
-from carom.scene.pieces import Piece, Touching
+from carom.scene.pieces import Piece, Shape
 from carom.scene.values import keep
 
 FLAT = 1e-10  # thickness relative to the largest extent below which points count as coplanar
@@ -18,7 +18,7 @@ SAME_FACE = 1e-8  # sine of the angle between triangles that are one face: round
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
-class Convex(Touching):
+class Convex(Shape):
     """The solid convex hull of points, swollen by a ball if a radius is given.
 
     The shape is moved so that its centroid becomes the origin of the body: the `position` of a body

@@ -1,8 +1,4 @@
-"""Shapes: volume, inertia, size, and the pieces with which they touch.
-
-A shape lies in body axes with its mass centre at the origin. It touches with its `pieces`: convex cores
-(a point, a segment, a box, a hull of vertices, a cylinder, an ellipsoid), each swollen by a ball.
-"""
+"""A ball, a box, an ellipsoid."""
 
 from __future__ import annotations
 
@@ -13,16 +9,12 @@ from functools import cached_property
 import numpy as np
 
 from carom import checks
-from carom.scene.compound import Compound
-from carom.scene.convex import Convex
-from carom.scene.mesh import Mesh
-from carom.scene.pieces import Piece, Touching
-from carom.scene.revolved import Capsule, Cylinder, Disc
+from carom.scene.pieces import Piece, Shape
 from carom.scene.values import keep
 
 
 @dataclass(frozen=True)
-class Sphere(Touching):
+class Sphere(Shape):
     """A solid ball of `radius` [m], above 0."""
 
     radius: float
@@ -52,7 +44,7 @@ class Sphere(Touching):
 
 
 @dataclass(frozen=True)
-class Box(Touching):
+class Box(Shape):
     """A solid box, its edges and corners rounded if a radius is given.
 
     Parameters
@@ -124,7 +116,7 @@ class Box(Touching):
 
 
 @dataclass(frozen=True)
-class Ellipsoid(Touching):
+class Ellipsoid(Shape):
     """A solid ellipsoid with semi-axes `a`, `b`, `c` [m] along body x, y, z, each above 0."""
 
     a: float
@@ -176,7 +168,3 @@ def _rounded_box(half: np.ndarray, r: float) -> tuple[float, float]:
     across = 2 * (b + c) * (pi * r**2 * a**2 + 8 * a * r**3 / 3 + pi * r**4 / 4)
     corners = 4 / 3 * pi * r**3 * a**2 + pi * a * r**4 + 4 / 15 * pi * r**5
     return volume, core + slabs + along + across + corners
-
-
-Shape = Sphere | Box | Capsule | Cylinder | Disc | Ellipsoid | Convex | Mesh | Compound
-SHAPES = (Sphere, Box, Capsule, Cylinder, Disc, Ellipsoid, Convex, Mesh, Compound)

@@ -10,12 +10,12 @@ from numpy.typing import ArrayLike
 
 from carom import checks
 from carom.geometry import quaternion
-from carom.scene.pieces import IDENTITY, Piece, Touching
+from carom.scene.pieces import IDENTITY, Piece, Shape
 from carom.scene.values import keep, point
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
-class Compound(Touching):
+class Compound(Shape):
     """Shapes fixed to each other, as one rigid body: a dumbbell, a table, a cup.
 
     The shape is moved so that its mass centre becomes the origin of the body. A point given here as ``p``
@@ -138,7 +138,7 @@ def _part(number: int, part) -> tuple:
             f"{name} must be (shape, position) or (shape, position, orientation), got {checks.shown(part)}"
         )
     shape, position, *turn = part
-    checks.instance(f"{name}[0]", shape, (Touching,), "; a shape is needed")
+    checks.instance(f"{name}[0]", shape, (Shape,), "; a shape is needed")
     position = point(f"{name}[1]", position)
     orientation = checks.unit_quaternion(f"{name}[2]", turn[0] if turn else IDENTITY)
     for array in (position, orientation):

@@ -10,12 +10,12 @@ from typing import ClassVar
 import numpy as np
 
 from carom import checks
-from carom.scene.pieces import Piece, Touching
+from carom.scene.pieces import Piece, Shape
 from carom.scene.values import keep
 
 
 @dataclass(frozen=True)
-class Capsule(Touching):
+class Capsule(Shape):
     """A solid cylinder along body z with half balls as its ends.
 
     Parameters
@@ -61,7 +61,7 @@ class Capsule(Touching):
 
 
 @dataclass(frozen=True)
-class Cylinder(Touching):
+class Cylinder(Shape):
     """A solid cylinder of `radius` and `length` [m], each above 0, along body z."""
 
     radius: float
@@ -96,7 +96,7 @@ class Cylinder(Touching):
 
 
 @dataclass(frozen=True)
-class Disc(Touching):
+class Disc(Shape):
     """A flat disc, or a ring, without thickness, about body z: a coin, a hoop.
 
     It touches as a full disc, with its rim: nothing passes through the hole of a ring.

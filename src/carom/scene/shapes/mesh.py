@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom import checks
-from carom.scene.convex import Convex, hull_of
 from carom.scene.moments import about_centroid, of_triangles
-from carom.scene.pieces import Piece, Touching
+from carom.scene.pieces import Piece, Shape
+from carom.scene.shapes.convex import Convex, hull_of
 from carom.scene.values import keep
 
 THIN = 1e-12  # height of a triangle relative to the size of the mesh below which it is degenerate
@@ -20,7 +20,7 @@ BULGE = 1e-9  # height of a vertex above a face, relative to the size, that is r
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
-class Mesh(Touching):
+class Mesh(Shape):
     """A solid bounded by a closed surface of triangles.
 
     Volume, mass centre and inertia are exact. It touches as convex parts: itself, where it is convex, else

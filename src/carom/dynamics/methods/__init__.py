@@ -1,0 +1,26 @@
+"""The methods of free motion: their coefficients, in the files named in `FILES`. NumPy only.
+
+A file holds a dictionary `METHODS` from names, which `carom.simulate` takes, to a `Definition` each.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+from carom.model.method import RUNGE_KUTTA, Definition, Method
+from carom.options import Options
+
+#: the registry: files of this folder. A new one comes last
+FILES = ("kutta", "dormand_prince", "rattle", "implicit", "three_field")
+
+METHODS: dict[str, Definition] = {}
+for _file in FILES:
+    METHODS |= import_module(f"{__name__}.{_file}").METHODS
+EXPLICIT = tuple(name for name, one in METHODS.items() if one.kind == RUNGE_KUTTA)
+ADAPTIVE = tuple(name for name, one in METHODS.items() if one.with_error is not None)
+
+
+def make_method(name: str, options: Options, adapts: bool = False) -> Method:
+    """Return the coefficients of a method by its name; with those of its error where steps vary."""
+    one = METHODS[name]
+    return one.with_error() if adapts and one.with_error else one.coefficients(options)

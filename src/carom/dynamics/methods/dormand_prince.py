@@ -1,0 +1,53 @@
+"""Order 5 with 6 stages (Dormand and Prince 1980), order 8 with 12 (Hairer, Norsett and Wanner 1993, DOP853).
+
+The coefficients are those of SciPy, which is loaded when they are asked for.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from carom.model.method import RUNGE_KUTTA, Definition, Method, explicit
+
+
+def rk5(options=None) -> Method:
+    """Return the coefficients of order 5."""
+    from scipy.integrate import RK45
+
+    return _tableau(RK45)
+
+
+def rk8(options=None) -> Method:
+    """Return the coefficients of order 8."""
+    from scipy.integrate import DOP853
+
+    return _tableau(DOP853)
+
+
+def _tableau(chosen) -> Method:
+    stages = len(chosen.B)
+    A = np.zeros((stages, stages))
+    A[:, : chosen.A.shape[1]] = chosen.A[:stages]
+    return explicit(A, np.array(chosen.B))
+
+
+def rk5_with_error() -> Method:
+    """Return those of order 5 with a seventh stage, at the end, and the weights of the error."""
+    from scipy.integrate import RK45
+
+    method, A = rk5(), np.zeros((7, 7))
+    A[:6, :6], A[6, :6] = method.A, method.b
+    return method._replace(A=A, b=np.append(method.b, 0.0), E=np.array([RK45.E]))
+
+
+def rk8_with_error() -> Method:
+    """Return those of order 8 with the weights of both errors, of order 5 and 3."""
+    from scipy.integrate import DOP853
+
+    return rk8()._replace(E=np.array([DOP853.E5[:-1], DOP853.E3[:-1]]))
+
+
+METHODS = {
+    "rk5": Definition(RUNGE_KUTTA, 5, rk5, rk5_with_error),
+    "rk8": Definition(RUNGE_KUTTA, 8, rk8, rk8_with_error),
+}

@@ -1,0 +1,88 @@
+"""A joint of a scene: a definition between two bodies."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from carom.checks import listed, shown, unit_quaternion
+from carom.scene.bodies import Body, Ground
+from carom.scene.joints.definition import JointDefinition
+from carom.scene.joints.rolling import KnifeEdge, RollingDisc, RollingSphere
+from carom.scene.values import point
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Joint:
+    """A joint of a scene, between `parent` and `child`. Made by `Scene.add_joint`.
+
+    Attributes
+    ----------
+    index : int
+        Place in `Scene.joints`.
+    name : str
+    definition : Revolute, Spherical, ... (one of `carom.joints`)
+    parent : Body or carom.GROUND
+    child : Body
+    frames : None, or two pairs of arrays ((3,), (4,))
+        Position and orientation of the joint's frame in the parent and in the child, in their body axes; None
+        where the definition is in the world as the system stands at the start.
+    """
+
+    index: int
+    name: str
+    definition: JointDefinition
+    parent: Body | Ground
+    child: Body
+    frames: tuple[tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]] | None = None
+
+    def anchor(self) -> np.ndarray:
+        """Return the anchor (3,) of the definition; where it has none that of the child, or of the frame."""
+        own = getattr(self.definition, "anchor", None)
+        if own is not None:
+            return own
+        return self.child.position if self.frames is None else np.zeros(3)
+
+    @property
+    def kind(self) -> str:
+        """The class name of the definition, such as ``"Revolute"``."""
+        return type(self.definition).__name__
+
+    def __repr__(self) -> str:
+        return f"Joint({self.name!r}, {self.kind}, {self.parent.name!r} -> {self.child.name!r})"
+
+
+def make_joint(index, name, definition, parent, child, parent_frame, child_frame) -> Joint:
+    """Return a checked `Joint`; the arguments are those of `Scene.add_joint`."""
+    if isinstance(definition, KnifeEdge) and not isinstance(parent, Ground):
+        raise ValueError(f"parent of a KnifeEdge must be carom.GROUND, got {shown(parent)}")
+    if (parent_frame is None) != (child_frame is None):
+        raise ValueError(
+            f"parent_frame and child_frame must be given together, got {shown(parent_frame)} and "
+            f"{shown(child_frame)}"
+        )
+    if parent_frame is None:
+        return Joint(index, name, definition, parent, child)
+    if isinstance(definition, (RollingSphere, RollingDisc)):
+        raise ValueError(
+            f"parent_frame must be left out of a {type(definition).__name__}, which is placed in the world, "
+            f"got {shown(parent_frame)}"
+        )
+    frames = (frame("parent_frame", parent_frame), frame("child_frame", child_frame))
+    return Joint(index, name, definition, parent, child, frames)
+
+
+def frame(name: str, value) -> tuple[np.ndarray, np.ndarray]:
+    """Return a frame of a body: position (3,) and unit quaternion (4,)."""
+    pair = listed(name, value, "two, (position (3,), orientation (4,))")
+    if len(pair) != 2:
+        raise ValueError(
+            f"{name} must be a pair (position (3,), orientation (4,)), got {shown(value)}"
+        )
+    position, orientation = pair
+    position = point(f"{name} position", position)
+    orientation = unit_quaternion(f"{name} orientation", orientation)
+    for array in (position, orientation):
+        array.setflags(write=False)
+    return position, orientation

@@ -1,0 +1,63 @@
+"""What the page on extending says is true: its files and lines, added to a copy of the library, run."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import carom
+
+LIBRARY = Path(carom.__file__).parent
+PAGE = Path(__file__).parents[1] / "docs" / "development" / "extending.md"
+
+#: without the JIT, so that nothing is compiled: a method, a joint, a shape and a law in one scene each
+RUN = """
+import numpy as np, carom
+
+scene = carom.Scene(gravity=(1.0, 0.0, -9.81))
+plate = scene.add_body(carom.Box(0.2, 0.2, 0.1), mass=2.0)
+table = scene.add_joint(carom.joints.Table((0, 0, 1)), carom.GROUND, plate)
+s = carom.simulate(scene, 0.1, step=0.05, method="three-eighths")
+assert np.allclose(s.position[-1, 0], (0.005, 0, 0), rtol=0, atol=1e-14)  # g t^2/2 along the plane
+assert s.joint_coordinates(table)[0].shape == (3, 2)
+
+scene = carom.Scene()
+body = scene.add_body(carom.Dumbbell(0.4, 0.1), mass=1.0, position=(0, 0, 0.31), velocity=(0, 0, -1.0))
+ground = scene.add_half_space((0, 0, 0), (0, 0, 1))
+scene.add_contact(body, ground, restitution=0.25, impact_law="fraction")
+s = carom.simulate(scene, 0.02, step=0.01)
+before, after = s.impacts[0].relative_velocity_before[0], s.impacts[0].relative_velocity_after[0]
+assert abs(after + 0.5 * before) < 1e-12  # a quarter of the energy
+assert s.impacts[0].law == "fraction"
+"""
+
+
+def add(text: str, root: Path) -> int:
+    """Write the files of a page, and change the lines of its registries; return how many of both."""
+    files = re.findall(r"```python\n# (src/\S+)\n(.*?)```", text, re.DOTALL)
+    changes = re.findall(r"```diff\n\+\+\+ (src/\S+)\n(.*?)```", text, re.DOTALL)
+    for name, code in files:
+        assert not (root / name).exists()
+        (root / name).write_text(code)
+    for name, lines in changes:
+        rows = lines.splitlines()
+        old, new = ("".join(r[1:] + "\n" for r in rows if r[0] in f" {c}") for c in "-+")
+        source = (root / name).read_text()
+        assert source.count(old) == 1, f"{name} has not the line {old!r}"
+        assert sum(r[0] == "+" for r in rows) == 1  # of one line
+        (root / name).write_text(source.replace(old, new))
+    return len(files) + len(changes)
+
+
+def test_what_the_page_adds_runs(tmp_path):
+    shutil.copytree(
+        LIBRARY, tmp_path / "src" / "carom", ignore=shutil.ignore_patterns("__pycache__")
+    )
+    assert add(PAGE.read_text(), tmp_path) == 8
+    ours = {"PYTHONPATH": str(tmp_path / "src"), "NUMBA_DISABLE_JIT": "1"}
+    done = subprocess.run(
+        [sys.executable, "-c", RUN], env={**os.environ, **ours}, capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
