@@ -10,7 +10,7 @@ from carom.geometry import quaternion
 from carom.scene.bodies import GROUND
 from carom.scene.shapes import Sphere
 from carom.scene.shapes.convex import Convex
-from carom.scene.shapes.revolved import Capsule
+from carom.scene.shapes.revolved import Capsule, Disc
 from carom.visual.plots import style
 from carom.visual.surfaces import is_round, surface
 

@@ -9,7 +9,7 @@ import numpy as np
 from carom import checks
 from carom.geometry import quaternion
 from carom.scene.joints import Distance
-from carom.scene.revolved import Cylinder
+from carom.scene.shapes.revolved import Cylinder
 from carom.visual.films import marks
 from carom.visual.films.camera import Camera, axes_of, fitted, vertical
 from carom.visual.films.models import Model, anchors, model_of, models, rgb, turned_to
