@@ -61,14 +61,14 @@ def one_twice():
 
 
 class Case:
-    """One impact, with scratch, called in a compiled loop."""
+    """One impact, with workspace, called in a compiled loop."""
 
     def __init__(self, problem, mu=0.0, e=0.5, law=STRONGE, kappa=None, repeat=200, **settings):
         from carom.impact.multiple.layout import (
             CornerContacts,
-            CornerSettings,
-            corner_arrays,
-            new_corner_result,
+            MultipleSettings,
+            new_multiple_result,
+            new_multiple_workspace,
         )
 
         W, u = problem
@@ -78,13 +78,13 @@ class Case:
             k, np.ascontiguousarray(W), np.ascontiguousarray(u), mu * ones, e * ones,
             np.full(k, law), ones if kappa is None else np.array(kappa, float),
         )  # fmt: skip
-        self.settings, self.repeat, self.given = CornerSettings, repeat, settings
-        self.scratch, self.out = corner_arrays(k), new_corner_result(k)
+        self.settings, self.repeat, self.given = MultipleSettings, repeat, settings
+        self.workspace, self.out = new_multiple_workspace(k), new_multiple_result(k)
 
     def run(self, loop, rtol, **more):
         """Return microseconds, steps, rounds, velocities after."""
         settings = self.settings(rtol=rtol, **{**self.given, **more})
-        arguments = (self.contacts, settings, self.scratch, self.out)
+        arguments = (self.contacts, settings, self.workspace, self.out)
         code = loop(1, *arguments)
         assert code == 0
         times = seconds(lambda: loop(self.repeat, *arguments), rounds=3)
@@ -95,13 +95,13 @@ class Case:
 
 def compiled_loop():
     """Return a compiled loop over one impact."""
-    from carom.impact.multiple.resolve import resolve_corner
+    from carom.impact.multiple.resolve import resolve_multiple
 
     @numba.njit
-    def loop(count, contacts, settings, scratch, out):
+    def loop(count, contacts, settings, workspace, out):
         code = 0
         for _ in range(count):
-            code = max(code, resolve_corner(contacts, settings, scratch, out))
+            code = max(code, resolve_multiple(contacts, settings, workspace, out))
         return code
 
     return loop

@@ -4,7 +4,7 @@ import numba
 import numpy as np
 import pytest
 
-from carom._compiled.by_reference import Reference, refer, type_of
+from carom._compiled.by_reference import Reference, by_reference, type_of
 from carom._compiled.decorators import entry, kernel
 from carom._compiled.record_arrays import table
 from carom._compiled.units import unit
@@ -35,7 +35,7 @@ def total_unit(h, out):
 def of_parts(h, out, each):
     """Write twice the sum of each vertex alone, found directly and through a unit; return that of all."""
     for i in range(each.shape[0]):
-        part = refer(Hulls(h.vertices[i : i + 1], h.faces, h.corners[i : i + 1]))
+        part = by_reference(Hulls(h.vertices[i : i + 1], h.faces, h.corners[i : i + 1]))
         each[i] = total(part)
         total_unit(Hulls(h.vertices[i : i + 1], h.faces, h.corners[i : i + 1]), out)
         each[i] += out[0]

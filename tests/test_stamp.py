@@ -52,11 +52,11 @@ def test_a_unit_is_left_out():
 def test_the_whole_loop_is_reached():
     """A unit and what it calls, over several files."""
     from carom._compiled import cache_key
-    from carom.persistent.contact_step import press
+    from carom.persistent.contact_step import contact_step
 
-    if not hasattr(press, "compiled"):
+    if not hasattr(contact_step, "compiled"):
         pytest.skip("not compiled: there is no cache")
-    names = list(cache_key._reached(press.compiled.py_func, set()))
+    names = list(cache_key._reached(contact_step.compiled.py_func, set()))
     for name in (
         "persistent.contact_step.impose",
         "dynamics.several_points.spread_all",

@@ -132,18 +132,18 @@ def test_each_unit_has_one_type_for_all_scenes_and_methods():
 
 STOPPED = """
 import carom, numpy as np
-from carom.persistent.lifecycle import hold_contact
+from carom.persistent.lifecycle import activate_contact
 
 scene = carom.Scene()
 ground = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1))
 ball = scene.add_body(carom.Sphere(0.1), mass=1.0, position=(0, 0, 0.15))
 scene.add_contact(ball, ground, restitution=0.3, friction=0.2)
 
-asked = hold_contact.compiled.get_compile_result
+asked = activate_contact.compiled.get_compile_result
 def stopped(signature):
-    hold_contact.compiled.get_compile_result = asked
+    activate_contact.compiled.get_compile_result = asked
     raise KeyboardInterrupt
-hold_contact.compiled.get_compile_result = stopped
+activate_contact.compiled.get_compile_result = stopped
 
 part = carom.simulate(scene, 0.3, step=1e-2, throw=False)
 whole = carom.simulate(scene, 0.3, step=1e-2)

@@ -1,4 +1,4 @@
-"""One run: the compiled scene, its scratch and records, and the way in and out of the compiled loop."""
+"""One run: the compiled scene, its workspace and records, and the way in and out of the compiled loop."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from carom.dynamics.adapt import FIRST, time_of_bounces
 from carom.dynamics.methods import EXPLICIT, METHODS, make_method
 from carom.dynamics.project import project_start
 from carom.dynamics.reactions import start_errors, start_speeds
-from carom.impact.multiple.layout import MULTIPLE, CornerSettings
-from carom.impact.workspace import new_cluster, new_corner
+from carom.impact.multiple.layout import MULTIPLE, MultipleSettings
+from carom.impact.workspace import new_group, new_multiple
 from carom.model import records as r
 from carom.model.answers import check_answers
 from carom.model.compile import compile_scene
@@ -26,16 +26,16 @@ from carom.scene.joints import Joint
 from carom.scene.scene import Scene
 from carom.status import Status
 from carom.stepping import record, time_loop
-from carom.stepping.crowd.layout import SPOTS, new_heap, no_heap, roomier_heap
+from carom.stepping.crowd.layout import SPOTS, new_crowd, no_crowd, roomier_crowd
 from carom.stepping.energy_balance import SHARE, new_watch
 from carom.stepping.islands.layout import has_events, new_islands, no_islands, roomier
 
 LOCATIONS = {"locate": LOCATE, "project": PROJECT, "work": WORK}
 
 
-def corner_settings(options: Options) -> CornerSettings:
+def multiple_settings(options: Options) -> MultipleSettings:
     """Return the settings of impacts of several points."""
-    return CornerSettings(
+    return MultipleSettings(
         multiple=MULTIPLE[options.multiple], rtol=options.corner_tolerance,
         exponent=options.corner_exponent,
     )  # fmt: skip
@@ -90,24 +90,24 @@ class Run:
         scene, options, system = self.scene, self.options, self.compiled.system
         tolerances, method = self.tolerances, self.settings["method"]
         self.now = self.compiled.start
-        self.held = r.new_held(system)
+        self.active = r.new_active_set(system)
         self.work = r.new_work(system, self.method.b.size)
         located = self.settings["impact_location"] == "locate"
         apart = located and tolerances is None and METHODS[method].kind != THREE_FIELD
-        self.islands = (new_islands if apart else no_islands)(system, self.held)
+        self.islands = (new_islands if apart else no_islands)(system, self.active)
         again = apart and options.hold and has_events(system)
         whole = 1 if system.bodies["ballistic"].all() else 2
         self.controls = self.controls._replace(retry=whole if again else 0)
-        self.cluster = new_cluster(system)
-        self.heap = no_heap()  # made when there is one
-        self.corner = new_corner(1, corner_settings(options))  # and this
+        self.group = new_group(system)
+        self.crowd = no_crowd()  # made when there is one
+        self.multiple = new_multiple(1, multiple_settings(options))  # and this
         self.clock = r.new_clock()
         share = SHARE * options.energy_tolerance if method in EXPLICIT else np.inf
         self.watch = new_watch(options.energy_tolerance, share)
         self.clock["ahead"] = FIRST * self.controls.longest
         rows = 256 if tolerances else -(-self.controls.last // self.controls.save_every) + 1
         self.records = r.new_records(system, rows, 512)
-        self.call = Entries(system, self.method, self.controls, self.corner.settings)
+        self.call = Entries(system, self.method, self.controls, self.multiple.settings)
         if options.project_start and len(system.joints):
             error = project_start(system, self.now, self.work)
             if not error <= options.constraint_tolerance:
@@ -119,14 +119,14 @@ class Run:
         check_start(scene, self.compiled, self.now, self.work, options)
         check_stops(scene, self.compiled, self.now, self.work, options)
         if system.contacts.size:
-            self.work.body["group"] = system.bodies["component"]
+            self.work.body["label"] = system.bodies["component"]
         self.note_modes()
         self.save_now()
 
     def note_modes(self) -> None:
         """Note which joints with friction stick at the start."""
         if not self.compiled.system.bodies["ballistic"].all():
-            first_modes(self.compiled.system, self.held, self.now, self.work)
+            first_modes(self.compiled.system, self.active, self.now, self.work)
 
     def renew(self) -> None:
         """Make anew all that a run writes to; nothing is saved."""
@@ -143,14 +143,14 @@ class Run:
     def data(self) -> Data:
         """What the kernels change."""
         return Data(
-            self.now, self.held, self.work, self.cluster, self.corner, self.heap, self.clock, self.records,
+            self.now, self.active, self.work, self.group, self.multiple, self.crowd, self.clock, self.records,
             self.watch,
         )  # fmt: skip
 
     def save_now(self) -> None:
         """Write the present state into the records."""
         state = (
-            self.compiled.system, self.held, self.now, self.clock, self.work, self.records,
+            self.compiled.system, self.active, self.now, self.clock, self.work, self.records,
             self.watch,
         )  # fmt: skip
         self.call(record.save_now, *state)
@@ -163,18 +163,18 @@ class Run:
             self.records = r.more_rows(self.records)
         elif what == r.FULL_PAIRS:
             self.islands = roomier(self.islands)
-        elif what == r.FULL_CORNER:
-            self.corner = new_corner(len(self.cluster.mu), self.corner.settings)
-        elif self.has_heap:
-            self.heap = roomier_heap(self.heap)
+        elif what == r.FULL_MULTIPLE:
+            self.multiple = new_multiple(len(self.group.mu), self.multiple.settings)
+        elif self.has_crowd:
+            self.crowd = roomier_crowd(self.crowd)
         else:
             bodies = len(self.compiled.system.bodies)
-            self.heap = new_heap(bodies, len(self.held.points), SPOTS * bodies)
+            self.crowd = new_crowd(bodies, len(self.active.points), SPOTS * bodies)
 
     @property
-    def has_heap(self) -> bool:
+    def has_crowd(self) -> bool:
         """Whether a crowd has taken a step whole."""
-        return len(self.heap.spots) >= SPOTS
+        return len(self.crowd.spots) >= SPOTS
 
     @property
     def steps_done(self) -> int:
@@ -229,26 +229,26 @@ class Run:
 
     def go_back(self) -> None:
         """Go back to the start of a step in the middle of which the run was interrupted."""
-        islands, held, search = self.islands, self.held, self.work.search
-        start = islands.together
+        islands, active, search = self.islands, self.active, self.work.search
+        start = islands.single
         if islands.apart:
             if islands.plan[0].planned == 0:
                 return
             islands.plan["planned"], islands.plan["entered"] = 0, 0
             islands.carried[0] = 0
         elif start.begun[0] == 1:
-            self.now[:], held.brinks[:] = start.state, start.brinks
-            held.count[0] = start.count[0]
-            held.points[: held.count[0]] = start.points[: held.count[0]]
+            self.now[:], active.contact_states[:] = start.state, start.contact_states
+            active.count[0] = start.count[0]
+            active.points[: active.count[0]] = start.points[: active.count[0]]
             start.begun[0] = 0
             relations = self.compiled.system.relations
             relations.coordinates["reference"] = relations.coordinates["begun"]
         else:
             return
         self.clock[:] = (islands if islands.apart else start).clock
-        search["pending"], held.carries[:] = 0, 0
-        points = held.points[: held.count[0]]
-        held.carries[points["feature"][points["touches"] == 0]] = 1
+        search["pending"], active.carries[:] = 0, 0
+        points = active.points[: active.count[0]]
+        active.carries[points["feature"][points["touches"] == 0]] = 1
 
     def solution(self, status: Status) -> Solution:
         """Return the solution; after a failure it ends with the last state, saved or not."""

@@ -75,9 +75,9 @@ def simulate(
         ``"rk8"``: the same with order 5 (6 stages) and 8 (12 stages), for joints, loads and contact held at
         one point; bodies of unequal moments fly with order 4 all the same. ``"rattle"``, ``"rattle4"``,
         ``"rattle6"``: symplectic, of order 2, 4 and 6, for joints and loads over long times: no trend in
-        energy, momenta of floating systems kept; held contacts go by ``"rk4"`` (``"rattle6"``: ``"rk8"``),
-        and so do steps across a singular position. ``"implicit"``: of order 2 and L-stable for springs and
-        dampers of any stiffness, which are rows of the solve. ``"paper"``: the paper's chain,
+        energy, momenta of floating systems kept; persistent contacts go by ``"rk4"`` (``"rattle6"``:
+        ``"rk8"``), and so do steps across a singular position. ``"implicit"``: of order 2 and L-stable for
+        springs and dampers of any stiffness, which are rows of the solve. ``"paper"``: the paper's chain,
         three fields of order 2 with exact constraints, impacts through the boundary layer by
         cubic splines. ``"paper-ode"``: the same with the paper's second-order equations of the multipliers
         instead of exact constraints.

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from carom.stepping.crowd.graph import find_order
-from carom.stepping.crowd.layout import new_heap
+from carom.stepping.crowd.layout import new_crowd
 from references.island_graph import island_graph
 
 
@@ -17,24 +17,24 @@ def test_same_lists(bodies):
     body[:, 1] = np.minimum(bodies - 1, body[:, 0] + rng.integers(1, 5, contacts))
     body[body[:, 0] == body[:, 1], 1] = -1
     body[rng.random(contacts) < 0.2, 1] = -1
-    heap = new_heap(bodies, 1, contacts + 40)
-    heap.problem.link.body[:contacts] = body
-    assert find_order(bodies, contacts, heap)
+    crowd = new_crowd(bodies, 1, contacts + 40)
+    crowd.problem.link.body[:contacts] = body
+    assert find_order(bodies, contacts, crowd)
     expected = island_graph(bodies, body)
     pairs, updates = len(expected.later), len(expected.target)
-    assert heap.graph.count.tolist() == [bodies, contacts, updates, pairs]
-    np.testing.assert_array_equal(heap.problem.place, expected.place)
-    np.testing.assert_array_equal(heap.problem.later[:pairs], expected.later)
-    np.testing.assert_array_equal(heap.problem.target[:updates], expected.target)
-    np.testing.assert_array_equal(heap.problem.link.corner[:contacts], expected.corner)
-    assert find_order(bodies, contacts, heap)  # known
+    assert crowd.graph.count.tolist() == [bodies, contacts, updates, pairs]
+    np.testing.assert_array_equal(crowd.problem.place, expected.place)
+    np.testing.assert_array_equal(crowd.problem.later[:pairs], expected.later)
+    np.testing.assert_array_equal(crowd.problem.target[:updates], expected.target)
+    np.testing.assert_array_equal(crowd.problem.link.corner[:contacts], expected.corner)
+    assert find_order(bodies, contacts, crowd)  # known
 
 
 def test_without_room_it_says_so():
     """A thousand bodies that all touch need more blocks than there is room for."""
     pairs = np.stack(np.triu_indices(60, 1), axis=1)
-    heap = new_heap(60, 1, len(pairs))
-    tight = heap._replace(problem=heap.problem._replace(later=heap.problem.later[:100]))
+    crowd = new_crowd(60, 1, len(pairs))
+    tight = crowd._replace(problem=crowd.problem._replace(later=crowd.problem.later[:100]))
     tight.problem.link.body[:] = pairs
     assert not find_order(60, len(pairs), tight)
     assert not find_order(60, len(pairs), tight)  # known, too

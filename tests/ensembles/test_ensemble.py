@@ -106,7 +106,7 @@ def test_a_function_that_raises_fails_its_own_run_alone():
 
 
 def test_several_bodies_that_strike_each_other():
-    """Islands, contacts of two bodies, held contacts: nothing of one run is left in the next."""
+    """Islands, contacts of two bodies, persistent contacts: nothing of one run is left in the next."""
     gaps = np.array([0.0, 0.01, 0.02, 0.013])
     at = np.stack([0.01 * np.ones(4), np.zeros(4), 0.16 + gaps], axis=1)
     e = carom.ensemble(two_balls(), 0.5, step=2e-3, vary={"high.position": at}, executor="serial")

@@ -199,7 +199,7 @@ def test_a_run_that_failed_does_not_go_on(tmp_path):
 
 
 def filled_with_nothing(value):
-    """Write nan, or a number that is no place of anything, into all arrays of some scratch."""
+    """Write nan, or a number that is no place of anything, into all arrays of some workspace."""
     if isinstance(value, np.ndarray):
         for column in [value[n] for n in value.dtype.names] if value.dtype.names else [value]:
             column[...] = np.nan if column.dtype.kind == "f" else -7
@@ -222,7 +222,7 @@ def test_scratch_is_no_state(scene):
     checkpoint = capture(part)
     assert checkpoint is not None
     restore(again, checkpoint, r.trimmed(part.records, part.clock))
-    filled_with_nothing((again.cluster, again.corner, again.heap))
+    filled_with_nothing((again.group, again.multiple, again.crowd))
     assert again.go_on(80) is carom.Status.SUCCESS
     one, two = (r.trimmed(run.records, run.clock) for run in (whole, again))
     assert [name for name, a, b in zip(one._fields, one, two) if a.tobytes() != b.tobytes()] == []

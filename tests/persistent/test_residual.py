@@ -1,4 +1,4 @@
-"""Velocities and impulses of held contacts fit each other, measured apart from the solver."""
+"""Velocities and impulses of persistent contacts fit each other, measured apart from the solver."""
 
 import numpy as np
 import pytest

@@ -29,7 +29,7 @@ class Island(NamedTuple):
     rows: np.ndarray  # (k, 2, 3, 6) G of each contact and body; (n, t1, t2)
     inverse_mass: np.ndarray  # (N, 6, 6) symmetric
     c: np.ndarray  # (3k,) velocity of the contacts without impulses
-    motion: np.ndarray  # (2, N, 6) scratch
+    motion: np.ndarray  # (2, N, 6) workspace
 
 
 class IslandGraph(NamedTuple):

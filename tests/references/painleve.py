@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.by_reference import refer
+from carom._compiled.by_reference import by_reference
 from carom._compiled.decorators import entry, kernel
 from carom.impact.multiple.layout import OK, SEEDED, CornerContacts
-from carom.impact.multiple.resolve import resolve_corner
+from carom.impact.multiple.resolve import resolve_multiple
 
 _SEED = 1e-7  # speed of approach given to a jammed contact, as a part of its slip
 
@@ -27,14 +27,14 @@ def jams(W, u, mu, i):
 
 
 @entry
-def impact_without_collision(contacts, settings, scratch, out):
-    """Resolve the impact of held contacts that jam; return (code, number of contacts that jam).
+def impact_without_collision(contacts, settings, workspace, out):
+    """Resolve the impact of persistent contacts that jam; return (code, number of contacts that jam).
 
-    Arguments as of `resolve_corner`. A jammed contact begins with u_n = -1e-7 |u_t|: its depth grows like
+    Arguments as of `resolve_multiple`. A jammed contact begins with u_n = -1e-7 |u_t|: its depth grows like
     an exponential until slip stops, and the result does not depend on that seed (to 1e-7).
     """
     k, W, u, mu = contacts.k, contacts.W, contacts.u, contacts.friction
-    v, count = scratch.work.vector[SEEDED], 0
+    v, count = workspace.work.vector[SEEDED], 0
     for i in range(3 * k):
         v[i] = u[i]
     for i in range(k):
@@ -42,10 +42,10 @@ def impact_without_collision(contacts, settings, scratch, out):
         if u[n] > -_SEED * (abs(u[n + 1]) + abs(u[n + 2])) and jams(W, u, mu[i], i):
             v[n] = -_SEED * math.sqrt(u[n + 1] * u[n + 1] + u[n + 2] * u[n + 2])
             count += 1
-    seeded = refer(
+    seeded = by_reference(
         CornerContacts(k, W, v, mu, contacts.restitution, contacts.law, contacts.stiffness)
     )
-    code = resolve_corner(seeded, settings, scratch, out)
+    code = resolve_multiple(seeded, settings, workspace, out)
     if code == OK:
         for i in range(3 * k):  # u+ = u + W P holds for what was given
             out.velocity[i] += u[i] - v[i]

@@ -13,24 +13,24 @@ from carom.friction.strategy import search
 
 
 @entry
-def solve_island(k, island, mu, kind, heading, p, scratch):
+def solve_island(k, island, mu, kind, heading, p, workspace):
     """Solve the contact problem of an `Island`; return (status, residual, iterations).
 
-    As `carom.friction.solve.solve_cones`, with W = G M^-1 G^T given by bodies and rows. `scratch` is from
+    As `carom.friction.solve.solve_cones`, with W = G M^-1 G^T given by bodies and rows. `workspace` is from
     `island_arrays.new_island_work` for the graph of these contacts.
     """
     if k == 0:
         return SOLVED, 0.0, 0
-    gamma = _load(scratch, k, island, mu, kind, heading, p)
+    gamma = _load(workspace, k, island, mu, kind, heading, p)
     if not math.isfinite(gamma):
         for i in range(3 * k):
             p[i] = 0.0
         return BAD_INPUT, math.inf, 0
-    search(scratch, k)
+    search(workspace, k)
     for i in range(3 * k):
-        p[i] = gamma * scratch.contact[i // 3].scale * scratch.vector[o.P, i]
+        p[i] = gamma * workspace.contact[i // 3].scale * workspace.vector[o.P, i]
     residual, tolerance, _, _, _ = measure_island(k, island, mu, kind, heading, p)
-    return SOLVED if residual <= tolerance else NOT_SOLVED, residual, scratch.count[o.ITERATIONS]
+    return SOLVED if residual <= tolerance else NOT_SOLVED, residual, workspace.count[o.ITERATIONS]
 
 
 @kernel

@@ -87,7 +87,7 @@ def test_a_row_for_each_two_pieces_and_the_vertices_of_both():
 
 def test_each_contact_with_a_half_space_has_vertices_of_its_own():
     # The two boxes of the L are one hull of 16 vertices; of the bolt the box alone has any; the capsule has 2.
-    # A held contact is known by its vertex.
+    # A persistent contact is known by its vertex.
     scene = in_a_row([L_SHAPE, BOLT, Capsule(0.1, 0.5)])
     scene.set_contact_default()
     contacts, _, _ = compiled(scene)

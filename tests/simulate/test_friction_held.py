@@ -1,4 +1,4 @@
-"""Friction of impacts and of held contacts apart; boxes with rounded edges, in motion."""
+"""Friction of impacts and of persistent contacts apart; boxes with rounded edges, in motion."""
 
 import numpy as np
 import pytest

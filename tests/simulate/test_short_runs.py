@@ -37,7 +37,7 @@ def test_columns_of_records():
 
 
 def test_runs_at_the_same_time_are_those_in_turn():
-    # No scratch is shared: bit for bit the same, whatever other threads do meanwhile.
+    # No workspace is shared: bit for bit the same, whatever other threads do meanwhile.
     alone = [thrown(k) for k in range(8)]
     with ThreadPoolExecutor(4) as pool:
         together = list(pool.map(thrown, range(8)))
@@ -82,7 +82,7 @@ def test_scratch_is_of_the_same_types_in_every_run():
     # Units and entries are found by the types of system, method and settings alone (carom._compiled.units).
     makers = (ball, die, pendulum)
     runs = [carom.simulate(make(), 0.5, step=0.01)._run for make in makers]
-    for name in ("held", "now", "work", "cluster", "corner", "heap", "clock", "records"):
+    for name in ("active", "now", "work", "group", "multiple", "crowd", "clock", "records"):
         kinds = [in_c_order(kind(getattr(run, name))) for run in runs]
         assert kinds[1:] == kinds[:-1], name
     grown = runs[0].records

@@ -1,4 +1,4 @@
-"""Records of arrays (system, scratch, held points, ...) are handed from kernel to kernel by one address.
+"""Records of arrays (system, workspace, active points, ...) are handed from kernel to kernel by one address.
 
 Numba passes a named tuple by value: some 300 numbers for a step of a scene, written out and read back at every
 call, in the compiler's work as in the run. Here a named tuple of ours becomes a pointer when
@@ -146,4 +146,4 @@ def _same(record):
 
 
 #: for named tuples that are put together in compiled code: by reference from there on
-refer: Any = _same if getattr(config, "DISABLE_JIT", 0) else _refer
+by_reference: Any = _same if getattr(config, "DISABLE_JIT", 0) else _refer

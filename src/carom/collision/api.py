@@ -70,7 +70,7 @@ def _touches(shape_a, pose_a, shape_b, pose_b, reach):
 
     poses = [pair_pose(name, pose) for name, pose in (("pose_a", pose_a), ("pose_b", pose_b))]
     solids, hulls = _solids(shape_a, shape_b)
-    work, out = _scratch()
+    work, out = _workspace()
     (xa, qa), (xb, qb) = [(np.zeros(3), np.zeros(4)) for _ in range(2)]
     for a in solids[solids.body == 0]:
         place(a, *poses[0], xa, qa)
@@ -88,7 +88,7 @@ def _solids(shape_a, shape_b):
 
 
 @lru_cache(maxsize=1)
-def _scratch():
+def _workspace():
     from carom.collision.layout import new_pair_work, new_points
 
     return new_pair_work(), new_points()

@@ -12,7 +12,7 @@ from carom.geometry.rotation import matrix, multiply, rotate
 
 @kernel
 def enter(s, placed_a, placed_b):
-    """Write the pose of A in axes of B, and the pose of B, to the scratch `s`."""
+    """Write the pose of A in axes of B, and the pose of B, to the workspace `s`."""
     p, q, x, o = placed_a.Q, placed_b.Q, placed_a.x, placed_b.x
     a = matrix(p[0], p[1], p[2], p[3])
     b = matrix(q[0], q[1], q[2], q[3])

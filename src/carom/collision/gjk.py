@@ -23,7 +23,7 @@ def distance(pair, accuracy, x, y, z):
     """Return |v| and v, from B to A, of the cores; 0 where they overlap.
 
     The search starts in direction (x, y, z), any vector but zero, and ends where a step gains no more than
-    `accuracy` of the distance. The simplex and its weights stay in the scratch: they give the two points.
+    `accuracy` of the distance. The simplex and its weights stay in the workspace: they give the two points.
     """
     s = pair.state
     propose(pair, x, y, z)

@@ -1,4 +1,4 @@
-"""What the kernels of pairs read and write: solids, hulls, points of contact, scratch.
+"""What the kernels of pairs read and write: solids, hulls, points of contact, workspace.
 
 A solid is a convex core in its own axes, swollen by a ball of `radius`. Axes of A and B, x and Q, are
 world poses of the solids: of the bodies, combined with the solid's own place in its body.
@@ -48,7 +48,7 @@ TOUCH_POINT = [
 MOST_POINTS = 8  # of one pair
 MOST_CORNERS = 48  # of a face that takes part in a clip; more are thinned out
 
-#: scratch of one pair, all in axes of B
+#: workspace of one pair, all in axes of B
 PAIR_STATE = [
     ("R", "f8", (3, 3)),  # axes of A to axes of B
     ("p", "f8", 3),  # origin of A
@@ -106,7 +106,7 @@ class Plane(NamedTuple):
 
 
 class Pair(NamedTuple):
-    """Two solids whose contact is sought, the kind of A not above that of B, and the scratch for it."""
+    """Two solids whose contact is sought, the kind of A not above that of B, and the workspace for it."""
 
     a: np.record  # SOLID
     b: np.record
@@ -121,7 +121,7 @@ def no_hulls() -> Hulls:
 
 
 def new_pair_work() -> PairWork:
-    """Return the scratch of the kernels of pairs."""
+    """Return the workspace of the kernels of pairs."""
     return PairWork(table(PAIR_STATE, 1), table(TOUCH_POINT, 96))
 
 

@@ -1,6 +1,6 @@
 """Two segments: their nearest points, and the ends of the line along which parallel ones touch.
 
-A segment joins two corners of the face of A, or of B, that the scratch of the pair holds.
+A segment joins two corners of the face of A, or of B, that the workspace of the pair holds.
 """
 
 from __future__ import annotations

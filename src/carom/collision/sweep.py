@@ -33,7 +33,7 @@ class SweepWork(NamedTuple):
 
 
 def new_sweep_work(count: int) -> SweepWork:
-    """Return the scratch of `sweep` for `count` balls."""
+    """Return the workspace of `sweep` for `count` balls."""
     cells = 1
     while cells < 2 * count:
         cells *= 2

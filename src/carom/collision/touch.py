@@ -8,7 +8,7 @@ of points always in it.
 
 from __future__ import annotations
 
-from carom._compiled.by_reference import refer
+from carom._compiled.by_reference import by_reference
 from carom._compiled.decorators import entry, kernel
 from carom._compiled.units import unit
 from carom.collision.box import point_box, segment_box
@@ -51,7 +51,7 @@ def touch(a, b, hulls, reach, work, out):
     if flip:
         a, b = b, a
     enter(work.state[0], a, b)
-    pair = refer(Pair(a.solid, b.solid, hulls, work.state[0], work.found))
+    pair = by_reference(Pair(a.solid, b.solid, hulls, work.state[0], work.found))
     return hand_on(pair, _ordered(pair, reach), flip, out)
 
 

@@ -15,7 +15,7 @@ from carom.contact.pair_point import (
 )
 from carom.contact.place import place_any
 from carom.contact.rim import OTHER_SIDE, closed_rim, way_round
-from carom.contact.stop import is_held_stop, place_stop
+from carom.contact.stop import is_active_stop, place_stop
 from carom.kinematics.contact_point import place
 from carom.model.arrays import STOP
 
@@ -41,11 +41,11 @@ def round_off_of_both(contact, state):
 
 
 @kernel
-def concerns(contact, group, work):
+def concerns(contact, label, work):
     """Return whether a contact touches a body of the group."""
-    if work.body[contact.body].group == group:
+    if work.body[contact.body].label == label:
         return True
-    return contact.other >= 0 and work.body[contact.other].group == group
+    return contact.other >= 0 and work.body[contact.other].label == label
 
 
 @kernel
@@ -60,7 +60,7 @@ def apart(contact, state, near):
 
 
 @kernel
-def gather_closed(system, controls, held, c, state, cluster, work, strikes):
+def gather_closed(system, controls, active, c, state, group, work, strikes):
     """List the points that are closed in `state` together with contact c; return how many, -1 for too many.
 
     Closed: within the tolerance of ties or of a located gap, or held; where it `strikes`, a rim that is as good
@@ -72,64 +72,64 @@ def gather_closed(system, controls, held, c, state, cluster, work, strikes):
     if system.contacts[c].other >= 0:
         unite(work, first, system.contacts[c].other)
     for i in range(system.contacts.shape[0]):
-        held.brinks[i].seen = 0
+        active.contact_states[i].seen = 0
     while more:
         more = False
         for i in range(system.contacts.shape[0]):
-            contact, brink = system.contacts[i], held.brinks[i]
-            if brink.seen == 1 or not concerns(contact, work.body[first].group, work):
+            contact, contact_state = system.contacts[i], active.contact_states[i]
+            if contact_state.seen == 1 or not concerns(contact, work.body[first].label, work):
                 continue
-            brink.seen = 1
+            contact_state.seen = 1
             near = closed_within(controls, contact, state)
             if contact.touches != STOP and apart(contact, state, near):
                 continue
             before = k
             if contact.touches == 0:
-                k = add_vertices(system, held, i, near, state, k, cluster)
+                k = add_vertices(system, active, i, near, state, k, group)
             elif contact.touches == STOP:
-                k = add_stop(system, held, i, near, state, k, cluster)
+                k = add_stop(system, active, i, near, state, k, group)
             else:
-                k = add_touches(system, i, near, rim_time, state, k, cluster, work)
+                k = add_touches(system, i, near, rim_time, state, k, group, work)
                 if k > before and contact.other >= 0:
                     unite(work, contact.body, contact.other)
                     more = True
             if k < 0:
                 return -1
-    seat_held(system, held, k, state, cluster, work)
+    note_active(system, active, k, state, group, work)
     return k
 
 
 @kernel
-def add_vertices(system, held, c, near, state, k, cluster):
+def add_vertices(system, active, c, near, state, k, group):
     """Add the vertices that are closed to a half-space; return the new count, -1 if there is no room."""
     contact = system.contacts[c]
     plane = plane_in_body(contact, state)
     for i in range(contact.first, contact.last):
         z, _ = gap_and_rate(plane, system.vertices[i])
-        if z <= near or held.carries[i] == 1:
-            if k == cluster.seats.shape[0]:
+        if z <= near or active.carries[i] == 1:
+            if k == group.closed.shape[0]:
                 return -1
-            take_seat(c, i, system.vertices[i], cluster.seats[k])
-            place(contact, cluster.seats[k].point, state, cluster.points[0][k])
+            write_closed(c, i, system.vertices[i], group.closed[k])
+            place(contact, group.closed[k].point, state, group.points[0][k])
             k += 1
     return k
 
 
 @kernel
-def add_stop(system, held, c, near, state, k, cluster):
-    """Add a stop that is closed or held; return the new count, -1 if there is no room."""
-    if k == cluster.seats.shape[0]:
+def add_stop(system, active, c, near, state, k, group):
+    """Add a stop that is closed or active; return the new count, -1 if there is no room."""
+    if k == group.closed.shape[0]:
         return -1
-    point = cluster.points[0][k]
+    point = group.points[0][k]
     place_stop(system, system.contacts[c], state, point)
-    if point.gap > near and not is_held_stop(held, c):
+    if point.gap > near and not is_active_stop(active, c):
         return k
-    take_seat(c, 0, point.core, cluster.seats[k])
+    write_closed(c, 0, point.core, group.closed[k])
     return k + 1
 
 
 @unit
-def _add_touches(system, c, near, rim_time, state, k, cluster, work) -> int:
+def _add_touches(system, c, near, rim_time, state, k, group, work) -> int:
     """Add the points of two solids that are closed; return the new count, -1 if there is no room.
 
     A rim that is flat within `rim_time` counts as flat.
@@ -142,91 +142,111 @@ def _add_touches(system, c, near, rim_time, state, k, cluster, work) -> int:
     for i in range(count):
         touch = work.touches[i]
         if touch.gap <= near:
-            if k == cluster.seats.shape[0]:
+            if k == group.closed.shape[0]:
                 return -1
-            own_point(contact, touch, state, cluster.seats[k].point)
-            take_seat(c, touch.feature, cluster.seats[k].point, cluster.seats[k])
-            write_touch(contact, touch, state, cluster.points[0][k])
+            own_point(contact, touch, state, group.closed[k].point)
+            write_closed(c, touch.feature, group.closed[k].point, group.closed[k])
+            write_touch(contact, touch, state, group.points[0][k])
             k += 1
     return k
 
 
 @inlined
-def add_touches(system, c, near, rim_time, state, k, cluster, work):
+def add_touches(system, c, near, rim_time, state, k, group, work):
     """Add the points of two solids that are closed; return the new count, -1 if there is no room."""
     if system.solids.shape[0] > 0:
-        return _add_touches(system, c, near, rim_time, state, k, cluster, work)
+        return _add_touches(system, c, near, rim_time, state, k, group, work)
     return k
 
 
 @unit
-def _seat_stays(system, hold, point, state, work) -> bool:
-    """Return whether a closed point with the feature of a held one is the same point."""
-    contact, r, n = system.contacts[hold.contact], point.arm_a, point.axes[0]
-    way = way_round(system, contact, n, (r[0], r[1], r[2]), hold.point, state)
+def _is_same_point(system, active_point, point, state, work) -> bool:
+    """Return whether a closed point with the feature of an active one is the same point."""
+    contact, r, n = system.contacts[active_point.contact], point.arm_a, point.axes[0]
+    way = way_round(system, contact, n, (r[0], r[1], r[2]), active_point.point, state)
     return way < OTHER_SIDE
 
 
 @inlined
-def seat_stays(system, hold, point, state, work):
-    """Return whether a closed point with the feature of a held one is the same point."""
+def is_same_point(system, active_point, point, state, work):
+    """Return whether a closed point with the feature of an active one is the same point."""
     if system.solids.shape[0] > 0:
-        return _seat_stays(system, hold, point, state, work)
+        return _is_same_point(system, active_point, point, state, work)
     return True
 
 
 @kernel
-def seat_held(system, held, k, state, cluster, work):
-    """Note the place of each closed point among the held ones."""
-    for i in range(held.count[0]):
-        hold = held.points[i]
+def note_active(system, active, k, state, group, work):
+    """Note the place of each closed point among the active ones."""
+    for i in range(active.count[0]):
+        active_point = active.points[i]
         for j in range(k):
-            seat = cluster.seats[j]
-            if seat.contact == hold.contact and seat.feature == hold.feature:
-                if hold.touches != 1 or seat_stays(system, hold, cluster.points[0][j], state, work):
-                    seat.held = i
+            closed_point = group.closed[j]
+            if (
+                closed_point.contact == active_point.contact
+                and closed_point.feature == active_point.feature
+            ):
+                if active_point.touches != 1 or is_same_point(
+                    system, active_point, group.points[0][j], state, work
+                ):
+                    closed_point.active = i
 
 
 @kernel
-def gather_held(system, held, group, state, cluster, work):
-    """List the held points of a group, then their rolling and pivoting; return how many."""
+def gather_active(system, active, label, state, group, work):
+    """List the active points of a group, then their rolling and pivoting; return how many."""
     k = 0
-    for i in range(held.count[0]):
-        hold = held.points[i]
-        if work.body[hold.body].group == group and k < cluster.seats.shape[0]:
-            take_seat(hold.contact, hold.feature, hold.point, cluster.seats[k])
-            cluster.seats[k].held = i
+    for i in range(active.count[0]):
+        active_point = active.points[i]
+        if work.body[active_point.body].label == label and k < group.closed.shape[0]:
+            write_closed(
+                active_point.contact, active_point.feature, active_point.point, group.closed[k]
+            )
+            group.closed[k].active = i
             k += 1
     for i in range(k):
-        seat = cluster.seats[i]
-        turning = system.contacts[seat.contact].turning
+        closed_point = group.closed[i]
+        turning = system.contacts[closed_point.contact].turning
         for turns in range(1, 3):
-            if turning[turns - 1] > 0.0 and k < cluster.seats.shape[0]:
-                take_seat(seat.contact, seat.feature, seat.point, cluster.seats[k])
-                cluster.seats[k].held, cluster.seats[k].parent = seat.held, i
-                cluster.seats[k].turns = turns
+            if turning[turns - 1] > 0.0 and k < group.closed.shape[0]:
+                write_closed(
+                    closed_point.contact, closed_point.feature, closed_point.point, group.closed[k]
+                )
+                group.closed[k].active, group.closed[k].parent = closed_point.active, i
+                group.closed[k].turns = turns
                 k += 1
-    place_seats(system, k, state, cluster, cluster.points[0], work)
+    place_closed(system, k, state, group, group.points[0], work)
     return k
 
 
 @kernel
-def place_seats(system, k, state, cluster, points, work):
-    """Write the points of all seats, as they are in a state."""
+def place_closed(system, k, state, group, points, work):
+    """Write the points of all closed points, as they are in a state."""
     for i in range(k):
-        seat = cluster.seats[i]
+        closed_point = group.closed[i]
         place_any(
-            system, system.contacts[seat.contact], seat.feature, seat.point, state, points[i], work
+            system,
+            system.contacts[closed_point.contact],
+            closed_point.feature,
+            closed_point.point,
+            state,
+            points[i],
+            work,
         )
-        if seat.turns > 0:
-            points[i].turns = seat.turns
-            points[i].length = smaller(system.contacts[seat.contact])
+        if closed_point.turns > 0:
+            points[i].turns = closed_point.turns
+            points[i].length = smaller(system.contacts[closed_point.contact])
 
 
 @kernel
-def take_seat(c, feature, p, seat):
+def write_closed(c, feature, p, closed_point):
     """Write one closed point."""
-    seat.contact, seat.feature, seat.held, seat.stays = c, feature, -1, 0
-    seat.turns = 0
+    closed_point.contact, closed_point.feature, closed_point.active, closed_point.stays = (
+        c,
+        feature,
+        -1,
+        0,
+    )
+    closed_point.turns = 0
     for k in range(3):
-        seat.point[k] = p[k]
+        closed_point.point[k] = p[k]

@@ -69,12 +69,12 @@ def ball_clears(system, contact, start, end, h, centre, work):
 
 
 @inlined
-def passage(system, controls, held, c, start, h, work):
+def passage(system, controls, active, c, start, h, work):
     """Return CLEAR, BELOW (the end is inside the half-space) or UNSURE, and a time before any contact.
 
-    The end is the trial state. Vertices that carry a held contact are left out.
+    The end is the trial state. Vertices that carry a persistent contact are left out.
     """
-    contact, end, leaving = system.contacts[c], work.trial, held.brinks[c].leaving
+    contact, end, leaving = system.contacts[c], work.trial, active.contact_states[c].leaving
     if work.body[contact.body].status == RESTS:
         return CLEAR, h
     centre, a = greatest_acceleration(system, contact, start, work)
@@ -90,7 +90,7 @@ def passage(system, controls, held, c, start, h, work):
         z1, rate1 = gap_and_rate(after, system.vertices[i])
         if min(z0, z1) > sag:
             continue
-        if held.carries[i] == 1:
+        if active.carries[i] == 1:
             continue
         t0 = reach(z0, rate0, a)
         first = min(first, t0)

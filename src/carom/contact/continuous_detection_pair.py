@@ -147,16 +147,16 @@ def time_apart(system, contact, n, sign, state, a, h):
 
 
 @kernel
-def lowest_open(system, contact, c, count, held, state, work):
-    """Return the least gap of the points in work.touches that are not held, and its rate."""
+def lowest_open(system, contact, c, count, active, state, work):
+    """Return the least gap of the points in work.touches that are not active, and its rate."""
     least, rate = math.inf, 0.0
     for i in range(count):
         touch = work.touches[i]
         open_ = True
-        for j in range(held.count[0]):
-            hold = held.points[j]
-            if hold.contact == c and open_:
-                feature, p = hold.feature, hold.point
+        for j in range(active.count[0]):
+            active_point = active.points[j]
+            if active_point.contact == c and open_:
+                feature, p = active_point.feature, active_point.point
                 open_ = not same_point(system, contact, touch, feature, p, state)
         if open_ and touch.gap < least:
             least, rate = touch.gap, touch_rate(contact, touch, state)
@@ -186,10 +186,10 @@ def flat_rim_strikes(system, contact, state, time, work):
 
 
 @unit
-def _lowest_pair(system, contact, c, held, state, work) -> tuple[float, float]:
-    """Return the least gap of two solids, over points that are not held, and its rate."""
+def _lowest_pair(system, contact, c, active, state, work) -> tuple[float, float]:
+    """Return the least gap of two solids, over points that are not active, and its rate."""
     count = find_touches(system, contact, state, REACH * smaller(contact), work)
-    return lowest_open(system, contact, c, count, held, state, work)
+    return lowest_open(system, contact, c, count, active, state, work)
 
 
 @kernel
@@ -212,26 +212,26 @@ def far_apart(system, contact, start, end, h, work):
 
 
 @unit
-def _passage_pair(system, controls, held, c, start, h, work) -> tuple[int, float]:
+def _passage_pair(system, controls, active, c, start, h, work) -> tuple[int, float]:
     """Return CLEAR, BELOW (they overlap at the end), UNSURE or FLAT_RIM, and a time before any contact.
 
     The end is the trial state. Of a rim that wobbles only steps up to `longest` may follow its lowest point far
     round.
     """
-    contact, end, leaving = system.contacts[c], work.trial, held.brinks[c].leaving
+    contact, end, leaving = system.contacts[c], work.trial, active.contact_states[c].leaving
     longest = RIM_TIME * controls.step
     most = far_apart(system, contact, start, end, h, work)
     if most < 0.0:
         return CLEAR, h
     touching = False
-    for j in range(held.count[0]):
-        touching = touching or held.points[j].contact == c
+    for j in range(active.count[0]):
+        touching = touching or active.points[j].contact == c
     tiny = 4.0 * max(controls.gap * smaller(contact), round_off_of_both(contact, end))
     count = find_touches(system, contact, end, REACH * smaller(contact), work)
-    least, rate = lowest_open(system, contact, c, count, held, end, work)
+    least, rate = lowest_open(system, contact, c, count, active, end, work)
     nearest = nearest_touch(work, count)
     if touching:
-        way = longest_way(system, contact, c, count, held, end, work)
+        way = longest_way(system, contact, c, count, active, end, work)
         if way > SMOOTH and h > longest:
             return UNSURE, 0.0
         if way > SMOOTH:
@@ -244,7 +244,7 @@ def _passage_pair(system, controls, held, c, start, h, work) -> tuple[int, float
     if contact.other >= 0:
         flies = flies and work.body[contact.other].status == FREE
     if not least >= -(tiny if not touching else MISSED * smaller(contact)):
-        before, _ = _lowest_pair(system, contact, c, held, start, work)
+        before, _ = _lowest_pair(system, contact, c, active, start, work)
         if before <= tiny:  # they touch already: on their way apart, or pushed about by others
             if (before < -tiny and least >= before) or (
                 not flies and least >= -MISSED * smaller(contact)
@@ -287,16 +287,16 @@ def way_past(contact, start, end, h):
 
 
 @inlined
-def lowest_pair(system, contact, c, held, state, work):
-    """Return the least gap of two solids, over points that are not held, and its rate."""
+def lowest_pair(system, contact, c, active, state, work):
+    """Return the least gap of two solids, over points that are not active, and its rate."""
     if system.solids.shape[0] > 0:
-        return _lowest_pair(system, contact, c, held, state, work)
+        return _lowest_pair(system, contact, c, active, state, work)
     return 0.0, 0.0
 
 
 @inlined
-def passage_pair(system, controls, held, c, start, h, work):
+def passage_pair(system, controls, active, c, start, h, work):
     """Return CLEAR, BELOW (they overlap at the end), UNSURE or FLAT_RIM, and a time before any contact."""
     if system.solids.shape[0] > 0:
-        return _passage_pair(system, controls, held, c, start, h, work)
+        return _passage_pair(system, controls, active, c, start, h, work)
     return CLEAR, h

@@ -71,8 +71,8 @@ def speed_of(b, extent, state):
 def slow(contact, state):
     """Return the speed [m/s] that counts as zero: the round-off of the speeds of the body, or of both.
 
-    At least that of the speed that gravity gives over the size of the body: what all but rests in a heap has no
-    speeds of its own to compare with.
+    At least that of the speed that gravity gives over the size of the body: what all but rests in a crowd has
+    no speeds of its own to compare with.
     """
     s = speed_of(contact.body, contact.extent, state)
     if contact.other >= 0:

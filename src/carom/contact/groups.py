@@ -9,35 +9,35 @@ from carom._compiled.decorators import kernel
 def label_components(system, work):
     """Give each body the number of its joints' component."""
     for b in range(work.body.shape[0]):
-        work.body[b].group = system.bodies[b].component
+        work.body[b].label = system.bodies[b].component
 
 
 @kernel
 def unite(work, a, b):
     """Make the groups of two bodies one."""
-    g, h = work.body[a].group, work.body[b].group
+    g, h = work.body[a].label, work.body[b].label
     if g != h:
         for i in range(work.body.shape[0]):
-            if work.body[i].group == h:
-                work.body[i].group = g
+            if work.body[i].label == h:
+                work.body[i].label = g
 
 
 @kernel
-def label_groups(system, held, work):
-    """Give each body the number of its group, as held contacts make them."""
+def label_groups(system, active, work):
+    """Give each body the number of its group, as persistent contacts make them."""
     label_components(system, work)
-    for i in range(held.count[0]):
-        hold = held.points[i]
-        if hold.other >= 0:
-            unite(work, hold.body, hold.other)
+    for i in range(active.count[0]):
+        active_point = active.points[i]
+        if active_point.other >= 0:
+            unite(work, active_point.body, active_point.other)
 
 
 @kernel
-def members(work, group, member):
+def members(work, label, member):
     """List the bodies of a group; return how many."""
     count = 0
     for b in range(work.body.shape[0]):
-        if work.body[b].group == group:
+        if work.body[b].label == label:
             member[count] = b
             count += 1
     return count

@@ -19,7 +19,9 @@ from carom.geometry.rotation import exp, multiply, normalize, rotate, rotate_bac
 from carom.kinematics.wrench import point_velocity
 
 REACH = 1e-3  # of the smaller body: points that are looked for beyond the nearest
-HELD_REACH = 0.2  # the same for points that are held, which stay so while a step is found in rounds
+ACTIVE_REACH = (
+    0.2  # the same for points that are active, which stay so while a step is found in rounds
+)
 
 
 @kernel
@@ -114,7 +116,7 @@ def which_touch(system, contact, count, feature, p, state, work):
 @unit
 def _place_pair(system, contact, feature, p, state, point, work):
     """Write the found point that has the feature, or the one that took its place."""
-    count = find_touches(system, contact, state, HELD_REACH * smaller(contact), work)
+    count = find_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
     i = which_touch(system, contact, count, feature, p, state, work)
     write_touch(contact, work.touches[i], state, point)
 
@@ -176,7 +178,7 @@ def _drift(system, contact, feature, p, point, state, work) -> tuple[float, floa
         s = t if side == 1 else -t
         advance(state[a], s, moved[a])
         advance(state[b], s, moved[b])
-        count = find_touches(system, contact, moved, HELD_REACH * smaller(contact), work)
+        count = find_touches(system, contact, moved, ACTIVE_REACH * smaller(contact), work)
         touch = work.touches[which_touch(system, contact, count, feature, p, moved, work)]
         ux, uy, uz = slip_velocity(contact, touch, moved)
         n = touch.normal

@@ -21,13 +21,13 @@ def place_any(system, contact, feature, p, state, point, work):
 
 
 @kernel
-def place_held(system, hold, state, point, work):
-    """Write the point of a held contact that is no stop."""
-    contact = system.contacts[hold.contact]
+def place_active(system, active_point, state, point, work):
+    """Write the point of a persistent contact that is no stop."""
+    contact = system.contacts[active_point.contact]
     if contact.touches == 0:
-        place(contact, hold.point, state, point)
+        place(contact, active_point.point, state, point)
     else:
-        place_pair(system, contact, hold.feature, hold.point, state, point, work)
+        place_pair(system, contact, active_point.feature, active_point.point, state, point, work)
 
 
 @kernel

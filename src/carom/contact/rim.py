@@ -78,16 +78,18 @@ def same_point(system, contact, touch, feature, p, state):
 
 
 @kernel
-def longest_way(system, contact, c, count, held, state, work):
-    """Return the longest `way_round` of the held points of a contact, to where they are found now."""
+def longest_way(system, contact, c, count, active, state, work):
+    """Return the longest `way_round` of the active points of a contact, to where they are found now."""
     longest = 0.0
-    for j in range(held.count[0]):
-        hold = held.points[j]
-        if hold.contact == c:
+    for j in range(active.count[0]):
+        active_point = active.points[j]
+        if active_point.contact == c:
             for i in range(count):
                 touch = work.touches[i]
-                if touch.feature == hold.feature:
-                    longest = max(longest, way_to(system, contact, touch, hold.point, state))
+                if touch.feature == active_point.feature:
+                    longest = max(
+                        longest, way_to(system, contact, touch, active_point.point, state)
+                    )
     return longest
 
 

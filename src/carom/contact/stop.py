@@ -15,7 +15,7 @@ from carom.contact.pair_point import tangents
 from carom.kinematics.contact_point import contact_velocity
 from carom.kinematics.coordinate import drift, value
 from carom.kinematics.joints import arm, axis, parent_arm
-from carom.model.actions import HOLD, NOTHING, STRIKE
+from carom.model.actions import NOTHING, PERSIST, STRIKE
 from carom.model.arrays import PRISMATIC, STOP
 
 
@@ -78,16 +78,16 @@ def stop_drift(system, contact, state, work):
 
 
 @kernel
-def is_held_stop(held, c):
-    """Return whether the stop with the number c is held."""
-    for i in range(held.count[0]):
-        if held.points[i].contact == c:
+def is_active_stop(active, c):
+    """Return whether the stop with the number c is active."""
+    for i in range(active.count[0]):
+        if active.points[i].contact == c:
             return True
     return False
 
 
 @kernel
-def look_at_stop(system, controls, held, contact, c, now, work):
+def check_stop(system, controls, active, contact, c, now, work):
     """Return the action that a closed stop asks for."""
     z, rate = stop_gap(system, contact, now, work)
     still = slow(contact, now)
@@ -95,14 +95,14 @@ def look_at_stop(system, controls, held, contact, c, now, work):
         return NOTHING
     if rate < -still:
         return STRIKE
-    return NOTHING if is_held_stop(held, c) else HOLD
+    return NOTHING if is_active_stop(active, c) else PERSIST
 
 
 @kernel
-def passage_stop(system, controls, held, c, start, h, work):
+def passage_stop(system, controls, active, c, start, h, work):
     """Return CLEAR, BELOW or UNSURE, and a time before any contact, by the cubic to the trial state."""
-    contact, end, leaving = system.contacts[c], work.trial, held.brinks[c].leaving
-    if is_held_stop(held, c):
+    contact, end, leaving = system.contacts[c], work.trial, active.contact_states[c].leaving
+    if is_active_stop(active, c):
         return CLEAR, h
     z0, rate0 = stop_gap(system, contact, start, work)
     z1, rate1 = stop_gap(system, contact, end, work)

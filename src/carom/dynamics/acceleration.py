@@ -1,6 +1,6 @@
 """Accelerations of all bodies: applied forces, joints, and the force of a contact at one point.
 
-A held contact answers with lam = (N, T). While it slips, T = -mu N u_t/|u_t| and the normal row of
+A persistent contact answers with lam = (N, T). While it slips, T = -mu N u_t/|u_t| and the normal row of
 du/dt vanishes; while it sticks (or rolls) all three rows vanish. Where several points share their bodies
 the step is another one (`carom.persistent.contact_step`), and they are left out here.
 """
@@ -13,7 +13,7 @@ from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
 from carom.contact.gap import slow
 from carom.contact.pair_point import drift
-from carom.contact.place import place_held
+from carom.contact.place import place_active
 from carom.dynamics.contact_impulse import (
     alone,
     effective_inverse_mass,
@@ -48,13 +48,13 @@ def bias_joints(system, state, work):
 
 
 @unit
-def acceleration_unit(system, state, held, work, stage):
+def acceleration_unit(system, state, active, work, stage):
     """Write the accelerations into `rate` of `stage`, the powers of loads and of friction to work.result."""
-    accelerations(system, state, held, work, stage)
+    accelerations(system, state, active, work, stage)
 
 
 @kernel
-def accelerations(system, state, held, work, stage):
+def accelerations(system, state, active, work, stage):
     """Write what `acceleration_unit` does, compiled as a part of the caller."""
     applied = applied_wrenches(system, state, True, work)
     applied += add_stiff(system, state, work)
@@ -66,44 +66,44 @@ def accelerations(system, state, held, work, stage):
         motion, rate = work.body[b].motion, stage[b].rate
         for k in range(6):
             rate[k] = motion[k]
-    for i in range(held.count[0]):
-        hold = held.points[i]
-        if hold.mode != OPEN and hold.several == 0 and hold.rest == 0:
-            contact, point = system.contacts[hold.contact], work.point[0]
-            place_held(system, hold, state, point, work)
-            effective_inverse_mass(system, point, state, work, hold.W)
-            applied += press_one(system, contact, hold, point, state, work, stage)
-            if hold.mode == SLIP:
+    for i in range(active.count[0]):
+        active_point = active.points[i]
+        if active_point.mode != OPEN and active_point.several == 0 and active_point.rest == 0:
+            contact, point = system.contacts[active_point.contact], work.point[0]
+            place_active(system, active_point, state, point, work)
+            effective_inverse_mass(system, point, state, work, active_point.W)
+            applied += add_contact_force(system, contact, active_point, point, state, work, stage)
+            if active_point.mode == SLIP:
                 _, u1, u2 = contact_velocity(point, state)
-                friction += hold.force[1] * u1 + hold.force[2] * u2
+                friction += active_point.force[1] * u1 + active_point.force[2] * u2
     work.result[0].power, work.result[0].drag = applied, friction
 
 
 @inlined
-def acceleration(system, state, held, work, stage):
+def acceleration(system, state, active, work, stage):
     """Write the accelerations into `rate` of `stage`; return the powers of loads and of friction."""
-    acceleration_unit(system, state, held, work, stage)
+    acceleration_unit(system, state, active, work, stage)
     return work.result[0].power, work.result[0].drag
 
 
 @kernel
-def aim(system, held, state, work):
+def note_slip_directions(system, active, state, work):
     """Note directions and speeds of slip at the start of a step."""
-    for i in range(held.count[0]):
-        hold = held.points[i]
-        heading = hold.heading
-        heading[0], heading[1], hold.speed = 0.0, 0.0, 0.0
-        if hold.mode == SLIP:
-            contact, point = system.contacts[hold.contact], work.point[0]
-            place_held(system, hold, state, point, work)
-            u1, u2 = slip_direction(contact, hold, point, state)
+    for i in range(active.count[0]):
+        active_point = active.points[i]
+        heading = active_point.heading
+        heading[0], heading[1], active_point.speed = 0.0, 0.0, 0.0
+        if active_point.mode == SLIP:
+            contact, point = system.contacts[active_point.contact], work.point[0]
+            place_active(system, active_point, state, point, work)
+            u1, u2 = slip_direction(contact, active_point, point, state)
             speed = math.sqrt(u1 * u1 + u2 * u2)
             if speed > 0.0:
-                heading[0], heading[1], hold.speed = u1 / speed, u2 / speed, speed
+                heading[0], heading[1], active_point.speed = u1 / speed, u2 / speed, speed
 
 
 @kernel
-def slip_direction(contact, hold, point, state):
+def slip_direction(contact, active_point, point, state):
     """Return a vector along the slip that friction opposes; 0 where slip has yet to start.
 
     Once slip has turned against the direction it had at the start of the step, friction goes on as before: a
@@ -112,32 +112,36 @@ def slip_direction(contact, hold, point, state):
     """
     _, u1, u2 = contact_velocity(point, state)
     if not math.sqrt(u1 * u1 + u2 * u2) > 10.0 * slow(contact, state):
-        return hold.heading[0], hold.heading[1]
-    if u1 * hold.heading[0] + u2 * hold.heading[1] < 0.0:
+        return active_point.heading[0], active_point.heading[1]
+    if u1 * active_point.heading[0] + u2 * active_point.heading[1] < 0.0:
         return -u1, -u2
     return u1, u2
 
 
 @kernel
-def press_one(system, contact, hold, point, state, work, stage):
-    """Find the force that meets the rows of one held point, and add its effect to the accelerations.
+def add_contact_force(system, contact, active_point, point, state, work, stage):
+    """Find the force that meets the rows of one active point, and add its effect to the accelerations.
 
     Returns the power of prescribed motions in answer to it.
     """
-    f, W = hold.force, hold.W
+    f, W = active_point.force, active_point.W
     an, a1, a2 = contact_acceleration(point, state, stage)
     if contact.touches != 0:
-        d = drift(system, contact, hold.feature, hold.point, point, state, work)
+        d = drift(system, contact, active_point.feature, active_point.point, point, state, work)
         an, a1, a2 = an + d[0], a1 + d[1], a2 + d[2]
-    if hold.mode == STICK:
+    if active_point.mode == STICK:
         n, t1, t2 = stick_force(W, an, a1, a2)
     else:
-        u1, u2 = slip_direction(contact, hold, point, state)
+        u1, u2 = slip_direction(contact, active_point, point, state)
         n, t1, t2 = slip_force(W, an, a1, a2, u1, u2, contact.friction_held)
-        if hold.speed == 0.0 and hold.heading[0] == 0.0 and hold.heading[1] == 0.0:
+        if (
+            active_point.speed == 0.0
+            and active_point.heading[0] == 0.0
+            and active_point.heading[1] == 0.0
+        ):
             size = math.sqrt(t1 * t1 + t2 * t2)
             if size > 0.0:  # where slip starts
-                hold.heading[0], hold.heading[1] = -t1 / size, -t2 / size
+                active_point.heading[0], active_point.heading[1] = -t1 / size, -t2 / size
     f[0], f[1], f[2] = n, t1, t2
     spread(system, point, state, n, t1, t2, work)
     if alone(system, point):

@@ -12,7 +12,7 @@ step is good if for all bodies
     miss <= atol + rtol max(L, h V).
 
 Order 8 has two estimates: miss = miss_5^2 / sqrt(miss_5^2 + miss_3^2/100) (Hairer, Norsett and Wanner 1993). Of
-groups held at several points (order 2) the errors of a turn, (h w)^3/12, and of a stop inside the step,
+groups in contact at several points (order 2) the errors of a turn, (h w)^3/12, and of a stop inside the step,
 a h^2/8, are bounded. Free flight has none. The next step is 0.9 times the one whose error would be 1, within
 0.2 and 10 times the last.
 """

@@ -11,12 +11,12 @@ import math
 
 from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
-from carom.dynamics.acceleration import accelerations, aim
+from carom.dynamics.acceleration import accelerations, note_slip_directions
 from carom.dynamics.adapt import forget_misses, note_misses
 from carom.dynamics.joint_friction import stay_stuck
 from carom.dynamics.loops import dropped_rows
 from carom.dynamics.project import LOST, project_position, project_velocity
-from carom.dynamics.return_to_surface import return_held, stay_held
+from carom.dynamics.return_to_surface import return_active, stay_active
 from carom.dynamics.singular_positions import SINGULAR, is_singular, pass_round, return_stage, steps
 from carom.geometry.rotation import multiply, normalize
 from carom.kinematics.flight import free_flight
@@ -29,34 +29,34 @@ TURN, MOST_PARTS, TINY = 0.075, 100, 1e-300
 
 
 @inlined
-def explicit_step(method, system, held, start, h, end, work):
+def explicit_step(method, system, active, start, h, end, work):
     """Write the state a time h after `start` into `end`; return work of loads, of friction, a status."""
     if method.E.shape[0] > 0:
         forget_misses(work)
-    if not fly(system, held, start, h, end, work):
+    if not fly(system, active, start, h, end, work):
         return 0.0, 0.0, 0
-    return constrained(method, system, held, start, h, end, work)
+    return constrained(method, system, active, start, h, end, work)
 
 
 @inlined
-def any_held(held):
-    """Return whether a contact is held that is not at rest."""
-    for i in range(held.count[0]):
-        if held.points[i].rest == 0:
+def any_held(active):
+    """Return whether a contact is active that is not at rest."""
+    for i in range(active.count[0]):
+        if active.points[i].rest == 0:
             return True
     return False
 
 
 @inlined
-def constrained(method, system, held, start, h, end, work):
-    """Step the bodies that are joined, loaded or held; return what `explicit_step` does."""
-    whole_step(method, system, held, start, h, end, work)
+def constrained(method, system, active, start, h, end, work):
+    """Step the bodies that are joined, loaded or in contact; return what `explicit_step` does."""
+    whole_step(method, system, active, start, h, end, work)
     result = work.result[0]
     return result.applied, result.friction, result.code
 
 
 @unit
-def whole_step(method, system, held, start, h, end, work):
+def whole_step(method, system, active, start, h, end, work):
     """Step at once, or in parts in which no body turns far.
 
     The length of a part depends on where it starts alone, so that the end is a continuous function of h.
@@ -66,13 +66,13 @@ def whole_step(method, system, held, start, h, end, work):
     stages, estimates = method.b.size, method.E.shape[0] > 0
     applied, friction = 0.0, 0.0
     forget_bounds(work)
-    aim(system, held, start, work)
+    note_slip_directions(system, active, start, work)
     for part in range(MOST_PARTS):
         dt = left
         if not estimates and part < MOST_PARTS - 1:
             dt = min(left, TURN * stages / max(fastest_spin(system, first, work), TINY))
         result.begin = begin + (h - left)
-        with_care(method, system, held, first, dt, end, work)
+        with_care(method, system, active, first, dt, end, work)
         applied, friction = applied + result.applied, friction + result.friction
         left -= dt
         if not (left > 0.0 and result.code == 0):
@@ -80,13 +80,13 @@ def whole_step(method, system, held, start, h, end, work):
         result.parts += 1
         first = work.first
         for b in range(start.shape[0]):
-            keep(end[b], first[b])
+            copy_state(end[b], first[b])
     result.applied, result.friction = applied, friction
 
 
 @kernel
 def fastest_spin(system, state, work):
-    """Return the greatest |w| of the bodies that are joined, loaded or held."""
+    """Return the greatest |w| of the bodies that are joined, loaded or in contact."""
     most = 0.0
     for b in range(state.shape[0]):
         status, w = work.body[b].status, state[b].w
@@ -96,12 +96,12 @@ def fastest_spin(system, state, work):
 
 
 @kernel
-def with_care(tableau, system, held, start, h, end, work):
+def with_care(tableau, system, active, start, h, end, work):
     """Step; and again with care, if stages fell into a position that is singular (`singular_positions`)."""
     result = work.result[0]
     for care in (False, True):
         applied, friction, code, least, most = constrained_step(
-            tableau, system, held, start, care, h, end, work
+            tableau, system, active, start, care, h, end, work
         )
         if not is_singular(system, least, most):
             break
@@ -111,14 +111,14 @@ def with_care(tableau, system, held, start, h, end, work):
 
 
 @inlined
-def fly(system, held, start, h, end, work):
+def fly(system, active, start, h, end, work):
     """Move the bodies in free flight, keep those at rest; return whether others are left."""
-    mark_held(system, held, work)
+    mark_active(system, active, work)
     pending = False
     for b in range(system.bodies.shape[0]):
         status = work.body[b].status
         if status == RESTS:
-            keep(start[b], end[b])
+            copy_state(start[b], end[b])
         elif status != ONE and system.bodies[b].ballistic == 1:
             free_flight(system.bodies[b], system.gravity, h, start[b], end[b], work.body[b])
         else:
@@ -127,7 +127,7 @@ def fly(system, held, start, h, end, work):
 
 
 @inlined
-def keep(start, end):
+def copy_state(start, end):
     """Write the record of a body unchanged."""
     for k in range(3):
         end.x[k], end.v[k], end.w[k] = start.x[k], start.v[k], start.w[k]
@@ -136,21 +136,21 @@ def keep(start, end):
 
 
 @inlined
-def mark_held(system, held, work):
-    """Note for each body whether it is free, held at one point or at several, or at rest."""
+def mark_active(system, active, work):
+    """Note for each body whether it is free, in contact at one point or at several, or at rest."""
     for b in range(work.body.shape[0]):
         work.body[b].status = FREE
-    for i in range(held.count[0]):
-        hold = held.points[i]
-        status = RESTS if hold.rest == 1 else SEVERAL if hold.several == 1 else ONE
-        work.body[hold.body].status = status
-        if hold.other >= 0:
-            work.body[hold.other].status = status
+    for i in range(active.count[0]):
+        active_point = active.points[i]
+        status = RESTS if active_point.rest == 1 else SEVERAL if active_point.several == 1 else ONE
+        work.body[active_point.body].status = status
+        if active_point.other >= 0:
+            work.body[active_point.other].status = status
 
 
 @kernel
-def constrained_step(tableau, system, held, start, care, h, end, work):
-    """Step the bodies that are joined, loaded or held from `result.begin`; the others have reached `end`.
+def constrained_step(tableau, system, active, start, care, h, end, work):
+    """Step the bodies that are joined, loaded or in contact from `result.begin`; the others have reached `end`.
 
     With `care` the stages return to the joints first, and those in singular positions are passed round. Returns
     work of loads, of friction, a status, and the least and the most rows that stages left out, or nearly.
@@ -170,11 +170,11 @@ def constrained_step(tableau, system, held, start, care, h, end, work):
                 speed[k], speed[3 + k] = stage[b].v[k], stage[b].w[k]
             for k in range(4):
                 attitude[k] = stage[b].Q[k]
-        accelerations(system, stage, held, work, work.stages[s])
+        accelerations(system, stage, active, work, work.stages[s])
         dropped = dropped_rows(system, SINGULAR)
         least, most = min(least, dropped), max(most, dropped)
         if care:
-            pass_round(system, stage, held, end, work, work.stages[s])
+            pass_round(system, stage, active, end, work, work.stages[s])
         applied += h * weight[s] * work.result[0].power
         friction += h * weight[s] * work.result[0].drag
     combine(weight, stages, h, start, work.stages, stage)
@@ -185,13 +185,13 @@ def constrained_step(tableau, system, held, start, care, h, end, work):
         note_misses(system, E, h, work)
     for b in range(stage.shape[0]):
         if steps(system, b, work):
-            keep(stage[b], end[b])
+            copy_state(stage[b], end[b])
     if not (project_position(system, end, True, 1e-14, work) <= LOST):
         return applied, friction, CONSTRAINTS_LOST, least, most
-    return_held(system, held, end, work)
+    return_active(system, active, end, work)
     project_velocity(system, end, work)
     stay_stuck(system, end, work)
-    stay_held(system, held, end, work)
+    stay_active(system, active, end, work)
     return applied, friction, 0, least, most
 
 

@@ -1,4 +1,4 @@
-"""The force of one held contact from its 3 x 3 inverse mass W: all of it, or Coulomb's law in slip."""
+"""The force of one persistent contact from its 3 x 3 inverse mass W: all of it, or Coulomb's law in slip."""
 
 from __future__ import annotations
 

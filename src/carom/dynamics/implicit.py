@@ -23,9 +23,9 @@ from carom.dynamics.explicit import (
     any_held,
     bound_accelerations,
     constrained,
+    copy_state,
     fly,
     forget_bounds,
-    keep,
 )
 from carom.dynamics.forces import applied_wrenches
 from carom.dynamics.project import LOST, project_position, project_velocity
@@ -39,21 +39,21 @@ CONSTRAINTS_LOST = 7
 
 
 @inlined
-def implicit_step(method, system, held, start, h, end, work):
+def implicit_step(method, system, active, start, h, end, work):
     """Write the state a time h after `start` into `end`; return work of loads, of friction, a status.
 
-    While contacts are held all goes by the explicit method.
+    While contacts are active all goes by the explicit method.
     """
-    if not fly(system, held, start, h, end, work):
+    if not fly(system, active, start, h, end, work):
         return 0.0, 0.0, 0
-    if any_held(held):
-        return constrained(method, system, held, start, h, end, work)
-    whole_step(system, held, start, h, end, work)
+    if any_held(active):
+        return constrained(method, system, active, start, h, end, work)
+    whole_step(system, active, start, h, end, work)
     return work.result[0].applied, 0.0, work.result[0].code
 
 
 @unit
-def whole_step(system, held, start, h, end, work):
+def whole_step(system, active, start, h, end, work):
     """Make the two stages, and return to the joints."""
     result, stage = work.result[0], work.stage
     result.code = 0
@@ -90,7 +90,7 @@ def whole_step(system, held, start, h, end, work):
 @kernel
 def move(start, h, speed, rate, out):
     """Move a body for a time h."""
-    keep(start, out)
+    copy_state(start, out)
     Q = out.Q
     for k in range(3):
         out.x[k] += h * speed[k]

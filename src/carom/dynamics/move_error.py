@@ -13,7 +13,7 @@ from __future__ import annotations
 from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
 from carom.dynamics.elements import velocity_error
-from carom.dynamics.explicit import keep
+from carom.dynamics.explicit import copy_state
 from carom.dynamics.project import largest_position_error
 from carom.geometry.rotation import log, multiply, rotate, rotate_back
 from carom.kinematics.joints import axis
@@ -65,7 +65,7 @@ def mean_velocities(system, start, h, end, first):
         p, q = start[b].Q, end[b].Q
         r = multiply(q[0], q[1], q[2], q[3], p[0], -p[1], -p[2], -p[3])
         a = log(r[0], r[1], r[2], r[3])
-        keep(start[b], first[b])
+        copy_state(start[b], first[b])
         for k in range(3):
             end[b].v[k], end[b].w[k] = (end[b].x[k] - start[b].x[k]) / h, a[k] / h
             first[b].v[k], first[b].w[k] = end[b].v[k], end[b].w[k]

@@ -70,7 +70,7 @@ class Multipliers:
 
 
 def second_order_multipliers(solution) -> Multipliers:
-    """Return the second-order multipliers of a solution whose scene has joints and no held contact.
+    """Return the second-order multipliers of a solution whose scene has joints and no persistent contact.
 
     (lambda, mu) are integrated over the saved times by `integrate`: save every step. Loads that
     jump at an impact make no difference: the reaction there is the one after it.
@@ -82,7 +82,7 @@ def second_order_multipliers(solution) -> Multipliers:
     Raises
     ------
     ValueError
-        If the scene has no joints, or constraints beyond them or forces of the user's, or a contact is held.
+        If the scene has no joints, or constraints beyond them or forces of the user's, or a contact is active.
     """
     if not solution.scene.joints:
         raise ValueError("solution must be of a scene with joints, got none")

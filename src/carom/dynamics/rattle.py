@@ -28,7 +28,7 @@ from carom._compiled.units import unit
 from carom.dynamics.contact_impulse import clear_wrenches
 from carom.dynamics.discrete_rotation import turn_by_momentum
 from carom.dynamics.elements import driven_power
-from carom.dynamics.explicit import any_held, constrained, fly, keep
+from carom.dynamics.explicit import any_held, constrained, copy_state, fly
 from carom.dynamics.kick import add_momentum, first_kick, second_kick
 from carom.dynamics.loops import dropped_rows, solve_factored
 from carom.dynamics.move_error import error_of_move
@@ -41,20 +41,20 @@ MOST = 60  # solves for Lam
 
 
 @inlined
-def rattle_step(method, system, held, start, h, end, work):
+def rattle_step(method, system, active, start, h, end, work):
     """Write the state a time h after `start` into `end`; return work of loads, of friction, a status.
 
-    While contacts are held all goes by the explicit method.
+    While contacts are active all goes by the explicit method.
     """
-    if not fly(system, held, start, h, end, work):
+    if not fly(system, active, start, h, end, work):
         return 0.0, 0.0, 0
-    if any_held(held):
-        return constrained(method, system, held, start, h, end, work)
+    if any_held(active):
+        return constrained(method, system, active, start, h, end, work)
     result = work.result[0]
     whole_step(method.parts, system, start, h, end, work)
     if result.code == STALLED:
         result.fallen += 1
-        return constrained(method, system, held, start, h, end, work)
+        return constrained(method, system, active, start, h, end, work)
     return result.applied, 0.0, NO_CONVERGENCE if result.code == TOO_FAR else 0
 
 
@@ -64,7 +64,7 @@ def whole_step(parts, system, start, h, end, work):
     applied, code, result, t = 0.0, DONE, work.result[0], work.result[0].start
     for b in range(start.shape[0]):
         bound = work.body[b].bound
-        keep(start[b], work.middle[b])
+        copy_state(start[b], work.middle[b])
         if system.bodies[b].ballistic == 0:
             bound[0], bound[1], bound[2] = 0.0, 0.0, 0.0
     for s in range(parts.size):
@@ -75,7 +75,7 @@ def whole_step(parts, system, start, h, end, work):
         for b in range(start.shape[0]):
             if system.bodies[b].ballistic == 0:
                 bound_changes(work.middle[b], end[b], parts[s] * h, work.body[b].bound)
-                keep(end[b], work.middle[b])
+                copy_state(end[b], work.middle[b])
     result.applied, result.code = applied, code
 
 

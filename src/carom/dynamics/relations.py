@@ -65,7 +65,7 @@ def relation_speed(system, relation, state, t):
 
 @kernel
 def relation_bias(system, relation, state, t, out):
-    """Return what the row times the accelerations must be; `out` is scratch (6,)."""
+    """Return what the row times the accelerations must be; `out` is workspace (6,)."""
     total = prescribed(system.relations, relation, t)[2]
     for i in range(relation.first, relation.last):
         term = system.relations.terms[i]

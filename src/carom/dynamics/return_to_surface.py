@@ -1,7 +1,7 @@
-"""Return a body that is held at one point to its surface at the end of a step, as joints are returned to.
+"""Return a body that is in contact at one point to its surface at the end of a step, as joints are returned to.
 
-The rows of a held contact hold at the level of accelerations and drift at the order of the method; the shortest
-displacement and the smallest change of velocity in the kinetic metric take that out:
+The rows of a persistent contact hold at the level of accelerations and drift at the order of the method; the
+shortest displacement and the smallest change of velocity in the kinetic metric take that out:
 
     xi = -P G_n^T gap/W_nn,        v <- v - P G^T W^-1 u   (normal row only while it slips).
 """
@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.contact.gap import round_off, slow
-from carom.contact.place import place_held
+from carom.contact.place import place_active
 from carom.dynamics.acceleration import OPEN, STICK
 from carom.dynamics.contact_impulse import (
     add_velocity,
@@ -39,16 +39,16 @@ def shift_reached(system, point, state, work):
 
 
 @kernel
-def return_held(system, held, state, work):
-    """Bring held points, where a body has a single one, back to the surface."""
+def return_active(system, active, state, work):
+    """Bring active points, where a body has a single one, back to the surface."""
     point = work.point[0]
-    for i in range(held.count[0]):
-        hold = held.points[i]
-        if hold.mode == OPEN or hold.several == 1 or hold.rest == 1:
+    for i in range(active.count[0]):
+        active_point = active.points[i]
+        if active_point.mode == OPEN or active_point.several == 1 or active_point.rest == 1:
             continue
-        contact = system.contacts[hold.contact]
+        contact = system.contacts[active_point.contact]
         for _ in range(4):
-            place_held(system, hold, state, point, work)
+            place_active(system, active_point, state, point, work)
             if not abs(point.gap) > round_off(contact, state):
                 break
             spread(system, point, state, 1.0, 0.0, 0.0, work)
@@ -58,17 +58,17 @@ def return_held(system, held, state, work):
 
 
 @kernel
-def stay_held(system, held, state, work):
-    """Remove from the velocities what held points, where a body has a single one, forbid."""
+def stay_active(system, active, state, work):
+    """Remove from the velocities what active points, where a body has a single one, forbid."""
     point = work.point[0]
-    for i in range(held.count[0]):
-        hold = held.points[i]
-        if hold.mode == OPEN or hold.several == 1 or hold.rest == 1:
+    for i in range(active.count[0]):
+        active_point = active.points[i]
+        if active_point.mode == OPEN or active_point.several == 1 or active_point.rest == 1:
             continue
-        contact = system.contacts[hold.contact]
-        place_held(system, hold, state, point, work)
+        contact = system.contacts[active_point.contact]
+        place_active(system, active_point, state, point, work)
         u, still = contact_velocity(point, state), slow(contact, state)
-        sticks = hold.mode == STICK
+        sticks = active_point.mode == STICK
         if abs(u[0]) <= still and not (sticks and max(abs(u[1]), abs(u[2])) > still):
             continue
         W = work.hit[0].W

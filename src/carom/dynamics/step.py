@@ -12,22 +12,22 @@ from carom.model.method import IMPLICIT, RATTLE, RUNGE_KUTTA
 
 
 @inlined
-def step(method, system, held, start, h, end, work):
+def step(method, system, active, start, h, end, work):
     """Write the state a time h after `start` into `end`.
 
     Returns the work of loads without potential, the work of friction in contacts that persist, and 0 or the
     number of a `Status`.
     """
     if method.kind == RUNGE_KUTTA:
-        return explicit_step(method, system, held, start, h, end, work)
-    return other_step(method, system, held, start, h, end, work)
+        return explicit_step(method, system, active, start, h, end, work)
+    return other_step(method, system, active, start, h, end, work)
 
 
 @unit
-def other_step(method, system, held, start, h, end, work) -> tuple[float, float, int]:
+def other_step(method, system, active, start, h, end, work) -> tuple[float, float, int]:
     """Write the state at the end of a step by a method that is not explicit."""
     if method.kind == RATTLE:
-        return rattle_step(method, system, held, start, h, end, work)
+        return rattle_step(method, system, active, start, h, end, work)
     if method.kind == IMPLICIT:
-        return implicit_step(method, system, held, start, h, end, work)
-    return three_field_step(method, system, held, start, h, end, work)
+        return implicit_step(method, system, active, start, h, end, work)
+    return three_field_step(method, system, active, start, h, end, work)

@@ -2,7 +2,7 @@
 
 A spring on a line between two points, or along a coordinate of a joint, answers with mu = -(k s + c s') along
 its row J, s' = J v. The implicit step asks for the mu that it will have within the step
-(`carom.dynamics.implicit`); all else (reactions, contact that is held) sees the force that it has now.
+(`carom.dynamics.implicit`); all else (reactions, contact that is active) sees the force that it has now.
 """
 
 from __future__ import annotations

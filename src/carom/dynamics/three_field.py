@@ -20,7 +20,7 @@ and returns the position to the constraints; "paper-ode" keeps the second-order 
     (m_RR phi')' + c_s phi' + k_s phi = 0:   r = (phi'_0 - (beta^2/h) phi(q^j)) / (1 + 2 zeta beta),
 
 c_s = 2 zeta (beta/h) m_RR, k_s = (beta/h)^2 m_RR, and no return. For a free body energy and spatial angular
-momentum are exact. Held contacts move by the explicit method.
+momentum are exact. ActiveSet contacts move by the explicit method.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from carom.dynamics.elements import (
     row_target,
     velocity_error,
 )
-from carom.dynamics.explicit import any_held, constrained, fly, keep, mark_held
+from carom.dynamics.explicit import any_held, constrained, copy_state, fly, mark_active
 from carom.dynamics.forces import applied_wrenches
 from carom.dynamics.loops import factor, substitute, subtract_rows
 from carom.dynamics.project import project_position
@@ -52,13 +52,13 @@ NO_CONVERGENCE = 1
 
 
 @unit
-def three_field_step(method, system, held, start, h, end, work) -> tuple[float, float, int]:
+def three_field_step(method, system, active, start, h, end, work) -> tuple[float, float, int]:
     """Write the state a time h after `start` into `end`; return work of loads, of friction, a status."""
-    if any_held(held):
-        if not fly(system, held, start, h, end, work):
+    if any_held(active):
+        if not fly(system, active, start, h, end, work):
             return 0.0, 0.0, 0
-        return constrained(method, system, held, start, h, end, work)
-    mark_held(system, held, work)
+        return constrained(method, system, active, start, h, end, work)
+    mark_active(system, active, work)
     first_guess(system, start, h, end, work)
     if method.ode == 1:
         start_rates(system, start, work)
@@ -86,7 +86,7 @@ def first_guess(system, start, h, end, work):
         for k in range(6):
             work.joint[j].multiplier[k] = 0.0
     for b in range(start.shape[0]):
-        keep(start[b], end[b])
+        copy_state(start[b], end[b])
         if work.body[b].status == RESTS:
             continue
         x, Q, v, w = end[b].x, end[b].Q, end[b].v, end[b].w
@@ -284,7 +284,7 @@ def position_block(system, method, start, h, end, work):
     """
     last, change = work.stage, 0.0
     for b in range(start.shape[0]):
-        keep(end[b], last[b])
+        copy_state(end[b], last[b])
         if work.body[b].status != RESTS:
             move_along(start[b], last[b], h, end[b])
     if method.ode == 0 and system.joints.shape[0] > 0:

@@ -16,7 +16,7 @@ summed from the root), so that the rest is the same elimination of the wrenches 
 
     p = M B - wrench,   u = -S.p,   p + U u/D to the parent;    A' = X A'_parent + S (u - U.(X A'_parent))/D.
 
-A row of scratch holds for each body: 0-6 the pose that it was articulated in, 7-12 its own inertia about its
+A row of workspace holds for each body: 0-6 the pose that it was articulated in, 7-12 its own inertia about its
 centre, world axes; 13-15 arm of the child, 16-18 centre of the child from the parent's; 19-39 the articulated
 inertia (19-24 M, 25-33 H, 34-39 I: f = M a + H alpha, t = H^T a + I alpha); 40-45 B; 46-51 p; then 14 for each
 freedom: S (6), U (6), 1/D, u.
@@ -175,10 +175,10 @@ def shift_to_parent(left, row, above):
 @kernel
 def articulate(system, state):
     """Eliminate the freedoms of all joints from the inertias, leaves first."""
-    links, scratch, joints = system.solver.links, system.solver.scratch, system.joints
+    links, workspace, joints = system.solver.links, system.solver.workspace, system.joints
     for i in range(links.shape[0]):
         b = links[i].order
-        row, j = scratch[b], links[b].joint
+        row, j = workspace[b], links[b].joint
         own_inertia(system.bodies[b], state[b], row)
         if j >= 0:
             joint = joints[j]
@@ -192,20 +192,20 @@ def articulate(system, state):
                 row[FIRST + WIDTH * (k // 6) + k % 6] = 1.0 if k // 6 == k % 6 else 0.0
     for i in range(links.shape[0] - 1, -1, -1):
         b = links[i].order
-        link, row = links[b], scratch[b]
+        link, row = links[b], workspace[b]
         if link.joint >= 0 or link.has_child == 1:
             left = eliminate(row, link.freedoms)
             if link.parent >= 0:
-                shift_to_parent(left, row, scratch[link.parent])
+                shift_to_parent(left, row, workspace[link.parent])
 
 
 @kernel
 def lock(system, biased, work):
     """Write B of each body, its motion with all freedoms locked, and p = M B - wrench."""
-    links, scratch = system.solver.links, system.solver.scratch
+    links, workspace = system.solver.links, system.solver.workspace
     for i in range(links.shape[0]):
         b = links[i].order
-        link, row, wrench = links[b], scratch[b], work.body[b].wrench
+        link, row, wrench = links[b], workspace[b], work.body[b].wrench
         p0, p1, p2, p3, p4, p5 = (
             -wrench[0], -wrench[1], -wrench[2], -wrench[3], -wrench[4], -wrench[5],
         )  # fmt: skip
@@ -217,7 +217,7 @@ def lock(system, biased, work):
                 tx, ty, tz = cross(row[13], row[14], row[15], a0, a1, a2)
                 l0, l1, l2 = bias[3] + tx, bias[4] + ty, bias[5] + tz
                 if link.parent >= 0:
-                    up = scratch[link.parent]
+                    up = workspace[link.parent]
                     w0, w1, w2 = up[43], up[44], up[45]
                     tx, ty, tz = cross(w0, w1, w2, row[16], row[17], row[18])
                     l0, l1, l2 = l0 + up[40] + tx, l1 + up[41] + ty, l2 + up[42] + tz
@@ -234,10 +234,10 @@ def lock(system, biased, work):
 @kernel
 def inward(system):
     """Eliminate the freedoms from p, leaves first: u of each."""
-    links, scratch = system.solver.links, system.solver.scratch
+    links, workspace = system.solver.links, system.solver.workspace
     for i in range(links.shape[0] - 1, -1, -1):
         b = links[i].order
-        link, row = links[b], scratch[b]
+        link, row = links[b], workspace[b]
         if link.joint < 0 and link.has_child == 0:
             continue
         p0, p1, p2, p3, p4, p5 = row[46], row[47], row[48], row[49], row[50], row[51]
@@ -249,7 +249,7 @@ def inward(system):
             p0, p1, p2 = p0 + row[f + 6] * u, p1 + row[f + 7] * u, p2 + row[f + 8] * u
             p3, p4, p5 = p3 + row[f + 9] * u, p4 + row[f + 10] * u, p5 + row[f + 11] * u
         if link.parent >= 0:
-            above = scratch[link.parent]
+            above = workspace[link.parent]
             tx, ty, tz = cross(row[16], row[17], row[18], p0, p1, p2)
             above[46] += p0
             above[47] += p1
@@ -262,16 +262,16 @@ def inward(system):
 @kernel
 def outward(system, biased, work):
     """Find the motion of each body from that of its parent, freedoms in reverse order."""
-    links, scratch = system.solver.links, system.solver.scratch
+    links, workspace = system.solver.links, system.solver.workspace
     for i in range(links.shape[0]):
         b = links[i].order
-        link, row, out = links[b], scratch[b], work.body[b].motion
+        link, row, out = links[b], workspace[b], work.body[b].motion
         if link.joint < 0 and link.has_child == 0:
             unjoined(system.bodies[b].mass, row, out)
             continue
         a0, a1, a2, a3, a4, a5 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
         if link.parent >= 0:  # in p from here on: A'
-            up = scratch[link.parent]
+            up = workspace[link.parent]
             a3, a4, a5 = up[49], up[50], up[51]
             tx, ty, tz = cross(a3, a4, a5, row[16], row[17], row[18])
             a0, a1, a2 = up[46] + tx, up[47] + ty, up[48] + tz
@@ -311,7 +311,7 @@ def solve_tree(system, state, biased, near, work):
 @kernel
 def walk_tree(system, state, biased, near, work):
     """Write what `solve_tree` does, compiled as a part of the caller."""
-    if not near and not same_pose(system.solver.scratch, state):
+    if not near and not same_pose(system.solver.workspace, state):
         articulate(system, state)
     respond(system, biased, work)
 
@@ -327,10 +327,10 @@ def respond(system, biased, work):
 @kernel
 def joint_wrenches(system, work):
     """Write what each joint does to its child at its anchor: M motion - wrench, summed from the leaves."""
-    links, scratch = system.solver.links, system.solver.scratch
+    links, workspace = system.solver.links, system.solver.workspace
     for i in range(links.shape[0]):
         b = links[i].order
-        row, a, f = scratch[b], work.body[b].motion, work.body[b].wrench
+        row, a, f = workspace[b], work.body[b].motion, work.body[b].wrench
         m = system.bodies[b].mass
         for k in range(3):
             row[46 + k] = m * a[k] - f[k]
@@ -339,7 +339,7 @@ def joint_wrenches(system, work):
         row[51] = row[9] * a[3] + row[11] * a[4] + row[12] * a[5] - f[5]
     for i in range(links.shape[0] - 1, -1, -1):
         b = links[i].order
-        row, link = scratch[b], links[b]
+        row, link = workspace[b], links[b]
         if link.joint < 0:
             continue
         fx, fy, fz = row[46], row[47], row[48]
@@ -348,7 +348,7 @@ def joint_wrenches(system, work):
         reaction[0], reaction[1], reaction[2] = fx, fy, fz
         reaction[3], reaction[4], reaction[5] = row[49] - tx, row[50] - ty, row[51] - tz
         if link.parent >= 0:
-            above = scratch[link.parent]
+            above = workspace[link.parent]
             tx, ty, tz = cross(row[16], row[17], row[18], fx, fy, fz)
             above[46] += fx
             above[47] += fy

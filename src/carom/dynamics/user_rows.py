@@ -92,7 +92,7 @@ def user_error(system, j, state, t, out):
 
 
 @kernel
-def user_bias(system, j, state, t, out, scratch):
+def user_bias(system, j, state, t, out, workspace):
     """Write what the rows times the accelerations must be."""
     user = system.relations.user[system.joints[j].number]
     g = system.gravity
@@ -107,9 +107,9 @@ def user_bias(system, j, state, t, out, scratch):
         if speed * ahead > WAY * size:
             ahead = WAY * size / speed
     write_speeds(system, j, state, t, ahead, out)
-    write_speeds(system, j, state, t, -ahead, scratch)
+    write_speeds(system, j, state, t, -ahead, workspace)
     for r in range(system.joints[j].rows):
-        out[r] = -0.5 * (out[r] - scratch[r]) / ahead
+        out[r] = -0.5 * (out[r] - workspace[r]) / ahead
 
 
 @kernel

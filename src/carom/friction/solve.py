@@ -14,32 +14,32 @@ from carom.friction.strategy import search
 
 
 @entry
-def solve_cones(k, W, c, mu, kind, heading, p, scratch):
+def solve_cones(k, W, c, mu, kind, heading, p, workspace):
     """Solve w = W p + c, 0 <= p_n _|_ w_n >= 0 with Coulomb friction; return (status, residual, iterations).
 
     Rows (n, t1, t2) of k contacts; arrays for K >= k of them, the leading part is used. `W` (3K, 3K) is
     symmetric, `c` (3K,) the velocity without impulses, `mu` (K,) the friction, `p` (3K,) the start and then
-    the solution, `scratch` from `layout.new_contact_work(K)`. `kind` (K,) int64: CONE, friction against
+    the solution, `workspace` from `layout.new_contact_work(K)`. `kind` (K,) int64: CONE, friction against
     w_t; SLIDING, p_t = -mu p_n heading, `heading` (K, 2); STICKING, w_t = 0 whatever force that takes, even
     where p_n = 0. Status: SOLVED; NOT_SOLVED, p is the best that was found; BAD_INPUT, p is 0. The
     residual is that of `residual.measure`.
     """
     if k == 0:
         return SOLVED, 0.0, 0
-    gamma = _load(scratch, k, W, c, mu, kind, heading, p)
+    gamma = _load(workspace, k, W, c, mu, kind, heading, p)
     if not math.isfinite(gamma):
         for i in range(3 * k):
             p[i] = 0.0
         return BAD_INPUT, math.inf, 0
-    iterations, q = 0, scratch.vector[o.P]
+    iterations, q = 0, workspace.vector[o.P]
     if k == 1:
-        alone, b = upper_triangle(scratch.W), scratch.vector[o.C]
-        _, q[0], q[1], q[2] = solve_local(scratch.contact[0], alone, (b[0], b[1], b[2]))
+        alone, b = upper_triangle(workspace.W), workspace.vector[o.C]
+        _, q[0], q[1], q[2] = solve_local(workspace.contact[0], alone, (b[0], b[1], b[2]))
     else:
-        search(scratch, k)
-        iterations = scratch.count[o.ITERATIONS]
+        search(workspace, k)
+        iterations = workspace.count[o.ITERATIONS]
     for i in range(3 * k):
-        p[i] = gamma * scratch.contact[i // 3].scale * q[i]
+        p[i] = gamma * workspace.contact[i // 3].scale * q[i]
     residual, tolerance, _, _, _ = measure(k, W, c, mu, kind, heading, p)
     return SOLVED if residual <= tolerance else NOT_SOLVED, residual, iterations
 

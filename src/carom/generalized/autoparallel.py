@@ -135,7 +135,7 @@ def correct(system, t, x, xi, work):
 
 
 @kernel
-def normal(system, held, t, x, c, work, out):
+def normal(system, active, t, x, c, work, out):
     """Write P G_n^T at `x` into `out` (n,), P within the constraints; return (W_nn, status)."""
     n, m = system.size[N], system.size[ALL_ROWS]
     find_contacts(system, t, x, work)
@@ -145,7 +145,7 @@ def normal(system, held, t, x, c, work, out):
     copy_row(work.G[c, 0], out, n)
     solve_metric(work.L, out, n)
     if m > 0:
-        find_rows(system, held, t, x, work)
+        find_rows(system, active, t, x, work)
         for r in range(m):
             copy_row(work.A[r], work.R[r], n)
             copy_row(work.A[r], work.D[r], n)
@@ -159,7 +159,7 @@ def normal(system, held, t, x, c, work, out):
 
 
 @entry
-def return_map(system, held, t, x, c, tolerance, work):
+def return_map(system, active, t, x, c, tolerance, work):
     """Bring the coordinates in `x` to gap c = 0 along an autoparallel normal to it; (iterations or -1, status).
 
     xi = kappa P G_n^T(q_e) carried back along the arc to q, q_e = Exp_q(xi), gap(q_e) = 0. In one chart of a
@@ -174,7 +174,7 @@ def return_map(system, held, t, x, c, tolerance, work):
     for j in range(n):
         xi[j] = 0.0
     for iteration in range(100):
-        w, code = normal(system, held, t, e, c, work, nu)
+        w, code = normal(system, active, t, e, c, work, nu)
         rho = work.gap[c]
         if code != 0:
             return -1, code

@@ -1,4 +1,4 @@
-"""Events of contacts: impacts, contacts that are held from then on, stick, slip and opening.
+"""Events of contacts: impacts, contacts that are active from then on, stick, slip and opening.
 
 At one state, in the arrays of NumPy; the impact and the contact problem are solved by the kernels that the
 scenes of bodies use.
@@ -12,7 +12,7 @@ import numpy as np
 
 from carom.generalized.autoparallel import return_map
 from carom.generalized.layout import CONE, GAP, JAM, REVERSE, SEPARATE, SLIP, STICK
-from carom.generalized.step import settle_rates
+from carom.generalized.step import project_rates
 from carom.generalized.strike import Strike
 from carom.impact.laws import NUMBERS
 from carom.status import Status
@@ -25,7 +25,7 @@ ROUNDS = 50
 
 
 class Contacts:
-    """The contacts of a run: which are held, and what has happened to them."""
+    """The contacts of a run: which are active, and what has happened to them."""
 
     def __init__(self, run: GeneralizedRun):
         contacts = run.user.contacts
@@ -36,7 +36,7 @@ class Contacts:
         self.blows = np.zeros(len(contacts), dtype=np.int64)
         self.events: list[tuple[float, str, int]] = []
         self.strike = Strike(self)
-        self.cones: Any = None  # scratch of the contact problem, made when it is first needed
+        self.cones: Any = None  # workspace of the contact problem, made when it is first needed
 
     def new_step(self) -> None:
         """Forget the impacts of the last step."""
@@ -47,7 +47,7 @@ class Contacts:
     def look(self) -> None:
         """Work out the state: P, the relative velocities u (C, 3), and what counts as still (C,)."""
         run, n = self.run, self.run.n
-        self.seen = run.made.look(run.x[:n], run.x[n:], float(run.clock[0].now), run.held)
+        self.seen = run.made.look(run.x[:n], run.x[n:], float(run.clock[0].now), run.active)
         M, A = self.seen.M, self.seen.A
         P = np.linalg.inv(M)
         if len(A):
@@ -64,17 +64,17 @@ class Contacts:
         )
         self.still = STILL * size * max(speed, push)
 
-    def held(self) -> list[int]:
-        """Return the contacts that are held."""
-        held = self.run.held
-        return [int(c) for c in held.contact[: held.count[0]]]
+    def active(self) -> list[int]:
+        """Return the contacts that are active."""
+        active = self.run.active
+        return [int(c) for c in active.contact[: active.count[0]]]
 
     def closed(self, struck: int) -> list[int]:
         """Return the contacts that are closed: held, just located, or with a gap that counts as zero."""
         scale = self.run.options.tie_tolerance * self.run.work.gap_scale
         gap = self.seen.gap
-        held = self.held()
-        return [c for c in range(len(gap)) if c in held or c == struck or gap[c] <= scale[c]]
+        active = self.active()
+        return [c for c in range(len(gap)) if c in active or c == struck or gap[c] <= scale[c]]
 
     # --- one event --------------------------------------------------------------------------------
 
@@ -86,7 +86,7 @@ class Contacts:
         now = float(run.clock[0].now)
         before = run.x.copy()
         struck = index if kind == GAP else -1
-        marked = int(run.held.contact[index]) if kind in (SEPARATE, CONE, REVERSE, JAM) else -1
+        marked = int(run.active.contact[index]) if kind in (SEPARATE, CONE, REVERSE, JAM) else -1
         if struck >= 0:
             code = self.return_to(struck)
             if code != 0:
@@ -94,7 +94,7 @@ class Contacts:
         self.look()
         if self.seen.status != 0:
             return self.seen.status
-        was = {c: int(run.held.mode[i]) for i, c in enumerate(self.held())}
+        was = {c: int(run.active.mode[i]) for i, c in enumerate(self.active())}
         closed = self.closed(struck)
         if kind == SEPARATE:
             self.let_go(marked)
@@ -102,7 +102,7 @@ class Contacts:
         if code != 0:
             return code
         if run.options.hold:
-            code = self.hold(closed, kind, marked, struck)
+            code = self.choose_active(closed, kind, marked, struck)
             if code != 0:
                 return code
         self.note_changes(was, kind, marked, now)
@@ -113,23 +113,23 @@ class Contacts:
         """Polish the located state by the return map; return a status."""
         run, now = self.run, float(self.run.clock[0].now)
         tolerance = 1e-15 * float(run.work.gap_scale[contact])
-        steps, code = return_map(run.system, run.held, now, run.x, contact, tolerance, run.work)
-        if code == 0 and steps > 0 and (run.system.size[2] > 0 or run.held.count[0] > 0):
-            code = settle_rates(run.system, run.held, now, run.x, run.work)
+        steps, code = return_map(run.system, run.active, now, run.x, contact, tolerance, run.work)
+        if code == 0 and steps > 0 and (run.system.size[2] > 0 or run.active.count[0] > 0):
+            code = project_rates(run.system, run.active, now, run.x, run.work)
         return Status.RETURN_MAP_FAILED if code == 0 and steps < 0 else code
 
     def let_go(self, contact: int) -> None:
-        """Remove a contact from the held ones."""
-        held = self.run.held
-        keep = [i for i, c in enumerate(self.held()) if c != contact]
-        for array in (held.contact, held.mode, held.heading, held.force, held.yields):
+        """Remove a contact from the active ones."""
+        active = self.run.active
+        keep = [i for i, c in enumerate(self.active()) if c != contact]
+        for array in (active.contact, active.mode, active.heading, active.force, active.yields):
             array[: len(keep)] = array[keep]
-        held.count[0] = len(keep)
+        active.count[0] = len(keep)
 
     def note_changes(self, was: dict, kind: int, marked: int, now: float) -> None:
         """Write the events of contacts whose mode has changed."""
-        held = self.run.held
-        modes = {c: int(held.mode[i]) for i, c in enumerate(self.held())}
+        active = self.run.active
+        modes = {c: int(active.mode[i]) for i, c in enumerate(self.active())}
         for c in {**was, **modes}:
             if c not in modes:
                 self.events.append((now, "opens", c))
@@ -162,17 +162,17 @@ class Contacts:
         lam = np.linalg.lstsq(S, -seen.A_rate - seen.A @ Minv_f, rcond=self.run.system.drop)[0]
         return Minv_f + Y @ lam
 
-    def hold(self, closed: list[int], kind: int, marked: int, struck: int) -> int:
+    def choose_active(self, closed: list[int], kind: int, marked: int, struck: int) -> int:
         """Decide which closed contacts stay closed, and how; return a status."""
         skip = marked if kind == SEPARATE else -1
         self.look()
-        for c in self.held():
+        for c in self.active():
             if self.u[c, 0] > 10.0 * self.still[c]:
                 self.let_go(c)
-        held = self.held()
+        active = self.active()
         free = self.free_acceleration()
-        chosen = list(held)
-        for c in sorted(set(closed) - {skip} - set(held), key=lambda c: abs(self.u[c, 0])):
+        chosen = list(active)
+        for c in sorted(set(closed) - {skip} - set(active), key=lambda c: abs(self.u[c, 0])):
             rows, rates = self.seen.G[chosen, 0], self.seen.G_rate[chosen, 0]
             a = self.bilateral(rows, rates, free)
             draw = -(self.seen.G[c, 0] @ a + self.seen.G_rate[c, 0])
@@ -181,7 +181,7 @@ class Contacts:
             least = -1e-9 if c == struck and chosen else 1e-12
             if draw > least * size and self.stays(c, draw):
                 chosen.append(c)
-        return self.settle(chosen, closed, kind, marked, free)
+        return self.set_active(chosen, closed, kind, marked, free)
 
     def stays(self, c: int, draw: float) -> bool:
         """Return whether the bounces of a contact, drawn back by `draw`, end within a step."""
@@ -192,21 +192,21 @@ class Contacts:
             return False
         return u <= self.still[c] or (e < 1.0 and 2.0 * u < draw * (1.0 - e) * self.run.plan.step)
 
-    def settle(self, chosen, closed, kind: int, marked: int, free: np.ndarray) -> int:
+    def set_active(self, chosen, closed, kind: int, marked: int, free: np.ndarray) -> int:
         """Hold `chosen`: find stick or slip of each from the accelerations; return a status."""
         from carom.friction.layout import SOLVED, new_contact_work
         from carom.friction.solve import solve_cones
 
-        run, n, held = self.run, self.run.n, self.run.held
+        run, n, active = self.run, self.run.n, self.run.active
         was = {
-            c: (int(held.mode[i]), held.heading[i].copy(), held.force[i].copy())
-            for i, c in enumerate(self.held())
+            c: (int(active.mode[i]), active.heading[i].copy(), active.force[i].copy())
+            for i, c in enumerate(self.active())
         }
         if self.cones is None:
             self.cones = new_contact_work(len(self.friction))
         for _ in range(ROUNDS):
             k = len(chosen)
-            held.count[0] = k
+            active.count[0] = k
             if k == 0:
                 return 0
             self.take_out(chosen, kind, marked, was)
@@ -239,7 +239,7 @@ class Contacts:
                 chosen = pressed
                 continue
             self.write_held(chosen, p, heading, was)
-            return settle_rates(run.system, held, float(run.clock[0].now), run.x, run.work)
+            return project_rates(run.system, active, float(run.clock[0].now), run.x, run.work)
         return Status.NO_CONVERGENCE
 
     def slips(self, chosen, kind: int, marked: int, was: dict):
@@ -269,20 +269,20 @@ class Contacts:
         return -1
 
     def write_held(self, chosen, p: np.ndarray, heading: np.ndarray, was: dict) -> None:
-        """Write the contacts that are held from now on, with forces p (k, 3), and whether each sticks."""
-        held = self.run.held
+        """Write the contacts that are active from now on, with forces p (k, 3), and whether each sticks."""
+        active = self.run.active
         for i, c in enumerate(chosen):
-            held.contact[i], held.mode[i], held.force[i] = c, SLIP, p[i]
-            held.heading[i] = heading[i]
+            active.contact[i], active.mode[i], active.force[i] = c, SLIP, p[i]
+            active.heading[i] = heading[i]
             if heading[i].any() or not self.friction[c] > 0.0:
                 continue
             pull, most = float(np.linalg.norm(p[i, 1:])), self.friction[c] * p[i, 0]
             if pull <= most * (1.0 - 1e-10) or (c in was and was[c][0] == STICK):
-                held.mode[i] = STICK
+                active.mode[i] = STICK
             elif pull > 0.0:
-                held.heading[i] = -p[i, 1:] / pull
+                active.heading[i] = -p[i, 1:] / pull
             elif c in was:
-                held.heading[i] = was[c][1]
+                active.heading[i] = was[c][1]
 
     def take_out(self, chosen, kind: int, marked: int, was: dict) -> None:
         """Remove the normal velocities of contacts to be held, and slip that has stopped."""

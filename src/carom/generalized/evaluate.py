@@ -9,9 +9,9 @@ import numpy as np
 
 from carom._compiled.user_functions import Functions
 from carom.generalized.autoparallel import return_map, run_along
-from carom.generalized.layout import Coordinates, Held, new_held, new_work
+from carom.generalized.layout import ActiveSet, Coordinates, new_active_set, new_work
 from carom.generalized.motion import look
-from carom.generalized.step import settle_rates
+from carom.generalized.step import project_rates
 from carom.status import Status
 
 if TYPE_CHECKING:
@@ -33,12 +33,12 @@ class Look:
     gap: np.ndarray  # (C,)
     G: np.ndarray  # (C, 3, n)
     G_rate: np.ndarray  # (C, 3)
-    acceleration: np.ndarray  # (n,) with the contacts that are held
+    acceleration: np.ndarray  # (n,) with the contacts that are active
     status: int
 
 
 class Evaluation:
-    """Compiled functions of a system and scratch to call them with."""
+    """Compiled functions of a system and workspace to call them with."""
 
     def __init__(self, system: GeneralizedSystem, drop: float = 1e-8):
         model, contacts = system._model, system.contacts
@@ -54,12 +54,12 @@ class Evaluation:
             drop,
         )
         self.work = new_work(n, model.holonomic, model.rows, C, STAGES)
-        self.none_held = new_held(C)
+        self.none_active = new_active_set(C)
 
-    def look(self, q, v=None, t: float = 0.0, held: Held | None = None) -> Look:
+    def look(self, q, v=None, t: float = 0.0, active: ActiveSet | None = None) -> Look:
         """Return everything at a state."""
         x = np.concatenate([q, np.zeros(self.n) if v is None else v])
-        code = look(self.system, self.none_held if held is None else held, t, x, self.work)
+        code = look(self.system, self.none_active if active is None else active, t, x, self.work)
         self.failed()
         w = self.work
         return Look(
@@ -110,14 +110,14 @@ class Evaluation:
         tolerance = 1e-15 * float(self.work.gap_scale[contact])
         for _ in range(20):
             steps, code = return_map(
-                self.system, self.none_held, 0.0, x, contact, tolerance, self.work
+                self.system, self.none_active, 0.0, x, contact, tolerance, self.work
             )
             self.failed()
             if steps < 0 or code != 0:
                 raise ValueError(f"position must be nearer to the contact, got {q!r}: no return")
             if self.system.size[1] == 0 or steps == 0:
                 break
-            code = settle_rates(self.system, self.none_held, 0.0, x, self.work)
+            code = project_rates(self.system, self.none_active, 0.0, x, self.work)
             if code != 0:
                 raise ValueError(f"position must be nearer to the contact: {Status(code).message}")
         return x[: self.n].copy()

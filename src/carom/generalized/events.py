@@ -2,7 +2,7 @@
 
 GAP        gap                  of a contact that is open
 RATE       d gap/dt, turned     where a gap dips below zero and returns within a step
-SEPARATE   N                    of a held contact
+SEPARATE   N                    of a persistent contact
 CONE       mu N - |T|           while it sticks
 REVERSE    u_t . e              while it slips, e its direction at the start of the step
 JAM        W_nn - mu W_nt . e   while it slips (mathematics page, VI.6)
@@ -50,7 +50,7 @@ def note_start(system, t, x, work):
 
 
 @kernel
-def examine(system, held, t, x, work):
+def detect_event(system, active, t, x, work):
     """Evaluate at `x` all that `value` reads; return a status."""
     if system.size[TOUCHES] == 0:
         return 0
@@ -58,42 +58,42 @@ def examine(system, held, t, x, work):
     for c in range(system.size[TOUCHES]):
         if not math.isfinite(work.gap[c]):
             return NOT_FINITE
-    if held.count[0] == 0:
+    if active.count[0] == 0:
         return 0
-    _, _, code = acceleration(system, held, t, x, work, work.trial)
+    _, _, code = acceleration(system, active, t, x, work, work.trial)
     return code
 
 
 @kernel
-def value(system, held, kind, i, x, work):
+def value(system, active, kind, i, x, work):
     """Return (event function, what counts as zero of it)."""
     if kind == GAP:
         return work.gap[i], ROUND_OFF * work.gap_scale[i]
     if kind == RATE:
         return -rate_of(system, i, x, work), 0.0
-    force, mu = held.force[i], system.friction[held.contact[i]]
+    force, mu = active.force[i], system.friction[active.contact[i]]
     if kind == SEPARATE:
         return force[0], 0.0
     if kind == CONE:
         pull = math.sqrt(force[1] * force[1] + force[2] * force[2])
         return mu * force[0] - pull, 1e-12 * abs(force[0])
     if kind == JAM:
-        return held.yields[i], 0.0
-    u1, u2 = slip_of(system, held, i, x, work)
-    return u1 * held.heading[i, 0] + u2 * held.heading[i, 1], 0.0
+        return active.yields[i], 0.0
+    u1, u2 = slip_of(system, active, i, x, work)
+    return u1 * active.heading[i, 0] + u2 * active.heading[i, 1], 0.0
 
 
 @kernel
-def turned(system, held, t, x, work):
+def turned(system, active, t, x, work):
     """Return whether slip has turned by more than 60 degrees within a step, and not just come to a stop."""
     looked = False
-    for i in range(held.count[0]):
-        if held.mode[i] == SLIP and system.friction[held.contact[i]] > 0.0:
+    for i in range(active.count[0]):
+        if active.mode[i] == SLIP and system.friction[active.contact[i]] > 0.0:
             if not looked:
                 find_contacts(system, t, x, work)
                 looked = True
-            u1, u2 = slip_of(system, held, i, x, work)
-            h1, h2 = held.heading[i, 0], held.heading[i, 1]
+            u1, u2 = slip_of(system, active, i, x, work)
+            h1, h2 = active.heading[i, 0], active.heading[i, 1]
             along, across = u1 * h1 + u2 * h2, abs(u1 * h2 - u2 * h1)
             if across > (1.7320508 * along if along > 0.0 else -0.1 * along):
                 return True
@@ -101,42 +101,42 @@ def turned(system, held, t, x, work):
 
 
 @kernel
-def open_contact(held, c):
-    """Return whether contact c is not held."""
-    for i in range(held.count[0]):
-        if held.contact[i] == c:
+def open_contact(active, c):
+    """Return whether contact c is not active."""
+    for i in range(active.count[0]):
+        if active.contact[i] == c:
             return False
     return True
 
 
 @kernel
-def violated(system, held, kind, i, x, work):
+def violated(system, active, kind, i, x, work):
     """Return whether an event function is below zero."""
-    f, none = value(system, held, kind, i, x, work)
+    f, none = value(system, active, kind, i, x, work)
     return f < -none
 
 
 @kernel
-def first_violated(system, held, x, work):
+def first_violated(system, active, x, work):
     """Return (kind, index) of an event function that is below zero at `x`, (NOTHING, -1) if none is."""
     for c in range(system.size[TOUCHES]):
-        if open_contact(held, c) and violated(system, held, GAP, c, x, work):
+        if open_contact(active, c) and violated(system, active, GAP, c, x, work):
             return GAP, c
-    for i in range(held.count[0]):
-        if held.mode[i] == SLIP and system.friction[held.contact[i]] > 0.0:
-            if violated(system, held, REVERSE, i, x, work):
+    for i in range(active.count[0]):
+        if active.mode[i] == SLIP and system.friction[active.contact[i]] > 0.0:
+            if violated(system, active, REVERSE, i, x, work):
                 return REVERSE, i
-            if not held.yields[i] > 0.0:
+            if not active.yields[i] > 0.0:
                 return JAM, i
-        if violated(system, held, SEPARATE, i, x, work):
+        if violated(system, active, SEPARATE, i, x, work):
             return SEPARATE, i
-        if held.mode[i] == STICK and violated(system, held, CONE, i, x, work):
+        if active.mode[i] == STICK and violated(system, active, CONE, i, x, work):
             return CONE, i
     return NOTHING, -1
 
 
 @kernel
-def dips(system, held, h, x, work):
+def dips(system, active, h, x, work):
     """Return a contact whose gap may have been below zero within the step, -1 if none.
 
     By the cubic through gaps and rates of both ends: its least value is below a tenth of the depth of the dip.
@@ -144,7 +144,7 @@ def dips(system, held, h, x, work):
     for c in range(system.size[TOUCHES]):
         g0, r0 = work.before[0, c], h * work.before[1, c]
         g1, r1 = work.gap[c], h * rate_of(system, c, x, work)
-        if not (r0 < 0.0 < r1 and open_contact(held, c)):
+        if not (r0 < 0.0 < r1 and open_contact(active, c)):
             continue
         a, b = 2.0 * (g0 - g1) + r0 + r1, 3.0 * (g1 - g0) - 2.0 * r0 - r1
         root = math.sqrt(max(b * b - 3.0 * a * r0, 0.0))  # of 3 a s^2 + 2 b s + r0
@@ -203,7 +203,7 @@ def state_at(motion, t, x, s):
     code = take(motion, t, x, s)
     if code != 0:
         return code
-    return examine(motion.system, motion.held, t + s, motion.work.end, motion.work)
+    return detect_event(motion.system, motion.active, t + s, motion.work.end, motion.work)
 
 
 @kernel
@@ -212,7 +212,7 @@ def value_at(motion, kind, i, t, x, s):
     code = state_at(motion, t, x, s)
     if code != 0:
         return 0.0, 0.0, code
-    f, none = value(motion.system, motion.held, kind, i, motion.work.end, motion.work)
+    f, none = value(motion.system, motion.active, kind, i, motion.work.end, motion.work)
     return f, none, 0
 
 
@@ -222,19 +222,19 @@ def locate(motion, t, x, h):
 
     The end is then the state at s. Kind NOTHING: there is none, and s = h.
     """
-    system, held, work = motion.system, motion.held, motion.work
+    system, active, work = motion.system, motion.active, motion.work
     end = work.end
-    code = examine(system, held, t + h, end, work)
+    code = detect_event(system, active, t + h, end, work)
     if code != 0:
         return h, NOTHING, -1, code
-    kind, i = first_violated(system, held, end, work)
+    kind, i = first_violated(system, active, end, work)
     high = h
     if kind == NOTHING:
-        c = dips(system, held, h, end, work)
+        c = dips(system, active, h, end, work)
         if c < 0:
             return h, NOTHING, -1, 0
         high, code = find_root(motion, RATE, c, t, x, h)
-        if code == 0 and violated(system, held, GAP, c, end, work):
+        if code == 0 and violated(system, active, GAP, c, end, work):
             kind, i = GAP, c
         else:
             return h, NOTHING, -1, max(code, state_at(motion, t, x, h))
@@ -243,7 +243,7 @@ def locate(motion, t, x, h):
         s, code = find_root(motion, kind, i, t, x, high)
         if code != 0:
             break
-        other, j = first_violated(system, held, end, work)
+        other, j = first_violated(system, active, end, work)
         if other == NOTHING or (other == kind and j == i):
             break
         kind, i, high = other, j, s

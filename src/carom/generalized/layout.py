@@ -21,7 +21,7 @@ CONTACTS = 3  #: gap (C,), G (C, 3, n), (dG/dt) v (C, 3)
 # The four sizes, by their place in `Coordinates.size`.
 N, HOLONOMIC, ALL_ROWS, TOUCHES = range(4)
 
-# What a held contact does.
+# What a persistent contact does.
 SLIP, STICK = 1, 2
 
 # What ends a mode of motion.
@@ -40,8 +40,8 @@ class Coordinates(NamedTuple):
     drop: float  # part of its diagonal below which the pivot of a row is left out
 
 
-class Held(NamedTuple):
-    """Contacts that are held, `count` of them in use."""
+class ActiveSet(NamedTuple):
+    """Contacts that are active, `count` of them in use."""
 
     count: np.ndarray  # (1,) int64
     contact: np.ndarray  # (C,) int64
@@ -86,11 +86,11 @@ class Work(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """All that a step needs beside the state: the system, the method, the held contacts, scratch."""
+    """All that a step needs beside the state: the system, the method, the persistent contacts, workspace."""
 
     system: Coordinates
     method: Method
-    held: Held
+    active: ActiveSet
     work: Work
 
 
@@ -121,9 +121,9 @@ class Record(NamedTuple):
     states: np.ndarray  # (rows, 2n)
 
 
-def new_held(contacts: int) -> Held:
-    """Return room for all contacts, none held."""
-    return Held(
+def new_active_set(contacts: int) -> ActiveSet:
+    """Return room for all contacts, none active."""
+    return ActiveSet(
         np.zeros(1, dtype=np.int64),
         np.zeros(contacts, dtype=np.int64),
         np.zeros(contacts, dtype=np.int64),
@@ -134,7 +134,7 @@ def new_held(contacts: int) -> Held:
 
 
 def new_work(n: int, holonomic: int, rows: int, contacts: int, stages: int) -> Work:
-    """Return scratch for a system of these sizes and a method of so many stages."""
+    """Return workspace for a system of these sizes and a method of so many stages."""
     m = rows + 3 * contacts
     inertia, loads = np.zeros(n * n + n), np.zeros(n + 2)
     row = np.zeros(holonomic + rows * n + rows)

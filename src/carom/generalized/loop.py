@@ -14,7 +14,7 @@ LONG = 20_000  # trial steps, times the square of the coordinates, after which t
 
 
 @entry
-def march(motion, x, plan, until, record):
+def time_loop(motion, x, plan, until, record):
     """Go on to step number `until`; return DONE, EVENT (the clock says which) or a status of failure.
 
     PAUSE after much work: so that Ctrl-C is seen.
@@ -62,7 +62,9 @@ def first_part(motion, x, left, c):
         if code != 0:
             return part, code
         c.trials += 1
-        if cut + 1 == CUTS or not turned(motion.system, motion.held, c.now + part, work.end, work):
+        if cut + 1 == CUTS or not turned(
+            motion.system, motion.active, c.now + part, work.end, work
+        ):
             break
         part *= 0.5
     return part, 0

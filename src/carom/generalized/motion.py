@@ -1,7 +1,7 @@
 """Accelerations in coordinates: ``M v' = Q - dV - Gamma(v, v) + D^T lam`` with ``R v' = -R' v``.
 
-R are the constraint rows and those of held contacts; D = R, but for a contact that slips, whose reaction is
-N (G_n - mu e G_t). (Mathematics page, VII.1 and VII.4.)
+R are the constraint rows and those of persistent contacts; D = R, but for a contact that slips, whose reaction
+is N (G_n - mu e G_t). (Mathematics page, VII.1 and VII.4.)
 """
 
 from __future__ import annotations
@@ -41,11 +41,11 @@ def find_metric(system, t, x, work):
 
 
 @kernel
-def find_rows(system, held, t, x, work):
-    """Work out constraint rows, and contacts where any is held."""
+def find_rows(system, active, t, x, work):
+    """Work out constraint rows, and contacts where any is active."""
     if system.size[ALL_ROWS] > 0:
         call_function(system.address[ROWS], t, x, work.rows)
-    if held.count[0] > 0:
+    if active.count[0] > 0:
         call_function(system.address[CONTACTS], t, x, work.contacts)
 
 
@@ -66,9 +66,9 @@ def find_contacts(system, t, x, work):
 
 
 @kernel
-def slip_of(system, held, i, x, work):
-    """Return the slip (u_1, u_2) of held contact i; rows must be those of `x`."""
-    n, c = system.size[N], held.contact[i]
+def slip_of(system, active, i, x, work):
+    """Return the slip (u_1, u_2) of persistent contact i; rows must be those of `x`."""
+    n, c = system.size[N], active.contact[i]
     u1, u2 = 0.0, 0.0
     for j in range(n):
         u1 += work.G[c, 1, j] * x[n + j]
@@ -77,9 +77,9 @@ def slip_of(system, held, i, x, work):
 
 
 @kernel
-def direction(held, i, u1, u2):
+def direction(active, i, u1, u2):
     """Return the direction of slip; where it would turn about within a stage, the one before."""
-    h1, h2 = held.heading[i, 0], held.heading[i, 1]
+    h1, h2 = active.heading[i, 0], active.heading[i, 1]
     size = math.sqrt(u1 * u1 + u2 * u2)
     if size > 0.0 and u1 * h1 + u2 * h2 > 0.0:
         return u1 / size, u2 / size
@@ -94,26 +94,26 @@ def copy_row(row, out, n):
 
 
 @kernel
-def gather(system, held, x, work):
+def gather(system, active, x, work):
     """Write R, D and the targets -R' v into `rhs`; return how many rows."""
     n, m = system.size[N], system.size[ALL_ROWS]
     for r in range(m):
         copy_row(work.A[r], work.R[r], n)
         copy_row(work.A[r], work.D[r], n)
         work.rhs[r] = -work.A_rate[r]
-    for i in range(held.count[0]):
-        c = held.contact[i]
+    for i in range(active.count[0]):
+        c = active.contact[i]
         mu = system.friction[c]
         copy_row(work.G[c, 0], work.R[m], n)
         copy_row(work.G[c, 0], work.D[m], n)
         work.rhs[m] = -work.G_rate[c, 0]
-        if held.mode[i] == SLIP and mu > 0.0:
-            u1, u2 = slip_of(system, held, i, x, work)
-            e1, e2 = direction(held, i, u1, u2)
+        if active.mode[i] == SLIP and mu > 0.0:
+            u1, u2 = slip_of(system, active, i, x, work)
+            e1, e2 = direction(active, i, u1, u2)
             for j in range(n):
                 work.D[m, j] -= mu * (e1 * work.G[c, 1, j] + e2 * work.G[c, 2, j])
         m += 1
-        if held.mode[i] == STICK:
+        if active.mode[i] == STICK:
             for r in range(1, 3):
                 copy_row(work.G[c, r], work.R[m], n)
                 copy_row(work.G[c, r], work.D[m], n)
@@ -152,10 +152,10 @@ def react(system, m, out, work):
 
 
 @kernel
-def acceleration(system, held, t, x, work, rate):
+def acceleration(system, active, t, x, work, rate):
     """Write x' into `rate` (2n,); return power of loads, of friction, and a status.
 
-    Forces of held contacts go to `held.force`.
+    Forces of persistent contacts go to `active.force`.
     """
     n = system.size[N]
     code = find_metric(system, t, x, work)
@@ -167,31 +167,31 @@ def acceleration(system, held, t, x, work, rate):
         a[j] = work.loads[1 + j] - work.c[j]
     solve_metric(work.L, a, n)
     friction = 0.0
-    if system.size[ALL_ROWS] > 0 or held.count[0] > 0:
-        find_rows(system, held, t, x, work)
-        m = gather(system, held, x, work)
+    if system.size[ALL_ROWS] > 0 or active.count[0] > 0:
+        find_rows(system, active, t, x, work)
+        m = gather(system, active, x, work)
         factor_rows(system, m, work)
         react(system, m, a, work)
-        friction = note_forces(system, held, x, work)
+        friction = note_forces(system, active, x, work)
     for j in range(n):
         rate[j], rate[n + j] = x[n + j], a[j]
     return work.loads[n + 1], friction, 0
 
 
 @kernel
-def note_forces(system, held, x, work):
-    """Write the forces of held contacts from the multipliers; return the power of friction."""
+def note_forces(system, active, x, work):
+    """Write the forces of persistent contacts from the multipliers; return the power of friction."""
     power, m = 0.0, system.size[ALL_ROWS]
-    for i in range(held.count[0]):
-        force, mu = held.force[i], system.friction[held.contact[i]]
+    for i in range(active.count[0]):
+        force, mu = active.force[i], system.friction[active.contact[i]]
         force[0] = work.rhs[m]
-        held.yields[i] = work.K[m, m]
-        if held.mode[i] == STICK:
+        active.yields[i] = work.K[m, m]
+        if active.mode[i] == STICK:
             force[1], force[2] = work.rhs[m + 1], work.rhs[m + 2]
             m += 3
         else:
-            u1, u2 = slip_of(system, held, i, x, work)
-            e1, e2 = direction(held, i, u1, u2)
+            u1, u2 = slip_of(system, active, i, x, work)
+            e1, e2 = direction(active, i, u1, u2)
             force[1], force[2] = -mu * force[0] * e1, -mu * force[0] * e2
             power += force[1] * u1 + force[2] * u2
             m += 1
@@ -199,10 +199,10 @@ def note_forces(system, held, x, work):
 
 
 @entry
-def look(system, held, t, x, work):
+def look(system, active, t, x, work):
     """Work out everything at a state, for Python; return a status. The acceleration goes to `work.a`."""
     find_contacts(system, t, x, work)
     if system.size[HOLONOMIC] > 0 or system.size[ALL_ROWS] > 0:
         call_function(system.address[ROWS], t, x, work.rows)
-    _, _, code = acceleration(system, held, t, x, work, work.trial)
+    _, _, code = acceleration(system, active, t, x, work, work.trial)
     return code

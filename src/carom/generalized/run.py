@@ -19,11 +19,11 @@ from carom.generalized.layout import (
     Motion,
     Plan,
     Record,
-    new_held,
+    new_active_set,
     new_work,
 )  # fmt: skip
-from carom.generalized.loop import march, save_now
-from carom.generalized.step import settle_rates
+from carom.generalized.loop import save_now, time_loop
+from carom.generalized.step import project_rates
 from carom.status import Status
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ AT_ONCE = 200  # events at one instant
 
 
 class GeneralizedRun:
-    """State, records and scratch of a run."""
+    """State, records and workspace of a run."""
 
     def __init__(
         self, system: GeneralizedSystem, duration: float, step: float, steps: int, method: str,
@@ -54,8 +54,8 @@ class GeneralizedRun:
         n, h, k, C = (int(one) for one in self.system.size)
         self.n = n
         self.method = make_method(method, options)
-        self.held, self.work = new_held(C), new_work(n, h, k, C, len(self.method.b))
-        self.motion = Motion(self.system, self.method, self.held, self.work)
+        self.active, self.work = new_active_set(C), new_work(n, h, k, C, len(self.method.b))
+        self.motion = Motion(self.system, self.method, self.active, self.work)
         self.x = np.concatenate([system.position, system.velocity])
         self.clock = table(CLOCK, 1)
         rows = -(-steps // save_every) + 3
@@ -96,7 +96,7 @@ class GeneralizedRun:
                 f"position must not be inside a contact, got the gap {seen.gap[contact]:.6g} of {name!r}"
             )
         if seen.status == 0 and self.system.size[2] > 0:
-            settle_rates(self.system, self.held, 0.0, x, self.work)
+            project_rates(self.system, self.active, 0.0, x, self.work)
 
     @property
     def steps_done(self) -> int:
@@ -116,7 +116,7 @@ class GeneralizedRun:
         """Go on to step number `until`, or to a failure."""
         code = self.start_code
         while code == 0:
-            code = march(self.motion, self.x, self.plan, int(until), self.record)
+            code = time_loop(self.motion, self.x, self.plan, int(until), self.record)
             if code == PAUSE and self.made.functions.failed is None:
                 code = 0  # here Ctrl-C is raised
                 continue

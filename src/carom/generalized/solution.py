@@ -109,7 +109,7 @@ class GeneralizedSolution(Drawn):
     impacts : CoordinateImpactTable
         One record for each impact.
     events : EventTable
-        Impacts and changes of held contacts, in their order.
+        Impacts and changes of persistent contacts, in their order.
     constraint_errors : tuple of (T,), (T,)
         Greatest entries of phi(q) and of A v, the rates of the constraints.
     ledger : Ledger

@@ -25,14 +25,14 @@ _NONE = 4e-16  # of its terms: error of a row that cannot be smaller
 @kernel
 def take(motion, t, x, h):
     """Write the state a time h after `x` into `work.end`; return a status. Works go to `work.spent`."""
-    system, method, held, work = motion.system, motion.method, motion.held, motion.work
+    system, method, active, work = motion.system, motion.method, motion.active, motion.work
     end = work.end
     n, stages = system.size[N], method.b.size
-    aim(system, held, t, x, work)
+    note_slip_directions(system, active, t, x, work)
     loads, friction = 0.0, 0.0
     for s in range(stages):
         ahead = combine(method.A[s], s, h, x, work.stages, work.trial)
-        p, f, code = acceleration(system, held, t + ahead, work.trial, work, work.stages[s])
+        p, f, code = acceleration(system, active, t + ahead, work.trial, work, work.stages[s])
         if code != 0:
             return code
         loads += h * method.b[s] * p
@@ -44,8 +44,8 @@ def take(motion, t, x, h):
         total += end[j]
     if not math.isfinite(total):
         return 4
-    if system.size[ALL_ROWS] > 0 or held.count[0] > 0:
-        return project(system, held, t + h, end, work)
+    if system.size[ALL_ROWS] > 0 or active.count[0] > 0:
+        return project(system, active, t + h, end, work)
     return 0
 
 
@@ -65,28 +65,28 @@ def combine(weight, count, h, x, stages, out):
 
 
 @kernel
-def aim(system, held, t, x, work):
-    """Note the direction of slip of held contacts at the start of a step."""
-    if held.count[0] == 0:
+def note_slip_directions(system, active, t, x, work):
+    """Note the direction of slip of persistent contacts at the start of a step."""
+    if active.count[0] == 0:
         return
-    find_rows(system, held, t, x, work)
-    for i in range(held.count[0]):
-        if held.mode[i] != STICK:
-            u1, u2 = slip_of(system, held, i, x, work)
-            held.heading[i, 0], held.heading[i, 1] = direction(held, i, u1, u2)
+    find_rows(system, active, t, x, work)
+    for i in range(active.count[0]):
+        if active.mode[i] != STICK:
+            u1, u2 = slip_of(system, active, i, x, work)
+            active.heading[i, 0], active.heading[i, 1] = direction(active, i, u1, u2)
 
 
 @kernel
-def place_rows(system, held, x, work):
+def place_rows(system, active, x, work):
     """Write into R = D what must be zero of positions, -phi and -gap into `rhs`; return (rows, error).
 
     The error is the greatest, each as a part of the terms that make up its row.
     """
     n, m, worst = system.size[N], 0, 0.0
-    for r in range(system.size[HOLONOMIC] + held.count[0]):
+    for r in range(system.size[HOLONOMIC] + active.count[0]):
         h = r - system.size[HOLONOMIC]
-        row = work.A[r] if h < 0 else work.G[held.contact[h], 0]
-        value = work.phi[r] if h < 0 else work.gap[held.contact[h]]
+        row = work.A[r] if h < 0 else work.G[active.contact[h], 0]
+        value = work.phi[r] if h < 0 else work.gap[active.contact[h]]
         size = 0.0
         for j in range(n):
             size += abs(row[j] * x[j])
@@ -94,7 +94,7 @@ def place_rows(system, held, x, work):
             work.row_scale[r] = max(work.row_scale[r], size)
             size = work.row_scale[r]
         else:
-            size = max(size, work.gap_scale[held.contact[h]])
+            size = max(size, work.gap_scale[active.contact[h]])
         copy_row(row, work.R[m], n)
         copy_row(row, work.D[m], n)
         work.rhs[m] = -value
@@ -104,15 +104,15 @@ def place_rows(system, held, x, work):
 
 
 @kernel
-def rate_rows(system, held, work):
+def rate_rows(system, active, work):
     """Write into R = D what must be zero of velocities, `rhs` 0; return how many rows."""
     n, m = system.size[N], 0
     for r in range(system.size[ALL_ROWS]):
         copy_row(work.A[r], work.R[m], n)
         m += 1
-    for i in range(held.count[0]):
-        for r in range(3 if held.mode[i] == STICK else 1):
-            copy_row(work.G[held.contact[i], r], work.R[m], n)
+    for i in range(active.count[0]):
+        for r in range(3 if active.mode[i] == STICK else 1):
+            copy_row(work.G[active.contact[i], r], work.R[m], n)
             m += 1
     for r in range(m):
         copy_row(work.R[r], work.D[r], n)
@@ -121,15 +121,15 @@ def rate_rows(system, held, work):
 
 
 @kernel
-def project(system, held, t, x, work):
-    """Return `x` to constraints and held contacts: coordinates along autoparallels, then velocities."""
+def project(system, active, t, x, work):
+    """Return `x` to constraints and persistent contacts: coordinates along autoparallels, then velocities."""
     n, last = system.size[N], 0.0
     for iteration in range(20):
         code = find_metric(system, t, x, work)
         if code != 0:
             return code
-        find_rows(system, held, t, x, work)
-        m, error = place_rows(system, held, x, work)
+        find_rows(system, active, t, x, work)
+        m, error = place_rows(system, active, x, work)
         if not error > _NONE or (iteration > 0 and error >= 0.5 * last):
             break
         last = error
@@ -143,7 +143,7 @@ def project(system, held, t, x, work):
             return code
     if not error <= 1e-9:
         return CONSTRAINTS_LOST
-    m = rate_rows(system, held, work)
+    m = rate_rows(system, active, work)
     factor_rows(system, m, work)
     v = work.a
     for j in range(n):
@@ -155,6 +155,6 @@ def project(system, held, t, x, work):
 
 
 @entry
-def settle_rates(system, held, t, x, work):
+def project_rates(system, active, t, x, work):
     """`project`, for Python."""
-    return project(system, held, t, x, work)
+    return project(system, active, t, x, work)

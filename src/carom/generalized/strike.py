@@ -24,7 +24,7 @@ class Strike:
     def __init__(self, contacts: Contacts):
         self.contacts = contacts
         self.records: list[dict[str, Any]] = []
-        self.room: Any = None  # scratch for several contacts, made when it is first needed
+        self.room: Any = None  # workspace for several contacts, made when it is first needed
 
     def all(self, closed: list[int], now: float, jams: int) -> int:
         """Strike until no closed contact approaches; return a status."""
@@ -82,11 +82,11 @@ class Strike:
             MULTIPLE,
             OK,
             CornerContacts,
-            CornerSettings,
-            corner_arrays,
-            new_corner_result,
+            MultipleSettings,
+            new_multiple_result,
+            new_multiple_workspace,
         )
-        from carom.impact.multiple.resolve import resolve_corner
+        from carom.impact.multiple.resolve import resolve_multiple
 
         here, k = self.contacts, len(closed)
         options, n = here.run.options, here.run.n
@@ -99,17 +99,17 @@ class Strike:
             i = closed.index(jams)
             u[i, 0] = -SEED * np.linalg.norm(u[i, 1:])
         e = np.array([self.restitution(c) for c in closed])
-        settings = CornerSettings(
+        settings = MultipleSettings(
             multiple=MULTIPLE[options.multiple], rtol=options.corner_tolerance,
             exponent=options.corner_exponent,
         )  # fmt: skip
         if self.room is None:
-            self.room = corner_arrays(len(here.friction))
-        out = new_corner_result(k)
+            self.room = new_multiple_workspace(len(here.friction))
+        out = new_multiple_result(k)
         contacts = CornerContacts(
             k, W, u.reshape(-1), here.friction[closed], e, here.law[closed], np.ones(k)
         )
-        code = resolve_corner(contacts, settings, self.room, out)
+        code = resolve_multiple(contacts, settings, self.room, out)
         if code != OK:
             return Status.IMPACT_FAILED
         p = out.impulse.reshape(k, 3)

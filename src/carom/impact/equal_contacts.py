@@ -20,24 +20,24 @@ SAME = 1e-12  # relative to W_nn: round-off of a difference of two answers
 
 
 @kernel
-def as_one(system, k, state, cluster, work):
+def as_one(system, k, state, group, work):
     """Return whether the k closed points are one; if so put its point, W and u into `work`."""
-    hit, point, seats = work.hit[0], work.point[0], cluster.seats
-    c = seats[0].contact
+    hit, point, closed = work.hit[0], work.point[0], group.closed
+    c = closed[0].contact
     contact, core = system.contacts[c], hit.point
     if contact.touches != 0:
         if k > 1:
             return False
-        copy_point(cluster.points[0][0], point)
+        copy_point(group.points[0][0], point)
         _inverse_mass(system, state, work)
         hit.u[0], hit.u[1], hit.u[2] = contact_velocity(point, state)
         return True
     for r in range(3):
         core[r] = 0.0
         for i in range(k):
-            core[r] += seats[i].point[r] / k
+            core[r] += closed[i].point[r] / k
     for i in range(k):
-        if seats[i].contact != c:
+        if closed[i].contact != c:
             return False
     place(contact, core, state, point)
     _inverse_mass(system, state, work)
@@ -46,16 +46,16 @@ def as_one(system, k, state, cluster, work):
         return True
     still = 10.0 * slow(contact, state)
     for i in range(k):
-        u = contact_velocity(cluster.points[0][i], state)
+        u = contact_velocity(group.points[0][i], state)
         for r in range(3):
             if not abs(u[r] - hit.u[r]) <= still:
                 return False
     W, tiny = hit.W, SAME * hit.W[0, 0]
     # directions: the normal; then any tangent, or only the one along which all happens
-    if not answers_alike(system, k, (1.0, 0.0, 0.0), state, cluster, work):
+    if not answers_alike(system, k, (1.0, 0.0, 0.0), state, group, work):
         return False
-    if answers_alike(system, k, (0.0, 1.0, 0.0), state, cluster, work) and answers_alike(
-        system, k, (0.0, 0.0, 1.0), state, cluster, work
+    if answers_alike(system, k, (0.0, 1.0, 0.0), state, group, work) and answers_alike(
+        system, k, (0.0, 0.0, 1.0), state, group, work
     ):
         return True
     d1, d2 = hit.u[1], hit.u[2]
@@ -68,7 +68,7 @@ def as_one(system, k, state, cluster, work):
     d1, d2 = d1 / speed, d2 / speed
     t1, t2 = W[1, 1] * d1 + W[1, 2] * d2, W[2, 1] * d1 + W[2, 2] * d2
     planar = abs(W[2, 0] * d1 - W[1, 0] * d2) <= tiny and abs(t2 * d1 - t1 * d2) <= tiny
-    return planar and answers_alike(system, k, (0.0, d1, d2), state, cluster, work)
+    return planar and answers_alike(system, k, (0.0, d1, d2), state, group, work)
 
 
 @kernel
@@ -82,13 +82,13 @@ def _inverse_mass(system, state, work):
 
 
 @kernel
-def answers_alike(system, k, impulse, state, cluster, work):
+def answers_alike(system, k, impulse, state, group, work):
     """Return whether an impulse at the mean point changes the velocity of all points equally."""
     point, tiny = work.point[0], SAME * work.hit[0].W[0, 0]
     spread(system, point, state, impulse[0], impulse[1], impulse[2], work)
     mean = contact_motion(point, work)
     for i in range(k):
-        u = contact_motion(cluster.points[0][i], work)
+        u = contact_motion(group.points[0][i], work)
         for r in range(3):
             if not abs(u[r] - mean[r]) <= tiny:
                 return False

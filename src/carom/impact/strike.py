@@ -26,7 +26,7 @@ from carom.kinematics.contact_point import contact_velocity
 from carom.model.controls import LOCATE, WORK
 from carom.model.event_rows import begin_event, end_event
 from carom.model.method import THREE_FIELD
-from carom.model.records import FULL_CORNER, GROW, IMPACT, JAMS
+from carom.model.records import FULL_MULTIPLE, GROW, IMPACT, JAMS
 
 RETURN_MAP_FAILED, IMPACT_FAILED, TOO_MANY_POINTS = 5, 6, 10
 SEED = 1e-10  # approach given to a point that jams, as a part of its slip; the result does not depend on it
@@ -67,32 +67,32 @@ def strike(model, data, method, c):
     Velocities of `state` change; its position only by the return map.
     """
     system, controls = model.system, model.controls
-    held, state, cluster, work, records = (
-        data.held, data.state, data.cluster, data.work, data.records,
+    active, state, group, work, records = (
+        data.active, data.state, data.group, data.work, data.records,
     )  # fmt: skip
     contact, hit, clock = system.contacts[c], work.hit[0], data.clocks[0]
     hit.closed = 0
     hit.code = onto_surface(system, controls, c, state, work)
     if hit.code != 0:
         return
-    k = gather_closed(system, controls, held, c, state, cluster, work, True)
+    k = gather_closed(system, controls, active, c, state, group, work, True)
     if k < 0:
         hit.code = TOO_MANY_POINTS
         return
     approach, jams = 0.0, False
     for i in range(k):
-        seat = cluster.seats[i]
-        jams = jams or (seat.held >= 0 and held.points[seat.held].jams == 1)
-        u = contact_velocity(cluster.points[0][i], state)[0]
-        if u < -slow(system.contacts[seat.contact], state):
+        closed_point = group.closed[i]
+        jams = jams or (closed_point.active >= 0 and active.points[closed_point.active].jams == 1)
+        u = contact_velocity(group.points[0][i], state)[0]
+        if u < -slow(system.contacts[closed_point.contact], state):
             approach = min(approach, u)
     if approach < 0.0 or jams:
-        hit.closed = max(k, 2) if jams else k  # a point that is held is always judged anew
-        single = as_one(system, k, state, cluster, work)
-        if not single and data.corner.e.shape[0] < k:
-            clock.grow, hit.code = FULL_CORNER, GROW
+        hit.closed = max(k, 2) if jams else k  # a point that is active is always judged anew
+        single = as_one(system, k, state, group, work)
+        if not single and data.multiple.e.shape[0] < k:
+            clock.grow, hit.code = FULL_MULTIPLE, GROW
             return
-        begin_event(system, c, cluster.seats[0].feature, state, clock, records)
+        begin_event(system, c, group.closed[0].feature, state, clock, records)
         first = clock.struck
         if single:
             hit.friction = contact.friction
@@ -108,36 +108,36 @@ def strike(model, data, method, c):
             project_velocity(system, state, work)
         clock.loads += driven_work(system, state, first, clock, records)
         end_event(system, JAMS if jams else IMPACT, state, clock, records)
-        forget_jams(held, k, cluster)
-        for i in range(held.brinks.shape[0]):
-            if concerns(system.contacts[i], work.body[contact.body].group, work):
-                held.brinks[i].near = 1
-        label_groups(system, held, work)
+        forget_jams(active, k, group)
+        for i in range(active.contact_states.shape[0]):
+            if concerns(system.contacts[i], work.body[contact.body].label, work):
+                active.contact_states[i].near = 1
+        label_groups(system, active, work)
     if controls.location != LOCATE:  # others may be inside as well
-        for i in range(held.brinks.shape[0]):
-            held.brinks[i].near = 1
+        for i in range(active.contact_states.shape[0]):
+            active.contact_states[i].near = 1
 
 
 @kernel
-def forget_jams(held, k, cluster):
-    """Clear the mark of the held points whose jam this impact has resolved."""
+def forget_jams(active, k, group):
+    """Clear the mark of the active points whose jam this impact has resolved."""
     for i in range(k):
-        if cluster.seats[i].held >= 0:
-            held.points[cluster.seats[i].held].jams = 0
+        if group.closed[i].active >= 0:
+            active.points[group.closed[i].active].jams = 0
 
 
 @kernel
 def strike_one(model, data, method, c):
     """Resolve the impact of the one point in work.point, with W and u in work.hit."""
     system, controls = model.system, model.controls
-    held, state, work, clock = data.held, data.state, data.work, data.clocks[0]
+    active, state, work, clock = data.active, data.state, data.work, data.clocks[0]
     contact, hit, point = system.contacts[c], work.hit[0], work.point[0]
-    hit.restitution = effective_restitution(contact, held.brinks[c])
+    hit.restitution = effective_restitution(contact, active.contact_states[c])
     hit.out[layout.STILL] = slow(contact, state)
     if blocked(system, point, hit.W[0, 0]):
         hit.code = BLOCKED
         return
-    held.brinks[c].blows += 1
+    active.contact_states[c].blows += 1
     if collide(method, controls, contact, hit, work.history) != layout.OK:
         hit.code = IMPACT_FAILED
         return

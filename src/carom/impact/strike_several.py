@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.by_reference import refer
+from carom._compiled.by_reference import by_reference
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.contact.gap import slow
@@ -23,11 +23,11 @@ STEP = 30.0  # cost of a step through the layers, of a point [us]
 
 
 @unit
-def at_corner(k, W, u, mu, corner):
-    """Resolve the impact of k points; its code goes to the clock of the scratch."""
-    contacts = refer(CornerContacts(k, W, u, mu, corner.e, corner.law, corner.kappa))
-    code = resolve_contacts(contacts, corner.settings, corner.scratch, corner.result)
-    corner.scratch.work.clock[0].code = code
+def resolve_group(k, W, u, mu, multiple):
+    """Resolve the impact of k points; its code goes to the clock of the workspace."""
+    contacts = by_reference(CornerContacts(k, W, u, mu, multiple.e, multiple.law, multiple.kappa))
+    code = resolve_contacts(contacts, multiple.settings, multiple.workspace, multiple.result)
+    multiple.workspace.work.clock[0].code = code
 
 
 @kernel
@@ -37,66 +37,66 @@ def strike_several(model, data, c, k):
     A point that jams begins with a little approach (mathematics page, VI.6).
     """
     system = model.system
-    held, state, cluster, corner = data.held, data.state, data.cluster, data.corner
+    active, state, group, multiple = data.active, data.state, data.group, data.multiple
     work, clock = data.work, data.clocks[0]
-    hit, u = work.hit[0], cluster.v[U]
-    inverse_masses(system, k, cluster.points[0], state, work, cluster.m[0])
-    velocities(k, cluster.points[0], state, u)
+    hit, u = work.hit[0], group.v[U]
+    inverse_masses(system, k, group.points[0], state, work, group.m[0])
+    velocities(k, group.points[0], state, u)
     for i in range(k):
-        contact = system.contacts[cluster.seats[i].contact]
+        contact = system.contacts[group.closed[i].contact]
         if abs(u[3 * i]) <= slow(contact, state):
             u[3 * i] = 0.0  # touching, not striking
-        if u[3 * i] < 0.0 and blocked(system, cluster.points[0][i], cluster.m[0][3 * i, 3 * i]):
+        if u[3 * i] < 0.0 and blocked(system, group.points[0][i], group.m[0][3 * i, 3 * i]):
             hit.code = BLOCKED
             return
-        j, brink = cluster.seats[i].held, held.brinks[cluster.seats[i].contact]
-        cluster.mu[i], corner.e[i] = contact.friction, effective_restitution(contact, brink)
-        if j >= 0 and held.points[j].jams == 1:
+        j, contact_state = group.closed[i].active, active.contact_states[group.closed[i].contact]
+        group.mu[i], multiple.e[i] = contact.friction, effective_restitution(contact, contact_state)
+        if j >= 0 and active.points[j].jams == 1:
             u[3 * i] -= SEED * math.sqrt(u[3 * i + 1] ** 2 + u[3 * i + 2] ** 2)
-            cluster.mu[i] = contact.friction_held
-        corner.law[i], corner.kappa[i] = contact.law, contact.stiffness
-    at_corner(k, cluster.m[0], u, cluster.mu, corner)
-    code = corner.scratch.work.clock[0].code
-    worked = STEP * k * corner.result.summary[0].steps
+            group.mu[i] = contact.friction_held
+        multiple.law[i], multiple.kappa[i] = contact.law, contact.stiffness
+    resolve_group(k, group.m[0], u, group.mu, multiple)
+    code = multiple.workspace.work.clock[0].code
+    worked = STEP * k * multiple.result.summary[0].steps
     clock.effort += worked
     clock.since += worked
     if code != OK:
         hit.code = IMPACT_FAILED
         return
-    count_blows(held, k, cluster)
-    P = corner.result.impulse
+    count_blows(active, k, group)
+    P = multiple.result.impulse
     for i in range(k):
         n, t1, t2 = P[3 * i], P[3 * i + 1], P[3 * i + 2]
         if n != 0.0:
-            write_share(system, i, k, state, cluster, corner, clock, data.records)
-            spread(system, cluster.points[0][i], state, n, t1, t2, work)
-            add_velocity(system, cluster.points[0][i], work, state)
+            write_share(system, i, k, state, group, multiple, clock, data.records)
+            spread(system, group.points[0][i], state, n, t1, t2, work)
+            add_velocity(system, group.points[0][i], work, state)
 
 
 @kernel
-def count_blows(held, k, cluster):
+def count_blows(active, k, group):
     """Count the blow for each contact of which a point strikes."""
     last = -1
     for i in range(k):
-        c = cluster.seats[i].contact
-        if cluster.v[U][3 * i] < 0.0 and c != last:
-            held.brinks[c].blows += 1
+        c = group.closed[i].contact
+        if group.v[U][3 * i] < 0.0 and c != last:
+            active.contact_states[c].blows += 1
             last = c
 
 
 @kernel
-def write_share(system, i, k, state, cluster, corner, clock, records):
+def write_share(system, i, k, state, group, multiple, clock, records):
     """Write the part of point i in an impact of k points."""
-    row, point, result = records.impact[clock.struck], cluster.points[0][i], corner.result
-    x, u = state[point.a].x, cluster.v[U]
+    row, point, result = records.impact[clock.struck], group.points[0][i], multiple.result
+    x, u = state[point.a].x, group.v[U]
     row.time, row.together = clock.now, k
-    row.contact = system.contacts[cluster.seats[i].contact].number
+    row.contact = system.contacts[group.closed[i].contact].number
     for r in range(3):
         row.point[r], row.normal[r] = x[r] + point.arm_a[r], point.axes[0, r]
         row.before[r], row.after[r] = u[3 * i + r], result.velocity[3 * i + r]
         row.impulse[r] = result.impulse[3 * i + r]
         for s in range(3):
-            row.W[r, s] = cluster.m[0][3 * i + r, 3 * i + s]
+            row.W[r, s] = group.m[0][3 * i + r, 3 * i + s]
     row.compression_work, row.restitution_work = result.compression[i], result.restitution[i]
     row.friction_loss = result.friction[i]
     row.energy_change = result.compression[i] + result.restitution[i] - result.friction[i]

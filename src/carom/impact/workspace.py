@@ -10,11 +10,11 @@ from carom._compiled.record_arrays import table
 from carom.collision.layout import MOST_POINTS
 from carom.friction.layout import ContactWork, new_contact_work
 from carom.impact.multiple.layout import (
-    CornerResult,
-    CornerScratch,
-    CornerSettings,
-    corner_arrays,
-    new_corner_result,
+    MultipleResult,
+    MultipleSettings,
+    MultipleWorkspace,
+    new_multiple_result,
+    new_multiple_workspace,
 )
 from carom.model.arrays import STATE, System
 from carom.model.workspace import POINT
@@ -22,17 +22,20 @@ from carom.model.workspace import POINT
 #: most points that are solved for together
 MOST = 192
 
-#: a closed point: what touches, and where it stands in the list of held points
-SEAT = [
+#: a closed point: what touches, and where it stands in the list of active points
+CLOSED_POINT = [
     ("contact", "i8"),
     ("feature", "i8"),
-    ("held", "i8"),  # place among the held points, -1 where it is open
+    ("active", "i8"),  # place among the active points, -1 where it is open
     ("stays", "i8"),  # 1 where it is to be held
     ("point", "f8", 3),  # of the core, body axes
     ("rows", "i8"),  # that the return to the surface uses
     ("stopped", "i8"),  # 1 where slip has stopped within the step
     ("turns", "i8"),  # of its POINT
-    ("parent", "i8"),  # of rolling and pivoting: the seat whose normal force bounds the torque
+    (
+        "parent",
+        "i8",
+    ),  # of rolling and pivoting: the closed point whose normal force bounds the torque
 ]
 
 #: rows of `v`: velocities; velocities or accelerations without the unknown impulses; impulses or forces; those
@@ -40,13 +43,13 @@ SEAT = [
 U, C, P, OLD, BACK = range(5)
 
 
-class Cluster(NamedTuple):
+class Group(NamedTuple):
     """Workspace for up to K points of N bodies, in few arrays: each costs at every call.
 
     Vectors (3K,) and matrices (3K, 3K) have rows n, t1, t2 a point.
     """
 
-    seats: np.recarray  # (K,) SEAT
+    closed: np.recarray  # (K,) CLOSED_POINT
     points: (
         np.recarray
     )  # (2, K) POINT: in the state at hand, or in the middle of a step; at its end
@@ -60,12 +63,12 @@ class Cluster(NamedTuple):
     cone: ContactWork
 
 
-class Corner(NamedTuple):
+class MultipleImpact(NamedTuple):
     """Workspace, settings and result of a multiple impact of up to K points."""
 
-    scratch: CornerScratch
-    settings: CornerSettings
-    result: CornerResult
+    workspace: MultipleWorkspace
+    settings: MultipleSettings
+    result: MultipleResult
     e: np.ndarray  # (K,)
     law: np.ndarray  # (K,)
     kappa: np.ndarray  # (K,)
@@ -84,11 +87,11 @@ def capacity(system: System) -> int:
     return max(1, min(MOST, int(count.max())))
 
 
-def new_cluster(system: System) -> Cluster:
-    """Return the scratch for the largest group of `system`."""
+def new_group(system: System) -> Group:
+    """Return the workspace for the largest group of `system`."""
     n, k = system.bodies.size, capacity(system)
-    return Cluster(
-        seats=table(SEAT, k),
+    return Group(
+        closed=table(CLOSED_POINT, k),
         points=table(POINT, 2, k),
         v=np.zeros((5, 3 * k)),
         m=np.zeros((2, 3 * k, 3 * k)),
@@ -101,12 +104,12 @@ def new_cluster(system: System) -> Cluster:
     )
 
 
-def new_corner(k: int, settings: CornerSettings) -> Corner:
-    """Return the scratch of impacts of `k` points."""
-    return Corner(
-        scratch=corner_arrays(k),
+def new_multiple(k: int, settings: MultipleSettings) -> MultipleImpact:
+    """Return the workspace of impacts of `k` points."""
+    return MultipleImpact(
+        workspace=new_multiple_workspace(k),
         settings=settings,
-        result=new_corner_result(k),
+        result=new_multiple_result(k),
         e=np.zeros(k),
         law=np.zeros(k, dtype=np.int64),
         kappa=np.zeros(k),

@@ -65,7 +65,7 @@ def rate(c, state):
 
 @kernel
 def drift(c, state, out):
-    """Return q'' of bodies that do not accelerate; `out` is scratch (6,)."""
+    """Return q'' of bodies that do not accelerate; `out` is workspace (6,)."""
     ax, ay, az = axis(state, c.parent, c.parent_frame, 0)
     if c.kind == PRISMATIC:
         acceleration_bias(c, state, out)

@@ -270,7 +270,7 @@ SIDE = [
 STOP = 2
 
 
-#: of a row of the scratch of a forest: where the freedoms begin, and numbers for each (`carom.dynamics.tree`)
+#: of a row of the workspace of a forest: where the freedoms begin, and numbers for each (`carom.dynamics.tree`)
 FIRST, WIDTH = 52, 14
 
 
@@ -284,7 +284,7 @@ class Solver(NamedTuple):
     kind: int  # NO_JOINTS, FOREST or LOOPS
     # forest: articulated-body elimination (`carom.dynamics.tree`)
     links: np.recarray  # (N,) LINK
-    scratch: np.ndarray  # (N, FIRST + WIDTH times the most freedoms) written by each solve
+    workspace: np.ndarray  # (N, FIRST + WIDTH times the most freedoms) written by each solve
     # closed loops: block-sparse Cholesky factor of A M^-1 A^T, joints in an order of low fill
     order: np.ndarray  # (J,) joints in the order of elimination
     column: np.ndarray  # (J+1,) ranges of the blocks below the diagonal, by place in the order
@@ -299,7 +299,7 @@ class Solver(NamedTuple):
     pose: np.ndarray  # (N, 7) that was factored, or (0, 7): rows depend on more than the pose
     #: (1,) how many rows depend on others away from singular positions; -1: not known yet
     usual: np.ndarray
-    # scratch of `carom.dynamics.light_bodies`, empty where masses are alike: high and low parts
+    # workspace of `carom.dynamics.light_bodies`, empty where masses are alike: high and low parts
     fine: np.ndarray  # (2, J+B, 6, 6) blocks
     digits: np.ndarray  # (J, 4, 6) 1/pivots, multipliers
     scaled: np.ndarray  # (N, 3, 6) scaled motions, and attitudes
@@ -318,15 +318,15 @@ class Relations(NamedTuple):
     forces: np.recarray  # USER_FORCE
     stiff: np.recarray  # STIFF_SPRING
     frictions: np.recarray  # (F,) FRICTION
-    friction_matrix: np.ndarray  # (F, F) scratch
-    friction_vector: np.ndarray  # (F,) scratch
+    friction_matrix: np.ndarray  # (F, F) workspace
+    friction_vector: np.ndarray  # (F,) workspace
     named: np.ndarray  # bodies that functions of the user's speak of
     read: np.ndarray  # what functions of the user's read and write
     write: np.ndarray
 
 
 class System(NamedTuple):
-    """All that the kernels know about a scene. Never written to after compile, but the solver's scratch."""
+    """All that the kernels know about a scene. Never written to after compile, but the solver's workspace."""
 
     bodies: np.recarray  # (N,) BODY
     gravity: np.ndarray  # (3,)

@@ -9,7 +9,7 @@ import numpy as np
 from carom.model.arrays import System
 from carom.model.controls import Controls
 from carom.model.records import Records
-from carom.model.workspace import Held, Work
+from carom.model.workspace import ActiveSet, Work
 
 
 class Model(NamedTuple):
@@ -26,11 +26,11 @@ class Data(NamedTuple):
     """
 
     state: np.recarray  # (N,) STATE, the present
-    held: Held
+    active: ActiveSet
     work: Work
-    cluster: tuple  # `carom.impact.workspace.Cluster`: the closed points of a group
-    corner: tuple  # `carom.impact.workspace.Corner`: scratch of a multiple impact
-    heap: tuple  # `carom.stepping.crowd.layout.Heap`: scratch of a time-stepping step
+    group: tuple  # `carom.impact.workspace.Group`: the closed points of a group
+    multiple: tuple  # `carom.impact.workspace.MultipleImpact`: workspace of a multiple impact
+    crowd: tuple  # `carom.stepping.crowd.layout.Crowd`: workspace of a time-stepping step
     clocks: np.recarray  # (1,) CLOCK
     records: Records
     watch: np.recarray  # (1,) WATCH

@@ -10,22 +10,22 @@ from carom._compiled.record_arrays import Columns, table
 from carom.collision.layout import new_pair_work, new_points
 from carom.model.arrays import STATE, System
 from carom.model.workspace import (
+    ACTIVE_POINT,
     BODY_WORK,
-    BRINK,
-    HELD,
+    CONTACT_STATE,
     HIT,
     JOINT_WORK,
     POINT,
     RESULT,
     SEARCH,
     STAGE,
-    Held,
+    ActiveSet,
     Work,
 )
 
 #: kinds of events, by code
 EVENTS = ("impact", "held", "slips", "sticks", "opens", "jams")
-IMPACT, HOLD, SLIPS, STICKS, OPENS, JAMS = range(6)
+IMPACT, PERSIST, SLIPS, STICKS, OPENS, JAMS = range(6)
 
 #: energies of the present, and energy summed since the start
 ENERGIES = [("kinetic", "f8"), ("potential", "f8")]
@@ -59,20 +59,20 @@ CLOCK = [
     ("trials", "i8"),
     ("rejected", "i8"),  # trial steps of too great an error
     ("tries", "i8"),  # trial steps of the present step of an island
-    ("effort", "f8"),  # work for its contact problems and corners, about [us]
+    ("effort", "f8"),  # work for its contact problems and multiple impacts, about [us]
     ("credit", "f8"),  # how much of it a step may take, as those before took less than they might
     ("grow", "i8"),  # what is to grow before the loop goes on
     ("since", "f8"),  # work since the loop was entered, about [us]
     ("paused", "i8"),  # 1 where it was left in the middle of a trial step
     ("located", "i8"),
     ("holds", "i8"),
-    ("pressed", "i8"),  # steps of groups held at several points, on trial too
+    ("contact_steps", "i8"),  # steps of groups in contact at several points, on trial too
     ("rounds", "i8"),  # of their iteration
     (
         "whole",
         "i8",
-    ),  # steps whose islands were taken as heaps, as one could not go from event to event
-    ("residual", "f8"),  # greatest of held contacts since the last saved row
+    ),  # steps whose islands were taken as crowds, as one could not go from event to event
+    ("residual", "f8"),  # greatest of persistent contacts since the last saved row
     (
         "still",
         "f8",
@@ -80,7 +80,7 @@ CLOCK = [
 ]
 
 SERIES = [("t", "f8"), *ENERGIES, *LEDGER, ("residual", "f8")]
-#: a held point at a saved time; moments about the mass centres (world axes)
+#: an active point at a saved time; moments about the mass centres (world axes)
 TOUCH = [
     ("saved", "i8"),
     ("contact", "i8"),
@@ -120,7 +120,7 @@ EVENT = [
     ("feature", "i8"),
     ("saved", "i8"),  # rows that were saved before
     ("first", "i8"),  # its snapshots, up to that of the next event
-    ("mode", "i8"),  # of a point that is held from now on
+    ("mode", "i8"),  # of a point that is active from now on
 ]
 
 #: a body at an event that concerns it, velocities before and after
@@ -140,10 +140,10 @@ MARGIN = 260  # impacts, or events, that one turn of the loop may write
 GROW = 100  # arrays are full (`clock.grow` says which): the caller makes longer ones
 PAUSE = 101  # much was done: the caller looks for Ctrl-C
 # within it:
-STRAYED = 102  # a body has left the ball that its island gave it
+LEFT_BALL = 102  # a body has left the ball that its island gave it
 
 # what is to grow: records of impacts and events, saved rows, pairs of islands, points of a crowd, of an impact
-FULL_EVENTS, FULL_ROWS, FULL_PAIRS, FULL_SPOTS, FULL_CORNER = range(5)
+FULL_EVENTS, FULL_ROWS, FULL_PAIRS, FULL_SPOTS, FULL_MULTIPLE = range(5)
 
 LONG = 5e4  # work after which the loop is left for a moment, about [us]
 # work for contacts, about [us]: what a step may take on the average, one after others that took less, and that
@@ -169,25 +169,25 @@ def new_clock() -> np.recarray:
     return clock
 
 
-def new_held(system: System) -> Held:
+def new_active_set(system: System) -> ActiveSet:
     """Return an empty active set: all contacts are to be checked first."""
     contacts = system.contacts
     grounded = int(np.count_nonzero((contacts["touches"] == 1) & (contacts["other"] < 0)))
     between = max(len(system.bodies), len(system.solids))  # bodies, or pieces of them
-    held = Held(
+    active = ActiveSet(
         points=table(
-            HELD, len(system.vertices) + 24 * between + 8 * grounded + len(system.contacts)
+            ACTIVE_POINT, len(system.vertices) + 24 * between + 8 * grounded + len(system.contacts)
         ),
-        brinks=table(BRINK, system.contacts.size),
+        contact_states=table(CONTACT_STATE, system.contacts.size),
         carries=np.zeros(len(system.vertices), dtype=np.int64),
         count=np.zeros(1, dtype=np.int64),
     )
-    held.brinks["near"] = 1
-    return held
+    active.contact_states["near"] = 1
+    return active
 
 
 def new_work(system: System, stages: int) -> Work:
-    """Return the scratch of one run."""
+    """Return the workspace of one run."""
     n, j = system.bodies.size, system.joints.size
     body = table(BODY_WORK, n)
     body["room"] = np.inf
@@ -225,7 +225,7 @@ def new_records(system: System, saves: int, events: int) -> Records:
 
 
 def longer(records: Records) -> Records:
-    """Return the records with room for twice as many impacts, events and held points."""
+    """Return the records with room for twice as many impacts, events and active points."""
     return records._replace(
         **{
             name: np.concatenate([a, np.zeros_like(a)]).view(Columns)
@@ -266,12 +266,12 @@ def trimmed(records: Records, clock: np.recarray) -> Records:
 
 def written(records: Records, clock: np.recarray) -> Records:
     """Return the rows that were written: a run that goes on may write to them."""
-    row = told(clock)
+    row = as_numbers(clock)
     saved = row["saved"]
     ends = saved, saved, row["touched"], row["struck"], row["event"], row["snapped"]
     return Records(*(rows[:end].view(Columns) for rows, end in zip(records, ends)))
 
 
-def told(clock: np.recarray) -> dict:
+def as_numbers(clock: np.recarray) -> dict:
     """Return the fields of the clock as Python numbers, by name."""
     return dict(zip(clock.dtype.names or (), clock[0].item()))

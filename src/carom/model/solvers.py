@@ -30,7 +30,7 @@ def no_joints() -> Solver:
     return Solver(
         kind=NO_JOINTS,
         links=table(LINK, 0),
-        scratch=np.zeros((0, 0)),
+        workspace=np.zeros((0, 0)),
         order=number,
         column=number,
         row=number,
@@ -64,8 +64,8 @@ def tree_solver(joints: np.recarray, order: np.ndarray, joint: np.ndarray) -> So
     most = max(
         1, int(np.max(links.freedoms[(links.joint >= 0) | (links.has_child == 1)], initial=0))
     )
-    scratch = np.full((order.size, FIRST + WIDTH * most), np.nan)
-    return no_joints()._replace(kind=FOREST, links=links, scratch=scratch)
+    workspace = np.full((order.size, FIRST + WIDTH * most), np.nan)
+    return no_joints()._replace(kind=FOREST, links=links, workspace=workspace)
 
 
 def spread(touching: list[list[int]], mass, moments, extent) -> tuple[float, int, int]:

@@ -9,17 +9,17 @@ import numpy as np
 from carom.collision.layout import PairWork
 
 #: state of a contact between events
-BRINK = [
-    ("seen", "i8"),  # scratch: while a group is gathered; 1 + first held point, in a heap
+CONTACT_STATE = [
+    ("seen", "i8"),  # workspace: while a group is gathered; 1 + first active point, in a crowd
     ("near", "i8"),  # 1 where something happened at the last event: look before stepping
-    ("jams", "i8"),  # 1 where a held point of it jams: an impact without collision is due
+    ("jams", "i8"),  # 1 where an active point of it jams: an impact without collision is due
     ("leaving", "i8"),  # 1 where the body lifts off without speed: it may touch at the start
     ("blows", "i8"),  # impacts in this step
     ("step", "i8"),  # the last in which the two were near each other, plus 1
 ]
 
 #: an active point: a point of persistent contact, over time (see `carom.persistent`)
-HELD = [
+ACTIVE_POINT = [
     ("contact", "i8"),
     ("feature", "i8"),  # what touches, the same as long as it does: number of the vertex
     ("body", "i8"),  # of the contact
@@ -27,8 +27,8 @@ HELD = [
     ("touches", "i8"),
     ("mode", "i8"),  # 0 open, 1 slipping, 2 sticking
     ("next", "i8"),  # mode after the step on trial
-    ("settles", "i8"),  # 1 where that step puts the body to rest
-    ("several", "i8"),  # 1 where it shares its bodies with other held points
+    ("comes_to_rest", "i8"),  # 1 where that step puts the body to rest
+    ("several", "i8"),  # 1 where it shares its bodies with other active points
     ("rest", "i8"),  # 1 where the body does not move at all
     ("jams", "i8"),  # 1 where it slips and no finite force keeps it closed
     ("point", "f8", 3),  # point of the core that carries the contact, body axes
@@ -91,9 +91,9 @@ BODY_WORK = [
     ("bound", "f8", 3),  # greatest linear, angular acceleration and spin of the last step
     ("miss", "f8", 3),  # two estimates of the error of a step [m], and what they are measured by
     ("inverse", "f8", 6),  # inverse inertia, world axes
-    ("group", "i8"),  # bodies with the same number move each other: joined, or held to each other
-    ("holds", "i8"),  # of the body that its group is named after: held points of the group
-    ("status", "i8"),  # FREE, ONE, RESTS or SEVERAL held points
+    ("label", "i8"),  # bodies with the same number move each other: joined, or held to each other
+    ("n_active", "i8"),  # of the body that its group is named after: active points of the group
+    ("status", "i8"),  # FREE, ONE, RESTS or SEVERAL active points
     ("push", "f8", 6),  # change of momentum (linear, angular about the centre) in a step
     (
         "spin",
@@ -118,14 +118,14 @@ JOINT_WORK = [
 #: one stage of a Runge-Kutta step, for one body
 STAGE = [("speed", "f8", 6), ("rate", "f8", 6), ("attitude", "f8", 4)]
 
-#: results of a step of bodies that are joined, loaded or held
+#: results of a step of bodies that are joined, loaded or in contact
 RESULT = [
     ("applied", "f8"),
     ("friction", "f8"),
     ("code", "i8"),
     ("power", "f8"),  # of loads, and of friction, with the last accelerations
     ("drag", "f8"),
-    ("residual", "f8"),  # greatest of the groups held at several points
+    ("residual", "f8"),  # greatest of the groups in contact at several points
     ("unnamed", "f8"),  # the same: energy lost without a name, as a part of what may be
     ("parts", "i8"),  # more parts of steps in which bodies turned far than steps
     ("fallen", "i8"),  # steps of a symplectic method that the explicit one has taken
@@ -162,7 +162,7 @@ SEARCH = [
     ("code", "i8"),  # of the step without contacts,
     ("applied", "f8"),  # work of loads and of friction in it,
     ("friction", "f8"),
-    ("alone", "f8"),  # of points that are held one to a body,
+    ("alone", "f8"),  # of points that are active one to a body,
     ("found", "i8"),  # whether an event is at its end
 ]
 
@@ -182,12 +182,12 @@ HIT = [
 ]
 
 
-class Held(NamedTuple):
+class ActiveSet(NamedTuple):
     """The active set and the states of all contacts: the first `count[0]` of `points` are in use."""
 
-    points: np.recarray  # (P,) HELD
-    brinks: np.recarray  # (C,) BRINK
-    carries: np.ndarray  # (V,) 1 for vertices that carry a held contact
+    points: np.recarray  # (P,) ACTIVE_POINT
+    contact_states: np.recarray  # (C,) CONTACT_STATE
+    carries: np.ndarray  # (V,) 1 for vertices that carry a persistent contact
     count: np.ndarray  # (1,)
 
 

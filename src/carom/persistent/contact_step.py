@@ -1,4 +1,4 @@
-"""A step of bodies held at several points: midpoint rows carry the impulse, end rows the constraint.
+"""A step of bodies in contact at several points: midpoint rows carry the impulse, end rows the constraint.
 
 The step without the contacts is known (any method). With the impulses p of all k points,
 
@@ -20,11 +20,11 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
-from carom.contact.closed_points import gather_held, place_seats
+from carom.contact.closed_points import gather_active, place_closed
 from carom.contact.groups import members
 from carom.dynamics.acceleration import SLIP
 from carom.dynamics.elements import driven_power
-from carom.dynamics.explicit import keep
+from carom.dynamics.explicit import copy_state
 from carom.dynamics.forces import applied_wrenches
 from carom.dynamics.joint_friction import slip_power
 from carom.dynamics.project import project_velocity, shift
@@ -42,7 +42,7 @@ from carom.persistent.rolling_friction import bound_turning, first_torque
 from carom.persistent.step_control import affordable, unnamed
 
 ROUNDS = 50
-SETTLED = 1e-14  # relative change of velocities by a round that is the last
+CONVERGED = 1e-14  # relative change of velocities by a round that is the last
 # while rounds change them by more than FAR they need no forces better than ROUGH, but W anew; then W stays: the
 # fixed point does not depend on it
 FAR, ROUGH = 1e-4, 1e-8
@@ -53,112 +53,110 @@ ITERATION = 0.3  # cost [us] of an iteration for k points, by k^2
 
 
 @unit
-def press(model, data, h):
-    """Correct the step from `start` to `end` of all bodies that are held at several points.
+def contact_step(model, data, h):
+    """Correct the step from `start` to `end` of all bodies that are in contact at several points.
 
-    Forces at the end go to the held points; work of friction, of loads and a status to `work.result`.
+    Forces at the end go to the active points; work of friction, of loads and a status to `work.result`.
     """
-    held, work = data.held, data.work
+    active, work = data.active, data.work
     result = work.result[0]
     result.applied, result.friction, result.code = 0.0, 0.0, 0
     result.residual, result.unnamed = 0.0, 0.0
-    for i in range(held.count[0]):
-        hold = held.points[i]
-        group = work.body[hold.body].group
-        if hold.several == 0 or hold.rest == 1 or seen(held, i, group, work):
+    for i in range(active.count[0]):
+        active_point = active.points[i]
+        label = work.body[active_point.body].label
+        if active_point.several == 0 or active_point.rest == 1 or seen(active, i, label, work):
             continue
-        press_group(model, data, group, h)
+        step_group(model, data, label, h)
         if result.code != 0:
             return
 
 
 @kernel
-def seen(held, i, group, work):
-    """Return whether an earlier held point is of the same group."""
+def seen(active, i, label, work):
+    """Return whether an earlier active point is of the same group."""
     for j in range(i):
-        if work.body[held.points[j].body].group == group:
+        if work.body[active.points[j].body].label == label:
             return True
     return False
 
 
 @kernel
-def press_group(model, data, group, h):
+def step_group(model, data, label, h):
     """Correct the step of one group."""
     system, controls = model.system, model.controls
-    held, start, end, cluster, work, clock = (
-        data.held,
+    active, start, end, group, work, clock = (
+        data.active,
         data.state,
         data.work.trial,
-        data.cluster,
+        data.group,
         data.work,
         data.clocks[0],
     )
-    k = gather_held(system, held, group, start, cluster, work)
-    count = members(work, group, cluster.member)
+    k = gather_active(system, active, label, start, group, work)
+    count = members(work, label, group.member)
     loaded = False
     for m in range(count):
-        loaded = loaded or system.bodies[cluster.member[m]].ballistic == 0
+        loaded = loaded or system.bodies[group.member[m]].ballistic == 0
     begin(model, data, k, h, count, loaded)
-    before, single = math.inf, of_one_body(system, k, cluster.points[0])
-    clock.pressed += 1
+    before, single = math.inf, of_one_body(system, k, group.points[0])
+    clock.contact_steps += 1
     for turn in range(ROUNDS):
         # where impulses are not unique: those of least norm, then those near them
-        cluster.cone.count[NEAR] = min(turn, 1)
+        group.cone.count[NEAR] = min(turn, 1)
         for m in range(count):
-            halfway(start[cluster.member[m]], end[cluster.member[m]], work.stage[cluster.member[m]])
-        place_seats(system, k, work.stage, cluster, cluster.points[0], work)
+            halfway(start[group.member[m]], end[group.member[m]], work.stage[group.member[m]])
+        place_closed(system, k, work.stage, group, group.points[0], work)
         far = before > FAR
         if turn < 2 or far:
-            inverse_masses(system, k, cluster.points[0], work.stage, work, cluster.m[0])
+            inverse_masses(system, k, group.points[0], work.stage, work, group.m[0])
         impose(model, data, k, h, count, loaded)
         for m in range(count):
-            mean_velocity(
-                start[cluster.member[m]], end[cluster.member[m]], work.stage[cluster.member[m]]
-            )
-        pose(k, start, cluster, work)
-        bound_turning(system, k, cluster)
+            mean_velocity(start[group.member[m]], end[group.member[m]], work.stage[group.member[m]])
+        pose(k, start, group, work)
+        bound_turning(system, k, group)
         enough = ROUGH if turn > 0 and far else 0.0
         if single:
             enough = FIRST if turn == 0 else PART * before
         change = find_impulses(model, data, k, enough)
-        if single and change <= SETTLED:  # good enough as they were: or the solution?
+        if single and change <= CONVERGED:  # good enough as they were: or the solution?
             change = find_impulses(model, data, k, 0.0)
-        if change <= SETTLED or (change <= 1e-7 and change >= 0.3 * before):
+        if change <= CONVERGED or (change <= 1e-7 and change >= 0.3 * before):
             break
         if controls.retry == 1 and clock.effort > affordable(controls, clock):
             break  # to be given up, where there is another way
         before = change
         clock.rounds += 1
-    cluster.cone.count[NEAR], cluster.cone.mismatch[ENOUGH] = 0, 0.0
+    group.cone.count[NEAR], group.cone.mismatch[ENOUGH] = 0, 0.0
     driven = impose(model, data, k, h, count, loaded)
     check(model, data, k, count)
     friction = finish(model, data, k, h, count)
     work.result[0].friction += friction
     if loaded:
-        work.result[0].applied += driven + extra_work(system, h, start, end, cluster, work)
+        work.result[0].applied += driven + extra_work(system, h, start, end, group, work)
         rubbed = slip_power(system, work.stage) - slip_power(system, work.middle)
         work.result[0].friction += h * rubbed
     else:
-        over = unnamed(system, controls, start, end, friction, count, cluster.member)
+        over = unnamed(system, controls, start, end, friction, count, group.member)
         work.result[0].unnamed = max(work.result[0].unnamed, over)
-    forces_at_end(system, controls, held, k, end, cluster, work)
+    forces_at_end(system, controls, active, k, end, group, work)
 
 
 @kernel
 def find_impulses(model, data, k, enough):
     """Solve for the impulses of a round, to `enough` (0: to round-off); return what that moves, relative."""
     controls = model.controls
-    cluster, clock = data.cluster, data.clocks[0]
+    group, clock = data.group, data.clocks[0]
     left, each = affordable(controls, clock) - clock.effort, ITERATION * k * k
-    cluster.cone.mismatch[ENOUGH] = enough
-    cluster.cone.count[BUDGET] = max(100, int(left / each))
+    group.cone.mismatch[ENOUGH] = enough
+    group.cone.count[BUDGET] = max(100, int(left / each))
     _, _, iterations = solve_cones(
-        k, cluster.m[0], cluster.v[C], cluster.mu, cluster.kind, cluster.heading, cluster.v[P],
-        cluster.cone,
+        k, group.m[0], group.v[C], group.mu, group.kind, group.heading, group.v[P],
+        group.cone,
     )  # fmt: skip
     clock.effort += each * iterations
     clock.since += 5.0 * k + each * iterations
-    return moved(3 * k, cluster)
+    return moved(3 * k, group)
 
 
 @kernel
@@ -168,21 +166,19 @@ def check(model, data, k, count):
     The velocities are those of the bodies: w(p) = W p + c with the c of one more round.
     """
     system = model.system
-    start, end, cluster, work = data.state, data.work.trial, data.cluster, data.work
+    start, end, group, work = data.state, data.work.trial, data.group, data.work
     for m in range(count):
-        b = cluster.member[m]
+        b = group.member[m]
         mean_velocity(start[b], end[b], work.stage[b])
-    pose(k, start, cluster, work)
-    bound_turning(system, k, cluster)
-    found = measure(
-        k, cluster.m[0], cluster.v[C], cluster.mu, cluster.kind, cluster.heading, cluster.v[P]
-    )
+    pose(k, start, group, work)
+    bound_turning(system, k, group)
+    found = measure(k, group.m[0], group.v[C], group.mu, group.kind, group.heading, group.v[P])
     if not found[0] <= work.result[0].residual:
         work.result[0].residual = found[0]
 
 
 @kernel
-def moved(n, cluster):
+def moved(n, group):
     """Return what the last change of p does to the velocities, relative to what all of p does.
 
     Forces themselves may go on changing where they are not unique.
@@ -191,8 +187,8 @@ def moved(n, cluster):
     for i in range(n):
         s, t = 0.0, 0.0
         for j in range(n):
-            s += cluster.m[0][i, j] * (cluster.v[P][j] - cluster.v[OLD][j])
-            t += abs(cluster.m[0][i, j] * cluster.v[P][j])
+            s += group.m[0][i, j] * (group.v[P][j] - group.v[OLD][j])
+            t += abs(group.m[0][i, j] * group.v[P][j])
         change, largest = max(change, abs(s)), max(largest, t)
     return change / largest if largest > 0.0 else 0.0
 
@@ -201,40 +197,40 @@ def moved(n, cluster):
 def begin(model, data, k, h, count, loaded):
     """Note the step without contacts, the directions of slip, and the last forces as a first guess."""
     system, controls = model.system, model.controls
-    held, start, end, cluster, work = (
-        data.held,
+    active, start, end, group, work = (
+        data.active,
         data.state,
         data.work.trial,
-        data.cluster,
+        data.group,
         data.work,
     )
     for m in range(count):
-        keep(end[cluster.member[m]], cluster.flight[cluster.member[m]])
+        copy_state(end[group.member[m]], group.flight[group.member[m]])
     if loaded:  # springs may lead to any body
         for b in range(start.shape[0]):
             halfway(start[b], end[b], work.stage[b])
             halfway(start[b], end[b], work.middle[b])
-    still = controls.rest * gained(start, count, cluster) * controls.step / h
+    still = controls.rest * gained(start, count, group) * controls.step / h
     for i in range(3 * k):
-        cluster.v[BACK][i] = 0.0
+        group.v[BACK][i] = 0.0
     for i in range(k):
-        seat = cluster.seats[i]
-        hold = held.points[seat.held]
-        _, u1, u2 = contact_velocity(cluster.points[0][i], start)
+        closed_point = group.closed[i]
+        active_point = active.points[closed_point.active]
+        _, u1, u2 = contact_velocity(group.points[0][i], start)
         speed = math.sqrt(u1 * u1 + u2 * u2)
-        if seat.turns == 0:
-            cluster.mu[i] = system.contacts[hold.contact].friction_held
+        if closed_point.turns == 0:
+            group.mu[i] = system.contacts[active_point.contact].friction_held
             for r in range(3):
-                cluster.v[P][3 * i + r] = h * hold.force[r]
-            slips, stop = hold.mode == SLIP and speed > 0.0, hold.stop
+                group.v[P][3 * i + r] = h * active_point.force[r]
+            slips, stop = active_point.mode == SLIP and speed > 0.0, active_point.stop
         else:
-            cluster.mu[i] = 1.0
-            first_torque(system, hold, i, h, cluster)
-            slips, stop = speed > still, hold.turn_stop[seat.turns - 1]
-        cluster.heading[i, 0] = u1 / speed if slips else 0.0
-        cluster.heading[i, 1] = u2 / speed if slips else 0.0
-        cluster.kind[i] = CONE
-        seat.stopped = 0 if slips and stop > h * (1.0 + 1e-9) else 1
+            group.mu[i] = 1.0
+            first_torque(system, active_point, i, h, group)
+            slips, stop = speed > still, active_point.turn_stop[closed_point.turns - 1]
+        group.heading[i, 0] = u1 / speed if slips else 0.0
+        group.heading[i, 1] = u2 / speed if slips else 0.0
+        group.kind[i] = CONE
+        closed_point.stopped = 0 if slips and stop > h * (1.0 + 1e-9) else 1
 
 
 @kernel
@@ -253,9 +249,9 @@ def impose(model, data, k, h, count, loaded):
     Returns the work of what is prescribed: in answer to p, and in the return to the joints.
     """
     system = model.system
-    held, end, cluster, work = data.held, data.work.trial, data.cluster, data.work
-    member, flight, result, driven = cluster.member, cluster.flight, work.result[0], 0.0
-    spread_all(system, k, cluster.points[0], cluster.v[P], count, member, work.stage, work)
+    active, end, group, work = data.active, data.work.trial, data.group, data.work
+    member, flight, result, driven = group.member, group.flight, work.result[0], 0.0
+    spread_all(system, k, group.points[0], group.v[P], count, member, work.stage, work)
     joined = system.joints.shape[0] > 0 and any_joined(system, count, member)
     if joined:
         result.time = result.start + 0.5 * h
@@ -271,11 +267,11 @@ def impose(model, data, k, h, count, loaded):
         )
         for i in range(6):
             motion[i] *= 0.5 * h
-        keep(flight[b], end[b])
+        copy_state(flight[b], end[b])
         shift(motion, end[b])
     if loaded:
-        add_difference(system, h, count, cluster, work)
-    onto_surfaces(system, held, k, count, end, cluster, work)
+        add_difference(system, h, count, group, work)
+    onto_surfaces(system, active, k, count, end, group, work)
     for m in range(count):
         b = member[m]
         body, push, J = system.bodies[b], work.body[b].push, system.bodies[b].inertia
@@ -288,54 +284,54 @@ def impose(model, data, k, h, count, loaded):
     if joined:
         project_velocity(system, end, work)
         driven += driven_power(system, end, work)
-    place_seats(system, k, end, cluster, cluster.points[1], work)
-    velocities(k, cluster.points[1], end, cluster.v[U])
+    place_closed(system, k, end, group, group.points[1], work)
+    velocities(k, group.points[1], end, group.v[U])
     return driven
 
 
 @kernel
-def add_difference(system, h, count, cluster, work):
+def add_difference(system, h, count, group, work):
     """Add to the push what applied forces do on the path that is taken, less on the one without contacts."""
     applied_wrenches(system, work.stage, False, work)
     for m in range(count):
-        b = cluster.member[m]
+        b = group.member[m]
         for i in range(6):
             work.body[b].push[i] += h * work.body[b].wrench[i]
     applied_wrenches(system, work.middle, False, work)
     for m in range(count):
-        b = cluster.member[m]
+        b = group.member[m]
         for i in range(6):
             work.body[b].push[i] -= h * work.body[b].wrench[i]
 
 
 @kernel
-def pose(k, start, cluster, work):
+def pose(k, start, group, work):
     """Write c of the contact problem: w(p_old) - W p_old, with the slip that rules the friction of each point.
 
     Where slip goes on that is twice the velocity at the middle of the step, G_0 (v_0 + v_1), else the one at
     the end. (Friction along the slip of the last round would not converge at speeds below mu N h W_tt.)
     """
     for i in range(k):
-        w, point, q = cluster.v[U], cluster.points[0][i], 3 * i
+        w, point, q = group.v[U], group.points[0][i], 3 * i
         c = (w[q], w[q + 1], w[q + 2])
-        if cluster.seats[i].stopped == 0:
+        if group.closed[i].stopped == 0:
             _, m1, m2 = contact_velocity(point, work.stage)
-            d1, d2 = cluster.heading[i, 0], cluster.heading[i, 1]
+            d1, d2 = group.heading[i, 0], group.heading[i, 1]
             if m1 * d1 + m2 * d2 > 0.0 and w[q + 1] * d1 + w[q + 2] * d2 > 0.0:
                 c = (w[q], 2.0 * m1, 2.0 * m2)
             else:
-                cluster.seats[i].stopped = 1
+                group.closed[i].stopped = 1
         for r in range(3):
             s = c[r]
             for j in range(3 * k):
-                s -= cluster.m[0][q + r, j] * cluster.v[P][j]
-            cluster.v[C][q + r] = s
+                s -= group.m[0][q + r, j] * group.v[P][j]
+            group.v[C][q + r] = s
     for i in range(3 * k):
-        cluster.v[OLD][i] = cluster.v[P][i]
+        group.v[OLD][i] = group.v[P][i]
 
 
 @kernel
-def extra_work(system, h, start, end, cluster, work):
+def extra_work(system, h, start, end, group, work):
     """Return the work of loads on the path that was taken, less that on the one without contacts."""
     for b in range(start.shape[0]):
         halfway(start[b], end[b], work.stage[b])

@@ -1,4 +1,4 @@
-"""What can end the present mode of a held contact: its force would pull, it slips, or slip stops.
+"""What can end the present mode of a persistent contact: its force would pull, it slips, or slip stops.
 
 Each event is a function that is positive before and negative after, evaluated at the end of a step:
 
@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import inlined, kernel
-from carom.contact.place import place_held
+from carom.contact.place import place_active
 from carom.dynamics.acceleration import OPEN, SLIP, STICK, acceleration
 from carom.kinematics.contact_point import contact_velocity
 from carom.persistent.jam import JAMMED, yields
@@ -24,86 +24,96 @@ _NO_GRIP = 1e-9  # of the friction that there may be: less is round-off
 
 
 @kernel
-def held_value(system, hold, kind, d1, d2, state, work):
+def contact_event_value(system, active_point, kind, d1, d2, state, work):
     """Return the event function `kind`; the force of the contact must be that of `state`."""
-    f, contact = hold.force, system.contacts[hold.contact]
-    if hold.several == 1 and kind != JAM:
-        return hold.lift if kind == SEPARATE else hold.grip
+    f, contact = active_point.force, system.contacts[active_point.contact]
+    if active_point.several == 1 and kind != JAM:
+        return active_point.lift if kind == SEPARATE else active_point.grip
     if kind == SEPARATE:
         return f[0]
     if kind == CONE:
         return contact.friction_held * f[0] - math.sqrt(f[1] * f[1] + f[2] * f[2])
     point = work.point[0]
-    place_held(system, hold, state, point, work)
+    place_active(system, active_point, state, point, work)
     _, u1, u2 = contact_velocity(point, state)
     if kind == JAM:
-        return yields(hold.W, contact.friction_held, u1, u2) - JAMMED * hold.W[0, 0]
+        return yields(active_point.W, contact.friction_held, u1, u2) - JAMMED * active_point.W[0, 0]
     return u1 * d1 + u2 * d2
 
 
 @inlined
-def end_forces(system, held, state, work):
-    """Put the forces of points that are held one to a body, at `state`, in place if any moves."""
-    for i in range(held.count[0]):
-        hold = held.points[i]
-        if hold.mode != OPEN and hold.rest == 0 and hold.several == 0:
-            acceleration(system, state, held, work, work.stages[0])
+def end_forces(system, active, state, work):
+    """Put the forces of points that are active one to a body, at `state`, in place if any moves."""
+    for i in range(active.count[0]):
+        active_point = active.points[i]
+        if active_point.mode != OPEN and active_point.rest == 0 and active_point.several == 0:
+            acceleration(system, state, active, work, work.stages[0])
             return
 
 
 @inlined
-def find_held_event(system, held, end, h, work):
-    """Return (event, place in the list, d1, d2) of the first held point whose mode ends; place -1 if none.
+def find_contact_event(system, active, end, h, work):
+    """Return (event, place in the list, d1, d2) of the first active point whose mode ends; place -1 if none.
 
     Slip that the step h has turned astray says nothing of k: it is for `turned` to judge.
     """
-    for i in range(held.count[0]):
-        hold = held.points[i]
-        if hold.mode == OPEN or hold.rest == 1:
+    for i in range(active.count[0]):
+        active_point = active.points[i]
+        if active_point.mode == OPEN or active_point.rest == 1:
             continue
-        if hold.several == 1:
-            if work.search[0].eager == 1 and hold.lift < 0.0:
+        if active_point.several == 1:
+            if work.search[0].eager == 1 and active_point.lift < 0.0:
                 return SEPARATE, i, 0.0, 0.0
-            if work.search[0].eager == 1 and hold.grip < 0.0:
+            if work.search[0].eager == 1 and active_point.grip < 0.0:
                 return CONE, i, 0.0, 0.0
             continue
-        jams = hold.mode == SLIP and held_value(system, hold, JAM, 0.0, 0.0, end, work) <= 0.0
-        if jams and not reverses(system, hold, end, work):
-            if strays(system, hold, end, h, work) != 0:
+        jams = (
+            active_point.mode == SLIP
+            and contact_event_value(system, active_point, JAM, 0.0, 0.0, end, work) <= 0.0
+        )
+        if jams and not reverses(system, active_point, end, work):
+            if strays(system, active_point, end, h, work) != 0:
                 continue
             return JAM, i, 0.0, 0.0
-        if hold.force[0] < 0.0 and not jams and not grips(system, hold):
+        if active_point.force[0] < 0.0 and not jams and not grips(system, active_point):
             return SEPARATE, i, 0.0, 0.0
-        if hold.mode == SLIP:
-            d1, d2 = hold.heading[0], hold.heading[1]
-            if reverses(system, hold, end, work):
+        if active_point.mode == SLIP:
+            d1, d2 = active_point.heading[0], active_point.heading[1]
+            if reverses(system, active_point, end, work):
                 return REVERSE, i, d1, d2
         # a cone met to round-off (a body on the verge of slip) is no event
-        elif held_value(system, hold, CONE, 0.0, 0.0, end, work) < -1e-12 * hold.force[0]:
+        elif (
+            contact_event_value(system, active_point, CONE, 0.0, 0.0, end, work)
+            < -1e-12 * active_point.force[0]
+        ):
             return CONE, i, 0.0, 0.0
     return GAP, -1, 0.0, 0.0
 
 
 @inlined
-def grips(system, hold):
+def grips(system, active_point):
     """Return whether a point sticks by more friction than round-off: it slips before it lifts off."""
-    f, mu = hold.force, system.contacts[hold.contact].friction_held
-    return hold.mode == STICK and math.sqrt(f[1] * f[1] + f[2] * f[2]) > _NO_GRIP * mu * abs(f[0])
+    f, mu = active_point.force, system.contacts[active_point.contact].friction_held
+    return active_point.mode == STICK and math.sqrt(
+        f[1] * f[1] + f[2] * f[2]
+    ) > _NO_GRIP * mu * abs(f[0])
 
 
 @inlined
-def reverses(system, hold, end, work):
+def reverses(system, active_point, end, work):
     """Return whether slip has come to a stop and turned about: not if it has turned off to a side."""
     point = work.point[0]
-    place_held(system, hold, end, point, work)
+    place_active(system, active_point, end, point, work)
     _, u1, u2 = contact_velocity(point, end)
-    d1, d2 = hold.heading[0], hold.heading[1]
+    d1, d2 = active_point.heading[0], active_point.heading[1]
     across = abs(u1 * d2 - u2 * d1)
-    return hold.speed > 0.0 and u1 * d1 + u2 * d2 < 0.0 and across <= 0.1 * hold.speed
+    return (
+        active_point.speed > 0.0 and u1 * d1 + u2 * d2 < 0.0 and across <= 0.1 * active_point.speed
+    )
 
 
 @inlined
-def turned(system, held, end, h, work):
+def turned(system, active, end, h, work):
     """Look for slip that has turned within the step h: 0 none, 1 the step is too long, 2 not by this method.
 
     Too long: by more than 60 degrees. Where friction can turn it over within the step, mu N h W_tt > |u_t|, an
@@ -111,55 +121,60 @@ def turned(system, held, end, h, work):
     a point is handed to the implicit step, as one of several (`carom.persistent.contact_step`).
     """
     found = 0
-    for i in range(held.count[0]):
-        hold = held.points[i]
-        if hold.mode == SLIP and hold.rest == 0 and hold.several == 0:
-            far = strays(system, hold, end, h, work)
+    for i in range(active.count[0]):
+        active_point = active.points[i]
+        if active_point.mode == SLIP and active_point.rest == 0 and active_point.several == 0:
+            far = strays(system, active_point, end, h, work)
             if far == 2:
-                hold.several, hold.stop = 1, math.inf
+                active_point.several, active_point.stop = 1, math.inf
             found = max(found, far)
     return found
 
 
 @kernel
-def strays(system, hold, end, h, work):
+def strays(system, active_point, end, h, work):
     """Return the same of one point."""
-    d1, d2 = hold.heading[0], hold.heading[1]
-    point, contact = work.point[0], system.contacts[hold.contact]
-    place_held(system, hold, end, point, work)
+    d1, d2 = active_point.heading[0], active_point.heading[1]
+    point, contact = work.point[0], system.contacts[active_point.contact]
+    place_active(system, active_point, end, point, work)
     _, u1, u2 = contact_velocity(point, end)
     along, across, square = u1 * d1 + u2 * d2, u1 * d2 - u2 * d1, u1 * u1 + u2 * u2
-    if across * across > 1e-12 * square and braked(contact, hold, h) ** 2 > square:
+    if across * across > 1e-12 * square and braked(contact, active_point, h) ** 2 > square:
         return 2
     return 1 if along < 0.5 * math.sqrt(square * (d1 * d1 + d2 * d2)) else 0
 
 
 @inlined
-def braked(contact, hold, h):
+def braked(contact, active_point, h):
     """Return the slip that friction can take away in the time h."""
-    return h * contact.friction_held * abs(hold.force[0]) * (hold.W[1, 1] + hold.W[2, 2])
+    return (
+        h
+        * contact.friction_held
+        * abs(active_point.force[0])
+        * (active_point.W[1, 1] + active_point.W[2, 2])
+    )
 
 
 @inlined
-def slides_on(system, hold, now, h, work):
+def slides_on(system, active_point, now, h, work):
     """Return whether a point slides too fast for friction to turn it within a step."""
-    if hold.mode != SLIP or hold.other >= 0:
+    if active_point.mode != SLIP or active_point.other >= 0:
         return False
-    contact, point = system.contacts[hold.contact], work.point[0]
-    place_held(system, hold, now, point, work)
+    contact, point = system.contacts[active_point.contact], work.point[0]
+    place_active(system, active_point, now, point, work)
     _, u1, u2 = contact_velocity(point, now)
-    return 100.0 * braked(contact, hold, h) ** 2 < u1 * u1 + u2 * u2
+    return 100.0 * braked(contact, active_point, h) ** 2 < u1 * u1 + u2 * u2
 
 
 @kernel
-def residual(system, held, state, work):
+def residual(system, active, state, work):
     """Return the greatest velocity that a point held alone must not have: normal, and all where it sticks."""
     worst, point = 0.0, work.point[0]
-    for i in range(held.count[0]):
-        hold = held.points[i]
-        if hold.several == 0 and hold.rest == 0:
-            place_held(system, hold, state, point, work)
+    for i in range(active.count[0]):
+        active_point = active.points[i]
+        if active_point.several == 0 and active_point.rest == 0:
+            place_active(system, active_point, state, point, work)
             u0, u1, u2 = contact_velocity(point, state)
-            slip = math.sqrt(u1 * u1 + u2 * u2) if hold.mode == STICK else 0.0
+            slip = math.sqrt(u1 * u1 + u2 * u2) if active_point.mode == STICK else 0.0
             worst = max(worst, max(abs(u0), slip))
     return worst

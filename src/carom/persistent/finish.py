@@ -1,14 +1,14 @@
-"""The end of a step of bodies held at several points: rest, modes, forces, and when slip stops."""
+"""The end of a step of bodies in contact at several points: rest, modes, forces, and when slip stops."""
 
 from __future__ import annotations
 
 import math
 
 from carom._compiled.decorators import kernel
-from carom.contact.closed_points import place_seats
+from carom.contact.closed_points import place_closed
 from carom.contact.gap import slow
 from carom.dynamics.acceleration import OPEN, SLIP, STICK
-from carom.dynamics.explicit import keep
+from carom.dynamics.explicit import copy_state
 from carom.impact.workspace import P, U
 from carom.kinematics.contact_point import contact_velocity
 from carom.persistent.forces import pose_forces, solve_forces, take_forces
@@ -18,13 +18,13 @@ from carom.persistent.step_control import rest_speed
 
 
 @kernel
-def gained(start, count, cluster):
+def gained(start, count, group):
     """Return the greatest speed that the bodies gain without the contacts."""
     most = 0.0
     for m in range(count):
-        b = cluster.member[m]
+        b = group.member[m]
         for r in range(3):
-            most = max(most, abs(cluster.flight[b].v[r] - start[b].v[r]))
+            most = max(most, abs(group.flight[b].v[r] - start[b].v[r]))
     return most
 
 
@@ -35,36 +35,36 @@ def finish(model, data, k, h, count):
     That is never positive: what friction seems to give by rows that turn within the step is an error of it.
     """
     system, controls = model.system, model.controls
-    held, start, end, cluster, work = (
-        data.held,
+    active, start, end, group, work = (
+        data.active,
         data.state,
         data.work.trial,
-        data.cluster,
+        data.group,
         data.work,
     )
     friction = 0.0
-    tolerance = rest_speed(controls, gained(start, count, cluster), work.result[0].residual, k)
-    at_rest = settle(system, tolerance, start, end, count, cluster)
-    stop, away = tolerance * controls.step / h, 1e-6 * gained(start, count, cluster)
+    tolerance = rest_speed(controls, gained(start, count, group), work.result[0].residual, k)
+    at_rest = come_to_rest(system, tolerance, start, end, count, group)
+    stop, away = tolerance * controls.step / h, 1e-6 * gained(start, count, group)
     for i in range(k):
-        hold, p, u = held.points[cluster.seats[i].held], cluster.v[P], cluster.v[U]
-        contact = system.contacts[hold.contact]
+        active_point, p, u = active.points[group.closed[i].active], group.v[P], group.v[U]
+        contact = system.contacts[active_point.contact]
         s1, s2 = u[3 * i + 1], u[3 * i + 2]
-        _, m1, m2 = contact_velocity(cluster.points[0][i], start)
-        _, e1, e2 = contact_velocity(cluster.points[0][i], end)
+        _, m1, m2 = contact_velocity(group.points[0][i], start)
+        _, e1, e2 = contact_velocity(group.points[0][i], end)
         friction += 0.5 * (p[3 * i + 1] * (m1 + e1) + p[3 * i + 2] * (m2 + e2))
-        if cluster.seats[i].turns > 0:
+        if group.closed[i].turns > 0:
             continue
         still = max(stop, 10.0 * max(slow(contact, start), slow(contact, end)))
         if p[3 * i] <= 0.0 and u[3 * i] > max(still, away):
-            hold.next = OPEN
+            active_point.next = OPEN
         else:
-            hold.next = SLIP if math.sqrt(s1 * s1 + s2 * s2) > still else STICK
+            active_point.next = SLIP if math.sqrt(s1 * s1 + s2 * s2) > still else STICK
         if at_rest:
-            hold.next = STICK
-        hold.settles = 1 if at_rest else 0
+            active_point.next = STICK
+        active_point.comes_to_rest = 1 if at_rest else 0
     for m in range(count):
-        b = cluster.member[m]
+        b = group.member[m]
         linear, angular, spin = 0.0, 0.0, 0.0
         for r in range(3):
             linear += (end[b].v[r] - start[b].v[r]) ** 2
@@ -77,14 +77,14 @@ def finish(model, data, k, h, count):
 
 
 @kernel
-def settle(system, tolerance, start, end, count, cluster):
+def come_to_rest(system, tolerance, start, end, count, group):
     """Stop the bodies, exactly, if all their speed at the end is below the tolerance.
 
     If they had none at the start they have not moved either. Returns whether so.
     """
     speed, before = 0.0, 0.0
     for m in range(count):
-        b = cluster.member[m]
+        b = group.member[m]
         size = system.bodies[b].extent
         for r in range(3):
             speed = max(speed, max(abs(end[b].v[r]), size * abs(end[b].w[r])))
@@ -92,28 +92,28 @@ def settle(system, tolerance, start, end, count, cluster):
     if not speed <= tolerance:
         return False
     for m in range(count):
-        b = cluster.member[m]
+        b = group.member[m]
         if before == 0.0:
-            keep(start[b], end[b])
+            copy_state(start[b], end[b])
         for r in range(3):
             end[b].v[r], end[b].w[r] = 0.0, 0.0
     return before == 0.0
 
 
 @kernel
-def forces_at_end(system, controls, held, k, end, cluster, work):
-    """Put the forces in the state at the end into the list of held points."""
+def forces_at_end(system, controls, active, k, end, group, work):
+    """Put the forces in the state at the end into the list of active points."""
     for i in range(k):
-        seat = cluster.seats[i]
-        hold = held.points[seat.held]
-        seat.stays = 1 if hold.next != OPEN else 0
-    place_seats(system, k, end, cluster, cluster.points[0], work)
-    pose_forces(system, controls, held, k, end, cluster, work)
-    status = solve_forces(system, k, cluster)
-    push = greatest_push(k, cluster)
+        closed_point = group.closed[i]
+        active_point = active.points[closed_point.active]
+        closed_point.stays = 1 if active_point.next != OPEN else 0
+    place_closed(system, k, end, group, group.points[0], work)
+    pose_forces(system, controls, active, k, end, group, work)
+    status = solve_forces(system, k, group)
+    push = greatest_push(k, group)
     for i in range(k):
-        hold = held.points[cluster.seats[i].held]
-        take_forces(hold, i, cluster)
-        if cluster.seats[i].turns == 0:
-            set_margins(hold, i, push, cluster)
-            hold.jams = jams_among(hold, i, status, cluster)
+        active_point = active.points[group.closed[i].active]
+        take_forces(active_point, i, group)
+        if group.closed[i].turns == 0:
+            set_margins(active_point, i, push, group)
+            active_point.jams = jams_among(active_point, i, status, group)

@@ -29,25 +29,28 @@ def yields(W, mu, u1, u2):
 
 
 @kernel
-def presses(hold, k):
+def presses(active_point, k):
     """Return whether a_n = -k N < 0, from the N that this would take."""
-    return hold.force[0] * k > 0.0
+    return active_point.force[0] * k > 0.0
 
 
 @kernel
-def note_jam(held, hold):
+def note_jam(active, active_point):
     """Have the impact of a point that jams resolved before anything else."""
-    hold.jams = 1
-    held.brinks[hold.contact].jams, held.brinks[hold.contact].near = 1, 1
+    active_point.jams = 1
+    (
+        active.contact_states[active_point.contact].jams,
+        active.contact_states[active_point.contact].near,
+    ) = 1, 1
 
 
 @kernel
-def jams_among(hold, i, status, cluster):
+def jams_among(active_point, i, status, group):
     """Return whether point i of several jams: it slips, k <= 0, and there are no forces for all of them."""
-    if status == SOLVED or cluster.kind[i] != SLIDING or cluster.seats[i].turns > 0:
+    if status == SOLVED or group.kind[i] != SLIDING or group.closed[i].turns > 0:
         return 0
-    if cluster.seats[i].stays == 0:
+    if group.closed[i].stays == 0:
         return 0
-    q, W = 3 * i, cluster.m[0]
-    along = W[q, q + 1] * cluster.heading[i, 0] + W[q, q + 2] * cluster.heading[i, 1]
-    return 1 if W[q, q] - cluster.mu[i] * along <= 0.0 else 0
+    q, W = 3 * i, group.m[0]
+    along = W[q, q + 1] * group.heading[i, 0] + W[q, q + 2] * group.heading[i, 1]
+    return 1 if W[q, q] - group.mu[i] * along <= 0.0 else 0

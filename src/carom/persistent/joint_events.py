@@ -12,13 +12,13 @@ from carom.dynamics.acceleration import acceleration
 from carom.dynamics.joint_friction import any_sticks, stay_stuck
 from carom.kinematics.coordinate import drift, motion_along, rate, speeds_of
 
-STOPS, BREAKS = 5, 6  # events, after those of held contacts
+STOPS, BREAKS = 5, 6  # events, after those of persistent contacts
 STILL = 1e-12  # of the speeds of both sides: no speed
 ABOVE = 1e-10  # of a bound: round-off of a force
 
 
 @unit
-def _find_joint_event(system, held, state, work) -> tuple[int, int]:
+def _find_joint_event(system, active, state, work) -> tuple[int, int]:
     """Return (event, number) of the first friction in a joint whose mode has ended in `state`; -1 if none."""
     relations = system.relations
     for i in range(relations.frictions.shape[0]):
@@ -26,7 +26,7 @@ def _find_joint_event(system, held, state, work) -> tuple[int, int]:
         if one.mode != 0 and one.mode * rate(relations.coordinates[one.coordinate], state) < 0.0:
             return STOPS, i
     if relations.frictions.shape[0] > 0 and any_sticks(relations):
-        acceleration(system, state, held, work, work.stages[0])
+        acceleration(system, state, active, work, work.stages[0])
         for i in range(relations.frictions.shape[0]):
             one = relations.frictions[i]
             if one.mode == 0 and abs(one.force) > one.bound * (1.0 + ABOVE):
@@ -35,39 +35,39 @@ def _find_joint_event(system, held, state, work) -> tuple[int, int]:
 
 
 @unit
-def _joint_event_value(system, kind, i, held, state, work) -> float:
+def _joint_event_value(system, kind, i, active, state, work) -> float:
     """Return the event function, negative after the event."""
     one = system.relations.frictions[i]
     if kind == STOPS:
         return one.mode * rate(system.relations.coordinates[one.coordinate], state)
-    acceleration(system, state, held, work, work.stages[0])
+    acceleration(system, state, active, work, work.stages[0])
     return one.bound - abs(one.force)
 
 
 @unit
-def _turn_joint(system, kind, i, held, now, work):
+def _turn_joint(system, kind, i, active, now, work):
     """Carry out the event of friction i."""
     one = system.relations.frictions[i]
     if kind == BREAKS:
-        acceleration(system, now, held, work, work.stages[0])
+        acceleration(system, now, active, work, work.stages[0])
         one.mode = -1 if one.force > 0.0 else 1
     else:
         one.mode = -one.mode
-        if not one.mode * change(system, one, held, now, work) > 0.0:
+        if not one.mode * change(system, one, active, now, work) > 0.0:
             one.mode = 0
             stay_stuck(system, now, work)
-    let_go(system, held, now, work)
+    let_go(system, active, now, work)
 
 
 @kernel
-def change(system, one, held, state, work):
+def change(system, one, active, state, work):
     """Return q'' of the coordinate of a friction, in its present mode.
 
     Where q'' goes the way of the mode that slip would turn to, slip turns, and nothing sticks. The force of
     stick would say so too, but not where a loop passes its dead centre: there J P J^T and what friction can do
     are nothing, and q' = 0 in the metric of J would stop all that moves.
     """
-    acceleration(system, state, held, work, work.stages[0])
+    acceleration(system, state, active, work, work.stages[0])
     for b in range(state.shape[0]):
         for k in range(6):
             work.body[b].motion[k] = work.stages[0][b].rate[k]
@@ -76,11 +76,11 @@ def change(system, one, held, state, work):
 
 
 @kernel
-def let_go(system, held, now, work):
+def let_go(system, active, now, work):
     """Let slip, one after the other, what its friction cannot keep from it."""
     relations = system.relations
     for _ in range(relations.frictions.shape[0]):
-        acceleration(system, now, held, work, work.stages[0])
+        acceleration(system, now, active, work, work.stages[0])
         worst, which = ABOVE, -1
         for i in range(relations.frictions.shape[0]):
             one = relations.frictions[i]
@@ -94,7 +94,7 @@ def let_go(system, held, now, work):
 
 
 @unit
-def _review_joints(system, held, now, work):
+def _review_joints(system, active, now, work):
     """Find the mode of each anew: at the start, and after velocities have jumped."""
     relations = system.relations
     if relations.frictions.shape[0] == 0:
@@ -106,40 +106,40 @@ def _review_joints(system, held, now, work):
         still = STILL * speeds_of(system, c, now)
         one.mode = 1 if speed > still else -1 if speed < -still else 0
     stay_stuck(system, now, work)
-    let_go(system, held, now, work)
+    let_go(system, active, now, work)
 
 
 @inlined
-def find_joint_event(system, held, state, work):
+def find_joint_event(system, active, state, work):
     """Return (event, number) of the first friction in a joint whose mode has ended in `state`; -1 if none."""
     if system.relations.there == 1:
-        return _find_joint_event(system, held, state, work)
+        return _find_joint_event(system, active, state, work)
     return 0, -1
 
 
 @inlined
-def joint_event_value(system, kind, i, held, state, work):
+def joint_event_value(system, kind, i, active, state, work):
     """Return the event function, negative after the event."""
     if system.relations.there == 1:
-        return _joint_event_value(system, kind, i, held, state, work)
+        return _joint_event_value(system, kind, i, active, state, work)
     return 0.0
 
 
 @inlined
-def turn_joint(system, kind, i, held, now, work):
+def turn_joint(system, kind, i, active, now, work):
     """Carry out the event of friction i."""
     if system.relations.there == 1:
-        _turn_joint(system, kind, i, held, now, work)
+        _turn_joint(system, kind, i, active, now, work)
 
 
 @inlined
-def review_joints(system, held, now, work):
+def review_joints(system, active, now, work):
     """Find the mode of each anew: at the start, and after velocities have jumped."""
     if system.relations.there == 1:
-        _review_joints(system, held, now, work)
+        _review_joints(system, active, now, work)
 
 
 @entry
-def first_modes(system, held, now, work):
+def first_modes(system, active, now, work):
     """Find how all frictions in joints begin."""
-    review_joints(system, held, now, work)
+    review_joints(system, active, now, work)

@@ -14,39 +14,39 @@ from __future__ import annotations
 
 from carom._compiled.units import unit
 from carom.contact.closed_points import gather_closed
-from carom.persistent.active_set import regroup, set_anchor, together
-from carom.persistent.one_point import hold_one, settle_one
-from carom.persistent.several_points import hold_several
+from carom.persistent.active_set import always_several, regroup, set_anchor
+from carom.persistent.one_point import activate_one, renew_mode_of_one
+from carom.persistent.several_points import activate_several
 
 TOO_MANY_POINTS = 10
 
 
 @unit
-def hold_contact(model, data, c, horizon):
+def activate_contact(model, data, c, horizon):
     """Let the closed points in the group of contact c persist that do not approach and fulfil the rule."""
     system, controls = model.system, model.controls
-    held, state, cluster, work = data.held, data.state, data.cluster, data.work
+    active, state, group, work = data.active, data.state, data.group, data.work
     contact, hit = system.contacts[c], work.hit[0]
     hit.code = 0
-    k = gather_closed(system, controls, held, c, state, cluster, work, False)
-    group = work.body[contact.body].group
-    for i in range(held.count[0]):
-        hold = held.points[i]
-        if work.body[hold.body].group == group:
-            if hold.several == 0:  # from now on it stays where it is
-                set_anchor(system, hold, state, work)
-            hold.rest, hold.several = 0, 1  # together with the new one
+    k = gather_closed(system, controls, active, c, state, group, work, False)
+    label = work.body[contact.body].label
+    for i in range(active.count[0]):
+        active_point = active.points[i]
+        if work.body[active_point.body].label == label:
+            if active_point.several == 0:  # from now on it stays where it is
+                set_anchor(system, active_point, state, work)
+            active_point.rest, active_point.several = 0, 1  # together with the new one
     if k < 0:
         hit.code = TOO_MANY_POINTS
-    elif k == 1 and cluster.seats[0].held < 0 and not together(contact):
-        hold_one(model, data, horizon)
+    elif k == 1 and group.closed[0].active < 0 and not always_several(contact):
+        activate_one(model, data, horizon)
     elif k > 0:
-        hold_several(model, data, k, group, horizon)
-    regroup(system, held, work)
+        activate_several(model, data, k, label, horizon)
+    regroup(system, active, work)
 
 
 @unit
-def settle(model, data, i):
+def renew_mode(model, data, i):
     """Find anew how point i, the only one of its body, goes on: its slip has come to a stop or has turned."""
-    held = data.held
-    settle_one(model, data, held.points[i])
+    active = data.active
+    renew_mode_of_one(model, data, active.points[i])

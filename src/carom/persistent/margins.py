@@ -1,4 +1,4 @@
-"""How far one of several held points is from opening and from slip, at the end of a step.
+"""How far one of several active points is from opening and from slip, at the end of a step.
 
 Forces of several points need not be unique, accelerations are. So the point opens where its normal
 acceleration is above nothing, and slips where its tangential one is; before that its force tells how far it is:
@@ -23,7 +23,7 @@ NEAR = 1e-6  # an event is located to this part of the acceleration
 
 
 @kernel
-def greatest_push(k, cluster):
+def greatest_push(k, group):
     """Return the greatest acceleration of the k points without contact forces.
 
     0 where two bodies touch at several points: the corners of their overlap come and go, most of them without
@@ -31,65 +31,69 @@ def greatest_push(k, cluster):
     """
     push = 0.0
     for i in range(k):
-        a = cluster.seats[i]
-        for j in range(i if a.turns == 0 and cluster.points[0][i].b >= 0 else 0):
-            if cluster.seats[j].contact == a.contact and cluster.seats[j].turns == 0:
+        a = group.closed[i]
+        for j in range(i if a.turns == 0 and group.points[0][i].b >= 0 else 0):
+            if group.closed[j].contact == a.contact and group.closed[j].turns == 0:
                 return 0.0
     for i in range(3 * k):
-        push = max(push, abs(cluster.v[C][i]))
+        push = max(push, abs(group.v[C][i]))
     return push
 
 
 @kernel
-def set_margins(hold, i, push, cluster):
+def set_margins(active_point, i, push, group):
     """Write lift and grip of point i; `next` says what the step has found."""
-    hold.lift, hold.grip = 1.0, 1.0
+    active_point.lift, active_point.grip = 1.0, 1.0
     if not push > 0.0:
         return
-    q, W, p, a = 3 * i, cluster.m[0], cluster.v[P], cluster.v[OLD]
-    if hold.next == OPEN:
-        hold.lift = -max(a[q] / push, 2.0 * NEAR)
+    q, W, p, a = 3 * i, group.m[0], group.v[P], group.v[OLD]
+    if active_point.next == OPEN:
+        active_point.lift = -max(a[q] / push, 2.0 * NEAR)
         return
     if p[q] <= 0.0 and a[q] > NONE * push:
-        hold.lift = -a[q] / push
+        active_point.lift = -a[q] / push
     else:
-        hold.lift = max(p[q] * W[q, q] / push, LEAST)
-    if hold.mode == STICK:
+        active_point.lift = max(p[q] * W[q, q] / push, LEAST)
+    if active_point.mode == STICK:
         gain = math.sqrt(a[q + 1] ** 2 + a[q + 2] ** 2) / push
-        if hold.next == SLIP:
-            hold.grip = -max(gain, 2.0 * NEAR)
+        if active_point.next == SLIP:
+            active_point.grip = -max(gain, 2.0 * NEAR)
         elif gain > NONE:
-            hold.grip = -gain
+            active_point.grip = -gain
         else:
-            left = cluster.mu[i] * p[q] - math.sqrt(p[q + 1] ** 2 + p[q + 2] ** 2)
-            hold.grip = max(left * max(W[q + 1, q + 1], W[q + 2, q + 2]) / push, LEAST)
+            left = group.mu[i] * p[q] - math.sqrt(p[q + 1] ** 2 + p[q + 2] ** 2)
+            active_point.grip = max(left * max(W[q + 1, q + 1], W[q + 2, q + 2]) / push, LEAST)
 
 
 @kernel
-def margin(hold, kind):
+def margin(active_point, kind):
     """Return how far a point is from an event."""
-    return hold.lift if kind == SEPARATE else hold.grip
+    return active_point.lift if kind == SEPARATE else active_point.grip
 
 
 @kernel
-def note_due(held, search, work):
+def note_due(active, search, work):
     """Mark the points of the same group for which the step on trial has the event that is looked for."""
-    group = work.body[held.points[search.contact].body].group
-    for i in range(held.count[0]):
-        hold = held.points[i]
-        same = hold.several == 1 and hold.rest == 0 and work.body[hold.body].group == group
-        hold.due = 1 if same and margin(hold, search.kind) < 0.0 else 0
+    label = work.body[active.points[search.contact].body].label
+    for i in range(active.count[0]):
+        active_point = active.points[i]
+        same = (
+            active_point.several == 1
+            and active_point.rest == 0
+            and work.body[active_point.body].label == label
+        )
+        active_point.due = 1 if same and margin(active_point, search.kind) < 0.0 else 0
 
 
 @kernel
-def meet_due(held, search):
+def switch_due(active, search):
     """Give the points whose event has been located their new mode; return whether there are any."""
-    if held.points[search.contact].several == 0:
+    if active.points[search.contact].several == 0:
         return False
-    for i in range(held.count[0]):
-        hold = held.points[i]
-        near = hold.due == 1 and margin(hold, search.kind) <= 2.0 * LEAST
+    for i in range(active.count[0]):
+        active_point = active.points[i]
+        near = active_point.due == 1 and margin(active_point, search.kind) <= 2.0 * LEAST
         if near or i == search.contact:
-            hold.next = OPEN if search.kind == SEPARATE else SLIP
-        hold.due = 0
+            active_point.next = OPEN if search.kind == SEPARATE else SLIP
+        active_point.due = 0
     return True

@@ -1,4 +1,4 @@
-"""A body that is held at one point: from its last bounce to slip, stick or rest."""
+"""A body that is in contact at one point: from its last bounce to slip, stick or rest."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import math
 from carom._compiled.decorators import kernel
 from carom.contact.gap import slow
 from carom.contact.pair_point import drift
-from carom.contact.place import place_held
+from carom.contact.place import place_active
 from carom.dynamics.acceleration import SLIP, STICK, acceleration
 from carom.dynamics.contact_impulse import (
     add_velocity,
@@ -22,63 +22,63 @@ from carom.kinematics.contact_point import (
     contact_velocity,
 )
 from carom.model.event_rows import begin_event, end_event
-from carom.model.records import HOLD, SLIPS, STICKS
-from carom.persistent.active_set import enlist
+from carom.model.records import PERSIST, SLIPS, STICKS
+from carom.persistent.active_set import activate
 from carom.persistent.events import braked
 from carom.persistent.jam import JAMMED, note_jam, presses, yields
 
 
 @kernel
-def hold_one(model, data, horizon):
+def activate_one(model, data, horizon):
     """Let the only closed point persist if it does not approach and fulfils the rule."""
     system = model.system
-    held, state, cluster, work, clock, records = (
-        data.held,
+    active, state, group, work, clock, records = (
+        data.active,
         data.state,
-        data.cluster,
+        data.group,
         data.work,
         data.clocks[0],
         data.records,
     )
-    seat, point = cluster.seats[0], cluster.points[0][0]
-    contact = system.contacts[seat.contact]
+    closed_point, point = group.closed[0], group.points[0][0]
+    contact = system.contacts[closed_point.contact]
     u, still = contact_velocity(point, state), slow(contact, state)
-    acceleration(system, state, held, work, work.stages[0])
+    acceleration(system, state, active, work, work.stages[0])
     a = contact_acceleration(point, state, work.stages[0])
     if contact.touches != 0:
-        d = drift(system, contact, seat.feature, seat.point, point, state, work)
+        d = drift(system, contact, closed_point.feature, closed_point.point, point, state, work)
         a = (a[0] + d[0], a[1] + d[1], a[2] + d[2])
     if not bounces_end(contact, u[0], -a[0], still, horizon):
         return
-    begin_event(system, seat.contact, seat.feature, state, clock, records)
-    i = enlist(system, held, seat, STICK, state, work)
-    hold = held.points[i]
-    begin_hold(model, data, contact, hold, 0.0, a, horizon)
-    find_mode(model, data, contact, hold)
+    begin_event(system, closed_point.contact, closed_point.feature, state, clock, records)
+    i = activate(system, active, closed_point, STICK, state, work)
+    active_point = active.points[i]
+    begin_contact(model, data, contact, active_point, 0.0, a, horizon)
+    find_mode(model, data, contact, active_point)
     clock.holds += 1
-    records.event[clock.event].mode = hold.mode
-    end_event(system, HOLD, state, clock, records)
+    records.event[clock.event].mode = active_point.mode
+    end_event(system, PERSIST, state, clock, records)
 
 
 @kernel
-def settle_one(model, data, hold):
+def renew_mode_of_one(model, data, active_point):
     """Find anew how a point goes on, whose slip has stopped or turned."""
     system, controls = model.system, model.controls
-    held, state, work, clock, records = (
-        data.held,
+    active, state, work, clock, records = (
+        data.active,
         data.state,
         data.work,
         data.clocks[0],
         data.records,
     )
-    contact = system.contacts[hold.contact]
-    stop = braked(contact, hold, 1e-3 * controls.step)  # in a thousandth of a step
-    hold.heading[0], hold.heading[1] = 0.0, 0.0
-    acceleration(system, state, held, work, work.stages[0])
-    begin_event(system, hold.contact, hold.feature, state, clock, records)
-    if begin_hold(model, data, contact, hold, stop, (0.0, 0.0, 0.0), math.inf):
-        find_mode(model, data, contact, hold)
-    end_event(system, STICKS if hold.mode == STICK else SLIPS, state, clock, records)
+    contact = system.contacts[active_point.contact]
+    stop = braked(contact, active_point, 1e-3 * controls.step)  # in a thousandth of a step
+    active_point.heading[0], active_point.heading[1] = 0.0, 0.0
+    acceleration(system, state, active, work, work.stages[0])
+    begin_event(system, active_point.contact, active_point.feature, state, clock, records)
+    if begin_contact(model, data, contact, active_point, stop, (0.0, 0.0, 0.0), math.inf):
+        find_mode(model, data, contact, active_point)
+    end_event(system, STICKS if active_point.mode == STICK else SLIPS, state, clock, records)
 
 
 @kernel
@@ -91,7 +91,7 @@ def bounces_end(contact, rate, g, still, horizon):
 
 
 @kernel
-def begin_hold(model, data, contact, hold, stop, a, horizon):
+def begin_contact(model, data, contact, active_point, stop, a, horizon):
     """Take out the normal velocity, and slip that has stopped; set the mode to try first.
 
     Slip has stopped when all of it is below `stop` (or round-off). Returns False if a contact that was
@@ -102,7 +102,7 @@ def begin_hold(model, data, contact, hold, stop, a, horizon):
     system = model.system
     state, work, clock = data.state, data.work, data.clocks[0]
     point, still = work.point[0], slow(contact, state)
-    place_held(system, hold, state, point, work)
+    place_active(system, active_point, state, point, work)
     u = contact_velocity(point, state)
     W = work.hit[0].W
     effective_inverse_mass(system, point, state, work, W)
@@ -119,8 +119,8 @@ def begin_hold(model, data, contact, hold, stop, a, horizon):
     if stops:
         n, t1, t2 = stick_force(W, u[0], u[1], u[2])
         s1, s2 = 0.0, 0.0
-    hold.mode = STICK if stops else SLIP
-    if hold.mode == SLIP and yields(W, contact.friction, u[1], u[2]) > 0.0:
+    active_point.mode = STICK if stops else SLIP
+    if active_point.mode == SLIP and yields(W, contact.friction, u[1], u[2]) > 0.0:
         f, f1, f2 = slip_force(W, u[0], u[1], u[2], u[1], u[2], contact.friction)
         v1, v2 = u[1] + moved(W, 1, f, f1, f2), u[2] + moved(W, 2, f, f1, f2)
         given = 0.5 * (f * u[0] + f1 * (u[1] + v1) + f2 * (u[2] + v2))
@@ -146,7 +146,7 @@ def name_work(normal, tangential, clock):
     """Put the work of what takes bounces out into the ledger.
 
     Where that is a gain it is friction's: less than what the hold takes until the bounces would have ended, and
-    owed until then (`carom.stepping.time_loop.settle_up`).
+    owed until then (`carom.stepping.time_loop.charge_impacts`).
     """
     if normal + tangential <= 0.0:
         clock.bounces += normal + tangential
@@ -186,30 +186,32 @@ def moved(W, r, n, t1, t2):
 
 
 @kernel
-def find_mode(model, data, contact, hold):
+def find_mode(model, data, contact, active_point):
     """Let a contact slip whose friction cannot hold it; put its body to rest where nothing is left."""
     system = model.system
-    held, state, work = data.held, data.state, data.work
-    acceleration(system, state, held, work, work.stages[0])
-    f = hold.force
-    if hold.mode == STICK and not (
+    active, state, work = data.active, data.state, data.work
+    acceleration(system, state, active, work, work.stages[0])
+    f = active_point.force
+    if active_point.mode == STICK and not (
         math.sqrt(f[1] * f[1] + f[2] * f[2]) <= contact.friction_held * f[0]
     ):
-        hold.mode = SLIP
-        acceleration(system, state, held, work, work.stages[0])
-    if hold.mode == SLIP:
+        active_point.mode = SLIP
+        acceleration(system, state, active, work, work.stages[0])
+    if active_point.mode == SLIP:
         _, u1, u2 = contact_velocity(work.point[0], state)
-        k = yields(hold.W, contact.friction_held, u1, u2)
-        if k <= JAMMED * hold.W[0, 0] and presses(hold, k):
-            note_jam(held, hold)
+        k = yields(active_point.W, contact.friction_held, u1, u2)
+        if k <= JAMMED * active_point.W[0, 0] and presses(active_point, k):
+            note_jam(active, active_point)
     body = system.bodies[contact.body]
-    if hold.mode == STICK and body.isolated == 1:
+    if active_point.mode == STICK and body.isolated == 1:
         rate = work.stages[0, contact.body].rate
-        rest_if_still(contact, hold, state[contact.body], rate, hold.force[0] / body.mass)
+        rest_if_still(
+            contact, active_point, state[contact.body], rate, active_point.force[0] / body.mass
+        )
 
 
 @kernel
-def rest_if_still(contact, hold, body, rate, push):
+def rest_if_still(contact, active_point, body, rate, push):
     """Put a body to rest, exactly, if neither speed nor acceleration is left.
 
     No speed: round-off of the speeds that gravity gives it over its own size. No acceleration: round-off
@@ -224,4 +226,4 @@ def rest_if_still(contact, hold, body, rate, push):
         for k in range(3):
             body.v[k] = 0.0
             body.w[k] = 0.0
-        hold.rest = 1
+        active_point.rest = 1

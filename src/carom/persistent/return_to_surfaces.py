@@ -1,4 +1,4 @@
-"""Return a group of bodies to the surfaces of its held points, and sticking vertices to where they stick.
+"""Return a group of bodies to the surfaces of its active points, and sticking vertices to where they stick.
 
     xi = -P G^T lam,   W lam = phi,    phi: the gap of each point that presses, and for a vertex that sticks the
                                        tangential way from its anchor too,
@@ -12,7 +12,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.contact.closed_points import place_seats, round_off_of_both
+from carom.contact.closed_points import place_closed, round_off_of_both
 from carom.contact.gap import round_off
 from carom.contact.place import place_any
 from carom.dynamics.acceleration import STICK
@@ -25,83 +25,83 @@ DROP = 1e-10  # of a pivot, relative to its row: what is left of a redundant one
 
 
 @kernel
-def mark_rows(system, held, k, cluster):
+def mark_rows(system, active, k, group):
     """Mark in `rows` what each point gives: 0 nothing, 1 its gap, 3 its gap and its place; return if any.
 
     A point that does not press gives its gap where that is negative.
     """
     some = False
     for i in range(k):
-        hold, p, q = held.points[cluster.seats[i].held], cluster.v[P], 3 * i
-        cluster.seats[i].rows = 0
-        if cluster.seats[i].turns == 1:
+        active_point, p, q = active.points[group.closed[i].active], group.v[P], 3 * i
+        group.closed[i].rows = 0
+        if group.closed[i].turns == 1:
             continue
-        if cluster.points[1][i].gap < -1e-12 * system.contacts[hold.contact].extent:
+        if group.points[1][i].gap < -1e-12 * system.contacts[active_point.contact].extent:
             some = True
-            cluster.seats[i].rows = 1
+            group.closed[i].rows = 1
         if p[q] > 0.0:
             some = True
             friction = math.sqrt(p[q + 1] * p[q + 1] + p[q + 2] * p[q + 2])
-            contact = system.contacts[hold.contact]
+            contact = system.contacts[active_point.contact]
             core = contact.radius == 0.0 and contact.touches == 0
-            sticks = hold.mode == STICK and friction < (1.0 - 1e-9) * cluster.mu[i] * p[q]
-            cluster.seats[i].rows = 3 if core and sticks else 1
+            sticks = active_point.mode == STICK and friction < (1.0 - 1e-9) * group.mu[i] * p[q]
+            group.closed[i].rows = 3 if core and sticks else 1
     return some
 
 
 @kernel
-def onto_surfaces(system, held, k, count, state, cluster, work):
+def onto_surfaces(system, active, k, count, state, group, work):
     """Bring the bodies of the group back to the points that press."""
-    place_seats(system, k, state, cluster, cluster.points[1], work)
-    if not mark_rows(system, held, k, cluster):
+    place_closed(system, k, state, group, group.points[1], work)
+    if not mark_rows(system, active, k, group):
         return
-    n, L = 3 * k, cluster.m[1]
+    n, L = 3 * k, group.m[1]
     for i in range(n):
-        row = i % 3 < cluster.seats[i // 3].rows
+        row = i % 3 < group.closed[i // 3].rows
         for j in range(n):
-            both = row and j % 3 < cluster.seats[j // 3].rows
-            L[i, j] = cluster.m[0][i, j] if both else 1.0 if i == j else 0.0
+            both = row and j % 3 < group.closed[j // 3].rows
+            L[i, j] = group.m[0][i, j] if both else 1.0 if i == j else 0.0
     factor(n, DROP, L)
-    x, way = cluster.v[U], cluster.v[BACK]
+    x, way = group.v[U], group.v[BACK]
     known = False
     for i in range(n):
-        x[i] = way[i] if i % 3 < cluster.seats[i // 3].rows else 0.0
+        x[i] = way[i] if i % 3 < group.closed[i // 3].rows else 0.0
         way[i], known = 0.0, known or x[i] != 0.0
     for _ in range(11):
         if not known:
-            if errors(system, held, k, state, cluster, x, work):
+            if errors(system, active, k, state, group, x, work):
                 break
             substitute(n, L, x)
             for i in range(n):
-                x[i] = -x[i] if i % 3 < cluster.seats[i // 3].rows else 0.0
+                x[i] = -x[i] if i % 3 < group.closed[i // 3].rows else 0.0
         known = False
         for i in range(n):
             way[i] += x[i]
-        spread_all(system, k, cluster.points[0], x, count, cluster.member, work.stage, work)
+        spread_all(system, k, group.points[0], x, count, group.member, work.stage, work)
         for m in range(count):
-            shift(work.body[cluster.member[m]].motion, state[cluster.member[m]])
+            shift(work.body[group.member[m]].motion, state[group.member[m]])
         if system.joints.shape[0] > 0:
             project_position(system, state, False, 1e-14, work)
 
 
 @kernel
-def errors(system, held, k, state, cluster, x, work):
+def errors(system, active, k, state, group, x, work):
     """Write the errors of all rows (0 where there is none); return whether all are round-off."""
     small = True
     for i in range(k):
-        hold, point = held.points[cluster.seats[i].held], cluster.points[1][i]
-        contact = system.contacts[hold.contact]
+        active_point, point = active.points[group.closed[i].active], group.points[1][i]
+        contact = system.contacts[active_point.contact]
         x[3 * i], x[3 * i + 1], x[3 * i + 2] = 0.0, 0.0, 0.0
-        if cluster.seats[i].rows == 0:
+        if group.closed[i].rows == 0:
             continue
-        place_any(system, contact, hold.feature, hold.point, state, point, work)
+        place_any(system, contact, active_point.feature, active_point.point, state, point, work)
         tiny = round_off(contact, state)
         if contact.touches == 1:
             tiny = 4.0 * round_off_of_both(contact, state)
         x[3 * i] = point.gap
         small = small and abs(point.gap) <= tiny
-        if cluster.seats[i].rows == 3:
-            c, a, r = state[hold.body].x, hold.anchor, point.arm_a
+        if group.closed[i].rows == 3:
+            c, a, r = state[active_point.body].x, active_point.anchor, point.arm_a
             _, t1, t2 = in_axes(point, c[0] + r[0] - a[0], c[1] + r[1] - a[1], c[2] + r[2] - a[2])
             x[3 * i + 1], x[3 * i + 2] = t1, t2
             small = small and max(abs(t1), abs(t2)) <= tiny

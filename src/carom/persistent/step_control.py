@@ -95,7 +95,7 @@ def unnamed(system, controls, start, end, friction, count, member):
 
 @kernel
 def unnamed_alone(system, start, end, friction, work):
-    """Return the same of bodies held at one point each, on which gravity alone acts besides."""
+    """Return the same of bodies in contact at one point each, on which gravity alone acts besides."""
     lost, may = friction, 0.0
     for b in range(start.shape[0]):
         if work.body[b].status == ONE:
@@ -107,13 +107,14 @@ def unnamed_alone(system, start, end, friction, work):
 
 
 @kernel
-def turns_far(system, held, start, end, dt):
-    """Return whether a body that is held turns too far in a step."""
-    for i in range(held.count[0]):
-        hold = held.points[i]
+def turns_far(system, active, start, end, dt):
+    """Return whether a body that is active turns too far in a step."""
+    for i in range(active.count[0]):
+        active_point = active.points[i]
         if (
-            hold.rest == 0
-            and not dt * max(norm(start[hold.body].w), norm(end[hold.body].w)) <= TURN
+            active_point.rest == 0
+            and not dt * max(norm(start[active_point.body].w), norm(end[active_point.body].w))
+            <= TURN
         ):
             return True
     return False
@@ -128,21 +129,21 @@ def unsolved(system, controls, work, part):
 
 @inlined
 def too_long(model, data, late):
-    """Return whether a step with held points is to be cut: for want of a solution, or for what it loses.
+    """Return whether a step with active points is to be cut: for want of a solution, or for what it loses.
 
     The latter not where events wait for the end of a part of the step (`late`).
     """
     system, controls = model.system, model.controls
-    held, start, work, search = data.held, data.state, data.work, data.work.search[0]
+    active, start, work, search = data.active, data.state, data.work, data.work.search[0]
     end, dt = work.trial, search.dt
-    if held.count[0] == 0:
+    if active.count[0] == 0:
         return False
     if dt > RETRIED * controls.step and unsolved(system, controls, work, UNSOLVED):
         return True
     if late:
         return False
     shortest = dt <= SHORTEST * controls.step
-    if not shortest and turns_far(system, held, start, end, dt):
+    if not shortest and turns_far(system, active, start, end, dt):
         return True
     result = work.result[0]
     alone = unnamed_alone(system, start, end, search.alone, work)

@@ -37,7 +37,7 @@ class Written(NamedTuple):
 
 def assemble(run, status: Status) -> dict:
     """Return the fields of a `Solution`."""
-    rec, clock = r.written(run.records, run.clock), r.told(run.clock)
+    rec, clock = r.written(run.records, run.clock), r.as_numbers(run.clock)
     state, series, contacts = rec.state, rec.series, run.compiled.system.contacts
     return {
         "t": np.array(series["t"]),
@@ -50,7 +50,7 @@ def assemble(run, status: Status) -> dict:
         "stats": {
             "steps": clock["step"], "trial_steps": clock["trials"], "rejected": clock["rejected"],
             "cuts": clock["cuts"], "located": clock["located"], "impacts": clock["struck"],
-            "holds": clock["holds"], "held_steps": clock["pressed"],
+            "holds": clock["holds"], "held_steps": clock["contact_steps"],
             "held_rounds": clock["rounds"], "whole_steps": clock["whole"],
             "explicit_steps": int(run.work.result["fallen"][0]),
             "parts": int(run.work.result["parts"][0]),
@@ -181,7 +181,7 @@ def arms(contacts) -> np.ndarray:
 
 
 def contact_sums(touch: np.recarray, saved: int, contacts: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the largest mode (T, C) and the total force (T, C, 3) of the held points of each contact."""
+    """Return the largest mode (T, C) and the total force (T, C, 3) of the active points of each contact."""
     mode = np.zeros((saved, contacts), dtype=np.int64)
     force = np.zeros((saved, contacts, 3))
     np.maximum.at(mode, (touch.saved, touch.contact), touch.mode)

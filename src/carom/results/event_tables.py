@@ -120,7 +120,7 @@ class ContactTable(NamedTuple):
 
 
 class ForceTable(NamedTuple):
-    """Forces of contacts that stay, one row a held point and saved time, in the order of time."""
+    """Forces of contacts that stay, one row an active point and saved time, in the order of time."""
 
     saved: np.ndarray  #: (M,) number of the saved time
     contact: np.ndarray  #: (M,) index of the contact
@@ -133,7 +133,7 @@ class ForceTable(NamedTuple):
 
 
 def force_table(touch) -> ForceTable:
-    """Return the forces of all held points that were saved, (M,)."""
+    """Return the forces of all active points that were saved, (M,)."""
     row = touch[np.argsort(touch.saved, kind="stable")].view(Columns)
     mode = np.array(["open", "slipping", "sticking"])[row.mode]
     columns = (row.saved, row.contact, row.body, row.other, mode, row.point, row.force, row.push)
@@ -155,7 +155,7 @@ def contact_table(event, kinds, first, end: float) -> ContactTable:
     """
     rows, at = [], {}  # rows: contact, feature, start, end, mode; at: the row that a point is in
     fields = ("contact", "feature", "kind", "time", "mode")
-    for contact, feature, code, time, mode_held in zip(*(event[f].tolist() for f in fields)):
+    for contact, feature, code, time, first_mode in zip(*(event[f].tolist() for f in fields)):
         key, kind = (contact, feature), kinds[code]
         if kind not in ("held", "slips", "sticks", "opens"):
             continue
@@ -164,7 +164,7 @@ def contact_table(event, kinds, first, end: float) -> ContactTable:
             if not others:
                 continue
             at[key] = at.pop(others[0])
-        mode: int = mode_held if kind == "held" else _MODES[kind]
+        mode: int = first_mode if kind == "held" else _MODES[kind]
         if key in at:
             if rows[at[key]][4] == mode:
                 continue  # slip that has turned

@@ -23,7 +23,7 @@ class Ledger:
         Change by impacts: not above zero, but where Newton's law with friction gives energy. Friction takes
         less in impacts and bounces together than in the impacts alone where these bounces are not resolved.
     friction
-        Work of friction in held contacts, not above zero.
+        Work of friction in persistent contacts, not above zero.
     bounces
         Energy of bounces that were not resolved when a contact was held, not above zero.
     residual

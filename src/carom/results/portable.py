@@ -18,10 +18,10 @@ class Portable:
     def save(self, path: str | os.PathLike) -> None:
         """Write all of the run to one netCDF-4 (HDF5) file, which needs no carom to be read.
 
-        With labelled dimensions, units, the tables of impacts, events and held contacts, the ledger, reactions
-        and coordinates of joints, the scene as JSON, settings, options, version and citation. The file
-        appears when it is complete, in the place of what was there, and has a digest of all its bytes. (How to:
-        keep results in files.)
+        With labelled dimensions, units, the tables of impacts, events and persistent contacts, the ledger,
+        reactions and coordinates of joints, the scene as JSON, settings, options, version and citation. The
+        file appears when it is complete, in the place of what was there, and has a digest of all its bytes.
+        (How to: keep results in files.)
 
         Parameters
         ----------

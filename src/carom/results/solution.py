@@ -50,15 +50,15 @@ class Solution(Portable, Drawn):
     impacts : ImpactTable
         One record for each impact.
     events : EventTable
-        Impacts and changes of held contacts, in their order.
+        Impacts and changes of persistent contacts, in their order.
     contacts : ContactTable
         Intervals of contact that stays: which point, from when to when, slipping or sticking.
     held_residual : (T,)
-        How far velocities and impulses of held contacts are from their law [m/s]: the greatest of all steps
-        since the saved time before. Worked out from the velocities of the bodies and the impulses that were
-        applied, whoever found them: ``|p - P_K(p - rho (w + mu |w_t| n))| / rho`` of each point, with P_K the
-        projection on the friction cone and rho its mass; of a point held alone, the velocity that it must not
-        have. 0 where nothing is held.
+        How far velocities and impulses of persistent contacts are from their law [m/s]: the greatest of all
+        steps since the saved time before. Worked out from the velocities of the bodies and the impulses that
+        were applied, whoever found them: ``|p - P_K(p - rho (w + mu |w_t| n))| / rho`` of each point, with P_K
+        the projection on the friction cone and rho its mass; of a point held alone, the velocity that it must
+        not have. 0 where nothing is held.
     ledger : Ledger
         Where the energy went.
     status : Status
@@ -68,7 +68,7 @@ class Solution(Portable, Drawn):
         to change. Empty if all is well.
     stats : dict
         Counts: steps, trial steps, rejected ones (``step="auto"``), cuts, located events, impacts, holds;
-        steps of held points and their rounds (of a heap: sweeps); `explicit_steps`, those that a symplectic
+        steps of active points and their rounds (of a heap: sweeps); `explicit_steps`, those that a symplectic
         method left to the explicit one in singular positions; `parts`, by how many those outnumber the (trial)
         steps that were made in parts, as a body turned far; and `whole_steps`, how often bodies that could
         not go from event to event took a step whole, or in parts.
@@ -143,7 +143,7 @@ class Solution(Portable, Drawn):
 
     @cached_property
     def events(self) -> EventTable:
-        """Impacts and changes of held contacts, in their order."""
+        """Impacts and changes of persistent contacts, in their order."""
         from carom.results.assemble import event_table
 
         return event_table(self)
@@ -297,7 +297,7 @@ class Solution(Portable, Drawn):
 
     @property
     def contact_force(self) -> np.ndarray:
-        """Forces (T, C, 3) of held contacts in contact axes (normal, tangent 1, tangent 2) [N]."""
+        """Forces (T, C, 3) of persistent contacts in contact axes (normal, tangent 1, tangent 2) [N]."""
         return self._contact_sums[1]
 
     @cached_property

@@ -32,9 +32,9 @@ ROUND_OFF = 1e-13
 # those in a row that gain all the same are the last
 GAIN, SHORTEST, IN_A_ROW = 0.25, 1.0 / 1024.0, 3
 # what a step of an explicit method may have without a name, as a part of `Options.energy_tolerance`: it is cut
-# otherwise; ten times that with points held, where the order is lower. A limit that the shortest step does
+# otherwise; ten times that with active points, where the order is lower. A limit that the shortest step does
 # not keep is made so many times wider
-SHARE, OF_HELD, WIDER = 1e-3, 10.0, 4.0
+SHARE, OF_ACTIVE, WIDER = 1e-3, 10.0, 4.0
 
 WATCH = [
     ("tolerance", "f8"),  # `Options.energy_tolerance`
@@ -138,7 +138,7 @@ def may_give(system, number):
 
 
 @inlined
-def imbalance(system, held, start, end, named, t, h, watch):
+def imbalance(system, active, start, end, named, t, h, watch):
     """Return the unnamed energy of a step, as a part of what is allowed, and whether the step multiplies it.
 
     Bodies that only gravity acts on are exact in flight, and watched where they are held
@@ -147,7 +147,7 @@ def imbalance(system, held, start, end, named, t, h, watch):
     loaded = False
     for b in range(start.shape[0]):
         loaded = loaded or system.bodies[b].ballistic == 0
-    return unbalanced(system, held, start, end, named, t, h, watch) if loaded else (0.0, False)
+    return unbalanced(system, active, start, end, named, t, h, watch) if loaded else (0.0, False)
 
 
 @kernel
@@ -162,7 +162,7 @@ def speeds_known(system, state, h):
 
 
 @kernel
-def unbalanced(system, held, start, end, named, t, h, watch):
+def unbalanced(system, active, start, end, named, t, h, watch):
     """Return what `imbalance` does, for joined or loaded bodies; `named` is the work of loads and friction.
 
     A step multiplies energy if it gains as much as it exchanges, and more than is tolerated, from nobody: what
@@ -175,7 +175,7 @@ def unbalanced(system, held, start, end, named, t, h, watch):
     known = ROUND_OFF * size + speeds_known(system, end, h)
     tolerated = watch.tolerance * watch.exchanged + known
     grows = not (gain <= GAIN * exchanged + tolerated)
-    share = watch.share * (OF_HELD if held.count[0] > 0 else 1.0)
+    share = watch.share * (OF_ACTIVE if active.count[0] > 0 else 1.0)
     may = share * max(watch.exchanged, exchanged) + known
     if not abs(gain) < math.inf:
         return math.inf, grows
@@ -190,16 +190,16 @@ def off_balance(model, data):
     that jumps, is not to cut all steps of a run. On the way to a jam forces have no bound: it is come to by
     halves, however short.
     """
-    system, controls, held, work = model.system, model.controls, data.held, data.work
+    system, controls, active, work = model.system, model.controls, data.active, data.work
     result, search, clock, watch = work.result[0], work.search[0], data.clocks[0], data.watch[0]
     dt, named = search.dt, search.applied + search.friction
     shortest, careful = dt <= SHORTEST * controls.step, search.pace < math.inf
     jams = search.active == 1 and search.kind == JAM
     if search.active == 1 and shortest and not jams:
         return False, 0
-    if held.count[0] == 0:
+    if active.count[0] == 0:
         result.unnamed = 0.0
-    off, grows = imbalance(system, held, data.state, work.trial, named, clock.now, dt, watch)
+    off, grows = imbalance(system, active, data.state, work.trial, named, clock.now, dt, watch)
     result.unnamed = max(result.unnamed, off)
     cut = grows or off > (CAREFUL if careful else 1.0)
     if (cut and not shortest) or (grows and jams):

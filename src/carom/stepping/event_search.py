@@ -1,6 +1,6 @@
 """Search for the first event inside a step: examination of a trial step, and the root of an event function.
 
-For a gap the rate is known: Newton's method, kept inside the bracket. For held contacts: regula falsi
+For a gap the rate is known: Newton's method, kept inside the bracket. For persistent contacts: regula falsi
 with the Illinois rule. Every trial is a step of the method itself from the start of the step, so that
 an event is as exact as the method.
 """
@@ -15,38 +15,38 @@ from carom.contact.gap import lowest, round_off
 from carom.contact.pair_point import smaller
 from carom.contact.stop import passage_stop, stop_gap
 from carom.model.arrays import STOP
-from carom.persistent.events import GAP, find_held_event, held_value, turned
+from carom.persistent.events import GAP, contact_event_value, find_contact_event, turned
 from carom.persistent.joint_events import STOPS, find_joint_event, joint_event_value
 from carom.persistent.margins import LEAST, NEAR
 
 
 @inlined
-def examine(system, controls, held, now, dt, work):
+def detect_event(system, controls, active, now, dt, work):
     """Return the first event of the step on trial: verdict, event, contact, a time before it, slip."""
     found, which, low = CLEAR, -1, 0.0
-    for c in range(held.brinks.shape[0]):
+    for c in range(active.contact_states.shape[0]):
         contact = system.contacts[c]
         if contact.touches == 0:
-            verdict, first = passage(system, controls, held, c, now, dt, work)
+            verdict, first = passage(system, controls, active, c, now, dt, work)
         elif contact.touches == STOP:
-            verdict, first = passage_stop(system, controls, held, c, now, dt, work)
+            verdict, first = passage_stop(system, controls, active, c, now, dt, work)
         else:
-            verdict, first = passage_pair(system, controls, held, c, now, dt, work)
+            verdict, first = passage_pair(system, controls, active, c, now, dt, work)
         if verdict in (UNSURE, FLAT_RIM):
             return verdict, GAP, c, 0.0, 0.0, 0.0
         if verdict == BELOW and found == CLEAR:
             found, which, low = BELOW, c, 0.5 * first
-        elif verdict == CLEAR and held.brinks[c].leaving == 1 and first > 0.0:
-            held.brinks[c].leaving = 0
+        elif verdict == CLEAR and active.contact_states[c].leaving == 1 and first > 0.0:
+            active.contact_states[c].leaving = 0
     if found == BELOW:
         return BELOW, GAP, which, low, 0.0, 0.0
-    kind, i, d1, d2 = find_held_event(system, held, work.trial, dt, work)
+    kind, i, d1, d2 = find_contact_event(system, active, work.trial, dt, work)
     if i >= 0:
         return BELOW, kind, i, 0.0, d1, d2
-    kind, i = find_joint_event(system, held, work.trial, work)
+    kind, i = find_joint_event(system, active, work.trial, work)
     if i >= 0:
         return BELOW, kind, i, 0.0, 0.0, 0.0
-    far = turned(system, held, work.trial, dt, work)
+    far = turned(system, active, work.trial, dt, work)
     if far == 2:
         return AGAIN, GAP, -1, 0.0, 0.0, 0.0
     if far == 1 and dt > 1e-3 * controls.step:
@@ -55,7 +55,7 @@ def examine(system, controls, held, now, dt, work):
 
 
 @kernel
-def event_value(system, controls, held, search, state, work):
+def event_value(system, controls, active, search, state, work):
     """Return the event function and, for a gap, its rate; contact forces are those of `state`."""
     if search.kind == GAP:
         contact = system.contacts[search.contact]
@@ -65,13 +65,15 @@ def event_value(system, controls, held, search, state, work):
         if contact.touches == STOP:
             return stop_gap(system, contact, state, work)
         search.tolerance = 4.0 * max(search.tolerance, round_off_of_both(contact, state))
-        return lowest_pair(system, contact, search.contact, held, state, work)
+        return lowest_pair(system, contact, search.contact, active, state, work)
     if search.kind >= STOPS:
-        return joint_event_value(system, search.kind, search.contact, held, state, work), 0.0
-    hold = held.points[search.contact]
-    if hold.several == 1:
+        return joint_event_value(system, search.kind, search.contact, active, state, work), 0.0
+    active_point = active.points[search.contact]
+    if active_point.several == 1:
         search.tolerance = NEAR
-    return held_value(system, hold, search.kind, search.d1, search.d2, state, work), 0.0
+    return contact_event_value(
+        system, active_point, search.kind, search.d1, search.d2, state, work
+    ), 0.0
 
 
 @kernel
@@ -84,7 +86,7 @@ def begin_search(search, kind, contact, low, high, d1, d2):
 
 
 @kernel
-def narrow(search, t, f, rate):
+def update_bracket(search, t, f, rate):
     """Narrow the bracket by the value f at t; return 1 if that is the event, 0 if not yet, -1 if f is NaN."""
     search.t, search.f, search.rate = t, f, rate
     if search.f_low < 0.0:  # the first value; nothing is known at the low end but the sign
@@ -109,7 +111,7 @@ def narrow(search, t, f, rate):
 
 
 @kernel
-def propose(search):
+def next_trial(search):
     """Return the next time to try: Newton's, else the regula falsi's, else the middle."""
     if search.kind == GAP and search.rate < 0.0:
         t = search.t - search.f / search.rate

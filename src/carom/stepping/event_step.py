@@ -14,20 +14,20 @@ from carom.contact.closed_points import apart, closed_within
 from carom.contact.continuous_detection import greatest_acceleration
 from carom.contact.gap import gap_and_rate, plane_in_body, slow
 from carom.contact.pair_point import REACH, find_touches, smaller, touch_rate
-from carom.contact.stop import look_at_stop
-from carom.dynamics.explicit import keep
+from carom.contact.stop import check_stop
+from carom.dynamics.explicit import copy_state
 from carom.dynamics.more_forces import note_turns
 from carom.geometry.rotation import norm
-from carom.impact.effective_restitution import TIRED
+from carom.impact.effective_restitution import ALL_PLASTIC
 from carom.impact.strike import strike
 from carom.kinematics.contact_point import contact_velocity
 from carom.model import records as r
-from carom.model.actions import HOLD, NOTHING, SETTLE, STRIKE
+from carom.model.actions import NOTHING, PERSIST, RENEW_MODE, STRIKE
 from carom.model.arrays import STOP
 from carom.model.controls import LOCATE
 from carom.model.workspace import FREE
 from carom.persistent.active_set import (
-    is_held,
+    is_active,
     let_go,
     regroup,
 )
@@ -35,8 +35,8 @@ from carom.persistent.events import (
     GAP,
 )
 from carom.persistent.joint_events import STOPS, review_joints, turn_joint
-from carom.persistent.lifecycle import hold_contact, settle
-from carom.persistent.margins import meet_due
+from carom.persistent.lifecycle import activate_contact, renew_mode
+from carom.persistent.margins import switch_due
 from carom.persistent.modes import change_mode, turn_modes
 from carom.persistent.step_control import (
     UNSOLVED,
@@ -97,7 +97,7 @@ def may_go_on(model, data, late):
     controls, clock = model.controls, data.clocks[0]
     if clock.since > r.LONG and clock.paused == 0:
         return r.PAUSE
-    if full(model.system, data.held, clock, data.records):
+    if full(model.system, data.active, clock, data.records):
         return grow(clock, r.FULL_EVENTS)
     if not late:
         if clock.in_step > controls.max_impacts or clock.at_once > 1000:
@@ -119,7 +119,7 @@ def due_action(model, data, late):
     search.horizon = search.left if exact(controls, late) else controls.step
     if clock.paused == 1 or (late and clock.at_once > MOST_AT_ONCE):
         return NOTHING
-    action, c = look_near(model.system, controls, data.held, data.state, data.work)
+    action, c = find_due_contact(model.system, controls, data.active, data.state, data.work)
     if action != NOTHING:
         search.contact = c
     return action
@@ -135,17 +135,17 @@ def exact(controls, late):
 def accept_step(model, data, late):
     """Make the trial state the present one; return a code, and what its event asks for."""
     system, controls, work = model.system, model.controls, data.work
-    held, now, clock, search = data.held, data.state, data.clocks[0], data.work.search[0]
+    active, now, clock, search = data.active, data.state, data.clocks[0], data.work.search[0]
 
     # an island is taken whole otherwise; where there are none the run goes on as long as it makes sense
     bearable = UNSOLVED if controls.retry == 1 else USELESS
-    if held.count[0] > 0 and unsolved(system, controls, work, bearable):
+    if active.count[0] > 0 and unsolved(system, controls, work, bearable):
         if not late:
             return NO_CONVERGENCE, NOTHING
-        let_go(held)
-        regroup(system, held, work)
+        let_go(active)
+        regroup(system, active, work)
         return 0, NOTHING
-    if held.count[0] > 0 and controls.retry == 1 and goes_wild(work):
+    if active.count[0] > 0 and controls.retry == 1 and goes_wild(work):
         return NO_CONVERGENCE, NOTHING
     if not finite(work.trial):
         return NOT_FINITE, NOTHING
@@ -154,13 +154,13 @@ def accept_step(model, data, late):
     accept(data, search)
     note_turns(system, now)
     search.pace = next_pace(search.pace, work)
-    if strayed(system, now, search.dt, work):
-        return r.STRAYED, NOTHING
+    if left_ball(system, now, search.dt, work):
+        return r.LEFT_BALL, NOTHING
     if search.dt == search.left:
         clock.spent = clock.length
     of_contact = search.found == 1 and search.kind != GAP and search.kind < STOPS
-    met = of_contact and not late and meet_due(held, search)
-    if held.count[0] > 0:
+    met = of_contact and not late and switch_due(active, search)
+    if active.count[0] > 0:
         turn_modes(model, data)
     if search.found == 0:
         return 0, NOTHING
@@ -170,7 +170,7 @@ def accept_step(model, data, late):
     if exact(controls, late):
         search.horizon = max(search.horizon - search.dt, 0.0)
     if search.kind >= STOPS:
-        turn_joint(system, search.kind, search.contact, held, now, work)
+        turn_joint(system, search.kind, search.contact, active, now, work)
         clock.in_step += 1
         clock.at_once += 1
         return 0, NOTHING
@@ -186,7 +186,7 @@ def accept(data, search):
     """Make the trial state the present one, and add up the work that was done on the way."""
     now, trial, clock = data.state, data.work.trial, data.clocks[0]
     for b in range(now.shape[0]):
-        keep(trial[b], now[b])
+        copy_state(trial[b], now[b])
     before = clock.now
     clock.spent += search.dt
     clock.now = clock.begin + clock.spent
@@ -209,11 +209,11 @@ def act(model, data, method, action, late):
         closed = work.hit[0].closed
         clock.since += 10.0
         if late:
-            tire_contacts(data.held)
+            make_plastic(data.active)
         if work.hit[0].code != 0:
             search.pending = STRIKE
             return work.hit[0].code
-        review_joints(system, data.held, data.state, work)
+        review_joints(system, data.active, data.state, work)
         if controls.layer_time == 1 and clock.struck > struck:
             clock.spent += data.records.impact[struck].duration  # the position stays
         contact = system.contacts[search.contact]
@@ -226,15 +226,15 @@ def act(model, data, method, action, late):
 def persist(model, data, action):
     """Let what is closed with the contact persist from now on, or go on in another mode. Returns a code."""
     work, clock, search = data.work, data.clocks[0], data.work.search[0]
-    if action == SETTLE:
-        settle(model, data, search.contact)
+    if action == RENEW_MODE:
+        renew_mode(model, data, search.contact)
     else:
-        hold_contact(model, data, search.contact, search.horizon)
+        activate_contact(model, data, search.contact, search.horizon)
         if work.hit[0].code != 0:
             return work.hit[0].code
     if clock.now == 0.0:  # touching from the start: the first row says so
         clock.touched = clock.first_touch
-        save_contacts(model.system, data.held, data.state, 0, clock, work, data.records)
+        save_contacts(model.system, data.active, data.state, 0, clock, work, data.records)
     return 0
 
 
@@ -245,17 +245,17 @@ def is_whole(step, work):
 
 
 @inlined
-def tire_contacts(held):
+def make_plastic(active):
     """Let contacts that were struck be plastic up to the end of the step."""
-    for c in range(held.brinks.shape[0]):
-        if held.brinks[c].blows > 0:
-            held.brinks[c].blows = TIRED
+    for c in range(active.contact_states.shape[0]):
+        if active.contact_states[c].blows > 0:
+            active.contact_states[c].blows = ALL_PLASTIC
 
 
 @inlined
-def full(system, held, clock, records):
+def full(system, active, clock, records):
     """Return whether the records have no room for one turn of the loop."""
-    rows = r.MARGIN + held.count[0]
+    rows = r.MARGIN + active.count[0]
     last = max(clock.event + 1, clock.struck) + rows
     if last > records.event.shape[0] or clock.touched + rows > records.touch.shape[0]:
         return True
@@ -263,7 +263,7 @@ def full(system, held, clock, records):
 
 
 @inlined
-def strayed(system, now, dt, work):
+def left_ball(system, now, dt, work):
     """Return whether a body may have left the ball that was given to it for this step.
 
     Both ends of a piece of its path are within it by what a fall of that time can bulge between them.
@@ -281,8 +281,8 @@ def strayed(system, now, dt, work):
 
 
 @unit
-def _look_at_pair(system, controls, held, c, now, work) -> int:
-    """Return whether a closed point of two bodies is to be struck or held."""
+def _check_pair(system, controls, active, c, now, work) -> int:
+    """Return whether a closed point of two bodies is to be struck or made persistent."""
     contact, action = system.contacts[c], NOTHING
     near, still = closed_within(controls, contact, now), slow(contact, now)
     if apart(contact, now, near):
@@ -293,22 +293,22 @@ def _look_at_pair(system, controls, held, c, now, work) -> int:
             rate = touch_rate(contact, touch, now)
             if rate < -still:
                 return STRIKE
-            if rate <= still and not is_held(system, held, c, touch, now):
-                action = HOLD
+            if rate <= still and not is_active(system, active, c, touch, now):
+                action = PERSIST
     return action
 
 
 @inlined
-def look_at_pair(system, controls, held, c, now, work):
-    """Return whether a closed point of two bodies is to be struck or held."""
+def check_pair(system, controls, active, c, now, work):
+    """Return whether a closed point of two bodies is to be struck or made persistent."""
     if system.solids.shape[0] > 0:
-        return _look_at_pair(system, controls, held, c, now, work)
+        return _check_pair(system, controls, active, c, now, work)
     return NOTHING
 
 
 @inlined
-def look_at_vertices(system, controls, held, contact, now):
-    """Return whether a closed vertex on a half-space is to be struck or held."""
+def look_at_vertices(system, controls, active, contact, now):
+    """Return whether a closed vertex on a half-space is to be struck or made persistent."""
     near, still, plane = (
         controls.tie * contact.extent,
         slow(contact, now),
@@ -319,29 +319,29 @@ def look_at_vertices(system, controls, held, contact, now):
         z, rate = gap_and_rate(plane, system.vertices[i])
         if z <= near and rate < -still:
             return STRIKE
-        if z <= near and rate <= still and held.carries[i] == 0:
-            action = HOLD
+        if z <= near and rate <= still and active.carries[i] == 0:
+            action = PERSIST
     return action
 
 
 @inlined
-def look_near(system, controls, held, now, work):
+def find_due_contact(system, controls, active, now, work):
     """Find a closed point that is not active, at the start or after an event, and the action it asks for."""
-    for c in range(held.brinks.shape[0]):
-        brink, contact = held.brinks[c], system.contacts[c]
-        if brink.near == 0:
+    for c in range(active.contact_states.shape[0]):
+        contact_state, contact = active.contact_states[c], system.contacts[c]
+        if contact_state.near == 0:
             continue
         if contact.touches == 1:
-            action = look_at_pair(system, controls, held, c, now, work)
+            action = check_pair(system, controls, active, c, now, work)
         elif contact.touches == STOP:
-            action = look_at_stop(system, controls, held, contact, c, now, work)
+            action = check_stop(system, controls, active, contact, c, now, work)
         else:
-            action = look_at_vertices(system, controls, held, contact, now)
-        brink.near = 0
-        if brink.jams == 1:
-            brink.jams, action = 0, STRIKE
-        if action == HOLD:
-            brink.leaving = 1  # unless it is held now
+            action = look_at_vertices(system, controls, active, contact, now)
+        contact_state.near = 0
+        if contact_state.jams == 1:
+            contact_state.jams, action = 0, STRIKE
+        if action == PERSIST:
+            contact_state.leaving = 1  # unless it is active now
         if action != NOTHING:
             return action, c
     return NOTHING, -1

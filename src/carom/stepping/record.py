@@ -6,7 +6,7 @@ import math
 
 from carom._compiled.decorators import entry, inlined, kernel
 from carom.contact.place import place_any
-from carom.dynamics.explicit import keep
+from carom.dynamics.explicit import copy_state
 from carom.geometry.rotation import cross
 from carom.model.records import GROW
 from carom.stepping.energy_balance import begin_watch, note_energies
@@ -41,16 +41,16 @@ def grow(clock, what):
 
 
 @entry
-def save_now(system, held, now, clocks, work, records, watch):
+def save_now(system, active, now, clocks, work, records, watch):
     """Write the present state: at the start, and after a failure."""
     note_energies(system, now, clocks[0])
     if clocks[0].saved == 0:
         begin_watch(system, now, clocks[0].now, watch[0])
-    save(system, held, now, clocks[0], work, records)
+    save(system, active, now, clocks[0], work, records)
 
 
 @inlined
-def save(system, held, now, clock, work, records):
+def save(system, active, now, clock, work, records):
     """Write the present state into the next row."""
     k = clock.saved
     row = records.series[k]
@@ -59,24 +59,28 @@ def save(system, held, now, clock, work, records):
     row.friction, row.bounces = clock.friction, clock.bounces
     row.residual, clock.residual = clock.residual, 0.0
     for b in range(now.shape[0]):
-        keep(now[b], records.state[k, b])
-    if held.count[0] > 0:
-        save_contacts(system, held, now, k, clock, work, records)
+        copy_state(now[b], records.state[k, b])
+    if active.count[0] > 0:
+        save_contacts(system, active, now, k, clock, work, records)
     clock.saved += 1
 
 
 @kernel
-def save_contacts(system, held, now, k, clock, work, records):
-    """Write forces and moments of all held points at saved time k."""
-    for i in range(held.count[0]):
-        hold, point, touch = held.points[i], work.point[0], records.touch[clock.touched]
-        contact = system.contacts[hold.contact]
-        place_any(system, contact, hold.feature, hold.point, now, point, work)
-        E, arm, other, f = point.axes, point.arm_a, point.arm_b, hold.force
-        touch.saved, touch.contact, touch.feature = k, contact.number, hold.feature
-        touch.mode, touch.body, touch.other = hold.mode, system.bodies[hold.body].number, -1
-        if hold.other >= 0:
-            touch.other = system.bodies[hold.other].number
+def save_contacts(system, active, now, k, clock, work, records):
+    """Write forces and moments of all active points at saved time k."""
+    for i in range(active.count[0]):
+        active_point, point, touch = active.points[i], work.point[0], records.touch[clock.touched]
+        contact = system.contacts[active_point.contact]
+        place_any(system, contact, active_point.feature, active_point.point, now, point, work)
+        E, arm, other, f = point.axes, point.arm_a, point.arm_b, active_point.force
+        touch.saved, touch.contact, touch.feature = k, contact.number, active_point.feature
+        touch.mode, touch.body, touch.other = (
+            active_point.mode,
+            system.bodies[active_point.body].number,
+            -1,
+        )
+        if active_point.other >= 0:
+            touch.other = system.bodies[active_point.other].number
         fx = f[0] * E[0, 0] + f[1] * E[1, 0] + f[2] * E[2, 0]
         fy = f[0] * E[0, 1] + f[1] * E[1, 1] + f[2] * E[2, 1]
         fz = f[0] * E[0, 2] + f[1] * E[1, 2] + f[2] * E[2, 2]
@@ -88,7 +92,7 @@ def save_contacts(system, held, now, k, clock, work, records):
             tx, ty, tz = unit * fx, unit * fy, unit * fz
             sx, sy, sz = -tx, -ty, -tz
             fx, fy, fz = 0.0, 0.0, 0.0
-        m = hold.torque
+        m = active_point.torque
         mx = m[0] * E[0, 0] + m[1] * E[1, 0] + m[2] * E[2, 0]
         my = m[0] * E[0, 1] + m[1] * E[1, 1] + m[2] * E[2, 1]
         mz = m[0] * E[0, 2] + m[1] * E[1, 2] + m[2] * E[2, 2]
@@ -97,5 +101,5 @@ def save_contacts(system, held, now, k, clock, work, records):
         o[0], o[1], o[2] = sx - mx, sy - my, sz - mz
         p[0], p[1], p[2] = fx, fy, fz
         for j in range(3):
-            touch.force[j], touch.point[j] = unit * f[j], now[hold.body].x[j] + arm[j]
+            touch.force[j], touch.point[j] = unit * f[j], now[active_point.body].x[j] + arm[j]
         clock.touched += 1

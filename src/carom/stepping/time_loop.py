@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.by_reference import refer
+from carom._compiled.by_reference import by_reference
 from carom._compiled.decorators import entry, inlined, kernel
 from carom._compiled.units import unit
 from carom.contact.depth import watch_depth
@@ -14,9 +14,9 @@ from carom.model import records as r
 from carom.model.controls import LOCATE
 from carom.model.data import Data, Model
 from carom.persistent.active_set import regroup
-from carom.stepping.crowd.step import step_heap
+from carom.stepping.crowd.step import step_crowd
 from carom.stepping.energy_balance import watch_step
-from carom.stepping.event_step import NOT_FINITE, advance, is_whole, strayed
+from carom.stepping.event_step import NOT_FINITE, advance, is_whole, left_ball
 from carom.stepping.islands import one_island, parts
 from carom.stepping.record import finite, grow, save, still
 
@@ -45,17 +45,17 @@ def run(model, data, method, islands, until):
         if islands.apart == 1:
             code = step_apart(model, data, method, islands)
         else:
-            code = step_together(model, data, method, islands.together)
+            code = step_single(model, data, method, islands.single)
         if code == AGAIN:
             continue
         if code != 0:
             return code
-        if clock.touched + data.held.points.shape[0] > data.records.touch.shape[0]:
+        if clock.touched + data.active.points.shape[0] > data.records.touch.shape[0]:
             return grow(clock, r.FULL_EVENTS)
         if islands.apart == 1:
             end_islands(model, data, islands)
         else:
-            islands.together.begun[0] = 0
+            islands.single.begun[0] = 0
         code = finish_step(model, data)
         if code != 0:
             return code
@@ -63,16 +63,16 @@ def run(model, data, method, islands, until):
 
 
 @kernel
-def step_together(model, data, method, start):
+def step_single(model, data, method, start):
     """Move all bodies to the end of the step together; return 0, AGAIN, or a code."""
     clock = data.clocks[0]
-    one_island.begin_together(model.system, data.held, data.state, data.clocks, start)
+    one_island.begin_single(model.system, data.active, data.state, data.clocks, start)
     code = 0
     while code == 0 and clock.spent < clock.length:
-        code = move_together(model, data, method, start)
+        code = move_single(model, data, method, start)
         if code == 0:
             pay(clock)
-    return AGAIN if code != 0 and together_again(model, data, start, code) else code
+    return AGAIN if code != 0 and retry_single(model, data, start, code) else code
 
 
 @unit
@@ -82,30 +82,33 @@ def step_apart(model, data, method, islands) -> int:
     if plan.planned == 0:
         plan.widen = max(1.0, plan.widen)
         if not parts.begin_step(
-            model.system, data.held, data.state, clock.length, data.clocks, data.work, islands
+            model.system, data.active, data.state, clock.length, data.clocks, data.work, islands
         ):
             return grow(clock, r.FULL_PAIRS)
     code = 0
     while code == 0 and plan.at < plan.count:
         i = plan.at
         system = parts.part_system(model.system, islands, i)
-        held, work = parts.part_held(data.held, islands, i), parts.part_work(data.work, islands, i)
+        active, work = (
+            parts.part_active(data.active, islands, i),
+            parts.part_work(data.work, islands, i),
+        )
         state = islands.state[islands.first[0, i] : islands.first[0, i + 1]]
-        part = refer(Model(refer(system), model.controls))
-        own = refer(
+        part = by_reference(Model(by_reference(system), model.controls))
+        own = by_reference(
             Data(
-                state, refer(held), refer(work), data.cluster, data.corner, data.heap,
+                state, by_reference(active), by_reference(work), data.group, data.multiple, data.crowd,
                 data.clocks, data.records, data.watch,
             )
         )  # fmt: skip
         if plan.entered == 0:  # not done before the loop was left
-            parts.enter(part.system, own.held, data.held, own.work, islands, clock.begin, clock)
+            parts.enter(part.system, own.active, data.active, own.work, islands, clock.begin, clock)
             clock.first_touch = clock.touched
         code = move_island(part, own, method)
         if code == 0:
-            parts.leave(own.held, islands)
+            parts.leave(own.active, islands)
             pay(clock)
-    return AGAIN if code != 0 and apart_again(model, data, islands, code) else code
+    return AGAIN if code != 0 and retry_apart(model, data, islands, code) else code
 
 
 @inlined
@@ -119,7 +122,7 @@ def finish_step(model, data):
     """Set the clock to the end of the step, look at its balance, and save its row if it is one of those."""
     system, controls, clock, state = model.system, model.controls, data.clocks[0], data.state
     clock.spent = 0.0
-    settle_up(clock)
+    charge_impacts(clock)
     clock.step += 1
     clock.in_step = 0
     earn(state, clock, data.work)
@@ -134,12 +137,12 @@ def finish_step(model, data):
     if clock.step % controls.save_every == 0 or last:
         if controls.location == LOCATE:
             watch_depth(system, state, clock.now, data.work, data.watch[0])
-        save(system, data.held, state, clock, data.work, data.records)
+        save(system, data.active, state, clock, data.work, data.records)
     return 0
 
 
 @kernel
-def settle_up(clock):
+def charge_impacts(clock):
     """Book as energy of impacts what friction gave in the step as bounces were dropped, and has not taken back.
 
     Impacts, bounces and persistent contact together have mu times their normal impulse of friction: where the
@@ -161,15 +164,15 @@ def earn(now, clock, work):
 
 
 @inlined
-def move_together(model, data, method, start):
+def move_single(model, data, method, start):
     """Move all bodies to the end of the step: event by event, or at once where that made no progress."""
     system, work = model.system, data.work
     step = data.clocks[0].step
     if start.free == 0 or not is_whole(step, work):
         parts.recover(system, step, work)
         return advance(model, data, method)
-    step_heap(model, data)
-    regroup(system, data.held, work)
+    step_crowd(model, data)
+    regroup(system, data.active, work)
     return work.result[0].code
 
 
@@ -178,49 +181,49 @@ def move_island(model, data, method):
     """Move an island to the end of the step: event by event, or whole if it is large."""
     system, controls, work = model.system, model.controls, data.work
     step = data.clocks[0].step
-    if not parts.is_heap(system, controls.heap, step, work):
+    if not parts.is_crowd(system, controls.heap, step, work):
         parts.recover(system, step, work)
         return advance(model, data, method)
-    step_heap(model, data)
+    step_crowd(model, data)
     code = work.result[0].code
-    if code == 0 and strayed(system, data.state, data.clocks[0].length, work):
-        return r.STRAYED
+    if code == 0 and left_ball(system, data.state, data.clocks[0].length, work):
+        return r.LEFT_BALL
     return code
 
 
 @inlined
-def together_again(model, data, start, code):
+def retry_single(model, data, start, code):
     """Go back to the start of a step that could not be taken from event to event; return whether so."""
     clock = data.clocks[0]
     if code >= r.GROW or code == BLOCKED or model.controls.retry == 0:
         return False
-    if not one_island.tire_together(clock.step, data.work):
+    if not one_island.give_up_single(clock.step, data.work):
         return False
     spent = clock.effort
-    one_island.forget_together(model.system, data.held, data.state, data.clocks, data.work, start)
+    one_island.forget_single(model.system, data.active, data.state, data.clocks, data.work, start)
     clock.whole += 1
     clock.credit = max(0.0, clock.credit - spent)
     return True
 
 
 @inlined
-def apart_again(model, data, islands, code):
+def retry_apart(model, data, islands, code):
     """Go back to the start of the step; return whether it is to be done again.
 
-    With more room for bodies that have left theirs; with islands as heaps where one could not go from event
+    With more room for bodies that have left theirs; with islands as crowds where one could not go from event
     to event.
     """
-    if code >= r.GROW and code != r.STRAYED:
+    if code >= r.GROW and code != r.LEFT_BALL:
         return False  # the caller sees to it, and comes back
-    clock, again = data.clocks[0], code == r.STRAYED
+    clock, again = data.clocks[0], code == r.LEFT_BALL
     if again:
         islands.plan[0].widen *= 2.0
     elif model.controls.hold == 1:
-        again = parts.tire(islands, clock.step, data.work)
+        again = parts.give_up(islands, clock.step, data.work)
     spent = clock.effort
-    parts.forget_step(data.held, data.clocks, islands)
+    parts.forget_step(data.active, data.clocks, islands)
     clock.credit = max(0.0, clock.credit - spent)
-    if again and code != r.STRAYED:
+    if again and code != r.LEFT_BALL:
         clock.whole += 1
     return again
 
@@ -229,4 +232,4 @@ def apart_again(model, data, islands, code):
 def end_islands(model, data, islands):
     """Write all islands back into the whole system."""
     clock = data.clocks[0]
-    parts.end_step(model.system, data.held, data.state, clock.length, clock, data.work, islands)
+    parts.end_step(model.system, data.active, data.state, clock.length, clock, data.work, islands)

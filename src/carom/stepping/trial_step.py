@@ -14,13 +14,19 @@ from carom.dynamics.step import step
 from carom.model import records as r
 from carom.model.actions import STRIKE
 from carom.model.controls import LOCATE
-from carom.persistent.contact_step import press
+from carom.persistent.contact_step import contact_step
 from carom.persistent.events import GAP, end_forces
 from carom.persistent.joint_events import STOPS
 from carom.persistent.margins import note_due
 from carom.persistent.step_control import affordable, too_long
 from carom.stepping.energy_balance import IN_A_ROW, SHORTEST, off_balance
-from carom.stepping.event_search import begin_search, event_value, examine, narrow, propose
+from carom.stepping.event_search import (
+    begin_search,
+    detect_event,
+    event_value,
+    next_trial,
+    update_bracket,
+)
 from carom.stepping.record import finite
 
 STEP_CUT, TOO_MANY, NOT_FINITE = 2, 3, 4
@@ -38,8 +44,8 @@ def propose_step(model, data, late):
         clock.paused = 0
         return
     dt = min(search.left, search.pace)
-    if data.held.count[0] > 0 and not late:
-        dt = until_stop(model.controls, data.held, dt, clock)
+    if data.active.count[0] > 0 and not late:
+        dt = until_stop(model.controls, data.active, dt, clock)
     if late:
         dt = min(dt, clock.length / PARTS)
     search.dt, search.cuts, search.again, search.active = dt, 0, 0, 0
@@ -47,14 +53,14 @@ def propose_step(model, data, late):
 
 
 @inlined
-def until_stop(controls, held, dt, clock):
-    """Return dt, or the time in which slip of one of several held points is going to stop."""
+def until_stop(controls, active, dt, clock):
+    """Return dt, or the time in which slip of one of several active points is going to stop."""
     first = dt
-    for i in range(held.count[0]):
-        hold = held.points[i]
-        if hold.several == 1 and hold.rest == 0:
-            first = min(first, hold.stop if hold.mode == SLIP else first)
-            first = min(first, min(hold.turn_stop[0], hold.turn_stop[1]))
+    for i in range(active.count[0]):
+        active_point = active.points[i]
+        if active_point.several == 1 and active_point.rest == 0:
+            first = min(first, active_point.stop if active_point.mode == SLIP else first)
+            first = min(first, min(active_point.turn_stop[0], active_point.turn_stop[1]))
     # not where they follow each other without end, nor for round-off of the step
     inside = first > controls.rest * dt and first < (1.0 - 1e-12) * dt
     return first if inside and clock.in_step < 20 else dt
@@ -75,7 +81,7 @@ def first_event(model, data, method, late):
         if code == 0 and search.active == 1:
             code = is_root(model, data)
         if code == 0:
-            code = look_inside(model, data, late)
+            code = event_within(model, data, late)
         if code != ONCE_MORE:
             return code
 
@@ -86,21 +92,21 @@ def trial_step(model, data, method, late):
 
     The code of the step without them goes to the search: a shorter one may do.
     """
-    system, controls, held, now = model.system, model.controls, data.held, data.state
+    system, controls, active, now = model.system, model.controls, data.active, data.state
     work, clock, search = data.work, data.clocks[0], data.work.search[0]
     work.result[0].start = clock.now
-    applied, friction, code = step(method, system, held, now, search.dt, work.trial, work)
+    applied, friction, code = step(method, system, active, now, search.dt, work.trial, work)
     search.applied, search.friction, search.code = applied, friction, code
-    search.alone = friction  # of points that are held one to a body
+    search.alone = friction  # of points that are active one to a body
     clock.trials += 1
     clock.tries += 1
-    clock.since += 1.0 + now.shape[0] + held.brinks.shape[0]
+    clock.since += 1.0 + now.shape[0] + active.contact_states.shape[0]
     if controls.retry > 0 and not late:
         if clock.tries > TRIES or clock.effort > affordable(controls, clock):
             return TOO_MANY
-    if held.count[0] > 0 and code == 0:
-        end_forces(system, held, work.trial, work)
-        press(model, data, search.dt)
+    if active.count[0] > 0 and code == 0:
+        end_forces(system, active, work.trial, work)
+        contact_step(model, data, search.dt)
         if work.result[0].code != 0:
             return work.result[0].code
         if controls.retry == 1 and clock.effort > affordable(controls, clock):
@@ -143,20 +149,20 @@ def fits(model, data):
 def is_root(model, data):
     """Return 0 if the end of the trial step is the event that is searched for; ONCE_MORE or a code if not."""
     system, controls, work, search = model.system, model.controls, data.work, data.work.search[0]
-    f, rate = event_value(system, controls, data.held, search, work.trial, work)
-    state = narrow(search, search.dt, f, rate)
+    f, rate = event_value(system, controls, data.active, search, work.trial, work)
+    state = update_bracket(search, search.dt, f, rate)
     if state < 0:
         return NOT_FINITE
     if state == 0:
-        search.dt = propose(search)
+        search.dt = next_trial(search)
         return ONCE_MORE
     return 0
 
 
 @inlined
-def look_inside(model, data, late):
+def event_within(model, data, late):
     """Return 0 if the trial step may be taken: nothing lies inside, or the event is at its end (`found`)."""
-    system, controls, held, now = model.system, model.controls, data.held, data.state
+    system, controls, active, now = model.system, model.controls, data.active, data.state
     work, search = data.work, data.work.search[0]
 
     # is it too long for what it loses?
@@ -171,7 +177,7 @@ def look_inside(model, data, late):
         return halve(model, data, True)
 
     # does an event lie inside?
-    verdict, kind, other, low, d1, d2 = examine(system, controls, held, now, search.dt, work)
+    verdict, kind, other, low, d1, d2 = detect_event(system, controls, active, now, search.dt, work)
     if verdict == FLAT_RIM and not late:  # its points strike together where they are
         search.pending, search.contact, search.horizon = STRIKE, other, search.left
         return 0
@@ -214,11 +220,11 @@ def bracket(model, data):
     """Begin to narrow the time of an event; where impacts are not located they are at the end of the step."""
     system, controls, work, search = model.system, model.controls, data.work, data.work.search[0]
     if search.kind != GAP and search.kind < STOPS:
-        note_due(data.held, search, work)
+        note_due(data.active, search, work)
     if search.kind == GAP and controls.location != LOCATE:
         search.found = 1
         return 0
-    f, rate = event_value(system, controls, data.held, search, work.trial, work)
-    narrow(search, search.dt, f, rate)
-    search.dt = propose(search)
+    f, rate = event_value(system, controls, data.active, search, work.trial, work)
+    update_bracket(search, search.dt, f, rate)
+    search.dt = next_trial(search)
     return ONCE_MORE

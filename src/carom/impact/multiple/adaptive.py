@@ -96,7 +96,7 @@ def drift(k, work, apart, p):
         return 1
     for i in range(k):
         c = work.contact[i]
-        near = u[3 * i] < -apart and max(0.0, c.d0 - d[i]) / -u[3 * i] <= time + events.TOGETHER
+        near = u[3 * i] < -apart and max(0.0, c.d0 - d[i]) / -u[3 * i] <= time + events.SAME_TIME
         d[i] -= u[3 * i] * time
         if near:
             d[i] = c.d0
@@ -116,9 +116,9 @@ def wedged(k, work, h, p):
     """
     clock, u = work.clock[0], work.vector[U]
     for i in range(k):
-        n, held = 3 * i, work.contact[i].mode != law.OPEN
-        slip = abs(u[n + 1]) + abs(u[n + 2]) if held and work.contact[i].mu > 0.0 else 0.0
-        if not (slip <= WEDGED and (abs(u[n]) if held else -u[n]) <= WEDGED):
+        n, active = 3 * i, work.contact[i].mode != law.OPEN
+        slip = abs(u[n + 1]) + abs(u[n + 2]) if active and work.contact[i].mu > 0.0 else 0.0
+        if not (slip <= WEDGED and (abs(u[n]) if active else -u[n]) <= WEDGED):
             clock.rest = 0
             return False
     clock.rest += 1 if h >= _LASTING and clock.stretched == 0 else 0
@@ -157,8 +157,8 @@ def traverse(k, work, rtol, p, max_events, max_steps):
             h, changes = clock.length, clock.changes == 1
             clock.stiff = clock.stiff - 1 if clock.stiff > 0 else _STIFF_STEPS - 1
         if changes:
-            latest = h + events.TOGETHER
-            clock.idle = clock.idle + 1 if h <= events.TOGETHER else 0
+            latest = h + events.SAME_TIME
+            clock.idle = clock.idle + 1 if h <= events.SAME_TIME else 0
             if clock.branched == 0 and events.would_unload(k, work, when, latest):
                 branch(k, work, latest)
             events.change_modes(k, work, when, latest, p, clock.idle > 2 * k)

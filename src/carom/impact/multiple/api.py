@@ -12,7 +12,7 @@ from carom.friction.checks import checked_inverse_masses, per_contact
 
 @dataclass(frozen=True)
 class CornerImpact:
-    """What an impact at a corner did. Contacts in the first index, then normal, tangent 1, tangent 2.
+    """What a multiple impact did. Contacts in the first index, then normal, tangent 1, tangent 2.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def resolve_impacts(
         All contacts together through their boundary layers (default), or blow by blow, each time the contact
         that approaches fastest: quick, exact for a row of balls with e = 1, but else dependent on the order.
         "newton": one contact problem for all, Newton's law at each (Moreau 1988), or e = 0 where that would
-        raise the energy: quickest, for heaps; `law` and `stiffness` play no part.
+        raise the energy: quickest, for crowds; `law` and `stiffness` play no part.
     stiffness : array_like, shape (k,), optional
         Stiffness kappa of the contacts; with ``exponent=1`` only ratios matter. Default: all equal.
     exponent : float
@@ -130,11 +130,11 @@ def resolve_impacts(
         MULTIPLE,
         OK,
         CornerContacts,
-        CornerSettings,
-        corner_arrays,
-        new_corner_result,
+        MultipleSettings,
+        new_multiple_result,
+        new_multiple_workspace,
     )
-    from carom.impact.multiple.resolve import resolve_corner
+    from carom.impact.multiple.resolve import resolve_multiple
 
     u = checks.finite_array("velocity", velocity, (None, 3), "m/s")
     k = len(u)
@@ -148,16 +148,16 @@ def resolve_impacts(
     if len(names) != k:
         raise ValueError(f"law must be one name or {k} of them, got {checks.shown(law)}")
     numbers = np.array([NUMBERS[checks.choice("law", name, NUMBERS)] for name in names])
-    settings = CornerSettings(
+    settings = MultipleSettings(
         multiple=MULTIPLE[checks.choice("multiple", multiple, MULTIPLE)],
         rtol=checks.number("rtol", rtol, least=1e-12, most=1e-2),
         exponent=checks.number("exponent", exponent, least=1.0, most=4.0),
     )
-    out = new_corner_result(k)
-    scratch = corner_arrays(k)
+    out = new_multiple_result(k)
+    workspace = new_multiple_workspace(k)
     velocities = np.ascontiguousarray(u).reshape(-1)
     contacts = CornerContacts(k, W, velocities, mu, e, numbers, kappa)
-    code = resolve_corner(contacts, settings, scratch, out)
+    code = resolve_multiple(contacts, settings, workspace, out)
     if code != OK:
         raise ValueError(f"the impact was not resolved: {MESSAGES[code]}")
     summary = out.summary[0]

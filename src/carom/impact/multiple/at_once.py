@@ -35,10 +35,10 @@ def unsound(k, u, scale, out):
 
 
 @unit
-def solve_at_once(contacts, scratch, out):
+def solve_at_once(contacts, workspace, out):
     """Write impulses and works of all contacts."""
     k, u, mu, e = contacts.k, contacts.u, contacts.friction, contacts.restitution
-    work = scratch.work
+    work = workspace.work
     W, c, p = work.matrix[CLEAN], work.vector[SCRATCH], work.vector[TRY]
     heading, kind = work.matrix[FACTOR], work.index[STACK]
     for turn in range(2):
@@ -49,8 +49,8 @@ def solve_at_once(contacts, scratch, out):
                 c[3 * i + r], p[3 * i + r] = u[3 * i + r], 0.0
             if turn == 0:
                 c[3 * i] += e[i] * min(0.0, u[3 * i])
-        scratch.cones.mismatch[ENOUGH] = 0.0
-        solve_cones(k, W, c, mu, kind, heading, p, scratch.cones)
+        workspace.cones.mismatch[ENOUGH] = 0.0
+        solve_cones(k, W, c, mu, kind, heading, p, workspace.cones)
         energy, size = 0.0, 0.0
         for a in range(3 * k):
             after = u[a]

@@ -49,7 +49,7 @@ def stages_step(k, m, work, rtol, p):
     first = events.find_changes(k, work, 5, h, when)
     changes = first <= h
     if changes:
-        if first > events.TOGETHER:
+        if first > events.SAME_TIME:
             h = _land(k, m, work, first, p, tolerance, 0.1 * rtol)
             for i in range(k):  # in the time of the step as it is now
                 when[i] -= first - h

@@ -9,7 +9,7 @@ from carom.impact.multiple.lanes import blocks, value_and_slope, values
 from carom.impact.multiple.layout import AT_D, AT_U, LANES, S_AT, S_D, S_U, D, P
 
 ROUND_OFF = 1e-13  # of the scales of velocity and depth
-TOGETHER = 1e-10  # changes closer than this in time are one
+SAME_TIME = 1e-10  # changes closer than this in time are one
 _SAMPLES = 5
 
 

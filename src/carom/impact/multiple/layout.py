@@ -33,7 +33,7 @@ AT_ONCE = 64  #: the layer could not be passed: one contact problem instead
 REPELLED = 32  #: the impulse was scaled back by round-off, so that energy does not grow
 
 
-class CornerSettings(NamedTuple):
+class MultipleSettings(NamedTuple):
     """Settings of the resolver of multiple impacts."""
 
     multiple: int = SIMULTANEOUS
@@ -101,7 +101,7 @@ RESULT = [
 ]
 
 
-class CornerResult(NamedTuple):
+class MultipleResult(NamedTuple):
     """Result of an impact of K contacts."""
 
     impulse: np.ndarray  # (3K,)
@@ -113,7 +113,7 @@ class CornerResult(NamedTuple):
     summary: np.recarray  # (1,) RESULT
 
 
-class CornerWork(NamedTuple):
+class PassageWork(NamedTuple):
     """Workspace for the passage of a group of K contacts, in few arrays: each costs at every call."""
 
     contact: np.recarray  # (K,) CONTACT
@@ -130,10 +130,10 @@ class CornerWork(NamedTuple):
     single: np.ndarray  # result of one contact, as `carom.impact.layout` says
 
 
-class CornerScratch(NamedTuple):
+class MultipleWorkspace(NamedTuple):
     """Workspace for impacts of up to K contacts."""
 
-    work: CornerWork
+    work: PassageWork
     cones: ContactWork
 
 
@@ -198,20 +198,20 @@ CLOCK = [
 ]
 
 
-def new_corner_result(capacity: int) -> CornerResult:
+def new_multiple_result(capacity: int) -> MultipleResult:
     """Return arrays for the result of up to `capacity` contacts."""
     k = max(int(capacity), 1)
-    return CornerResult(
+    return MultipleResult(
         np.zeros(3 * k), np.zeros(3 * k), np.zeros(k), np.zeros(k), np.zeros(k),
         np.zeros(k, dtype=np.int64), table(RESULT, 1),
     )  # fmt: skip
 
 
-def corner_arrays(capacity: int) -> CornerScratch:
-    """Return scratch for up to `capacity` contacts."""
+def new_multiple_workspace(capacity: int) -> MultipleWorkspace:
+    """Return workspace for up to `capacity` contacts."""
     k = max(int(capacity), 1)
     n, blocks = 3 * k, (k + LANES - 1) // LANES
-    work = CornerWork(
+    work = PassageWork(
         contact=table(CONTACT, k),
         saved=table(CONTACT, k),
         clock=table(CLOCK, 1),
@@ -223,4 +223,4 @@ def corner_arrays(capacity: int) -> CornerScratch:
         stage=np.zeros((2, 6, n)),
         single=np.zeros(one.SIZE),
     )
-    return CornerScratch(work, new_contact_work(k))
+    return MultipleWorkspace(work, new_contact_work(k))

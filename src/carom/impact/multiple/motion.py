@@ -1,4 +1,4 @@
-"""Velocities and forces of the layer at a corner: udot = W lambda, ddot = -u_n, Pdot = lambda (V.1)."""
+"""Velocities and forces of the layers of a group: udot = W lambda, ddot = -u_n, Pdot = lambda (V.1)."""
 
 from __future__ import annotations
 

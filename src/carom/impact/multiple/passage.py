@@ -8,7 +8,7 @@ from carom.impact.multiple.adaptive import ENDED, start
 from carom.impact.multiple.layout import FIXED, PLASTIC, TRY, U
 from carom.impact.multiple.motion import into_lanes
 from carom.impact.multiple.plastic import end_plastically
-from carom.impact.multiple.restitution_iteration import meet_laws, run
+from carom.impact.multiple.restitution_iteration import iterate_restitution, run
 
 
 @kernel
@@ -38,7 +38,7 @@ def pass_group(k, work, cones, settings, result):
         fixed = settings.fixed_steps
         ended = run(k, work, settings, settings.rtol, fixed, True)
     if r.any_targets(k, work) and ended == ENDED:
-        ended = meet_laws(k, work, settings, fixed, result)
+        ended = iterate_restitution(k, work, settings, fixed, result)
     if fixed > 0:
         result.marks |= FIXED
         for i in range(3 * k):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.by_reference import refer
+from carom._compiled.by_reference import by_reference
 from carom._compiled.decorators import entry, kernel
 from carom.impact import laws
 from carom.impact import layout as one
@@ -43,16 +43,17 @@ _TOUCHES = 1e-13  # approach below this part of the greatest velocity is none
 
 
 @entry
-def resolve_corner(contacts, settings, scratch, out):
+def resolve_multiple(contacts, settings, workspace, out):
     """Resolve an impact as `resolve_contacts`, for calls from Python."""
-    return resolve_contacts(contacts, settings, scratch, out)
+    return resolve_contacts(contacts, settings, workspace, out)
 
 
 @kernel
-def resolve_contacts(contacts, settings, scratch, out):
+def resolve_contacts(contacts, settings, workspace, out):
     """Resolve an impact of `CornerContacts`; return OK or BAD_INPUT (nothing is written then).
 
-    `settings`: `CornerSettings`; `scratch` from `corner_arrays`, `out` from `new_corner_result`, for K >= k.
+    `settings`: `MultipleSettings`; `workspace` from `new_multiple_workspace`, `out` from `new_multiple_result`,
+    for K >= k.
     """
     scale = _check(contacts)
     if not scale >= 0.0:
@@ -64,9 +65,9 @@ def resolve_contacts(contacts, settings, scratch, out):
         approaches = approaches or u[3 * i] < -still
     if not approaches:
         return OK
-    work = scratch.work
+    work = workspace.work
     index, clean = work.index, work.matrix[CLEAN]
-    acting = refer(
+    acting = by_reference(
         CornerContacts(
             k, clean, u, work.vector[FRICTION], contacts.restitution, contacts.law,
             contacts.stiffness,
@@ -77,13 +78,13 @@ def resolve_contacts(contacts, settings, scratch, out):
     groups = equal_contacts.find_groups(k, result.classes, clean, index)
     code = NOT_RESOLVED if settings.multiple == BY_NEWTON else OK
     for g in range(groups if code == OK else 0):
-        code = max(code, _group(g, acting, still, settings, scratch, out))
+        code = max(code, _group(g, acting, still, settings, workspace, out))
     if code == OK:
         _finish(contacts, out)
     exact = (result.marks & EXACT) != 0  # that of one contact may gain energy, by Newton's law
     if code != OK or (not exact and unsound(k, u, scale, out)):
         result.marks, result.miss, result.plastic_change = AT_ONCE, 0.0, 0.0
-        solve_at_once(contacts, scratch, out)
+        solve_at_once(contacts, workspace, out)
         _finish(contacts, out)
     return OK
 
@@ -123,9 +124,9 @@ def _clear(contacts, out):
 
 
 @kernel
-def _group(g, contacts, still, settings, scratch, out):
+def _group(g, contacts, still, settings, workspace, out):
     """Resolve the classes of group `g`; write impulses and works of their contacts."""
-    work, summary = scratch.work, out.summary[0]
+    work, summary = workspace.work, out.summary[0]
     n = _gather(g, contacts, still, summary.classes, work)
     if n == 0 or (n == 1 and _exactly(contacts, still, work, out) == OK):
         return OK
@@ -135,9 +136,9 @@ def _group(g, contacts, still, settings, scratch, out):
     plastic, error = summary.plastic_change, summary.error
     summary.plastic_change, summary.error = 0.0, 0.0
     if settings.multiple == SEQUENTIAL:
-        blow_by_blow(n, work, scratch.cones, settings, summary)
+        blow_by_blow(n, work, workspace.cones, settings, summary)
     else:
-        pass_group(n, work, scratch.cones, settings, summary)
+        pass_group(n, work, workspace.cones, settings, summary)
     energy, index = speed * speed / mass, work.index
     for i in range(contacts.k):
         for a in range(n):

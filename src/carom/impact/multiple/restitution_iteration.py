@@ -32,7 +32,7 @@ def run(k, work, settings, rtol, fixed, anew):
 
 
 @kernel
-def meet_laws(k, work, settings, fixed, result):
+def iterate_restitution(k, work, settings, fixed, result):
     """Iterate the energetic coefficients until each contact meets its own law.
 
     Where they do not converge (two corners of one rigid edge cannot always both do), the nearest found is

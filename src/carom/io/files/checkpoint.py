@@ -1,6 +1,6 @@
 """Where a run stands between two steps: all arrays that the loop goes on from.
 
-What a step writes before it reads it (the scratch of impacts, of groups and of heaps) is not kept, only how
+What a step writes before it reads it (the workspace of impacts, of groups and of crowds) is not kept, only how
 large it was.
 """
 
@@ -59,8 +59,8 @@ def capture(run) -> Checkpoint | None:
     if inside or (islands.plan[0].planned != 0):
         return None
     found = {
-        "corner": len(run.corner.e),
-        "spots": len(run.heap.spots),
+        "multiple": len(run.multiple.e),
+        "spots": len(run.crowd.spots),
         "room": len(islands.which),
     }
     return Checkpoint(found, {name: array.copy() for name, array in _arrays(run)})
@@ -75,9 +75,9 @@ def restore(run, checkpoint: Checkpoint, records: r.Records) -> None:
         If the arrays are not those of this version of carom.
     """
     found = checkpoint.found
-    while len(run.corner.e) < found["corner"]:
-        run.grow(r.FULL_CORNER)
-    while len(run.heap.spots) < found["spots"]:
+    while len(run.multiple.e) < found["multiple"]:
+        run.grow(r.FULL_MULTIPLE)
+    while len(run.crowd.spots) < found["spots"]:
         run.grow(r.FULL_SPOTS)
     while len(run.islands.which) < found["room"]:
         run.grow(r.FULL_PAIRS)
@@ -136,7 +136,7 @@ def _arrays(run) -> Iterator[tuple[str, np.ndarray]]:
     """Go through the arrays of a run that are its state, by name."""
     system = run.compiled.system
     roots = {
-        "now": run.now, "clock": run.clock, "held": run.held, "work": run.work,
+        "now": run.now, "clock": run.clock, "active": run.active, "work": run.work,
         "islands": run.islands, "solver": system.solver, "relations": system.relations,
         "watch": run.watch,
     }  # fmt: skip

@@ -41,7 +41,7 @@ class Frames(NamedTuple):
     contacts: pd.DataFrame
     """A row for each interval of contact that stays: contact, feature, start, end, mode."""
     forces: pd.DataFrame
-    """A row for each held point and saved time: time, contact, body, other, mode, point, force."""
+    """A row for each active point and saved time: time, contact, body, other, mode, point, force."""
 
 
 def to_xarray(solution) -> xr.Dataset:

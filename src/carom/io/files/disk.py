@@ -37,17 +37,17 @@ def put(path: Path, parts: Iterable[bytes | memoryview]) -> None:
     finally:
         with contextlib.suppress(OSError):
             part.unlink()
-    _settle(path.parent)
+    _sync(path.parent)
 
 
-def settle(folder: Path) -> None:
+def sync(folder: Path) -> None:
     """Flush a folder and all that is in it to the disk, where the system can do that."""
     for one in folder.rglob("*"):
-        _settle(one)
-    _settle(folder)
+        _sync(one)
+    _sync(folder)
 
 
-def _settle(place: Path) -> None:
+def _sync(place: Path) -> None:
     """Flush a file, or the names in a folder, to the disk."""
     with contextlib.suppress(OSError):
         number = os.open(place, os.O_RDONLY)

@@ -69,7 +69,7 @@ INTERVAL = {
     "mode": ((), None, "slipping or sticking (or rolling, or at rest)"),
 }
 
-#: one row a held point and saved time
+#: one row an active point and saved time
 HELD = {
     "saved": ((), "1", "place of the saved time along time, from 0"),
     "contact": ((), "1", "place of the contact among all contacts, from 0"),

@@ -10,7 +10,7 @@ import numpy as np
 from carom.geometry.frames import triad
 
 #: how many rows hold the child's anchor in place, and how many its turn
-HELD = {"point": 3, "line": 2, "plane": 1}
+ACTIVE_POINT = {"point": 3, "line": 2, "plane": 1}
 TURNS = {"ball": 0, "cross": 1, "axis": 2, "rigid": 3}
 
 
@@ -45,7 +45,7 @@ class JointDefinition:
 
     def __init_subclass__(cls):
         if "rows" not in vars(cls):
-            cls.rows = HELD[cls.guide] + TURNS[cls.turn]
+            cls.rows = ACTIVE_POINT[cls.guide] + TURNS[cls.turn]
 
     def frame(self, flipped: bool = False) -> np.ndarray:
         """Return the axes (3, 3) of the joint as columns, in the world at the start: first its own direction.

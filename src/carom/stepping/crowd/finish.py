@@ -1,4 +1,4 @@
-"""The end of a step of a heap: energies, impacts, what is held from now on, and what has come to rest."""
+"""The end of a step of a crowd: energies, impacts, what is held from now on, and what has come to rest."""
 
 from __future__ import annotations
 
@@ -7,12 +7,12 @@ import math
 from carom._compiled.decorators import kernel
 from carom.contact.gap import slow
 from carom.dynamics.acceleration import SLIP, STICK
-from carom.dynamics.explicit import keep
+from carom.dynamics.explicit import copy_state
 from carom.friction.solve import inverse_mass_of
 from carom.geometry.rotation import norm
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.event_rows import note_event
-from carom.model.records import HOLD, IMPACT, OPENS, SLIPS, STICKS
+from carom.model.records import IMPACT, OPENS, PERSIST, SLIPS, STICKS
 from carom.persistent.active_set import begin_point
 from carom.persistent.step_control import rest_speed
 
@@ -21,18 +21,18 @@ from carom.persistent.step_control import rest_speed
 def finish(model, data, k, h, fall, residual):
     """Write what the step has done, and put to rest what moves no more; return the energy that has a name."""
     system, controls = model.system, model.controls
-    held, start, end, heap, clock, records = (
-        data.held,
+    active, start, end, crowd, clock, records = (
+        data.active,
         data.state,
         data.work.trial,
-        data.heap,
+        data.crowd,
         data.clocks[0],
         data.records,
     )
     tolerance = rest_speed(controls, fall * h, residual, k)
     blows, pressing, rubbing = 0.0, 0.0, 0.0
     for i in range(k):
-        spot, point = heap.spots[i], heap.points[0][i]
+        spot, point = crowd.spots[i], crowd.points[0][i]
         p, u = spot.impulse, spot.before
         w = contact_velocity(point, end)
         normal = 0.5 * p[0] * (u[0] + w[0]) if spot.turns == 0 else 0.0
@@ -51,34 +51,34 @@ def finish(model, data, k, h, fall, residual):
     clock.impacts += blows
     clock.friction += rubbing
     clock.bounces += pressing
-    count = list_held(model, data, k, h, tolerance)
-    settle(system, tolerance, count, start, end, heap)
-    for i in range(held.count[0]):
-        if held.points[i].touches == 0:
-            held.carries[held.points[i].feature] = 0
+    count = list_active(model, data, k, h, tolerance)
+    come_to_rest(system, tolerance, count, start, end, crowd)
+    for i in range(active.count[0]):
+        if active.points[i].touches == 0:
+            active.carries[active.points[i].feature] = 0
     for i in range(count):
-        held.points[i] = heap.held[i]
-        if held.points[i].touches == 0:
-            held.carries[held.points[i].feature] = 1
-    held.count[0] = count
+        active.points[i] = crowd.active[i]
+        if active.points[i].touches == 0:
+            active.carries[active.points[i].feature] = 1
+    active.count[0] = count
     for i in range(k):  # in a smaller island it is looked at first
-        held.brinks[heap.spots[i].contact].near = 1
-        held.brinks[heap.spots[i].contact].leaving = 0
+        active.contact_states[crowd.spots[i].contact].near = 1
+        active.contact_states[crowd.spots[i].contact].leaving = 0
     return blows + pressing + rubbing
 
 
 @kernel
 def write_impact(model, data, i, k, w, pressure, rubbing):
     """Write the row of an impact; it has no duration, and its point is one of all that press."""
-    end, heap, clock, records = data.work.trial, data.heap, data.clocks[0], data.records
-    spot, point = heap.spots[i], heap.points[0][i]
+    end, crowd, clock, records = data.work.trial, data.crowd, data.clocks[0], data.records
+    spot, point = crowd.spots[i], crowd.points[0][i]
     row, x, contact = (
         records.impact[clock.struck],
         end[point.a].x,
         model.system.contacts[spot.contact],
     )
     row.time, row.contact, row.together = clock.now, contact.number, max(2, k)
-    inverse_mass_of(heap.problem.link[i], heap.problem.contact[i], row.W)
+    inverse_mass_of(crowd.problem.link[i], crowd.problem.contact[i], row.W)
     for a in range(3):
         row.point[a], row.normal[a] = x[a] + point.arm_a[a], point.axes[0, a]
         row.before[a], row.after[a], row.impulse[a] = spot.before[a], w[a], spot.impulse[a]
@@ -89,63 +89,63 @@ def write_impact(model, data, i, k, w, pressure, rubbing):
 
 
 @kernel
-def list_held(model, data, k, h, tolerance):
-    """Write the points that press without a strike into `heap.held`, and their events; return how many."""
+def list_active(model, data, k, h, tolerance):
+    """Write the points that press without a strike into `crowd.active`, and their events; return how many."""
     system = model.system
-    held, end, heap, clock, records = (
-        data.held,
+    active, end, crowd, clock, records = (
+        data.active,
         data.work.trial,
-        data.heap,
+        data.crowd,
         data.clocks[0],
         data.records,
     )
     count = 0
-    for i in range(held.count[0]):
-        heap.follows[i] = 0  # 1 where a point goes on
+    for i in range(active.count[0]):
+        crowd.follows[i] = 0  # 1 where a point goes on
     for i in range(k):
-        spot, point = heap.spots[i], heap.points[1][i]
+        spot, point = crowd.spots[i], crowd.points[1][i]
         p, c = spot.impulse, spot.contact
         contact, x = system.contacts[c], end[point.a].x
         if spot.turns > 0:
-            take_torque(heap, spot, point.length / h)
+            take_torque(crowd, spot, point.length / h)
             continue
         spot.place = -1
-        if not (p[0] > 0.0 and spot.strikes == 0) or count == heap.held.shape[0]:
+        if not (p[0] > 0.0 and spot.strikes == 0) or count == crowd.active.shape[0]:
             continue
         spot.place = count
-        hold = heap.held[count]
-        _, w1, w2 = contact_velocity(heap.points[0][i], end)
+        active_point = crowd.active[count]
+        _, w1, w2 = contact_velocity(crowd.points[0][i], end)
         w1, w2 = w1 + spot.drift[1], w2 + spot.drift[2]
         slips = math.sqrt(w1 * w1 + w2 * w2) > max(tolerance, 10.0 * slow(contact, end))
         mode = SLIP if slips else STICK
-        if spot.held < 0:
-            note_event(system, c, spot.feature, HOLD, mode, clock, records)
+        if spot.active < 0:
+            note_event(system, c, spot.feature, PERSIST, mode, clock, records)
             clock.holds += 1
         else:
-            heap.follows[spot.held] = 1
-            if held.points[spot.held].mode != mode:
+            crowd.follows[spot.active] = 1
+            if active.points[spot.active].mode != mode:
                 kind = SLIPS if slips else STICKS
                 note_event(system, c, spot.feature, kind, mode, clock, records)
-        begin_point(hold, contact, c, spot.feature, mode)
-        inverse_mass_of(heap.problem.link[i], heap.problem.contact[i], hold.W)
+        begin_point(active_point, contact, c, spot.feature, mode)
+        inverse_mass_of(crowd.problem.link[i], crowd.problem.contact[i], active_point.W)
         for a in range(3):
-            hold.point[a], hold.force[a] = spot.point[a], p[a] / h
-            hold.anchor[a] = x[a] + point.arm_a[a]
+            active_point.point[a], active_point.force[a] = spot.point[a], p[a] / h
+            active_point.anchor[a] = x[a] + point.arm_a[a]
         count += 1
-    for i in range(held.count[0]):
-        if heap.follows[i] == 0:
-            hold = held.points[i]
-            note_event(system, hold.contact, hold.feature, OPENS, 0, clock, records)
+    for i in range(active.count[0]):
+        if crowd.follows[i] == 0:
+            active_point = active.points[i]
+            note_event(system, active_point.contact, active_point.feature, OPENS, 0, clock, records)
     return count
 
 
 @kernel
-def take_torque(heap, spot, factor):
+def take_torque(crowd, spot, factor):
     """Put the torque of rolling or of pivoting into the list."""
-    place, p = heap.spots[spot.parent].place, spot.impulse
+    place, p = crowd.spots[spot.parent].place, spot.impulse
     if place < 0:
         return
-    torque = heap.held[place].torque
+    torque = crowd.active[place].torque
     if spot.turns == 1:
         torque[1], torque[2] = factor * p[1], factor * p[2]
     else:
@@ -162,17 +162,17 @@ def root(parent, b):
 
 
 @kernel
-def settle(system, tolerance, count, start, end, heap):
+def come_to_rest(system, tolerance, count, start, end, crowd):
     """Stop the bodies of each set that presses on each other, exactly, where all are slower than the tolerance.
 
     Those that did not move at the start are where they were, and rest from now on.
     """
-    parent, speed, n = heap.parent, heap.speed, end.shape[0]
+    parent, speed, n = crowd.parent, crowd.speed, end.shape[0]
     for b in range(n):
         parent[b], speed[0, b], speed[1, b] = b, 0.0, 0.0
     for i in range(count):
-        if heap.held[i].other >= 0:
-            parent[root(parent, heap.held[i].body)] = root(parent, heap.held[i].other)
+        if crowd.active[i].other >= 0:
+            parent[root(parent, crowd.active[i].body)] = root(parent, crowd.active[i].other)
     for b in range(n):
         g, size = root(parent, b), system.bodies[b].extent
         speed[0, g] = max(speed[0, g], norm(start[b].v) + size * norm(start[b].w))
@@ -181,10 +181,10 @@ def settle(system, tolerance, count, start, end, heap):
         g = root(parent, b)
         if speed[1, g] <= tolerance:
             if speed[0, g] == 0.0:
-                keep(start[b], end[b])
+                copy_state(start[b], end[b])
             for j in range(3):
                 end[b].v[j], end[b].w[j] = 0.0, 0.0
     for i in range(count):
-        hold = heap.held[i]
-        g = root(parent, hold.body)
-        hold.rest = 1 if speed[0, g] == 0.0 and speed[1, g] <= tolerance else 0
+        active_point = crowd.active[i]
+        g = root(parent, active_point.body)
+        active_point.rest = 1 if speed[0, g] == 0.0 and speed[1, g] <= tolerance else 0

@@ -1,4 +1,4 @@
-"""The order in which the bodies of a heap are eliminated, found anew when other bodies touch.
+"""The order in which the bodies of a crowd are eliminated, found anew when other bodies touch.
 
 Bodies are neighbours where they may touch. The one with fewest neighbours goes first, and makes those that it
 leaves neighbours of each other (least degree; rows of bits). A plain form in Python, to compare with, is in the
@@ -13,9 +13,9 @@ WORD = 63  # bits of a row that an int64 takes
 
 
 @entry
-def find_order(n, k, heap):
+def find_order(n, k, crowd):
     """Write the lists for the bodies and points at hand, unless they are known; return False without room."""
-    graph, link = heap.graph, heap.problem.link
+    graph, link = crowd.graph, crowd.problem.link
     known = graph.count[0] == n and graph.count[1] == k
     for i in range(k):
         for side in range(2):
@@ -24,17 +24,17 @@ def find_order(n, k, heap):
     if known:
         return graph.count[2] >= 0
     graph.count[0], graph.count[1], graph.count[2] = n, k, -1
-    begin(n, k, heap)
-    if not eliminate(n, heap) or not write_updates(n, heap):
+    begin(n, k, crowd)
+    if not eliminate(n, crowd) or not write_updates(n, crowd):
         return False
-    write_corners(k, heap)
+    write_corners(k, crowd)
     return True
 
 
 @kernel
-def begin(n, k, heap):
+def begin(n, k, crowd):
     """Write the rows of bits of all bodies."""
-    near, degree, link = heap.graph.near, heap.graph.degree, heap.problem.link
+    near, degree, link = crowd.graph.near, crowd.graph.degree, crowd.problem.link
     words = n // WORD + 1
     for b in range(n):
         degree[b] = 0
@@ -50,9 +50,9 @@ def begin(n, k, heap):
 
 
 @kernel
-def eliminate(n, heap):
+def eliminate(n, crowd):
     """Write the order, and of each body the neighbours that come later; return False if there is no room."""
-    graph, place, later = heap.graph, heap.problem.place, heap.problem.later
+    graph, place, later = crowd.graph, crowd.problem.place, crowd.problem.later
     near, degree, rank, words, pairs = graph.near, graph.degree, graph.rank, n // WORD + 1, 0
     for t in range(n):
         b = -1
@@ -94,13 +94,13 @@ def merge(graph, i, b, words):
 
 
 @kernel
-def block_of(n, i, j, heap):
+def block_of(n, i, j, crowd):
     """Return the block of bodies i and j: right of the diagonal where i goes first, else below it."""
     if i == j:
         return i
-    graph, later = heap.graph, heap.problem.later
+    graph, later = crowd.graph, crowd.problem.later
     first, second = (i, j) if graph.rank[i] < graph.rank[j] else (j, i)
-    place = heap.problem.place[graph.rank[first]]
+    place = crowd.problem.place[graph.rank[first]]
     low, high = place.pair, place.pairs_end
     while low < high:
         middle = (low + high) // 2
@@ -112,9 +112,9 @@ def block_of(n, i, j, heap):
 
 
 @kernel
-def write_updates(n, heap):
+def write_updates(n, crowd):
     """Write which blocks each elimination changes; return False if there is no room."""
-    problem, at = heap.problem, 0
+    problem, at = crowd.problem, 0
     for t in range(n):
         place = problem.place[t]
         d = place.pairs_end - place.pair
@@ -125,20 +125,20 @@ def write_updates(n, heap):
             for r in range(place.pair, place.pairs_end):
                 row = problem.target[at]
                 row[0], row[1] = s, r
-                row[2] = block_of(n, problem.later[s], problem.later[r], heap)
+                row[2] = block_of(n, problem.later[s], problem.later[r], crowd)
                 at += 1
         place.updates_end = at
-    heap.graph.count[2] = at
+    crowd.graph.count[2] = at
     return True
 
 
 @kernel
-def write_corners(k, heap):
+def write_corners(k, crowd):
     """Write the blocks of the bodies of each point."""
-    n = heap.graph.count[0]
+    n = crowd.graph.count[0]
     for i in range(k):
-        link = heap.problem.link[i]
+        link = crowd.problem.link[i]
         for r in range(2):
             for s in range(2):
                 a, b = link.body[r], link.body[s]
-                link.corner[r, s] = block_of(n, a, b, heap) if a >= 0 and b >= 0 else -1
+                link.corner[r, s] = block_of(n, a, b, crowd) if a >= 0 and b >= 0 else -1

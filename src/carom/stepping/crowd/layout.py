@@ -19,7 +19,7 @@ from carom.friction.layout import (
     new_contact_work,
 )
 from carom.model.arrays import STATE
-from carom.model.workspace import HELD, POINT
+from carom.model.workspace import ACTIVE_POINT, POINT
 from carom.stepping.crowd.graph import WORD
 
 #: a point that may touch in the step
@@ -29,8 +29,8 @@ SPOT = [
     ("point", "f8", 3),  # of the first body, its axes
     ("turns", "i8"),  # of its POINT
     ("parent", "i8"),  # of rolling and pivoting: the spot whose normal impulse bounds the torque
-    ("place", "i8"),  # among the held points after the step, -1 where it is none
-    ("held", "i8"),  # its place among the held points, -1 where it is open
+    ("place", "i8"),  # among the active points after the step, -1 where it is none
+    ("active", "i8"),  # its place among the active points, -1 where it is open
     ("gap", "f8"),  # at the start
     ("left", "f8"),  # at the end, without contacts
     ("before", "f8", 3),  # velocity at the start, by the rows of the middle of the step
@@ -38,7 +38,7 @@ SPOT = [
         "drift",
         "f8",
         3,
-    ),  # the part of it that is due to rows that turn, of a held point of few bodies; else 0
+    ),  # the part of it that is due to rows that turn, of an active point of few bodies; else 0
     ("bound", "f8"),  # least normal velocity after
     ("impulse", "f8", 3),
     ("strikes", "i8"),  # 1 for an impact, 0 for what stays, or is far
@@ -59,7 +59,7 @@ class Graph(NamedTuple):
 SPOTS = 8
 
 
-class Heap(NamedTuple):
+class Crowd(NamedTuple):
     """K points at most, of N bodies; P points are held at most. Vectors have rows n, t1, t2 a point."""
 
     spots: np.recarray  # (K,) SPOT
@@ -69,14 +69,14 @@ class Heap(NamedTuple):
     problem: ContactWork
     graph: Graph
     flight: np.recarray  # (N,) STATE at the end of the step without contacts
-    held: np.recarray  # (P,) HELD, as it will be
-    follows: np.ndarray  # (P,) next held point of the same contact, -1 after the last
+    active: np.recarray  # (P,) ACTIVE_POINT, as it will be
+    follows: np.ndarray  # (P,) next active point of the same contact, -1 after the last
     parent: np.ndarray  # (N,) of the union-find of what touches
     speed: np.ndarray  # (2, N) greatest speed of such a set, at the start and at the end
 
 
-def new_heap(bodies: int, held: int, points: int) -> Heap:
-    """Return the scratch for `points` points that may touch, and `held` that may be held."""
+def new_crowd(bodies: int, active: int, points: int) -> Crowd:
+    """Return the workspace for `points` points that may touch, and `active` that may be held."""
     # what 500 spheres in a box need is half of this; where it is not enough there are sweeps only
     pairs, updates = 4 * points, 128 * points
     problem = new_contact_work(0)._replace(
@@ -90,7 +90,7 @@ def new_heap(bodies: int, held: int, points: int) -> Heap:
         target=np.zeros((updates, 3), dtype=np.int64),
         block=np.zeros((bodies + 2 * pairs, 6, 6)),
     )
-    return Heap(
+    return Crowd(
         spots=table(SPOT, points),
         points=table(POINT, 2, points),
         c=np.zeros(3 * points),
@@ -104,20 +104,20 @@ def new_heap(bodies: int, held: int, points: int) -> Heap:
             rank=np.zeros(bodies, dtype=np.int64),
         ),
         flight=table(STATE, bodies),
-        held=table(HELD, held),
-        follows=np.zeros(held, dtype=np.int64),
+        active=table(ACTIVE_POINT, active),
+        follows=np.zeros(active, dtype=np.int64),
         parent=np.zeros(bodies, dtype=np.int64),
         speed=np.zeros((2, bodies)),
     )
 
 
 @cache
-def no_heap() -> Heap:
+def no_crowd() -> Crowd:
     """Return the workspace of a run without a crowd: nothing is written to it."""
-    return new_heap(1, 1, 1)  # fewer spots than `SPOTS`
+    return new_crowd(1, 1, 1)  # fewer spots than `SPOTS`
 
 
-def roomier_heap(heap: Heap) -> Heap:
-    """Return the scratch for twice as many points, with what is compiled for it."""
-    more = new_heap(len(heap.flight), len(heap.held), 2 * len(heap.spots))
+def roomier_crowd(crowd: Crowd) -> Crowd:
+    """Return the workspace for twice as many points, with what is compiled for it."""
+    more = new_crowd(len(crowd.flight), len(crowd.active), 2 * len(crowd.spots))
     return more

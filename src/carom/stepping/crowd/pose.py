@@ -1,4 +1,4 @@
-"""The contact problem of a heap: rows in the middle of the step, velocities without impulses, bounds."""
+"""The contact problem of a crowd: rows in the middle of the step, velocities without impulses, bounds."""
 
 from __future__ import annotations
 
@@ -13,58 +13,58 @@ LEAVES = 1e-6  # of what gravity gives in the step: what is slower at the start 
 
 
 @kernel
-def pose(system, held, k, h, fall, start, heap):
-    """Write the problem of k points whose rows are in `heap.points[0]`; start from the last forces.
+def pose(system, active, k, h, fall, start, crowd):
+    """Write the problem of k points whose rows are in `crowd.points[0]`; start from the last forces.
 
     A body that is alone strikes with -p in the cone's law for w + e u, tangents too: p . (w + u)/2 is then
     (p . (w + e u) - (1 - e)/2 p . W p)/(1 + e), which is never positive, and 0 without friction if e = 1.
     """
     alone = start.shape[0] == 1
     for i in range(k):
-        spot, point = heap.spots[i], heap.points[0][i]
-        contact, p = system.contacts[spot.contact], heap.p
+        spot, point = crowd.spots[i], crowd.points[0][i]
+        contact, p = system.contacts[spot.contact], crowd.p
         spot.before[0], spot.before[1], spot.before[2] = contact_velocity(point, start)
-        free = contact_velocity(point, heap.flight)
-        set_link(system, point, heap.flight, heap.problem, i)
+        free = contact_velocity(point, crowd.flight)
+        set_link(system, point, crowd.flight, crowd.problem, i)
         for r in range(3):
-            heap.c[3 * i + r], p[3 * i + r] = free[r], 0.0
-        row = heap.problem.contact[i]
+            crowd.c[3 * i + r], p[3 * i + r] = free[r], 0.0
+        row = crowd.problem.contact[i]
         if spot.turns > 0:
             row.kind, row.mu = DISC, 1.0
-            if spot.held >= 0:
-                torque, s = held.points[spot.held].torque, h / point.length
+            if spot.active >= 0:
+                torque, s = active.points[spot.active].torque, h / point.length
                 p[3 * i + 1] = s * (torque[1] if spot.turns == 1 else torque[0])
                 p[3 * i + 2] = s * torque[2] if spot.turns == 1 else 0.0
             continue
         set_bound(spot, contact, h, fall)
-        heap.c[3 * i] -= spot.bound
-        heap.c[3 * i + 1] += spot.drift[1]
-        heap.c[3 * i + 2] += spot.drift[2]
+        crowd.c[3 * i] -= spot.bound
+        crowd.c[3 * i + 1] += spot.drift[1]
+        crowd.c[3 * i + 2] += spot.drift[2]
         if alone and spot.strikes == 1:
-            heap.c[3 * i + 1] += contact.restitution * spot.before[1]
-            heap.c[3 * i + 2] += contact.restitution * spot.before[2]
+            crowd.c[3 * i + 1] += contact.restitution * spot.before[1]
+            crowd.c[3 * i + 2] += contact.restitution * spot.before[2]
         row.kind, row.mu = CONE, contact.friction
-        if spot.held >= 0:
+        if spot.active >= 0:
             row.mu = contact.friction_held
             for r in range(3):
-                p[3 * i + r] = h * held.points[spot.held].force[r]
+                p[3 * i + r] = h * active.points[spot.active].force[r]
 
 
 @kernel
-def note_drift(held, k, few, start, heap):
-    """Write what rows that turn give a held point at the start: G_m v_0 - G_0 v_0, tangents where it sticks.
+def note_drift(active, k, few, start, crowd):
+    """Write what rows that turn give an active point at the start: G_m v_0 - G_0 v_0, tangents where it sticks.
 
-    Of few bodies, whose rows at the start are in `heap.points[1]`. A point that stays at the end has
+    Of few bodies, whose rows at the start are in `crowd.points[1]`. A point that stays at the end has
     G_1 v_1 = 0, which is G_m v_1 = -(G_m - G_0) v_0 up to terms of the second order, and gains nothing.
     """
     for i in range(k):
-        spot = heap.spots[i]
+        spot = crowd.spots[i]
         spot.drift[0], spot.drift[1], spot.drift[2] = 0.0, 0.0, 0.0
-        if not (few and spot.held >= 0 and spot.turns == 0):
+        if not (few and spot.active >= 0 and spot.turns == 0):
             continue
-        before = contact_velocity(heap.points[1][i], start)
-        u = contact_velocity(heap.points[0][i], start)
-        for r in range(3 if held.points[spot.held].mode == STICK else 1):
+        before = contact_velocity(crowd.points[1][i], start)
+        u = contact_velocity(crowd.points[0][i], start)
+        for r in range(3 if active.points[spot.active].mode == STICK else 1):
             spot.drift[r] = u[r] - before[r]
 
 

@@ -1,4 +1,4 @@
-"""The contact problem of a heap: sweeps, then Newton on the graph of the bodies as far as that pays.
+"""The contact problem of a crowd: sweeps, then Newton on the graph of the bodies as far as that pays.
 
 Sweeps go on well from the last step's impulses where bodies move about, and hardly get on where one stands on
 the other (a tower of twenty boxes: 1e-2 of g h after 200, and it falls). Newton does the latter in a few
@@ -7,7 +7,7 @@ factors, and needs hundreds of them where a thousand contacts slip and open.
 
 from __future__ import annotations
 
-from carom._compiled.by_reference import refer
+from carom._compiled.by_reference import by_reference
 from carom._compiled.decorators import kernel
 from carom.friction import layout as o
 from carom.friction.island import impart
@@ -24,52 +24,52 @@ PATIENT = 10  # times as many of both, for a few bodies that stand on each other
 
 
 @kernel
-def solve(system, heap, k, n, tolerance, patient, clock):
-    """Solve for the impulses `heap.p`; return a factor, and the residual [m/s].
+def solve(system, crowd, k, n, tolerance, patient, clock):
+    """Solve for the impulses `crowd.p`; return a factor, and the residual [m/s].
 
     The motion that they cause, over the factor, goes to the bodies of the problem.
     """
-    work, most = heap.problem, MOST * (PATIENT if patient else 1)
+    work, most = crowd.problem, MOST * (PATIENT if patient else 1)
     work.count[o.ITERATIONS] = 0
-    gamma = scale_vectors(work, k, heap.c, heap.p)
-    r, goal, done = sweep_until(system, heap, k, tolerance / gamma, FIRST)
-    if r > max(tolerance / gamma, goal) and not_turning(heap, k):
-        r = newton_on_graph(heap, k, n, r, max(tolerance / gamma, goal), most)
+    gamma = scale_vectors(work, k, crowd.c, crowd.p)
+    r, goal, done = sweep_until(system, crowd, k, tolerance / gamma, FIRST)
+    if r > max(tolerance / gamma, goal) and not_turning(crowd, k):
+        r = newton_on_graph(crowd, k, n, r, max(tolerance / gamma, goal), most)
     if r > max(tolerance / gamma, goal):
-        r, _, more = sweep_until(system, heap, k, tolerance / gamma, most - FIRST)
+        r, _, more = sweep_until(system, crowd, k, tolerance / gamma, most - FIRST)
         done += more
     impart(work, k)
     for i in range(3 * k):
-        heap.p[i] = gamma * work.contact[i // 3].scale * work.vector[o.P, i]
+        crowd.p[i] = gamma * work.contact[i // 3].scale * work.vector[o.P, i]
     clock.rounds += done
     clock.since += 2e-3 * SWEEP * done * k
-    factors = work.count[o.ITERATIONS] * (UPDATE * heap.graph.count[2] + CONTACT * k)
+    factors = work.count[o.ITERATIONS] * (UPDATE * crowd.graph.count[2] + CONTACT * k)
     clock.effort += 1e-3 * (SWEEP * done * k + factors)
     return gamma, gamma * r
 
 
 @kernel
-def not_turning(heap, k):
+def not_turning(crowd, k):
     """Return whether there are no torques of rolling or pivoting, whose bounds follow in sweeps only."""
     for i in range(k):
-        if heap.spots[i].turns > 0:
+        if crowd.spots[i].turns > 0:
             return False
     return True
 
 
 @kernel
-def newton_on_graph(heap, k, n, least, enough, most):
+def newton_on_graph(crowd, k, n, least, enough, most):
     """Improve the scaled impulses at hand, for about as much as `most` sweeps; return the residual.
 
     With patience (more than `MOST`) where that is not enough by a release of the proximal term, too.
     """
-    if not find_order(n, k, heap):
+    if not find_order(n, k, crowd):
         return least
-    pairs, updates = heap.graph.count[3], heap.graph.count[2]
+    pairs, updates = crowd.graph.count[3], crowd.graph.count[2]
     factors = SHARE * most * SWEEP * k / (UPDATE * updates + CONTACT * k)
     if factors < 3.0:
         return least
-    work = refer(part(heap.problem, n, pairs, updates))
+    work = by_reference(part(crowd.problem, n, pairs, updates))
     p, best = work.vector[o.P], work.vector[o.BEST]
     for i in range(3 * k):
         best[i] = p[i]

@@ -1,4 +1,4 @@
-"""The points of a heap that may touch within a step, and where they are in a state."""
+"""The points of a crowd that may touch within a step, and where they are in a state."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import math
 from carom._compiled.decorators import kernel
 from carom.contact.closed_points import apart
 from carom.contact.pair_point import (
-    HELD_REACH,
+    ACTIVE_REACH,
     REACH,
     find_touches,
     own_point,
@@ -31,14 +31,14 @@ def closing_speed(contact, state):
 
 
 @kernel
-def gather(system, held, h, fall, state, heap, work):
+def gather(system, active, h, fall, state, crowd, work):
     """List the points that may touch within a time h; return how many, -1 if there is no room.
 
     A pair comes no nearer than by its speeds, and by what impulses of others may add: twice g h is allowed for.
     A body that is alone may turn so that its other end comes down at twice its speed: thrice is allowed for.
     """
     k, quicker = 0, 3.0 if state.shape[0] == 1 else 1.0
-    chain(system, held, heap)
+    chain(system, active, crowd)
     for c in range(system.contacts.shape[0]):
         contact = system.contacts[c]
         reach = h * (quicker * closing_speed(contact, state) + 2.0 * fall * h)
@@ -46,51 +46,51 @@ def gather(system, held, h, fall, state, heap, work):
             continue
         first = k
         if contact.touches == 0:
-            k = add_vertices(system, contact, c, reach, state, k, heap, work)
+            k = add_vertices(system, contact, c, reach, state, k, crowd, work)
         else:
-            k = add_touches(system, contact, c, reach, state, k, heap, work)
+            k = add_touches(system, contact, c, reach, state, k, crowd, work)
         if k < 0:
             return -1
         for i in range(first, k):
-            find_held(held, heap.spots[i], heap)
+            find_active(active, crowd.spots[i], crowd)
         last = k
         for i in range(first, last):
             for turns in range(1, 3):
                 if contact.turning[turns - 1] > 0.0:
-                    if k == heap.spots.shape[0]:
+                    if k == crowd.spots.shape[0]:
                         return -1
-                    take_turning(heap.spots[i], heap.spots[k], i, turns)
+                    take_turning(crowd.spots[i], crowd.spots[k], i, turns)
                     k += 1
     return k
 
 
 @kernel
-def add_vertices(system, contact, c, reach, state, k, heap, work):
+def add_vertices(system, contact, c, reach, state, k, crowd, work):
     """Add the vertices that may come to a half-space; return the new count, -1 if there is no room."""
     point = work.point[0]
     for i in range(contact.first, contact.last):
         place(contact, system.vertices[i], state, point)
         if point.gap <= reach:
-            if k == heap.spots.shape[0]:
+            if k == crowd.spots.shape[0]:
                 return -1
             p = system.vertices[i]
-            take(heap.spots[k], c, i, point.gap, p[0], p[1], p[2])
+            take(crowd.spots[k], c, i, point.gap, p[0], p[1], p[2])
             k += 1
     return k
 
 
 @kernel
-def add_touches(system, contact, c, reach, state, k, heap, work):
+def add_touches(system, contact, c, reach, state, k, crowd, work):
     """Add the points that the kernels of pairs find; return the new count, -1 if there is no room."""
     p = work.hit[0].point
     count = find_touches(system, contact, state, max(reach, REACH * smaller(contact)), work)
     for i in range(count):
         touch = work.touches[i]
         if touch.gap <= reach:
-            if k == heap.spots.shape[0]:
+            if k == crowd.spots.shape[0]:
                 return -1
             own_point(contact, touch, state, p)
-            take(heap.spots[k], c, touch.feature, touch.gap, p[0], p[1], p[2])
+            take(crowd.spots[k], c, touch.feature, touch.gap, p[0], p[1], p[2])
             k += 1
     return k
 
@@ -98,7 +98,7 @@ def add_touches(system, contact, c, reach, state, k, heap, work):
 @kernel
 def take(spot, c, feature, gap, p0, p1, p2):
     """Write a point that may touch."""
-    spot.contact, spot.feature, spot.gap, spot.held, spot.turns = c, feature, gap, -1, 0
+    spot.contact, spot.feature, spot.gap, spot.active, spot.turns = c, feature, gap, -1, 0
     spot.point[0], spot.point[1], spot.point[2] = p0, p1, p2
 
 
@@ -107,47 +107,47 @@ def take_turning(parent, spot, i, turns):
     """Write the rolling (turns = 1) or pivoting (2) of spot i."""
     p = parent.point
     take(spot, parent.contact, parent.feature, parent.gap, p[0], p[1], p[2])
-    spot.turns, spot.parent, spot.held = turns, i, parent.held
+    spot.turns, spot.parent, spot.active = turns, i, parent.active
 
 
 @kernel
-def chain(system, held, heap):
-    """Chain the held points of each contact; `seen` of the contact is 1 + its first."""
+def chain(system, active, crowd):
+    """Chain the active points of each contact; `seen` of the contact is 1 + its first."""
     for c in range(system.contacts.shape[0]):
-        held.brinks[c].seen = 0
-    for i in range(held.count[0] - 1, -1, -1):
-        brink = held.brinks[held.points[i].contact]
-        heap.follows[i] = brink.seen - 1
-        brink.seen = i + 1
+        active.contact_states[c].seen = 0
+    for i in range(active.count[0] - 1, -1, -1):
+        contact_state = active.contact_states[active.points[i].contact]
+        crowd.follows[i] = contact_state.seen - 1
+        contact_state.seen = i + 1
 
 
 @kernel
-def find_held(held, spot, heap):
-    """Note which held point a spot is."""
-    i = held.brinks[spot.contact].seen - 1
+def find_active(active, spot, crowd):
+    """Note which active point a spot is."""
+    i = active.contact_states[spot.contact].seen - 1
     while i >= 0:
-        hold = held.points[i]
-        if hold.feature == spot.feature:
-            spot.held = i
+        active_point = active.points[i]
+        if active_point.feature == spot.feature:
+            spot.active = i
             return
-        i = heap.follows[i]
+        i = crowd.follows[i]
 
 
 @kernel
-def place_all(system, k, state, heap, points, work):
+def place_all(system, k, state, crowd, points, work):
     """Write all points as they are in a state."""
     i = 0
     while i < k:
-        c = heap.spots[i].contact
+        c = crowd.spots[i].contact
         contact = system.contacts[c]
         if contact.touches == 0:
-            place(contact, heap.spots[i].point, state, points[i])
-            points[i].turns, points[i].length = heap.spots[i].turns, contact.extent
+            place(contact, crowd.spots[i].point, state, points[i])
+            points[i].turns, points[i].length = crowd.spots[i].turns, contact.extent
             i += 1
             continue
-        count = find_touches(system, contact, state, HELD_REACH * smaller(contact), work)
-        while i < k and heap.spots[i].contact == c:
-            spot = heap.spots[i]
+        count = find_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
+        while i < k and crowd.spots[i].contact == c:
+            spot = crowd.spots[i]
             t = which_touch(system, contact, count, spot.feature, spot.point, state, work)
             write_touch(contact, work.touches[t], state, points[i])
             points[i].turns, points[i].length = spot.turns, smaller(contact)

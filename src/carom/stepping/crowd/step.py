@@ -1,4 +1,4 @@
-"""A step of a heap, taken whole: free flight, one contact problem, back to the surfaces (Moreau 1988).
+"""A step of a crowd, taken whole: free flight, one contact problem, back to the surfaces (Moreau 1988).
 
 With rows G of the middle of the free flight from (q_0, v_0) to (q_f, v_f), and the inverse mass P at its end,
 
@@ -16,7 +16,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
-from carom.dynamics.explicit import keep
+from carom.dynamics.explicit import copy_state
 from carom.geometry.rotation import norm, rotate, rotate_back
 from carom.kinematics.contact_point import contact_velocity
 from carom.kinematics.flight import free_flight
@@ -45,7 +45,7 @@ GAINS, OFF = 1e-7, 1e-4
 
 
 @unit
-def step_heap(model, data):
+def step_crowd(model, data):
     """Move all bodies of an island to the end of the step; a code for `run` goes to `work.result`.
 
     Few of them, which could not go from event to event, in pieces that are cut where that does not do.
@@ -54,7 +54,7 @@ def step_heap(model, data):
     now, work, clocks = data.state, data.work, data.clocks
     clock, result, search = clocks[0], work.result[0], work.search[0]
     few = now.shape[0] < controls.heap
-    result.code = 0 if data.heap.spots.shape[0] >= SPOTS else grow(clock, r.FULL_SPOTS)
+    result.code = 0 if data.crowd.spots.shape[0] >= SPOTS else grow(clock, r.FULL_SPOTS)
     if result.code != 0:
         return
     if clock.spent == 0.0:
@@ -110,50 +110,50 @@ def thickness(body):
 def move_on(model, data, h, patient, careful):
     """Make one piece of the step; return 0 or a code: MISSED if it was to be `careful` and is too long."""
     system, controls = model.system, model.controls
-    held, now, heap, work, clock, records = (
-        data.held,
+    active, now, crowd, work, clock, records = (
+        data.active,
         data.state,
-        data.heap,
+        data.crowd,
         data.work,
         data.clocks[0],
         data.records,
     )
     n, fall = now.shape[0], norm(system.gravity)
-    k = gather(system, held, h, fall, now, heap, work)
+    k = gather(system, active, h, fall, now, crowd, work)
     if k < 0:
         return grow(clock, r.FULL_SPOTS)
-    rows = r.MARGIN + k + held.count[0]
+    rows = r.MARGIN + k + active.count[0]
     if max(clock.event, clock.struck) + rows > records.event.shape[0]:
         return grow(clock, r.FULL_EVENTS)
     for b in range(n):
-        free_flight(system.bodies[b], system.gravity, h, now[b], heap.flight[b], work.body[b])
-        halfway(now[b], heap.flight[b], work.stage[b])
-        keep(heap.flight[b], work.trial[b])
-    place_all(system, k, heap.flight, heap, heap.points[1], work)
+        free_flight(system.bodies[b], system.gravity, h, now[b], crowd.flight[b], work.body[b])
+        halfway(now[b], crowd.flight[b], work.stage[b])
+        copy_state(crowd.flight[b], work.trial[b])
+    place_all(system, k, crowd.flight, crowd, crowd.points[1], work)
     for i in range(k):
-        heap.spots[i].left = heap.points[1][i].gap
-    place_all(system, k, work.stage, heap, heap.points[0], work)
+        crowd.spots[i].left = crowd.points[1][i].gap
+    place_all(system, k, work.stage, crowd, crowd.points[0], work)
     if 1 < n < controls.heap:
-        place_all(system, k, now, heap, heap.points[1], work)
-    note_drift(held, k, 1 < n < controls.heap, now, heap)
-    pose(system, held, k, h, fall, now, heap)
+        place_all(system, k, now, crowd, crowd.points[1], work)
+    note_drift(active, k, 1 < n < controls.heap, now, crowd)
+    pose(system, active, k, h, fall, now, crowd)
     gamma, residual = solve(
-        system, heap, k, n, FINE * controls.rest * fall * h, patient and n > 1, clock
+        system, crowd, k, n, FINE * controls.rest * fall * h, patient and n > 1, clock
     )
     for i in range(k):
         for j in range(3):
-            heap.spots[i].impulse[j] = heap.p[3 * i + j]
+            crowd.spots[i].impulse[j] = crowd.p[3 * i + j]
     clock.trials += 1
-    clock.pressed += 1
+    clock.contact_steps += 1
     clock.since += 10.0 * (k + n)
     clock.effort += 10.0 * (k + n)
-    if careful and misses_bounce(system, k, h, fall, heap):
+    if careful and misses_bounce(system, k, h, fall, crowd):
         return MISSED
-    gain(system, gamma, heap, work.trial)
-    move(n, 0.5 * h * gamma, work.trial, heap.problem)
-    respin(system, heap.flight, work.trial)
-    onto_surfaces(system, k, n, work.trial, heap, work)
-    if careful and n > 1 and off(system, k, now, work.trial, heap):
+    gain(system, gamma, crowd, work.trial)
+    move(n, 0.5 * h * gamma, work.trial, crowd.problem)
+    respin(system, crowd.flight, work.trial)
+    onto_surfaces(system, k, n, work.trial, crowd, work)
+    if careful and n > 1 and off(system, k, now, work.trial, crowd):
         return MISSED
     clock.residual = max(clock.residual, residual)
     clock.now = clock.begin + clock.spent + h
@@ -163,12 +163,12 @@ def move_on(model, data, h, patient, careful):
         gained = energy_gained(system, now, work.trial)
         if n < controls.heap:  # alone it gains nothing beside what is named, a group nothing at all
             most = named if n == 1 else 0.0
-            gained -= take_out(system, gained - most, heap.flight, work.trial)
+            gained -= take_out(system, gained - most, crowd.flight, work.trial)
         left = take_over(gained - named, impacts, friction, bounces, clock)
         if n == 1:
             slow_down(system, left, work.trial[0])
     for b in range(n):
-        keep(work.trial[b], now[b])
+        copy_state(work.trial[b], now[b])
     return 0
 
 
@@ -182,14 +182,14 @@ def energy_gained(system, start, end):
 
 
 @kernel
-def off(system, k, start, end, heap):
+def off(system, k, start, end, crowd):
     """Return whether a group gains, or loses or gains by the way back to the surfaces, too much in a piece."""
     gained, size, work = energy_gained(system, start, end), 0.0, 0.0
     for b in range(start.shape[0]):
         size += kinetic(system.bodies[b], start[b]) + weigh(system, b, start, end)
     for i in range(k):
-        u, p = heap.spots[i].before, heap.spots[i].impulse
-        w = contact_velocity(heap.points[0][i], end)
+        u, p = crowd.spots[i].before, crowd.spots[i].impulse
+        w = contact_velocity(crowd.points[0][i], end)
         for j in range(3):
             work += 0.5 * p[j] * (u[j] + w[j])
     return not (gained <= GAINS * size and abs(gained - work) <= OFF * size)
@@ -266,10 +266,10 @@ def slow_down(system, gained, end):
 
 
 @kernel
-def misses_bounce(system, k, h, fall, heap):
+def misses_bounce(system, k, h, fall, crowd):
     """Return whether a point that was open is struck within the piece and would bounce: no blow was written."""
     for i in range(k):
-        spot = heap.spots[i]
+        spot = crowd.spots[i]
         contact = system.contacts[spot.contact]
         if spot.turns == 0 and spot.gap > 0.0 and spot.left > 0.0 and spot.impulse[0] > 0.0:
             e = contact.restitution
@@ -279,10 +279,10 @@ def misses_bounce(system, k, h, fall, heap):
 
 
 @kernel
-def gain(system, gamma, heap, end):
+def gain(system, gamma, crowd, end):
     """Add to the velocities what the impulses give, with the inertia at the end of the flight."""
     for b in range(end.shape[0]):
-        xi = heap.problem.body[b].motion
+        xi = crowd.problem.body[b].motion
         for j in range(3):
             end[b].v[j] += gamma * xi[j]
             end[b].w[j] += gamma * xi[3 + j]

@@ -20,26 +20,26 @@ BETTER = 0.01  # in one pass: gaps are not linear, more would be lost
 
 
 @kernel
-def onto_surfaces(system, k, count, end, heap, work):
-    """Move the bodies apart where points have sunk in; `heap.points[1]` are those at the end."""
+def onto_surfaces(system, k, count, end, crowd, work):
+    """Move the bodies apart where points have sunk in; `crowd.points[1]` are those at the end."""
     for _ in range(PASSES):
-        place_all(system, k, end, heap, heap.points[1], work)
+        place_all(system, k, end, crowd, crowd.points[1], work)
         deepest, tiny = 0.0, 1.0
         for i in range(k):
-            gap = heap.points[1][i].gap
-            size = smaller(system.contacts[heap.spots[i].contact])
-            if heap.spots[i].turns == 0 and gap < -TINY * size:
+            gap = crowd.points[1][i].gap
+            size = smaller(system.contacts[crowd.spots[i].contact])
+            if crowd.spots[i].turns == 0 and gap < -TINY * size:
                 deepest, tiny = max(deepest, -gap), min(tiny, 0.1 * TINY * size)
         if deepest == 0.0:
             break
-        lift(k, count, max(tiny, BETTER * deepest), heap)
-        move(count, 1.0, end, heap.problem)
+        lift(k, count, max(tiny, BETTER * deepest), crowd)
+        move(count, 1.0, end, crowd.problem)
 
 
 @kernel
-def lift(k, count, tolerance, heap):
+def lift(k, count, tolerance, crowd):
     """Write the motion that brings the points out, to a tolerance [m]."""
-    problem, lam = heap.problem, heap.p
+    problem, lam = crowd.problem, crowd.p
     for b in range(count):
         for j in range(6):
             problem.body[b].motion[j] = 0.0
@@ -49,8 +49,8 @@ def lift(k, count, tolerance, heap):
         change = 0.0
         for place in range(k):
             i = place if turn % 2 == 0 else k - 1 - place
-            if heap.spots[i].turns == 0:
-                change = max(change, lift_one(problem, i, heap.points[1][i].gap, lam))
+            if crowd.spots[i].turns == 0:
+                change = max(change, lift_one(problem, i, crowd.points[1][i].gap, lam))
         if change <= tolerance:
             break
 

@@ -14,12 +14,12 @@ EACH = 20  # sweeps between looks at the residual
 
 
 @kernel
-def sweep_until(system, heap, k, tolerance, most):
+def sweep_until(system, crowd, k, tolerance, most):
     """Sweep until the scaled residual is small; return it, what round-off makes of it, and how often."""
-    work, done = heap.problem, 0
+    work, done = crowd.problem, 0
     r, goal, _ = residual(work, k)
     while not r <= max(tolerance, goal) and done < most:
-        bound_torques(system, heap, k)
+        bound_torques(system, crowd, k)
         for i in range(EACH):
             sweep(work, k, i % 2 == 1)
         done += EACH
@@ -28,12 +28,12 @@ def sweep_until(system, heap, k, tolerance, most):
 
 
 @kernel
-def bound_torques(system, heap, k):
+def bound_torques(system, crowd, k):
     """Write the bounds d N of rolling and pivoting friction, from the normal impulses at hand."""
-    row, q = heap.problem.contact, heap.problem.vector[P]
+    row, q = crowd.problem.contact, crowd.problem.vector[P]
     for i in range(k):
-        spot = heap.spots[i]
+        spot = crowd.spots[i]
         if spot.turns > 0:
             d, parent = system.contacts[spot.contact].turning[spot.turns - 1], spot.parent
-            most = d / heap.points[0][i].length * row[parent].scale * q[3 * parent]
+            most = d / crowd.points[0][i].length * row[parent].scale * q[3 * parent]
             row[i].h1 = max(0.0, most) / row[i].scale

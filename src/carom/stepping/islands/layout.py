@@ -10,10 +10,10 @@ from carom._compiled.record_arrays import table
 from carom.collision.sweep import SweepWork, new_sweep_work
 from carom.model.arrays import BODY, CONTACT, STATE, System
 from carom.model.records import CLOCK
-from carom.model.workspace import BODY_WORK, BRINK, HELD, Held
+from carom.model.workspace import ACTIVE_POINT, BODY_WORK, CONTACT_STATE, ActiveSet
 
 #: state of a body in a step: asleep, in free flight, or in an island
-ASLEEP, FLIES, MEETS = range(3)
+ASLEEP, FLIES, IN_ISLAND = range(3)
 
 PLAN = [
     ("count", "i8"),  # islands in this step
@@ -23,7 +23,7 @@ PLAN = [
     ("widen", "f8"),  # how much more room than expected bodies are given
     ("pairs", "i8"),  # balls that overlap
     ("used", "i8"),  # contacts in all islands
-    ("kept", "i8"),  # held points after the step, so far
+    ("kept", "i8"),  # active points after the step, so far
 ]
 
 #: a body, while islands are sought
@@ -38,7 +38,7 @@ MEMBER = [
 ]
 
 
-class Together(NamedTuple):
+class SingleIsland(NamedTuple):
     """All bodies as one island: a single body, or joined bodies. The start of a step is kept, to go back to.
 
     No state is kept where a step is not done in another way: nothing touches, and no joint sticks.
@@ -47,9 +47,9 @@ class Together(NamedTuple):
     free: int  # 1 where gravity and contacts alone act
     begun: np.ndarray  # (1,) 1 while a step is going on
     state: np.recarray  # (N,) STATE
-    brinks: np.recarray  # (M,) BRINK
-    points: np.recarray  # (P,) HELD
-    count: np.ndarray  # (1,) number of held points
+    contact_states: np.recarray  # (M,) CONTACT_STATE
+    points: np.recarray  # (P,) ACTIVE_POINT
+    count: np.ndarray  # (1,) number of active points
     clock: np.recarray  # (1,) CLOCK
 
 
@@ -60,21 +60,21 @@ class Islands(NamedTuple):
     """
 
     apart: int  # 1 where bodies may move apart from each other, in islands of their own
-    together: Together
+    single: SingleIsland
 
     plan: np.recarray  # (1,) PLAN
     member: np.recarray  # (N,) MEMBER
-    first: np.ndarray  # (3, N + 1) ranges of an island: bodies, contacts, held points
+    first: np.ndarray  # (3, N + 1) ranges of an island: bodies, contacts, active points
     body_of: np.ndarray  # (N,) body in a slot
     bodies: np.recarray  # (N,) BODY, numbered by their place in the island
     state: np.recarray  # (N,) STATE
     memory: np.recarray  # (N,) BODY_WORK
     which: np.ndarray  # (M,) contact in a slot
     contacts: np.recarray  # (M,) CONTACT, of bodies by their place in the island
-    brinks: np.recarray  # (M,) BRINK
-    held_of: np.ndarray  # (P,) held points, island by island
-    points: np.recarray  # (2, P) HELD: of the island at hand; of all after the step
-    carried: np.ndarray  # (1,) number of held points of the island at hand
+    contact_states: np.recarray  # (M,) CONTACT_STATE
+    active_of: np.ndarray  # (P,) active points, island by island
+    points: np.recarray  # (2, P) ACTIVE_POINT: of the island at hand; of all after the step
+    carried: np.ndarray  # (1,) number of active points of the island at hand
     clock: np.recarray  # (1,) CLOCK at the start of the step
     centre: np.ndarray  # (N, 3)
     radius: np.ndarray  # (N,)
@@ -91,44 +91,44 @@ def has_events(system: System) -> bool:
     return system.contacts.size > 0 or system.relations.frictions.size > 0
 
 
-def new_together(system: System, held: Held) -> Together:
-    """Return the scratch for bodies that are stepped together."""
+def new_single_island(system: System, active: ActiveSet) -> SingleIsland:
+    """Return the workspace for bodies that are stepped together."""
     keeps = has_events(system)
-    return Together(
+    return SingleIsland(
         free=int(system.bodies["ballistic"].all()),
         begun=np.zeros(1, dtype=np.int64),
         state=table(STATE, system.bodies.size if keeps else 0),
-        brinks=table(BRINK, len(held.brinks)),
-        points=table(HELD, len(held.points)),
+        contact_states=table(CONTACT_STATE, len(active.contact_states)),
+        points=table(ACTIVE_POINT, len(active.points)),
         count=np.zeros(1, dtype=np.int64),
         clock=table(CLOCK, 1),
     )
 
 
-_NOWHERE = Together(
+_NOWHERE = SingleIsland(
     free=1,
     begun=np.zeros(1, dtype=np.int64),
     state=table(STATE, 0),
-    brinks=table(BRINK, 0),
-    points=table(HELD, 0),
+    contact_states=table(CONTACT_STATE, 0),
+    points=table(ACTIVE_POINT, 0),
     count=np.zeros(1, dtype=np.int64),
     clock=table(CLOCK, 1),
 )
 
 
-def no_islands(system: System, held: Held) -> Islands:
-    """Return the scratch for bodies that are stepped together."""
+def no_islands(system: System, active: ActiveSet) -> Islands:
+    """Return the workspace for bodies that are stepped together."""
     none = np.zeros(0, dtype=np.int64)
     return _islands(0, (none, none, none), (none, none), 0, 0)._replace(
-        together=new_together(system, held)
+        single=new_single_island(system, active)
     )
 
 
-def new_islands(system: System, held: Held) -> Islands:
-    """Return the scratch for a scene whose bodies may move apart from each other."""
+def new_islands(system: System, active: ActiveSet) -> Islands:
+    """Return the workspace for a scene whose bodies may move apart from each other."""
     n = system.bodies.size
     if n == 1 or not system.bodies["ballistic"].all():
-        return no_islands(system, held)
+        return no_islands(system, active)
     contacts = system.contacts
     rows = np.arange(contacts.size)
     pairs = rows[contacts.other >= 0]
@@ -139,7 +139,7 @@ def new_islands(system: System, held: Held) -> Islands:
     planes = planes[np.argsort(contacts.body[planes], kind="stable")]
     room = min(rows.size, 8 * n + 64)
     partner = low[order], high[order], pairs[order]
-    return _islands(n, partner, (contacts.body[planes], planes), room, len(held.points))
+    return _islands(n, partner, (contacts.body[planes], planes), room, len(active.points))
 
 
 def _islands(n: int, partners: tuple, grounded: tuple, room: int, points: int) -> Islands:
@@ -151,7 +151,7 @@ def _islands(n: int, partners: tuple, grounded: tuple, room: int, points: int) -
     numbers = np.arange(n + 1)
     return Islands(
         apart=int(n > 0),
-        together=_NOWHERE,
+        single=_NOWHERE,
         plan=table(PLAN, 1),
         member=table(MEMBER, n),
         first=np.zeros((3, n + 1), dtype=np.int64),
@@ -161,9 +161,9 @@ def _islands(n: int, partners: tuple, grounded: tuple, room: int, points: int) -
         memory=table(BODY_WORK, n),
         which=np.zeros(room, dtype=np.int64),
         contacts=table(CONTACT, room),
-        brinks=table(BRINK, room),
-        held_of=np.zeros(points, dtype=np.int64),
-        points=table(HELD, 2, points),
+        contact_states=table(CONTACT_STATE, room),
+        active_of=np.zeros(points, dtype=np.int64),
+        points=table(ACTIVE_POINT, 2, points),
         carried=np.zeros(1, dtype=np.int64),
         clock=table(CLOCK, 1),
         centre=np.zeros((n, 3)),
@@ -178,11 +178,11 @@ def _islands(n: int, partners: tuple, grounded: tuple, room: int, points: int) -
 
 
 def roomier(islands: Islands) -> Islands:
-    """Return the scratch with room for twice as many pairs and contacts in a step."""
+    """Return the workspace with room for twice as many pairs and contacts in a step."""
     m, p = 2 * len(islands.which), 2 * len(islands.pair)
     return islands._replace(
         which=np.zeros(m, dtype=np.int64),
         contacts=table(CONTACT, m),
-        brinks=table(BRINK, m),
+        contact_states=table(CONTACT_STATE, m),
         pair=np.zeros((p, 2), dtype=np.int64),
     )

@@ -1,24 +1,24 @@
-"""An island as a system of its own: its bodies, contacts and held points, taken out and put back."""
+"""An island as a system of its own: its bodies, contacts and active points, taken out and put back."""
 
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
-from carom.dynamics.explicit import keep, mark_held
+from carom.dynamics.explicit import copy_state, mark_active
 from carom.kinematics.flight import free_flight
 from carom.model.arrays import System
-from carom.model.workspace import Held, Work
+from carom.model.workspace import ActiveSet, Work
 from carom.persistent.active_set import regroup
 from carom.stepping.islands.layout import ASLEEP, FLIES
 from carom.stepping.islands.plan import number, root, seek
 
 
 @kernel
-def begin_step(system, held, now, length, clocks, work, islands):
+def begin_step(system, active, now, length, clocks, work, islands):
     """Find the islands of a step and fill their slots; return False if there is no room."""
     plan, member = islands.plan[0], islands.member
-    mark_held(system, held, work)
-    if not (seek(system, held, now, length, work, islands) and number(
-        system, held, now, work, islands
+    mark_active(system, active, work)
+    if not (seek(system, active, now, length, work, islands) and number(
+        system, active, now, work, islands
     )):  # fmt: skip
         return False
     for slot in range(islands.first[0, plan.count]):
@@ -30,19 +30,19 @@ def begin_step(system, held, now, length, clocks, work, islands):
         islands.memory[slot] = work.body[b]
     for slot in range(plan.used):
         c = islands.which[slot]
-        contact, brink = islands.contacts[slot], islands.brinks[slot]
+        contact, contact_state = islands.contacts[slot], islands.contact_states[slot]
         islands.contacts[slot] = system.contacts[c]
         contact.body = local(islands, contact.body)
         if contact.other >= 0:
             contact.other = local(islands, contact.other)
-        islands.brinks[slot] = held.brinks[c]
-        brink.blows = 0
-        if brink.step != clocks[0].step:  # nothing was near it in the step before
-            brink.leaving = 0
+        islands.contact_states[slot] = active.contact_states[c]
+        contact_state.blows = 0
+        if contact_state.step != clocks[0].step:  # nothing was near it in the step before
+            contact_state.leaving = 0
     plan.kept = 0
-    for i in range(held.count[0]):
-        if member[root(member, held.points[i].body)].island < 0:
-            islands.points[1, plan.kept] = held.points[i]
+    for i in range(active.count[0]):
+        if member[root(member, active.points[i].body)].island < 0:
+            islands.points[1, plan.kept] = active.points[i]
             plan.kept += 1
     plan.at, plan.entered, plan.planned = 0, 0, 1
     clocks[0].before = clocks[0].impacts
@@ -78,16 +78,16 @@ def part_system(system, islands, i):
 
 
 @kernel
-def part_held(held, islands, i):
+def part_active(active, islands, i):
     """Return the active set of island i."""
     first = islands.first
-    brinks = islands.brinks[first[1, i] : first[1, i + 1]]
-    return Held(islands.points[0], brinks, held.carries, islands.carried)
+    contact_states = islands.contact_states[first[1, i] : first[1, i + 1]]
+    return ActiveSet(islands.points[0], contact_states, active.carries, islands.carried)
 
 
 @kernel
 def part_work(work, islands, i):
-    """Return the scratch of island i."""
+    """Return the workspace of island i."""
     a, b = islands.first[0, i], islands.first[0, i + 1]
     n = b - a
     return Work(
@@ -111,17 +111,17 @@ def part_work(work, islands, i):
 
 
 @kernel
-def enter(part, own, held, work, islands, begin, clock):
-    """Begin with island `plan.at`: take its held points, label its groups, set its clock back."""
+def enter(part, own, active, work, islands, begin, clock):
+    """Begin with island `plan.at`: take its active points, label its groups, set its clock back."""
     i = islands.plan[0].at
     own.count[0] = 0
     for k in range(islands.first[2, i], islands.first[2, i + 1]):
-        hold = own.points[own.count[0]]
-        own.points[own.count[0]] = held.points[islands.held_of[k]]
-        hold.body = local(islands, hold.body)
-        if hold.other >= 0:
-            hold.other = local(islands, hold.other)
-        hold.contact = slot_of(islands, i, hold.contact)
+        active_point = own.points[own.count[0]]
+        own.points[own.count[0]] = active.points[islands.active_of[k]]
+        active_point.body = local(islands, active_point.body)
+        if active_point.other >= 0:
+            active_point.other = local(islands, active_point.other)
+        active_point.contact = slot_of(islands, i, active_point.contact)
         own.count[0] += 1
     regroup(part, own, work)
     clock.spent, clock.in_step, clock.at_once, clock.now = 0.0, 0, 0, begin
@@ -144,17 +144,17 @@ def slot_of(islands, i, c):
 
 
 @kernel
-def is_heap(part, least, step, work):
+def is_crowd(part, least, step, work):
     """Return whether an island takes its step whole: it is large, or event by event made no progress lately."""
     n = part.bodies.shape[0]
-    heap = n >= least
+    crowd = n >= least
     for b in range(n):
-        heap = heap or work.body[b].whole_until > step
-    return heap
+        crowd = crowd or work.body[b].whole_until > step
+    return crowd
 
 
 @kernel
-def tire(islands, step, work):
+def give_up(islands, step, work):
     """Have the bodies of the island at hand take this step and some more whole; return False if they do.
 
     The more often in a row, the more of them: 1, 2, 4, ... 128.
@@ -163,12 +163,12 @@ def tire(islands, step, work):
     for slot in range(first[0, at], first[0, at + 1]):
         new = new and not work.body[islands.body_of[slot]].whole_until > step
     for slot in range(first[0, at], first[0, at + 1] if new else 0):
-        tire_body(work.body[islands.body_of[slot]], step)
+        give_up_body(work.body[islands.body_of[slot]], step)
     return new
 
 
 @kernel
-def tire_body(memory, step):
+def give_up_body(memory, step):
     """Have a body take this step and some more whole."""
     memory.whole_for = min(128, max(1, 2 * memory.whole_for))
     memory.whole_until = step + memory.whole_for
@@ -184,23 +184,23 @@ def recover(part, step, work):
 
 @kernel
 def leave(own, islands):
-    """End with island `plan.at`: keep its held points for after the step."""
+    """End with island `plan.at`: keep its active points for after the step."""
     plan, first = islands.plan[0], islands.first
     bodies, contacts = first[0, plan.at], first[1, plan.at]
     for k in range(own.count[0]):
-        hold = islands.points[1, plan.kept]
+        active_point = islands.points[1, plan.kept]
         islands.points[1, plan.kept] = own.points[k]
-        hold.body = islands.body_of[bodies + hold.body]
-        if hold.other >= 0:
-            hold.other = islands.body_of[bodies + hold.other]
-        hold.contact = islands.which[contacts + hold.contact]
+        active_point.body = islands.body_of[bodies + active_point.body]
+        if active_point.other >= 0:
+            active_point.other = islands.body_of[bodies + active_point.other]
+        active_point.contact = islands.which[contacts + active_point.contact]
         plan.kept += 1
     plan.at += 1
     plan.entered = 0
 
 
 @kernel
-def end_step(system, held, now, length, clock, work, islands):
+def end_step(system, active, now, length, clock, work, islands):
     """Write all islands back; move the bodies in free flight that have nothing near."""
     plan, member = islands.plan[0], islands.member
     for b in range(system.bodies.shape[0]):
@@ -208,32 +208,32 @@ def end_step(system, held, now, length, clock, work, islands):
             free_flight(
                 system.bodies[b], system.gravity, length, now[b], work.trial[b], work.body[b]
             )
-            keep(work.trial[b], now[b])
+            copy_state(work.trial[b], now[b])
         elif member[b].kind != ASLEEP:
             now[b] = islands.state[member[b].place]
             work.body[b] = islands.memory[member[b].place]
     for slot in range(plan.used):
-        brink = held.brinks[islands.which[slot]]
-        held.brinks[islands.which[slot]] = islands.brinks[slot]
-        brink.step = clock.step + 1
+        contact_state = active.contact_states[islands.which[slot]]
+        active.contact_states[islands.which[slot]] = islands.contact_states[slot]
+        contact_state.step = clock.step + 1
     for i in range(plan.kept):
-        held.points[i] = islands.points[1, i]
-    held.count[0] = plan.kept
+        active.points[i] = islands.points[1, i]
+    active.count[0] = plan.kept
     plan.planned, plan.widen = 0, 1.0
 
 
 @kernel
-def forget_step(held, clocks, islands):
+def forget_step(active, clocks, islands):
     """Go back to the start of the step, as if nothing had happened in it."""
     plan = islands.plan[0]
     for k in range(2):
         for i in range(plan.kept if k == 1 else islands.carried[0]):
             feature = islands.points[k, i].feature
             if islands.points[k, i].touches == 0:
-                held.carries[feature] = 0
-    for i in range(held.count[0]):
-        if held.points[i].touches == 0:
-            held.carries[held.points[i].feature] = 1
+                active.carries[feature] = 0
+    for i in range(active.count[0]):
+        if active.points[i].touches == 0:
+            active.carries[active.points[i].feature] = 1
     clocks[0] = islands.clock[0]
     plan.planned, plan.entered = 0, 0
     islands.carried[0] = 0

@@ -13,7 +13,7 @@ from carom.collision.sweep import sweep
 from carom.contact.gap import along_normal
 from carom.geometry.rotation import norm
 from carom.model.workspace import FREE, RESTS
-from carom.stepping.islands.layout import ASLEEP, FLIES, MEETS
+from carom.stepping.islands.layout import ASLEEP, FLIES, IN_ISLAND
 
 SLACK = 1e-6  # of a ball: what touches overlaps
 
@@ -42,7 +42,7 @@ def join(member, a, b):
 
 
 @kernel
-def seek(system, held, now, length, work, islands):
+def seek(system, active, now, length, work, islands):
     """Find the sets of bodies that may meet; return False if there is no room for all pairs."""
     member, plan, fall = islands.member, islands.plan[0], norm(system.gravity)
     for b in range(system.bodies.shape[0]):
@@ -53,9 +53,9 @@ def seek(system, held, now, length, work, islands):
         for k in range(3):
             memory.home[k] = now[b].x[k]
             islands.centre[b, k] = now[b].x[k]
-    for i in range(held.count[0]):
-        if held.points[i].other >= 0:
-            join(member, held.points[i].body, held.points[i].other)
+    for i in range(active.count[0]):
+        if active.points[i].other >= 0:
+            join(member, active.points[i].body, active.points[i].other)
     for turn in range(20):
         for b in range(system.bodies.shape[0]):
             r, memory, ball = member[root(member, b)], work.body[b], system.bodies[b].ball
@@ -108,22 +108,22 @@ def near_plane(system, c, now, work):
 
 
 @kernel
-def number(system, held, now, work, islands):
-    """Give islands numbers, and bodies, contacts, held points slots; return False if there is no room."""
+def number(system, active, now, work, islands):
+    """Give islands numbers, and bodies, contacts, active points slots; return False if there is no room."""
     member, plan, n = islands.member, islands.plan[0], system.bodies.shape[0]
     for b in range(n):
         member[b].island = -1
         member[b].kind = kind_of(system, b, now, work, islands)
     plan.count = 0
     for b in range(n):  # roots are the lowest of their sets
-        if member[b].kind == MEETS and root(member, b) == b:
+        if member[b].kind == IN_ISLAND and root(member, b) == b:
             member[b].island = plan.count
             plan.count += 1
     for s in range(3):
         for i in range(plan.count + 1):
             islands.first[s, i] = 0
     for phase in range(2):  # count, then fill
-        list_bodies(system, held, islands, phase)
+        list_bodies(system, active, islands, phase)
         list_contacts(system, now, work, islands, phase)
         for s in range(3 if phase == 0 else 0):
             ranges(islands, s)
@@ -140,15 +140,15 @@ def number(system, held, now, work, islands):
 
 @kernel
 def kind_of(system, b, now, work, islands):
-    """Return the state of a body in the step: ASLEEP, FLIES (nothing is near), or MEETS (in an island)."""
+    """Return the state of a body in the step: ASLEEP, FLIES (nothing is near), or IN_ISLAND (in an island)."""
     whole = islands.member[root(islands.member, b)]
     if whole.awake != 1:
         return ASLEEP
     if whole.bodies != 1 or work.body[b].status != FREE:
-        return MEETS
+        return IN_ISLAND
     for q in range(islands.plane_first[b], islands.plane_first[b + 1]):
         if near_plane(system, islands.plane[q], now, work):
-            return MEETS
+            return IN_ISLAND
     return FLIES
 
 
@@ -157,7 +157,7 @@ def list_contacts(system, now, work, islands, phase):
     """Count (phase 0) or write (1) the contacts of islands; half-spaces first, as they are numbered."""
     member, plan = islands.member, islands.plan[0]
     for b in range(system.bodies.shape[0]):
-        if member[b].kind == MEETS:
+        if member[b].kind == IN_ISLAND:
             for q in range(islands.plane_first[b], islands.plane_first[b + 1]):
                 if near_plane(system, islands.plane[q], now, work):
                     put(islands, 1, phase, member[root(member, b)].island, islands.plane[q])
@@ -173,13 +173,13 @@ def list_contacts(system, now, work, islands, phase):
 
 
 @kernel
-def list_bodies(system, held, islands, phase):
-    """Count (phase 0) or write (1) the bodies and the held points of islands, in their own order."""
+def list_bodies(system, active, islands, phase):
+    """Count (phase 0) or write (1) the bodies and the active points of islands, in their own order."""
     member = islands.member
     for b in range(system.bodies.shape[0]):
         put(islands, 0, phase, member[root(member, b)].island, b)
-    for i in range(held.count[0]):
-        put(islands, 2, phase, member[root(member, held.points[i].body)].island, i)
+    for i in range(active.count[0]):
+        put(islands, 2, phase, member[root(member, active.points[i].body)].island, i)
 
 
 @kernel
@@ -204,11 +204,11 @@ def back(islands, s):
 
 @kernel
 def put(islands, s, phase, island, i):
-    """Count a body, a contact or a held point (s = 0, 1, 2) of an island, or write it into the next slot."""
+    """Count a body, a contact or an active point (s = 0, 1, 2) of an island, or write it into the next slot."""
     if island < 0:
         return
     if phase == 1:
-        slots = islands.body_of if s == 0 else islands.which if s == 1 else islands.held_of
+        slots = islands.body_of if s == 0 else islands.which if s == 1 else islands.active_of
         slots[islands.first[s, island]] = i
     islands.first[s, island] += 1
 

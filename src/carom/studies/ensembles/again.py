@@ -100,7 +100,7 @@ class Again:
         """Return all that a run writes to, but its records, which are written anew from the top."""
         run = self.run
         return (
-            run.now, run.held, run.work, run.islands, run.cluster, run.corner, run.heap, run.clock,
+            run.now, run.active, run.work, run.islands, run.group, run.multiple, run.crowd, run.clock,
             run.compiled.system, run.method, run.watch,
         )  # fmt: skip
 

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from carom.io.files.disk import put, settle
+from carom.io.files.disk import put, sync
 from carom.studies.ensembles.outcome import PENDING, no_outcomes, outcome_type
 from carom.studies.ensembles.plan import Part
 
@@ -72,7 +72,7 @@ class Store:
             _array(group, f"outcomes/{name}", (runs, *shape), base, chunk, fill)
         group.attrs["inputs"] = _digest(inputs)
         group.attrs["format"] = FORMAT
-        settle(path)
+        sync(path)
         (path / MAKING).unlink()
         return cls(path, group)
 
@@ -144,7 +144,7 @@ class Store:
             shape = (self.runs, *values.shape[1:])
             fill = np.nan if values.dtype.kind == "f" else 0
             _array(self.group, NEW, shape, values.dtype, self.chunk, fill)
-            settle(self.path / NEW)
+            sync(self.path / NEW)
             place = self.path / key
             place.parent.mkdir(parents=True, exist_ok=True)
             (self.path / NEW).rename(place)

@@ -28,7 +28,7 @@ from carom.studies.gradient.tangents import Steps
 # changes of the state, as a part of its size: where the larger one meets other contacts, the smaller
 CHANGES = (3e-4, 1e-5)
 LONGEST = 100  # steps of a piece
-SETTLED = 1e-3  # by which the two differences may differ, as a part of the greatest derivative
+CONVERGED = 1e-3  # by which the two differences may differ, as a part of the greatest derivative
 ROWS = ("time", "point", "before", "after", "impulse")
 
 
@@ -38,12 +38,12 @@ def differentiate(solution: Solution, parameters: Parameters) -> Sensitivities:
     Raises
     ------
     ValueError
-        If steps vary, for heaps, and for parameters that have no neighbours on both sides.
+        If steps vary, for crowds, and for parameters that have no neighbours on both sides.
     """
     run = solution._run
     if run.tolerances is not None:
         raise ValueError('solution must be of a run with steps of one length, got step="auto"')
-    if solution.stats["whole_steps"] or run.has_heap:
+    if solution.stats["whole_steps"] or run.has_crowd:
         raise ValueError("solution must be without heaps, got a run that has taken steps as a heap")
     if np.any(parameters.inertia):
         raise ValueError(
@@ -152,7 +152,7 @@ class Pieces:
                 self.lose(p, first, last, "another sequence of contact is too near")
                 continue
             (X1, rows1), (X2, rows2) = one, half
-            if not self.settled(X1, X2):
+            if not self.converged(X1, X2):
                 self.lose(
                     p,
                     first,
@@ -171,13 +171,13 @@ class Pieces:
             self.rows[name].extend(found[name])
         self.errors.extend(errors)
 
-    def settled(self, X1: np.ndarray, X2: np.ndarray) -> bool:
+    def converged(self, X1: np.ndarray, X2: np.ndarray) -> bool:
         """Return whether two differences agree; note the error of what is extrapolated from them."""
         unit = self.units()
         most = np.max(np.abs(X2) / unit, initial=0.0)
         worst = float(np.max(np.abs(X2 - X1) / unit, initial=0.0) / most) if most > 0.0 else 0.0
-        self.error = max(self.error, worst / 15.0 if worst <= SETTLED else 0.0)
-        return worst <= SETTLED
+        self.error = max(self.error, worst / 15.0 if worst <= CONVERGED else 0.0)
+        return worst <= CONVERGED
 
     def scale(self, direction: np.ndarray, p: int) -> float:
         """Return how much of a parameter changes the state by its own size, or a number by itself."""

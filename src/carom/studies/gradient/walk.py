@@ -47,7 +47,7 @@ class Walk:
         K, P = len(solution.impacts), len(parameters.labels)
         self.times, self.errors = np.full((K, P), np.nan), np.full(K, np.nan)
         self.vectors = [np.full((K, 3, P), np.nan) for _ in range(4)]
-        if solution.stats["whole_steps"] or solution._run.has_heap:
+        if solution.stats["whole_steps"] or solution._run.has_crowd:
             for b in range(len(self.bodies)):
                 self.lose(b, 0.0, "has taken steps as a part of a heap", stays_free=False)
         for step in steps_of(solution):
@@ -109,7 +109,7 @@ class Walk:
         """Carry the bodies of an event to its time and through it."""
         time = float(step.event.time)
         if len(step.shots) == 0:
-            return  # of a heap: lost already
+            return  # of a crowd: lost already
         for shot in step.shots:
             self.meet(int(shot.body), shot, time)
         struck = step.kind == "impact" and self.pass_impact(step, time)

@@ -39,8 +39,8 @@ def varied(
     scene : Scene
         Bodies, half-spaces and contacts with half-spaces; joints and forces only if `start` is None.
     restitution, friction, friction_held : float, optional
-        Of all contacts; default as they are. A new `friction` is that of held contacts too where these had
-        the same and `friction_held` is not given.
+        Of all contacts; default as they are. A new `friction` is that of persistent contacts too where these
+        had the same and `friction_held` is not given.
     inertia_factor : float
         That the inertia of all bodies is multiplied by. Default 1.
     corner_radius : float, optional

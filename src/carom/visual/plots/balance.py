@@ -19,7 +19,7 @@ def energy(solution, *, ax=None):
     """Draw the energies and what the ledger explains them by, and below how far its sum is off.
 
     Above: kinetic and potential energy and their sum; dotted, the entries of the ledger, sums since the start
-    (work of forces and dampers; impacts; friction of held contacts; bounces that were not resolved), each
+    (work of forces and dampers; impacts; friction of persistent contacts; bounces that were not resolved), each
     only if it comes to a millionth of the greatest energy. Below, on a logarithmic axis, the magnitude of
     `Ledger.residual`: of total energy less its start less all entries, the error of the time
     integration.

@@ -1,4 +1,4 @@
-"""Impacts and held contacts as they are shown: arrows in the world, and the inside of each impact."""
+"""Impacts and persistent contacts as they are shown: arrows in the world, and the inside of each impact."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from carom.scene.constraints import coordinate_kind
 LISTED = 1000  # impacts in the list: the strongest
 OPENED = 200  # impacts whose inside is kept: the strongest
 STEPS = 24  # spline steps through a layer
-ROWS = 100_000  # arrows of held contacts, of all moments together
+ROWS = 100_000  # arrows of persistent contacts, of all moments together
 
 
 class Strikes(NamedTuple):
@@ -61,7 +61,7 @@ def strikes_of(solution, listed: int = LISTED) -> Strikes:
 
 
 def held_of(solution, times: np.ndarray, rows: int = ROWS) -> Held:
-    """Return the forces of held contacts at the saved times among `times`, or fewer of them."""
+    """Return the forces of persistent contacts at the saved times among `times`, or fewer of them."""
     table = solution.forces
     saved = np.unique(np.searchsorted(solution.t, times, side="right") - 1)
     first, last = (np.searchsorted(table.saved, saved, side=side) for side in ("left", "right"))

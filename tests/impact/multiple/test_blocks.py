@@ -7,9 +7,9 @@ from carom.impact.api import resolve_impact
 from carom.impact.multiple.api import resolve_impacts
 from carom.impact.multiple.layout import (
     CornerContacts,
-    CornerSettings,
-    corner_arrays,
-    new_corner_result,
+    MultipleSettings,
+    new_multiple_result,
+    new_multiple_workspace,
 )
 from references.painleve import impact_without_collision
 
@@ -59,10 +59,10 @@ SLIPS = np.array([0.0, 1.0, 0.0])
 
 
 def jam(e, law, mu=1.6):
-    settings, scratch, out = CornerSettings(), corner_arrays(1), new_corner_result(1)
+    settings, workspace, out = MultipleSettings(), new_multiple_workspace(1), new_multiple_result(1)
     one = np.ones(1)
     contacts = CornerContacts(1, ROD, SLIPS, mu * one, e * one, np.array([law]), one)
-    return impact_without_collision(contacts, settings, scratch, out), out
+    return impact_without_collision(contacts, settings, workspace, out), out
 
 
 def test_painleve_rod():

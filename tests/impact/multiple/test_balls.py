@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from corner_cases import strike_row
+from multiple_cases import strike_row
 
 from carom.impact.multiple.api import resolve_impacts
 

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from corner_cases import problems, strike_row
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from multiple_cases import problems, strike_row
 
 from carom.impact.multiple.api import resolve_impacts
 from carom.scene.materials import IMPACT_LAWS

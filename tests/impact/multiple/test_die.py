@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from corner_cases import DIE, EDGE, Body, unlike
+from multiple_cases import DIE, EDGE, Body, unlike
 
 HALF = EDGE / 2
 FALL = np.array([0.3, 0.1, -2, 3, 1, 5])

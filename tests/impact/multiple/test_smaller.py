@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from corner_cases import CORNERS, DIE, Body
+from multiple_cases import CORNERS, DIE, Body
 
 from carom.impact.multiple.api import resolve_impacts
 
