@@ -229,6 +229,25 @@ def velocity_error(joint, state, out):
 
 
 @kernel
+def universal_bias(joint, state, wx, wy, wz):
+    """Return the angular bias of a universal joint whose parent turns with w: along n = a x b, for its row
+
+    n . (w_c - w_p) = 0,    n . alpha + n' . (w_c - w_p) = 0.
+    """
+    ax, ay, az = axis(state, joint.parent, joint.parent_frame, 0)
+    bx, by, bz = axis(state, joint.child, joint.child_frame, 1)
+    nx, ny, nz = cross(ax, ay, az, bx, by, bz)
+    ux, uy, uz = state[joint.child].w[0], state[joint.child].w[1], state[joint.child].w[2]
+    tx, ty, tz = cross(ux, uy, uz, bx, by, bz)
+    sx, sy, sz = cross(ax, ay, az, tx, ty, tz)
+    tx, ty, tz = cross(wx, wy, wz, ax, ay, az)
+    rx, ry, rz = cross(tx, ty, tz, bx, by, bz)
+    f = (sx + rx) * (ux - wx) + (sy + ry) * (uy - wy) + (sz + rz) * (uz - wz)
+    f /= -(nx * nx + ny * ny + nz * nz)
+    return f * nx, f * ny, f * nz
+
+
+@kernel
 def acceleration_bias(joint, state, out):
     """Write the bias of the relative acceleration: out = (angular, linear).
 
@@ -277,17 +296,6 @@ def acceleration_bias(joint, state, out):
         f = tx * ux + ty * uy + tz * uz
         lx, ly, lz = lx - f * ex, ly - f * ey, lz - f * ez
     elif kind == UNIVERSAL:
-        # n . (w_c - w_p) = 0 with n = a x b: n . alpha + n' . (w_c - w_p) = 0, a bias along n
-        ax, ay, az = axis(state, p, joint.parent_frame, 0)
-        bx, by, bz = axis(state, c, joint.child_frame, 1)
-        nx, ny, nz = cross(ax, ay, az, bx, by, bz)
-        ux, uy, uz = state[c].w[0], state[c].w[1], state[c].w[2]
-        tx, ty, tz = cross(ux, uy, uz, bx, by, bz)
-        sx, sy, sz = cross(ax, ay, az, tx, ty, tz)
-        tx, ty, tz = cross(wx, wy, wz, ax, ay, az)
-        rx, ry, rz = cross(tx, ty, tz, bx, by, bz)
-        f = (sx + rx) * (ux - wx) + (sy + ry) * (uy - wy) + (sz + rz) * (uz - wz)
-        f /= -(nx * nx + ny * ny + nz * nz)
-        ax, ay, az = f * nx, f * ny, f * nz
+        ax, ay, az = universal_bias(joint, state, wx, wy, wz)
     out[0], out[1], out[2] = ax, ay, az
     out[3], out[4], out[5] = lx, ly, lz

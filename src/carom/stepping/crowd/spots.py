@@ -53,14 +53,23 @@ def gather(system, active, h, fall, state, crowd, work):
             return -1
         for i in range(first, k):
             find_active(active, crowd.spots[i], crowd)
-        last = k
-        for i in range(first, last):
-            for turns in range(1, 3):
-                if contact.turning[turns - 1] > 0.0:
-                    if k == crowd.spots.shape[0]:
-                        return -1
-                    take_turning(crowd.spots[i], crowd.spots[k], i, turns)
-                    k += 1
+        k = add_turning(contact, first, k, crowd)
+        if k < 0:
+            return -1
+    return k
+
+
+@kernel
+def add_turning(contact, first, k, crowd):
+    """Add rolling and pivoting of the spots from `first`; return the new count, -1 if there is no room."""
+    last = k
+    for i in range(first, last):
+        for turns in range(1, 3):
+            if contact.turning[turns - 1] > 0.0:
+                if k == crowd.spots.shape[0]:
+                    return -1
+                take_turning(crowd.spots[i], crowd.spots[k], i, turns)
+                k += 1
     return k
 
 

@@ -85,15 +85,24 @@ def each(tasks: Iterator[tuple], function: Callable, executor, workers: int | No
             finished, _ = futures.wait(running, return_when=futures.FIRST_COMPLETED)
             for future in finished:
                 task, tried = running.pop(future)
-                try:
-                    yield future.result()
-                except Exception as error:
-                    if tried >= TRIES or not _lost(error):
-                        _cancel(running)
-                        raise
+                result, error = _outcome(future)
+                if error is None:
+                    yield result
+                elif tried < TRIES and _lost(error):
                     start(task, tried + 1)
+                else:
+                    _cancel(running)
+                    raise error
             for task in islice(tasks, most - len(running)):
                 start(task, 1)
+
+
+def _outcome(future: futures.Future) -> tuple[object, Exception | None]:
+    """Return the result of a task, or the error that it ended with."""
+    try:
+        return future.result(), None
+    except Exception as error:
+        return None, error
 
 
 def _cancel(running: Iterable[futures.Future]) -> None:
