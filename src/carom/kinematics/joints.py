@@ -230,9 +230,11 @@ def velocity_error(joint, state, out):
 
 @kernel
 def universal_bias(joint, state, wx, wy, wz):
-    """Return the angular bias of a universal joint whose parent turns with w: along n = a x b, for its row
+    """Return the angular bias of a universal joint whose parent turns with w, along n = a x b.
 
-    n . (w_c - w_p) = 0,    n . alpha + n' . (w_c - w_p) = 0.
+    Its row is
+
+        n . (w_c - w_p) = 0,    n . alpha + n' . (w_c - w_p) = 0.
     """
     ax, ay, az = axis(state, joint.parent, joint.parent_frame, 0)
     bx, by, bz = axis(state, joint.child, joint.child_frame, 1)
