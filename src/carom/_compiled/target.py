@@ -21,6 +21,7 @@ import llvmlite.binding as llvm
 import numba.core.typing.context
 from numba.core import codegen, compiler, config, cpu, dispatcher, itanium_mangler, types
 from numba.core.descriptors import TargetDescriptor
+from numba.core.imputils import Registry
 from numba.core.target_extension import (
     CPU,
     dispatcher_registry,
@@ -57,6 +58,10 @@ def processor() -> tuple[str, str]:
         if all(has.get(feature, False) for feature in baseline[2]):
             return baseline[:2]
     return llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
+
+
+#: how to lower what Numba does not know
+_own = Registry("carom")
 
 
 class CaromCPU(CPU):
@@ -134,6 +139,7 @@ class TargetContext(cpu.CPUContext):
         rtsys.initialize(self)
         self.install_registry(mathimpl.registry)
         self.install_registry(npyimpl.registry)
+        self.install_registry(_own)
 
     def mangler(self, name, types, *, abi_tags=(), uid=None):
         """Return the symbol of a function."""
@@ -225,10 +231,24 @@ class Dispatcher(dispatcher.Dispatcher):
 
         A variable that begins as a constant (``n = 0``) has a type of its own until all that is assigned to it
         is known. Numba compiles what is called meanwhile for that type, with all that this calls, and uses none
-        of it: a quarter of all functions that a thrown die needs.
+        of it: a quarter of all functions that a thrown die needs. An array that is a field of a record has a
+        type of its own, too, that of its shape.
         """
-        plain = {name: types.unliteral(kind) for name, kind in kws.items()}
-        return super().get_call_template(tuple(map(types.unliteral, args)), plain)
+        plain = {name: plain_type(kind) for name, kind in kws.items()}
+        return super().get_call_template(tuple(map(plain_type, args)), plain)
+
+
+def plain_type(kind) -> types.Type:
+    """Return the type that a function is compiled for: one for constants and variables, fields and arrays."""
+    if isinstance(kind, types.NestedArray):  # in memory they are alike
+        return types.Array(kind.dtype, kind.ndim, "C")
+    return types.unliteral(kind)
+
+
+@_own.lower_cast(types.NestedArray, types.Array)
+def _field_as_array(context, builder, fromty, toty, val):
+    """Hand a field of a record on as the array that it is."""
+    return val
 
 
 def compiled(function=None, **options):

@@ -28,6 +28,7 @@ from numba.extending import intrinsic
 
 from carom._compiled.by_reference import refer_to
 from carom._compiled.decorators import INSIDE, RULES, jit, keep_on_disk
+from carom._compiled.target import plain_type
 
 _RETURNS = {"float": types.float64, "int": types.int64, "bool": types.boolean}
 _FINDER = "carom_find_unit"  # symbol of the function that compiled code asks
@@ -57,11 +58,11 @@ def unit(function):
     result = _returned(given.return_annotation)
 
     def call(typing, *arguments):
-        kinds = tuple(types.unliteral(kind) for kind in arguments)
+        kinds = tuple(map(plain_type, arguments))
 
         def generate(context, builder, signature, values):
             pairs = [refer_to(builder, kind, value) for kind, value in zip(kinds, values)]
-            taken, values = zip(*((_as_array(kind), value) for kind, value in pairs))
+            taken, values = zip(*pairs)
             return _call(context, builder, name, result, taken, values)
 
         return result(*kinds), generate
@@ -76,13 +77,6 @@ def unit(function):
     made.compiled, made.returned = compiled, result
     UNITS[name] = made
     return made
-
-
-def _as_array(kind) -> types.Type:
-    """Return the type of an array for one that is a field of a record: in memory they are alike."""
-    if isinstance(kind, types.NestedArray):
-        return types.Array(kind.dtype, kind.ndim, "C")
-    return kind
 
 
 def _returned(annotation) -> types.Type:

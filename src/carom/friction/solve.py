@@ -56,7 +56,8 @@ def _load(work, k, W, c, mu, kind, heading, p):
     for i in range(k):
         n = 3 * i
         trace = W[n, n] + W[n + 1, n + 1] + W[n + 2, n + 2]
-        if not set_contact(work.contact[i], mu[i], kind[i], heading[i], trace):
+        along = (heading[i, 0], heading[i, 1])
+        if not set_contact(work.contact[i], mu[i], kind[i], along, trace):
             return math.nan
     for i in range(3 * k):
         s = work.contact[i // 3].scale

@@ -29,7 +29,7 @@ def expand(m, mu, s):
 @kernel
 def moved(m, mu, s, t, h):
     """Return the state `h` in tau after `s`, on the series `t`."""
-    p, p1, p2 = integral(t[2], h), -mu * integral(t[0], h), -mu * integral(t[1], h)
+    p, p1, p2 = integral(t[2], h), -mu * integral(t[0][:16], h), -mu * integral(t[1][:16], h)
     loss = mu * integral(t[3], h)
     x, y = value(t[0], h), value(t[1], h)
     u_n = s[2] + (m[0] * p + m[1] * p1 + m[2] * p2)

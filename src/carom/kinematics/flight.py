@@ -56,12 +56,13 @@ def board(J, q, w, memory):
     """Have a state be the known state 0 of the flight in `memory`: of that which it holds, or of a new one."""
     if knows(memory, 0, q, w):
         return
+    attitude_now, spin_now = (q[0], q[1], q[2], q[3]), (w[0], w[1], w[2])
     if knows(memory, 1, q, w):
-        note(memory, 0, q, w, memory.age[1, 0], memory.age[1, 1])
+        note(memory, 0, attitude_now, spin_now, memory.age[1, 0], memory.age[1, 1])
         return
     W = rotate_back(q[0], q[1], q[2], q[3], w[0], w[1], w[2])
     begin_top(J, q, W, memory)
-    note(memory, 0, q, w, 0.0, 0.0)
+    note(memory, 0, attitude_now, spin_now, 0.0, 0.0)
 
 
 @kernel
