@@ -24,7 +24,7 @@ class Controls(NamedTuple):
     max_impacts: int
     max_cuts: int
     heap: int  # an island of so many bodies takes its steps whole
-    retry: int  # a step that does not get on is given up, to be taken: 1 whole, 2 in parts; 0: it is not
+    retry: int  # 1 where a step that does not get on is given up, to be taken whole
     order: int  # of the error of a step whose length is chosen; 0: all steps are `step`
     rtol: float
     atol: float

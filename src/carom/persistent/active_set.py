@@ -18,7 +18,6 @@ from carom.contact.pair_point import (
 )
 from carom.contact.place import place_any
 from carom.contact.rim import same_point
-from carom.impact.effective_restitution import ALL_PLASTIC
 
 
 @kernel
@@ -85,21 +84,6 @@ def deactivate(active, i):
     for j in range(i, last):
         copy(active.points[j + 1], active.points[j])
     active.count[0] = last
-
-
-@kernel
-def let_go(active):
-    """Remove all points that share bodies: they strike, and persist again, at the end of the next step."""
-    for i in range(active.count[0] - 1, -1, -1):
-        active_point = active.points[i]
-        if active_point.several == 1:
-            c = active_point.contact
-            deactivate(active, i)
-            (
-                active.contact_states[c].leaving,
-                active.contact_states[c].near,
-                active.contact_states[c].blows,
-            ) = 0, 0, ALL_PLASTIC
 
 
 @kernel

@@ -39,7 +39,7 @@ from carom.persistent.finish import finish, forces_at_end, gained
 from carom.persistent.middle_state import halfway, mean_velocity, spin_momentum
 from carom.persistent.return_to_surfaces import onto_surfaces
 from carom.persistent.rolling_friction import bound_turning, first_torque
-from carom.persistent.step_control import affordable, unnamed
+from carom.persistent.step_control import affordable, plain_step, unnamed
 
 ROUNDS = 50
 CONVERGED = 1e-14  # relative change of velocities by a round that is the last
@@ -50,6 +50,7 @@ FAR, ROUGH = 1e-4, 1e-8
 # the others as a part of what the last has changed
 FIRST, PART = 1e-5, 1e-4
 ITERATION = 0.3  # cost [us] of an iteration for k points, by k^2
+ROUND = 1.0  # of a round of joined bodies, by a step without contacts
 
 
 @unit
@@ -123,10 +124,11 @@ def step_group(model, data, label, h):
             change = find_impulses(model, data, k, 0.0)
         if change <= CONVERGED or (change <= 1e-7 and change >= 0.3 * before):
             break
-        if controls.retry == 1 and clock.effort > affordable(controls, clock):
+        if controls.retry == 1 and clock.effort > affordable(model.system, controls, clock):
             break  # to be given up, where there is another way
         before = change
         clock.rounds += 1
+        clock.effort += ROUND * plain_step(system) if loaded else 0.0
     group.cone.count[NEAR], group.cone.mismatch[ENOUGH] = 0, 0.0
     driven = impose(model, data, k, h, count, loaded)
     check(model, data, k, count)
@@ -147,7 +149,7 @@ def find_impulses(model, data, k, enough):
     """Solve for the impulses of a round, to `enough` (0: to round-off); return what that moves, relative."""
     controls = model.controls
     group, clock = data.group, data.clocks[0]
-    left, each = affordable(controls, clock) - clock.effort, ITERATION * k * k
+    left, each = affordable(model.system, controls, clock) - clock.effort, ITERATION * k * k
     group.cone.mismatch[ENOUGH] = enough
     group.cone.count[BUDGET] = max(100, int(left / each))
     _, _, iterations = solve_cones(

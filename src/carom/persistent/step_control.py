@@ -11,6 +11,7 @@ import math
 from carom._compiled.decorators import inlined, kernel
 from carom.geometry.rotation import norm
 from carom.model import records as r
+from carom.model.arrays import FOREST, NO_JOINTS
 from carom.model.workspace import ONE
 from carom.persistent.middle_state import spin_momentum
 
@@ -38,8 +39,11 @@ SHORTEST, RETRIED = 1e-4, 1e-2
 # force grows without bound (near a jam, or as a rim becomes flat) no step is short enough, and it is taken
 # whole in the end. Of groups, and of one body
 WILD, GROSS = 100.0, 1e4
-# how much more work a step may take where it cannot be taken whole: in parts, or not in another way
+# how much more work a step may take where it cannot be taken whole
 PATIENCE = 10.0
+# about what a step without contacts takes, of a body [us]: free, in a tree of joints, with closed loops; and
+# how many times that the contacts of joined bodies may take
+FREE_STEP, TREE_STEP, LOOPS_STEP, TIMES = 0.3, 3.0, 25.0, 50.0
 
 
 @kernel
@@ -128,11 +132,8 @@ def unsolved(system, controls, work, part):
 
 
 @inlined
-def too_long(model, data, late):
-    """Return whether a step with active points is to be cut: for want of a solution, or for what it loses.
-
-    The latter not where events wait for the end of a part of the step (`late`).
-    """
+def too_long(model, data):
+    """Return whether a step with active points is to be cut: for want of a solution, or for what it loses."""
     system, controls = model.system, model.controls
     active, start, work, search = data.active, data.state, data.work, data.work.search[0]
     end, dt = work.trial, search.dt
@@ -140,8 +141,6 @@ def too_long(model, data, late):
         return False
     if dt > RETRIED * controls.step and unsolved(system, controls, work, UNSOLVED):
         return True
-    if late:
-        return False
     shortest = dt <= SHORTEST * controls.step
     if not shortest and turns_far(system, active, start, end, dt):
         return True
@@ -166,9 +165,22 @@ def next_pace(pace, work):
 
 
 @kernel
-def affordable(controls, clock):
-    """Return how much work a step may take for contacts, about [us]: more than that, and it is given up."""
-    return max(r.EACH, clock.credit) * (1.0 if controls.retry == 1 else PATIENCE)
+def plain_step(system):
+    """Return about what a step without contacts takes [us]."""
+    kind, n = system.solver.kind, system.bodies.shape[0]
+    return n * (FREE_STEP if kind == NO_JOINTS else TREE_STEP if kind == FOREST else LOOPS_STEP)
+
+
+@kernel
+def allowance(system):
+    """Return how much work a step may take for contacts on the average [us]."""
+    return r.EACH if system.solver.kind == NO_JOINTS else TIMES * plain_step(system)
+
+
+@kernel
+def affordable(system, controls, clock):
+    """Return how much work this step may take for contacts [us]: more than that, and it is given up."""
+    return max(allowance(system), clock.credit) * (1.0 if controls.retry == 1 else PATIENCE)
 
 
 @kernel

@@ -18,7 +18,6 @@ from carom.contact.stop import check_stop
 from carom.dynamics.explicit import copy_state
 from carom.dynamics.more_forces import note_turns
 from carom.geometry.rotation import norm
-from carom.impact.effective_restitution import ALL_PLASTIC
 from carom.impact.strike import strike
 from carom.kinematics.contact_point import contact_velocity
 from carom.model import records as r
@@ -26,11 +25,7 @@ from carom.model.actions import NOTHING, PERSIST, RENEW_MODE, STRIKE
 from carom.model.arrays import STOP
 from carom.model.controls import LOCATE
 from carom.model.workspace import FREE
-from carom.persistent.active_set import (
-    is_active,
-    let_go,
-    regroup,
-)
+from carom.persistent.active_set import is_active
 from carom.persistent.events import (
     GAP,
 )
@@ -50,7 +45,6 @@ from carom.stepping.record import finite, grow, save_contacts
 from carom.stepping.trial_step import first_event, propose_step
 
 NO_CONVERGENCE, TOO_MANY, NOT_FINITE = 1, 3, 4
-MOST_AT_ONCE = 50  # events at the end of a part of a step that is taken in parts
 
 
 @unit
@@ -60,64 +54,56 @@ def advance(model, data, method) -> int:
     Propose a step, find the first event in it, accept the motion up to there, and act on the event.
     """
     clock, search = data.clocks[0], data.work.search[0]
-    late = in_parts(model, data)
     if not (clock.spent > 0.0 or clock.paused == 1 or search.pending != NOTHING):
         search.pace = math.inf
     while clock.spent < clock.length:
-        code = may_go_on(model, data, late)
+        code = may_go_on(model, data)
         if code != 0:
             return code
-        action = due_action(model, data, late)
+        action = due_action(model, data)
         if action == NOTHING:
-            propose_step(model, data, late)
-            code = first_event(model, data, method, late)
+            propose_step(model, data)
+            code = first_event(model, data, method)
             if code != 0:
                 return code
             if search.pending != NOTHING:  # points of a flat rim, which strike where they are
                 continue
-            code, action = accept_step(model, data, late)
+            code, action = accept_step(model, data)
             if code != 0:
                 return code
         if action != NOTHING:
-            code = act(model, data, method, action, late)
+            code = act(model, data, method, action)
             if code != 0:
                 return code
     return 0
 
 
 @inlined
-def in_parts(model, data):
-    """Return whether joined bodies take this step in parts, with events at the ends of parts."""
-    return model.controls.retry == 2 and is_whole(data.clocks[0].step, data.work)
-
-
-@inlined
-def may_go_on(model, data, late):
+def may_go_on(model, data):
     """Return 0, or why the loop is left: for a moment, for more room, or as the step costs too much."""
     controls, clock = model.controls, data.clocks[0]
     if clock.since > r.LONG and clock.paused == 0:
         return r.PAUSE
     if full(model.system, data.active, clock, data.records):
         return grow(clock, r.FULL_EVENTS)
-    if not late:
-        if clock.in_step > controls.max_impacts or clock.at_once > 1000:
-            return TOO_MANY
-        if controls.retry > 0 and clock.effort > affordable(controls, clock):
-            return TOO_MANY
+    if clock.in_step > controls.max_impacts or clock.at_once > 1000:
+        return TOO_MANY
+    if controls.retry > 0 and clock.effort > affordable(model.system, controls, clock):
+        return TOO_MANY
     return 0
 
 
 @inlined
-def due_action(model, data, late):
+def due_action(model, data):
     """Return the action that is due before time goes on: one put off, or one that closed points ask for."""
     controls, clock, search = model.controls, data.clocks[0], data.work.search[0]
     search.left = clock.length - clock.spent
     action = search.pending
     search.pending = NOTHING
-    if action != NOTHING and clock.paused == 0 and not (late and clock.at_once > MOST_AT_ONCE):
+    if action != NOTHING and clock.paused == 0:
         return action  # put off until its unit was compiled: the horizon is that of then
-    search.horizon = search.left if exact(controls, late) else controls.step
-    if clock.paused == 1 or (late and clock.at_once > MOST_AT_ONCE):
+    search.horizon = search.left if exact(controls) else controls.step
+    if clock.paused == 1:
         return NOTHING
     action, c = find_due_contact(model.system, controls, data.active, data.state, data.work)
     if action != NOTHING:
@@ -126,13 +112,13 @@ def due_action(model, data, late):
 
 
 @inlined
-def exact(controls, late):
+def exact(controls):
     """Return whether events are located, and the end of the step is that of the horizon."""
-    return controls.location == LOCATE and controls.order == 0 and not late
+    return controls.location == LOCATE and controls.order == 0
 
 
 @inlined
-def accept_step(model, data, late):
+def accept_step(model, data):
     """Make the trial state the present one; return a code, and what its event asks for."""
     system, controls, work = model.system, model.controls, data.work
     active, now, clock, search = data.active, data.state, data.clocks[0], data.work.search[0]
@@ -140,11 +126,7 @@ def accept_step(model, data, late):
     # an island is taken whole otherwise; where there are none the run goes on as long as it makes sense
     bearable = UNSOLVED if controls.retry == 1 else USELESS
     if active.count[0] > 0 and unsolved(system, controls, work, bearable):
-        if not late:
-            return NO_CONVERGENCE, NOTHING
-        let_go(active)
-        regroup(system, active, work)
-        return 0, NOTHING
+        return NO_CONVERGENCE, NOTHING
     if active.count[0] > 0 and controls.retry == 1 and goes_wild(work):
         return NO_CONVERGENCE, NOTHING
     if not finite(work.trial):
@@ -159,7 +141,7 @@ def accept_step(model, data, late):
     if search.dt == search.left:
         clock.spent = clock.length
     of_contact = search.found == 1 and search.kind != GAP and search.kind < STOPS
-    met = of_contact and not late and switch_due(active, search)
+    met = of_contact and switch_due(active, search)
     if active.count[0] > 0:
         turn_modes(model, data)
     if search.found == 0:
@@ -167,7 +149,7 @@ def accept_step(model, data, late):
 
     # its event
     clock.located += 1
-    if exact(controls, late):
+    if exact(controls):
         search.horizon = max(search.horizon - search.dt, 0.0)
     if search.kind >= STOPS:
         turn_joint(system, search.kind, search.contact, active, now, work)
@@ -198,7 +180,7 @@ def accept(data, search):
 
 
 @inlined
-def act(model, data, method, action, late):
+def act(model, data, method, action):
     """Resolve the impact that an event asks for, and let contacts persist whose bounces are over."""
     system, controls, work = model.system, model.controls, data.work
     clock, search = data.clocks[0], data.work.search[0]
@@ -208,8 +190,6 @@ def act(model, data, method, action, late):
         strike(model, data, method, search.contact)
         closed = work.hit[0].closed
         clock.since += 10.0
-        if late:
-            make_plastic(data.active)
         if work.hit[0].code != 0:
             search.pending = STRIKE
             return work.hit[0].code
@@ -242,14 +222,6 @@ def persist(model, data, action):
 def is_whole(step, work):
     """Return whether the bodies are to take this step without looking for the times of its events."""
     return work.body[0].whole_until > step
-
-
-@inlined
-def make_plastic(active):
-    """Let contacts that were struck be plastic up to the end of the step."""
-    for c in range(active.contact_states.shape[0]):
-        if active.contact_states[c].blows > 0:
-            active.contact_states[c].blows = ALL_PLASTIC
 
 
 @inlined

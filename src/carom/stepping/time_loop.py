@@ -14,6 +14,7 @@ from carom.model import records as r
 from carom.model.controls import LOCATE
 from carom.model.data import Data, Model
 from carom.persistent.active_set import regroup
+from carom.persistent.step_control import allowance
 from carom.stepping.crowd.step import step_crowd
 from carom.stepping.energy_balance import watch_step
 from carom.stepping.event_step import NOT_FINITE, advance, is_whole, left_ball
@@ -21,6 +22,7 @@ from carom.stepping.islands import one_island, parts
 from carom.stepping.record import finite, grow, save, still
 
 AGAIN = -1  # the step is to be done again
+SAVED = 10.0  # steps of joined bodies whose allowance may be saved
 
 
 @entry
@@ -125,7 +127,7 @@ def finish_step(model, data):
     charge_impacts(clock)
     clock.step += 1
     clock.in_step = 0
-    earn(state, clock, data.work)
+    earn(system, state, clock, data.work)
     clock.now = clock.begin + clock.length
     clock.still = min(clock.still, clock.now) if still(state) else math.inf
     last = clock.step == controls.last
@@ -155,12 +157,14 @@ def charge_impacts(clock):
 
 
 @kernel
-def earn(now, clock, work):
+def earn(system, now, clock, work):
     """Add the credit of one step, unless a body takes the step whole."""
     for b in range(now.shape[0]):
         if work.body[b].whole_until >= clock.step:
             return
-    clock.credit = min(min(r.SAVED, r.OWN * now.shape[0]), clock.credit + r.EACH)
+    each = allowance(system)
+    saved = min(r.SAVED, r.OWN * now.shape[0]) if system.joints.shape[0] == 0 else SAVED * each
+    clock.credit = min(saved, clock.credit + each)
 
 
 @inlined
@@ -168,10 +172,10 @@ def move_single(model, data, method, start):
     """Move all bodies to the end of the step: event by event, or at once where that made no progress."""
     system, work = model.system, data.work
     step = data.clocks[0].step
-    if start.free == 0 or not is_whole(step, work):
+    if not is_whole(step, work):
         parts.recover(system, step, work)
         return advance(model, data, method)
-    step_crowd(model, data)
+    step_crowd(model, data, method)
     regroup(system, data.active, work)
     return work.result[0].code
 
@@ -184,7 +188,7 @@ def move_island(model, data, method):
     if not parts.is_crowd(system, controls.heap, step, work):
         parts.recover(system, step, work)
         return advance(model, data, method)
-    step_crowd(model, data)
+    step_crowd(model, data, method)
     code = work.result[0].code
     if code == 0 and left_ball(system, data.state, data.clocks[0].length, work):
         return r.LEFT_BALL

@@ -18,7 +18,7 @@ from carom.persistent.contact_step import contact_step
 from carom.persistent.events import GAP, end_forces
 from carom.persistent.joint_events import STOPS
 from carom.persistent.margins import note_due
-from carom.persistent.step_control import affordable, too_long
+from carom.persistent.step_control import affordable, plain_step, too_long
 from carom.stepping.energy_balance import IN_A_ROW, SHORTEST, off_balance
 from carom.stepping.event_search import (
     begin_search,
@@ -32,22 +32,19 @@ from carom.stepping.record import finite
 STEP_CUT, TOO_MANY, NOT_FINITE = 2, 3, 4
 STEP_TOO_SMALL, UNSTABLE = 12, 14
 TRIES = 3000  # trial steps of a step that is given up
-PARTS = 16  # of a step that is given up; events are at the ends of parts
 ONCE_MORE = -1  # another trial step is to be made
 
 
 @inlined
-def propose_step(model, data, late):
+def propose_step(model, data):
     """Note the length of the first trial step, unless the loop was left in the middle of one."""
     clock, search = data.clocks[0], data.work.search[0]
     if clock.paused == 1:
         clock.paused = 0
         return
     dt = min(search.left, search.pace)
-    if data.active.count[0] > 0 and not late:
+    if data.active.count[0] > 0:
         dt = until_stop(model.controls, data.active, dt, clock)
-    if late:
-        dt = min(dt, clock.length / PARTS)
     search.dt, search.cuts, search.again, search.active = dt, 0, 0, 0
     search.eager = 1 if clock.in_step < 20 else 0
 
@@ -67,7 +64,7 @@ def until_stop(controls, active, dt, clock):
 
 
 @inlined
-def first_event(model, data, method, late):
+def first_event(model, data, method):
     """Make trial steps until nothing can lie inside one, or the first event is at its end. Returns a code."""
     clock, search = data.clocks[0], data.work.search[0]
     search.found = 0
@@ -75,19 +72,19 @@ def first_event(model, data, method, late):
         if clock.since > r.LONG:
             clock.paused = 1
             return r.PAUSE
-        code = trial_step(model, data, method, late)
+        code = trial_step(model, data, method)
         if code == 0:
             code = fits(model, data)
         if code == 0 and search.active == 1:
             code = is_root(model, data)
         if code == 0:
-            code = event_within(model, data, late)
+            code = event_within(model, data)
         if code != ONCE_MORE:
             return code
 
 
 @inlined
-def trial_step(model, data, method, late):
+def trial_step(model, data, method):
     """Make a step of length `search.dt` from the present to `work.trial`, with its impulses of contacts.
 
     The code of the step without them goes to the search: a shorter one may do.
@@ -100,16 +97,17 @@ def trial_step(model, data, method, late):
     search.alone = friction  # of points that are active one to a body
     clock.trials += 1
     clock.tries += 1
+    clock.effort += plain_step(system) if system.joints.shape[0] > 0 else 0.0
     clock.since += 1.0 + now.shape[0] + active.contact_states.shape[0]
-    if controls.retry > 0 and not late:
-        if clock.tries > TRIES or clock.effort > affordable(controls, clock):
+    if controls.retry > 0:
+        if clock.tries > TRIES or clock.effort > affordable(model.system, controls, clock):
             return TOO_MANY
     if active.count[0] > 0 and code == 0:
         end_forces(system, active, work.trial, work)
         contact_step(model, data, search.dt)
         if work.result[0].code != 0:
             return work.result[0].code
-        if controls.retry == 1 and clock.effort > affordable(controls, clock):
+        if controls.retry == 1 and clock.effort > affordable(model.system, controls, clock):
             return TOO_MANY  # and its rounds were not all made
         search.applied += work.result[0].applied
         search.friction += work.result[0].friction
@@ -160,13 +158,13 @@ def is_root(model, data):
 
 
 @inlined
-def event_within(model, data, late):
+def event_within(model, data):
     """Return 0 if the trial step may be taken: nothing lies inside, or the event is at its end (`found`)."""
     system, controls, active, now = model.system, model.controls, data.active, data.state
     work, search = data.work, data.work.search[0]
 
     # is it too long for what it loses?
-    loses = too_long(model, data, late)
+    loses = too_long(model, data)
     if search.active == 0 and search.dt > SHORTEST * controls.step:
         loses = loses or turns_round(system, now, work.trial, search.dt)
     if not loses and controls.order == 0:
@@ -178,7 +176,7 @@ def event_within(model, data, late):
 
     # does an event lie inside?
     verdict, kind, other, low, d1, d2 = detect_event(system, controls, active, now, search.dt, work)
-    if verdict == FLAT_RIM and not late:  # its points strike together where they are
+    if verdict == FLAT_RIM:  # its points strike together where they are
         search.pending, search.contact, search.horizon = STRIKE, other, search.left
         return 0
     own = search.active == 1 and kind == search.kind and other == search.contact
@@ -188,9 +186,6 @@ def event_within(model, data, late):
     if verdict == AGAIN:
         search.active = 0
         return ONCE_MORE
-    if late:  # at the end of this part
-        search.kind, search.contact, search.found = kind, other, 1 if other >= 0 else 0
-        return 0
     if verdict == UNSURE:
         return halve(model, data, False)
     begin_search(search, kind, other, low, search.dt, d1, d2)

@@ -8,13 +8,13 @@ from carom._compiled.decorators import kernel
 from carom.contact.gap import slow
 from carom.dynamics.acceleration import SLIP, STICK
 from carom.dynamics.explicit import copy_state
-from carom.friction.solve import inverse_mass_of
 from carom.geometry.rotation import norm
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.event_rows import note_event
 from carom.model.records import IMPACT, OPENS, PERSIST, SLIPS, STICKS
 from carom.persistent.active_set import begin_point
 from carom.persistent.step_control import rest_speed
+from carom.stepping.crowd.response import block_of_point
 
 
 @kernel
@@ -78,7 +78,7 @@ def write_impact(model, data, i, k, w, pressure, rubbing):
         model.system.contacts[spot.contact],
     )
     row.time, row.contact, row.together = clock.now, contact.number, max(2, k)
-    inverse_mass_of(crowd.problem.link[i], crowd.problem.contact[i], row.W)
+    block_of_point(crowd.problem, i, row.W)
     for a in range(3):
         row.point[a], row.normal[a] = x[a] + point.arm_a[a], point.axes[0, a]
         row.before[a], row.after[a], row.impulse[a] = spot.before[a], w[a], spot.impulse[a]
@@ -127,7 +127,7 @@ def list_active(model, data, k, h, tolerance):
                 kind = SLIPS if slips else STICKS
                 note_event(system, c, spot.feature, kind, mode, clock, records)
         begin_point(active_point, contact, c, spot.feature, mode)
-        inverse_mass_of(crowd.problem.link[i], crowd.problem.contact[i], active_point.W)
+        block_of_point(crowd.problem, i, active_point.W)
         for a in range(3):
             active_point.point[a], active_point.force[a] = spot.point[a], p[a] / h
             active_point.anchor[a] = x[a] + point.arm_a[a]
@@ -163,13 +163,16 @@ def root(parent, b):
 
 @kernel
 def come_to_rest(system, tolerance, count, start, end, crowd):
-    """Stop the bodies of each set that presses on each other, exactly, where all are slower than the tolerance.
+    """Stop bodies that press on each other or are joined, exactly, where all of them are slower than that.
 
     Those that did not move at the start are where they were, and rest from now on.
     """
-    parent, speed, n = crowd.parent, crowd.speed, end.shape[0]
+    parent, speed, n, joined = crowd.parent, crowd.speed, end.shape[0], -1
     for b in range(n):
         parent[b], speed[0, b], speed[1, b] = b, 0.0, 0.0
+        if system.bodies[b].isolated == 0:
+            joined = b if joined < 0 else joined
+            parent[b] = joined
     for i in range(count):
         if crowd.active[i].other >= 0:
             parent[root(parent, crowd.active[i].body)] = root(parent, crowd.active[i].other)

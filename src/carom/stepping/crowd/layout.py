@@ -11,6 +11,7 @@ from carom._compiled.record_arrays import table
 from carom.friction.layout import (
     BY_BODIES,
     CONTACT,
+    DENSE,
     ISLAND_BODY,
     LINK,
     PLACE,
@@ -40,6 +41,7 @@ SPOT = [
         3,
     ),  # the part of it that is due to rows that turn, of an active point of few bodies; else 0
     ("bound", "f8"),  # least normal velocity after
+    ("after", "f8", 3),  # velocity with restitution
     ("impulse", "f8", 3),
     ("strikes", "i8"),  # 1 for an impact, 0 for what stays, or is far
 ]
@@ -66,6 +68,9 @@ class Crowd(NamedTuple):
     points: np.recarray  # (2, K) POINT: in the middle of the step; at its end
     c: np.ndarray  # (3K,) velocities without impulses, less their bounds
     p: np.ndarray  # (3K,) impulses
+    lift: np.ndarray  # (K,) scaled multipliers of the way back to the surfaces
+    plastic: np.ndarray  # (3K,) impulses where nothing bounces
+    motion: np.ndarray  # (N, 6) motion that the impulses with restitution cause
     problem: ContactWork
     graph: Graph
     flight: np.recarray  # (N,) STATE at the end of the step without contacts
@@ -75,12 +80,12 @@ class Crowd(NamedTuple):
     speed: np.ndarray  # (2, N) greatest speed of such a set, at the start and at the end
 
 
-def new_crowd(bodies: int, active: int, points: int) -> Crowd:
+def new_crowd(bodies: int, active: int, points: int, joined: bool = False) -> Crowd:
     """Return the workspace for `points` points that may touch, and `active` that may be held."""
     # what 500 spheres in a box need is half of this; where it is not enough there are sweeps only
     pairs, updates = 4 * points, 128 * points
-    problem = new_contact_work(0)._replace(
-        kind=BY_BODIES,
+    problem = new_contact_work(points if joined else 0)._replace(
+        kind=DENSE if joined else BY_BODIES,
         contact=table(CONTACT, points),
         link=table(LINK, points),
         vector=np.zeros((VECTORS, 3 * points)),
@@ -95,6 +100,9 @@ def new_crowd(bodies: int, active: int, points: int) -> Crowd:
         points=table(POINT, 2, points),
         c=np.zeros(3 * points),
         p=np.zeros(3 * points),
+        lift=np.zeros(points),
+        plastic=np.zeros(3 * points),
+        motion=np.zeros((bodies, 6)),
         problem=problem,
         graph=Graph(
             count=np.zeros(4, dtype=np.int64),
@@ -119,5 +127,5 @@ def no_crowd() -> Crowd:
 
 def roomier_crowd(crowd: Crowd) -> Crowd:
     """Return the workspace for twice as many points, with what is compiled for it."""
-    more = new_crowd(len(crowd.flight), len(crowd.active), 2 * len(crowd.spots))
-    return more
+    joined = crowd.problem.kind == DENSE
+    return new_crowd(len(crowd.flight), len(crowd.active), 2 * len(crowd.spots), joined)

@@ -5,27 +5,26 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom.dynamics.acceleration import STICK
 from carom.friction.layout import CONE, DISC
-from carom.friction.solve import scale_link
-from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.kinematics.contact_point import contact_velocity
+from carom.stepping.crowd.response import write_responses
 
 LEAVES = 1e-6  # of what gravity gives in the step: what is slower at the start only trembles
 
 
 @kernel
-def pose(system, active, k, h, fall, start, crowd):
+def pose(system, active, k, h, fall, start, crowd, work):
     """Write the problem of k points whose rows are in `crowd.points[0]`; start from the last forces.
 
     A body that is alone strikes with -p in the cone's law for w + e u, tangents too: p . (w + u)/2 is then
     (p . (w + e u) - (1 - e)/2 p . W p)/(1 + e), which is never positive, and 0 without friction if e = 1.
     """
     alone = start.shape[0] == 1
+    write_responses(system, k, crowd, work)
     for i in range(k):
         spot, point = crowd.spots[i], crowd.points[0][i]
         contact, p = system.contacts[spot.contact], crowd.p
         spot.before[0], spot.before[1], spot.before[2] = contact_velocity(point, start)
         free = contact_velocity(point, crowd.flight)
-        set_link(system, point, crowd.flight, crowd.problem, i)
         for r in range(3):
             crowd.c[3 * i + r], p[3 * i + r] = free[r], 0.0
         row = crowd.problem.contact[i]
@@ -89,42 +88,3 @@ def set_bound(spot, contact, h, fall):
     elif -u > 2.0 * fall * h + contact.still:
         spot.strikes = 1
     spot.bound -= spot.drift[0]
-
-
-@kernel
-def set_link(system, point, flight, work, i):
-    """Write rows G of a point for both bodies, M^-1 G^T, and their product, scaled."""
-    link, contact, E = work.link[i], work.contact[i], point.axes
-    link.body[0], link.body[1] = point.a, point.b
-    for side in range(2):
-        b = link.body[side]
-        if b < 0:
-            continue
-        sign, arm = (1.0, point.arm_a) if side == 0 else (-1.0, point.arm_b)
-        body, q, J = system.bodies[b], flight[b].Q, system.bodies[b].inertia
-        G, Y = link.rows[side], link.response[side]
-        for r in range(3):
-            x, y, z, a = row_of(point, sign, r, arm, E)
-            G[r, 0], G[r, 1], G[r, 2] = x, y, z
-            G[r, 3], G[r, 4], G[r, 5] = a
-            Y[0, r], Y[1, r], Y[2, r] = x / body.mass, y / body.mass, z / body.mass
-            t = rotate_back(q[0], q[1], q[2], q[3], a[0], a[1], a[2])
-            t = rotate(q[0], q[1], q[2], q[3], t[0] / J[0], t[1] / J[1], t[2] / J[2])
-            Y[3, r], Y[4, r], Y[5, r] = t
-    scale_link(link, contact, 0.0, CONE, (0.0, 0.0))
-
-
-@kernel
-def row_of(point, sign, r, arm, E):
-    """Return row r of a point for one body: linear part, angular part.
-
-    Of rolling and pivoting the angular part is a direction times a length, and the normal row is none.
-    """
-    x, y, z = sign * E[r, 0], sign * E[r, 1], sign * E[r, 2]
-    if point.turns == 0:
-        return x, y, z, cross(arm[0], arm[1], arm[2], x, y, z)
-    s = sign * point.length
-    if r == 0 or (point.turns == 2 and r == 2):
-        s = 0.0
-    t = 0 if point.turns == 2 else r
-    return 0.0, 0.0, 0.0, (s * E[t, 0], s * E[t, 1], s * E[t, 2])

@@ -10,42 +10,60 @@ from __future__ import annotations
 from carom._compiled.by_reference import by_reference
 from carom._compiled.decorators import kernel
 from carom.friction import layout as o
-from carom.friction.island import impart
-from carom.friction.layout import ContactWork
+from carom.friction.layout import BY_BODIES, ContactWork
 from carom.friction.solve import scale_vectors
-from carom.friction.strategy import polished, release
+from carom.friction.strategy import polished, release, residual, search
 from carom.stepping.crowd.graph import find_order
 from carom.stepping.crowd.sweeps import sweep_until
 
 FIRST, MOST = 40, 200  # sweeps before Newton, and in all
 SWEEP, UPDATE, CONTACT = 60.0, 130.0, 1000.0  # cost [ns] of a contact in a sweep, of factors
+ENTRY = 9.0  # cost [ns] of the entries of a block in a sweep of a W stored whole
+ITERATION, ITERATIONS = (
+    0.3,
+    200,
+)  # cost [us] of an iteration with it, by k^2; and how many there may be
 SHARE = 2.0  # of what all sweeps cost: for Newton
 PATIENT = 10  # times as many of both, for a few bodies that stand on each other, while the step can afford it
 
 
 @kernel
 def solve(system, crowd, k, n, tolerance, patient, clock):
-    """Solve for the impulses `crowd.p`; return a factor, and the residual [m/s].
-
-    The motion that they cause, over the factor, goes to the bodies of the problem.
-    """
+    """Solve for the scaled impulses; return the factor that they are to have, and the residual [m/s]."""
     work, most = crowd.problem, MOST * (PATIENT if patient else 1)
     work.count[o.ITERATIONS] = 0
     gamma = scale_vectors(work, k, crowd.c, crowd.p)
     r, goal, done = sweep_until(system, crowd, k, tolerance / gamma, FIRST)
     if r > max(tolerance / gamma, goal) and not_turning(crowd, k):
-        r = newton_on_graph(crowd, k, n, r, max(tolerance / gamma, goal), most)
+        if work.kind == BY_BODIES:
+            r = newton_on_graph(crowd, k, n, r, max(tolerance / gamma, goal), most)
+        else:
+            r = newton_on_whole(crowd, k, clock)
     if r > max(tolerance / gamma, goal):
         r, _, more = sweep_until(system, crowd, k, tolerance / gamma, most - FIRST)
         done += more
-    impart(work, k)
-    for i in range(3 * k):
-        crowd.p[i] = gamma * work.contact[i // 3].scale * work.vector[o.P, i]
     clock.rounds += done
-    clock.since += 2e-3 * SWEEP * done * k
-    factors = work.count[o.ITERATIONS] * (UPDATE * crowd.graph.count[2] + CONTACT * k)
-    clock.effort += 1e-3 * (SWEEP * done * k + factors)
+    each = SWEEP * k if work.kind == BY_BODIES else ENTRY * k * k
+    clock.since += 2e-3 * each * done
+    clock.effort += 1e-3 * each * done
+    if work.kind == BY_BODIES:
+        factors = work.count[o.ITERATIONS] * (UPDATE * crowd.graph.count[2] + CONTACT * k)
+        clock.effort += 1e-3 * factors
     return gamma, gamma * r
+
+
+@kernel
+def newton_on_whole(crowd, k, clock):
+    """Improve the scaled impulses at hand, W stored whole; return the residual."""
+    work = crowd.problem
+    work.count[o.LIMIT], work.count[o.NEAR] = 0, 1
+    work.count[o.BUDGET] = ITERATIONS
+    work.mismatch[o.ENOUGH] = 0.0
+    search(work, k)
+    r, _, _ = residual(work, k)
+    clock.effort += ITERATION * k * k * work.count[o.ITERATIONS]
+    clock.since += ITERATION * k * k * work.count[o.ITERATIONS]
+    return r
 
 
 @kernel

@@ -15,8 +15,10 @@ from carom.contact.pair_point import (
     which_touch,
     write_touch,
 )
+from carom.contact.stop import place_stop
 from carom.geometry.rotation import norm
-from carom.kinematics.contact_point import place
+from carom.kinematics.contact_point import contact_velocity, place
+from carom.model.arrays import STOP
 
 
 @kernel
@@ -31,17 +33,27 @@ def closing_speed(contact, state):
 
 
 @kernel
-def gather(system, active, h, fall, state, crowd, work):
+def gather(system, active, h, fall, wide, state, crowd, work):
     """List the points that may touch within a time h; return how many, -1 if there is no room.
 
     A pair comes no nearer than by its speeds, and by what impulses of others may add: twice g h is allowed for.
     A body that is alone may turn so that its other end comes down at twice its speed: thrice is allowed for.
+    All that `wide` times, where less has missed a point.
     """
-    k, quicker = 0, 3.0 if state.shape[0] == 1 else 1.0
+    k, quicker, flight = 0, wide * (3.0 if state.shape[0] == 1 else 1.0), crowd.flight
     chain(system, active, crowd)
     for c in range(system.contacts.shape[0]):
         contact = system.contacts[c]
-        reach = h * (quicker * closing_speed(contact, state) + 2.0 * fall * h)
+        if contact.touches == STOP:
+            first = k
+            k = add_stop(system, c, h, wide * fall, state, k, crowd, work)
+            if k < 0:
+                return -1
+            if k > first:
+                find_active(active, crowd.spots[first], crowd)
+            continue
+        speed = max(closing_speed(contact, state), closing_speed(contact, flight))
+        reach = h * (quicker * speed + 2.0 * wide * fall * h)
         if apart(contact, state, reach):
             continue
         first = k
@@ -86,6 +98,22 @@ def add_vertices(system, contact, c, reach, state, k, crowd, work):
             take(crowd.spots[k], c, i, point.gap, p[0], p[1], p[2])
             k += 1
     return k
+
+
+@kernel
+def add_stop(system, c, h, fall, state, k, crowd, work):
+    """Add a stop that may be met; return the new count, -1 if there is no room."""
+    contact, point = system.contacts[c], work.point[0]
+    place_stop(system, contact, crowd.flight, point)
+    after, rate = point.gap, abs(contact_velocity(point, crowd.flight)[0])
+    place_stop(system, contact, state, point)
+    rate = max(rate, abs(contact_velocity(point, state)[0]))
+    if min(point.gap, after) > h * (rate + 2.0 * fall * h):
+        return k
+    if k == crowd.spots.shape[0]:
+        return -1
+    take(crowd.spots[k], c, 0, point.gap, 0.0, 0.0, 0.0)
+    return k + 1
 
 
 @kernel
@@ -152,6 +180,10 @@ def place_all(system, k, state, crowd, points, work):
         if contact.touches == 0:
             place(contact, crowd.spots[i].point, state, points[i])
             points[i].turns, points[i].length = crowd.spots[i].turns, contact.extent
+            i += 1
+            continue
+        if contact.touches == STOP:
+            place_stop(system, contact, state, points[i])
             i += 1
             continue
         count = find_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)

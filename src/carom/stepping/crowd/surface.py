@@ -7,7 +7,9 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.contact.pair_point import smaller
-from carom.dynamics.project import shift
+from carom.dynamics.project import project_position, shift
+from carom.friction.layout import BY_BODIES
+from carom.stepping.crowd.response import spread_impulses
 from carom.stepping.crowd.spots import place_all
 
 TINY = 1e-11  # of the smaller body
@@ -32,15 +34,17 @@ def onto_surfaces(system, k, count, end, crowd, work):
                 deepest, tiny = max(deepest, -gap), min(tiny, 0.1 * TINY * size)
         if deepest == 0.0:
             break
-        lift(k, count, max(tiny, BETTER * deepest), crowd)
-        move(count, 1.0, end, crowd.problem)
+        lift(system, k, max(tiny, BETTER * deepest), crowd, work)
+        for b in range(count):
+            shift(work.body[b].motion, end[b])
+        project_position(system, end, True, 1e-14, work)
 
 
 @kernel
-def lift(k, count, tolerance, crowd):
-    """Write the motion that brings the points out, to a tolerance [m]."""
-    problem, lam = crowd.problem, crowd.p
-    for b in range(count):
+def lift(system, k, tolerance, crowd, work):
+    """Write the motion of all bodies that brings the points out, to a tolerance [m]."""
+    problem, lam = crowd.problem, crowd.lift
+    for b in range(problem.body.shape[0]):
         for j in range(6):
             problem.body[b].motion[j] = 0.0
     for i in range(k):
@@ -50,9 +54,33 @@ def lift(k, count, tolerance, crowd):
         for place in range(k):
             i = place if turn % 2 == 0 else k - 1 - place
             if crowd.spots[i].turns == 0:
-                change = max(change, lift_one(problem, i, crowd.points[1][i].gap, lam))
+                gap = crowd.points[1][i].gap
+                if problem.kind == BY_BODIES:
+                    change = max(change, lift_one(problem, i, gap, lam))
+                else:
+                    change = max(change, lift_row(problem, k, i, gap, lam))
         if change <= tolerance:
             break
+    if problem.kind == BY_BODIES:
+        for b in range(work.body.shape[0]):
+            for j in range(6):
+                work.body[b].motion[j] = problem.body[b].motion[j]
+        return
+    for i in range(k):
+        crowd.p[3 * i] = problem.contact[i].scale * lam[i]
+        crowd.p[3 * i + 1], crowd.p[3 * i + 2] = 0.0, 0.0
+    spread_impulses(system, k, crowd, work)
+
+
+@kernel
+def lift_row(problem, k, i, gap, lam):
+    """Bring one point out, with W stored whole."""
+    row, s = problem.W[3 * i], problem.contact[i].scale
+    for j in range(k):
+        gap += row[3 * j] * lam[j] / s
+    before = lam[i]
+    lam[i] = max(0.0, before - s * gap / row[3 * i])
+    return abs(lam[i] - before) * row[3 * i] / s
 
 
 @kernel
@@ -75,13 +103,3 @@ def lift_one(problem, i, gap, lam):
             for j in range(6):
                 y[j] += d * Y[j, 0]
     return abs(d) * link.local[0] / s
-
-
-@kernel
-def move(count, factor, state, problem):
-    """Displace all bodies by a factor times the motions of the problem."""
-    for b in range(count):
-        xi = problem.body[b].motion
-        for r in range(6):
-            xi[r] *= factor
-        shift(xi, state[b])

@@ -1,0 +1,70 @@
+"""The motion of a crowd without contacts, and what loads do on it and on the path that is taken."""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import kernel
+from carom.dynamics.explicit import copy_state
+from carom.dynamics.forces import applied_wrenches
+from carom.dynamics.step import step
+from carom.kinematics.flight import free_flight
+from carom.persistent.middle_state import halfway
+from carom.persistent.step_control import plain_step
+from carom.stepping.energy_balance import unbalanced
+
+MISSED = -1  # a piece that is too long
+
+
+@kernel
+def is_loaded(system):
+    """Return whether joints or forces act on a body, besides gravity."""
+    for b in range(system.bodies.shape[0]):
+        if system.bodies[b].ballistic == 0:
+            return True
+    return False
+
+
+@kernel
+def fly(model, data, method, h, loaded, cut):
+    """Write the motion without contacts into `crowd.flight`, and its middle; return a code."""
+    system, active, now, crowd, work = model.system, data.active, data.state, data.crowd, data.work
+    clock, search, code = data.clocks[0], work.search[0], 0
+    if loaded:
+        count, active.count[0] = active.count[0], 0
+        work.result[0].start = clock.begin + clock.spent
+        applied, friction, code = step(method, system, active, now, h, work.trial, work)
+        search.applied, search.friction, active.count[0] = applied, friction, count
+        clock.effort += plain_step(system)
+        for b in range(now.shape[0]):
+            copy_state(work.trial[b], crowd.flight[b])
+            halfway(now[b], crowd.flight[b], work.middle[b])
+        if code == 0 and cut:  # what is too stiff for a step of this length
+            named, count, active.count[0] = applied + friction, active.count[0], 0
+            off, grows = unbalanced(
+                system, active, now, work.trial, named, work.result[0].start, h, data.watch[0]
+            )
+            active.count[0] = count
+            code = MISSED if grows or off > 1.0 else 0
+    else:
+        for b in range(now.shape[0]):
+            free_flight(system.bodies[b], system.gravity, h, now[b], crowd.flight[b], work.body[b])
+    return code
+
+
+@kernel
+def greatest_change(system, start, end):
+    """Return the greatest change of velocity of a point of the bodies."""
+    most = 0.0
+    for b in range(start.shape[0]):
+        for j in range(3):
+            turning = system.bodies[b].extent * abs(end[b].w[j] - start[b].w[j])
+            most = max(most, max(abs(end[b].v[j] - start[b].v[j]), turning))
+    return most
+
+
+@kernel
+def mean_power(system, start, flight, end, work):
+    """Return the power of loads on the path that is taken, less that on the one without contacts."""
+    for b in range(start.shape[0]):
+        halfway(start[b], end[b], work.stage[b])
+    taken = applied_wrenches(system, work.stage, False, work)
+    return taken - applied_wrenches(system, work.middle, False, work)

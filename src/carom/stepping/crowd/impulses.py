@@ -1,0 +1,209 @@
+"""The impulses of a piece of a step, and where they bring the bodies."""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom.contact.closed_points import apart
+from carom.contact.depth import least_gap
+from carom.contact.pair_point import smaller
+from carom.dynamics.elements import driven_power
+from carom.dynamics.explicit import copy_state
+from carom.dynamics.project import project_position, project_velocity, shift
+from carom.geometry.rotation import rotate, rotate_back
+from carom.kinematics.contact_point import contact_velocity
+from carom.model.arrays import STOP
+from carom.persistent.middle_state import halfway, spin_momentum
+from carom.stepping.crowd.pose import note_drift, pose
+from carom.stepping.crowd.response import answer
+from carom.stepping.crowd.solve import solve
+from carom.stepping.crowd.spots import gather, place_all
+from carom.stepping.crowd.surface import onto_surfaces
+
+FINE = 0.1  # of the speed below which bodies rest: to be reached, or they never would
+ROUND_OFF = 1e-12  # of the work of all impulses
+SUNK = 1e-9  # of the size of the body: by so much a point that was missed is in the other
+
+
+@kernel
+def find_points(model, data, h, fall, wide):
+    """List the points that may touch, and place them at the end of the flight and at its middle; return k."""
+    system, controls = model.system, model.controls
+    active, now, crowd, work, n = (
+        data.active,
+        data.state,
+        data.crowd,
+        data.work,
+        data.state.shape[0],
+    )
+    k = gather(system, active, h, fall, wide, now, crowd, work)
+    if k < 0:
+        return k
+    for b in range(n):
+        halfway(now[b], crowd.flight[b], work.stage[b])
+    place_all(system, k, crowd.flight, crowd, crowd.points[1], work)
+    for i in range(k):
+        crowd.spots[i].left = crowd.points[1][i].gap
+    place_all(system, k, work.stage, crowd, crowd.points[0], work)
+    if 1 < n < controls.heap:
+        place_all(system, k, now, crowd, crowd.points[1], work)
+    note_drift(active, k, 1 < n < controls.heap, now, crowd)
+    return k
+
+
+@kernel
+def find_impulses(model, data, k, h, fall, patient):
+    """Solve the contact problem of the piece; the velocities at its end go to the trial state.
+
+    Where impacts with restitution would give energy, they have as much of it as gives none. Returns the
+    residual.
+    """
+    system, controls, active, now = model.system, model.controls, data.active, data.state
+    crowd, work, clock, n = data.crowd, data.work, data.clocks[0], data.state.shape[0]
+    pose(system, active, k, h, fall, now, crowd, work)
+    tolerance, patient = FINE * controls.rest * fall * h, patient and n > 1
+    gamma, residual = solve(system, crowd, k, n, tolerance, patient, clock)
+    answer(system, k, gamma, crowd, work)
+    gain(crowd, work)
+    clock.trials += 1
+    clock.contact_steps += 1
+    clock.since += 10.0 * (k + n)
+    clock.effort += 10.0 * (k + n)
+    if n > 1 and bounces_give(k, crowd, work.trial):
+        more = limit_bounces(system, k, n, tolerance, patient, crowd, work, clock)
+        residual = max(residual, more)
+    for i in range(k):
+        for j in range(3):
+            crowd.spots[i].impulse[j] = crowd.p[3 * i + j]
+    return residual
+
+
+@kernel
+def work_of(i, p, before, after):
+    """Return the work of the impulse of a point: half of it times its velocities before and after."""
+    n = 3 * i
+    work = p[n] * (before[0] + after[0])
+    return 0.5 * (work + p[n + 1] * (before[1] + after[1]) + p[n + 2] * (before[2] + after[2]))
+
+
+@kernel
+def bounces_give(k, crowd, end):
+    """Return whether impulses give energy, and some of them strike."""
+    total, size, strikes = 0.0, 0.0, False
+    for i in range(k):
+        one = work_of(i, crowd.p, crowd.spots[i].before, contact_velocity(crowd.points[0][i], end))
+        total, size = total + one, size + abs(one)
+        strikes = strikes or crowd.spots[i].strikes == 1
+    return strikes and total > ROUND_OFF * size
+
+
+@kernel
+def limit_bounces(system, k, n, tolerance, patient, crowd, work, clock):
+    """Let all impacts of the piece bounce less, by one factor, so that together they give no energy.
+
+    With the impulses p_0 without restitution, which lose energy, p = p_0 + s (p_e - p_0): in the cones, and no
+    point approaches. The work of p is quadratic in s, its zero the greatest s that gives nothing.
+    """
+    full, end = crowd.plastic, work.trial
+    for i in range(3 * k):
+        full[i] = crowd.p[i]
+    for b in range(n):
+        for j in range(6):
+            crowd.motion[b, j] = work.body[b].motion[j]
+    for i in range(k):  # w with restitution, in place of the bounds
+        spot = crowd.spots[i]
+        w = contact_velocity(crowd.points[0][i], end)
+        if spot.strikes == 1 and spot.bound + spot.drift[0] > 0.0:
+            crowd.c[3 * i] += spot.bound + spot.drift[0]
+        spot.after[0], spot.after[1], spot.after[2] = w
+    gamma, residual = solve(system, crowd, k, n, tolerance, patient, clock)
+    answer(system, k, gamma, crowd, work)
+    gain(crowd, work)
+    a, b, c = 0.0, 0.0, 0.0  # of the work a + b s + c s^2
+    for i in range(k):
+        u, w = crowd.spots[i].before, contact_velocity(crowd.points[0][i], end)
+        for j in range(3):
+            p, d = crowd.p[3 * i + j], full[3 * i + j] - crowd.p[3 * i + j]
+            dw = crowd.spots[i].after[j] - w[j]
+            a += 0.5 * p * (u[j] + w[j])
+            b += 0.5 * (d * (u[j] + w[j]) + p * dw)
+            c += 0.5 * d * dw
+    s = 0.0
+    if a < 0.0 and a + b + c > 0.0:
+        root = math.sqrt(max(0.0, b * b - 4.0 * a * c))
+        s = -2.0 * a / (b + root) if b + root > 0.0 else 0.0
+        s = min(1.0, max(0.0, s))
+    for i in range(3 * k):
+        crowd.p[i] += s * (full[i] - crowd.p[i])
+    for m in range(n):
+        motion = work.body[m].motion
+        for j in range(6):
+            motion[j] += s * (crowd.motion[m, j] - motion[j])
+    gain(crowd, work)
+    return residual
+
+
+@kernel
+def gain(crowd, work):
+    """Write the velocities after the flight with what the impulses give to the trial state, at its places."""
+    for b in range(work.trial.shape[0]):
+        copy_state(crowd.flight[b], work.trial[b])
+        end, motion = work.trial[b], work.body[b].motion
+        for j in range(3):
+            end.v[j] += motion[j]
+            end.w[j] += motion[3 + j]
+
+
+@kernel
+def impose(model, data, k, h):
+    """Move the bodies on by half of the velocities that they have gained, and back to surfaces and joints.
+
+    Returns the work of what is prescribed in answer to the impulses.
+    """
+    system, crowd, work, end = model.system, data.crowd, data.work, data.work.trial
+    driven, joined = 0.0, system.joints.shape[0] > 0
+    work.result[0].time = work.result[0].start + h
+    if joined:
+        driven += driven_power(system, crowd.flight, work)  # of an impulse: its work
+    for b in range(end.shape[0]):
+        motion = work.body[b].motion
+        for j in range(6):
+            motion[j] *= 0.5 * h
+        shift(motion, end[b])
+    project_position(system, end, True, 1e-14, work)
+    onto_surfaces(system, k, end.shape[0], end, crowd, work)
+    respin(system, crowd.flight, end)
+    if joined:
+        project_velocity(system, end, work)
+        driven += driven_power(system, end, work)
+    return driven
+
+
+@kernel
+def others_sink(system, k, end, crowd, work):
+    """Return whether a point that was not looked at is in the ground, or in a body, at the end."""
+    at = 0
+    for c in range(system.contacts.shape[0]):
+        contact = system.contacts[c]
+        while at < k and crowd.spots[at].contact < c:
+            at += 1
+        if at < k and crowd.spots[at].contact == c:
+            continue  # looked at, or at some of its points
+        if contact.touches != STOP and apart(contact, end, 0.0):
+            continue
+        if least_gap(system, contact, end, work) < -SUNK * smaller(contact):
+            return True
+    return False
+
+
+@kernel
+def respin(system, flight, end):
+    """Keep angular momenta as the bodies are turned on: w = J(q_1)^-1 J(q_f) w."""
+    for b in range(end.shape[0]):
+        if system.bodies[b].isotropic == 1:
+            continue
+        q, w, J = end[b].Q, end[b].w, system.bodies[b].inertia
+        l = spin_momentum(system.bodies[b], flight[b].Q, w[0], w[1], w[2])
+        a = rotate_back(q[0], q[1], q[2], q[3], l[0], l[1], l[2])
+        w[0], w[1], w[2] = rotate(q[0], q[1], q[2], q[3], a[0] / J[0], a[1] / J[1], a[2] / J[2])
