@@ -78,8 +78,9 @@ class Options:
     max_iterations : int
         Most block iterations in one step of the paper's methods. Default 100.
     max_impacts_per_step : int
-        Most impacts in one step; with more the step is taken whole (mathematics page, VI.9), and without `hold`,
-        or with impacts that are not located, the run stops with a status. Default 1000. (More than 1000 events at one instant count as too many, too.)
+        Most impacts in one step; with more the step is taken whole (mathematics page, VI.9), and without
+        `hold`, or with impacts that are not located, the run stops with a status. Default 1000. (More than
+        1000 events at one instant count as too many, too.)
     max_cuts : int
         Most halvings of one step while an impact cannot be excluded; then the same. Default 40.
     max_step : float or None

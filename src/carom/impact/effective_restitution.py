@@ -10,13 +10,10 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 
 SPENT = 1e-6  # part of a speed that counts as nothing
-ALL_PLASTIC = 1 << 40  # blows after which the next is plastic even with e = 1
 
 
 @kernel
 def effective_restitution(contact, contact_state):
     """Return the restitution of a contact for its next impact in this step."""
     e = contact.restitution
-    if contact_state.blows >= ALL_PLASTIC:
-        return 0.0
     return 0.0 if e < 1.0 and e ** float(contact_state.blows) <= SPENT else e
