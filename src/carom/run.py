@@ -96,11 +96,12 @@ class Run:
         apart = located and tolerances is None and METHODS[method].kind != THREE_FIELD
         self.islands = (new_islands if apart else no_islands)(system, self.active)
         again = apart and options.hold and has_events(system)
-        self.controls = self.controls._replace(retry=int(again))
+        whole = 1 if system.bodies["ballistic"].all() else 2
+        self.controls = self.controls._replace(retry=whole if again else 0)
         self.group = new_group(system)
         self.crowd = no_crowd()  # made when there is one
         self.multiple = new_multiple(1, multiple_settings(options))  # and this
-        self.clock = self.new_clock()
+        self.clock = r.new_clock()
         share = SHARE * options.energy_tolerance if method in EXPLICIT else np.inf
         self.watch = new_watch(options.energy_tolerance, share)
         self.clock["ahead"] = FIRST * self.controls.longest
@@ -127,17 +128,10 @@ class Run:
         if not self.compiled.system.bodies["ballistic"].all():
             first_modes(self.compiled.system, self.active, self.now, self.work)
 
-    def new_clock(self) -> np.recarray:
-        """Return the clock of the start; joined bodies have saved no work yet."""
-        clock = r.new_clock()
-        if len(self.compiled.system.joints):
-            clock["credit"] = 0.0
-        return clock
-
     def renew(self) -> None:
         """Make anew all that a run writes to; nothing is saved."""
         self.begin()
-        self.clock[:] = self.new_clock()
+        self.clock[:] = r.new_clock()
         self.clock["ahead"] = FIRST * self.controls.longest
 
     @property

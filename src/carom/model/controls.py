@@ -24,7 +24,8 @@ class Controls(NamedTuple):
     max_impacts: int
     max_cuts: int
     heap: int  # an island of so many bodies takes its steps whole
-    retry: int  # 1 where a step that does not get on is given up, to be taken whole
+    # 1 where a step that does not get on is given up, to be taken whole; 2 the same of joined or loaded bodies
+    retry: int
     order: int  # of the error of a step whose length is chosen; 0: all steps are `step`
     rtol: float
     atol: float

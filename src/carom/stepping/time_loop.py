@@ -22,7 +22,6 @@ from carom.stepping.islands import one_island, parts
 from carom.stepping.record import finite, grow, save, still
 
 AGAIN = -1  # the step is to be done again
-SAVED = 10.0  # steps of joined bodies whose allowance may be saved
 
 
 @entry
@@ -162,9 +161,8 @@ def earn(system, now, clock, work):
     for b in range(now.shape[0]):
         if work.body[b].whole_until >= clock.step:
             return
-    each = allowance(system)
-    saved = min(r.SAVED, r.OWN * now.shape[0]) if system.joints.shape[0] == 0 else SAVED * each
-    clock.credit = min(saved, clock.credit + each)
+    most = min(r.SAVED, r.OWN * now.shape[0])
+    clock.credit = min(most, clock.credit + allowance(system))
 
 
 @inlined

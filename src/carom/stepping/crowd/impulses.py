@@ -22,7 +22,7 @@ from carom.stepping.crowd.spots import gather, place_all
 from carom.stepping.crowd.surface import onto_surfaces
 
 FINE = 0.1  # of the speed below which bodies rest: to be reached, or they never would
-ROUND_OFF = 1e-12  # of the work of all impulses
+NOTHING = 1e-9  # of the work of all impulses: that is not given
 SUNK = 1e-9  # of the size of the body: by so much a point that was missed is in the other
 
 
@@ -95,7 +95,7 @@ def bounces_give(k, crowd, end):
         one = work_of(i, crowd.p, crowd.spots[i].before, contact_velocity(crowd.points[0][i], end))
         total, size = total + one, size + abs(one)
         strikes = strikes or crowd.spots[i].strikes == 1
-    return strikes and total > ROUND_OFF * size
+    return strikes and total > NOTHING * size
 
 
 @kernel
@@ -129,11 +129,10 @@ def limit_bounces(system, k, n, tolerance, patient, crowd, work, clock):
             a += 0.5 * p * (u[j] + w[j])
             b += 0.5 * (d * (u[j] + w[j]) + p * dw)
             c += 0.5 * d * dw
-    s = 0.0
-    if a < 0.0 and a + b + c > 0.0:
-        root = math.sqrt(max(0.0, b * b - 4.0 * a * c))
-        s = -2.0 * a / (b + root) if b + root > 0.0 else 0.0
-        s = min(1.0, max(0.0, s))
+    s = 1.0
+    if a + b + c > 0.0:
+        root = b + math.sqrt(max(0.0, b * b - 4.0 * a * c))
+        s = min(1.0, -2.0 * a / root) if a < 0.0 < root else 0.0
     for i in range(3 * k):
         crowd.p[i] += s * (full[i] - crowd.p[i])
     for m in range(n):
