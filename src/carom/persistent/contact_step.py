@@ -124,7 +124,7 @@ def step_group(model, data, label, h):
             change = find_impulses(model, data, k, 0.0)
         if change <= CONVERGED or (change <= 1e-7 and change >= 0.3 * before):
             break
-        if controls.retry == 1 and clock.effort > affordable(model.system, controls, clock):
+        if controls.retry == 1 and clock.effort > affordable(controls, clock):
             break  # to be given up, where there is another way
         before = change
         clock.rounds += 1
@@ -149,7 +149,7 @@ def find_impulses(model, data, k, enough):
     """Solve for the impulses of a round, to `enough` (0: to round-off); return what that moves, relative."""
     controls = model.controls
     group, clock = data.group, data.clocks[0]
-    left, each = affordable(model.system, controls, clock) - clock.effort, ITERATION * k * k
+    left, each = affordable(controls, clock) - clock.effort, ITERATION * k * k
     group.cone.mismatch[ENOUGH] = enough
     group.cone.count[BUDGET] = max(100, int(left / each))
     _, _, iterations = solve_cones(

@@ -39,11 +39,10 @@ SHORTEST, RETRIED = 1e-4, 1e-2
 # force grows without bound (near a jam, or as a rim becomes flat) no step is short enough, and it is taken
 # whole in the end. Of groups, and of one body
 WILD, GROSS = 100.0, 1e4
-# how much more work a step may take of bodies that are loaded, or cannot be taken whole
+# how much more work a step may take of bodies that are joined or loaded, or cannot be taken whole
 PATIENCE = 10.0
-# about what a step without contacts takes, of a body [us]: free, in a tree of joints, with closed loops; and
-# how many times that the contacts of joined bodies may take
-FREE_STEP, TREE_STEP, LOOPS_STEP, TIMES = 0.3, 3.0, 25.0, 50.0
+# about what a step without contacts takes, of a body [us]: free, in a tree of joints, with closed loops
+FREE_STEP, TREE_STEP, LOOPS_STEP = 0.3, 3.0, 25.0
 
 
 @kernel
@@ -172,16 +171,9 @@ def plain_step(system):
 
 
 @kernel
-def allowance(system):
-    """Return how much work a step may take for contacts on the average [us]."""
-    return max(r.EACH, TIMES * plain_step(system))
-
-
-@kernel
-def affordable(system, controls, clock):
-    """Return how much work this step may take for contacts [us]: more than that, and it is given up."""
-    alone = controls.retry != 1 and system.solver.kind == NO_JOINTS
-    return max(allowance(system), clock.credit) * (PATIENCE if alone else 1.0)
+def affordable(controls, clock):
+    """Return how much work a step may take for contacts, about [us]: more than that, and it is given up."""
+    return max(r.EACH, clock.credit) * (1.0 if controls.retry == 1 else PATIENCE)
 
 
 @kernel

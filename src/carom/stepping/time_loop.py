@@ -14,7 +14,6 @@ from carom.model import records as r
 from carom.model.controls import LOCATE
 from carom.model.data import Data, Model
 from carom.persistent.active_set import regroup
-from carom.persistent.step_control import allowance
 from carom.stepping.crowd.step import step_crowd
 from carom.stepping.energy_balance import watch_step
 from carom.stepping.event_step import NOT_FINITE, advance, is_whole, left_ball
@@ -126,7 +125,7 @@ def finish_step(model, data):
     charge_impacts(clock)
     clock.step += 1
     clock.in_step = 0
-    earn(system, state, clock, data.work)
+    earn(state, clock, data.work)
     clock.now = clock.begin + clock.length
     clock.still = min(clock.still, clock.now) if still(state) else math.inf
     last = clock.step == controls.last
@@ -156,13 +155,12 @@ def charge_impacts(clock):
 
 
 @kernel
-def earn(system, now, clock, work):
+def earn(now, clock, work):
     """Add the credit of one step, unless a body takes the step whole."""
     for b in range(now.shape[0]):
         if work.body[b].whole_until >= clock.step:
             return
-    most = min(r.SAVED, r.OWN * now.shape[0])
-    clock.credit = min(most, clock.credit + allowance(system))
+    clock.credit = min(min(r.SAVED, r.OWN * now.shape[0]), clock.credit + r.EACH)
 
 
 @inlined

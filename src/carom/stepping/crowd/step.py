@@ -68,7 +68,7 @@ def step_crowd(model, data, method):
         while True:
             clock.tries += 1
             patient = (few or joined) and clock.tries <= CAREFUL
-            patient = patient and clock.effort <= affordable(system, controls, clock)
+            patient = patient and clock.effort <= affordable(controls, clock)
             careful = patient and dt > SHORTEST * controls.step
             result.code = move_on(model, data, method, dt, patient, careful)
             if result.code == CONSTRAINTS_LOST and dt > SHORTEST * controls.step:
