@@ -15,12 +15,8 @@ from carom.dynamics.contact_impulse import clear_wrenches
 from carom.dynamics.elements import position_error, velocity_error
 from carom.dynamics.solve import solve, solve_near
 from carom.geometry.rotation import exp, multiply, normalize
-from carom.model.arrays import LOOPS
 
 ROUND_OFF = 4.4e-16  # two units in the last place
-QUICK = (
-    0.1  # of the error before: with this or less left, the factors of a position nearby serve on
-)
 LOST = 1e-9  # of a body: an error of position that cannot be returned from
 
 
@@ -59,22 +55,19 @@ def largest_position_error(system, state, work):
 def _project_position(system, state, near, tolerance, work) -> float:
     """Bring the positions back to the joints; return the relative error that is left.
 
-    With `near` the last solve was in a position nearby; its factors serve for the first correction, and with
-    closed loops as long as the error falls quickly.
+    With `near` the last solve was in a position nearby, and serves for the first correction.
     """
-    error, before, keeps = 0.0, math.inf, system.solver.kind == LOOPS
-    for _ in range(12 if near and keeps else 8):
+    error, before = 0.0, math.inf
+    for _ in range(8):
         error = largest_position_error(system, state, work)
-        near = near and error <= QUICK * before
         # what no longer falls is round-off of the coordinates, far from the origin
-        if error <= tolerance or (error <= 1e-11 and error >= 0.5 * before and not near):
+        if error <= tolerance or (error <= 1e-11 and error >= 0.5 * before):
             break
         before = error
         clear_wrenches(work)
         if near:
             solve_near(system, state, work)
-            if not keeps:  # a tree is factored in little time
-                near, before = False, math.inf  # what falls too slowly gets another chance
+            near, before = False, math.inf  # what falls too slowly gets another chance
         else:
             solve(system, state, True, work)
         for b in range(state.shape[0]):

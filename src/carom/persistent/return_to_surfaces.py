@@ -81,7 +81,7 @@ def onto_surfaces(system, active, k, count, state, group, work):
         for m in range(count):
             shift(work.body[group.member[m]].motion, state[group.member[m]])
         if system.joints.shape[0] > 0:
-            project_position(system, state, True, 1e-14, work)
+            project_position(system, state, False, 1e-14, work)
 
 
 @kernel

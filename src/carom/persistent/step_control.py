@@ -11,7 +11,7 @@ import math
 from carom._compiled.decorators import inlined, kernel
 from carom.geometry.rotation import norm
 from carom.model import records as r
-from carom.model.arrays import FOREST, NO_JOINTS
+from carom.model.arrays import LOOPS
 from carom.model.workspace import ONE
 from carom.persistent.middle_state import spin_momentum
 
@@ -41,8 +41,8 @@ SHORTEST, RETRIED = 1e-4, 1e-2
 WILD, GROSS = 100.0, 1e4
 # how much more work a step may take of bodies that are joined or loaded, or cannot be taken whole
 PATIENCE = 10.0
-# about what a step without contacts takes, of a body [us]: free, in a tree of joints, with closed loops
-FREE_STEP, TREE_STEP, LOOPS_STEP = 0.3, 3.0, 25.0
+# about what a step without contacts takes of a body [us], with closed loops and without
+LOOPS_STEP, OTHER_STEP = 25.0, 0.6
 
 
 @kernel
@@ -166,8 +166,8 @@ def next_pace(pace, work):
 @kernel
 def plain_step(system):
     """Return about what a step without contacts takes [us]."""
-    kind, n = system.solver.kind, system.bodies.shape[0]
-    return n * (FREE_STEP if kind == NO_JOINTS else TREE_STEP if kind == FOREST else LOOPS_STEP)
+    each = LOOPS_STEP if system.solver.kind == LOOPS else OTHER_STEP
+    return system.bodies.shape[0] * each
 
 
 @kernel

@@ -25,25 +25,28 @@ def is_loaded(system):
 
 @kernel
 def fly(model, data, method, h, loaded, cut):
-    """Write the motion without contacts into `crowd.flight`, and its middle; return a code."""
+    """Write the motion without contacts into `crowd.flight`, of loaded bodies its middle too; return a code.
+
+    With `cut` a piece in which that motion gains energy, or loses more than a step may, is `MISSED`.
+    """
     system, active, now, crowd, work = model.system, data.active, data.state, data.crowd, data.work
     clock, search, code = data.clocks[0], work.search[0], 0
     if loaded:
         count, active.count[0] = active.count[0], 0
         work.result[0].start = clock.begin + clock.spent
         applied, friction, code = step(method, system, active, now, h, work.trial, work)
-        search.applied, search.friction, active.count[0] = applied, friction, count
+        search.applied, search.friction = applied, friction
         clock.effort += plain_step(system)
         for b in range(now.shape[0]):
             copy_state(work.trial[b], crowd.flight[b])
             halfway(now[b], crowd.flight[b], work.middle[b])
         if code == 0 and cut:  # what is too stiff for a step of this length
-            named, count, active.count[0] = applied + friction, active.count[0], 0
+            named, watch = applied + friction, data.watch[0]
             off, grows = unbalanced(
-                system, active, now, work.trial, named, work.result[0].start, h, data.watch[0]
+                system, active, now, work.trial, named, work.result[0].start, h, watch
             )
-            active.count[0] = count
             code = MISSED if grows or off > 1.0 else 0
+        active.count[0] = count
     else:
         for b in range(now.shape[0]):
             free_flight(system.bodies[b], system.gravity, h, now[b], crowd.flight[b], work.body[b])
@@ -62,7 +65,7 @@ def greatest_change(system, start, end):
 
 
 @kernel
-def mean_power(system, start, flight, end, work):
+def mean_power(system, start, end, work):
     """Return the power of loads on the path that is taken, less that on the one without contacts."""
     for b in range(start.shape[0]):
         halfway(start[b], end[b], work.stage[b])

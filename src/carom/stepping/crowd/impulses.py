@@ -11,6 +11,7 @@ from carom.contact.pair_point import smaller
 from carom.dynamics.elements import driven_power
 from carom.dynamics.explicit import copy_state
 from carom.dynamics.project import project_position, project_velocity, shift
+from carom.friction.layout import P
 from carom.geometry.rotation import rotate, rotate_back
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.arrays import STOP
@@ -30,13 +31,8 @@ SUNK = 1e-9  # of the size of the body: by so much a point that was missed is in
 def find_points(model, data, h, fall, wide):
     """List the points that may touch, and place them at the end of the flight and at its middle; return k."""
     system, controls = model.system, model.controls
-    active, now, crowd, work, n = (
-        data.active,
-        data.state,
-        data.crowd,
-        data.work,
-        data.state.shape[0],
-    )
+    active, now, crowd, work = data.active, data.state, data.crowd, data.work
+    n = now.shape[0]
     k = gather(system, active, h, fall, wide, now, crowd, work)
     if k < 0:
         return k
@@ -105,13 +101,10 @@ def limit_bounces(system, k, n, tolerance, patient, crowd, work, clock):
     With the impulses p_0 without restitution, which lose energy, p = p_0 + s (p_e - p_0): in the cones, and no
     point approaches. The work of p is quadratic in s, its zero the greatest s that gives nothing.
     """
-    full, end = crowd.plastic, work.trial
+    full, end, problem = crowd.bouncing, work.trial, crowd.problem
     for i in range(3 * k):
         full[i] = crowd.p[i]
-    for b in range(n):
-        for j in range(6):
-            crowd.motion[b, j] = work.body[b].motion[j]
-    for i in range(k):  # w with restitution, in place of the bounds
+    for i in range(k):  # no bound is left, and w with restitution is kept
         spot = crowd.spots[i]
         w = contact_velocity(crowd.points[0][i], end)
         if spot.strikes == 1 and spot.bound + spot.drift[0] > 0.0:
@@ -134,11 +127,9 @@ def limit_bounces(system, k, n, tolerance, patient, crowd, work, clock):
         root = b + math.sqrt(max(0.0, b * b - 4.0 * a * c))
         s = min(1.0, -2.0 * a / root) if a < 0.0 < root else 0.0
     for i in range(3 * k):
-        crowd.p[i] += s * (full[i] - crowd.p[i])
-    for m in range(n):
-        motion = work.body[m].motion
-        for j in range(6):
-            motion[j] += s * (crowd.motion[m, j] - motion[j])
+        p = crowd.p[i] + s * (full[i] - crowd.p[i])
+        problem.vector[P, i] = p / (gamma * problem.contact[i // 3].scale)
+    answer(system, k, gamma, crowd, work)
     gain(crowd, work)
     return residual
 

@@ -69,8 +69,7 @@ class Crowd(NamedTuple):
     c: np.ndarray  # (3K,) velocities without impulses, less their bounds
     p: np.ndarray  # (3K,) impulses
     lift: np.ndarray  # (K,) scaled multipliers of the way back to the surfaces
-    plastic: np.ndarray  # (3K,) impulses where nothing bounces
-    motion: np.ndarray  # (N, 6) motion that the impulses with restitution cause
+    bouncing: np.ndarray  # (3K,) impulses with all of their restitution
     problem: ContactWork
     graph: Graph
     flight: np.recarray  # (N,) STATE at the end of the step without contacts
@@ -101,8 +100,7 @@ def new_crowd(bodies: int, active: int, points: int, joined: bool = False) -> Cr
         c=np.zeros(3 * points),
         p=np.zeros(3 * points),
         lift=np.zeros(points),
-        plastic=np.zeros(3 * points),
-        motion=np.zeros((bodies, 6)),
+        bouncing=np.zeros(3 * points),
         problem=problem,
         graph=Graph(
             count=np.zeros(4, dtype=np.int64),

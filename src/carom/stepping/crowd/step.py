@@ -19,6 +19,7 @@ from carom._compiled.units import unit
 from carom.dynamics.explicit import CONSTRAINTS_LOST, copy_state
 from carom.dynamics.joint_friction import slip_power
 from carom.dynamics.more_forces import note_turns
+from carom.dynamics.project import project_velocity
 from carom.geometry.rotation import norm
 from carom.model import records as r
 from carom.persistent.joint_events import review_joints
@@ -133,7 +134,7 @@ def move_on(model, data, method, h, patient, careful):
     applied, rubbed = 0.0, 0.0
     if loaded:
         search = work.search[0]
-        applied = search.applied + driven + h * mean_power(system, now, crowd.flight, end, work)
+        applied = search.applied + driven + h * mean_power(system, now, end, work)
         rubbed = slip_power(system, work.stage) - slip_power(system, work.middle)
         rubbed = search.friction + h * rubbed
     gained = energy_gained(model, data, h, loaded) - applied - rubbed
@@ -146,10 +147,12 @@ def move_on(model, data, method, h, patient, careful):
     impacts, friction, bounces = clock.impacts, clock.friction, clock.bounces
     named = finish(model, data, k, h, fall, residual)
     if k > 0:
-        gained = (
-            energy_gained(model, data, h, loaded) - applied - rubbed
-        )  # some may have come to rest
-        gained -= take_out(system, gained - (named if n == 1 else 0.0), crowd.flight, end)
+        # once more: some may have come to rest
+        gained = energy_gained(model, data, h, loaded) - applied - rubbed
+        taken = take_out(system, gained - (named if n == 1 else 0.0), crowd.flight, end)
+        if taken > 0.0:
+            project_velocity(system, end, work)
+        gained -= taken
         left = take_over(gained - named, impacts, friction, bounces, clock)
         if n == 1 and not loaded:
             slow_down(system, left, end[0])
@@ -168,7 +171,7 @@ def collide(model, data, h, fall, patient, careful):
     Returns a code, the number of points, the residual, and the work of what is prescribed.
     """
     system, crowd, work, clock = model.system, data.crowd, data.work, data.clocks[0]
-    wide, loaded = 1.0, system.joints.shape[0] > 0
+    wide, joined = 1.0, system.joints.shape[0] > 0
     while True:
         k = find_points(model, data, h, fall, wide)
         if k < 0:
@@ -181,7 +184,7 @@ def collide(model, data, h, fall, patient, careful):
             return MISSED, k, residual, 0.0
         driven = impose(model, data, k, h)
         wide *= WIDER
-        if not (loaded and wide <= WIDEST and others_sink(system, k, work.trial, crowd, work)):
+        if not (joined and wide <= WIDEST and others_sink(system, k, work.trial, crowd, work)):
             return 0, k, residual, driven
 
 
