@@ -13,7 +13,7 @@ from functools import cache
 from typing import Any
 
 from llvmlite import ir
-from numba.core import cgutils, config, types
+from numba.core import cgutils, types
 from numba.core.typing.templates import AttributeTemplate, infer_getattr
 from numba.core.typing.typeof import Purpose, typeof
 from numba.extending import (
@@ -131,19 +131,10 @@ def _unbox(reference, value, c):
 
 
 @intrinsic
-def _refer(typing, record):
+def refer(typing, record):
     """Return a reference to a named tuple; it holds as long as the function that asks for it runs."""
 
     def generate(context, builder, signature, values):
         return refer_to(builder, record, values[0])[1]
 
     return (_reference(record) if is_ours(record) else record)(record), generate
-
-
-def _same(record):
-    """Do so uncompiled."""
-    return record
-
-
-#: for named tuples that are put together in compiled code: by reference from there on
-by_reference: Any = _same if getattr(config, "DISABLE_JIT", 0) else _refer

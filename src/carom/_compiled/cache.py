@@ -1,7 +1,8 @@
 """Compiled code on disk: valid for one state of a function and of all that is linked into it.
 
 What goes wrong with it (a full disk, a folder that is no longer writable, a file cut short) costs a recompile
-and nothing else.
+and nothing else. Of several processes that want the same function one compiles it, and the others wait for its
+file.
 """
 
 from __future__ import annotations
@@ -13,7 +14,9 @@ from pathlib import Path
 
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 
+from carom._compiled import ahead
 from carom._compiled.cache_key import stamp
+from carom._compiled.file_lock import FileLock
 
 #: is there where a wheel has brought compiled code (`tools/build_wheel.py`)
 SHIPPED = Path(__file__).parent / "shipped"
@@ -27,9 +30,27 @@ class StampedCache(FunctionCache):
     def __init__(self, py_func):
         super().__init__(py_func)
         self._kept = py_func
+        self._lock = FileLock(Path(self._cache_path) / f"{self._impl.filename_base}.lock")
         del self._cache_file  # made when it is first asked for: what is called may be defined later
 
     def load_overload(self, sig, target_context):
+        """Load a compiled function, or return None: then no other process compiles it until `release`."""
+        found = self._load(sig, target_context)
+        if found is None:
+            ahead.start()
+            if self._lock.take(ahead.compile_one):  # another process has compiled it
+                found = self._load(sig, target_context)
+        return found
+
+    def is_taken(self) -> bool:
+        """Return whether another process compiles this function."""
+        return self._lock.is_taken()
+
+    def release(self):
+        """Let other processes have what was compiled, or compile it if it could not be."""
+        self._lock.release()
+
+    def _load(self, sig, target_context):
         """Load a compiled function; a file that is broken is as good as none, and is written anew."""
         try:
             found = super().load_overload(sig, target_context)

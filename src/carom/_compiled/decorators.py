@@ -1,33 +1,47 @@
 """The decorators for compiled code: `kernel`, and `entry` where Python calls it.
 
-Kernels are plain functions on scalars and arrays. They call only other kernels, and also run
-uncompiled (``NUMBA_DISABLE_JIT=1``). They are compiled without Numba's memory manager: a kernel that
-would allocate does not compile, and no array is counted when it is passed on (which cost 8 microseconds a
-step). Kernels are parts of what calls them (`carom._compiled.link_only`); units (`carom._compiled.units`)
-and entries are compiled as a whole, and kept on disk until something in them changes (`carom._compiled.cache`).
+Kernels are plain functions on scalars and arrays. They call only other kernels, and also run uncompiled
+(``NUMBA_DISABLE_JIT=1``, or where Numba is one that we do not know). They are compiled without Numba's memory
+manager: a kernel that would allocate does not compile, and no array is counted when it is passed on (which cost
+8 microseconds a step). Kernels are parts of what calls them (`carom._compiled.link_only`); units
+(`carom._compiled.units`) and entries are compiled as a whole, and kept on disk until something in them changes
+(`carom._compiled.cache`).
 """
 
 from __future__ import annotations
 
 import contextlib
+import warnings
 from typing import Any
 
 import numba
 from numba.core import config
 
-try:  # inner parts of Numba that the versions we have tried hold (pyproject.toml)
-    from carom._compiled.cache import StampedCache
-    from carom._compiled.link_only import PartCompiler
-    from carom._compiled.target import compiled as _compiled
-except (ImportError, AttributeError) as error:
-    raise ImportError(
-        f"carom does not know Numba {numba.__version__} ({error}); install numba>=0.61,<0.69"
-    ) from error
+#: whether kernels are compiled, or left as the plain functions that they are
+COMPILES = not getattr(config, "DISABLE_JIT", 0)
+if COMPILES:
+    try:  # inner parts of Numba that the versions we have tried hold (pyproject.toml)
+        from carom._compiled.by_reference import refer
+        from carom._compiled.cache import StampedCache
+        from carom._compiled.link_only import PartCompiler
+        from carom._compiled.target import compiled as _compiled
+    except (ImportError, AttributeError) as error:
+        COMPILES = False
+        warnings.warn(
+            f"carom does not know Numba {numba.__version__} ({error}): it runs uncompiled, hundreds of times "
+            "slower; install numba>=0.61,<0.69",
+            RuntimeWarning,
+            stacklevel=2,
+        )
 
 RULES: dict[str, Any] = {"nogil": True, "error_model": "numpy", "_nrt": False}
 INSIDE: dict[str, Any] = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 _OUTSIDE: dict[str, Any] = {"no_cfunc_wrapper": True}
-_PART: dict[str, Any] = {**RULES, **INSIDE, "pipeline_class": PartCompiler}
+_PART: dict[str, Any] = {
+    **RULES,
+    **INSIDE,
+    **({"pipeline_class": PartCompiler} if COMPILES else {}),
+}
 
 #: for `numba.extending.overload`, whose functions are compiled by these rules
 OPTIONS: dict[str, Any] = {"jit_options": {**_PART, "forceinline": True}}
@@ -47,10 +61,8 @@ def inlined(function):
 
 
 def jit(**options):
-    """Return the decorator of the target, or that of functions left as they are (``NUMBA_DISABLE_JIT=1``)."""
-    return (
-        (lambda function: function) if getattr(config, "DISABLE_JIT", 0) else _compiled(**options)
-    )
+    """Return the decorator of the target, or one that leaves functions as they are."""
+    return _compiled(**options) if COMPILES else lambda function: function
 
 
 def entry(function):
@@ -65,7 +77,16 @@ def entry(function):
 
 def keep_on_disk(compiled, function):
     """Keep what is compiled in files beside the source, or in the cache of the user."""
-    if compiled is not function:  # it is with NUMBA_DISABLE_JIT=1
+    if COMPILES:
         with contextlib.suppress(RuntimeError):  # no writable place for a cache
             compiled._cache = StampedCache(function)
     return compiled
+
+
+def _same(record):
+    """Return a record as it is, uncompiled."""
+    return record
+
+
+#: for named tuples that are put together in compiled code: by reference from there on
+by_reference: Any = refer if COMPILES else _same

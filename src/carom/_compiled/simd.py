@@ -12,8 +12,10 @@ from typing import Any
 
 import numpy as np
 from llvmlite import ir
-from numba.core import cgutils, config, types
+from numba.core import cgutils, types
 from numba.extending import intrinsic, models, register_model
+
+from carom._compiled.decorators import COMPILES
 
 LANES = 4  # numbers that a processor takes at once
 
@@ -114,7 +116,7 @@ def _greatest(typing, v):
 
 def _either(plain, definition) -> Any:
     """Return the operation for compiled code, or the plain one for what runs uncompiled."""
-    if config.DISABLE_JIT:  # pyright: ignore[reportAttributeAccessIssue]
+    if not COMPILES:
         return plain
     made: Any = intrinsic(definition)
     made.parts = (definition, _pointer, _lanes)  # a change of these is one of what was compiled

@@ -31,6 +31,7 @@ from numba.core.target_extension import (
 )
 
 from carom._compiled.by_reference import type_of
+from carom._compiled.cache import StampedCache
 
 NAME = "carom"
 NATIVE = "CAROM_NATIVE"  # environment: "1" compiles for the processor at hand
@@ -210,7 +211,7 @@ class Dispatcher(dispatcher.Dispatcher):
         )
 
     def compile(self, sig):
-        """Compile for a signature; the garbage collector, which would go through all of it, waits."""
+        """Compile for a signature, or load; the garbage collector, which would go through all of it, waits."""
         waits = gc.isenabled()
         gc.disable()
         try:
@@ -219,6 +220,9 @@ class Dispatcher(dispatcher.Dispatcher):
         finally:
             if waits:
                 gc.enable()
+            cache: Any = getattr(self, "_cache", None)
+            if isinstance(cache, StampedCache):
+                cache.release()
 
     def typeof_pyval(self, val):
         """Return the type of an argument from Python: a reference where it is a named tuple of ours."""

@@ -23,12 +23,15 @@ from typing import Any
 import llvmlite.binding as llvm
 import numpy as np
 from llvmlite import ir
-from numba.core import cgutils, config, types
+from numba.core import cgutils, types
 from numba.extending import intrinsic
 
-from carom._compiled.by_reference import refer_to
-from carom._compiled.decorators import INSIDE, RULES, jit, keep_on_disk
-from carom._compiled.target import plain_type
+from carom._compiled import ahead
+from carom._compiled.decorators import COMPILES, INSIDE, RULES, jit, keep_on_disk
+
+if COMPILES:
+    from carom._compiled.by_reference import refer_to
+    from carom._compiled.target import plain_type
 
 _RETURNS = {"float": types.float64, "int": types.int64, "bool": types.boolean}
 _FINDER = "carom_find_unit"  # symbol of the function that compiled code asks
@@ -51,7 +54,7 @@ def unit(function):
 
     It returns nothing, or what its annotation says: `float`, `int`, `bool`, or a tuple of these.
     """
-    if getattr(config, "DISABLE_JIT", 0):
+    if not COMPILES:
         return function
     compiled = keep_on_disk(jit(**RULES, **INSIDE)(function), function)
     given = inspect.signature(function)
@@ -92,7 +95,8 @@ def _call(context, builder, name, result, kinds, values):
     """Generate the call of a unit: look into the slot, fill it if it is empty, call."""
     pointer, number = ir.IntType(8).as_pointer(), ir.IntType(64)
     ASKED[name, kinds] = None
-    packed = zlib.compress(pickle.dumps(kinds))
+    packed = pack(kinds)
+    ahead.tell(name, packed)
     digest = hashlib.sha256(packed).hexdigest()[:16]
     slot = _global(builder.module, f"slot.{name}.{digest}", ir.Constant(pointer, None), False)
     found = builder.load(slot)
@@ -132,11 +136,26 @@ UNITS: dict[str, Any] = {}
 ASKED: dict[tuple[str, tuple], None] = {}
 
 
-def address(name: str, kinds: tuple) -> int:
-    """Return the address of a unit for arguments of these types, loaded or compiled."""
+def pack(kinds: tuple) -> bytes:
+    """Return types of arguments as bytes."""
+    return zlib.compress(pickle.dumps(kinds))
+
+
+def unpack(packed: bytes) -> tuple:
+    """Return the types of arguments that were packed."""
+    return pickle.loads(zlib.decompress(packed))
+
+
+def find(name: str) -> Any:
+    """Return a unit, by module and name."""
     if name not in UNITS:
         importlib.import_module(name.partition(":")[0])
-    made = UNITS[name]
+    return UNITS[name]
+
+
+def address(name: str, kinds: tuple) -> int:
+    """Return the address of a unit for arguments of these types, loaded or compiled."""
+    made = find(name)
     compiled = made.compiled.get_compile_result(made.returned(*kinds))
     return compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name)
 
@@ -145,7 +164,7 @@ def address(name: str, kinds: tuple) -> int:
 def _find(name, packed, size):
     """Return the address of a unit to compiled code, or 0 if it could not be compiled."""
     try:
-        return address(name.decode(), pickle.loads(zlib.decompress(ctypes.string_at(packed, size))))
+        return address(name.decode(), unpack(ctypes.string_at(packed, size)))
     except BaseException as error:  # Ctrl-C too: it has no way through compiled code
         NotCompiled.stopped_by = error
         return 0
@@ -192,7 +211,7 @@ class Entries:
         """
         key = (function, self._kind, *map(type, arguments))
         if key not in _ENTRIES:
-            jitted = hasattr(function, "typeof_pyval")  # not with NUMBA_DISABLE_JIT=1
+            jitted = hasattr(function, "typeof_pyval")  # not where nothing is compiled
             types = tuple(map(function.typeof_pyval, arguments)) if jitted else ()
             _ENTRIES[key] = function.compile(types) if jitted else function
         try:

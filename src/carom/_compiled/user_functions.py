@@ -16,12 +16,12 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from numba import carray, cfunc, njit  # pyright: ignore[reportPrivateImportUsage]
+from numba import carray, cfunc  # pyright: ignore[reportPrivateImportUsage]
 from numba.core import types
 from numba.extending import intrinsic, overload
 
 from carom._compiled.composed import is_compiled
-from carom._compiled.decorators import OPTIONS
+from carom._compiled.decorators import COMPILES, OPTIONS
 
 _NUMBERS = ctypes.POINTER(ctypes.c_double)
 _FORM = ctypes.CFUNCTYPE(None, ctypes.c_double, _NUMBERS, _NUMBERS)
@@ -50,7 +50,7 @@ class Functions:
 
         Compiled as it stands, without arrays: for code that the library itself has written.
         """
-        if njit(function) is function:  # NUMBA_DISABLE_JIT=1
+        if not COMPILES:
 
             def answer(t, x):
                 out = np.empty(outside)

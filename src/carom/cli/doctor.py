@@ -75,8 +75,11 @@ def examine() -> dict[str, Any]:
 
 
 def _cache() -> tuple[dict[str, Any], list[str]]:
-    if os.environ.get("NUMBA_DISABLE_JIT", "0") not in ("", "0"):
-        why = "NUMBA_DISABLE_JIT is set: everything runs uncompiled, a thousand times slower"
+    from carom._compiled.decorators import COMPILES
+
+    if not COMPILES:
+        reason = "NUMBA_DISABLE_JIT is set, or Numba is one that carom does not know"
+        why = f"{reason}: everything runs uncompiled, hundreds of times slower"
         return {"folder": None, "megabytes": 0.0}, [why]
     from carom.stepping import time_loop
 

@@ -53,11 +53,13 @@ def compile_all(workers: int | None = None) -> list[dict]:
     import os
     from concurrent.futures import ProcessPoolExecutor, as_completed
 
+    from carom._compiled.ahead import do_without
+
     workers = min(workers or os.cpu_count() or 1, len(TOGETHER))
     total, rows, asked = len(work()), [], set()
     with show.progress("compile", total) as bar:
         context = multiprocessing.get_context("spawn")
-        with ProcessPoolExecutor(workers, mp_context=context) as pool:
+        with ProcessPoolExecutor(workers, mp_context=context, initializer=do_without) as pool:
             for done in as_completed([pool.submit(compile_kinds, kinds) for kinds in TOGETHER]):
                 new, more = done.result()
                 rows, asked = rows + new, asked | more

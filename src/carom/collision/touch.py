@@ -8,8 +8,7 @@ of points always in it.
 
 from __future__ import annotations
 
-from carom._compiled.by_reference import by_reference
-from carom._compiled.decorators import entry, kernel
+from carom._compiled.decorators import by_reference, entry, kernel
 from carom._compiled.units import unit
 from carom.collision.box import point_box, segment_box
 from carom.collision.box_box import face_or_edges

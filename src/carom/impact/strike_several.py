@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.by_reference import by_reference
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import by_reference, kernel
 from carom._compiled.units import unit
 from carom.contact.gap import slow
 from carom.dynamics.contact_impulse import add_velocity, spread

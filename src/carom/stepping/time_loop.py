@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.by_reference import by_reference
-from carom._compiled.decorators import entry, inlined, kernel
+from carom._compiled.decorators import by_reference, entry, inlined, kernel
 from carom._compiled.units import unit
 from carom.contact.depth import watch_depth
 from carom.dynamics.adapt import begin_step

@@ -7,8 +7,7 @@ factors, and needs hundreds of them where a thousand contacts slip and open.
 
 from __future__ import annotations
 
-from carom._compiled.by_reference import by_reference
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import by_reference, kernel
 from carom.friction import layout as o
 from carom.friction.layout import BY_BODIES, ContactWork
 from carom.friction.solve import scale_vectors
