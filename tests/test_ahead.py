@@ -35,7 +35,9 @@ def patient(holds, seconds: float = 60.0) -> bool:
 
 def test_a_lock_is_held_by_one(tmp_path):
     here, there = FileLock(tmp_path / "a.lock"), FileLock(tmp_path / "a.lock")
-    assert here.try_to_take() and there.is_taken() and not there.try_to_take()
+    assert here.try_to_take()
+    assert there.is_taken()
+    assert not there.try_to_take()
     seen = []
 
     def work():  # what is done meanwhile; at its third call the lock is given back
@@ -46,7 +48,8 @@ def test_a_lock_is_held_by_one(tmp_path):
 
     assert there.take(work)
     assert len(seen) == 3
-    assert not there.is_taken() and here.is_taken()
+    assert not there.is_taken()
+    assert here.is_taken()
     there.release()
     assert not list(tmp_path.iterdir())
     assert not here.take(work)  # nobody to wait for

@@ -105,6 +105,7 @@ def _impacts(solution) -> dict[str, Any]:
         "count": len(found), "first": float(found.time[0]), "last": float(found.time[-1]),
         "energy": float(found.energy_change.sum()),
         "greatest_normal_impulse": float(found.impulse[:, 0].max()),
+        "located": int(found.located.sum()),
     }  # fmt: skip
 
 
@@ -124,6 +125,8 @@ def _print(found: dict[str, Any]) -> None:
             f", t = {impacts['first']:.6g} to {impacts['last']:.6g} s, energy {impacts['energy']:.4g} J, "
             f"greatest normal impulse {impacts['greatest_normal_impulse']:.4g} N s"
         )
+        late = impacts["count"] - impacts["located"]
+        span += f", {late} of them at the ends of steps" if late else ""
     given = ", ".join(
         f"{name} {value:g}" if isinstance(value, float) else f"{name} {value}"
         for name, value in settings.items()

@@ -30,6 +30,7 @@ JAM = 8  #: the normal force drove the bodies together while slipping (Painleve)
 WEDGED = (
     16  #: friction held the pair in restitution, however large the impulse: W is singular there
 )
+AT_END = 32  #: its time was not located: one of a crowd, at the end of its step
 
 OK = 0
 BAD_INPUT = 1  #: a number is not finite, or W_nn is not positive

@@ -68,10 +68,8 @@ CLOCK = [
     ("holds", "i8"),
     ("contact_steps", "i8"),  # steps of groups in contact at several points, on trial too
     ("rounds", "i8"),  # of their iteration
-    (
-        "whole",
-        "i8",
-    ),  # steps whose islands were taken as crowds, as one could not go from event to event
+    ("whole", "i8"),  # steps in which bodies that touch were taken whole, as a crowd
+    ("whole_at", "i8"),  # number, from 1, of the last of them
     ("residual", "f8"),  # greatest of persistent contacts since the last saved row
     (
         "still",

@@ -121,3 +121,14 @@ def energy_error(watch: np.record) -> float:
     if amount <= ROUND_OFF * float(watch.size):
         return 0.0
     return amount / of if of > 0.0 else np.inf
+
+
+def taken_whole(stats: dict) -> tuple[str, ...]:
+    """Return a sentence about steps in which bodies that touch were taken whole, if there were any."""
+    whole, steps = stats["whole_steps"], stats["steps"]
+    if whole == 0:
+        return ()
+    return (
+        f"In {whole} of {steps} steps bodies that touch were taken whole, as a crowd, with order 1: their "
+        "impacts are at the ends of these steps.",
+    )

@@ -8,7 +8,7 @@ import numpy as np
 
 from carom._compiled.record_arrays import Columns
 from carom.geometry import quaternion
-from carom.impact.layout import WEDGED
+from carom.impact.layout import AT_END, WEDGED
 from carom.model import records as r
 from carom.model.arrays import STOP
 from carom.results.accuracy import sentences
@@ -131,6 +131,7 @@ def impact_table(solution) -> ImpactTable:
         restitution=contacts["restitution"][c],
         friction=contacts["friction"][c],
         wedged=(rows.phases & WEDGED) // WEDGED,
+        located=1 - (rows.phases & AT_END) // AT_END,
         **{
             name: np.array(rows[name])
             for name in (

@@ -35,6 +35,7 @@ class ImpactRecord(NamedTuple):
     friction_loss: float  #: [J]
     together: int  #: points that were resolved together, each with a row of its own; 1 for most
     wedged: int  #: 1 where friction held the pair, and its law of restitution could not be met; 0 for most
+    located: int  #: 1 for most; 0 where bodies of a crowd met within a step, at the end of which the impact is
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -74,6 +75,7 @@ class ImpactTable:
     friction_loss: np.ndarray
     together: np.ndarray
     wedged: np.ndarray
+    located: np.ndarray
 
     def __len__(self) -> int:
         return len(self.time)

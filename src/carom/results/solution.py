@@ -10,6 +10,7 @@ import numpy as np
 
 from carom import checks
 from carom.geometry import quaternion
+from carom.results.accuracy import taken_whole
 from carom.results.dense_output import between, flights
 from carom.results.drawn import Drawn
 from carom.results.event_tables import (
@@ -70,8 +71,8 @@ class Solution(Portable, Drawn):
         Counts: steps, trial steps, rejected ones (``step="auto"``), cuts, located events, impacts, holds;
         steps of active points and their rounds (of a heap: sweeps); `explicit_steps`, those that a symplectic
         method left to the explicit one in singular positions; `parts`, by how many those outnumber the (trial)
-        steps that were made in parts, as a body turned far; and `whole_steps`, how often bodies that could
-        not go from event to event took a step whole, or in parts.
+        steps that were made in parts, as a body turned far; and `whole_steps`, in how many steps bodies that
+        touch were taken whole, as a crowd: impacts of these are at the ends of steps (`impacts.located`).
 
     Examples
     --------
@@ -172,7 +173,7 @@ class Solution(Portable, Drawn):
         """How the run ended, in a sentence; if it failed, with the time it reached."""
         if self.status.ended:
             why = self.warnings if self.status is Status.INACCURATE else ()
-            return " ".join((self.status.message, *why))
+            return " ".join((self.status.message, *why, *taken_whole(self.stats)))
         return f"{self.status.message} (reached t = {self.t[-1]:.9g} s)"
 
     @property

@@ -200,7 +200,6 @@ def retry_single(model, data, start, code):
         return False
     spent = clock.effort
     one_island.forget_single(model.system, data.active, data.state, data.clocks, data.work, start)
-    clock.whole += 1
     clock.credit = max(0.0, clock.credit - spent)
     return True
 
@@ -222,8 +221,6 @@ def retry_apart(model, data, islands, code):
     spent = clock.effort
     parts.forget_step(data.active, data.clocks, islands)
     clock.credit = max(0.0, clock.credit - spent)
-    if again and code != r.LEFT_BALL:
-        clock.whole += 1
     return again
 
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 #: version of the layout of what carom reads
-FORMAT = 2
+FORMAT = 3
 CONVENTIONS = "CF-1.11"
 DOI = "10.1007/978-3-030-81166-2_44"
 CITATION = (
@@ -52,6 +52,7 @@ IMPACT = {
     "friction_loss": ((), "J", "energy lost to friction"),
     "together": ((), "1", "points that were resolved together, each with a row of its own"),
     "wedged": ((), "1", "1 where friction held the pair and its law of restitution could not be met"),
+    "located": ((), "1", "1 where the time was located, 0 where it is the end of a step of a crowd"),
 }  # fmt: skip
 
 EVENT = {

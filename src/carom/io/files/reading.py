@@ -40,7 +40,13 @@ DERIVED = {
 }  # fmt: skip
 LENGTHS = {"axis": 3, "quaternion": 4, "contact_axis": 3, "contact_axis_2": 3}
 TYPES = ("<f8", "<i8", ">f8", ">i8")
-WHOLE = ("contact", "together", "wedged", "feature")  # columns of tables that count something
+WHOLE = (
+    "contact",
+    "together",
+    "wedged",
+    "located",
+    "feature",
+)  # columns of tables that count something
 
 
 def read(path: Path, functions: Mapping[str, Callable] | None = None) -> dict[str, Any]:

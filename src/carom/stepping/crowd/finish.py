@@ -9,6 +9,7 @@ from carom.contact.gap import slow
 from carom.dynamics.acceleration import SLIP, STICK
 from carom.dynamics.explicit import copy_state
 from carom.geometry.rotation import norm
+from carom.impact.layout import AT_END
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.event_rows import note_event
 from carom.model.records import IMPACT, OPENS, PERSIST, SLIPS, STICKS
@@ -48,6 +49,9 @@ def finish(model, data, k, h, fall, residual):
     # rows turn what presses has; the caller sees to the rest (`carom.stepping.crowd.step.take_over`)
     pressing, rubbing = min(0.0, pressing + max(0.0, rubbing)), min(0.0, rubbing)
     blows = min(0.0, blows)
+    if k > 0 and clock.whole_at != clock.step + 1:
+        clock.whole += 1
+        clock.whole_at = clock.step + 1
     clock.impacts += blows
     clock.friction += rubbing
     clock.bounces += pressing
@@ -84,7 +88,7 @@ def write_impact(model, data, i, k, w, pressure, rubbing):
         row.before[a], row.after[a], row.impulse[a] = spot.before[a], w[a], spot.impulse[a]
     row.energy_change = pressure + rubbing
     row.compression_work, row.restitution_work = min(0.0, pressure), max(0.0, pressure)
-    row.friction_loss, row.duration, row.phases = -rubbing, 0.0, 0
+    row.friction_loss, row.duration, row.phases = -rubbing, 0.0, AT_END
     clock.struck += 1
 
 

@@ -43,8 +43,8 @@ def differentiate(solution: Solution, parameters: Parameters) -> Sensitivities:
     run = solution._run
     if run.tolerances is not None:
         raise ValueError('solution must be of a run with steps of one length, got step="auto"')
-    if solution.stats["whole_steps"] or run.has_crowd:
-        raise ValueError("solution must be without heaps, got a run that has taken steps as a heap")
+    if solution.stats["whole_steps"]:
+        raise ValueError("solution must be without crowds, got a run that has taken steps whole")
     if np.any(parameters.inertia):
         raise ValueError(
             "with_respect_to must not name the inertia of a body where derivatives are found by differences"

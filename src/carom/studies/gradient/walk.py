@@ -47,9 +47,9 @@ class Walk:
         K, P = len(solution.impacts), len(parameters.labels)
         self.times, self.errors = np.full((K, P), np.nan), np.full(K, np.nan)
         self.vectors = [np.full((K, 3, P), np.nan) for _ in range(4)]
-        if solution.stats["whole_steps"] or solution._run.has_crowd:
+        if solution.stats["whole_steps"]:
             for b in range(len(self.bodies)):
-                self.lose(b, 0.0, "has taken steps as a part of a heap", stays_free=False)
+                self.lose(b, 0.0, "has taken steps as a part of a crowd", stays_free=False)
         for step in steps_of(solution):
             self.pass_event(step)
         end = float(solution.t[-1])

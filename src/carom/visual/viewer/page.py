@@ -143,6 +143,7 @@ def _impacts(show: Show, packer: Packer) -> dict:
         "energy": packer.add(impacts.energy_change[k]),
         "turning": strikes.turning.tolist(),
         "together": impacts.together[k].tolist(),
+        "located": impacts.located[k].tolist(),
         "inside": _insides(insides, packer),
     }
 

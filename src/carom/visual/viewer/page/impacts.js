@@ -41,6 +41,9 @@ function showInside(run, k) {
     words.textContent = impacts.together[k] > 1
       ? `Resolved together with others, ${impacts.together[k]} points in all: it has no course of its own.`
       : "One of the weaker impacts: its course is not in this file.";
+    if (!impacts.located[k]) {
+      words.textContent += " Its time is the end of a step in which a crowd was taken whole.";
+    }
     return;
   }
   const first = inside.first[i], count = inside.first[i + 1] - first;
