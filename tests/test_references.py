@@ -4,8 +4,8 @@ import numba
 import numpy as np
 import pytest
 
-from carom._compiled.by_reference import Reference, by_reference, type_of
-from carom._compiled.decorators import entry, kernel
+from carom._compiled.by_reference import Reference, type_of
+from carom._compiled.decorators import by_reference, entry, kernel
 from carom._compiled.record_arrays import table
 from carom._compiled.units import unit
 from carom.collision.layout import FACE, Hulls

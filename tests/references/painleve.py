@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.by_reference import by_reference
-from carom._compiled.decorators import entry, kernel
+from carom._compiled.decorators import by_reference, entry, kernel
 from carom.impact.multiple.layout import OK, SEEDED, CornerContacts
 from carom.impact.multiple.resolve import resolve_multiple
 

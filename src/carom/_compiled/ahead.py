@@ -9,6 +9,7 @@ compiled meanwhile. The second process ends with the first. ``NUMBA_NUM_THREADS=
 
 from __future__ import annotations
 
+import atexit
 import contextlib
 import itertools
 import os
@@ -67,6 +68,7 @@ def start() -> None:
         )  # fmt: skip
         process.returncode = 0  # nobody waits for it: it ends when its input does
         _State.out = process.stdin
+        atexit.register(_hang_up)
         threading.Thread(target=_listen, args=(process.stdout,), daemon=True).start()
 
 
@@ -84,7 +86,7 @@ def tell(name: str, packed: bytes) -> None:
         _State.out.write(f"{name} {packed.hex()}\n".encode())
         _State.out.flush()
     except (OSError, ValueError):  # the other one has ended
-        _State.out = None
+        _hang_up()
 
 
 def compile_one() -> bool:
@@ -116,6 +118,14 @@ def serve() -> None:
         pass
 
 
+def _hang_up() -> None:
+    """Tell nothing any more; the second process ends when it hears so."""
+    pipe, _State.out = _State.out, None
+    if pipe is not None:
+        with contextlib.suppress(OSError):
+            pipe.close()
+
+
 def _put(name: str, packed: bytes) -> None:
     """Keep in mind to compile a unit: those that any run needs before the others."""
     if name not in _State.seen:
@@ -126,7 +136,7 @@ def _put(name: str, packed: bytes) -> None:
 
 def _listen(pipe: IO[bytes]) -> None:
     """Read what the other process has come across."""
-    with contextlib.suppress(Exception):
+    with contextlib.suppress(Exception), pipe:
         for line in pipe:
             name, packed = line.split()
             _put(name.decode(), bytes.fromhex(packed.decode()))

@@ -52,9 +52,9 @@ class FileLock:
     def release(self) -> None:
         """Give the lock back, if it is held."""
         if self in self._all:
-            self._all.discard(self)
             with contextlib.suppress(OSError):
                 self._path.unlink()
+            self._all.discard(self)  # last: `release_all` may end the process at any time
 
     @classmethod
     def release_all(cls) -> None:

@@ -130,5 +130,5 @@ def taken_whole(stats: dict) -> tuple[str, ...]:
         return ()
     return (
         f"In {whole} of {steps} steps bodies that touch were taken whole, as a crowd, with order 1: their "
-        "impacts are at the ends of these steps.",
+        "impacts are at the ends of these steps, or of parts of them.",
     )

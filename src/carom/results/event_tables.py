@@ -35,7 +35,7 @@ class ImpactRecord(NamedTuple):
     friction_loss: float  #: [J]
     together: int  #: points that were resolved together, each with a row of its own; 1 for most
     wedged: int  #: 1 where friction held the pair, and its law of restitution could not be met; 0 for most
-    located: int  #: 1 for most; 0 where bodies of a crowd met within a step, at the end of which the impact is
+    located: int  #: 1 for most; 0 where bodies of a crowd met within a step, whose end is the time
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -10,7 +10,6 @@ import numpy as np
 
 from carom import checks
 from carom.geometry import quaternion
-from carom.results.accuracy import taken_whole
 from carom.results.dense_output import between, flights
 from carom.results.drawn import Drawn
 from carom.results.event_tables import (
@@ -172,6 +171,8 @@ class Solution(Portable, Drawn):
     def message(self) -> str:
         """How the run ended, in a sentence; if it failed, with the time it reached."""
         if self.status.ended:
+            from carom.results.accuracy import taken_whole
+
             why = self.warnings if self.status is Status.INACCURATE else ()
             return " ".join((self.status.message, *why, *taken_whole(self.stats)))
         return f"{self.status.message} (reached t = {self.t[-1]:.9g} s)"
