@@ -217,8 +217,6 @@ def test_a_step_that_does_not_get_on_is_taken_whole():
     assert (
         f"In {s.stats['whole_steps']} of 200 steps bodies that touch were taken whole" in s.message
     )
-    at_ends = s.impacts.time[s.impacts.located == 0] / 2e-3 * 64  # a step may be halved
-    assert np.max(np.abs(at_ends - np.round(at_ends))) < 1e-9
     # hardly ever without that
     exact = carom.simulate(scene, 0.1, step=1e-3, options=carom.Options(heap=9))
     assert exact.stats["whole_steps"] <= 1
