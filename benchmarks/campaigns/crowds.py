@@ -31,7 +31,7 @@ def case(seed: int) -> Case:
     return Case(scene, 0.02 if step == 1e-4 else 0.3, step, label)
 
 
-def _poured(scene, count, rng) -> list:
+def _poured(scene, count, rng, still=False) -> list:
     """Bodies of any shape above each other in a box without a lid, all in reach of each other; return them."""
     side = SIZE * max(2.5, 1.5 * count ** (1 / 3))
     scene.add_half_space((0, 0, 0), (0, 0, 1))
@@ -51,8 +51,8 @@ def _poured(scene, count, rng) -> list:
         bodies.append(
             scene.add_body(
                 shape, mass=10.0 ** rng.uniform(-2, 0), position=place,
-                orientation=draw.attitude(rng), velocity=(0, 0, -rng.uniform(0, 2)),
-                angular_velocity=rng.normal(size=3) * 3.0,
+                orientation=draw.attitude(rng), velocity=(0, 0, 0 if still else -rng.uniform(0, 2)),
+                angular_velocity=rng.normal(size=3) * (0 if still else 3.0),
             )
         )  # fmt: skip
     return bodies
@@ -85,11 +85,12 @@ def _wall(scene, count, rng) -> None:
             y = (j + 0.5 * (i % 2) - 0.5 * wide) * (a + 1e-4)
             scene.add_body(carom.Box(b, a, c), mass=3.0, position=(0, y, (i + 0.5) * c))
     height = rows * c * rng.uniform(0.4, 1.0)
+    hangs, speed = rng.random() < 0.5, rng.uniform(0.5, 6)
     ball = scene.add_body(
         carom.Sphere(0.08), mass=10.0 ** rng.uniform(0, 1.5), position=(-0.25, 0, max(height, 0.09)),
-        velocity=(rng.uniform(0.5, 6), 0, 0),
+        velocity=(speed, 0, 0), angular_velocity=(0, -speed / 2.0 if hangs else 0, 0),
     )  # fmt: skip
-    if rng.random() < 0.5:
+    if hangs:
         top = (-0.25, 0, max(height, 0.09) + 2.0)
         scene.add_joint(carom.joints.Spherical(anchor=top), carom.GROUND, ball)
 

@@ -180,7 +180,7 @@ def move_island(model, data, method):
     """Move an island to the end of the step: event by event, or whole if it is large."""
     system, controls, work = model.system, model.controls, data.work
     step = data.clocks[0].step
-    if not parts.is_crowd(system, controls.heap, step, work):
+    if not parts.is_crowd(system, data.active, controls.heap, step, work):
         parts.recover(system, step, work)
         return advance(model, data, method)
     step_crowd(model, data, method)

@@ -53,6 +53,8 @@ def gather(system, active, h, fall, wide, state, crowd, work):
                 find_active(active, crowd.spots[first], crowd)
             continue
         speed = max(closing_speed(contact, state), closing_speed(contact, flight))
+        if wide > 1.0:  # by velocities with the impulses that were found before
+            speed = max(speed, closing_speed(contact, work.trial))
         reach = h * (quicker * speed + 2.0 * wide * fall * h)
         if apart(contact, state, reach):
             continue

@@ -171,7 +171,7 @@ def collide(model, data, h, fall, patient, careful):
     Returns a code, the number of points, the residual, and the work of what is prescribed.
     """
     system, crowd, work, clock = model.system, data.crowd, data.work, data.clocks[0]
-    wide, joined = 1.0, system.joints.shape[0] > 0
+    wide, n = 1.0, data.state.shape[0]
     while True:
         k = find_points(model, data, h, fall, wide)
         if k < 0:
@@ -184,7 +184,7 @@ def collide(model, data, h, fall, patient, careful):
             return MISSED, k, residual, 0.0
         driven = impose(model, data, k, h)
         wide *= WIDER
-        if not (joined and wide <= WIDEST and others_sink(system, k, work.trial, crowd, work)):
+        if not (n > 1 and wide <= WIDEST and others_sink(system, k, work.trial, crowd, work)):
             return 0, k, residual, driven
 
 

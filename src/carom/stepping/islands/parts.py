@@ -12,6 +12,9 @@ from carom.stepping.islands.layout import ASLEEP, FLIES
 from carom.stepping.islands.plan import number, root, seek
 
 
+HEAPED = 2  # closed points for each body, on average, beyond which many bodies are a heap
+
+
 @kernel
 def begin_step(system, active, now, length, clocks, work, islands):
     """Find the islands of a step and fill their slots; return False if there is no room."""
@@ -144,10 +147,14 @@ def slot_of(islands, i, c):
 
 
 @kernel
-def is_crowd(part, least, step, work):
-    """Return whether an island takes its step whole: it is large, or event by event made no progress lately."""
+def is_crowd(part, active, least, step, work):
+    """Return whether an island takes its step whole: it is large, or event by event made no progress lately.
+
+    It is large where many bodies lie on each other, at more than two points each: what rolls on a table or is
+    struck in flight goes from event to event.
+    """
     n = part.bodies.shape[0]
-    crowd = n >= least
+    crowd = n >= least and active.count[0] > HEAPED * n
     for b in range(n):
         crowd = crowd or work.body[b].whole_until > step
     return crowd
