@@ -35,9 +35,9 @@ class Options:
         (default), or one blow after the other, the fastest first, or all by Newton's law in one contact
         problem (Moreau 1988), which is the quickest and meant for heaps. (Mathematics page, V.)
     heap : int
-        An island of this many bodies or more is a heap: it takes its steps whole, with all contacts in
-        one problem, Newton's law of impact, and order 1 in the times of impacts. Default 8.
-        (Mathematics page, VI.9.)
+        An island of this many bodies or more that lie on each other, at two points each or more on
+        average, is a heap: it takes its steps whole, with all contacts in one problem, Newton's law of
+        impact, and order 1 in the times of impacts. Default 8. (Mathematics page, VI.9.)
     corner_tolerance : float
         Relative error of the velocities after a simultaneous impact. Default 1e-8.
     corner_exponent : float

@@ -11,8 +11,7 @@ from carom.persistent.active_set import regroup
 from carom.stepping.islands.layout import ASLEEP, FLIES
 from carom.stepping.islands.plan import number, root, seek
 
-
-HEAPED = 2  # closed points for each body, on average, beyond which many bodies are a heap
+HEAPED = 2  # closed points for each body, on average, from which on many bodies are a heap
 
 
 @kernel
@@ -150,11 +149,11 @@ def slot_of(islands, i, c):
 def is_crowd(part, active, least, step, work):
     """Return whether an island takes its step whole: it is large, or event by event made no progress lately.
 
-    It is large where many bodies lie on each other, at more than two points each: what rolls on a table or is
+    It is large where many bodies lie on each other, at two points each or more: what rolls on a table or is
     struck in flight goes from event to event.
     """
     n = part.bodies.shape[0]
-    crowd = n >= least and active.count[0] > HEAPED * n
+    crowd = n >= least and active.count[0] >= HEAPED * n
     for b in range(n):
         crowd = crowd or work.body[b].whole_until > step
     return crowd
