@@ -109,8 +109,9 @@ def test_momentum_and_energy_of_a_cloud():
             angular_velocity=rng.normal(size=3),
         )  # fmt: skip
     scene.set_contact_default(restitution=1.0, friction=0.0)
-    s = carom.simulate(scene, 0.05, step=1e-3, options=WHOLE)
-    assert len(s.impacts) > 8
+    # blow by blow it would be exact: here a step has room for one
+    s = carom.simulate(scene, 0.05, step=1e-3, options=carom.Options(max_impacts_per_step=1))
+    assert np.sum(s.impacts.located == 0) > 4
     mass = np.array([b.mass for b in scene.bodies])
     momentum = np.einsum("n,tnk->tk", mass, s.velocity)
     np.testing.assert_allclose(momentum, np.broadcast_to(momentum[0], momentum.shape), atol=1e-13)
