@@ -96,8 +96,8 @@ def _wall(scene, count, rng) -> None:
 
 
 def _joined(scene, count, rng) -> None:
-    """Poured bodies, some in chains of two or three."""
-    bodies = _poured(scene, min(count, 16), rng)
+    """Poured bodies, some of them joined in pairs."""
+    bodies = _poured(scene, min(count, 16), rng, still=True)
     for k in range(0, len(bodies) - 1, 2):
         if rng.random() < 0.6:
             a, b = (np.asarray(bodies[i].position) for i in (k, k + 1))

@@ -222,3 +222,48 @@ def test_a_step_that_does_not_get_on_is_taken_whole():
     exact = carom.simulate(scene, 0.1, step=1e-3, options=carom.Options(heap=9))
     assert exact.stats["whole_steps"] <= 1
     assert exact.impacts.located.sum() >= len(exact.impacts) - 8
+
+
+@pytest.mark.parametrize("gap", [0.0, 1e-5, 1e-4])
+@pytest.mark.parametrize(("e", "mu"), [(1.0, 0.0), (0.95, 0.1), (0.5, 0.1)])
+def test_a_break_goes_from_blow_to_blow(e, mu, gap):
+    """Fifteen balls in a triangle, struck at 8 m/s: no ball is in another, energy never rises, e = 1 keeps it.
+
+    Taken whole, a ball that was struck went .15 of its size into the next one.
+    """
+    r = 0.0286
+    scene = carom.Scene(gravity=(0, 0, 0))
+    for i in range(5):
+        for j in range(i + 1):
+            place = (i * np.sqrt(3) * (r + gap / 2), (2 * j - i) * (r + gap / 2), 0)
+            scene.add_body(carom.Sphere(r), mass=0.17, position=place)
+    scene.add_body(carom.Sphere(r), mass=0.17, position=(-0.1, 0, 0), velocity=(8, 0, 0))
+    scene.set_contact_default(restitution=e, friction=mu)
+    s = carom.simulate(scene, 0.02, step=1e-3)
+    assert s.status is carom.Status.SUCCESS
+    assert s.stats["whole_steps"] <= (1 if e == 0.5 and gap == 0.0 else 0)
+    assert not s.warnings
+    energy = s.kinetic_energy
+    assert np.all(np.diff(energy) <= 1e-12 * energy[0])
+    if e == 1.0:
+        np.testing.assert_allclose(energy, energy[0], rtol=1e-12)
+    momentum = 0.17 * s.velocity.sum(axis=1)
+    np.testing.assert_allclose(momentum, np.tile([1.36, 0, 0], (len(s.t), 1)), atol=1e-12)
+
+
+def test_what_is_pushed_within_a_step_pushes_on():
+    """Nine balls in a row, .1 mm apart, each step with room for one blow: none goes into the next."""
+    r, gap = 0.03, 1e-4
+    scene = carom.Scene(gravity=(0, 0, 0))
+    for k in range(9):
+        v = 5.0 if k == 0 else 0.0
+        scene.add_body(
+            carom.Sphere(r), mass=1.0, position=(k * (2 * r + gap), 0, 0), velocity=(v, 0, 0)
+        )
+    scene.set_contact_default(restitution=0.5, friction=0.0)
+    s = carom.simulate(scene, 0.02, step=1e-3, options=carom.Options(max_impacts_per_step=1))
+    assert s.stats["whole_steps"] > 0
+    assert not np.all(s.impacts.located)
+    assert np.min(np.diff(s.position[:, :, 0], axis=1)) >= 2 * r - 1e-12
+    np.testing.assert_allclose(s.velocity[:, :, 0].sum(axis=1), 5.0, rtol=1e-12)
+    assert np.all(np.diff(s.kinetic_energy) <= 1e-12)

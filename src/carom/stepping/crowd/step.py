@@ -43,6 +43,7 @@ FAR, THIN = 0.25, 1.0 / 32.0
 # pieces of a step that may be cut for that, where it can afford them; of the step: none is shorter
 CAREFUL, SHORTEST = 300, 1e-4
 WIDER, WIDEST = 4.0, 16.0  # how much further is looked for points where some were missed
+AGAIN = 16  # times at most that points are looked for: each time a row of bodies pushes on one more
 ALONE = 16  # pieces of a step of a body that is alone: they cost little
 
 
@@ -171,7 +172,7 @@ def collide(model, data, h, fall, patient, careful):
     Returns a code, the number of points, the residual, and the work of what is prescribed.
     """
     system, crowd, work, clock = model.system, data.crowd, data.work, data.clocks[0]
-    wide, n = 1.0, data.state.shape[0]
+    wide, n, times = 1.0, data.state.shape[0], 0
     while True:
         k = find_points(model, data, h, fall, wide)
         if k < 0:
@@ -183,8 +184,8 @@ def collide(model, data, h, fall, patient, careful):
         if careful and misses_bounce(system, k, h, fall, crowd):
             return MISSED, k, residual, 0.0
         driven = impose(model, data, k, h)
-        wide *= WIDER
-        if not (n > 1 and wide <= WIDEST and others_sink(system, k, work.trial, crowd, work)):
+        wide, times = min(WIDEST, wide * WIDER), times + 1
+        if not (n > 1 and times < AGAIN and others_sink(system, k, work.trial, crowd, work)):
             return 0, k, residual, driven
 
 
