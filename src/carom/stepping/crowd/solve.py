@@ -18,10 +18,8 @@ from carom.stepping.crowd.sweeps import sweep_until
 FIRST, MOST = 40, 200  # sweeps before Newton, and in all
 SWEEP, UPDATE, CONTACT = 60.0, 130.0, 1000.0  # cost [ns] of a contact in a sweep, of factors
 ENTRY = 9.0  # cost [ns] of the entries of a block in a sweep of a W stored whole
-ITERATION, ITERATIONS = (
-    0.3,
-    200,
-)  # cost [us] of an iteration with it, by k^2; and how many there may be
+ITERATION = 0.3  # cost [us] of an iteration with it, by k^2
+ITERATIONS = 600  # of them, about: from a few starting points, of which the third takes 300 that cost little
 SHARE = 2.0  # of what all sweeps cost: for Newton
 PATIENT = 10  # times as many of both, for a few bodies that stand on each other, while the step can afford it
 
@@ -37,7 +35,7 @@ def solve(system, crowd, k, n, tolerance, patient, clock):
         if work.kind == BY_BODIES:
             r = newton_on_graph(crowd, k, n, r, max(tolerance / gamma, goal), most)
         else:
-            r = newton_on_whole(crowd, k, clock)
+            r = newton_on_whole(crowd, k, r, clock)
     if r > max(tolerance / gamma, goal):
         r, _, more = sweep_until(system, crowd, k, tolerance / gamma, most - FIRST)
         done += more
@@ -52,17 +50,24 @@ def solve(system, crowd, k, n, tolerance, patient, clock):
 
 
 @kernel
-def newton_on_whole(crowd, k, clock):
-    """Improve the scaled impulses at hand, W stored whole; return the residual."""
-    work = crowd.problem
+def newton_on_whole(crowd, k, least, clock):
+    """Improve the scaled impulses at hand, W stored whole; return the residual, which was `least`."""
+    work, kept = crowd.problem, crowd.p
+    p = work.vector[o.P]
+    for i in range(3 * k):
+        kept[i] = p[i]
     work.count[o.LIMIT], work.count[o.NEAR] = 0, 1
     work.count[o.BUDGET] = ITERATIONS
     work.mismatch[o.ENOUGH] = 0.0
     search(work, k)
-    r, _, _ = residual(work, k)
     clock.effort += ITERATION * k * k * work.count[o.ITERATIONS]
     clock.since += ITERATION * k * k * work.count[o.ITERATIONS]
-    return r
+    r, _, _ = residual(work, k)
+    if r < least:
+        return r
+    for i in range(3 * k):
+        p[i] = kept[i]
+    return least
 
 
 @kernel

@@ -6,8 +6,8 @@ A sweep costs 60 ns a contact, and goes on from the last step's impulses.
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
-from carom.friction.island import sweep
 from carom.friction.layout import P
+from carom.friction.operators import sweep
 from carom.friction.strategy import residual
 
 EACH = 20  # sweeps between looks at the residual
