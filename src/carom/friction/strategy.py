@@ -91,12 +91,15 @@ def _approach(work, k, way, again):
         alternate(work, k, sigma, _ALTERNATIONS)
         work.count[o.ITERATIONS] += _ALTERNATIONS
     else:
-        release(work, k)
+        release(work, k, 0.0)
 
 
 @kernel
-def release(work, k):
-    """Apply Newton's method with a strong proximal term, which is weakened as long as that succeeds."""
+def release(work, k, enough):
+    """Apply Newton's method with a strong proximal term, which is weakened as long as that succeeds.
+
+    Ends where the residual is `enough`, as it may well be before the term is weak.
+    """
     p, kept, centre = work.vector[o.P], work.vector[o.KEPT], work.vector[o.CENTRE]
     for i in range(3 * k):
         kept[i] = p[i]
@@ -112,6 +115,8 @@ def release(work, k):
             for i in range(3 * k):
                 kept[i] = p[i]
             eps *= _RELEASE_BY
+            if enough > 0.0 and residual(work, k)[0] <= enough:
+                break
         else:
             eps /= _RELEASE_BY
         if not 10.0 * _EPS < eps < 10.0 * _RELEASE_FROM:

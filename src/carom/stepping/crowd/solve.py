@@ -11,7 +11,7 @@ from carom._compiled.decorators import by_reference, kernel
 from carom.friction import layout as o
 from carom.friction.layout import BY_BODIES, ContactWork
 from carom.friction.solve import scale_vectors
-from carom.friction.strategy import polished, release, residual, search
+from carom.friction.strategy import polished, release
 from carom.stepping.crowd.graph import find_order
 from carom.stepping.crowd.sweeps import sweep_until
 
@@ -19,7 +19,8 @@ FIRST, MOST = 40, 200  # sweeps before Newton, and in all
 SWEEP, UPDATE, CONTACT = 60.0, 130.0, 1000.0  # cost [ns] of a contact in a sweep, of factors
 ENTRY = 9.0  # cost [ns] of the entries of a block in a sweep of a W stored whole
 ITERATION = 0.3  # cost [us] of an iteration with it, by k^2
-ITERATIONS = 600  # of them, about: from a few starting points, of which the third takes 300 that cost little
+STEPS, ITERATIONS = 30, 300  # of them at most: of one call of Newton, and in all, about
+PRECISE, AGREED = 1e-10, 1e-8  # of the largest velocity: wanted, and good enough if that is hard
 SHARE = 2.0  # of what all sweeps cost: for Newton
 PATIENT = 10  # times as many of both, for a few bodies that stand on each other, while the step can afford it
 
@@ -31,13 +32,16 @@ def solve(system, crowd, k, n, tolerance, patient, clock):
     work.count[o.ITERATIONS] = 0
     gamma = scale_vectors(work, k, crowd.c, crowd.p)
     r, goal, done = sweep_until(system, crowd, k, tolerance / gamma, FIRST)
-    if r > max(tolerance / gamma, goal) and not_turning(crowd, k):
+    speed = greatest_speed(crowd, k) / gamma
+    enough = max(tolerance / gamma, goal, PRECISE * speed)
+    if r > enough and not_turning(crowd, k):
         if work.kind == BY_BODIES:
-            r = newton_on_graph(crowd, k, n, r, max(tolerance / gamma, goal), most)
+            r = newton_on_graph(crowd, k, n, r, enough, most)
         else:
-            r = newton_on_whole(crowd, k, r, clock)
-    if r > max(tolerance / gamma, goal):
-        r, _, more = sweep_until(system, crowd, k, tolerance / gamma, most - FIRST)
+            enough = max(enough, AGREED * speed)
+            r = newton_on_whole(crowd, k, r, enough, clock)
+    if r > enough:
+        r, _, more = sweep_until(system, crowd, k, enough, most - FIRST)
         done += more
     clock.rounds += done
     each = SWEEP * k if work.kind == BY_BODIES else ENTRY * k * k
@@ -50,23 +54,44 @@ def solve(system, crowd, k, n, tolerance, patient, clock):
 
 
 @kernel
-def newton_on_whole(crowd, k, least, clock):
-    """Improve the scaled impulses at hand, W stored whole; return the residual, which was `least`."""
+def greatest_speed(crowd, k):
+    """Return the greatest normal or tangential velocity of a point at the start [m/s]."""
+    most = 0.0
+    for i in range(k):
+        u = crowd.spots[i].before
+        most = max(most, abs(u[0]), abs(u[1]), abs(u[2]))
+    return most
+
+
+@kernel
+def newton_on_whole(crowd, k, least, enough, clock):
+    """Improve the scaled impulses at hand, W stored whole; return the residual, which was `least`.
+
+    Where points are more than bodies can follow, what they ask for agrees to about 1e-9 only, and Newton's way
+    ends there: then once more after a release of the proximal term.
+    """
     work, kept = crowd.problem, crowd.p
     p = work.vector[o.P]
     for i in range(3 * k):
         kept[i] = p[i]
-    work.count[o.LIMIT], work.count[o.NEAR] = 0, 1
-    work.count[o.BUDGET] = ITERATIONS
+    work.count[o.LIMIT], work.count[o.BUDGET] = STEPS, ITERATIONS
     work.mismatch[o.ENOUGH] = 0.0
-    search(work, k)
-    clock.effort += ITERATION * k * k * work.count[o.ITERATIONS]
-    clock.since += ITERATION * k * k * work.count[o.ITERATIONS]
-    r, _, _ = residual(work, k)
-    if r < least:
-        return r
+    for turn in range(2):
+        if turn == 1:
+            release(work, k, enough)
+        r, _, _ = polished(work, k, False, True)
+        if r < least:
+            least = r
+            for i in range(3 * k):
+                kept[i] = p[i]
+        if least <= enough:
+            break
+        for i in range(3 * k):
+            p[i] = kept[i]
     for i in range(3 * k):
         p[i] = kept[i]
+    clock.effort += ITERATION * k * k * work.count[o.ITERATIONS]
+    clock.since += ITERATION * k * k * work.count[o.ITERATIONS]
     return least
 
 
@@ -101,7 +126,7 @@ def newton_on_graph(crowd, k, n, least, enough, most):
         if turn == 1:
             work.count[o.LIMIT] = 0
             work.count[o.BUDGET] = work.count[o.ITERATIONS] + int(factors)
-            release(work, k)
+            release(work, k, enough)
         r, _, _ = polished(work, k, False, True)
         if r < least:
             least = r
