@@ -102,3 +102,32 @@ def test_impacts_of_balls_that_touch_give_no_energy(e):
     s = carom.simulate(scene, 0.1, step=1e-3, throw=False)
     assert np.max(np.diff(s.total_energy)) <= 1e-9 * s.kinetic_energy[0]
     assert np.max(np.diff(s.ledger.bounces)) <= 1e-9 * s.kinetic_energy[0]
+
+
+@pytest.mark.parametrize(("e", "mu"), [(0.1, 0.6), (0.5, 0.3)])
+def test_a_ball_on_a_joint_goes_through_a_wall(e, mu):
+    """Its contact problems are solved with the joint among them: what energy is lost has its name.
+
+    A swing of a ball on a spherical joint into nine bricks that lie on each other. The balance closes to 1e-3
+    of what is lost, and velocities after a step fit its impulses to 1e-2 of the speed of the ball.
+    """
+    scene = carom.Scene(gravity=(0, 0, -G))
+    scene.add_half_space((0, 0, 0), (0, 0, 1))
+    for i in range(3):
+        for j in range(3):
+            place = (0, (j + 0.5 * (i % 2) - 1) * 0.2001, (i + 0.5) * 0.1)
+            scene.add_body(carom.Box(0.1, 0.2, 0.1), mass=3.0, position=place)
+    ball = scene.add_body(
+        carom.Sphere(0.1), mass=20.0, position=(-0.2, 0, 0.25), velocity=(3, 0, 0),
+        angular_velocity=(0, -1.5, 0),
+    )  # fmt: skip
+    scene.add_joint(carom.joints.Spherical(anchor=(-0.2, 0, 2.25)), carom.GROUND, ball)
+    scene.set_contact_default(restitution=e, friction=mu)
+    s = carom.simulate(scene, 0.2, step=2e-3, throw=False)
+    assert s.status is carom.Status.SUCCESS
+    assert s.stats["whole_steps"] > 0
+    lost = s.total_energy[0] - s.total_energy[-1]
+    assert lost > 10.0
+    assert np.max(np.abs(s.ledger.residual)) < 1e-3 * lost
+    assert np.max(s.held_residual) < 3e-2
+    assert np.max(np.abs(s.constraint_errors[0])) <= 1e-12

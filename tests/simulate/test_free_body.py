@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 
@@ -59,17 +59,20 @@ def test_invariants_over_many_steps(method, step, tolerance):
 
 
 @settings(max_examples=10, deadline=None)
+@example(moments=(0.5, 0.25, 1.0), spin=(1.0, 1.4e-180, 0.0), method="rk4")
+@example(moments=(1.0, 1.0, 0.5), spin=(0.0, 0.0, 1.4e-180), method="rk4")
 @given(
     moments=st.tuples(*[st.floats(0.1, 1.0)] * 3),
     spin=st.tuples(*[st.floats(-3.0, 3.0)] * 3),
     method=st.sampled_from(["rk4", "paper"]),
 )
 def test_energy_and_momentum_of_any_body(moments, spin, method):
-    # Moments that meet the triangle inequality: J_1 = b + c and so on. Any spin, 2000 steps.
+    # Moments that meet the triangle inequality: J_1 = b + c and so on. Any spin, 2000 steps. Squares of what
+    # is smaller than 1e-154 are zero.
     b = np.array(moments)
     inertia = b.sum() - b
     a = carom.simulate(top(inertia, spin), 20, step=0.01, method=method, save_every=50)
-    tolerance, tiny = 1e-12 if method == "rk4" else 2e-10, 1e-300
+    tolerance, tiny = 1e-12 if method == "rk4" else 2e-10, 1e-150
     assert np.ptp(a.kinetic_energy) <= tolerance * a.kinetic_energy[0] + tiny
     L = momentum(a, inertia)
     assert np.max(np.abs(L - L[0])) <= tolerance * np.linalg.norm(L[0]) + tiny

@@ -22,6 +22,10 @@ _MOST_SWEEPS = 200
 _ALTERNATIONS = 300
 _RELEASE_FROM, _RELEASE_BY = 0.1, 0.3  # weights of the proximal term in a release
 _RELEASES = 60
+_ALLOWED, _AMOUNT = (
+    300,
+    1e6,
+)  # iterations, and their number by contacts squared, of a search that must end
 
 
 @unit
@@ -66,6 +70,12 @@ def search(work, k):
             last = min(last, start + 1 + _EXTRA)
     for i in range(3 * k):
         p[i] = best[i]
+
+
+@kernel
+def allow(work, k):
+    """Allow a search as many iterations as can be made in about 0.3 s, and some in any case."""
+    work.count[o.BUDGET] = max(_ALLOWED, int(_AMOUNT / (k * k)))
 
 
 @kernel

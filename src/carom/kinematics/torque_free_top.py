@@ -101,7 +101,7 @@ def constants(J, b, size, top):
         return
     K, Kc = quarter_period(math.sqrt(m1)), quarter_period(math.sqrt(m))
     w = math.sqrt(d32) * carlson(d21, d21 + m * d32, d21 + d32)
-    still = y1 == 0.0 and m1 == 0.0  # about the middle axis for ever
+    still = y1 * y1 == 0.0 and m1 == 0.0  # about the middle axis for ever
     u = math.copysign(FAR, y2)
     if not still:
         u = y2 * carlson(y1 * y1, y1 * y1 + m1 * y2 * y2, y1 * y1 + y2 * y2)

@@ -17,6 +17,7 @@ from carom.dynamics.acceleration import acceleration
 from carom.dynamics.several_points import accelerations, inverse_masses, velocities
 from carom.friction.layout import CONE, ENOUGH, SLIDING
 from carom.friction.solve import solve_cones
+from carom.friction.strategy import allow
 from carom.impact.workspace import OLD, C, P, U
 from carom.persistent.rolling_friction import bound_turning, take_torque
 
@@ -93,6 +94,7 @@ def solve_once(k, group):
             M[i, j] = W[i, j] if both else 1.0 if i == j else 0.0
         b[i] = group.v[C][i] if stays else 1.0 if i % 3 == 0 else 0.0
     group.cone.mismatch[ENOUGH] = 0.0  # to round-off
+    allow(group.cone, k)
     status, _, _ = solve_cones(k, M, b, group.mu, group.kind, group.heading, p, group.cone)
     for i in range(n):
         a = group.v[C][i]

@@ -13,6 +13,7 @@ from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.friction.layout import CONE, ENOUGH
 from carom.friction.solve import solve_cones
+from carom.friction.strategy import allow
 from carom.impact.multiple.layout import CLEAN, FACTOR, SCRATCH, STACK, TRY
 
 _GROWTH = 1e-9  # of the energy that the greatest velocity stands for
@@ -50,6 +51,7 @@ def solve_at_once(contacts, workspace, out):
             if turn == 0:
                 c[3 * i] += e[i] * min(0.0, u[3 * i])
         workspace.cones.mismatch[ENOUGH] = 0.0
+        allow(workspace.cones, k)
         solve_cones(k, W, c, mu, kind, heading, p, workspace.cones)
         energy, size = 0.0, 0.0
         for a in range(3 * k):

@@ -9,6 +9,7 @@ from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.friction.layout import CONE, ENOUGH, SOLVED
 from carom.friction.solve import solve_cones
+from carom.friction.strategy import allow
 from carom.impact.multiple import law
 from carom.impact.multiple.layout import FACTOR, MASS, SCRATCH, STACK, TRY, WEIGHT, D, P, U
 from carom.impact.multiple.motion import set_velocity
@@ -55,6 +56,7 @@ def _once(k, work, cones, turn):
     for i in range(k):
         heading[i, 0], heading[i, 1] = 0.0, 0.0
     cones.mismatch[ENOUGH] = 0.0
+    allow(cones, k)
     status, _, _ = solve_cones(k, work.matrix[MASS], before, mu, kind, heading, impulse, cones)
     change = _take(k, work, 1.0)
     if status != SOLVED and change > 0.0:  # too much: as far as the energy falls most

@@ -19,7 +19,7 @@ FIRST, MOST = 40, 200  # sweeps before Newton, and in all
 SWEEP, UPDATE, CONTACT = 60.0, 130.0, 1000.0  # cost [ns] of a contact in a sweep, of factors
 ENTRY = 9.0  # cost [ns] of the entries of a block in a sweep of a W stored whole
 ITERATION = 0.3  # cost [us] of an iteration with it, by k^2
-STEPS, ITERATIONS = 30, 300  # of them at most: of one call of Newton, and in all, about
+STEPS, ITERATIONS = 30, 150  # of them at most: of one call of Newton, and in all, about
 PRECISE, AGREED = 1e-10, 1e-8  # of the largest velocity: wanted, and good enough if that is hard
 SHARE = 2.0  # of what all sweeps cost: for Newton
 PATIENT = 10  # times as many of both, for a few bodies that stand on each other, while the step can afford it
@@ -38,7 +38,7 @@ def solve(system, crowd, k, n, tolerance, patient, clock):
         if work.kind == BY_BODIES:
             r = newton_on_graph(crowd, k, n, r, enough, most)
         else:
-            enough = max(enough, AGREED * speed)
+            enough, most = max(enough, AGREED * speed), MOST
             r = newton_on_whole(crowd, k, r, enough, clock)
     if r > enough:
         r, _, more = sweep_until(system, crowd, k, enough, most - FIRST)
