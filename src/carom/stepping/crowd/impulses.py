@@ -10,7 +10,7 @@ from carom.contact.depth import least_gap
 from carom.contact.pair_point import smaller
 from carom.dynamics.elements import driven_power
 from carom.dynamics.explicit import copy_state
-from carom.dynamics.project import project_position, project_velocity, shift
+from carom.dynamics.project import LOST, project_position, project_velocity, shift
 from carom.friction.layout import P
 from carom.geometry.rotation import rotate, rotate_back
 from carom.kinematics.contact_point import contact_velocity
@@ -149,10 +149,10 @@ def gain(crowd, work):
 def impose(model, data, k, h):
     """Move the bodies on by half of the velocities that they have gained, and back to surfaces and joints.
 
-    Returns the work of what is prescribed in answer to the impulses.
+    Returns the work of what is prescribed in answer to the impulses, and whether joints hold at the end.
     """
     system, crowd, work, end = model.system, data.crowd, data.work, data.work.trial
-    driven, joined = 0.0, system.joints.shape[0] > 0
+    driven, holds, joined = 0.0, True, system.joints.shape[0] > 0
     work.result[0].time = work.result[0].start + h
     if joined:
         driven += driven_power(system, crowd.flight, work)  # of an impulse: its work
@@ -163,11 +163,13 @@ def impose(model, data, k, h):
         shift(motion, end[b])
     project_position(system, end, True, 1e-14, work)
     onto_surfaces(system, k, end.shape[0], end, crowd, work)
+    if joined:
+        holds = project_position(system, end, True, 1e-14, work) <= LOST
     respin(system, crowd.flight, end)
     if joined:
         project_velocity(system, end, work)
         driven += driven_power(system, end, work)
-    return driven
+    return driven, holds
 
 
 @kernel

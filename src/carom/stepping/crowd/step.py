@@ -183,7 +183,9 @@ def collide(model, data, h, fall, patient, careful):
         residual = find_impulses(model, data, k, h, fall, patient)
         if careful and misses_bounce(system, k, h, fall, crowd):
             return MISSED, k, residual, 0.0
-        driven = impose(model, data, k, h)
+        driven, holds = impose(model, data, k, h)
+        if not holds:
+            return CONSTRAINTS_LOST, k, residual, driven
         wide, times = min(WIDEST, wide * WIDER), times + 1
         if not (n > 1 and times < AGAIN and others_sink(system, k, work.trial, crowd, work)):
             return 0, k, residual, driven
