@@ -104,9 +104,35 @@ def test_impacts_of_balls_that_touch_give_no_energy(e):
     assert np.max(np.diff(s.ledger.bounces)) <= 1e-9 * s.kinetic_energy[0]
 
 
-@pytest.mark.parametrize(("e", "mu"), [(0.1, 0.6), (0.5, 0.3)])
-def test_a_ball_on_a_joint_goes_through_a_wall(e, mu):
-    """Its contact problems are solved with the joint among them: what energy is lost has its name.
+@pytest.mark.parametrize("count", [3, 5])
+def test_rolling_friction_of_joined_balls(count):
+    """Bounds of its torques follow in sweeps only, and these know of the joints: velocities fit the impulses.
+
+    With the masses of single bodies in the sweeps they are 4.7 m/s off.
+    """
+    scene = carom.Scene(gravity=(0, 0, -G))
+    scene.add_half_space((0, 0, 0), (0, 0, 1))
+    balls = []
+    for k in range(count):
+        ball = scene.add_body(
+            carom.Sphere(0.05),
+            mass=0.5,
+            position=(0.12 * k, 0, 0.06 + 1e-3 * k),
+            velocity=(0.5, 0.2, 0),
+        )
+        if balls:
+            joint = carom.joints.Spherical(anchor=(0.12 * k - 0.06, 0, 0.06))
+            scene.add_joint(joint, balls[-1], ball)
+        balls.append(ball)
+    scene.set_contact_default(restitution=0.0, friction=0.5, rolling_friction=1e-3)
+    s = carom.simulate(scene, 0.5, step=0.01, options=SOON)
+    assert s.stats["whole_steps"] > 0
+    assert np.max(s.held_residual) < 1e-4
+    assert np.max(np.abs(s.ledger.residual)) < 1e-4 * s.total_energy[0]
+
+
+def test_a_ball_on_a_joint_goes_through_a_wall():
+    """What energy is lost has its name, and joints hold.
 
     A swing of a ball on a spherical joint into nine bricks that lie on each other. The balance closes to 1e-3
     of what is lost, and velocities after a step fit its impulses to 1e-2 of the speed of the ball.
@@ -122,8 +148,8 @@ def test_a_ball_on_a_joint_goes_through_a_wall(e, mu):
         angular_velocity=(0, -1.5, 0),
     )  # fmt: skip
     scene.add_joint(carom.joints.Spherical(anchor=(-0.2, 0, 2.25)), carom.GROUND, ball)
-    scene.set_contact_default(restitution=e, friction=mu)
-    s = carom.simulate(scene, 0.2, step=2e-3, throw=False)
+    scene.set_contact_default(restitution=0.1, friction=0.6)
+    s = carom.simulate(scene, 0.1, step=2e-3, throw=False)
     assert s.status is carom.Status.SUCCESS
     assert s.stats["whole_steps"] > 0
     lost = s.total_energy[0] - s.total_energy[-1]

@@ -22,10 +22,7 @@ _MOST_SWEEPS = 200
 _ALTERNATIONS = 300
 _RELEASE_FROM, _RELEASE_BY = 0.1, 0.3  # weights of the proximal term in a release
 _RELEASES = 60
-_ALLOWED, _AMOUNT = (
-    300,
-    1e6,
-)  # iterations, and their number by contacts squared, of a search that must end
+_ALLOWED, _AMOUNT = 300, 1e6  # iterations of a search that must end; their number times k^2
 
 
 @unit
@@ -70,6 +67,13 @@ def search(work, k):
             last = min(last, start + 1 + _EXTRA)
     for i in range(3 * k):
         p[i] = best[i]
+
+
+@kernel
+def copy(k, p, to):
+    """Copy the impulses of k contacts."""
+    for i in range(3 * k):
+        to[i] = p[i]
 
 
 @kernel

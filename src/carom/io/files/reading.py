@@ -40,13 +40,8 @@ DERIVED = {
 }  # fmt: skip
 LENGTHS = {"axis": 3, "quaternion": 4, "contact_axis": 3, "contact_axis_2": 3}
 TYPES = ("<f8", "<i8", ">f8", ">i8")
-WHOLE = (
-    "contact",
-    "together",
-    "wedged",
-    "located",
-    "feature",
-)  # columns of tables that count something
+#: columns of tables that count something
+WHOLE = ("contact", "together", "wedged", "located", "feature")
 
 
 def read(path: Path, functions: Mapping[str, Callable] | None = None) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from carom.contact.depth import least_gap
 from carom.contact.pair_point import smaller
 from carom.dynamics.elements import driven_power
 from carom.dynamics.explicit import copy_state
-from carom.dynamics.project import LOST, project_position, project_velocity, shift
+from carom.dynamics.project import LOST, project_velocity, shift
 from carom.friction.layout import P
 from carom.geometry.rotation import rotate, rotate_back
 from carom.kinematics.contact_point import contact_velocity
@@ -152,7 +152,7 @@ def impose(model, data, k, h):
     Returns the work of what is prescribed in answer to the impulses, and whether joints hold at the end.
     """
     system, crowd, work, end = model.system, data.crowd, data.work, data.work.trial
-    driven, holds, joined = 0.0, True, system.joints.shape[0] > 0
+    driven, joined = 0.0, system.joints.shape[0] > 0
     work.result[0].time = work.result[0].start + h
     if joined:
         driven += driven_power(system, crowd.flight, work)  # of an impulse: its work
@@ -161,10 +161,7 @@ def impose(model, data, k, h):
         for j in range(6):
             motion[j] *= 0.5 * h
         shift(motion, end[b])
-    project_position(system, end, True, 1e-14, work)
-    onto_surfaces(system, k, end.shape[0], end, crowd, work)
-    if joined:
-        holds = project_position(system, end, True, 1e-14, work) <= LOST
+    holds = onto_surfaces(system, k, end.shape[0], end, crowd, work) <= LOST
     respin(system, crowd.flight, end)
     if joined:
         project_velocity(system, end, work)

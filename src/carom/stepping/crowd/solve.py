@@ -11,7 +11,7 @@ from carom._compiled.decorators import by_reference, kernel
 from carom.friction import layout as o
 from carom.friction.layout import BY_BODIES, ContactWork
 from carom.friction.solve import scale_vectors
-from carom.friction.strategy import polished, release
+from carom.friction.strategy import copy, polished, release
 from carom.stepping.crowd.graph import find_order
 from carom.stepping.crowd.sweeps import sweep_until
 
@@ -70,28 +70,29 @@ def newton_on_whole(crowd, k, least, enough, clock):
     Where points are more than bodies can follow, what they ask for agrees to about 1e-9 only, and Newton's way
     ends there: then once more after a release of the proximal term.
     """
-    work, kept = crowd.problem, crowd.p
-    p = work.vector[o.P]
-    for i in range(3 * k):
-        kept[i] = p[i]
+    work = crowd.problem
+    p, best = work.vector[o.P], work.vector[o.BEST]
+    copy(k, p, best)
     work.count[o.LIMIT], work.count[o.BUDGET] = STEPS, ITERATIONS
-    work.mismatch[o.ENOUGH] = 0.0
-    for turn in range(2):
-        if turn == 1:
-            release(work, k, enough)
-        r, _, _ = polished(work, k, False, True)
-        if r < least:
-            least = r
-            for i in range(3 * k):
-                kept[i] = p[i]
-        if least <= enough:
-            break
-        for i in range(3 * k):
-            p[i] = kept[i]
-    for i in range(3 * k):
-        p[i] = kept[i]
+    least = newton_and_keep(work, k, least)
+    if least > enough:
+        copy(k, best, p)
+        release(work, k, enough)
+        least = newton_and_keep(work, k, least)
+    copy(k, best, p)
     clock.effort += ITERATION * k * k * work.count[o.ITERATIONS]
     clock.since += ITERATION * k * k * work.count[o.ITERATIONS]
+    return least
+
+
+@kernel
+def newton_and_keep(work, k, least):
+    """Apply Newton's method; keep what is better than `least`, and return the least residual."""
+    work.mismatch[o.ENOUGH] = 0.0
+    r, _, _ = polished(work, k, False, True)
+    if r < least:
+        copy(k, work.vector[o.P], work.vector[o.BEST])
+        return r
     return least
 
 
@@ -118,24 +119,15 @@ def newton_on_graph(crowd, k, n, least, enough, most):
         return least
     work = by_reference(part(crowd.problem, n, pairs, updates))
     p, best = work.vector[o.P], work.vector[o.BEST]
-    for i in range(3 * k):
-        best[i] = p[i]
+    copy(k, p, best)
     work.count[o.LIMIT], work.count[o.BUDGET] = int(factors), 0
-    work.mismatch[o.ENOUGH] = 0.0
-    for turn in range(2 if most > MOST else 1):
-        if turn == 1:
-            work.count[o.LIMIT] = 0
-            work.count[o.BUDGET] = work.count[o.ITERATIONS] + int(factors)
-            release(work, k, enough)
-        r, _, _ = polished(work, k, False, True)
-        if r < least:
-            least = r
-            for i in range(3 * k):
-                best[i] = p[i]
-        if least <= enough:
-            break
-    for i in range(3 * k):
-        p[i] = best[i]
+    least = newton_and_keep(work, k, least)
+    if least > enough and most > MOST:
+        work.count[o.LIMIT] = 0
+        work.count[o.BUDGET] = work.count[o.ITERATIONS] + int(factors)
+        release(work, k, enough)
+        least = newton_and_keep(work, k, least)
+    copy(k, best, p)
     return least
 
 

@@ -23,7 +23,11 @@ BETTER = 0.01  # in one pass: gaps are not linear, more would be lost
 
 @kernel
 def onto_surfaces(system, k, count, end, crowd, work):
-    """Move the bodies apart where points have sunk in; `crowd.points[1]` are those at the end."""
+    """Move bodies to the joints, and apart where points have sunk in; `crowd.points[1]` are those at the end.
+
+    Returns the relative error of the joints that is left.
+    """
+    missed = project_position(system, end, True, 1e-14, work)
     for _ in range(PASSES):
         place_all(system, k, end, crowd, crowd.points[1], work)
         deepest, tiny = 0.0, 1.0
@@ -37,7 +41,8 @@ def onto_surfaces(system, k, count, end, crowd, work):
         lift(system, k, max(tiny, BETTER * deepest), crowd, work)
         for b in range(count):
             shift(work.body[b].motion, end[b])
-        project_position(system, end, True, 1e-14, work)
+        missed = project_position(system, end, True, 1e-14, work)
+    return missed
 
 
 @kernel
