@@ -152,6 +152,7 @@ def stated():
         ),
         "forces.JointForce": with_part(forces.JointForce, joint="@hinge", force=1.0, coordinate=0),
         "forces.JointFriction": with_part(forces.JointFriction, joint="@hinge", bound=1.0, coordinate=0),
+        "forces.JointInertia": with_part(forces.JointInertia, joint="@hinge", inertia=1.0, coordinate=0),
         "forces.UserForce": lambda: (
             forces.UserForce, dict(bodies=[parts().ball], function=of_nothing, potential=of_nothing),
         ),

@@ -83,6 +83,7 @@ def everything():
     scene.add_force(forces.JointSpring(made[0], 2.0, 0.1, 0.3))
     scene.add_force(forces.JointForce(made[0], push), name="motor")
     scene.add_force(forces.JointFriction(made[3], 0.2))
+    scene.add_force(forces.JointInertia(made[3], 0.3))
     scene.add_force(forces.UserForce(bodies[4], pull), name="wind")
     scene.add_constraint(constraints.Gear(made[0], made[14], -1 / 3))
     scene.add_constraint(constraints.Coupling({made[3]: 0.1, (made[4], 1): 2.0}))

@@ -2,7 +2,7 @@
 
 With J the derivative of the velocities of all bodies of the scene by those of the model, MuJoCo's own,
 
-    M = J^T diag(m, R I R^T) J,    gravity = J^T (m g, 0),    a = J q'' + J' q'.
+    M = J^T diag(m, R I R^T) J + diag(armature),    gravity = J^T (m g, 0),    a = J q'' + J' q'.
 """
 
 from pathlib import Path
@@ -60,13 +60,10 @@ def jacobian(m, d, body, point, without=()):
 
 
 def jacobians(model, d):
-    """Return J (N, 6, nv) of all bodies of the scene: those of the model, links between, flywheels."""
+    """Return J (N, 6, nv) of all bodies of the scene: those of the model, and links between."""
     m, scene, J = model.mujoco, model.scene, np.zeros((len(model.scene.bodies), 6, model.mujoco.nv))
     for b in scene.bodies:
-        if b.name.endswith(":armature"):
-            j = element(m, "joint", b.name.removesuffix(":armature"))
-            J[b.index, 5, j.dofadr[0]] = model.joints[b.name.removesuffix(":armature")].sign
-        elif b.name.endswith(":link"):
+        if b.name.endswith(":link"):
             j = element(m, "joint", b.name.removesuffix(":link"))
             same = m.dof_bodyid == j.bodyid[0]
             later = np.flatnonzero(same & (m.dof_jntid > j.id))
@@ -90,6 +87,9 @@ def mass_matrix_and_gravity(model, J):
             d.qpos[:] = model._start
             mujoco.mj_forward(model.mujoco, d)
             f = f + jacobian(model.mujoco, d, at.id, d.xipos[at.id])[:3].T @ force.definition.vector
+        elif force.kind == "JointInertia":
+            dof = element(model.mujoco, "joint", force.name.removesuffix(":armature")).dofadr[0]
+            M[dof, dof] += force.definition.inertia
     return M, f
 
 

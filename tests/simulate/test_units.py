@@ -146,6 +146,7 @@ def loaded(u):
     scene.add_force(spring, GROUND, scene.bodies[2])
     scene.add_force(forces.Torque(u.of([0, 0, 2], 2, 1, -2)), scene.bodies[0])
     scene.add_force(forces.JointFriction(scene.joints[0], u.of(0.5, 2, 1, -2)))
+    scene.add_force(forces.JointInertia(scene.joints[1], u.of(0.2, 2, 1, 0)))
     return scene, *times
 
 

@@ -41,7 +41,7 @@ def _position(system, j, state, work):
     else:
         for k in range(6):
             bias[k] = 0.0
-        if joint.kind == STIFF:
+        if joint.kind != RELATION:
             return
         bias[0] = relation_error(system, system.relations.relations[joint.number], state, t)
 
@@ -71,7 +71,7 @@ def _acceleration(system, j, state, work):
         user_bias(system, j, state, t, record.bias, record.target)
     elif joint.kind == STIFF:
         record.bias[0] = 0.0
-    else:
+    else:  # of an inertia too: J a + lam/I = -d, and nothing is prescribed
         relation = system.relations.relations[joint.number]
         record.bias[0] = relation_bias(system, relation, state, t, record.target)
 

@@ -62,7 +62,7 @@ def factor_geometry(system, state, augment, work):
             d = solver.block[j, r, r]
             solver.rows[j].weight[r] = d
             # what yields by itself depends on nothing
-            yields = augment if solver.rows[j].compliance[r] == 0.0 else 1.0
+            yields = augment if augment > 0.0 or solver.rows[j].compliance[r] == 0.0 else 1.0
             solver.block[j, r, r] = d * (1.0 + yields)
     eliminate(system, solver.drop if augment == 0.0 else 0.0)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from carom.geometry import quaternion
-from carom.model.arrays import RELATION
+from carom.model.arrays import INERTIA, RELATION
 from carom.options import Options
 
 DEPENDENT = 1e-8  # of the largest singular value of rows of length 1
@@ -77,7 +77,7 @@ def mobility(scene) -> Mobility:
     system, start = compiled.system, compiled.start
     work = new_work(system, 1)
     A, owner = dense_rows(system, start, work)
-    errors = np.zeros((2, len(joints), 6))
+    errors = np.zeros((2, len(system.joints), 6))
     start_errors(system, start, work, *errors)
     if compiled.functions.failed is not None:
         raise compiled.functions.failed
@@ -104,7 +104,7 @@ def dense_rows(system, start, work) -> tuple[np.ndarray, np.ndarray]:
     from carom.dynamics.reactions import write_rows
 
     write_rows(system, start, work)
-    count = system.joints.rows
+    count = np.where(system.joints.kind == INERTIA, 0, system.joints.rows)  # yields: no constraint
     first = np.cumsum(count) - count
     A = np.zeros((int(count.sum()), len(system.bodies), 6))
     for side in system.solver.sides:
@@ -127,7 +127,7 @@ def _dependent(A, owner, system) -> tuple[int, np.ndarray]:
 
     Only elements in loops can; a joint with a side that nothing else holds is in none, and leaves others so.
     """
-    kept = np.ones(len(system.joints), dtype=bool)
+    kept = system.joints.kind != INERTIA
     parent, child = system.joints.parent, system.joints.child
     joint = system.joints.kind < RELATION
     while True:

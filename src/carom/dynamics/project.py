@@ -13,6 +13,7 @@ from carom._compiled.decorators import entry, inlined, kernel
 from carom._compiled.units import unit
 from carom.dynamics.contact_impulse import clear_wrenches
 from carom.dynamics.elements import position_error, velocity_error
+from carom.dynamics.rotors import keep_rates
 from carom.dynamics.solve import solve, solve_near
 from carom.geometry.rotation import exp, multiply, normalize
 
@@ -76,14 +77,16 @@ def _project_position(system, state, near, tolerance, work) -> float:
 
 
 @unit
-def _project_velocity(system, state, work):
-    """Remove from the velocities what the joints forbid."""
+def _project_velocity(system, state, carried, work):
+    """Remove from the velocities what the joints forbid; with `carried` rotors go on with the rates noted."""
     for j in range(system.joints.shape[0]):
         bias = work.joint[j].bias
         velocity_error(system, j, state, work)
         for k in range(6):
             bias[k] = -bias[k]
     clear_wrenches(work)
+    if carried:
+        keep_rates(system, state, work)
     solve(system, state, True, work)
     for b in range(state.shape[0]):
         v, w, motion = state[b].v, state[b].w, work.body[b].motion
@@ -100,7 +103,7 @@ def project_start(system, state, work):
         error = _project_position(system, state, False, 1e-14, work)
         if error <= 1e-13:
             break
-    _project_velocity(system, state, work)
+    _project_velocity(system, state, False, work)
     return error
 
 
@@ -116,4 +119,14 @@ def project_position(system, state, near, tolerance, work):
 def project_velocity(system, state, work):
     """Remove from the velocities what the joints forbid."""
     if system.joints.shape[0] > 0:
-        _project_velocity(system, state, work)
+        _project_velocity(system, state, False, work)
+
+
+@inlined
+def carry_velocity(system, state, work):
+    """Do the same to velocities of bodies by their own momenta: inertia along coordinates keeps its own.
+
+    (`carom.dynamics.rotors`; the rates that it goes on with were noted there.)
+    """
+    if system.joints.shape[0] > 0:
+        _project_velocity(system, state, True, work)

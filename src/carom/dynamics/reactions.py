@@ -59,6 +59,9 @@ def least_norm(system, augment, state, work):
                 rhs[k] = 0.0
             if not spread:
                 row_target(system, j, state, work.joint[j].bias, rhs)
+                for r in range(system.joints[j].rows):
+                    yields = system.solver.rows[j].compliance[r]
+                    rhs[r] -= yields * work.joint[j].multiplier[r]
         subtract_rows(system, work)
         substitute(system)
         for j in range(system.joints.shape[0]):

@@ -106,8 +106,11 @@ def freedoms(joint, state, row):
 
 
 @kernel
-def eliminate(row, count):
-    """Eliminate the freedoms of a body, whose S are in place; return what is left of its inertia (21)."""
+def eliminate(row, count, rotor):
+    """Eliminate the freedoms of a body, whose S are in place; return what is left of its inertia (21).
+
+    What has inertia I_a along a freedom adds it to D: S.U q'' + I_a q'' = u.
+    """
     m0, m1, m2, m3, m4, m5 = row[19], row[20], row[21], row[22], row[23], row[24]
     h0, h1, h2, h3, h4 = row[25], row[26], row[27], row[28], row[29]
     h5, h6, h7, h8 = row[30], row[31], row[32], row[33]
@@ -121,7 +124,7 @@ def eliminate(row, count):
         u3 = dot((h0, h3, h6, i0, i1, i2), s)
         u4 = dot((h1, h4, h7, i1, i3, i4), s)
         u5 = dot((h2, h5, h8, i2, i4, i5), s)
-        g = 1.0 / dot(s, (u0, u1, u2, u3, u4, u5))
+        g = 1.0 / (dot(s, (u0, u1, u2, u3, u4, u5)) + rotor[k])
         row[f + 6], row[f + 7], row[f + 8] = u0, u1, u2
         row[f + 9], row[f + 10], row[f + 11] = u3, u4, u5
         row[f + 12] = g
@@ -194,7 +197,7 @@ def articulate(system, state):
         b = links[i].order
         link, row = links[b], workspace[b]
         if link.joint >= 0 or link.has_child == 1:
-            left = eliminate(row, link.freedoms)
+            left = eliminate(row, link.freedoms, system.solver.rotor[b])
             if link.parent >= 0:
                 shift_to_parent(left, row, workspace[link.parent])
 
@@ -325,6 +328,20 @@ def respond(system, biased, work):
 
 
 @kernel
+def take_rotor_out(row, f, reaction):
+    """Take what inertia along a freedom answers with out of the reaction: joints do no work along S."""
+    s = dot(six(row, f), six(row, 46))
+    ax, ay, az = row[f + 3], row[f + 4], row[f + 5]
+    first = 3
+    if ax == 0.0 and ay == 0.0 and az == 0.0:  # a slide
+        ax, ay, az = row[f], row[f + 1], row[f + 2]
+        first = 0
+    reaction[first] -= s * ax
+    reaction[first + 1] -= s * ay
+    reaction[first + 2] -= s * az
+
+
+@kernel
 def joint_wrenches(system, work):
     """Write what each joint does to its child at its anchor: M motion - wrench, summed from the leaves."""
     links, workspace = system.solver.links, system.solver.workspace
@@ -347,6 +364,9 @@ def joint_wrenches(system, work):
         tx, ty, tz = cross(row[13], row[14], row[15], fx, fy, fz)
         reaction[0], reaction[1], reaction[2] = fx, fy, fz
         reaction[3], reaction[4], reaction[5] = row[49] - tx, row[50] - ty, row[51] - tz
+        for k in range(link.freedoms):
+            if system.solver.rotor[b, k] > 0.0:
+                take_rotor_out(row, FIRST + WIDTH * k, reaction)
         if link.parent >= 0:
             above = workspace[link.parent]
             tx, ty, tz = cross(row[16], row[17], row[18], fx, fy, fz)

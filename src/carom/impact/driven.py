@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
+from carom.dynamics.rotors import work_of_change
 from carom.geometry.rotation import rotate_back
 from carom.model.arrays import LOOPS
 
@@ -17,21 +18,24 @@ ROUND_OFF = 1e-13
 
 
 @unit
-def _driven_work(system, state, first, clock, records) -> float:
+def _driven_work(system, state, first, clock, records, work) -> float:
     """Return the work of motors in the impact whose rows begin at `first` and whose event is being written."""
-    work = 0.0
+    total = 0.0
     for b in range(state.shape[0]):
         before, body, q = records.snapshot[clock.snapped + b], system.bodies[b], state[b].Q
         v0, w0, v, w = before.v0, before.w0, state[b].v, state[b].w
+        motion = work.body[b].motion
         s = rotate_back(q[0], q[1], q[2], q[3], w0[0], w0[1], w0[2])
         d = rotate_back(q[0], q[1], q[2], q[3], w[0] - w0[0], w[1] - w0[1], w[2] - w0[2])
         for k in range(3):
-            work += body.mass * v0[k] * (v[k] - v0[k]) + body.inertia[k] * s[k] * d[k]
+            total += body.mass * v0[k] * (v[k] - v0[k]) + body.inertia[k] * s[k] * d[k]
+            motion[k], motion[3 + k] = v0[k], w0[k]
+    total += work_of_change(system, state, work)
     for i in range(first, clock.struck):
         row = records.impact[i]
         for k in range(3):
-            work -= row.before[k] * row.impulse[k]
-    return work
+            total -= row.before[k] * row.impulse[k]
+    return total
 
 
 @kernel
@@ -44,10 +48,10 @@ def _blocked(system, point, inverse_mass):
 
 
 @inlined
-def driven_work(system, state, first, clock, records):
+def driven_work(system, state, first, clock, records, work):
     """Return the work of motors in the impact whose rows begin at `first` and whose event is being written."""
     if system.relations.there == 1 and system.solver.kind == LOOPS:
-        return _driven_work(system, state, first, clock, records)
+        return _driven_work(system, state, first, clock, records, work)
     return 0.0
 
 

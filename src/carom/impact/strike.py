@@ -106,7 +106,7 @@ def strike(model, data, method, c):
             return
         if system.joints.shape[0] > 0:
             project_velocity(system, state, work)
-        clock.loads += driven_work(system, state, first, clock, records)
+        clock.loads += driven_work(system, state, first, clock, records, work)
         end_event(system, JAMS if jams else IMPACT, state, clock, records)
         forget_jams(active, k, group)
         for i in range(active.contact_states.shape[0]):

@@ -18,6 +18,7 @@ import math
 from carom._compiled.decorators import kernel
 from carom.geometry.rotation import cross, rotate
 from carom.model.arrays import (
+    BALL,
     DISTANCE,
     KNIFE_EDGE,
     RIGID,
@@ -221,32 +222,60 @@ def position_error(joint, state, out):
 
 @kernel
 def velocity_error(joint, state, out):
-    """Write the relative velocity of the two sides: out = (angular, linear)."""
-    c, p = joint.child, joint.parent
-    for k in range(3):
-        out[k] = state[c].w[k] - (state[p].w[k] if p >= 0 else 0.0)
-    out[3], out[4], out[5] = anchor_speed(joint, state)
+    """Write the relative velocity of the two sides, as far as it is forbidden: out = (angular, linear)."""
+    c, p, kind = joint.child, joint.parent, joint.kind
+    wx, wy, wz = state[c].w[0], state[c].w[1], state[c].w[2]
+    if p >= 0:
+        wx, wy, wz = wx - state[p].w[0], wy - state[p].w[1], wz - state[p].w[2]
+    ux, uy, uz = anchor_speed(joint, state)
+    ax, ay, az = axis(state, p, joint.parent_frame, 0)
+    turn = 0.0
+    if kind in BALL:
+        wx, wy, wz = 0.0, 0.0, 0.0
+    elif kind in TURNING or kind == UNIVERSAL:
+        turn = ax * wx + ay * wy + az * wz
+        wx, wy, wz = wx - turn * ax, wy - turn * ay, wz - turn * az
+        if kind == UNIVERSAL:
+            bx, by, bz = axis(state, c, joint.child_frame, 1)
+            f = bx * wx + by * wy + bz * wz
+            wx, wy, wz = wx - f * bx, wy - f * by, wz - f * bz
+    if kind in SLIDING:
+        f = ax * ux + ay * uy + az * uz
+        if kind in WITHIN:
+            ux, uy, uz = f * ax, f * ay, f * az
+        else:
+            if kind == SCREW:
+                f = joint.length * turn
+            ux, uy, uz = ux - f * ax, uy - f * ay, uz - f * az
+    out[0], out[1], out[2] = wx, wy, wz
+    out[3], out[4], out[5] = ux, uy, uz
 
 
 @kernel
 def universal_bias(joint, state, wx, wy, wz):
-    """Return the angular bias of a universal joint whose parent turns with w, along n = a x b.
+    """Return the angular bias of a universal joint whose parent turns with w.
 
-    Its row is
+    With its axes a of the parent and b of the child, n = a x b, its row is
 
-        n . (w_c - w_p) = 0,    n . alpha + n' . (w_c - w_p) = 0.
+        n . (w_c - w_p) = 0,    n . alpha + n' . (w_c - w_p) = 0,
+
+    which gives the bias along n, a little off the manifold too. Across it the rates p and q of the angles,
+    w_c - w_p = p a + q b, turn with the axes: alpha = p' a + q' b + p w_p x a + q w_c x b.
     """
     ax, ay, az = axis(state, joint.parent, joint.parent_frame, 0)
     bx, by, bz = axis(state, joint.child, joint.child_frame, 1)
     nx, ny, nz = cross(ax, ay, az, bx, by, bz)
-    ux, uy, uz = state[joint.child].w[0], state[joint.child].w[1], state[joint.child].w[2]
-    tx, ty, tz = cross(ux, uy, uz, bx, by, bz)
-    sx, sy, sz = cross(ax, ay, az, tx, ty, tz)
-    tx, ty, tz = cross(wx, wy, wz, ax, ay, az)
-    rx, ry, rz = cross(tx, ty, tz, bx, by, bz)
-    f = (sx + rx) * (ux - wx) + (sy + ry) * (uy - wy) + (sz + rz) * (uz - wz)
-    f /= -(nx * nx + ny * ny + nz * nz)
-    return f * nx, f * ny, f * nz
+    cx, cy, cz = state[joint.child].w[0], state[joint.child].w[1], state[joint.child].w[2]
+    ux, uy, uz = cx - wx, cy - wy, cz - wz
+    tx, ty, tz = cross(cx, cy, cz, bx, by, bz)
+    sx, sy, sz = cross(wx, wy, wz, ax, ay, az)
+    p, q = ax * ux + ay * uy + az * uz, bx * ux + by * uy + bz * uz
+    ox, oy, oz = p * sx + q * tx, p * sy + q * ty, p * sz + q * tz
+    tx, ty, tz = cross(ax, ay, az, tx, ty, tz)
+    sx, sy, sz = cross(sx, sy, sz, bx, by, bz)
+    f = nx * ox + ny * oy + nz * oz + (sx + tx) * ux + (sy + ty) * uy + (sz + tz) * uz
+    f /= nx * nx + ny * ny + nz * nz
+    return ox - f * nx, oy - f * ny, oz - f * nz
 
 
 @kernel

@@ -24,8 +24,8 @@ DISTANCE, KNIFE_EDGE = KIND[joints.Distance], KIND[joints.KnifeEdge]
 UNIVERSAL, SCREW = KIND[joints.Universal], KIND[joints.Screw]
 ROLLING_SPHERE, ROLLING_DISC = KIND[joints.RollingSphere], KIND[joints.RollingDisc]
 #: what is no joint but stands among them: a relation of coordinates of joints, rows of the user's own; a spring
-#: and damper as a row, for the implicit step
-RELATION, USER_ROWS, STIFF = range(len(KIND), len(KIND) + 3)
+#: and damper as a row, for the implicit step; inertia along a coordinate as a row
+RELATION, USER_ROWS, STIFF, INERTIA = range(len(KIND), len(KIND) + 4)
 
 
 def _kinds(chosen) -> tuple[int, ...]:
@@ -149,6 +149,13 @@ FRICTION = [
     ("force", "f8"),  # of the last solve
     ("change", "f8"),  # of q' by all other forces
     ("driven", "i8"),  # 1 while it sticks where joints and motors leave its coordinate no freedom
+]
+
+#: inertia along a coordinate of a joint
+ROTOR = [
+    ("coordinate", "i8"),
+    ("inertia", "f8"),
+    ("rate", "f8"),  # q' that it goes on with, noted before the bodies are moved on
 ]
 
 #: forces by a function of the user's: t, (bodies, 13) -> (bodies, 6)
@@ -284,6 +291,9 @@ class Solver(NamedTuple):
     kind: int  # NO_JOINTS, FOREST or LOOPS
     # forest: articulated-body elimination (`carom.dynamics.tree`)
     links: np.recarray  # (N,) LINK
+    rotor: (
+        np.ndarray
+    )  # (N, most freedoms) inertia along each freedom of the joint that carries a body
     workspace: np.ndarray  # (N, FIRST + WIDTH times the most freedoms) written by each solve
     # closed loops: block-sparse Cholesky factor of A M^-1 A^T, joints in an order of low fill
     order: np.ndarray  # (J,) joints in the order of elimination
@@ -320,6 +330,7 @@ class Relations(NamedTuple):
     frictions: np.recarray  # (F,) FRICTION
     friction_matrix: np.ndarray  # (F, F) workspace
     friction_vector: np.ndarray  # (F,) workspace
+    rotors: np.recarray  # ROTOR
     named: np.ndarray  # bodies that functions of the user's speak of
     read: np.ndarray  # what functions of the user's read and write
     write: np.ndarray

@@ -11,7 +11,7 @@ from carom._compiled.user_functions import Functions
 from carom.geometry import quaternion
 from carom.geometry.frames import triad
 from carom.model import graph, solvers
-from carom.model.arrays import BODY, BUSHING, JOINT, KIND, LOAD, SPRING, STATE, System
+from carom.model.arrays import BODY, BUSHING, JOINT, KIND, LOAD, SCREW, SPRING, STATE, System
 from carom.model.contacts import compile_contacts
 from carom.model.more_forces import MoreForces, Pieces
 from carom.model.placement import Placement
@@ -19,6 +19,7 @@ from carom.model.relations import Coordinates, Elements
 from carom.model.stops import with_stops
 from carom.options import Options
 from carom.scene.forces import Bushing, CurveSpring, Force, Spring, Torque
+from carom.scene.more_forces import JointInertia
 from carom.scene.scene import Scene
 
 
@@ -120,13 +121,17 @@ def _joints(scene, moments, placement, elements, options, loops):
     child = np.array([j.child.index for j in defined], dtype=np.int64)
     flipped = np.zeros(number, dtype=bool)
     forest = not loops and not elements.kinds and graph.is_forest(count, kind, parent, child)
+    rotor = np.zeros((number, 6))
     order, carrier = np.arange(count), np.full(count, -1)
     if forest:
         order, carrier, turned = graph.forest_order(count, parent, child)
-        forest = not np.any(turned & graph.cannot_flip(kind))
+        rotor, along = rotors_in_tree(scene, kind, turned)
+        forest = along and not np.any(turned & graph.cannot_flip(kind))
     if forest:
         flipped = turned
         parent, child = np.where(flipped, child, parent), np.where(flipped, parent, child)
+    else:
+        elements.add_rotors()
     joints = table(JOINT, number + len(elements.kinds))
     joints.parent[:number], joints.child[:number] = parent, child
     joints.kind = [*kind, *elements.kinds]
@@ -146,7 +151,7 @@ def _joints(scene, moments, placement, elements, options, loops):
         joints.child[j], joints.parent[j] = bodies[0], -1
     touching += elements.touching
     if forest:
-        solver = solvers.tree_solver(joints, order, carrier)
+        solver = solvers.tree_solver(joints, order, carrier, rotor)
     else:
         mass = np.array([b.mass for b in scene.bodies])
         ratio, light, heavy = solvers.spread(touching, mass, moments, _extents(scene, joints))
@@ -162,6 +167,34 @@ def _joints(scene, moments, placement, elements, options, loops):
             count if ratio > solvers.SPREAD else 0,
         )  # fmt: skip
     return joints, flipped, solver
+
+
+def rotors_in_tree(scene, kind, flipped) -> tuple[np.ndarray, bool]:
+    """Return the inertia (J, 6) along each freedom of the joints of a forest, and whether it is along these.
+
+    Freedoms are slides, then turns (`carom.dynamics.tree.freedoms`), along axes of the side that is walked
+    from. The slides of a planar joint that was flipped are along axes of the other body.
+    """
+    out = np.zeros((len(kind), 6))
+    for force in scene.forces:
+        d = force.definition
+        if not isinstance(d, JointInertia):
+            continue
+        j, names = d.joint.index, d.joint.definition.coordinates
+        turns, slides = names.count("turn"), names.count("slide")
+        which, slide = (
+            names[: d.coordinate].count(names[d.coordinate]),
+            names[d.coordinate] == "slide",
+        )
+        if kind[j] == SCREW:
+            out[j, 0] += d.inertia * (d.joint.definition.scale() ** 2 if slide else 1.0)
+            continue
+        if flipped[j] and slide and slides > 1:
+            return out, False
+        if flipped[j] and not slide:
+            which = turns - 1 - which
+        out[j, which if slide else slides + which] += d.inertia
+    return out, True
 
 
 def _springs(scene, frames, more, implicit):

@@ -10,11 +10,13 @@ from carom._compiled.user_functions import Functions
 from carom.model.arrays import (
     COORDINATE,
     FRICTION,
+    INERTIA,
     PRISMATIC,
     PUSH,
     RELATION,
     RELATION_ROW,
     REVOLUTE,
+    ROTOR,
     STIFF,
     STIFF_SPRING,
     TERM,
@@ -28,7 +30,7 @@ from carom.model.placement import Placement
 from carom.scene.constraints import Coupling, Rows, coordinate_kind
 from carom.scene.forces import Spring
 from carom.scene.joints import Joint
-from carom.scene.more_forces import JointSpring
+from carom.scene.more_forces import JointInertia, JointSpring
 
 
 class Coordinates:
@@ -78,7 +80,10 @@ class Elements:
     def __init__(self, scene, coordinates, functions: Functions, pieces: Pieces, sizes: np.ndarray):
         self.coordinates = coordinates
         self.kinds, self.rows, self.numbers, self.touching = [], [], [], []
-        self.relations, self.user, self.stiff = [], [], []
+        self.relations, self.user, self.stiff, self.rotors = [], [], [], []
+        for force in scene.forces:
+            if isinstance(force.definition, JointInertia) and force.definition.inertia > 0.0:
+                self._rotor(force.definition)
         self.terms: list[list[tuple[int, float]]] = []
         self.pieces = pieces
         self.width = 8
@@ -115,6 +120,19 @@ class Elements:
             bodies = sorted({int(made.child[0]), int(made.parent[0])} - {-1})
             self._add(STIFF, 1, len(self.stiff), bodies)
             self.stiff.append(made)
+
+    def _rotor(self, d):
+        made = table(ROTOR, 1)
+        made.coordinate, made.inertia = self.coordinates.number(d.joint, d.coordinate), d.inertia
+        self.rotors.append(made)
+
+    def add_rotors(self) -> None:
+        """Add inertias along coordinates as rows, for closed loops."""
+        for rotor in self.rotors:
+            coordinate = int(rotor.coordinate[0])
+            self._add(INERTIA, 1, len(self.relations), sorted(self.coordinates.bodies(coordinate)))
+            self.relations.append(table(RELATION_ROW, 1))
+            self.terms.append([(coordinate, 1.0)])
 
     def _user(self, d, functions):
         n, rows = len(d.bodies), d.rows
@@ -155,6 +173,7 @@ class Elements:
         """Return the tables, with the sides that `solver` gave to the bodies."""
         terms = []
         relation = iter(range(len(self.relations)))
+        inertias = (float(rotor.inertia[0]) for rotor in self.rotors)
         first_side = solver.rows.first[-len(self.kinds) :] if self.kinds else []
         rows = self.coordinates.table()
         for first, kind, bodies, number in zip(
@@ -178,6 +197,8 @@ class Elements:
                 ]
                 terms.append((coordinate, factor, *sides))
             self.relations[k].last = len(terms)
+            if kind == INERTIA:
+                solver.rows.compliance[solver.rows.first == first, 0] = 1.0 / next(inertias)
         listed = table(TERM, len(terms))
         for t, values in zip(listed, terms):
             t.coordinate, t.factor, t.child_side, t.parent_side = values
@@ -195,6 +216,7 @@ class Elements:
             _joined(FRICTION, more.frictions),
             np.zeros((len(more.frictions), len(more.frictions))),
             np.zeros(len(more.frictions)),
+            _joined(ROTOR, self.rotors),
             np.array(more.named, dtype=np.int64),
             np.zeros(max(self.width, more.width)),
             np.zeros(max(self.width, more.width)),

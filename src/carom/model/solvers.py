@@ -30,6 +30,7 @@ def no_joints() -> Solver:
     return Solver(
         kind=NO_JOINTS,
         links=table(LINK, 0),
+        rotor=np.zeros((0, 0)),
         workspace=np.zeros((0, 0)),
         order=number,
         column=number,
@@ -49,8 +50,13 @@ def no_joints() -> Solver:
     )
 
 
-def tree_solver(joints: np.recarray, order: np.ndarray, joint: np.ndarray) -> Solver:
-    """Return the solver of a forest; `order` and `joint` are those of `forest_order`."""
+def tree_solver(
+    joints: np.recarray, order: np.ndarray, joint: np.ndarray, rotor: np.ndarray
+) -> Solver:
+    """Return the solver of a forest; `order` and `joint` are those of `forest_order`.
+
+    `rotor` (J, 6) has the inertia along each freedom of each joint.
+    """
     links = table(LINK, order.size)
     links.order, links.joint = order, joint
     links["parent"], links["freedoms"] = -1, 6
@@ -65,7 +71,8 @@ def tree_solver(joints: np.recarray, order: np.ndarray, joint: np.ndarray) -> So
         1, int(np.max(links.freedoms[(links.joint >= 0) | (links.has_child == 1)], initial=0))
     )
     workspace = np.full((order.size, FIRST + WIDTH * most), np.nan)
-    return no_joints()._replace(kind=FOREST, links=links, workspace=workspace)
+    own = np.where(joint[:, None] >= 0, rotor[joint, :most], 0.0)
+    return no_joints()._replace(kind=FOREST, links=links, rotor=own, workspace=workspace)
 
 
 def spread(touching: list[list[int]], mass, moments, extent) -> tuple[float, int, int]:

@@ -27,7 +27,8 @@ from carom.dynamics.elements import driven_power
 from carom.dynamics.explicit import copy_state
 from carom.dynamics.forces import applied_wrenches
 from carom.dynamics.joint_friction import slip_power
-from carom.dynamics.project import project_velocity, shift
+from carom.dynamics.project import carry_velocity, shift
+from carom.dynamics.rotors import note_rates
 from carom.dynamics.several_points import inverse_masses, of_one_body, spread_all, velocities
 from carom.friction.layout import BUDGET, CONE, ENOUGH, NEAR
 from carom.friction.residual import measure
@@ -257,6 +258,7 @@ def impose(model, data, k, h, count, loaded):
     joined = system.joints.shape[0] > 0 and any_joined(system, count, member)
     if joined:
         result.time = result.start + 0.5 * h
+        note_rates(system, flight, work)
         driven += driven_power(system, work.stage, work)  # of an impulse: its work
         result.time = result.start + h
     for m in range(count):
@@ -284,7 +286,7 @@ def impose(model, data, k, h, count, loaded):
         a = rotate_back(q[0], q[1], q[2], q[3], l[0] + push[3], l[1] + push[4], l[2] + push[5])
         w[0], w[1], w[2] = rotate(q[0], q[1], q[2], q[3], a[0] / J[0], a[1] / J[1], a[2] / J[2])
     if joined:
-        project_velocity(system, end, work)
+        carry_velocity(system, end, work)
         driven += driven_power(system, end, work)
     place_closed(system, k, end, group, group.points[1], work)
     velocities(k, group.points[1], end, group.v[U])

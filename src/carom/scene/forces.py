@@ -17,6 +17,7 @@ from carom.scene.more_forces import (
     CurveSpring,
     JointForce,
     JointFriction,
+    JointInertia,
     JointSpring,
     UserForce,
 )
@@ -180,11 +181,13 @@ ForceDefinition = (
     | JointSpring
     | JointForce
     | JointFriction
+    | JointInertia
     | CurveSpring
     | UserForce
 )
 FORCES = (
-    Spring, Torque, Force, Bushing, JointSpring, JointForce, JointFriction, CurveSpring, UserForce,
+    Spring, Torque, Force, Bushing, JointSpring, JointForce, JointFriction, JointInertia,
+    CurveSpring, UserForce,
 )  # fmt: skip
 
 
@@ -220,7 +223,7 @@ class AppliedForce:
 
 def force_on(definition) -> tuple | None:
     """Return the joint or the bodies that a definition names itself; None if it names none."""
-    if isinstance(definition, (JointSpring, JointForce, JointFriction)):
+    if isinstance(definition, (JointSpring, JointForce, JointFriction, JointInertia)):
         return (definition.joint,)
     return definition.bodies if isinstance(definition, UserForce) else None
 

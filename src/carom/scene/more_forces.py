@@ -109,6 +109,33 @@ class JointFriction:
 
 
 @dataclass(frozen=True, init=False, eq=False)
+class JointInertia:
+    """Inertia along a coordinate of a joint: a part ``inertia q'^2/2`` of the kinetic energy.
+
+    The rotor of a motor that turns fast behind a gear, as the joint feels it: its moment of inertia times the
+    square of the ratio (robotics: reflected inertia, armature). It has no mass and no weight, and no gyroscopic
+    torque on the bodies. On one coordinate there may be several.
+
+    Parameters
+    ----------
+    joint : Joint
+    inertia : float
+        [kg m^2] of a turn, [kg] of a slide, at least 0.
+    coordinate : int
+        Which coordinate of the joint. Default 0.
+    """
+
+    joint: Joint
+    inertia: float
+    coordinate: int
+
+    def __init__(self, joint: Joint, inertia: float, coordinate: int = 0):
+        coordinate_kind(joint, coordinate)
+        inertia = checks.number("inertia", inertia, least=0.0)
+        keep(self, joint=joint, inertia=inertia, coordinate=int(coordinate))
+
+
+@dataclass(frozen=True, init=False, eq=False)
 class CurveSpring:
     """A spring on the line between a point of the parent and one of the child, with a curve of your own.
 

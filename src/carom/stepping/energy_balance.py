@@ -195,15 +195,15 @@ def off_balance(model, data):
     dt, named = search.dt, search.applied + search.friction
     shortest, careful = dt <= SHORTEST * controls.step, search.pace < math.inf
     jams = search.active == 1 and search.kind == JAM
-    if search.active == 1 and shortest and not jams:
-        return False, 0
     if active.count[0] == 0:
         result.unnamed = 0.0
     off, grows = imbalance(system, active, data.state, work.trial, named, clock.now, dt, watch)
     result.unnamed = max(result.unnamed, off)
     cut = grows or off > (CAREFUL if careful else 1.0)
-    if (cut and not shortest) or (grows and jams):
+    if (cut and not shortest) or (grows and (jams or search.active == 1)):
         return True, 0
+    if search.active == 1 and shortest and not jams:
+        return False, 0
     if off > 1.0:
         watch.share *= WIDER
     watch.gains = watch.gains + 1 if grows else 0

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from carom import checks
-from carom.dynamics.methods import ADAPTIVE, EXPLICIT, METHODS
+from carom.dynamics.methods import ADAPTIVE, CARRIES, EXPLICIT, METHODS
 from carom.options import Options
 from carom.scene.limits import check_location
-from carom.scene.more_forces import JointFriction
+from carom.scene.more_forces import JointFriction, JointInertia
 from carom.scene.scene import Scene
 
 LOCATIONS = ("locate", "project", "work")
@@ -66,12 +66,17 @@ def check_scene(scene: Scene, method: str, location: str) -> None:
 
 
 def check_method(scene: Scene, method: str) -> None:
-    """Refuse dry friction in joints for methods that do not know it."""
+    """Refuse dry friction and inertia in joints for methods that do not know them."""
     if method not in EXPLICIT and any(
         isinstance(f.definition, JointFriction) for f in scene.forces
     ):
         raise ValueError(
             f"method must be {either(EXPLICIT)} where joints have dry friction, got {method!r}"
+        )
+    if method not in CARRIES and any(isinstance(f.definition, JointInertia) for f in scene.forces):
+        raise ValueError(
+            f"method must be {either(CARRIES)} where joints have inertia, got {method!r}; or use a body on a "
+            "bearing, geared to the joint"
         )
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from importlib import import_module
 
-from carom.model.method import RUNGE_KUTTA, Definition, Method
+from carom.model.method import IMPLICIT, RUNGE_KUTTA, Definition, Method
 from carom.options import Options
 
 #: the registry: files of this folder. A new one comes last
@@ -17,6 +17,8 @@ METHODS: dict[str, Definition] = {}
 for _file in FILES:
     METHODS |= import_module(f"{__name__}.{_file}").METHODS
 EXPLICIT = tuple(name for name, one in METHODS.items() if one.kind == RUNGE_KUTTA)
+#: methods of accelerations; the others write momenta of bodies, and know no inertia along joints
+CARRIES = tuple(name for name, one in METHODS.items() if one.kind in (RUNGE_KUTTA, IMPLICIT))
 ADAPTIVE = tuple(name for name, one in METHODS.items() if one.with_error is not None)
 
 

@@ -8,7 +8,7 @@ from carom.geometry import quaternion
 from carom.io.models.build import Build, Coordinate
 from carom.io.models.links import Link, name_of
 from carom.io.models.needs import need_mujoco
-from carom.scene import constraints, forces, joints
+from carom.scene import forces
 from carom.scene.bodies import GROUND
 
 RELAXED = 1e-9  # angle, or distance by the extent of the model, within which a mount starts relaxed
@@ -76,7 +76,7 @@ def _stops(build: Build, j: int, c: Coordinate, restitution: float, law: str) ->
 
 
 def _armature(build: Build, j: int, c: Coordinate, represent: bool) -> None:
-    """Add a flywheel on the ground that turns by q as the joint moves by q: a q'^2 / 2, exactly."""
+    """Add the inertia of a rotor, a q'^2/2."""
     inertia = float(build.model.dof_armature[build.model.jnt_dofadr[j]])
     if inertia == 0.0:
         return
@@ -84,23 +84,8 @@ def _armature(build: Build, j: int, c: Coordinate, represent: bool) -> None:
     if not represent:
         build.report.add(called, f"armature {inertia:g}", "left out, as armature=False asks for")
         return
-    rate = float(build.data.qvel[build.model.jnt_dofadr[j]])
-    wheel = build.scene.add_body(
-        mass=1.0,
-        inertia=(inertia, inertia, inertia),
-        angular_velocity=(0.0, 0.0, c.sign * rate),
-        name=build.names.new(f"{name}:armature", "body"),
-    )
-    bearing = build.scene.add_joint(
-        joints.Revolute((0.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
-        GROUND,
-        wheel,
-        name=build.names.new(f"{name}:bearing", "joint"),
-    )
-    build.scene.add_constraint(
-        constraints.Coupling({(c.joint, c.index): 1.0, bearing: -1.0}),
-        name=build.names.new(f"{name}:rotor", "constraint"),
-    )
+    rotor = forces.JointInertia(c.joint, inertia, c.index)
+    build.scene.add_force(rotor, name=build.names.new(f"{name}:armature", "force"))
 
 
 def add_mounts(build: Build, links: list[Link]) -> None:

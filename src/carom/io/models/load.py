@@ -122,7 +122,7 @@ def load_model(
     ]
     report = Report()
     model = compiled_model(source, free_root, package_dirs, report)
-    loops = bool(np.any(model.eq_active0)) or (armature and bool(np.any(model.dof_armature)))
+    loops = bool(np.any(model.eq_active0))
     data, light = starting_data(model, keyframe, qpos, qvel), LIGHT_IN_LOOPS if loops else LIGHT
     build, links = _new_build(model, data, report, light)
     restitution = _restitution(model, restitution, report)

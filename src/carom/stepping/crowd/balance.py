@@ -6,6 +6,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.dynamics.energy import energies
+from carom.dynamics.rotors import energy_of_change
 from carom.geometry.rotation import norm
 from carom.kinematics.contact_point import contact_velocity
 from carom.persistent.middle_state import spin_momentum
@@ -61,7 +62,7 @@ def take_out(system, gained, flight, end):
     if not gained > 0.0:
         return 0.0
     # dE = a s^2 + b s for velocities v + s (v - v_f)
-    a, b = 0.0, 0.0
+    a, b = energy_of_change(system, flight, end)
     for m in range(end.shape[0]):
         body, q, v, w = system.bodies[m], end[m].Q, end[m].v, end[m].w
         d, t = flight[m].v, flight[m].w

@@ -10,7 +10,8 @@ from carom.contact.depth import least_gap
 from carom.contact.pair_point import smaller
 from carom.dynamics.elements import driven_power
 from carom.dynamics.explicit import copy_state
-from carom.dynamics.project import LOST, project_velocity, shift
+from carom.dynamics.project import LOST, carry_velocity, shift
+from carom.dynamics.rotors import note_rates
 from carom.friction.layout import P
 from carom.geometry.rotation import rotate, rotate_back
 from carom.kinematics.contact_point import contact_velocity
@@ -155,6 +156,7 @@ def impose(model, data, k, h):
     driven, joined = 0.0, system.joints.shape[0] > 0
     work.result[0].time = work.result[0].start + h
     if joined:
+        note_rates(system, crowd.flight, work)
         driven += driven_power(system, crowd.flight, work)  # of an impulse: its work
     for b in range(end.shape[0]):
         motion = work.body[b].motion
@@ -164,7 +166,7 @@ def impose(model, data, k, h):
     holds = onto_surfaces(system, k, end.shape[0], end, crowd, work) <= LOST
     respin(system, crowd.flight, end)
     if joined:
-        project_velocity(system, end, work)
+        carry_velocity(system, end, work)
         driven += driven_power(system, end, work)
     return driven, holds
 

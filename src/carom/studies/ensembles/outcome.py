@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom.geometry import quaternion
 from carom.results.accuracy import energy_error
 from carom.results.assemble import to_scene_axes
 from carom.run import Run
@@ -57,11 +56,6 @@ def write_outcome(run: Run, status: Status, row: np.void) -> None:
     row["impact_loss"], row["friction_loss"] = -clock.impacts, -clock.friction
     row["bounce_loss"], row["load_work"] = -clock.bounces, clock.loads
     row["energy_error"] = energy_error(run.watch[0])
-    system = run.compiled.system
-    body_rate = quaternion.rotate_back(now.Q, now.w)
-    row["kinetic_energy"] = 0.5 * float(
-        np.sum(system.bodies.mass[:, None] * now.v**2)
-        + np.sum(system.bodies.inertia * body_rate**2)
-    )
+    row["kinetic_energy"] = float(clock.kinetic)
     row["position"], row["velocity"], row["angular_velocity"] = now.x, now.v, now.w
     row["orientation"] = to_scene_axes(now.Q[None], run.compiled.to_principal)[0]

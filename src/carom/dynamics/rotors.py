@@ -1,0 +1,111 @@
+"""Inertia along coordinates of joints: I q'^2/2 in the kinetic energy, for a motor's rotor behind a gear.
+
+It answers an acceleration of its coordinate with the force -I q''. In a forest that is a term on the diagonal
+of the elimination, D = S.U + I (`carom.dynamics.tree`); with closed loops it is a row J of the coordinate that
+yields,
+
+    J a + lam/I = -d,      d = J' v its drift, so that lam = -I q''.
+
+All answers to impulses and all projections know it so. What is left is where velocities of bodies are written
+from their own momenta, M v: there the rotors go on with the rate r that they had, and -I (q' - r) acts as an
+impulse in the projection that follows.
+"""
+
+from __future__ import annotations
+
+from carom._compiled.decorators import inlined
+from carom._compiled.units import unit
+from carom.kinematics.coordinate import motion_along, push, rate
+
+
+@unit
+def _rotor_energy(system, state) -> float:
+    """Return the kinetic energy along coordinates [J]."""
+    total = 0.0
+    for i in range(system.relations.rotors.shape[0]):
+        rotor = system.relations.rotors[i]
+        speed = rate(system.relations.coordinates[rotor.coordinate], state)
+        total += 0.5 * rotor.inertia * speed * speed
+    return total
+
+
+@unit
+def _note_rates(system, state, work):
+    """Note the rates of `state`, with what the motions of the last solve add to them."""
+    for i in range(system.relations.rotors.shape[0]):
+        rotor = system.relations.rotors[i]
+        c = system.relations.coordinates[rotor.coordinate]
+        rotor.rate = rate(c, state) + motion_along(c, state, work)
+
+
+@unit
+def _keep_rates(system, state, work):
+    """Add the impulses of rotors that go on with the rates that were noted to the wrenches."""
+    for i in range(system.relations.rotors.shape[0]):
+        rotor = system.relations.rotors[i]
+        c = system.relations.coordinates[rotor.coordinate]
+        push(c, state, -rotor.inertia * (rate(c, state) - rotor.rate), work)
+
+
+@unit
+def _energy_of_change(system, before, after) -> tuple[float, float]:
+    """Return a and b of the kinetic energy a s^2 + b s that rates q' + s (q' - q'_before) have more."""
+    a, b = 0.0, 0.0
+    for i in range(system.relations.rotors.shape[0]):
+        rotor = system.relations.rotors[i]
+        c = system.relations.coordinates[rotor.coordinate]
+        speed = rate(c, after)
+        change = speed - rate(c, before)
+        a += 0.5 * rotor.inertia * change * change
+        b += rotor.inertia * speed * change
+    return a, b
+
+
+@unit
+def _work_of_change(system, state, work) -> float:
+    """Return the sum of I q'_0 (q' - q'_0); the velocities of q'_0 are in the motions of the bodies."""
+    total = 0.0
+    for i in range(system.relations.rotors.shape[0]):
+        rotor = system.relations.rotors[i]
+        c = system.relations.coordinates[rotor.coordinate]
+        speed = motion_along(c, state, work)
+        total += rotor.inertia * speed * (rate(c, state) - speed)
+    return total
+
+
+@inlined
+def rotor_energy(system, state):
+    """Return the kinetic energy along coordinates [J]."""
+    if system.relations.there == 1:
+        return _rotor_energy(system, state)
+    return 0.0
+
+
+@inlined
+def note_rates(system, state, work):
+    """Note the rates of `state`, with what the motions of the last solve add to them."""
+    if system.relations.there == 1:
+        _note_rates(system, state, work)
+
+
+@inlined
+def keep_rates(system, state, work):
+    """Add the impulses of rotors that go on with the rates that were noted to the wrenches."""
+    if system.relations.there == 1:
+        _keep_rates(system, state, work)
+
+
+@inlined
+def energy_of_change(system, before, after):
+    """Return a and b of the kinetic energy a s^2 + b s that rates q' + s (q' - q'_before) have more."""
+    if system.relations.there == 1:
+        return _energy_of_change(system, before, after)
+    return 0.0, 0.0
+
+
+@inlined
+def work_of_change(system, state, work):
+    """Return the sum of I q'_0 (q' - q'_0); the velocities of q'_0 are in the motions of the bodies."""
+    if system.relations.there == 1:
+        return _work_of_change(system, state, work)
+    return 0.0
