@@ -5,6 +5,8 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom.dynamics.explicit import copy_state
 from carom.dynamics.forces import applied_wrenches
+from carom.dynamics.project import shift
+from carom.dynamics.solve import solve
 from carom.dynamics.step import step
 from carom.kinematics.flight import free_flight
 from carom.persistent.middle_state import halfway
@@ -62,6 +64,45 @@ def greatest_change(system, start, end):
             turning = system.bodies[b].extent * abs(end[b].w[j] - start[b].w[j])
             most = max(most, max(abs(end[b].v[j] - start[b].v[j]), turning))
     return most
+
+
+@kernel
+def follow_path(system, h, start, end, crowd, work):
+    """Give the flight what loads do on the path that is taken, less on the one without contacts.
+
+    A damper sees the speed that contacts leave it. Returns whether that is anything.
+    """
+    anything = False
+    for b in range(start.shape[0]):
+        halfway(start[b], end[b], work.stage[b])
+    applied_wrenches(system, work.stage, False, work)
+    for b in range(start.shape[0]):
+        copy_six(work.body[b].wrench, work.body[b].push)
+    applied_wrenches(system, work.middle, False, work)
+    for b in range(start.shape[0]):
+        wrench, push = work.body[b].wrench, work.body[b].push
+        for j in range(6):
+            wrench[j] = h * (push[j] - wrench[j])
+            anything = anything or wrench[j] != 0.0
+    if not anything:
+        return False
+    solve(system, crowd.flight, False, work)
+    for b in range(start.shape[0]):
+        flight, motion = crowd.flight[b], work.body[b].motion
+        for j in range(3):
+            flight.v[j] += motion[j]
+            flight.w[j] += motion[3 + j]
+        for j in range(6):
+            motion[j] *= 0.5 * h
+        shift(motion, flight)
+    return True
+
+
+@kernel
+def copy_six(given, to):
+    """Copy six numbers."""
+    for j in range(6):
+        to[j] = given[j]
 
 
 @kernel

@@ -15,7 +15,7 @@ from carom.friction.strategy import copy, polished, release
 from carom.stepping.crowd.graph import find_order
 from carom.stepping.crowd.sweeps import sweep_until
 
-FIRST, MOST = 40, 200  # sweeps before Newton, and in all
+FIRST, FEW, MOST = 40, 2, 200  # sweeps before Newton on the graph, and on a W stored whole, and in all
 SWEEP, UPDATE, CONTACT = 60.0, 130.0, 1000.0  # cost [ns] of a contact in a sweep, of factors
 ENTRY = 9.0  # cost [ns] of the entries of a block in a sweep of a W stored whole
 ITERATION = 0.3  # cost [us] of an iteration with it, by k^2
@@ -31,7 +31,8 @@ def solve(system, crowd, k, n, tolerance, patient, clock):
     work, most = crowd.problem, MOST * (PATIENT if patient else 1)
     work.count[o.ITERATIONS] = 0
     gamma = scale_vectors(work, k, crowd.c, crowd.p)
-    r, goal, done = sweep_until(system, crowd, k, tolerance / gamma, FIRST)
+    first = FIRST if work.kind == BY_BODIES else FEW
+    r, goal, done = sweep_until(system, crowd, k, tolerance / gamma, first)
     speed = greatest_speed(crowd, k) / gamma
     enough = max(tolerance / gamma, goal, PRECISE * speed)
     if r > enough and not_turning(crowd, k):
@@ -41,7 +42,7 @@ def solve(system, crowd, k, n, tolerance, patient, clock):
             enough, most = max(enough, AGREED * speed), MOST
             r = newton_on_whole(crowd, k, r, enough, clock)
     if r > enough:
-        r, _, more = sweep_until(system, crowd, k, enough, most - FIRST)
+        r, _, more = sweep_until(system, crowd, k, enough, most - first)
         done += more
     clock.rounds += done
     each = SWEEP * k if work.kind == BY_BODIES else ENTRY * k * k

@@ -29,6 +29,7 @@ from carom.stepping.crowd.finish import finish
 from carom.stepping.crowd.free_motion import (
     MISSED,
     fly,
+    follow_path,
     greatest_change,
     is_loaded,
     mean_power,
@@ -95,6 +96,8 @@ def piece(system, now, step, left, few):
     parts = math.ceil(ALONE * left / step) if n == 1 else 1.0
     for b in range(n):
         body, turn = system.bodies[b], norm(now[b].w) * left
+        if not body.ball > 0.0:  # nothing that could touch
+            continue
         way, far = (norm(now[b].v) + g * left) * left, FAR * body.ball
         if n == 1:
             parts = max(parts, math.ceil(turn / FAR))
@@ -128,6 +131,8 @@ def move_on(model, data, method, h, patient, careful):
     if loaded:
         fall = max(fall, greatest_change(system, now, crowd.flight) / h)
     code, k, residual, driven = collide(model, data, h, fall, patient, careful)
+    if code == 0 and loaded and k > 0 and follow_path(system, h, now, end, crowd, work):
+        code, k, residual, driven = collide(model, data, h, fall, patient, careful)
     if code != 0:
         return code
 
