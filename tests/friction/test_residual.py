@@ -5,6 +5,8 @@ import math
 import numpy as np
 import pytest
 
+import carom
+from carom.friction.layout import CONE
 from carom.friction.residual import measure
 
 EYE, NONE = np.eye(3), np.zeros((1, 2))
@@ -68,3 +70,32 @@ def test_unit_of_velocity():
 @pytest.mark.plain
 def test_not_a_number_stays():
     assert math.isnan(residual((-1.0, 0.0, 0.0), (math.nan, 0.0, 0.0))[0])
+
+
+def test_an_open_contact_without_friction_and_slip_is_solved():
+    """A stop has a normal row alone. p = 0, w_n > 0 is its solution; a pull p_n < 0 that stops w is none."""
+    W, c = np.zeros((3, 3)), np.array([0.3, 0.0, 0.0])
+    W[0, 0] = 2.0
+    problem = np.zeros(1), np.full(1, CONE), np.zeros((1, 2))
+    assert measure(1, W, c, *problem, np.zeros(3))[0] == 0.0
+    assert measure(1, W, c, *problem, np.array([-0.15, 0.0, 0.0]))[0] > 0.05
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_contacts_and_stops_together(seed):
+    """Points with friction and rows of stops, of which some open and some press, to round-off."""
+    rng = np.random.default_rng([18, seed])
+    k, stops = int(rng.integers(2, 8)), rng.random(8) < 0.5
+    G = rng.normal(size=(3 * k, 3 * k + 2))
+    for i in np.flatnonzero(stops[:k]):
+        G[3 * i + 1 : 3 * i + 3] = 0.0
+    W = G @ G.T
+    mu = np.where(stops[:k], 0.0, rng.uniform(0.0, 1.0, size=k))
+    for i in np.flatnonzero(stops[:k]):
+        W[3 * i + 1, 3 * i + 1] = W[3 * i + 2, 3 * i + 2] = W[3 * i, 3 * i]
+    c = rng.normal(size=(k, 3))
+    c[stops[:k], 1:] = 0.0
+    found = carom.solve_contacts(W, c, mu)
+    assert found.converged
+    assert found.residual <= 1e-12 * np.abs(c).max()
+    assert np.all(found.impulse[:, 0] >= 0.0)

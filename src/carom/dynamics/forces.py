@@ -76,6 +76,24 @@ def applied_wrenches(system, state, gyroscopic, work):
 
 
 @kernel
+def difference_of_loads(system, h, taken, without, work):
+    """Write h times the applied forces in one state less those in another; return whether that is anything."""
+    applied_wrenches(system, taken, False, work)
+    for b in range(system.bodies.shape[0]):
+        wrench, kept = work.body[b].wrench, work.stages[0, b].rate
+        for k in range(6):
+            kept[k] = wrench[k]
+    applied_wrenches(system, without, False, work)
+    anything = False
+    for b in range(system.bodies.shape[0]):
+        wrench, kept = work.body[b].wrench, work.stages[0, b].rate
+        for k in range(6):
+            wrench[k] = h * (kept[k] - wrench[k])
+            anything = anything or wrench[k] != 0.0
+    return anything
+
+
+@kernel
 def potential_energy(system, state, t):
     """Return the potential energy of gravity and springs [J]."""
     g, potential = system.gravity, 0.0

@@ -30,12 +30,19 @@ def _rotor_energy(system, state) -> float:
 
 
 @unit
-def _note_rates(system, state, work):
-    """Note the rates of `state`, with what the motions of the last solve add to them."""
+def _note_rates(system, state):
+    """Note the rates of `state`."""
     for i in range(system.relations.rotors.shape[0]):
         rotor = system.relations.rotors[i]
-        c = system.relations.coordinates[rotor.coordinate]
-        rotor.rate = rate(c, state) + motion_along(c, state, work)
+        rotor.rate = rate(system.relations.coordinates[rotor.coordinate], state)
+
+
+@unit
+def _add_rates(system, state, work):
+    """Add what the motions of the last solve do to the rates that were noted."""
+    for i in range(system.relations.rotors.shape[0]):
+        rotor = system.relations.rotors[i]
+        rotor.rate += motion_along(system.relations.coordinates[rotor.coordinate], state, work)
 
 
 @unit
@@ -82,10 +89,17 @@ def rotor_energy(system, state):
 
 
 @inlined
-def note_rates(system, state, work):
-    """Note the rates of `state`, with what the motions of the last solve add to them."""
+def note_rates(system, state):
+    """Note the rates of `state`."""
     if system.relations.there == 1:
-        _note_rates(system, state, work)
+        _note_rates(system, state)
+
+
+@inlined
+def add_rates(system, state, work):
+    """Add what the motions of the last solve do to the rates that were noted."""
+    if system.relations.there == 1:
+        _add_rates(system, state, work)
 
 
 @inlined

@@ -63,10 +63,10 @@ def nearest(kind, mu, h1, h2, x0, x1, x2):
         return in_disc(h1, x1, x2)
     if kind == CONE:
         size = math.sqrt(x1 * x1 + x2 * x2)
+        if mu * size <= -x0:  # first: without friction and slip both hold where x_n < 0
+            return 0.0, 0.0, 0.0
         if size <= mu * x0:
             return x0, x1, x2
-        if mu * size <= -x0:
-            return 0.0, 0.0, 0.0
         n = (x0 + mu * size) / (1.0 + mu * mu)
         r = mu * n / size
         return n, r * x1, r * x2

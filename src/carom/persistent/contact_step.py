@@ -25,11 +25,13 @@ from carom.contact.groups import members
 from carom.dynamics.acceleration import SLIP
 from carom.dynamics.elements import driven_power
 from carom.dynamics.explicit import copy_state
-from carom.dynamics.forces import applied_wrenches
+from carom.dynamics.forces import applied_wrenches, difference_of_loads
 from carom.dynamics.joint_friction import slip_power
+from carom.dynamics.kick import add_momentum
 from carom.dynamics.project import carry_velocity, shift
-from carom.dynamics.rotors import note_rates
+from carom.dynamics.rotors import add_rates, note_rates
 from carom.dynamics.several_points import inverse_masses, of_one_body, spread_all, velocities
+from carom.dynamics.solve import solve
 from carom.friction.layout import BUDGET, CONE, ENOUGH, NEAR
 from carom.friction.residual import measure
 from carom.friction.solve import solve_cones
@@ -258,23 +260,22 @@ def impose(model, data, k, h, count, loaded):
     joined = system.joints.shape[0] > 0 and any_joined(system, count, member)
     if joined:
         result.time = result.start + 0.5 * h
-        note_rates(system, flight, work)
+        note_rates(system, flight)
+        add_rates(system, work.stage, work)
         driven += driven_power(system, work.stage, work)  # of an impulse: its work
         result.time = result.start + h
     for m in range(count):
         b = member[m]
-        body, motion, push = system.bodies[b], work.body[b].motion, work.body[b].push
-        for i in range(3):
-            push[i] = body.mass * motion[i]
-        push[3], push[4], push[5] = spin_momentum(
-            body, work.stage[b].Q, motion[3], motion[4], motion[5]
-        )
+        motion, push = work.body[b].motion, work.body[b].push
+        for i in range(6):
+            push[i] = 0.0
+        add_momentum(system.bodies[b], work.stage[b].Q, 1.0, work.body[b])
         for i in range(6):
             motion[i] *= 0.5 * h
         copy_state(flight[b], end[b])
         shift(motion, end[b])
     if loaded:
-        add_difference(system, h, count, group, work)
+        add_difference(system, h, count, joined, group, work)
     onto_surfaces(system, active, k, count, end, group, work)
     for m in range(count):
         b = member[m]
@@ -294,18 +295,23 @@ def impose(model, data, k, h, count, loaded):
 
 
 @kernel
-def add_difference(system, h, count, group, work):
-    """Add to the push what applied forces do on the path that is taken, less on the one without contacts."""
-    applied_wrenches(system, work.stage, False, work)
+def add_difference(system, h, count, joined, group, work):
+    """Add to the push what applied forces do on the path that is taken, less on the one without contacts.
+
+    With the joints between the bodies: what a torque does to a light one by itself has no digits left when it
+    is projected.
+    """
+    difference_of_loads(system, h, work.stage, work.middle, work)
+    if joined:
+        solve(system, work.stage, False, work)
+        add_rates(system, work.stage, work)
     for m in range(count):
         b = group.member[m]
+        if joined:
+            add_momentum(system.bodies[b], work.stage[b].Q, 1.0, work.body[b])
+            continue
         for i in range(6):
-            work.body[b].push[i] += h * work.body[b].wrench[i]
-    applied_wrenches(system, work.middle, False, work)
-    for m in range(count):
-        b = group.member[m]
-        for i in range(6):
-            work.body[b].push[i] -= h * work.body[b].wrench[i]
+            work.body[b].push[i] += work.body[b].wrench[i]
 
 
 @kernel

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.dynamics.explicit import copy_state
-from carom.dynamics.forces import applied_wrenches
+from carom.dynamics.forces import applied_wrenches, difference_of_loads
 from carom.dynamics.project import shift
 from carom.dynamics.solve import solve
 from carom.dynamics.step import step
@@ -72,19 +72,9 @@ def follow_path(system, h, start, end, crowd, work):
 
     A damper sees the speed that contacts leave it. Returns whether that is anything.
     """
-    anything = False
     for b in range(start.shape[0]):
         halfway(start[b], end[b], work.stage[b])
-    applied_wrenches(system, work.stage, False, work)
-    for b in range(start.shape[0]):
-        copy_six(work.body[b].wrench, work.body[b].push)
-    applied_wrenches(system, work.middle, False, work)
-    for b in range(start.shape[0]):
-        wrench, push = work.body[b].wrench, work.body[b].push
-        for j in range(6):
-            wrench[j] = h * (push[j] - wrench[j])
-            anything = anything or wrench[j] != 0.0
-    if not anything:
+    if not difference_of_loads(system, h, work.stage, work.middle, work):
         return False
     solve(system, crowd.flight, False, work)
     for b in range(start.shape[0]):
@@ -96,13 +86,6 @@ def follow_path(system, h, start, end, crowd, work):
             motion[j] *= 0.5 * h
         shift(motion, flight)
     return True
-
-
-@kernel
-def copy_six(given, to):
-    """Copy six numbers."""
-    for j in range(6):
-        to[j] = given[j]
 
 
 @kernel

@@ -11,7 +11,7 @@ from carom.contact.pair_point import smaller
 from carom.dynamics.elements import driven_power
 from carom.dynamics.explicit import copy_state
 from carom.dynamics.project import LOST, carry_velocity, shift
-from carom.dynamics.rotors import note_rates
+from carom.dynamics.rotors import add_rates, note_rates
 from carom.friction.layout import P
 from carom.geometry.rotation import rotate, rotate_back
 from carom.kinematics.contact_point import contact_velocity
@@ -156,7 +156,8 @@ def impose(model, data, k, h):
     driven, joined = 0.0, system.joints.shape[0] > 0
     work.result[0].time = work.result[0].start + h
     if joined:
-        note_rates(system, crowd.flight, work)
+        note_rates(system, crowd.flight)
+        add_rates(system, crowd.flight, work)
         driven += driven_power(system, crowd.flight, work)  # of an impulse: its work
     for b in range(end.shape[0]):
         motion = work.body[b].motion

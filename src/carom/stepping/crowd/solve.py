@@ -15,7 +15,11 @@ from carom.friction.strategy import copy, polished, release
 from carom.stepping.crowd.graph import find_order
 from carom.stepping.crowd.sweeps import sweep_until
 
-FIRST, FEW, MOST = 40, 2, 200  # sweeps before Newton on the graph, and on a W stored whole, and in all
+FIRST, FEW, MOST = (
+    40,
+    2,
+    200,
+)  # sweeps before Newton on the graph, and on a W stored whole, and in all
 SWEEP, UPDATE, CONTACT = 60.0, 130.0, 1000.0  # cost [ns] of a contact in a sweep, of factors
 ENTRY = 9.0  # cost [ns] of the entries of a block in a sweep of a W stored whole
 ITERATION = 0.3  # cost [us] of an iteration with it, by k^2
