@@ -7,7 +7,7 @@ import math
 from carom._compiled.decorators import kernel
 from carom.friction.one_contact import solve_one, upper_triangle
 
-_EMPTY = 1e-13  # of a diagonal of W_tt: pivots below it are round-off, nothing moves that way
+_EMPTY = 1e-13  # of the trace of W: pivots below it are round-off, nothing moves that way
 
 
 @kernel
@@ -21,21 +21,22 @@ def stick_force(W, an, a1, a2):
     l1, l2 = W[1, 0] / W[0, 0], W[2, 0] / W[0, 0]
     b11, b12, b22 = W[1, 1] - l1 * W[1, 0], W[2, 1] - l2 * W[1, 0], W[2, 2] - l2 * W[2, 0]
     r1, r2 = l1 * an - a1, l2 * an - a2
-    if b11 * W[2, 2] >= b22 * W[1, 1]:  # the less cancelled first
-        t1, t2 = least(b11, b12, b22, r1, r2, _EMPTY * W[1, 1], _EMPTY * W[2, 2])
+    none = _EMPTY * (W[0, 0] + W[1, 1] + W[2, 2])
+    if b22 <= none or (b11 > none and b11 * W[2, 2] >= b22 * W[1, 1]):  # the less cancelled first
+        t1, t2 = least(b11, b12, b22, r1, r2, none)
     else:
-        t2, t1 = least(b22, b12, b11, r2, r1, _EMPTY * W[2, 2], _EMPTY * W[1, 1])
+        t2, t1 = least(b22, b12, b11, r2, r1, none)
     return -an / W[0, 0] - l1 * t1 - l2 * t2, t1, t2
 
 
 @kernel
-def least(b11, b12, b22, r1, r2, none1, none2):
+def least(b11, b12, b22, r1, r2, none):
     """Return the least (t1, t2) with B t = r; pivots below `none` are none."""
-    if not b11 > none1:
+    if not b11 > none:
         return 0.0, 0.0
     ratio = b12 / b11
     left = b22 - ratio * b12
-    if left > none2:
+    if left > none:
         t2 = (r2 - ratio * r1) / left
         return (r1 - b12 * t2) / b11, t2
     # rank one, B = b11 (1, ratio)^T (1, ratio)

@@ -17,6 +17,8 @@ from carom.kinematics.contact_point import (
     in_axes,
 )
 
+ROUND_OFF = 1e-12  # of the trace of W of one point
+
 
 @kernel
 def velocities(k, points, state, u):
@@ -117,6 +119,13 @@ def spread_all(system, k, points, p, count, member, state, work):
         for m in range(count):
             b = member[m]
             free_body(system.bodies[b], state[b].Q, work.body[b])
+
+
+@kernel
+def yields(W, i):
+    """Return whether an impulse along row i moves its point; else W_ii is round-off (across a flat one)."""
+    n = i - i % 3
+    return W[i, i] > ROUND_OFF * (W[n, n] + W[n + 1, n + 1] + W[n + 2, n + 2])
 
 
 @kernel

@@ -17,7 +17,7 @@ from carom.contact.gap import round_off
 from carom.contact.place import place_any
 from carom.dynamics.acceleration import STICK
 from carom.dynamics.project import project_position, shift
-from carom.dynamics.several_points import factor, spread_all, substitute
+from carom.dynamics.several_points import factor, spread_all, substitute, yields
 from carom.impact.workspace import BACK, P, U
 from carom.kinematics.contact_point import in_axes
 
@@ -50,6 +50,12 @@ def mark_rows(system, active, k, group):
 
 
 @kernel
+def gives(group, i):
+    """Return whether row i is given, and can be."""
+    return i % 3 < group.closed[i // 3].rows and yields(group.m[0], i)
+
+
+@kernel
 def onto_surfaces(system, active, k, count, state, group, work):
     """Bring the bodies of the group back to the points that press."""
     place_closed(system, k, state, group, group.points[1], work)
@@ -57,15 +63,15 @@ def onto_surfaces(system, active, k, count, state, group, work):
         return
     n, L = 3 * k, group.m[1]
     for i in range(n):
-        row = i % 3 < group.closed[i // 3].rows
+        row = gives(group, i)
         for j in range(n):
-            both = row and j % 3 < group.closed[j // 3].rows
+            both = row and gives(group, j)
             L[i, j] = group.m[0][i, j] if both else 1.0 if i == j else 0.0
     factor(n, DROP, L)
     x, way = group.v[U], group.v[BACK]
     known = False
     for i in range(n):
-        x[i] = way[i] if i % 3 < group.closed[i // 3].rows else 0.0
+        x[i] = way[i] if gives(group, i) else 0.0
         way[i], known = 0.0, known or x[i] != 0.0
     for _ in range(11):
         if not known:
@@ -73,7 +79,7 @@ def onto_surfaces(system, active, k, count, state, group, work):
                 break
             substitute(n, L, x)
             for i in range(n):
-                x[i] = -x[i] if i % 3 < group.closed[i // 3].rows else 0.0
+                x[i] = -x[i] if gives(group, i) else 0.0
         known = False
         for i in range(n):
             way[i] += x[i]

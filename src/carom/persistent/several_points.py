@@ -15,7 +15,7 @@ from carom.dynamics.contact_impulse import (
     spread,
 )
 from carom.dynamics.elements import driven_power
-from carom.dynamics.several_points import factor, substitute
+from carom.dynamics.several_points import factor, substitute, yields
 from carom.friction.layout import CONE, SLIDING
 from carom.impact.workspace import OLD, C, P, U
 from carom.kinematics.contact_point import contact_velocity
@@ -97,8 +97,9 @@ def judge(system, k, state, horizon, group):
 
 @kernel
 def stops(group, i):
-    """Return whether row i is one that drops out: the normal of a point that stays, its slip if it has none."""
-    return group.closed[i // 3].stays == 1 and (i % 3 == 0 or group.kind[i // 3] == CONE)
+    """Return whether row i drops out, if it can: the normal of a point that stays, its slip if it has none."""
+    drops = group.closed[i // 3].stays == 1 and (i % 3 == 0 or group.kind[i // 3] == CONE)
+    return drops and yields(group.m[0], i)
 
 
 @kernel
@@ -207,7 +208,8 @@ def pull_once(k, with_friction, group):
         for r in range(2):
             q = 3 * i + 1 + r
             if not stops(group, q):
-                last[q] = -group.mu[i] * group.heading[i, r] * last[3 * i] if slides else 0.0
+                rubs = slides and yields(W, q)
+                last[q] = -group.mu[i] * group.heading[i, r] * last[3 * i] if rubs else 0.0
     for i in range(n):
         x[i] = 0.0
         if stops(group, i):
