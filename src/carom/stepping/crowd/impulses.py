@@ -17,6 +17,7 @@ from carom.geometry.rotation import rotate, rotate_back
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.arrays import STOP
 from carom.persistent.middle_state import halfway, spin_momentum
+from carom.persistent.step_control import affordable
 from carom.stepping.crowd.pose import note_drift, pose
 from carom.stepping.crowd.response import answer
 from carom.stepping.crowd.solve import solve
@@ -25,7 +26,6 @@ from carom.stepping.crowd.surface import onto_surfaces
 
 FINE = 0.1  # of the speed below which bodies rest: to be reached, or they never would
 NOTHING = 1e-9  # of the work of all impulses: that is not given
-SUNK = 1e-9  # of the size of the body: by so much a point that was missed is in the other
 
 
 @kernel
@@ -59,8 +59,9 @@ def find_impulses(model, data, k, h, fall, patient):
     system, controls, active, now = model.system, model.controls, data.active, data.state
     crowd, work, clock, n = data.crowd, data.work, data.clocks[0], data.state.shape[0]
     pose(system, active, k, h, fall, now, crowd, work)
-    tolerance, patient = FINE * controls.rest * fall * h, patient and n > 1
-    gamma, residual = solve(system, crowd, k, n, tolerance, patient, clock)
+    tolerance = FINE * controls.rest * fall * h
+    effort = (patient and n > 1, affordable(controls, clock) - clock.effort)
+    gamma, residual = solve(system, crowd, k, n, tolerance, effort, clock)
     answer(system, k, gamma, crowd, work)
     gain(crowd, work)
     clock.trials += 1
@@ -68,7 +69,7 @@ def find_impulses(model, data, k, h, fall, patient):
     clock.since += 10.0 * (k + n)
     clock.effort += 10.0 * (k + n)
     if n > 1 and bounces_give(k, crowd, work.trial):
-        more = limit_bounces(system, k, n, tolerance, patient, crowd, work, clock)
+        more = limit_bounces(system, k, n, tolerance, effort, crowd, work, clock)
         residual = max(residual, more)
     for i in range(k):
         for j in range(3):
@@ -96,7 +97,7 @@ def bounces_give(k, crowd, end):
 
 
 @kernel
-def limit_bounces(system, k, n, tolerance, patient, crowd, work, clock):
+def limit_bounces(system, k, n, tolerance, effort, crowd, work, clock):
     """Let all impacts of the piece bounce less, by one factor, so that together they give no energy.
 
     With the impulses p_0 without restitution, which lose energy, p = p_0 + s (p_e - p_0): in the cones, and no
@@ -111,7 +112,7 @@ def limit_bounces(system, k, n, tolerance, patient, crowd, work, clock):
         if spot.strikes == 1 and spot.bound + spot.drift[0] > 0.0:
             crowd.c[3 * i] += spot.bound + spot.drift[0]
         spot.after[0], spot.after[1], spot.after[2] = w
-    gamma, residual = solve(system, crowd, k, n, tolerance, patient, clock)
+    gamma, residual = solve(system, crowd, k, n, tolerance, effort, clock)
     answer(system, k, gamma, crowd, work)
     gain(crowd, work)
     a, b, c = 0.0, 0.0, 0.0  # of the work a + b s + c s^2
@@ -173,20 +174,19 @@ def impose(model, data, k, h):
 
 
 @kernel
-def others_sink(system, k, end, crowd, work):
-    """Return whether a point that was not looked at is in the ground, or in a body, at the end."""
-    at = 0
+def deepest_of_others(system, end, work):
+    """Return how deep a feature that was not looked at is in the ground or a body at the end, by its size.
+
+    What was looked at is on the surface. Of two bodies another feature may be inside: one that there was not
+    at the start, as a corner that has come over the edge of a face.
+    """
+    deepest = 0.0
     for c in range(system.contacts.shape[0]):
         contact = system.contacts[c]
-        while at < k and crowd.spots[at].contact < c:
-            at += 1
-        if at < k and crowd.spots[at].contact == c:
-            continue  # looked at, or at some of its points
-        if contact.touches != STOP and apart(contact, end, 0.0):
-            continue
-        if least_gap(system, contact, end, work) < -SUNK * smaller(contact):
-            return True
-    return False
+        if contact.touches == STOP or not apart(contact, end, 0.0):
+            gap = least_gap(system, contact, end, work)
+            deepest = max(deepest, -gap / smaller(contact))
+    return deepest
 
 
 @kernel

@@ -25,13 +25,18 @@ ENTRY = 9.0  # cost [ns] of the entries of a block in a sweep of a W stored whol
 ITERATION = 0.3  # cost [us] of an iteration with it, by k^2
 STEPS, ITERATIONS = 30, 150  # of them at most: of one call of Newton, and in all, about
 PRECISE, AGREED = 1e-10, 1e-8  # of the largest velocity: wanted, and good enough if that is hard
+RELEASE = 100  # iterations: with fewer a release of the proximal term gets nowhere
 SHARE = 2.0  # of what all sweeps cost: for Newton
 PATIENT = 10  # times as many of both, for a few bodies that stand on each other, while the step can afford it
 
 
 @kernel
-def solve(system, crowd, k, n, tolerance, patient, clock):
-    """Solve for the scaled impulses; return the factor that they are to have, and the residual [m/s]."""
+def solve(system, crowd, k, n, tolerance, effort, clock):
+    """Solve for the scaled impulses; return the factor that they are to have, and the residual [m/s].
+
+    `effort`: whether the bodies are few and may have more, and the work [us] that the step can afford.
+    """
+    patient, left = effort
     work, most = crowd.problem, MOST * (PATIENT if patient else 1)
     work.count[o.ITERATIONS] = 0
     gamma = scale_vectors(work, k, crowd.c, crowd.p)
@@ -41,7 +46,7 @@ def solve(system, crowd, k, n, tolerance, patient, clock):
     enough = max(tolerance / gamma, goal, PRECISE * speed)
     if r > enough and not_turning(crowd, k):
         if work.kind == BY_BODIES:
-            r = newton_on_graph(crowd, k, n, r, enough, most)
+            r = newton_on_graph(crowd, k, n, r, enough, (most, left))
         else:
             enough, most = max(enough, AGREED * speed), MOST
             r = newton_on_whole(crowd, k, r, enough, clock)
@@ -111,15 +116,17 @@ def not_turning(crowd, k):
 
 
 @kernel
-def newton_on_graph(crowd, k, n, least, enough, most):
+def newton_on_graph(crowd, k, n, least, enough, effort):
     """Improve the scaled impulses at hand, for about as much as `most` sweeps; return the residual.
 
-    With patience (more than `MOST`) where that is not enough by a release of the proximal term, too.
+    Where that is not enough by a release of the proximal term, too, if that may take `RELEASE` iterations.
     """
+    most, left = effort
     if not find_order(n, k, crowd):
         return least
     pairs, updates = crowd.graph.count[3], crowd.graph.count[2]
-    factors = SHARE * most * SWEEP * k / (UPDATE * updates + CONTACT * k)
+    each = 1e-3 * (UPDATE * updates + CONTACT * k)
+    factors = 1e-3 * SHARE * most * SWEEP * k / each
     if factors < 3.0:
         return least
     work = by_reference(part(crowd.problem, n, pairs, updates))
@@ -127,9 +134,10 @@ def newton_on_graph(crowd, k, n, least, enough, most):
     copy(k, p, best)
     work.count[o.LIMIT], work.count[o.BUDGET] = int(factors), 0
     least = newton_and_keep(work, k, least)
-    if least > enough and most > MOST:
+    more = max(factors, left / each - work.count[o.ITERATIONS])
+    if least > enough and more >= RELEASE:
         work.count[o.LIMIT] = 0
-        work.count[o.BUDGET] = work.count[o.ITERATIONS] + int(factors)
+        work.count[o.BUDGET] = work.count[o.ITERATIONS] + int(more)
         release(work, k, enough)
         least = newton_and_keep(work, k, least)
     copy(k, best, p)

@@ -20,6 +20,8 @@ from carom.geometry.rotation import norm
 from carom.kinematics.contact_point import contact_velocity, place
 from carom.model.arrays import STOP
 
+PARALLEL = 1e-3  # normals of two points of a pair that differ by less are one
+
 
 @kernel
 def closing_speed(contact, state):
@@ -188,6 +190,7 @@ def place_all(system, k, state, crowd, points, work):
             place_stop(system, contact, state, points[i])
             i += 1
             continue
+        first = i
         count = find_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
         while i < k and crowd.spots[i].contact == c:
             spot = crowd.spots[i]
@@ -195,3 +198,38 @@ def place_all(system, k, state, crowd, points, work):
             write_touch(contact, work.touches[t], state, points[i])
             points[i].turns, points[i].length = spot.turns, smaller(contact)
             i += 1
+        if contact.other >= 0:
+            share_plane(points, first, i, state)
+
+
+@kernel
+def share_plane(points, first, last, state):
+    """Let the points of two bodies act in one plane, with one normal, where their normals are nearly equal.
+
+    Each acts half-way between the two surfaces. Four corners of a face then ask for no more than two bodies
+    can follow; with normals that differ by 1e-7 no impulses of moderate size would give what all of them ask.
+    """
+    nearest = first
+    for i in range(first + 1, last):
+        if points[i].gap < points[nearest].gap:
+            nearest = i
+    plane = points[nearest]
+    a, b, n = state[plane.a].x, state[plane.b].x, plane.axes[0]
+    for step in range(first, last + 1):
+        i = nearest if step == first else step - 1
+        if i == nearest and step != first:
+            continue
+        point, away, turned = points[i], 0.0, 0.0
+        for j in range(3):
+            turned += abs(point.axes[0, j] - n[j])
+            half = 0.5 * (a[j] + point.arm_a[j] - b[j] - point.arm_b[j])
+            point.arm_a[j], point.arm_b[j] = point.arm_a[j] - half, point.arm_b[j] + half
+            away += n[j] * (point.arm_a[j] - plane.arm_a[j])
+        if turned <= PARALLEL:
+            for j in range(3):
+                point.arm_a[j], point.arm_b[j] = (
+                    point.arm_a[j] - away * n[j],
+                    point.arm_b[j] - away * n[j],
+                )
+                for r in range(3):
+                    point.axes[r, j] = plane.axes[r, j]

@@ -34,7 +34,12 @@ from carom.stepping.crowd.free_motion import (
     is_loaded,
     mean_power,
 )
-from carom.stepping.crowd.impulses import find_impulses, find_points, impose, others_sink
+from carom.stepping.crowd.impulses import (
+    deepest_of_others,
+    find_impulses,
+    find_points,
+    impose,
+)
 from carom.stepping.crowd.layout import SPOTS
 from carom.stepping.record import grow
 
@@ -44,6 +49,9 @@ FAR, THIN = 0.25, 1.0 / 32.0
 # pieces of a step that may be cut for that, where it can afford them; of the step: none is shorter
 CAREFUL, SHORTEST = 300, 1e-4
 WIDER, WIDEST = 4.0, 16.0  # how much further is looked for points where some were missed
+# of the smaller body: by so much a feature that was no candidate may be in the other; more, and the candidates
+# are looked for further off, or the step is cut, down to that part of it
+SUNK, DEEP, SHORTER = 1e-9, 1e-5, 1.0 / 16.0
 AGAIN = 16  # times at most that points are looked for: each time a row of bodies pushes on one more
 ALONE = 16  # pieces of a step of a body that is alone: they cost little
 
@@ -177,7 +185,7 @@ def collide(model, data, h, fall, patient, careful):
     Returns a code, the number of points, the residual, and the work of what is prescribed.
     """
     system, crowd, work, clock = model.system, data.crowd, data.work, data.clocks[0]
-    wide, n, times = 1.0, data.state.shape[0], 0
+    wide, n, times, before = 1.0, data.state.shape[0], 0, -1
     while True:
         k = find_points(model, data, h, fall, wide)
         if k < 0:
@@ -191,9 +199,14 @@ def collide(model, data, h, fall, patient, careful):
         driven, holds = impose(model, data, k, h)
         if not holds:
             return CONSTRAINTS_LOST, k, residual, driven
-        wide, times = min(WIDEST, wide * WIDER), times + 1
-        if not (n > 1 and times < AGAIN and others_sink(system, k, work.trial, crowd, work)):
+        sunk = deepest_of_others(system, work.trial, work) if n > 1 else 0.0
+        times += 1
+        if sunk <= SUNK:
             return 0, k, residual, driven
+        if times >= AGAIN or (wide == WIDEST and k == before):
+            deep = sunk > DEEP and h > SHORTER * model.controls.step
+            return MISSED if deep else 0, k, residual, driven
+        wide, before = min(WIDEST, wide * WIDER), k
 
 
 @kernel
