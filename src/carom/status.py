@@ -83,8 +83,9 @@ _MESSAGES = {
     ),
     Status.INACCURATE: (
         "The run reached its end, but its energy is off by more than a hundred times "
-        "Options.energy_tolerance, or a body is in what it touches by more than 1e-2 of its size. The solution "
-        "is whole; do not trust it before a smaller step agrees."
+        "Options.energy_tolerance, or a body is in what it touches by more than 1e-2 of its size, or contacts "
+        "were solved to no better than a tenth of the greatest speed. The solution is whole; do not trust it "
+        "before a smaller step agrees."
     ),
     Status.UNSTABLE: (
         "Each step, however short it was cut, gained as much energy as it exchanged: springs, dampers or loads "

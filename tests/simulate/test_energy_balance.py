@@ -329,3 +329,23 @@ def test_a_body_in_what_it_touches_is_said():
             (said,) = sentences(run.watch[0], scene)
             assert said.startswith(words)
             assert "t = 0.07 s" in said
+
+
+def test_contacts_that_are_not_solved():
+    """A sentence from a hundredth of the greatest speed on, no success from a tenth on."""
+    scene = carom.Scene(gravity=(0, 0, -G))
+    floor = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1))
+    scene.add_contact(
+        scene.add_body(carom.Sphere(0.1), mass=1.0, position=(0, 0, 0.2)), floor, restitution=0.5
+    )
+    run = carom.simulate(scene, 0.2, step=0.01)._run
+    # falls .1 m, and what gravity gives in a step of 10 ms counts
+    assert run.watch["speed"][0] == pytest.approx(np.sqrt(2 * G * 0.1) + 0.01 * G, rel=0.05)
+    assert run.watch["unsolved"][0] < 1e-12
+    for part, status, said in ((0.009, "SUCCESS", 0), (0.05, "SUCCESS", 1), (0.2, "INACCURATE", 1)):
+        run.watch["unsolved"], run.watch["unsolved_at"] = part * run.watch["speed"], 0.15
+        assert run.judged(Status.SUCCESS).name == status
+        assert len(sentences(run.watch[0], scene)) == said
+    run.watch["unsolved"] = np.nan
+    assert run.judged(Status.SUCCESS) is Status.INACCURATE
+    assert "m/s only at t = 0.15 s" in sentences(run.watch[0], scene)[0]

@@ -7,32 +7,66 @@ from carom._compiled.decorators import kernel
 
 @kernel
 def factor(A, n, pivot, least):
-    """Factor A[:n, :n] in place; a pivot smaller than `least` is replaced by it. Return how many were."""
+    """Factor A[:n, :n] in place; a pivot smaller than `least` is replaced by it. Return how many were.
+
+    Four columns at a time, so that what is right of them is read and written once for all of them.
+    """
     replaced = 0
-    for k in range(n):
-        top, row = abs(A[k, k]), k
-        for i in range(k + 1, n):
-            if abs(A[i, k]) > top:
-                top, row = abs(A[i, k]), i
-        pivot[k] = row
-        a, b = A[k], A[row]
-        if row != k:
-            for j in range(n):
-                t = a[j]
-                a[j] = b[j]
-                b[j] = t
-        if not top > least:
-            a[k] = least if a[k] >= 0.0 else -least
-            replaced += 1
-        inverse = 1.0 / a[k]
-        for i in range(k + 1, n):
-            b = A[i]
-            m = b[k] * inverse
-            b[k] = m
-            if m != 0.0:
-                for j in range(k + 1, n):
-                    b[j] -= m * a[j]
+    for first in range(0, n, 4):
+        last = min(first + 4, n)
+        for k in range(first, last):
+            exchange(A, n, pivot, k)
+            a = A[k]
+            if not abs(a[k]) > least:
+                a[k] = least if a[k] >= 0.0 else -least
+                replaced += 1
+            inverse = 1.0 / a[k]
+            for i in range(k + 1, n):
+                b = A[i]
+                b[k] *= inverse
+                for j in range(k + 1, last):
+                    b[j] -= b[k] * a[j]
+        for k in range(first, last):
+            for i in range(k + 1, last):
+                subtract(A[k], A[i][k], last, n, A[i])
+        if last == first + 4:
+            for i in range(last, n):
+                subtract_four(A, first, n, A[i])
     return replaced
+
+
+@kernel
+def exchange(A, n, pivot, k):
+    """Exchange row k with that of the largest number below it in its column."""
+    top, row = abs(A[k, k]), k
+    for i in range(k + 1, n):
+        if abs(A[i, k]) > top:
+            top, row = abs(A[i, k]), i
+    pivot[k] = row
+    if row != k:
+        a, b = A[k], A[row]
+        for j in range(n):
+            t = a[j]
+            a[j] = b[j]
+            b[j] = t
+
+
+@kernel
+def subtract(a, m, first, last, b):
+    """Subtract m times row a from row b."""
+    if m != 0.0:
+        for j in range(first, last):
+            b[j] -= m * a[j]
+
+
+@kernel
+def subtract_four(A, k, n, b):
+    """Subtract four rows from k on from row b, whose multiples of them stand in its columns k to k + 3."""
+    a0, a1, a2, a3 = A[k], A[k + 1], A[k + 2], A[k + 3]
+    m0, m1, m2, m3 = b[k], b[k + 1], b[k + 2], b[k + 3]
+    if m0 != 0.0 or m1 != 0.0 or m2 != 0.0 or m3 != 0.0:
+        for j in range(k + 4, n):
+            b[j] = (((b[j] - m0 * a0[j]) - m1 * a1[j]) - m2 * a2[j]) - m3 * a3[j]
 
 
 @kernel

@@ -42,7 +42,13 @@ from carom.persistent.finish import finish, forces_at_end, gained
 from carom.persistent.middle_state import halfway, mean_velocity, spin_momentum
 from carom.persistent.return_to_surfaces import onto_surfaces
 from carom.persistent.rolling_friction import bound_turning, first_torque
-from carom.persistent.step_control import affordable, plain_step, unnamed
+from carom.persistent.step_control import (
+    affordable,
+    charge_iterations,
+    iterations_left,
+    plain_step,
+    unnamed,
+)
 
 ROUNDS = 50
 CONVERGED = 1e-14  # relative change of velocities by a round that is the last
@@ -52,7 +58,6 @@ FAR, ROUGH = 1e-4, 1e-8
 # of a body alone, whose motion is unique though forces are not: how well the first round solves for these, and
 # the others as a part of what the last has changed
 FIRST, PART = 1e-5, 1e-4
-ITERATION = 0.3  # cost [us] of an iteration for k points, by k^2
 ROUND = 1.0  # of a round of joined bodies, by a step without contacts
 
 
@@ -144,7 +149,7 @@ def step_group(model, data, label, h):
     else:
         over = unnamed(system, controls, start, end, friction, count, group.member)
         work.result[0].unnamed = max(work.result[0].unnamed, over)
-    forces_at_end(system, controls, active, k, end, group, work)
+    forces_at_end(model, data, k, end)
 
 
 @kernel
@@ -152,15 +157,14 @@ def find_impulses(model, data, k, enough):
     """Solve for the impulses of a round, to `enough` (0: to round-off); return what that moves, relative."""
     controls = model.controls
     group, clock = data.group, data.clocks[0]
-    left, each = affordable(controls, clock) - clock.effort, ITERATION * k * k
     group.cone.mismatch[ENOUGH] = enough
-    group.cone.count[BUDGET] = max(100, int(left / each))
+    group.cone.count[BUDGET] = iterations_left(controls, clock, k)
     _, _, iterations = solve_cones(
         k, group.m[0], group.v[C], group.mu, group.kind, group.heading, group.v[P],
         group.cone,
     )  # fmt: skip
-    clock.effort += each * iterations
-    clock.since += 5.0 * k + each * iterations
+    charge_iterations(clock, k, iterations)
+    clock.since += 5.0 * k
     return moved(3 * k, group)
 
 

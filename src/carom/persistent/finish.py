@@ -101,15 +101,16 @@ def come_to_rest(system, tolerance, start, end, count, group):
 
 
 @kernel
-def forces_at_end(system, controls, active, k, end, group, work):
+def forces_at_end(model, data, k, end):
     """Put the forces in the state at the end into the list of active points."""
+    system, active, group, work = model.system, data.active, data.group, data.work
     for i in range(k):
         closed_point = group.closed[i]
         active_point = active.points[closed_point.active]
         closed_point.stays = 1 if active_point.next != OPEN else 0
     place_closed(system, k, end, group, group.points[0], work)
-    pose_forces(system, controls, active, k, end, group, work)
-    status = solve_forces(system, k, group)
+    pose_forces(system, model.controls, active, k, end, group, work)
+    status = solve_forces(model, data, k)
     push = greatest_push(k, group)
     for i in range(k):
         active_point = active.points[group.closed[i].active]

@@ -15,11 +15,11 @@ from carom.contact.gap import slow
 from carom.contact.place import drift_of
 from carom.dynamics.acceleration import acceleration
 from carom.dynamics.several_points import accelerations, inverse_masses, velocities
-from carom.friction.layout import CONE, ENOUGH, SLIDING
+from carom.friction.layout import BUDGET, CONE, ENOUGH, SLIDING
 from carom.friction.solve import solve_cones
-from carom.friction.strategy import allow
 from carom.impact.workspace import OLD, C, P, U
 from carom.persistent.rolling_friction import bound_turning, take_torque
+from carom.persistent.step_control import charge_iterations, iterations_left
 
 
 @kernel
@@ -67,24 +67,25 @@ def set_heading(group, i, u1, u2, still):
 
 
 @kernel
-def solve_forces(system, k, group):
+def solve_forces(model, data, k):
     """Write the forces of the points that stay into p, and the accelerations of all k into `old`."""
-    turning = False
+    system, group, turning = model.system, data.group, False
     for i in range(k):
         turning = turning or group.closed[i].turns > 0
     for i in range(3 * k):
         group.v[P][i] = 0.0
-    status = solve_once(k, group)
+    status = solve_once(model, data, k)
     for _ in range(50 if turning else 0):
         if not bound_turning(system, k, group) > 1e-14:
             break
-        status = solve_once(k, group)
+        status = solve_once(model, data, k)
     return status
 
 
 @kernel
-def solve_once(k, group):
+def solve_once(model, data, k):
     """Write forces and accelerations, for bounds of torques that are known."""
+    group, clock = data.group, data.clocks[0]
     W, M, b, p = group.m[0], group.m[1], group.v[OLD], group.v[P]
     n = 3 * k
     for i in range(n):
@@ -94,8 +95,9 @@ def solve_once(k, group):
             M[i, j] = W[i, j] if both else 1.0 if i == j else 0.0
         b[i] = group.v[C][i] if stays else 1.0 if i % 3 == 0 else 0.0
     group.cone.mismatch[ENOUGH] = 0.0  # to round-off
-    allow(group.cone, k)
-    status, _, _ = solve_cones(k, M, b, group.mu, group.kind, group.heading, p, group.cone)
+    group.cone.count[BUDGET] = iterations_left(model.controls, clock, k)
+    status, _, iterations = solve_cones(k, M, b, group.mu, group.kind, group.heading, p, group.cone)
+    charge_iterations(clock, k, iterations)
     for i in range(n):
         a = group.v[C][i]
         for j in range(n):

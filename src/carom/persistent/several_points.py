@@ -43,7 +43,7 @@ def activate_several(model, data, k, label, horizon):
         data.records,
     )
     pose_forces(system, controls, active, k, state, group, work)
-    judge(system, k, state, horizon, group)
+    judge(model, data, k, horizon)
     new, stay = -1, False
     for i in range(k):
         closed_point = group.closed[i]
@@ -67,13 +67,14 @@ def activate_several(model, data, k, label, horizon):
 
 
 @kernel
-def judge(system, k, state, horizon, group):
+def judge(model, data, k, horizon):
     """Mark the points that stay.
 
     First those that do not leave, as far as they press; then those whose bounces end within `horizon` under the
     acceleration that these leave them; then those for which that is so under the new ones, and so on: what lies
     on a body that falls comes to rest only with it.
     """
+    system, state, group = model.system, data.state, data.group
     for i in range(k):
         contact, u = system.contacts[group.closed[i].contact], group.v[U][3 * i]
         group.closed[i].stays = 1 if abs(u) <= slow(contact, state) else 0
@@ -81,7 +82,7 @@ def judge(system, k, state, horizon, group):
     for i in range(3 * k):
         push = max(push, abs(group.v[C][i]))
     for turn in range(k + 1):
-        solve_forces(system, k, group)
+        solve_forces(model, data, k)
         more = False
         for i in range(k):
             contact, u = system.contacts[group.closed[i].contact], group.v[U][3 * i]
@@ -284,7 +285,7 @@ def first_forces(model, data, label):
         active.points[group.closed[i].active].several = 1
         group.closed[i].stays = 1
     pose_forces(system, controls, active, k, state, group, work)
-    status = solve_forces(system, k, group)
+    status = solve_forces(model, data, k)
     for i in range(k):
         active_point = active.points[group.closed[i].active]
         take_forces(active_point, i, group)

@@ -43,6 +43,8 @@ WILD, GROSS = 100.0, 1e4
 PATIENCE = 10.0
 # about what a step without contacts takes of a body [us], with closed loops and without
 LOOPS_STEP, OTHER_STEP = 25.0, 0.6
+# of a search for impulses: what an iteration takes for k points, by k^2 [us]; how many it has in any case
+ITERATION, SOME = 0.3, 100
 
 
 @kernel
@@ -174,6 +176,19 @@ def plain_step(system):
 def affordable(controls, clock):
     """Return how much work a step may take for contacts, about [us]: more than that, and it is given up."""
     return max(r.EACH, clock.credit) * (1.0 if controls.retry == 1 else PATIENCE)
+
+
+@kernel
+def iterations_left(controls, clock, k):
+    """Return how many iterations for k points the step can afford, some in any case."""
+    return max(SOME, int((affordable(controls, clock) - clock.effort) / (ITERATION * k * k)))
+
+
+@kernel
+def charge_iterations(clock, k, iterations):
+    """Add the work of iterations for k points to that of the step."""
+    clock.effort += ITERATION * k * k * iterations
+    clock.since += ITERATION * k * k * iterations
 
 
 @kernel

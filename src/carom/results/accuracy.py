@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 INACCURATE = 100.0  # times the tolerance: what is no success any more
 # parts of its size that a body is in what it touches: said, and no success
 DEEP, TOO_DEEP = 1e-8, 1e-2
+# parts of the greatest speed that contacts are not solved to: said, and no success
+POOR, TOO_POOR = 1e-2, 0.1
 
 _WHAT = {
     RESIDUAL: (
@@ -54,18 +56,29 @@ def beyond(i: int, watch: np.record, times: float = 1.0) -> bool:
 
 
 def judge(watch: np.record) -> Status:
-    """Return whether a run that has reached its end has kept the balance of energy, and its gaps."""
+    """Return whether a run at its end has kept its balance of energy, its gaps and Coulomb's law."""
     off = beyond(ALL, watch, INACCURATE) or not watch.depth <= TOO_DEEP
+    off = off or not watch.unsolved <= TOO_POOR * watch.speed
     return Status.INACCURATE if off else Status.SUCCESS
 
 
 def sentences(watch: np.record, scene: Scene | None = None) -> tuple[str, ...]:
-    """Return what has gone beyond `Options.energy_tolerance`, or into a surface: when, and what to change."""
+    """Return what is not as it should be, when, and what to change: energy, depths, contacts not solved."""
     kinds = [i for i in (RESIDUAL, IMPACTS, FRICTION, BOUNCES) if beyond(i, watch)]
     if not kinds and beyond(ALL, watch):
         kinds = [ALL]
     deep = [_of_depth(watch, scene)] if scene is not None and watch.depth > DEEP else []
-    return (*(_sentence(i, watch) for i in kinds), *deep)
+    poor = [] if watch.unsolved <= POOR * watch.speed else [_of_contacts(watch)]
+    return (*(_sentence(i, watch) for i in kinds), *deep, *poor)
+
+
+def _of_contacts(watch: np.record) -> str:
+    """Return the sentence about contacts whose impulses were not found."""
+    return (
+        f"Contacts were solved to {watch.unsolved:.2g} m/s only at t = {watch.unsolved_at:.6g} s (greatest "
+        f"speed: {watch.speed:.2g} m/s): so fast may points approach, or slip against their friction. Take a "
+        "smaller step."
+    )
 
 
 def _of_depth(watch: np.record, scene: Scene) -> str:

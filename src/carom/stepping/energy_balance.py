@@ -50,6 +50,9 @@ WATCH = [
     ("depth", "f8"),  # greatest of a contact at a saved time, by the size of the body
     ("deep_at", "f8"),  # its time, and its contact
     ("deep_contact", "i8"),
+    ("speed", "f8"),  # greatest of a body so far, and what gravity gives in a step [m/s]
+    ("unsolved", "f8"),  # greatest residual of active contacts so far [m/s], and when
+    ("unsolved_at", "f8"),
     ("gains", "i8"),  # shortest steps in a row that gained
     ("share", "f8"),  # part of what was exchanged that a step may have without a name
 ]
@@ -68,7 +71,7 @@ def begin_watch(system, now, t, watch):
     kinetic, potential, size = energies(system, now, t)
     watch.total, watch.potential = kinetic + potential, potential
     watch.exchanged, watch.struck, watch.named, watch.gains = kinetic, 0, 0.0, 0
-    watch.size, watch.depth = size, 0.0
+    watch.size, watch.depth, watch.speed, watch.unsolved = size, 0.0, 0.0, 0.0
     for i in range(5):
         watch.amount[i], watch.time[i] = 0.0, t
     for i in range(4):
@@ -104,6 +107,20 @@ def watch_step(system, now, clock, records, watch):
         total += line - watch.lowest[i]
         compare(i, line - watch.lowest[i], clock.now, watch)
     compare(ALL, total, clock.now, watch)
+    watch.speed = max(
+        watch.speed, greatest_speed(system, now) + norm(system.gravity) * clock.length
+    )
+    if not clock.residual <= watch.unsolved:
+        watch.unsolved, watch.unsolved_at = clock.residual, clock.now
+
+
+@kernel
+def greatest_speed(system, now):
+    """Return the greatest speed of a body, with that of its turning at its size [m/s]."""
+    most = 0.0
+    for b in range(now.shape[0]):
+        most = max(most, norm(now[b].v) + system.bodies[b].extent * norm(now[b].w))
+    return most
 
 
 @inlined

@@ -215,21 +215,22 @@ def share_plane(points, first, last, state):
             nearest = i
     plane = points[nearest]
     a, b, n = state[plane.a].x, state[plane.b].x, plane.axes[0]
-    for step in range(first, last + 1):
-        i = nearest if step == first else step - 1
-        if i == nearest and step != first:
-            continue
-        point, away, turned = points[i], 0.0, 0.0
+    for i in range(first, last):
+        point = points[i]
         for j in range(3):
-            turned += abs(point.axes[0, j] - n[j])
             half = 0.5 * (a[j] + point.arm_a[j] - b[j] - point.arm_b[j])
             point.arm_a[j], point.arm_b[j] = point.arm_a[j] - half, point.arm_b[j] + half
+    for i in range(first, last):
+        point, turned, away = points[i], 0.0, 0.0
+        for j in range(3):
+            turned += abs(point.axes[0, j] - n[j])
             away += n[j] * (point.arm_a[j] - plane.arm_a[j])
-        if turned <= PARALLEL:
-            for j in range(3):
-                point.arm_a[j], point.arm_b[j] = (
-                    point.arm_a[j] - away * n[j],
-                    point.arm_b[j] - away * n[j],
-                )
-                for r in range(3):
-                    point.axes[r, j] = plane.axes[r, j]
+        if turned > PARALLEL or i == nearest:
+            continue
+        for j in range(3):
+            point.arm_a[j], point.arm_b[j] = (
+                point.arm_a[j] - away * n[j],
+                point.arm_b[j] - away * n[j],
+            )
+            for r in range(3):
+                point.axes[r, j] = plane.axes[r, j]
