@@ -15,7 +15,7 @@ from carom.contact.gap import slow
 from carom.contact.place import drift_of
 from carom.dynamics.acceleration import acceleration
 from carom.dynamics.several_points import accelerations, inverse_masses, velocities
-from carom.friction.layout import BUDGET, CONE, ENOUGH, SLIDING
+from carom.friction.layout import BUDGET, CONE, ENOUGH, NEAR, SLIDING
 from carom.friction.solve import solve_cones
 from carom.impact.workspace import OLD, C, P, U
 from carom.persistent.rolling_friction import bound_turning, take_torque
@@ -94,7 +94,7 @@ def solve_once(model, data, k):
             both = stays and group.closed[j // 3].stays == 1
             M[i, j] = W[i, j] if both else 1.0 if i == j else 0.0
         b[i] = group.v[C][i] if stays else 1.0 if i % 3 == 0 else 0.0
-    group.cone.mismatch[ENOUGH] = 0.0  # to round-off
+    group.cone.mismatch[ENOUGH], group.cone.count[NEAR] = 0.0, 0  # to round-off, of least norm
     group.cone.count[BUDGET] = iterations_left(model.controls, clock, k)
     status, _, iterations = solve_cones(k, M, b, group.mu, group.kind, group.heading, p, group.cone)
     charge_iterations(clock, k, iterations)
