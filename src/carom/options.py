@@ -33,11 +33,7 @@ class Options:
     multiple : {"simultaneous", "sequential", "newton"}
         Impacts while several points of the bodies are closed: their boundary layers are passed together
         (default), or one blow after the other, the fastest first, or all by Newton's law in one contact
-        problem (Moreau 1988), which is the quickest and meant for heaps. (Mathematics page, V.)
-    heap : int
-        An island of this many bodies or more that lie on each other, at two points each or more on
-        average, is a heap: it takes its steps whole, with all contacts in one problem, Newton's law of
-        impact, and order 1 in the times of impacts. Default 8. (Mathematics page, VI.9.)
+        problem (Moreau 1988), which is the quickest. (Mathematics page, V.)
     corner_tolerance : float
         Relative error of the velocities after a simultaneous impact. Default 1e-8.
     corner_exponent : float
@@ -94,7 +90,6 @@ class Options:
     gap_tolerance: float = 1e-15
     tie_tolerance: float = 1e-9
     multiple: str = "simultaneous"
-    heap: int = 8
     corner_tolerance: float = 1e-8
     corner_exponent: float = 1.0
     hold: bool = True
@@ -125,7 +120,6 @@ class Options:
         checks.number("energy_tolerance", self.energy_tolerance, above=0.0)
         for name in ("natural_frequency", "damping_ratio"):
             checks.number(name, getattr(self, name), least=0.0)
-        checks.integer("heap", self.heap, least=2)
         checks.integer("layer_steps", self.layer_steps, least=1)
         for name in ("max_iterations", "max_impacts_per_step", "max_cuts"):
             checks.integer(name, getattr(self, name), least=1)

@@ -75,7 +75,6 @@ class Run:
             layer_time=int(options.add_layer_time),
             max_impacts=options.max_impacts_per_step,
             max_cuts=options.max_cuts,
-            heap=options.heap,
             retry=0,
             order=0 if tolerances is None else METHODS[method].order,
             rtol=tolerances[0] if tolerances else 0.0,
@@ -169,7 +168,7 @@ class Run:
             self.crowd = roomier_crowd(self.crowd)
         else:
             bodies = len(self.compiled.system.bodies)
-            joined = len(self.compiled.system.joints) > 0
+            joined = int(np.sum(self.compiled.system.bodies.isolated == 0))
             self.crowd = new_crowd(bodies, len(self.active.points), SPOTS * bodies, joined)
 
     @property

@@ -1,11 +1,12 @@
-"""W = G M^-1 G^T through bodies, never formed: products, sweeps, and the linear systems.
+"""W = G P G^T through bodies, never formed: products, sweeps, and the linear systems.
 
 Both systems have the form J x + D W x = r with 3x3 blocks J and D of each contact. With the bodies' motion
-y = M^-1 G^T x the contacts are eliminated, x = J^-1 (r - D G y), and
+y = P G^T x the contacts are eliminated, x = J^-1 (r - D G y), and
 
-    (I + M^-1 G^T K G) y = M^-1 G^T J^-1 r,   K = J^-1 D,
+    (I + P G^T K G) y = P G^T J^-1 r,   K = J^-1 D,
 
-is a system on the graph of the bodies. It is stiff, K ~ 1/eps where a contact sticks: what is lost to round-off
+is a system on the graph of the bodies. P is M^-1 where nothing is joined; an impulse moves what joints tie to
+its bodies too (`OTHER`). It is stiff, K ~ 1/eps where a contact sticks: what is lost to round-off
 comes back in the next iteration, which starts from the true residual.
 """
 
@@ -16,7 +17,7 @@ from carom._compiled.units import unit
 from carom.friction import layout as o
 from carom.friction.blocks import factor_blocks, substitute_blocks
 from carom.friction.cone import slope
-from carom.friction.local import solve_local
+from carom.friction.local import solve_prepared
 
 
 @unit
@@ -59,6 +60,11 @@ def _push_size(work, i):
             for r in range(6):
                 for a in range(3):
                     v[r] += abs(Y[r, a] * p[3 * i + a])
+    for e in range(link.others, link.others_end):
+        Y, v = work.other[e].response, work.body[work.other[e].body].motion
+        for r in range(6):
+            for a in range(3):
+                v[r] += abs(Y[r, a] * p[3 * i + a])
 
 
 @kernel
@@ -88,7 +94,7 @@ def sweep(work, k, backward):
         c0 = c[n] + u0 - (W[0] * q0 + W[1] * q1 + W[2] * q2)
         c1 = c[n + 1] + u1 - (W[1] * q0 + W[3] * q1 + W[4] * q2)
         c2 = c[n + 2] + u2 - (W[2] * q0 + W[4] * q1 + W[5] * q2)
-        found, x0, x1, x2 = solve_local(work.contact[i], W, (c0, c1, c2))
+        found, x0, x1, x2 = solve_prepared(work.contact[i], work.link[i], (c0, c1, c2))
         if found:
             p[n], p[n + 1], p[n + 2] = x0, x1, x2
             _push(work, i, x0 - q0, x1 - q1, x2 - q2)
@@ -166,7 +172,7 @@ def solve_shifted(work, k):
 
 @kernel
 def _assemble(work, k):
-    """Write the blocks of I + M^-1 G^T K G."""
+    """Write the blocks of I + P G^T K G."""
     for b in range(work.block.shape[0]):
         one = 1.0 if b < work.body.shape[0] else 0.0
         A = work.block[b]
@@ -185,7 +191,7 @@ def _assemble(work, k):
 
 @kernel
 def _add_columns(work, link, side):
-    """Add M^-1 G^T K G of a contact: the columns of its body `side`, the rows of both."""
+    """Add P G^T K G of a contact: the columns of its body `side`, the rows of all that it moves."""
     G, K = link.rows[side], link.stiffness
     for j in range(6):
         a = K[0, 0] * G[0, j] + K[0, 1] * G[1, j] + K[0, 2] * G[2, j]
@@ -195,6 +201,10 @@ def _add_columns(work, link, side):
             if link.body[other] < 0:
                 continue
             Y, A = link.response[other], work.block[link.corner[other, side]]
+            for r in range(6):
+                A[r, j] += Y[r, 0] * a + Y[r, 1] * b + Y[r, 2] * c
+        for e in range(link.others, link.others_end):
+            Y, A = work.other[e].response, work.block[work.other[e].corner[side]]
             for r in range(6):
                 A[r, j] += Y[r, 0] * a + Y[r, 1] * b + Y[r, 2] * c
 
@@ -223,6 +233,10 @@ def _push(work, i, p0, p1, p2):
             Y, v = link.response[side], work.body[link.body[side]].motion
             for r in range(6):
                 v[r] += Y[r, 0] * p0 + Y[r, 1] * p1 + Y[r, 2] * p2
+    for e in range(link.others, link.others_end):
+        Y, v = work.other[e].response, work.body[work.other[e].body].motion
+        for r in range(6):
+            v[r] += Y[r, 0] * p0 + Y[r, 1] * p1 + Y[r, 2] * p2
 
 
 @kernel

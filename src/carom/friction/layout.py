@@ -73,16 +73,22 @@ LINK = [
     ("body", "i8", 2),
     ("corner", "i8", (2, 2)),
     ("rows", "f8", (2, 3, 6)),  # scaled G
-    ("response", "f8", (2, 6, 3)),  # M^-1 G^T
+    ("response", "f8", (2, 6, 3)),  # of both to an impulse, P G^T; without joints M^-1 G^T
+    ("others", "i8"),  # its rows of `other`: from, to
+    ("others_end", "i8"),
     ("local", "f8", 6),  # upper triangle of the diagonal block of W
+    ("basis", "f8", 4),  # of that (`one_contact.basis_of`)
     ("compliance", "f8", (3, 3)),  # inverse of J
     ("stiffness", "f8", (3, 3)),  # J^-1 D
 ]
 
+#: a body that an impulse moves by way of joints
+OTHER = [("body", "i8"), ("corner", "i8", 2), ("response", "f8", (6, 3))]
+
 ISLAND_BODY = [("motion", "f8", 6), ("pivot", "i8", 6)]
 
 
-#: how the Delassus operator W is kept: whole; or by bodies, as G and M^-1, W itself never formed
+#: how the Delassus operator W is kept: whole; or by bodies, as G and P G^T, W itself never formed
 DENSE, BY_BODIES = range(2)
 
 
@@ -101,6 +107,7 @@ class ContactWork(NamedTuple):
     active: np.ndarray  # (3K,) int64, rows of `matrix`
     # BY_BODIES
     link: np.recarray  # (K,) LINK
+    other: np.recarray  # (R,) OTHER
     body: np.recarray  # (N,) ISLAND_BODY
     place: np.recarray  # (N,) PLACE
     later: np.ndarray  # (pairs,) the body of a pair that is eliminated later
@@ -125,6 +132,7 @@ def new_contact_work(capacity: int) -> ContactWork:
         pivot=np.zeros(n, dtype=np.int64),
         active=np.zeros(n, dtype=np.int64),
         link=table(LINK, 0),
+        other=table(OTHER, 0),
         body=table(ISLAND_BODY, 0),
         place=table(PLACE, 0),
         later=np.zeros(0, dtype=np.int64),

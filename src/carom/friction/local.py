@@ -4,18 +4,42 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.friction.layout import CONE, DISC, SLIDING
-from carom.friction.one_contact import solve_one
+from carom.friction.one_contact import basis_of, solve_in_basis, solve_one
 from carom.friction.rays import solve_tangential
 
 
 @kernel
 def solve_local(contact, W, c):
     """Return (found, p_n, p_1, p_2) of w = W p + c; W by its upper triangle (W_nn, W_n1, W_n2, W_11, ...)."""
+    if contact.kind == CONE:
+        return solve_one(W, c, contact.mu)
+    return solve_other(contact, W, c)
+
+
+@kernel
+def solve_prepared(contact, link, c):
+    """Do the same with the basis of W that stands with the contact: a sweep meets the same W again and again."""
+    row, basis = link.local, link.basis
+    W = row[0], row[1], row[2], row[3], row[4], row[5]
+    if contact.kind == CONE:
+        return solve_in_basis(W, (basis[0], basis[1], basis[2], basis[3]), c, contact.mu)
+    return solve_other(contact, W, c)
+
+
+@kernel
+def prepare(link):
+    """Write the basis of W of a contact."""
+    row, basis = link.local, link.basis
+    W = row[0], row[1], row[2], row[3], row[4], row[5]
+    basis[0], basis[1], basis[2], basis[3] = basis_of(W)
+
+
+@kernel
+def solve_other(contact, W, c):
+    """Solve a contact that is no cone."""
     kind, mu = contact.kind, contact.mu
     w00, w01, w02, w11, w12, w22 = W
     c0, c1, c2 = c
-    if kind == CONE:
-        return solve_one(W, c, mu)
     if kind == DISC:
         return solve_one((1.0, 0.0, 0.0, w11, w12, w22), (-contact.h1, c1, c2), 1.0)
     if kind == SLIDING:

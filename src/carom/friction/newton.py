@@ -65,6 +65,23 @@ def newton(work, k, eps, patient):
 
 
 @kernel
+def step(work, k, eps):
+    """Make one whole step from p, which is the centre of the proximal term too, and project what it reaches."""
+    p, centre, change = work.vector[o.P], work.vector[o.CENTRE], work.vector[o.STEP]
+    for i in range(3 * k):
+        centre[i] = p[i]
+    _arrive(work, k, eps)
+    factor(work, k, eps)
+    solve(work, k)
+    for i in range(3 * k):
+        p[i] += change[i]
+    for i in range(k):
+        n = 3 * i
+        p[n], p[n + 1], p[n + 2] = project(work.contact[i], p[n], p[n + 1], p[n + 2])
+    work.count[o.ITERATIONS] += 1
+
+
+@kernel
 def _search(work, k, bound):
     """Return the first of t = 1, 1/2, ... with |f| well below the bound, else the best, 0 if none is below."""
     t, best_t, best = 1.0, 0.0, bound

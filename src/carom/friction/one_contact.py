@@ -47,7 +47,28 @@ def solve_one(W, velocity, mu):
     concave quadratic. With the former replaced by its tangent the root of the quadratic lies left of the
     least root of h: the iteration rises to that root, quadratically, and never passes it.
     """
+    return solve_in_basis(
+        W, basis_of(W) if velocity[0] < 0.0 else (0.0, 0.0, 1.0, 0.0), velocity, mu
+    )
+
+
+@kernel
+def basis_of(W):
+    """Return (d1, d2, c, s): eigenvalues and eigenbasis of A = W_tt - W_tn W_nt/W_nn; 0 where nothing moves."""
     wnn, wn1, wn2, w11, w12, w22 = W
+    if not wnn > 0.0:
+        return 0.0, 0.0, 1.0, 0.0
+    a11, a12, a22 = w11 - wn1 * wn1 / wnn, w12 - wn1 * wn2 / wnn, w22 - wn2 * wn2 / wnn
+    d1, d2, c, s = eigenbasis(a11, a12, a22)
+    least = _EMPTY * (w11 + w22)
+    return d1 if d1 > least else 0.0, d2 if d2 > least else 0.0, c, s
+
+
+@kernel
+def solve_in_basis(W, basis, velocity, mu):
+    """Do the same with the basis of A that is known."""
+    wnn, wn1, wn2, _, _, _ = W
+    d1, d2, c, s = basis
     cn, c1, c2 = velocity
     if cn >= 0.0:
         return True, 0.0, 0.0, 0.0
@@ -55,19 +76,13 @@ def solve_one(W, velocity, mu):
         return False, 0.0, 0.0, 0.0
     if not mu > 0.0:
         return True, -cn / wnn, 0.0, 0.0
-    a11, a12, a22 = w11 - wn1 * wn1 / wnn, w12 - wn1 * wn2 / wnn, w22 - wn2 * wn2 / wnn
     b1, b2 = c1 - wn1 * cn / wnn, c2 - wn2 * cn / wnn
-    d1, d2, c, s = eigenbasis(a11, a12, a22)
     b1, b2 = c * b1 + s * b2, c * b2 - s * b1
     g1, g2 = c * wn1 + s * wn2, c * wn2 - s * wn1
-    least = _EMPTY * (w11 + w22)
-    tiny = 1e-13 * (abs(c1) + abs(c2) + (abs(wn1) + abs(wn2)) * abs(cn) / wnn)
-    if not d1 > least:
-        d1 = 0.0
-        b1 = b1 if abs(b1) > tiny else 0.0
-    if not d2 > least:
-        d2 = 0.0
-        b2 = b2 if abs(b2) > tiny else 0.0
+    if d1 == 0.0 or d2 == 0.0:
+        tiny = 1e-13 * (abs(c1) + abs(c2) + (abs(wn1) + abs(wn2)) * abs(cn) / wnn)
+        b1 = b1 if d1 > 0.0 or abs(b1) > tiny else 0.0
+        b2 = b2 if d2 > 0.0 or abs(b2) > tiny else 0.0
     found, p1, p2 = _tangential((d1, d2), (b1, b2), (g1, g2), wnn, cn, mu)
     pn = -(cn + g1 * p1 + g2 * p2) / wnn
     return found, pn, c * p1 - s * p2, s * p1 + c * p2

@@ -7,7 +7,7 @@ import math
 from carom._compiled.decorators import entry, kernel
 from carom.friction import layout as o
 from carom.friction.layout import BAD_INPUT, NOT_SOLVED, SOLVED
-from carom.friction.local import solve_local
+from carom.friction.local import prepare, solve_local
 from carom.friction.one_contact import upper_triangle
 from carom.friction.residual import measure
 from carom.friction.strategy import search
@@ -97,6 +97,7 @@ def scale_link(link, contact, mu, kind, heading):
         return False
     for r in range(6):
         local[r] *= contact.scale * contact.scale
+    prepare(link)
     for side in range(2):
         for r in range(6 if link.body[side] >= 0 else 0):
             for a in range(3):

@@ -167,7 +167,8 @@ def move_single(model, data, method, start):
     """Move all bodies to the end of the step: event by event, or at once where that made no progress."""
     system, work = model.system, data.work
     step = data.clocks[0].step
-    if not is_whole(step, work):
+    whole = model.controls.retry > 0 and parts.is_crowd(system, data.active, step, work)
+    if not whole and not is_whole(step, work):
         parts.recover(system, step, work)
         return advance(model, data, method)
     step_crowd(model, data, method)
@@ -178,9 +179,9 @@ def move_single(model, data, method, start):
 @inlined
 def move_island(model, data, method):
     """Move an island to the end of the step: event by event, or whole if it is large."""
-    system, controls, work = model.system, model.controls, data.work
+    system, work = model.system, data.work
     step = data.clocks[0].step
-    if not parts.is_crowd(system, data.active, controls.heap, step, work):
+    if not parts.is_crowd(system, data.active, step, work):
         parts.recover(system, step, work)
         return advance(model, data, method)
     step_crowd(model, data, method)

@@ -1,8 +1,8 @@
 """The order in which the bodies of a crowd are eliminated, found anew when other bodies touch.
 
-Bodies are neighbours where they may touch. The one with fewest neighbours goes first, and makes those that it
-leaves neighbours of each other (least degree; rows of bits). A plain form in Python, to compare with, is in the
-tests (`references.island_graph`).
+Bodies are neighbours where they may touch, or joints pass an impulse on from one to the other. The one with
+fewest neighbours goes first, and makes those that it leaves neighbours of each other (least degree; rows of
+bits). A plain form in Python, to compare with, is in the tests (`references.island_graph`).
 """
 
 from __future__ import annotations
@@ -21,6 +21,11 @@ def find_order(n, k, crowd):
         for side in range(2):
             if graph.body[i, side] != link[i].body[side]:
                 known, graph.body[i, side] = False, link[i].body[side]
+        if graph.body[i, 2] != link[i].others_end:
+            known, graph.body[i, 2] = False, link[i].others_end
+        for e in range(link[i].others, link[i].others_end):
+            if graph.other[e] != crowd.problem.other[e].body:
+                known, graph.other[e] = False, crowd.problem.other[e].body
     if known:
         return graph.count[2] >= 0
     graph.count[0], graph.count[1], graph.count[2] = n, k, -1
@@ -34,7 +39,8 @@ def find_order(n, k, crowd):
 @kernel
 def begin(n, k, crowd):
     """Write the rows of bits of all bodies."""
-    near, degree, link = crowd.graph.near, crowd.graph.degree, crowd.problem.link
+    graph, near, degree = crowd.graph, crowd.graph.near, crowd.graph.degree
+    link, other = crowd.problem.link, crowd.problem.other
     words = n // WORD + 1
     for b in range(n):
         degree[b] = 0
@@ -42,11 +48,21 @@ def begin(n, k, crowd):
             near[b, w] = 0
     for i in range(k):
         a, b = link[i].body[0], link[i].body[1]
-        if b >= 0 and a != b and near[a, b // WORD] >> (b % WORD) & 1 == 0:
-            near[a, b // WORD] |= 1 << (b % WORD)
-            near[b, a // WORD] |= 1 << (a % WORD)
-            degree[a] += 1
-            degree[b] += 1
+        meet(graph, a, b)
+        for e in range(link[i].others, link[i].others_end):
+            meet(graph, a, other[e].body)
+            meet(graph, b, other[e].body)
+
+
+@kernel
+def meet(graph, a, b):
+    """Note that two bodies are neighbours; either may be -1, the ground."""
+    near, degree = graph.near, graph.degree
+    if a >= 0 and b >= 0 and a != b and near[a, b // WORD] >> (b % WORD) & 1 == 0:
+        near[a, b // WORD] |= 1 << (b % WORD)
+        near[b, a // WORD] |= 1 << (a % WORD)
+        degree[a] += 1
+        degree[b] += 1
 
 
 @kernel
@@ -142,3 +158,8 @@ def write_corners(k, crowd):
             for s in range(2):
                 a, b = link.body[r], link.body[s]
                 link.corner[r, s] = block_of(n, a, b, crowd) if a >= 0 and b >= 0 else -1
+        for e in range(link.others, link.others_end):
+            other = crowd.problem.other[e]
+            for s in range(2):
+                b = link.body[s]
+                other.corner[s] = block_of(n, other.body, b, crowd) if b >= 0 else -1

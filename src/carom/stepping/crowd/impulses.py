@@ -31,8 +31,7 @@ NOTHING = 1e-9  # of the work of all impulses: that is not given
 @kernel
 def find_points(model, data, h, fall, wide):
     """List the points that may touch, and place them at the end of the flight and at its middle; return k."""
-    system, controls = model.system, model.controls
-    active, now, crowd, work = data.active, data.state, data.crowd, data.work
+    system, active, now, crowd, work = model.system, data.active, data.state, data.crowd, data.work
     n = now.shape[0]
     k = gather(system, active, h, fall, wide, now, crowd, work)
     if k < 0:
@@ -43,9 +42,9 @@ def find_points(model, data, h, fall, wide):
     for i in range(k):
         crowd.spots[i].left = crowd.points[1][i].gap
     place_all(system, k, work.stage, crowd, crowd.points[0], work)
-    if 1 < n < controls.heap:
+    if n > 1:
         place_all(system, k, now, crowd, crowd.points[1], work)
-    note_drift(active, k, 1 < n < controls.heap, now, crowd)
+    note_drift(active, k, n > 1, now, crowd)
     return k
 
 

@@ -11,9 +11,9 @@ from carom._compiled.record_arrays import table
 from carom.friction.layout import (
     BY_BODIES,
     CONTACT,
-    DENSE,
     ISLAND_BODY,
     LINK,
+    OTHER,
     PLACE,
     VECTORS,
     ContactWork,
@@ -22,6 +22,7 @@ from carom.friction.layout import (
 from carom.model.arrays import STATE
 from carom.model.workspace import ACTIVE_POINT, POINT
 from carom.stepping.crowd.graph import WORD
+from carom.stepping.crowd.mixing import Mixing, new_mixing
 
 #: a point that may touch in the step
 SPOT = [
@@ -39,7 +40,7 @@ SPOT = [
         "drift",
         "f8",
         3,
-    ),  # the part of it that is due to rows that turn, of an active point of few bodies; else 0
+    ),  # the part of it that is due to rows that turn, of an active point of several bodies; else 0
     ("bound", "f8"),  # least normal velocity after
     ("after", "f8", 3),  # velocity with restitution
     ("impulse", "f8", 3),
@@ -51,11 +52,14 @@ class Graph(NamedTuple):
     """What finding an order of elimination needs (`carom.stepping.crowd.graph`)."""
 
     count: np.ndarray  # (4,) bodies, points, updates (-1: no room), pairs
-    body: np.ndarray  # (K, 2) bodies of each point
+    body: np.ndarray  # (K, 3) bodies of each point, and the last of its others
+    other: np.ndarray  # (R,) bodies that impulses move by way of joints
     near: np.ndarray  # (N, words) neighbours, a bit each
     degree: np.ndarray  # (N,) how many, -1 once eliminated
     rank: np.ndarray  # (N,) place in the order
 
+
+MOST_TIED = 64  # bodies with joints that are eliminated: of more there are sweeps only
 
 #: of a body, to begin with: points that may touch
 SPOTS = 8
@@ -71,6 +75,7 @@ class Crowd(NamedTuple):
     lift: np.ndarray  # (K,) scaled multipliers of the way back to the surfaces
     bouncing: np.ndarray  # (3K,) impulses with all of their restitution
     problem: ContactWork
+    mixing: Mixing
     graph: Graph
     flight: np.recarray  # (N,) STATE at the end of the step without contacts
     active: np.recarray  # (P,) ACTIVE_POINT, as it will be
@@ -79,14 +84,20 @@ class Crowd(NamedTuple):
     speed: np.ndarray  # (2, N) greatest speed of such a set, at the start and at the end
 
 
-def new_crowd(bodies: int, active: int, points: int, joined: bool = False) -> Crowd:
-    """Return the workspace for `points` points that may touch, and `active` that may be held."""
+def new_crowd(bodies: int, active: int, points: int, joined: int = 0) -> Crowd:
+    """Return the workspace for `points` points that may touch, and `active` that may be held.
+
+    Each impulse on one of the `joined` bodies, those with joints, may move all others of them.
+    """
     # what 500 spheres in a box need is half of this; where it is not enough there are sweeps only
-    pairs, updates = 4 * points, 128 * points
-    problem = new_contact_work(points if joined else 0)._replace(
-        kind=DENSE if joined else BY_BODIES,
+    tied = min(joined, MOST_TIED)
+    pairs, updates = 4 * points + tied * tied, 128 * points + tied**3
+    others = points * max(0, joined - 1)
+    problem = new_contact_work(0)._replace(
+        kind=BY_BODIES,
         contact=table(CONTACT, points),
         link=table(LINK, points),
+        other=table(OTHER, others),
         vector=np.zeros((VECTORS, 3 * points)),
         body=table(ISLAND_BODY, bodies),
         place=table(PLACE, bodies),
@@ -102,9 +113,11 @@ def new_crowd(bodies: int, active: int, points: int, joined: bool = False) -> Cr
         lift=np.zeros(points),
         bouncing=np.zeros(3 * points),
         problem=problem,
+        mixing=new_mixing(points),
         graph=Graph(
             count=np.zeros(4, dtype=np.int64),
-            body=np.zeros((points, 2), dtype=np.int64),
+            body=np.zeros((points, 3), dtype=np.int64),
+            other=np.zeros(others, dtype=np.int64),
             near=np.zeros((bodies, bodies // WORD + 1), dtype=np.int64),
             degree=np.zeros(bodies, dtype=np.int64),
             rank=np.zeros(bodies, dtype=np.int64),
@@ -125,5 +138,6 @@ def no_crowd() -> Crowd:
 
 def roomier_crowd(crowd: Crowd) -> Crowd:
     """Return the workspace for twice as many points, with what is compiled for it."""
-    joined = crowd.problem.kind == DENSE
-    return new_crowd(len(crowd.flight), len(crowd.active), 2 * len(crowd.spots), joined)
+    points = len(crowd.spots)
+    joined = 1 + len(crowd.problem.other) // points
+    return new_crowd(len(crowd.flight), len(crowd.active), 2 * points, joined)

@@ -50,16 +50,17 @@ def pose(system, active, k, h, fall, start, crowd, work):
 
 
 @kernel
-def note_drift(active, k, few, start, crowd):
+def note_drift(active, k, several, start, crowd):
     """Write what rows that turn give an active point at the start: G_m v_0 - G_0 v_0, tangents where it sticks.
 
-    Of few bodies, whose rows at the start are in `crowd.points[1]`. A point that stays at the end has
-    G_1 v_1 = 0, which is G_m v_1 = -(G_m - G_0) v_0 up to terms of the second order, and gains nothing.
+    Of several bodies, whose rows at the start are in `crowd.points[1]`. A point that stays at the end has
+    G_1 v_1 = 0, which is G_m v_1 = -(G_m - G_0) v_0 up to terms of the second order, and gains nothing: so the
+    step is of order 2 as long as nothing strikes and points stay what they are.
     """
     for i in range(k):
         spot = crowd.spots[i]
         spot.drift[0], spot.drift[1], spot.drift[2] = 0.0, 0.0, 0.0
-        if not (few and spot.active >= 0 and spot.turns == 0):
+        if not (several and spot.active >= 0 and spot.turns == 0):
             continue
         before = contact_velocity(crowd.points[1][i], start)
         u = contact_velocity(crowd.points[0][i], start)

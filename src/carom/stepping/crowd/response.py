@@ -1,43 +1,45 @@
 """How bodies answer impulses at the points of a crowd: each by its own mass, or with the joints between them.
 
-Without joints the Delassus operator W = G M^-1 G^T is never formed: rows and responses stand with each point
-(`BY_BODIES`). With joints it is G P G^T with the inverse mass P that these leave, whole (`DENSE`), and its
-columns are answers of the back end to unit impulses.
+The Delassus operator W = G P G^T is never formed: rows G stand with each point, and the answers P G^T of the
+bodies that an impulse moves. Those are the two of the point and, where these have joints, what joints tie to
+them (`OTHER`): motions that the back end finds for unit impulses. (Mathematics page, VI.9.)
 """
 
 from __future__ import annotations
 
-import math
-
 from carom._compiled.decorators import kernel
-from carom.dynamics.contact_impulse import add_impulse, clear_wrenches
-from carom.dynamics.several_points import inverse_masses
+from carom.dynamics.contact_impulse import add_impulse, alone, clear_wrenches
 from carom.dynamics.solve import solve
 from carom.friction import layout as o
 from carom.friction.island import impart
-from carom.friction.layout import BY_BODIES, CONE
+from carom.friction.layout import CONE
 from carom.friction.solve import inverse_mass_of, scale_link
 from carom.geometry.rotation import cross, rotate, rotate_back
 
 
 @kernel
 def write_responses(system, k, crowd, work):
-    """Write W of the k points in `crowd.points[0]`, with the masses at the end of the flight, scaled."""
-    problem, points = crowd.problem, crowd.points[0]
-    if problem.kind == BY_BODIES:
-        for i in range(k):
-            set_link(system, points[i], crowd.flight, problem, i)
-        return
-    W = problem.matrix
-    inverse_masses(system, k, points, crowd.flight, work, W)
+    """Write rows and answers of the k points in `crowd.points[0]`, with the masses at the end of the flight."""
+    problem, points, last = crowd.problem, crowd.points[0], 0
     for i in range(k):
-        n = 3 * i
-        trace = W[n, n] + W[n + 1, n + 1] + W[n + 2, n + 2]
-        problem.contact[i].scale = math.sqrt(3.0 / trace) if trace > 0.0 else 1.0
-    for i in range(3 * k):
-        s, row, out = problem.contact[i // 3].scale, W[i], problem.W[i]
-        for j in range(3 * k):
-            out[j] = s * row[j] * problem.contact[j // 3].scale
+        link, point = problem.link[i], points[i]
+        link.body[0], link.body[1], link.others = point.a, point.b, last
+        write_rows(point, link)
+        if alone(system, point):
+            for side in range(2):
+                if link.body[side] >= 0:
+                    answer_alone(system.bodies[link.body[side]], crowd.flight, link, side)
+        else:
+            last = answer_joined(system, point, crowd, link, last, work)
+        link.others_end = last
+        scale_link(link, problem.contact[i], 0.0, CONE, (0.0, 0.0))
+        s = problem.contact[i].scale
+        for e in range(link.others, last):
+            for r in range(6):
+                for a in range(3):
+                    problem.other[e].response[r, a] *= s
+        if point.turns >= 3:  # without tangents: what these are given does not matter
+            link.local[3] = link.local[5] = link.local[0]
 
 
 @kernel
@@ -46,13 +48,13 @@ def answer(system, k, gamma, crowd, work):
     problem = crowd.problem
     for i in range(3 * k):
         crowd.p[i] = gamma * problem.contact[i // 3].scale * problem.vector[o.P, i]
-    if problem.kind == BY_BODIES:
-        impart(problem, k)
-        for b in range(work.body.shape[0]):
-            for j in range(6):
-                work.body[b].motion[j] = gamma * problem.body[b].motion[j]
+    if system.joints.shape[0] > 0:
+        spread_impulses(system, k, crowd, work)
         return
-    spread_impulses(system, k, crowd, work)
+    impart(problem, k)
+    for b in range(work.body.shape[0]):
+        for j in range(6):
+            work.body[b].motion[j] = gamma * problem.body[b].motion[j]
 
 
 @kernel
@@ -68,49 +70,95 @@ def spread_impulses(system, k, crowd, work):
 @kernel
 def block_of_point(problem, i, W):
     """Write the block W (3, 3) of one point."""
-    if problem.kind == BY_BODIES:
-        inverse_mass_of(problem.link[i], problem.contact[i], W)
-        return
-    s = problem.contact[i].scale
-    for a in range(3):
-        for b in range(3):
-            W[a, b] = problem.W[3 * i + a, 3 * i + b] / (s * s)
+    inverse_mass_of(problem.link[i], problem.contact[i], W)
 
 
 @kernel
-def set_link(system, point, flight, work, i):
-    """Write rows G of a point for both bodies, M^-1 G^T, and their product, scaled."""
-    link, contact, E = work.link[i], work.contact[i], point.axes
-    link.body[0], link.body[1] = point.a, point.b
+def write_rows(point, link):
+    """Write the rows G of a point for both bodies."""
     for side in range(2):
-        b = link.body[side]
-        if b < 0:
+        if link.body[side] < 0:
             continue
-        sign, arm = (1.0, point.arm_a) if side == 0 else (-1.0, point.arm_b)
-        body, q, J = system.bodies[b], flight[b].Q, system.bodies[b].inertia
-        G, Y = link.rows[side], link.response[side]
+        sign, arm, G = (
+            (1.0, point.arm_a, link.rows[0]) if side == 0 else (-1.0, point.arm_b, link.rows[1])
+        )
         for r in range(3):
-            x, y, z, a = row_of(point, sign, r, arm, E)
-            G[r, 0], G[r, 1], G[r, 2] = x, y, z
+            G[r, 0], G[r, 1], G[r, 2], a = row_of(point, sign, r, arm)
             G[r, 3], G[r, 4], G[r, 5] = a
-            Y[0, r], Y[1, r], Y[2, r] = x / body.mass, y / body.mass, z / body.mass
-            t = rotate_back(q[0], q[1], q[2], q[3], a[0], a[1], a[2])
-            t = rotate(q[0], q[1], q[2], q[3], t[0] / J[0], t[1] / J[1], t[2] / J[2])
-            Y[3, r], Y[4, r], Y[5, r] = t
-    scale_link(link, contact, 0.0, CONE, (0.0, 0.0))
 
 
 @kernel
-def row_of(point, sign, r, arm, E):
+def row_of(point, sign, r, arm):
     """Return row r of a point for one body: linear part, angular part.
 
-    Of rolling and pivoting the angular part is a direction times a length, and the normal row is none.
+    Of rolling and pivoting the angular part is a direction times a length, and the normal row is none. A stop
+    has a normal row alone: of an angle (`turns` = 3) that is a torque.
     """
+    E, none = point.axes, (0.0, 0.0, 0.0)
     x, y, z = sign * E[r, 0], sign * E[r, 1], sign * E[r, 2]
-    if point.turns == 0:
+    if point.turns == 0 or (point.turns == 4 and r == 0):
         return x, y, z, cross(arm[0], arm[1], arm[2], x, y, z)
-    s = sign * point.length
-    if r == 0 or (point.turns == 2 and r == 2):
-        s = 0.0
-    t = 0 if point.turns == 2 else r
-    return 0.0, 0.0, 0.0, (s * E[t, 0], s * E[t, 1], s * E[t, 2])
+    s, rolls = sign * point.length, point.turns == 1
+    if point.turns == 3:
+        t, there = 0, r == 0
+    elif rolls:
+        t, there = r, r > 0
+    else:
+        t, there = 0, point.turns == 2 and r == 1
+    if there:
+        return 0.0, 0.0, 0.0, (s * E[t, 0], s * E[t, 1], s * E[t, 2])
+    return 0.0, 0.0, 0.0, none
+
+
+@kernel
+def answer_alone(body, state, link, side):
+    """Write M^-1 G^T of a body without joints."""
+    q, J, G, Y = state[link.body[side]].Q, body.inertia, link.rows[side], link.response[side]
+    for r in range(3):
+        for j in range(3):
+            Y[j, r] = G[r, j] / body.mass
+        t = rotate_back(q[0], q[1], q[2], q[3], G[r, 3], G[r, 4], G[r, 5])
+        t = rotate(q[0], q[1], q[2], q[3], t[0] / J[0], t[1] / J[1], t[2] / J[2])
+        Y[3, r], Y[4, r], Y[5, r] = t
+
+
+@kernel
+def answer_joined(system, point, crowd, link, first, work):
+    """Write P G^T: of both bodies, and of all that joints tie to them from row `first` of the others on.
+
+    Returns the end of these rows.
+    """
+    other, last = crowd.problem.other, first
+    for b in range(system.bodies.shape[0]):
+        if system.bodies[b].isolated == 0 and b != link.body[0] and b != link.body[1]:
+            other[last].body = b
+            last += 1
+    for r in range(3):
+        clear_wrenches(work)
+        add_impulse(
+            point, 1.0 if r == 0 else 0.0, 1.0 if r == 1 else 0.0, 1.0 if r == 2 else 0.0, work
+        )
+        solve(system, crowd.flight, False, work)
+        for side in range(2):
+            if link.body[side] >= 0:
+                for j in range(6):
+                    link.response[side, j, r] = work.body[link.body[side]].motion[j]
+        for e in range(first, last):
+            for j in range(6):
+                other[e].response[j, r] = work.body[other[e].body].motion[j]
+    moved = first
+    for e in range(first, last):
+        if answers(other[e]):
+            other[moved] = other[e]
+            moved += 1
+    return moved
+
+
+@kernel
+def answers(other):
+    """Return whether a body moves at all: what joints do not tie to the point has zeros."""
+    for j in range(6):
+        for r in range(3):
+            if other.response[j, r] != 0.0:
+                return True
+    return False

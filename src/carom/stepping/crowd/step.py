@@ -43,11 +43,12 @@ from carom.stepping.crowd.impulses import (
 from carom.stepping.crowd.layout import SPOTS
 from carom.stepping.record import grow
 
-# of its ball: a body goes no further in a piece of the step; alone it turns no more [rad]. Bodies of a group go
-# no further than this part of their thickness either, or THIN of the way before where that is more
+# of its ball: a body goes no further in a piece of the step; alone it turns no more [rad]. Several go no
+# further than this part of their thickness either, or THIN of the way before where that is more
 FAR, THIN = 0.25, 1.0 / 32.0
 # pieces of a step that may be cut for that, where it can afford them; of the step: none is shorter
 CAREFUL, SHORTEST = 300, 1e-4
+DEAR = 70.0  # work [us] by the points that are held: that a step must still afford if a piece may be cut
 WIDER, WIDEST = 4.0, 16.0  # how much further is looked for points where some were missed
 # of the smaller body: by so much a feature that was no candidate may be in the other; more, and the candidates
 # are looked for further off, or the step is cut, down to that part of it
@@ -60,12 +61,11 @@ ALONE = 16  # pieces of a step of a body that is alone: they cost little
 def step_crowd(model, data, method):
     """Move all bodies of an island to the end of the step; a code for `run` goes to `work.result`.
 
-    Few of them, which could not go from event to event, in pieces that are cut where that does not do.
+    In pieces that are cut where one is too long, as far as the step can afford it.
     """
     system, controls = model.system, model.controls
     now, work, clocks = data.state, data.work, data.clocks
     clock, result, search = clocks[0], work.result[0], work.search[0]
-    few, joined = now.shape[0] < controls.heap, system.joints.shape[0] > 0
     result.code = 0 if data.crowd.spots.shape[0] >= SPOTS else grow(clock, r.FULL_SPOTS)
     if result.code != 0:
         return
@@ -75,11 +75,11 @@ def step_crowd(model, data, method):
         if clock.since > r.LONG:
             result.code = r.PAUSE
             return
-        dt = min(piece(system, now, controls.step, clock.length - clock.spent, few), search.pace)
+        dt = min(piece(system, now, controls.step, clock.length - clock.spent), search.pace)
         while True:
             clock.tries += 1
-            patient = (few or joined) and clock.tries <= CAREFUL
-            patient = patient and clock.effort <= affordable(controls, clock)
+            dear = clock.effort + DEAR * data.active.count[0] > affordable(controls, clock)
+            patient = clock.tries <= CAREFUL and not dear
             careful = patient and dt > SHORTEST * controls.step
             result.code = move_on(model, data, method, dt, patient, careful)
             if result.code == CONSTRAINTS_LOST and dt > SHORTEST * controls.step:
@@ -98,7 +98,7 @@ def step_crowd(model, data, method):
 
 
 @kernel
-def piece(system, now, step, left, few):
+def piece(system, now, step, left):
     """Return the time of the next piece: what is left in equal parts, so that no body goes too far in one."""
     g, n = norm(system.gravity), now.shape[0]
     parts = math.ceil(ALONE * left / step) if n == 1 else 1.0
@@ -109,7 +109,7 @@ def piece(system, now, step, left, few):
         way, far = (norm(now[b].v) + g * left) * left, FAR * body.ball
         if n == 1:
             parts = max(parts, math.ceil(turn / FAR))
-        elif few:
+        else:
             way += turn * body.ball
             far = max(THIN * far, min(far, FAR * thickness(body)))
         parts = max(parts, math.ceil(way / far))

@@ -8,16 +8,12 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom.contact.pair_point import smaller
 from carom.dynamics.project import project_position, shift
-from carom.friction.layout import BY_BODIES
 from carom.stepping.crowd.response import spread_impulses
 from carom.stepping.crowd.spots import place_all
 
 TINY = 1e-11  # of the smaller body
-PASSES, SWEEPS, WORK = (
-    8,
-    (100, 1000),
-    20000,
-)  # sweeps: least and most, and how many times a point in a pass
+# sweeps: least and most, and how many times a point in a pass. To place all points anew costs thirty of them
+PASSES, SWEEPS, WORK = 8, (100, 1000), 20000
 BETTER = 0.01  # in one pass: gaps are not linear, more would be lost
 
 
@@ -48,7 +44,7 @@ def onto_surfaces(system, k, count, end, crowd, work):
 @kernel
 def lift(system, k, tolerance, crowd, work):
     """Write the motion of all bodies that brings the points out, to a tolerance [m]."""
-    problem, lam = crowd.problem, crowd.lift
+    problem, lam, joined = crowd.problem, crowd.lift, system.joints.shape[0] > 0
     for b in range(problem.body.shape[0]):
         for j in range(6):
             problem.body[b].motion[j] = 0.0
@@ -60,13 +56,10 @@ def lift(system, k, tolerance, crowd, work):
             i = place if turn % 2 == 0 else k - 1 - place
             if crowd.spots[i].turns == 0:
                 gap = crowd.points[1][i].gap
-                if problem.kind == BY_BODIES:
-                    change = max(change, lift_one(problem, i, gap, lam))
-                else:
-                    change = max(change, lift_row(problem, k, i, gap, lam))
+                change = max(change, lift_one(problem, i, gap, lam))
         if change <= tolerance:
             break
-    if problem.kind == BY_BODIES:
+    if not joined:
         for b in range(work.body.shape[0]):
             for j in range(6):
                 work.body[b].motion[j] = problem.body[b].motion[j]
@@ -75,17 +68,6 @@ def lift(system, k, tolerance, crowd, work):
         crowd.p[3 * i] = problem.contact[i].scale * lam[i]
         crowd.p[3 * i + 1], crowd.p[3 * i + 2] = 0.0, 0.0
     spread_impulses(system, k, crowd, work)
-
-
-@kernel
-def lift_row(problem, k, i, gap, lam):
-    """Bring one point out, with W stored whole."""
-    row, s = problem.W[3 * i], problem.contact[i].scale
-    for j in range(k):
-        gap += row[3 * j] * lam[j] / s
-    before = lam[i]
-    lam[i] = max(0.0, before - s * gap / row[3 * i])
-    return abs(lam[i] - before) * row[3 * i] / s
 
 
 @kernel
@@ -107,4 +89,8 @@ def lift_one(problem, i, gap, lam):
             Y, y = link.response[side], problem.body[link.body[side]].motion
             for j in range(6):
                 y[j] += d * Y[j, 0]
+    for e in range(link.others, link.others_end):
+        Y, y = problem.other[e].response, problem.body[problem.other[e].body].motion
+        for j in range(6):
+            y[j] += d * Y[j, 0]
     return abs(d) * link.local[0] / s

@@ -1,6 +1,7 @@
 """The contact problem by sweeps: each contact in turn solved exactly, the others as they are (Gauss-Seidel).
 
-A sweep costs 60 ns a contact, and goes on from the last step's impulses.
+A sweep costs 60 ns a contact, and goes on from the last step's impulses; sweeps are mixed
+(`carom.stepping.crowd.mixing`).
 """
 
 from __future__ import annotations
@@ -9,32 +10,39 @@ from carom._compiled.decorators import kernel
 from carom.friction.layout import BEST, P
 from carom.friction.operators import sweep
 from carom.friction.strategy import copy, residual
+from carom.stepping.crowd.mixing import extrapolate, forget, note_end, note_start
 
-EACH = 20  # sweeps between looks at the residual
-DIVERGED = 1e3  # times the residual at the start: that is no way
+EACH = 10  # sweeps between looks at the residual
 
 
 @kernel
 def sweep_until(system, crowd, k, tolerance, most):
     """Sweep until the scaled residual is small; return it, what round-off makes of it, and how often.
 
-    With friction sweeps may diverge, above all where joints tie the points: what has become worse is given up.
+    Both ways in turn. With friction sweeps may diverge, above all where joints tie the points: the best
+    impulses that were met are kept.
     """
-    work, done = crowd.problem, 0
-    p, start = work.vector[P], work.vector[BEST]
-    r, goal, _ = residual(work, k)
-    before = r
-    copy(k, p, start)
-    while not r <= max(tolerance, goal) and done < most and r <= DIVERGED * before:
+    work, mixing, done = crowd.problem, crowd.mixing, 0
+    p, best = work.vector[P], work.vector[BEST]
+    least, goal, _ = residual(work, k)
+    copy(k, p, best)
+    forget(mixing)
+    while not least <= max(tolerance, goal) and done < most:
         bound_torques(system, crowd, k)
-        for i in range(EACH):
-            sweep(work, k, i % 2 == 1)
+        for turn in range(0, EACH, 2):
+            if turn > 0 or done > 0:
+                extrapolate(work, k, mixing)
+            note_start(work, k, mixing)
+            sweep(work, k, False)
+            sweep(work, k, True)
+            note_end(work, k, mixing)
         done += EACH
         r, goal, _ = residual(work, k)
-    if not r <= before:
-        copy(k, start, p)
-        r, goal, _ = residual(work, k)
-    return r, goal, done
+        if r < least:
+            least = r
+            copy(k, p, best)
+    copy(k, best, p)
+    return least, goal, done
 
 
 @kernel

@@ -11,7 +11,9 @@ from carom.persistent.active_set import regroup
 from carom.stepping.islands.layout import ASLEEP, FLIES
 from carom.stepping.islands.plan import number, root, seek
 
-HEAPED = 2  # closed points for each body, on average, from which on many bodies are a heap
+# closed points from which on bodies that lie on each other are a crowd, and how many for each of them, on
+# average: a group that goes from event to event is solved with W whole, which takes the cube of its points
+MANY, EACH = 24, 2
 
 
 @kernel
@@ -146,14 +148,14 @@ def slot_of(islands, i, c):
 
 
 @kernel
-def is_crowd(part, active, least, step, work):
+def is_crowd(part, active, step, work):
     """Return whether an island takes its step whole: it is large, or event by event made no progress lately.
 
-    It is large where many bodies lie on each other, at two points each or more: what rolls on a table or is
+    It is large where bodies lie on each other at many points, two each or more: what rolls on a table or is
     struck in flight goes from event to event.
     """
     n = part.bodies.shape[0]
-    crowd = n >= least and active.count[0] >= HEAPED * n
+    crowd = active.count[0] >= max(MANY, EACH * n)
     for b in range(n):
         crowd = crowd or work.body[b].whole_until > step
     return crowd

@@ -1,0 +1,137 @@
+"""Anderson's mixing of sweeps: the next start is a combination of the last few, of least change.
+
+Two sweeps map impulses p to g(p); a solution has f(p) = g(p) - p = 0. With the differences of the last f and g
+as columns of F and H, the next start is g - H theta, theta that of least |f - F theta| (Anderson 1965; Walker
+and Ni 2011). On a set of contacts that does not change this is GMRES for the sweeps: a wall that 200 sweeps leave
+at 1e-4 of its speeds is solved to 1e-12 by as many. It knows nothing of joints and of kinds of contacts.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from carom._compiled.decorators import kernel
+from carom.friction.cone import project
+from carom.friction.layout import P
+
+WINDOW = 8  # differences that are kept
+ASTRAY = 2.0  # times the last |f|: what is known does not fit any more
+INDEPENDENT = 1e-10  # added to the squares of the columns, relative: they may depend on each other
+
+
+class Mixing(NamedTuple):
+    """What is known of the last sweeps of 3K impulses."""
+
+    start: np.ndarray  # (3K,) impulses before the last two sweeps
+    change: np.ndarray  # (3K,) f
+    reached: np.ndarray  # (3K,) g
+    F: np.ndarray  # (WINDOW, 3K) differences of f, and of g
+    H: np.ndarray  # (WINDOW, 3K)
+    gram: np.ndarray  # (WINDOW, WINDOW) F F^T
+    factor: np.ndarray  # (WINDOW, WINDOW)
+    theta: np.ndarray  # (WINDOW,)
+    count: np.ndarray  # (2,) differences at hand, and place of the next
+    size: np.ndarray  # (1,) |f|, infinite before the first
+
+
+def new_mixing(points: int) -> Mixing:
+    """Return what mixing needs for up to `points` contacts."""
+    n = 3 * points
+    return Mixing(
+        start=np.zeros(n), change=np.zeros(n), reached=np.zeros(n),
+        F=np.zeros((WINDOW, n)), H=np.zeros((WINDOW, n)),
+        gram=np.zeros((WINDOW, WINDOW)), factor=np.zeros((WINDOW, WINDOW)), theta=np.zeros(WINDOW),
+        count=np.zeros(2, dtype=np.int64), size=np.zeros(1),
+    )  # fmt: skip
+
+
+@kernel
+def forget(mixing):
+    """Begin anew: nothing is known of any sweep."""
+    mixing.count[0], mixing.count[1], mixing.size[0] = 0, 0, np.inf
+
+
+@kernel
+def note_start(work, k, mixing):
+    """Note the impulses before two sweeps."""
+    p, start = work.vector[P], mixing.start
+    for i in range(3 * k):
+        start[i] = p[i]
+
+
+@kernel
+def note_end(work, k, mixing):
+    """Note what two sweeps have made of the impulses that were noted, and how that differs from the last."""
+    p, start, change, reached = work.vector[P], mixing.start, mixing.change, mixing.reached
+    n, size, known = 3 * k, 0.0, mixing.size[0] < np.inf
+    at = mixing.count[1]
+    F, H = mixing.F[at], mixing.H[at]
+    for i in range(n):
+        f = p[i] - start[i]
+        size += f * f
+        F[i], H[i] = f - change[i], p[i] - reached[i]
+        change[i], reached[i] = f, p[i]
+    size = np.sqrt(size)
+    if known and size <= ASTRAY * mixing.size[0]:
+        mixing.count[0] = min(mixing.count[0] + 1, WINDOW)
+        mixing.count[1] = (at + 1) % WINDOW
+        for j in range(mixing.count[0]):
+            mixing.gram[at, j] = mixing.gram[j, at] = product(n, F, mixing.F[j])
+    else:
+        mixing.count[0], mixing.count[1] = 0, 0
+    mixing.size[0] = size
+
+
+@kernel
+def extrapolate(work, k, mixing):
+    """Replace the impulses that were reached by the combination of least change, brought to the cones."""
+    p, theta, n = work.vector[P], mixing.theta, 3 * k
+    if mixing.count[0] == 0 or not solve_least(n, mixing):
+        return
+    for j in range(mixing.count[0]):
+        t, H = theta[j], mixing.H[j]
+        for i in range(n):
+            p[i] -= t * H[i]
+    for i in range(k):
+        m = 3 * i
+        p[m], p[m + 1], p[m + 2] = project(work.contact[i], p[m], p[m + 1], p[m + 2])
+
+
+@kernel
+def solve_least(n, mixing):
+    """Write theta of least |f - F theta|, by the factor L D L^T of F F^T; return whether that is possible."""
+    L, theta, m = mixing.factor, mixing.theta, mixing.count[0]
+    for j in range(m):
+        theta[j] = product(n, mixing.F[j], mixing.change)
+        for i in range(j, m):
+            t = mixing.gram[i, j] * (1.0 + INDEPENDENT if i == j else 1.0)
+            for s in range(j):
+                t -= L[i, s] * L[j, s] * L[s, s]
+            L[i, j] = t if i == j else t / L[j, j]
+        if not L[j, j] > 0.0:
+            return False
+    for i in range(m):
+        for s in range(i):
+            theta[i] -= L[i, s] * theta[s]
+    for i in range(m - 1, -1, -1):
+        theta[i] /= L[i, i]
+        for s in range(i + 1, m):
+            theta[i] -= L[s, i] * theta[s]
+    return True
+
+
+@kernel
+def product(n, a, b):
+    """Return the scalar product, by four sums side by side."""
+    s0, s1, s2, s3 = 0.0, 0.0, 0.0, 0.0
+    whole = n - n % 4
+    for i in range(0, whole, 4):
+        s0 += a[i] * b[i]
+        s1 += a[i + 1] * b[i + 1]
+        s2 += a[i + 2] * b[i + 2]
+        s3 += a[i + 3] * b[i + 3]
+    for i in range(whole, n):
+        s0 += a[i] * b[i]
+    return (s0 + s1) + (s2 + s3)
