@@ -243,12 +243,20 @@ def _push(work, i, p0, p1, p2):
 def _pull(work, i):
     """Return the velocity of contact i in the motion at hand."""
     link = work.link[i]
-    u0, u1, u2 = 0.0, 0.0, 0.0
-    for side in range(2):
-        if link.body[side] >= 0:
-            G, v = link.rows[side], work.body[link.body[side]].motion
-            for j in range(6):
-                u0 += G[0, j] * v[j]
-                u1 += G[1, j] * v[j]
-                u2 += G[2, j] * v[j]
+    u0, u1, u2 = _rate(link.rows[0], work.body[link.body[0]].motion)
+    if link.body[1] >= 0:
+        v0, v1, v2 = _rate(link.rows[1], work.body[link.body[1]].motion)
+        return u0 + v0, u1 + v1, u2 + v2
     return u0, u1, u2
+
+
+@kernel
+def _rate(G, v):
+    """Return G v of one body: linear and angular parts side by side, as each waits for its last sum."""
+    a0 = G[0, 0] * v[0] + G[0, 1] * v[1] + G[0, 2] * v[2]
+    a1 = G[1, 0] * v[0] + G[1, 1] * v[1] + G[1, 2] * v[2]
+    a2 = G[2, 0] * v[0] + G[2, 1] * v[1] + G[2, 2] * v[2]
+    b0 = G[0, 3] * v[3] + G[0, 4] * v[4] + G[0, 5] * v[5]
+    b1 = G[1, 3] * v[3] + G[1, 4] * v[4] + G[1, 5] * v[5]
+    b2 = G[2, 3] * v[3] + G[2, 4] * v[4] + G[2, 5] * v[5]
+    return a0 + b0, a1 + b1, a2 + b2

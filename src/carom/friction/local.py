@@ -18,19 +18,25 @@ def solve_local(contact, W, c):
 
 @kernel
 def solve_prepared(contact, link, c):
-    """Do the same with the basis of W that stands with the contact: a sweep meets the same W again and again."""
+    """Do the same with the basis that stands with the contact: a sweep meets the same W again and again."""
     row, basis = link.local, link.basis
-    W = row[0], row[1], row[2], row[3], row[4], row[5]
+    W, d = (
+        (row[0], row[1], row[2], row[3], row[4], row[5]),
+        (basis[0], basis[1], basis[2], basis[3]),
+    )
     if contact.kind == CONE:
-        return solve_in_basis(W, (basis[0], basis[1], basis[2], basis[3]), c, contact.mu)
+        return solve_in_basis(W, d, c, contact.mu)
+    if contact.kind == DISC:
+        flat = (1.0, 0.0, 0.0, row[3], row[4], row[5])
+        return solve_in_basis(flat, d, (-contact.h1, c[1], c[2]), 1.0)
     return solve_other(contact, W, c)
 
 
 @kernel
 def prepare(link):
-    """Write the basis of W of a contact."""
+    """Write the basis of W of a contact; of a torque, which has no normal row, that of a disc."""
     row, basis = link.local, link.basis
-    W = row[0], row[1], row[2], row[3], row[4], row[5]
+    W = row[0] if row[0] > 0.0 else 1.0, row[1], row[2], row[3], row[4], row[5]
     basis[0], basis[1], basis[2], basis[3] = basis_of(W)
 
 

@@ -123,7 +123,7 @@ def _tangential(d, b, g, wnn, cn, mu):
         root = math.sqrt(rate * rate - 4.0 * m * cn * value)
         t = (rate + root) / (-2.0 * m * cn) if rate > 0.0 else 2.0 * value / (root - rate)
         alpha += t
-        if not t > 4e-16 * alpha:
+        if not t > 1e-9 * alpha:  # it converges quadratically: what is left is round-off
             break
     e1, e2 = d1 + alpha, d2 + alpha
     if not (alpha > 0.0 and e2 > 0.0):

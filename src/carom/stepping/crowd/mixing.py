@@ -2,8 +2,8 @@
 
 Two sweeps map impulses p to g(p); a solution has f(p) = g(p) - p = 0. With the differences of the last f and g
 as columns of F and H, the next start is g - H theta, theta that of least |f - F theta| (Anderson 1965; Walker
-and Ni 2011). On a set of contacts that does not change this is GMRES for the sweeps: a wall that 200 sweeps leave
-at 1e-4 of its speeds is solved to 1e-12 by as many. It knows nothing of joints and of kinds of contacts.
+and Ni 2011). On a set of contacts that does not change this is GMRES for the sweeps: a wall that 200 sweeps
+leave at 1e-4 of its speeds is solved to 1e-12 by as many. It knows nothing of joints or kinds of contacts.
 """
 
 from __future__ import annotations
