@@ -13,6 +13,7 @@ from carom.model.cores import Cores, new_cores, singly, swollen_alike
 from carom.options import Options
 from carom.scene.all_pairs import PairTable
 from carom.scene.contacts import IMPACT_LAWS
+from carom.scene.materials import MULTIPLE
 from carom.scene.scene import Scene
 from carom.scene.shapes import Shape
 
@@ -62,6 +63,7 @@ def _write_shapes(rows: np.recarray, which: Rows) -> None:
     """Write of which form and size the two are, and who finds the points where they touch."""
     core, other = which.core, which.other
     rows["touches"] = np.where(rows["other"] >= 0, 1, core["curved"])
+    rows["round"] = np.maximum(core["round"], other["round"])
     rows["part"] = np.maximum(core["several"], other["several"])
     rows["extent"], rows["other_extent"] = core["extent"], other["extent"]
     rows["radius"], rows["core"] = core["radius"] + other["radius"], core["reach"]
@@ -111,11 +113,11 @@ def _write_laws(rows: np.recarray, pairs: PairTable, which: Rows) -> None:
     numbers = [
         (
             one.friction, one.friction_held, one.restitution, one.stiffness, one.rolling_friction,
-            one.pivoting_friction, IMPACT_LAWS.index(one.impact_law),
+            one.pivoting_friction, IMPACT_LAWS.index(one.impact_law), MULTIPLE.index(one.multiple),
         )
         for one in pairs.laws
     ]  # fmt: skip
-    law = np.array(numbers, dtype=float).reshape(-1, 7)[pairs.law[which.number]]
+    law = np.array(numbers, dtype=float).reshape(-1, 8)[pairs.law[which.number]]
     for k, name in enumerate(("friction", "friction_held", "restitution", "stiffness")):
         rows[name] = law[:, k]
-    rows["turning"], rows["law"] = law[:, 4:6], law[:, 6]
+    rows["turning"], rows["law"], rows["multiple"] = law[:, 4:6], law[:, 6], law[:, 7]
