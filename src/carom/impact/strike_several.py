@@ -6,7 +6,7 @@ import math
 
 from carom._compiled.decorators import by_reference, kernel
 from carom._compiled.units import unit
-from carom.contact.gap import slow
+from carom.contact.gap import slow, speed_of
 from carom.dynamics.contact_impulse import add_velocity, spread
 from carom.dynamics.several_points import inverse_masses, velocities
 from carom.impact.driven import BLOCKED, blocked
@@ -18,6 +18,7 @@ from carom.impact.workspace import U
 
 IMPACT_FAILED = 6
 SEED = 1e-7  # of the slip
+ROUND_OFF = 1e-14  # of the speeds of a multiple impact
 #: exponents of the normal force: of points that are all round, and of others
 HERTZ, LINEAR = 1.5, 1.0
 #: cost of a step through the layers, of a point [us]: by series, and by the many short ones of other exponents
@@ -112,6 +113,32 @@ def strike_several(model, data, c, k):
             write_share(system, i, k, state, group, multiple, clock, data.records)
             spread(system, group.points[0][i], state, n, t1, t2, work)
             add_velocity(system, group.points[0][i], work, state)
+    most = ROUND_OFF * greatest(3 * k, u)
+    for i in range(k):
+        stop_round_off(system, group.points[0][i].a, most, state)
+        stop_round_off(system, group.points[0][i].b, most, state)
+
+
+@kernel
+def greatest(n, u):
+    """Return the greatest of n speeds."""
+    most = 0.0
+    for a in range(n):
+        most = max(most, abs(u[a]))
+    return most
+
+
+@kernel
+def stop_round_off(system, b, most, state):
+    """Stop a free body whose speed is at most round-off, `most`: what it had has gone on to others.
+
+    It would approach the next body that it touches, and where e = 1 such impacts would have no end.
+    """
+    if b < 0 or system.bodies[b].ballistic == 0:
+        return
+    if speed_of(b, system.bodies[b].extent, state) <= most:
+        for r in range(3):
+            state[b].v[r], state[b].w[r] = 0.0, 0.0
 
 
 @kernel

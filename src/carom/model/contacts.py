@@ -39,10 +39,17 @@ def compile_contacts(scene: Scene, to_principal, options: Options):
     solids, hulls = _write_solids(rows, which, scene, to_principal)
     _write_laws(rows, pairs, which)
     extent = rows["extent"]
-    rows["still"] = 1e-14 * np.sqrt(np.linalg.norm(scene.gravity) * extent)
+    rows["still"] = 1e-14 * _speed(scene, extent)
     rows["width"] = 1e-5 * extent if options.layer_width is None else options.layer_width
     rows["penetration"] = options.penetration
     return rows, vertices, solids, hulls
+
+
+def _speed(scene: Scene, extent: np.ndarray) -> np.ndarray | float:
+    """Return the speed that gravity gives over the size of a body, or the greatest at the start without it."""
+    if np.any(scene.gravity):
+        return np.sqrt(np.linalg.norm(scene.gravity) * extent)
+    return max((float(np.linalg.norm(body.velocity)) for body in scene.bodies), default=0.0)
 
 
 def _shapes(scene: Scene, *chosen: np.ndarray) -> list[Shape | None]:

@@ -217,3 +217,39 @@ def test_equal_speeds_strike_together():
 def test_no_other_name():
     with pytest.raises(ValueError, match="multiple must be"):
         Scene().set_contact_default(multiple="newton")
+
+
+@pytest.mark.parametrize("gravity", [(0, 0, 0), (0, 0, -9.81)])
+@pytest.mark.parametrize("speeds", BALLS)
+def test_any_direction(speeds, gravity):
+    # Normals are rounded, and balls that stop keep 1e-16 m/s: no impacts without end, no step taken whole.
+    rng = np.random.default_rng(1)
+    for way in rng.normal(size=(6, 3)):
+        way /= np.linalg.norm(way)
+        scene = Scene(gravity=gravity)
+        for i, v in enumerate(speeds):
+            x = 2 * R * i - 1e-3 * v
+            scene.add_body(carom.Sphere(R), mass=0.03, position=x * way, velocity=v * way)
+        scene.set_contact_default(restitution=1.0, multiple="sequential")
+        s = carom.simulate(scene, 0.02, step=1e-3)
+        after = (s.velocity[-1] - 0.02 * np.array(gravity)) @ way
+        np.testing.assert_allclose(after, textbook(speeds), rtol=0, atol=1e-9)
+        assert s.stats["whole_steps"] == 0
+
+
+def test_the_break_of_a_triangle_by_hertz():
+    # 16 balls in a plane, struck 3 mm beside the axis: corners and cue ball as of scipy's integration of
+    # F = d^(3/2) at all contacts (4 digits).
+    r = 0.0286
+    scene = Scene(gravity=(0, 0, 0))
+    for i in range(5):
+        for j in range(i + 1):
+            scene.add_body(
+                carom.Sphere(r), mass=0.17, position=(np.sqrt(3) * r * i, r * (2 * j - i), 0)
+            )
+    scene.add_body(carom.Sphere(r), mass=0.17, position=(-2.1 * r, 0.003, 0), velocity=(5, 0, 0))
+    scene.set_contact_default(restitution=1.0)
+    s = carom.simulate(scene, 0.01, step=1e-3)
+    speeds = np.linalg.norm(s.velocity[-1], axis=1)
+    np.testing.assert_allclose(speeds[10:15], (2.926, 1.284, 1.314, 1.279, 2.656), atol=1e-3)
+    np.testing.assert_allclose(s.velocity[-1, 15, :2], (-0.875, 0.309), atol=1e-3)

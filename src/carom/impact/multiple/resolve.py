@@ -40,7 +40,7 @@ from carom.impact.multiple.layout import (
 )
 from carom.impact.multiple.one import resolve_single
 from carom.impact.multiple.passage import pass_group
-from carom.impact.multiple.sequential import apart, choose, strikes_at_once, take
+from carom.impact.multiple.sequential import choose, strikes_at_once, take
 
 _NOTHING = 1e-15  # impulses below this part of the greatest are none
 _TOUCHES = 1e-13  # approach below this part of the greatest velocity is none
@@ -67,7 +67,7 @@ def resolve_contacts(contacts, settings, workspace, out):
     together = settings.multiple == BY_NEWTON or strikes_at_once(contacts)
     while True:
         ends = together or count >= settings.max_events * contacts.k
-        m = choose(contacts, ends, scale * apart(together, settings.rtol), blow, out)
+        m = choose(contacts, ends, _TOUCHES * scale, blow, out)
         if m == 0:
             break
         if ends and not together:  # without end: the rest is plastic

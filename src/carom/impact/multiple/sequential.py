@@ -16,15 +16,6 @@ from carom.impact.multiple.layout import (
     BLOW_U,
 )
 
-_TOUCHES = 1e-13  # approach below this part of the greatest velocity is none
-_LEFT = 1e-12  # and below this after a blow, or 1e-4 of the tolerance, which a passage may leave
-
-
-@kernel
-def apart(together, rtol):
-    """Return the approach that is none, as a part of the greatest velocity."""
-    return _TOUCHES if together else max(_LEFT, 1e-4 * rtol)
-
 
 @kernel
 def strikes_at_once(contacts):
