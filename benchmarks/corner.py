@@ -75,8 +75,9 @@ class Case:
         k = len(u) // 3
         ones = np.ones(k)
         self.contacts = CornerContacts(
-            k, np.ascontiguousarray(W), np.ascontiguousarray(u), mu * ones, e * ones,
+            k, 0, np.ascontiguousarray(W), np.ascontiguousarray(u), mu * ones, e * ones,
             np.full(k, law), ones if kappa is None else np.array(kappa, float),
+            np.zeros(k, dtype=np.int64),
         )  # fmt: skip
         self.settings, self.repeat, self.given = MultipleSettings, repeat, settings
         self.workspace, self.out = new_multiple_workspace(k), new_multiple_result(k)

@@ -32,7 +32,7 @@ def table():
 
 
 def main(out="out/examples"):
-    s = carom.simulate(table(), 1.6, step=2e-3, options=carom.Options(heap=20))
+    s = carom.simulate(table(), 1.6, step=2e-3)
     y = s.position[:, 1:, 1]
     mirror = np.max(np.abs(np.sort(y, axis=1) - np.sort(-y, axis=1)))
     hit = s.impacts

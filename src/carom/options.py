@@ -32,12 +32,14 @@ class Options:
         if they move alike, else each for itself. Default 1e-9.
     multiple : {"simultaneous", "sequential", "newton"}
         Impacts while several points of the bodies are closed: their boundary layers are passed together
-        (default), or one blow after the other, the fastest first, or all by Newton's law in one contact
-        problem (Moreau 1988), which is the quickest. (Mathematics page, V.)
+        (default, but for pairs of which `Scene.add_contact` says otherwise), or one blow after the other, the
+        pair that approaches fastest first, or all by Newton's law in one contact problem (Moreau 1988), which
+        is the quickest. (Mathematics page, V.)
     corner_tolerance : float
         Relative error of the velocities after a simultaneous impact. Default 1e-8.
-    corner_exponent : float
-        p of the normal force kappa d^p in a simultaneous impact: 1 (default), 1.5 is Hertz's.
+    corner_exponent : float or None
+        p of the normal force kappa d^p in a simultaneous impact. Default None: 1.5, Hertz's, where each of
+        the points is one of a ball or an ellipsoid, whatever that touches; 1 where other points take part.
     hold : bool
         Hold a contact when all its remaining bounces would end within the present step. Default True.
         With False, a bouncing body that comes to rest stops the run with a status.
@@ -91,7 +93,7 @@ class Options:
     tie_tolerance: float = 1e-9
     multiple: str = "simultaneous"
     corner_tolerance: float = 1e-8
-    corner_exponent: float = 1.0
+    corner_exponent: float | None = None
     hold: bool = True
     rest_tolerance: float = 1e-9
     energy_tolerance: float = 1e-4
@@ -125,7 +127,8 @@ class Options:
             checks.integer(name, getattr(self, name), least=1)
         checks.choice("multiple", self.multiple, ("simultaneous", "sequential", "newton"))
         checks.number("corner_tolerance", self.corner_tolerance, above=0.0, below=1.0)
-        checks.number("corner_exponent", self.corner_exponent, least=1.0, most=3.0)
+        if self.corner_exponent is not None:
+            checks.number("corner_exponent", self.corner_exponent, least=1.0, most=3.0)
         for name in ("add_layer_time", "hold", "project_start"):
             checks.flag(name, getattr(self, name))
         for f in fields(self):  # as Python's own numbers: of their types the loop is compiled

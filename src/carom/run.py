@@ -37,7 +37,7 @@ def multiple_settings(options: Options) -> MultipleSettings:
     """Return the settings of impacts of several points."""
     return MultipleSettings(
         multiple=MULTIPLE[options.multiple], rtol=options.corner_tolerance,
-        exponent=options.corner_exponent,
+        exponent=options.corner_exponent or 0.0,
     )  # fmt: skip
 
 

@@ -38,6 +38,7 @@ def stated():
     three = (1.0, 0.0, 0.0)
     number = dict(restitution=0.5, friction=0.1, friction_held=0.1, stiffness=1.0, rolling_friction=0.0,
                   pivoting_friction=0.0)  # fmt: skip
+    words = dict(impact_law="newton", multiple="sequential")
     shapes = {
         "Sphere": (carom.Sphere, dict(radius=0.1)),
         "Box": (carom.Box, dict(lx=1.0, ly=2.0, lz=3.0, radius=0.1)),
@@ -65,8 +66,10 @@ def stated():
         )  # fmt: skip
     found |= {
         "Material": lambda: (carom.Material, number),
-        "ContactLaw": lambda: (carom.scene.ContactLaw, {**number, "impact_law": "newton"}),
-        "Options": lambda: (carom.Options, {**carom.Options(layer_width=1e-6, max_step=0.1).as_dict()}),
+        "ContactLaw": lambda: (carom.scene.ContactLaw, {**number, **words}),
+        "Options": lambda: (
+            carom.Options, carom.Options(layer_width=1e-6, max_step=0.1, corner_exponent=1.5).as_dict()
+        ),
         "Scene": lambda: (carom.Scene, dict(gravity=(0, 0, -9.81))),
         "Scene.add_half_space": of_scene(
             "add_half_space", point=(0, 0, 0), normal=(0, 0, 1), material=carom.Material(0.5, 0.1), name="wall"
@@ -94,10 +97,10 @@ def stated():
             coordinate=0, name="new",
         ),
         "Scene.add_contact": of_scene(
-            "add_contact", body="@box", other="@floor", **number, impact_law="newton", name="new"
+            "add_contact", body="@box", other="@floor", **number, **words, name="new"
         ),
         "Scene.set_contact_default": of_scene(
-            "set_contact_default", **number, impact_law="newton", combine="average", all_pairs=True
+            "set_contact_default", **number, **words, combine="average", all_pairs=True
         ),
         "Scene.ignore_contact": of_scene("ignore_contact", body="@ball", other="@box"),
         "Scene.contact_law": of_scene("contact_law", body="@ball", other="@box"),

@@ -42,8 +42,10 @@ def impact_without_collision(contacts, settings, workspace, out):
             v[n] = -_SEED * math.sqrt(u[n + 1] * u[n + 1] + u[n + 2] * u[n + 2])
             count += 1
     seeded = by_reference(
-        CornerContacts(k, W, v, mu, contacts.restitution, contacts.law, contacts.stiffness)
-    )
+        CornerContacts(
+            k, 0, W, v, mu, contacts.restitution, contacts.law, contacts.stiffness, contacts.pair
+        )
+    )  # fmt: skip
     code = resolve_multiple(seeded, settings, workspace, out)
     if code == OK:
         for i in range(3 * k):  # u+ = u + W P holds for what was given

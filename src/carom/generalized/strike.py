@@ -101,13 +101,15 @@ class Strike:
         e = np.array([self.restitution(c) for c in closed])
         settings = MultipleSettings(
             multiple=MULTIPLE[options.multiple], rtol=options.corner_tolerance,
-            exponent=options.corner_exponent,
+            exponent=options.corner_exponent or 1.0,
         )  # fmt: skip
         if self.room is None:
             self.room = new_multiple_workspace(len(here.friction))
         out = new_multiple_result(k)
+        apart = options.multiple == "sequential"
+        pair = np.arange(k) if apart else np.zeros(k, dtype=np.int64)
         contacts = CornerContacts(
-            k, W, u.reshape(-1), here.friction[closed], e, here.law[closed], np.ones(k)
+            k, 0, W, u.reshape(-1), here.friction[closed], e, here.law[closed], np.ones(k), pair
         )
         code = resolve_multiple(contacts, settings, self.room, out)
         if code != OK:

@@ -6,27 +6,66 @@ import math
 
 from carom._compiled.decorators import by_reference, kernel
 from carom._compiled.units import unit
-from carom.contact.gap import slow
+from carom.contact.gap import slow, speed_of
 from carom.dynamics.contact_impulse import add_velocity, spread
 from carom.dynamics.several_points import inverse_masses, velocities
 from carom.impact.driven import BLOCKED, blocked
 from carom.impact.effective_restitution import effective_restitution
 from carom.impact.layout import WEDGED
-from carom.impact.multiple.layout import OK, CornerContacts
+from carom.impact.multiple.layout import OK, SEQUENTIAL, CornerContacts, MultipleSettings
 from carom.impact.multiple.resolve import resolve_contacts
 from carom.impact.workspace import U
 
 IMPACT_FAILED = 6
 SEED = 1e-7  # of the slip
-STEP = 30.0  # cost of a step through the layers, of a point [us]
+ROUND_OFF = 1e-14  # of the speeds of a multiple impact
+#: exponents of the normal force: of points that are all round, and of others
+HERTZ, LINEAR = 1.5, 1.0
+#: cost of a step through the layers, of a point [us]: by series, and by the many short ones of other exponents
+STEP, STAGES = 30.0, 5.0
 
 
 @unit
 def resolve_group(k, W, u, mu, multiple):
     """Resolve the impact of k points; its code goes to the clock of the workspace."""
-    contacts = by_reference(CornerContacts(k, W, u, mu, multiple.e, multiple.law, multiple.kappa))
-    code = resolve_contacts(contacts, multiple.settings, multiple.workspace, multiple.result)
+    contacts = by_reference(
+        CornerContacts(k, 0, W, u, mu, multiple.e, multiple.law, multiple.kappa, multiple.pair)
+    )
+    given = multiple.settings
+    settings = MultipleSettings(
+        given.multiple, given.rtol, exponent_of(k, multiple), given.adaptive_up_to, given.fixed_steps,
+        given.max_events, given.max_steps, given.max_rounds,
+    )  # fmt: skip
+    code = resolve_contacts(contacts, settings, multiple.workspace, multiple.result)
     multiple.workspace.work.clock[0].code = code
+
+
+@kernel
+def exponent_of(k, multiple):
+    """Return p of the normal forces: as set, else Hertz's if each of k points is of a ball or an ellipsoid."""
+    if multiple.settings.exponent > 0.0:
+        return multiple.settings.exponent
+    for i in range(k):
+        if multiple.round[i] == 0:
+            return LINEAR
+    return HERTZ
+
+
+@kernel
+def pair_of(i, contacts, closed, all_by_pairs):
+    """Return the pair that point `i` strikes with: 0 for all points together, else a number of its pair.
+
+    A body and all half-spaces that it touches are one pair.
+    """
+    own = contacts[closed[i].contact]
+    if not (all_by_pairs or own.multiple == SEQUENTIAL):
+        return 0
+    for j in range(i):
+        one = contacts[closed[j].contact]
+        alike = all_by_pairs or one.multiple == SEQUENTIAL
+        if alike and one.body == own.body and one.other == own.other:
+            return 1 + j
+    return 1 + i
 
 
 @kernel
@@ -54,9 +93,13 @@ def strike_several(model, data, c, k):
             u[3 * i] -= SEED * math.sqrt(u[3 * i + 1] ** 2 + u[3 * i + 2] ** 2)
             group.mu[i] = contact.friction_held
         multiple.law[i], multiple.kappa[i] = contact.law, contact.stiffness
+        multiple.round[i] = contact.round
+        all_by_pairs = multiple.settings.multiple == SEQUENTIAL
+        multiple.pair[i] = pair_of(i, system.contacts, group.closed, all_by_pairs)
     resolve_group(k, group.m[0], u, group.mu, multiple)
     code = multiple.workspace.work.clock[0].code
-    worked = STEP * k * multiple.result.summary[0].steps
+    each = STEP if exponent_of(k, multiple) == LINEAR else STAGES
+    worked = each * k * multiple.result.summary[0].steps
     clock.effort += worked
     clock.since += worked
     if code != OK:
@@ -70,6 +113,32 @@ def strike_several(model, data, c, k):
             write_share(system, i, k, state, group, multiple, clock, data.records)
             spread(system, group.points[0][i], state, n, t1, t2, work)
             add_velocity(system, group.points[0][i], work, state)
+    most = ROUND_OFF * greatest(3 * k, u)
+    for i in range(k):
+        stop_round_off(system, group.points[0][i].a, most, state)
+        stop_round_off(system, group.points[0][i].b, most, state)
+
+
+@kernel
+def greatest(n, u):
+    """Return the greatest of n speeds."""
+    most = 0.0
+    for a in range(n):
+        most = max(most, abs(u[a]))
+    return most
+
+
+@kernel
+def stop_round_off(system, b, most, state):
+    """Stop a free body whose speed is at most round-off, `most`: what it had has gone on to others.
+
+    It would approach the next body that it touches, and where e = 1 such impacts would have no end.
+    """
+    if b < 0 or system.bodies[b].ballistic == 0:
+        return
+    if speed_of(b, system.bodies[b].extent, state) <= most:
+        for r in range(3):
+            state[b].v[r], state[b].w[r] = 0.0, 0.0
 
 
 @kernel

@@ -72,6 +72,8 @@ class MultipleImpact(NamedTuple):
     e: np.ndarray  # (K,)
     law: np.ndarray  # (K,)
     kappa: np.ndarray  # (K,)
+    pair: np.ndarray  # (K,) of `CornerContacts`
+    round: np.ndarray  # (K,) 1 of a ball or an ellipsoid
 
 
 def capacity(system: System) -> int:
@@ -113,4 +115,6 @@ def new_multiple(k: int, settings: MultipleSettings) -> MultipleImpact:
         e=np.zeros(k),
         law=np.zeros(k, dtype=np.int64),
         kappa=np.zeros(k),
+        pair=np.zeros(k, dtype=np.int64),
+        round=np.zeros(k, dtype=np.int64),
     )

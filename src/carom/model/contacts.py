@@ -13,6 +13,7 @@ from carom.model.cores import Cores, new_cores, singly, swollen_alike
 from carom.options import Options
 from carom.scene.all_pairs import PairTable
 from carom.scene.contacts import IMPACT_LAWS
+from carom.scene.materials import MULTIPLE
 from carom.scene.scene import Scene
 from carom.scene.shapes import Shape
 
@@ -38,10 +39,17 @@ def compile_contacts(scene: Scene, to_principal, options: Options):
     solids, hulls = _write_solids(rows, which, scene, to_principal)
     _write_laws(rows, pairs, which)
     extent = rows["extent"]
-    rows["still"] = 1e-14 * np.sqrt(np.linalg.norm(scene.gravity) * extent)
+    rows["still"] = 1e-14 * _speed(scene, extent)
     rows["width"] = 1e-5 * extent if options.layer_width is None else options.layer_width
     rows["penetration"] = options.penetration
     return rows, vertices, solids, hulls
+
+
+def _speed(scene: Scene, extent: np.ndarray) -> np.ndarray | float:
+    """Return the speed that gravity gives over the size of a body, or the greatest at the start without it."""
+    if np.any(scene.gravity):
+        return np.sqrt(np.linalg.norm(scene.gravity) * extent)
+    return max((float(np.linalg.norm(body.velocity)) for body in scene.bodies), default=0.0)
 
 
 def _shapes(scene: Scene, *chosen: np.ndarray) -> list[Shape | None]:
@@ -62,6 +70,7 @@ def _write_shapes(rows: np.recarray, which: Rows) -> None:
     """Write of which form and size the two are, and who finds the points where they touch."""
     core, other = which.core, which.other
     rows["touches"] = np.where(rows["other"] >= 0, 1, core["curved"])
+    rows["round"] = np.maximum(core["round"], other["round"])
     rows["part"] = np.maximum(core["several"], other["several"])
     rows["extent"], rows["other_extent"] = core["extent"], other["extent"]
     rows["radius"], rows["core"] = core["radius"] + other["radius"], core["reach"]
@@ -111,11 +120,11 @@ def _write_laws(rows: np.recarray, pairs: PairTable, which: Rows) -> None:
     numbers = [
         (
             one.friction, one.friction_held, one.restitution, one.stiffness, one.rolling_friction,
-            one.pivoting_friction, IMPACT_LAWS.index(one.impact_law),
+            one.pivoting_friction, IMPACT_LAWS.index(one.impact_law), MULTIPLE.index(one.multiple),
         )
         for one in pairs.laws
     ]  # fmt: skip
-    law = np.array(numbers, dtype=float).reshape(-1, 7)[pairs.law[which.number]]
+    law = np.array(numbers, dtype=float).reshape(-1, 8)[pairs.law[which.number]]
     for k, name in enumerate(("friction", "friction_held", "restitution", "stiffness")):
         rows[name] = law[:, k]
-    rows["turning"], rows["law"] = law[:, 4:6], law[:, 6]
+    rows["turning"], rows["law"], rows["multiple"] = law[:, 4:6], law[:, 6], law[:, 7]

@@ -16,6 +16,7 @@ from carom import checks
 from carom.scene.values import keep
 
 IMPACT_LAWS = ("newton", "poisson", "stronge")
+MULTIPLE = ("simultaneous", "sequential")  # in the order of `carom.impact.multiple.layout`
 RULES: dict[str, Callable[[float, float], float]] = {
     "average": lambda a, b: 0.5 * (a + b),
     "min": min,
@@ -46,6 +47,9 @@ class ContactLaw:
     rolling_friction, pivoting_friction : float
         Greatest moment against rolling, and about the normal, of contact that stays, divided by the normal
         force [m], at least 0. Default 0. Impacts know neither.
+    multiple : {"simultaneous", "sequential"}
+        Whether an impact at the pair, while other contacts are closed, goes on together with theirs (default),
+        or is a blow of its own.
     """
 
     restitution: float = 0.5
@@ -55,12 +59,14 @@ class ContactLaw:
     stiffness: float = 1.0
     rolling_friction: float = 0.0
     pivoting_friction: float = 0.0
+    multiple: str = "simultaneous"
 
     def __post_init__(self):
         check_surface(self)
         if self.friction_held is None:
             keep(self, friction_held=self.friction)
         checks.choice("impact_law", self.impact_law, IMPACT_LAWS)
+        checks.choice("multiple", self.multiple, MULTIPLE)
 
 
 @dataclass(frozen=True)

@@ -28,6 +28,7 @@ class TouchingPairs:
         stiffness: float | None = None,
         rolling_friction: float | None = None,
         pivoting_friction: float | None = None,
+        multiple: str | None = None,
         name: str | None = None,
     ) -> Contact:
         """Let a body and a half-space, or two bodies, touch.
@@ -56,6 +57,10 @@ class TouchingPairs:
             Greatest moment against rolling, and about the normal, of contact that stays, divided by the
             normal force [m]. Default 0. They act against relative rotation until that stops; each point of
             a face by its own force. Impacts know neither.
+        multiple : {"simultaneous", "sequential"}
+            How an impact goes on while other contacts of these bodies are closed, too: all together (default),
+            or this pair in a blow of its own, and one blow after the other, as in a row of balls that do not
+            quite touch. See `Options.multiple`.
         name
             Default: the names of both, such as ``"die-ground"``.
 
@@ -86,6 +91,7 @@ class TouchingPairs:
             "stiffness": stiffness,
             "rolling_friction": rolling_friction,
             "pivoting_friction": pivoting_friction,
+            "multiple": multiple,
         }
         law = self._pairs.law(body, other, given)
         contact = self._parts.add(make_contact(index, name, body, other, law))
@@ -102,6 +108,7 @@ class TouchingPairs:
         stiffness: float = 1.0,
         rolling_friction: float = 0.0,
         pivoting_friction: float = 0.0,
+        multiple: str = "simultaneous",
         combine: Rule = None,
         all_pairs: bool = True,
     ) -> None:
@@ -110,6 +117,8 @@ class TouchingPairs:
         Parameters
         ----------
         restitution, friction, friction_held, impact_law, stiffness, rolling_friction, pivoting_friction
+            As of `add_contact`.
+        multiple
             As of `add_contact`.
         combine : {"average", "min", "max", "product", "geometric"} or dict, optional
             How two materials make one number: for all of restitution, friction, friction_held,
@@ -133,6 +142,7 @@ class TouchingPairs:
             stiffness=stiffness,
             rolling_friction=rolling_friction,
             pivoting_friction=pivoting_friction,
+            multiple=multiple,
         )
         self._pairs.set_default(default, combine, all_pairs)
 

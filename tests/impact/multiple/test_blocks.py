@@ -61,7 +61,8 @@ SLIPS = np.array([0.0, 1.0, 0.0])
 def jam(e, law, mu=1.6):
     settings, workspace, out = MultipleSettings(), new_multiple_workspace(1), new_multiple_result(1)
     one = np.ones(1)
-    contacts = CornerContacts(1, ROD, SLIPS, mu * one, e * one, np.array([law]), one)
+    laws, pair = np.array([law]), np.zeros(1, dtype=np.int64)
+    contacts = CornerContacts(1, 0, ROD, SLIPS, mu * one, e * one, laws, one, pair)
     return impact_without_collision(contacts, settings, workspace, out), out
 
 

@@ -90,7 +90,8 @@ def resolve_impacts(
         the normal force. For more than one contact no law gives back more energy than it took.
     multiple : {"simultaneous", "sequential", "newton"}
         All contacts together through their boundary layers (default), or blow by blow, each time the contact
-        that approaches fastest: quick, exact for a row of balls with e = 1, but else dependent on the order.
+        that approaches fastest, with those that approach equally fast: quick, exact for a row of balls with
+        e = 1, but else dependent on the order.
         "newton": one contact problem for all, Newton's law at each (Moreau 1988), or e = 0 where that would
         raise the energy: quickest, for crowds; `law` and `stiffness` play no part.
     stiffness : array_like, shape (k,), optional
@@ -156,7 +157,8 @@ def resolve_impacts(
     out = new_multiple_result(k)
     workspace = new_multiple_workspace(k)
     velocities = np.ascontiguousarray(u).reshape(-1)
-    contacts = CornerContacts(k, W, velocities, mu, e, numbers, kappa)
+    pair = np.arange(k) if multiple == "sequential" else np.zeros(k, dtype=np.int64)
+    contacts = CornerContacts(k, 0, W, velocities, mu, e, numbers, kappa, pair)
     code = resolve_multiple(contacts, settings, workspace, out)
     if code != OK:
         raise ValueError(f"the impact was not resolved: {MESSAGES[code]}")

@@ -38,7 +38,7 @@ class MultipleSettings(NamedTuple):
 
     multiple: int = SIMULTANEOUS
     rtol: float = 1e-8  # relative error of velocities
-    exponent: float = 1.0  # p of the normal law
+    exponent: float = 1.0  # p of the normal law; 0 in a run: by the shapes that touch
     adaptive_up_to: int = 24  # contacts (unlike ones); above: fixed steps
     fixed_steps: int = 40  # a period of the fastest contact, above `adaptive_up_to`
     max_events: int = 200  # changes of mode, a contact
@@ -50,6 +50,7 @@ class CornerContacts(NamedTuple):
     """The contacts of an impact: the first `k` of each array; (n, t1, t2) of each are rows of W and u."""
 
     k: int
+    others: int  # closed contacts that are not among these: their blows are others
     W: np.ndarray  # (3K, 3K) inverse mass, symmetric, often singular
     u: (
         np.ndarray
@@ -58,6 +59,9 @@ class CornerContacts(NamedTuple):
     restitution: np.ndarray  # (K,)
     law: np.ndarray  # (K,) of `carom.impact.laws`
     stiffness: np.ndarray  # (K,), only ratios matter
+    pair: (
+        np.ndarray
+    )  # (K,) contacts of one number strike together, those of another in a blow of their own
 
 
 #: one contact, or a class of contacts that move alike, in scaled variables
@@ -130,11 +134,26 @@ class PassageWork(NamedTuple):
     single: np.ndarray  # result of one contact, as `carom.impact.layout` says
 
 
+class BlowWork(NamedTuple):
+    """The contacts of one blow, and its result; of a sequence of blows each in turn."""
+
+    member: np.ndarray  # (K,) their places among all contacts
+    W: np.ndarray  # (3K, 3K)
+    given: np.ndarray  # (4, 3K) rows below
+    law: np.ndarray  # (2, K) laws and pairs
+    result: MultipleResult
+
+
 class MultipleWorkspace(NamedTuple):
     """Workspace for impacts of up to K contacts."""
 
     work: PassageWork
     cones: ContactWork
+    blow: BlowWork
+
+
+#: rows of `given`: velocity before, friction, restitution, stiffness
+BLOW_U, BLOW_FRICTION, BLOW_RESTITUTION, BLOW_STIFFNESS = range(4)
 
 
 #: rows of `index`: class of a contact, first member of a class, its size, its group, members of
@@ -223,4 +242,11 @@ def new_multiple_workspace(capacity: int) -> MultipleWorkspace:
         stage=np.zeros((2, 6, n)),
         single=np.zeros(one.SIZE),
     )
-    return MultipleWorkspace(work, new_contact_work(k))
+    blow = BlowWork(
+        member=np.zeros(k, dtype=np.int64),
+        W=np.zeros((n, n)),
+        given=np.zeros((4, n)),
+        law=np.zeros((2, k), dtype=np.int64),
+        result=new_multiple_result(k),
+    )
+    return MultipleWorkspace(work, new_contact_work(k), blow)

@@ -12,6 +12,10 @@ from carom.impact.multiple.at_once import solve_at_once, unsound
 from carom.impact.multiple.layout import (
     AT_ONCE,
     BAD_INPUT,
+    BLOW_FRICTION,
+    BLOW_RESTITUTION,
+    BLOW_STIFFNESS,
+    BLOW_U,
     BY_NEWTON,
     CAPPED,
     CLASS,
@@ -22,10 +26,11 @@ from carom.impact.multiple.layout import (
     GROUP,
     MASS,
     MEMBER,
+    MISSED,
     NOT_RESOLVED,
     OK,
+    PLASTIC,
     REPELLED,
-    SEQUENTIAL,
     SINGLE,
     SIZE,
     TRY,
@@ -35,7 +40,7 @@ from carom.impact.multiple.layout import (
 )
 from carom.impact.multiple.one import resolve_single
 from carom.impact.multiple.passage import pass_group
-from carom.impact.multiple.sequential import blow_by_blow
+from carom.impact.multiple.sequential import choose, strikes_at_once, take
 
 _NOTHING = 1e-15  # impulses below this part of the greatest are none
 _TOUCHES = 1e-13  # approach below this part of the greatest velocity is none
@@ -51,25 +56,53 @@ def resolve_multiple(contacts, settings, workspace, out):
 def resolve_contacts(contacts, settings, workspace, out):
     """Resolve an impact of `CornerContacts`; return OK or BAD_INPUT (nothing is written then).
 
-    `settings`: `MultipleSettings`; `workspace` from `new_multiple_workspace`, `out` from `new_multiple_result`,
-    for K >= k.
+    Contacts of one pair strike together, those of different pairs blow by blow. `settings`: `MultipleSettings`;
+    `workspace` from `new_multiple_workspace`, `out` from `new_multiple_result`, for K >= k.
     """
     scale = _check(contacts)
     if not scale >= 0.0:
         return BAD_INPUT
+    _clear(contacts, out)
+    blow, count = workspace.blow, 0
+    together = settings.multiple == BY_NEWTON or strikes_at_once(contacts)
+    while True:
+        ends = together or count >= settings.max_events * contacts.k
+        m = choose(contacts, ends, _TOUCHES * scale, blow, out)
+        if m == 0:
+            break
+        if ends and not together:  # without end: the rest is plastic
+            for a in range(m):
+                blow.given[BLOW_RESTITUTION, a] = 0.0
+        part = by_reference(
+            CornerContacts(
+                m, contacts.k - m, blow.W, blow.given[BLOW_U], blow.given[BLOW_FRICTION],
+                blow.given[BLOW_RESTITUTION], blow.law[0], blow.given[BLOW_STIFFNESS], blow.law[1],
+            )
+        )  # fmt: skip
+        _together(part, scale, settings, workspace, blow.result)
+        take(contacts, m, blow, out)
+        count += 1
+        if ends:
+            break
+    if count > 1:
+        out.summary[0].events += count
+        out.summary[0].marks &= ~EXACT
+    if not together:
+        _finish(contacts, out)
+    return OK
+
+
+@kernel
+def _together(contacts, scale, settings, workspace, out):
+    """Resolve an impact of contacts that strike together; `scale`: greatest velocity of all that are closed."""
     k, u, still, result = contacts.k, contacts.u, _TOUCHES * scale, out.summary[0]
     _clear(contacts, out)
-    approaches = False
-    for i in range(k):
-        approaches = approaches or u[3 * i] < -still
-    if not approaches:
-        return OK
     work = workspace.work
     index, clean = work.index, work.matrix[CLEAN]
     acting = by_reference(
         CornerContacts(
-            k, clean, u, work.vector[FRICTION], contacts.restitution, contacts.law,
-            contacts.stiffness,
+            k, contacts.others, clean, u, work.vector[FRICTION], contacts.restitution, contacts.law,
+            contacts.stiffness, contacts.pair,
         )
     )  # fmt: skip
     result.classes = equal_contacts.reduce(contacts, acting, scale, index)
@@ -85,7 +118,6 @@ def resolve_contacts(contacts, settings, workspace, out):
         result.marks, result.miss, result.plastic_change = AT_ONCE, 0.0, 0.0
         solve_at_once(contacts, workspace, out)
         _finish(contacts, out)
-    return OK
 
 
 @kernel
@@ -134,10 +166,7 @@ def _group(g, contacts, still, settings, workspace, out):
         return NOT_RESOLVED
     plastic, error = summary.plastic_change, summary.error
     summary.plastic_change, summary.error = 0.0, 0.0
-    if settings.multiple == SEQUENTIAL:
-        blow_by_blow(n, work, workspace.cones, settings, summary)
-    else:
-        pass_group(n, work, workspace.cones, settings, summary)
+    pass_group(n, work, workspace.cones, settings, summary)
     energy, index = speed * speed / mass, work.index
     for i in range(contacts.k):
         for a in range(n):
@@ -216,8 +245,9 @@ def _fill(n, contacts, still, exponent, work):
 def _exactly(contacts, still, work, out):
     """Resolve a group of one class as one contact; NOT_RESOLVED if nothing stops it.
 
-    If it parts others it gives back no more than it took, as each of several contacts; and if it gives nothing
-    back then, all of them are one plastic event, which is left to others.
+    If it parts others, or strikes in a sequence of blows, it gives back no more than it took, as each of
+    several contacts; and if it parts others and gives nothing back, all of them are one plastic event, which is
+    left to others.
     """
     index, W, before = work.index, work.matrix[SINGLE], work.vector[TRY]
     q = index[MEMBER, 0]
@@ -232,8 +262,9 @@ def _exactly(contacts, still, work, out):
             W[r, s] = work.matrix[MASS, r, s]
     single, clock, summary = work.single, work.clock, out.summary[0]
     single[one.STILL] = still
+    several = parts or contacts.others > 0
     resolve_single(clock, W, before, mu, e, law, single)
-    if parts and clock[0].code == one.OK and single[one.WORK_R] > -single[one.WORK_C]:
+    if several and clock[0].code == one.OK and single[one.WORK_R] > -single[one.WORK_C]:
         resolve_single(clock, W, before, mu, 1.0, laws.STRONGE, single)
         summary.marks |= CAPPED
     if clock[0].code != one.OK:
@@ -247,7 +278,7 @@ def _exactly(contacts, still, work, out):
             out.restitution[j] = single[one.WORK_R] * share
             out.friction[j] = single[one.FRICTION_LOSS] * share
             out.wedged[j] = 1 if int(single[one.PHASES]) & one.WEDGED != 0 else 0
-    if not parts:
+    if not several:
         summary.marks |= EXACT
     summary.steps += int(single[one.STEPS])
     return OK
@@ -265,7 +296,7 @@ def _finish(contacts, out):
     for i in range(k):
         if not P_[3 * i] > _NOTHING * most:
             P_[3 * i], P_[3 * i + 1], P_[3 * i + 2] = 0.0, 0.0, 0.0
-    capped = (result.marks & EXACT) == 0
+    capped, elastic = (result.marks & EXACT) == 0, _keeps_energy(contacts, out)
     for turn in range(2):
         energy, gain = 0.0, 0.0
         for a in range(n):
@@ -276,7 +307,8 @@ def _finish(contacts, out):
             energy += 0.5 * P_[a] * (u[a] + total)
             gain += P_[a] * total
         result.energy_change = energy
-        if turn == 1 or not capped or not energy > 0.0 or not gain > 2.0 * energy:
+        wrong = energy > 0.0 or (elastic and energy < 0.0)
+        if turn == 1 or not capped or not wrong or not gain > 2.0 * abs(energy):
             break
         for a in range(n):
             P_[a] *= 1.0 - energy / gain
@@ -285,11 +317,24 @@ def _finish(contacts, out):
 
 
 @kernel
+def _keeps_energy(contacts, out):
+    """Return whether all contacts with an impulse are elastic and without friction, and none was trapped."""
+    if (out.summary[0].marks & (PLASTIC | MISSED | AT_ONCE)) != 0:
+        return False
+    for i in range(contacts.k):
+        acts = out.impulse[3 * i] > 0.0
+        if acts and (contacts.friction[i] > 0.0 or contacts.restitution[i] < 1.0):
+            return False
+    return True
+
+
+@kernel
 def close_ledger(k, out):
     """Make the works of all contacts add up to the change of energy.
 
-    Friction has what the normal forces have not; where that is nothing (a plastic event has no path, and
-    tangential impulses may add to the energy there), the work of compression takes it.
+    Friction has what the normal forces have not. Where that is nothing (there is no friction, or a plastic
+    event, which has no path, and whose tangential impulses may add to the energy) the work of compression
+    takes it.
     """
     loaded, work, loss = 0.0, 0.0, 0.0
     for i in range(k):
@@ -300,7 +345,7 @@ def close_ledger(k, out):
     for i in range(k):
         if loss > 0.0 and exact > 0.0:
             out.friction[i] *= exact / loss
-        elif not exact > 0.0:
+        else:
             out.friction[i] = 0.0
             if loaded < 0.0:
                 out.compression[i] *= 1.0 - exact / loaded

@@ -1,61 +1,92 @@
-"""Blow by blow: the contact that approaches fastest is resolved alone, until none approaches (V.6).
+"""A sequence of blows: the pair that approaches fastest strikes alone, until none approaches (V.6).
 
-Exact for Newton's cradle with e = 1. In general it depends on the order of the blows, and so do all such rules.
+Points of one pair of bodies strike together, and so do pairs that approach equally fast, so that symmetric
+motions stay symmetric. Exact for Newton's cradle with e = 1. In general the result depends on the order of the
+blows, as it does for all such rules.
 """
 
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
-from carom.impact import laws
-from carom.impact import layout as one
-from carom.impact.multiple.adaptive import APART, start
-from carom.impact.multiple.layout import MASS, PLASTIC, SINGLE, TRY, P, U
-from carom.impact.multiple.motion import set_velocity
-from carom.impact.multiple.one import resolve_single
-from carom.impact.multiple.plastic import end_plastically
+from carom.impact.multiple.equal_contacts import SAME
+from carom.impact.multiple.layout import (
+    BLOW_FRICTION,
+    BLOW_RESTITUTION,
+    BLOW_STIFFNESS,
+    BLOW_U,
+)
 
 
 @kernel
-def blow_by_blow(k, work, cones, settings, result):
-    """Resolve the group of `k` contacts in `work`; velocities before are in row U0, impulses go to P."""
-    start(k, work)
+def strikes_at_once(contacts):
+    """Return whether all contacts are of one pair, or none gives anything back: one plastic event then."""
+    one, plastic = True, True
+    for i in range(contacts.k):
+        one = one and contacts.pair[i] == contacts.pair[0]
+        plastic = plastic and not contacts.restitution[i] > 0.0
+    return one or plastic
+
+
+@kernel
+def choose(contacts, every, least, blow, out):
+    """Gather the contacts of the next blow; return how many, 0 if none approaches faster than `least`.
+
+    They are those of the pair that approaches fastest, and of all pairs that do equally fast; or `every` one.
+    Velocities are those of `out`.
+    """
+    k, pair, member, u, fastest = contacts.k, contacts.pair, blow.member, out.velocity, 0.0
     for i in range(k):
-        work.contact[i].mode = 0
-    while True:
-        lead = 0
-        for i in range(k):
-            if work.vector[U, 3 * i] < work.vector[U, 3 * lead]:
-                lead = i
-        if not work.vector[U, 3 * lead] < -APART:
-            return
-        if result.events >= settings.max_events * k or not _blow(lead, work):
-            break
-        result.events += 1
-        set_velocity(k, work)
-    end_plastically(k, work, cones, settings.exponent)
-    result.plastic_change += work.clock[0].change
-    result.marks |= PLASTIC
+        fastest = max(fastest, -u[3 * i])
+    if not fastest > least:
+        return 0
+    m, equal = 0, (1.0 - SAME) * fastest
+    for i in range(k):
+        strikes = every
+        for j in range(0 if every else k):
+            strikes = strikes or (pair[j] == pair[i] and -u[3 * j] >= equal)
+        if strikes:
+            member[m] = i
+            m += 1
+    for a in range(m):
+        i = member[a]
+        blow.given[BLOW_FRICTION, a] = contacts.friction[i]
+        blow.given[BLOW_RESTITUTION, a] = contacts.restitution[i]
+        blow.given[BLOW_STIFFNESS, a] = contacts.stiffness[i]
+        blow.law[0, a], blow.law[1, a] = contacts.law[i], pair[i]
+        for r in range(3):
+            blow.given[BLOW_U, 3 * a + r] = u[3 * i + r]
+            row, whole = blow.W[3 * a + r], contacts.W[3 * i + r]
+            for b in range(m):
+                for s in range(3):
+                    row[3 * b + s] = whole[3 * member[b] + s]
+    return m
 
 
 @kernel
-def _blow(i, work):
-    """Resolve contact `i` alone; return whether it could be."""
-    c, W, u, single = work.contact[i], work.matrix[SINGLE], work.vector[TRY], work.single
-    for r in range(3):
-        u[r] = work.vector[U, 3 * i + r]
-        for s in range(3):
-            W[r, s] = work.matrix[MASS, 3 * i + r, 3 * i + s]
-    clock = work.clock
-    resolve_single(clock, W, u, c.mu, c.restitution, c.law, single)
-    if (
-        clock[0].code == one.OK and single[one.WORK_R] > -single[one.WORK_C]
-    ):  # not more than it took
-        resolve_single(clock, W, u, c.mu, 1.0, laws.STRONGE, single)
-    if clock[0].code != one.OK:
-        return False
-    for r in range(3):
-        work.vector[P, 3 * i + r] += single[one.IMPULSE + r]
-    c.absorbed -= single[one.WORK_C]
-    c.returned += single[one.WORK_R]
-    c.loss += single[one.FRICTION_LOSS]
-    return True
+def take(contacts, m, blow, out):
+    """Add what the blow of `m` contacts did to the result of all."""
+    member, part, u, W = blow.member, blow.result, out.velocity, contacts.W
+    for a in range(m):
+        i = member[a]
+        out.compression[i] += min(0.0, part.compression[a])
+        out.restitution[i] += max(0.0, part.restitution[a])
+        out.friction[i] += max(0.0, part.friction[a])
+        out.wedged[i] = part.wedged[a]
+        for r in range(3):
+            impulse = part.impulse[3 * a + r]
+            out.impulse[3 * i + r] += impulse
+            if impulse != 0.0 and m < contacts.k:
+                for b in range(3 * contacts.k):
+                    u[b] += impulse * W[b, 3 * i + r]
+    if m == contacts.k:
+        for b in range(3 * m):
+            u[b] = part.velocity[b]
+    result, done = out.summary[0], part.summary[0]
+    result.energy_change += done.energy_change
+    result.plastic_change += done.plastic_change
+    result.error, result.miss = max(result.error, done.error), max(result.miss, done.miss)
+    result.steps += done.steps
+    result.events += done.events
+    result.rounds += done.rounds
+    result.classes += done.classes
+    result.marks |= done.marks
