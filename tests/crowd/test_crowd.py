@@ -10,7 +10,7 @@ from carom.collision.api import nearest_points
 from carom.geometry import quaternion
 from carom.geometry.frames import contact_axes
 
-#: whole steps are of order 1 where something strikes: friction that rises by 1e-3 of the energy in a step, and says so
+#: of order 1 where something strikes: friction that rises by 1e-3 of the energy in a step, and says so
 pytestmark = pytest.mark.filterwarnings("ignore::carom.AccuracyWarning")
 
 G = 9.81
