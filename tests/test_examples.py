@@ -8,8 +8,8 @@ import pytest
 EXAMPLES = sorted((Path(__file__).parents[1] / "examples").rglob("*.py"))
 
 
-#: a heap is stepped with order 1, and the run says how deep bodies get into each other
-HEAPS = pytest.mark.filterwarnings("ignore:Body:carom.AccuracyWarning")
+#: what strikes in steps that are taken whole is of order 1, and the run says so
+HEAPS = pytest.mark.filterwarnings("ignore::carom.AccuracyWarning")
 
 
 @pytest.mark.parametrize(

@@ -28,8 +28,8 @@ def run(
     """Compile everything once, so that later runs start at once.
 
     The library is compiled for every kind of system (free bodies, trees of joints, loops of joints)
-    and every method, and for what the default method does with bodies that come to rest, touch each
-    other, or lie in heaps. Compiled code is kept on disk: later processes load it in a fraction of a
+    and every method, and for what the default method does with bodies that come to rest or lie
+    on each other. Compiled code is kept on disk: later processes load it in a fraction of a
     second. Takes some minutes the first time, seconds after that.
 
     For example:

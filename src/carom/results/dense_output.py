@@ -73,7 +73,7 @@ def _along_flight(moments, t, h, Q0, w0, Q1, w1):
 
     What the flight from the start misses of the end is added as the cubic is in `carom.geometry.spline`, in
     the chart that the flight carries: round-off, or where bodies that press on each other were moved as a
-    whole (`Options.heap`) their impulses.
+    whole their impulses.
     """
     from carom.kinematics.flight_arrays import torque_free
 

@@ -68,7 +68,7 @@ class Solution(Portable, Drawn):
         to change. Empty if all is well.
     stats : dict
         Counts: steps, trial steps, rejected ones (``step="auto"``), cuts, located events, impacts, holds;
-        steps of active points and their rounds (of a heap: sweeps); `explicit_steps`, those that a symplectic
+        steps of active points and their rounds (or sweeps); `explicit_steps`, those that a symplectic
         method left to the explicit one in singular positions; `parts`, by how many those outnumber the (trial)
         steps that were made in parts, as a body turned far; and `whole_steps`, in how many steps bodies that
         touch were taken whole, as a crowd: impacts of these are at the ends of steps (`impacts.located`).

@@ -59,7 +59,7 @@ def find_impulses(model, data, k, h, fall, patient):
     crowd, work, clock, n = data.crowd, data.work, data.clocks[0], data.state.shape[0]
     pose(system, active, k, h, fall, now, crowd, work)
     tolerance = FINE * controls.rest * fall * h
-    effort = (patient and n > 1, affordable(controls, clock) - clock.effort)
+    effort = (patient, affordable(controls, clock) - clock.effort)
     gamma, residual = solve(system, crowd, k, n, tolerance, effort, clock)
     answer(system, k, gamma, crowd, work)
     gain(crowd, work)

@@ -13,50 +13,44 @@ from carom.friction import layout as o
 from carom.friction.layout import ContactWork
 from carom.friction.newton import step
 from carom.friction.solve import scale_vectors
-from carom.friction.strategy import copy, release
+from carom.friction.strategy import copy, residual
 from carom.stepping.crowd.graph import find_order
 from carom.stepping.crowd.sweeps import sweep_until
 
 FIRST, BETWEEN, MOST = 40, 30, 150  # sweeps: at first, after a step, and what all may cost
 # weights of the proximal term, in turn: points are more than bodies can follow (four corners of a box). With
 # 1e-8 a step goes anywhere in what they do not determine
-PROXIMAL = (1e-2, 1e-3, 1e-4)
+PROXIMAL, LAST_DIGITS = (1e-2, 1e-3, 1e-4), 1e-8
 PRECISE, AGREED = 1e-10, 1e-8  # of the largest velocity: wanted, and good enough if that is hard
 HARD = 0.1  # of the residual before: with less a turn has helped
-RELEASE = 200  # iterations of a release of the proximal term
-IDLE, LAST = (
-    6,
-    40,
-)  # turns that do not halve the residual: the search begins elsewhere; turns in all
+IDLE = 6  # turns that do not halve the residual: there will be no better
 # cost [us] of a contact in a sweep and of a body that joints tie to it, of factors and of their assembly
 SWEEP, TIE, UPDATE, CONTACT = 0.13, 0.015, 0.1, 0.45
-PATIENT = (
-    10  # times as much for a few bodies that stand on each other, while the step can afford it
-)
+PATIENT = 4  # times as much while the step can afford it
 
 
 @kernel
 def solve(system, crowd, k, n, tolerance, effort, clock):
     """Solve for the scaled impulses; return the factor that they are to have, and the residual [m/s].
 
-    `effort`: whether the bodies are few and may have more, and the work [us] that the step can afford.
+    `effort`: whether it may take more than usual, and the work [us] that the step can afford.
     """
     patient, left = effort
     work = crowd.problem
+    work.count[o.ITERATIONS] = 0
     gamma = scale_vectors(work, k, crowd.c, crowd.p)
     each = SWEEP * k + TIE * work.link[k - 1].others_end if k > 0 else 0.0
-    most = max(MOST * each, min(left, PATIENT * MOST * each) if patient else 0.0)
+    most = MOST * each
+    if patient:
+        most = max(most, min(left, PATIENT * most))
     speed = greatest_speed(crowd, k) / gamma
     r, goal, done = sweep_until(system, crowd, k, max(tolerance / gamma, PRECISE * speed), FIRST)
     enough, good = max(tolerance / gamma, goal, PRECISE * speed), max(goal, AGREED * speed)
     spent, least, turn, idle = done * each, r, 0, 0
     p, kept = work.vector[o.P], work.vector[o.KEPT]
     copy(k, p, kept)
-    while not least <= enough and spent < most and turn < LAST:
+    while not least <= enough and spent < most and idle < IDLE:
         before = least
-        if idle == IDLE:
-            idle = 0
-            spent += begin_elsewhere(crowd, k, n, turn < 2 * IDLE, enough)
         spent += newton_step(crowd, k, n, PROXIMAL[turn % 3])
         r, _, more = sweep_until(system, crowd, k, enough, BETWEEN)
         done, spent, turn = done + more, spent + more * each, turn + 1
@@ -67,6 +61,13 @@ def solve(system, crowd, k, n, tolerance, effort, clock):
             break
         idle = 0 if least < 0.5 * before else idle + 1
     copy(k, kept, p)
+    if goal < least <= good:  # once more for the last digits
+        spent += newton_step(crowd, k, n, LAST_DIGITS)
+        r, _, _ = residual(work, k)
+        if r < least:
+            least = r
+        else:
+            copy(k, kept, p)
     clock.rounds += done
     clock.since += 2.0 * spent
     clock.effort += spent
@@ -81,28 +82,6 @@ def greatest_speed(crowd, k):
         u = crowd.spots[i].before
         most = max(most, abs(u[0]), abs(u[1]), abs(u[2]))
     return most
-
-
-@kernel
-def begin_elsewhere(crowd, k, n, first, enough):
-    """Replace impulses that get no better: at first by none, later by those of a release; return the cost [us].
-
-    A release is a strong proximal term that is weakened, from the best so far (mathematics page, VI.2).
-    """
-    work = crowd.problem
-    if first or not find_order(n, k, crowd):
-        for i in range(3 * k):
-            work.vector[o.P, i] = 0.0
-        return 0.0
-    pairs, updates = crowd.graph.count[3], crowd.graph.count[2]
-    own = by_reference(part(work, n, pairs, updates))
-    copy(k, work.vector[o.KEPT], work.vector[o.BEST])
-    copy(k, work.vector[o.KEPT], work.vector[o.P])
-    before = own.count[o.ITERATIONS]
-    own.count[o.LIMIT], own.count[o.BUDGET], own.mismatch[o.ENOUGH] = 0, before + RELEASE, 0.0
-    release(own, k, enough)
-    copy(k, work.vector[o.BEST], work.vector[o.KEPT])
-    return (own.count[o.ITERATIONS] - before) * (UPDATE * updates + CONTACT * k)
 
 
 @kernel

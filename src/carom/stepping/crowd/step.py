@@ -41,6 +41,7 @@ from carom.stepping.crowd.impulses import (
     impose,
 )
 from carom.stepping.crowd.layout import SPOTS
+from carom.stepping.crowd.solve import greatest_speed
 from carom.stepping.record import grow
 
 # of its ball: a body goes no further in a piece of the step; alone it turns no more [rad]. Several go no
@@ -53,6 +54,7 @@ WIDER, WIDEST = 4.0, 16.0  # how much further is looked for points where some we
 # of the smaller body: by so much a feature that was no candidate may be in the other; more, and the candidates
 # are looked for further off, or the step is cut, down to that part of it
 SUNK, DEEP, SHORTER = 1e-9, 1e-5, 1.0 / 16.0
+POOR = 1e-3  # of the greatest speed: contacts that are not solved to it
 AGAIN = 16  # times at most that points are looked for: each time a row of bodies pushes on one more
 ALONE = 16  # pieces of a step of a body that is alone: they cost little
 
@@ -194,6 +196,8 @@ def collide(model, data, h, fall, patient, careful):
         if max(clock.event, clock.struck) + rows > data.records.event.shape[0]:
             return grow(clock, r.FULL_EVENTS), k, 0.0, 0.0
         residual = find_impulses(model, data, k, h, fall, patient)
+        if careful and residual > POOR * greatest_speed(crowd, k) + POOR * fall * h:
+            return MISSED, k, residual, 0.0  # a shorter piece is another problem
         if careful and misses_bounce(system, k, h, fall, crowd):
             return MISSED, k, residual, 0.0
         driven, holds = impose(model, data, k, h)
