@@ -46,7 +46,7 @@ def exponent_of(k, multiple):
     if multiple.settings.exponent > 0.0:
         return multiple.settings.exponent
     for i in range(k):
-        if multiple.round[i] == 0:
+        if multiple.ball_like[i] == 0:
             return LINEAR
     return HERTZ
 
@@ -93,7 +93,7 @@ def strike_several(model, data, c, k):
             u[3 * i] -= SEED * math.sqrt(u[3 * i + 1] ** 2 + u[3 * i + 2] ** 2)
             group.mu[i] = contact.friction_held
         multiple.law[i], multiple.kappa[i] = contact.law, contact.stiffness
-        multiple.round[i] = contact.round
+        multiple.ball_like[i] = contact.ball_like
         all_by_pairs = multiple.settings.multiple == SEQUENTIAL
         multiple.pair[i] = pair_of(i, system.contacts, group.closed, all_by_pairs)
     resolve_group(k, group.m[0], u, group.mu, multiple)

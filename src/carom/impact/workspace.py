@@ -73,7 +73,7 @@ class MultipleImpact(NamedTuple):
     law: np.ndarray  # (K,)
     kappa: np.ndarray  # (K,)
     pair: np.ndarray  # (K,) of `CornerContacts`
-    round: np.ndarray  # (K,) 1 of a ball or an ellipsoid
+    ball_like: np.ndarray  # (K,) 1 of a ball or an ellipsoid
 
 
 def capacity(system: System) -> int:
@@ -116,5 +116,5 @@ def new_multiple(k: int, settings: MultipleSettings) -> MultipleImpact:
         law=np.zeros(k, dtype=np.int64),
         kappa=np.zeros(k),
         pair=np.zeros(k, dtype=np.int64),
-        round=np.zeros(k, dtype=np.int64),
+        ball_like=np.zeros(k, dtype=np.int64),
     )

@@ -228,7 +228,7 @@ CONTACT = [
     ("other_solid", "i8"),
     ("law", "i8"),  # 0 newton, 1 poisson, 2 stronge
     ("multiple", "i8"),  # 1: its pair strikes in a blow of its own
-    ("round", "i8"),  # 1 where one of the two is a ball or an ellipsoid
+    ("ball_like", "i8"),  # 1 where one of the two is a ball or an ellipsoid
     ("axes", "f8", (3, 3)),  # of a half-space: rows n, t1, t2
     ("offset", "f8"),  # n . point of the plane; of a stop side times where it is
     # of a stop: gap = side q - offset, above 0 for a lower, below for an upper one; 1 or, of a turn, a length

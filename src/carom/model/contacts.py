@@ -70,7 +70,7 @@ def _write_shapes(rows: np.recarray, which: Rows) -> None:
     """Write of which form and size the two are, and who finds the points where they touch."""
     core, other = which.core, which.other
     rows["touches"] = np.where(rows["other"] >= 0, 1, core["curved"])
-    rows["round"] = np.maximum(core["round"], other["round"])
+    rows["ball_like"] = np.maximum(core["ball_like"], other["ball_like"])
     rows["part"] = np.maximum(core["several"], other["several"])
     rows["extent"], rows["other_extent"] = core["extent"], other["extent"]
     rows["radius"], rows["core"] = core["radius"] + other["radius"], core["reach"]

@@ -21,7 +21,10 @@ CORE = [
     ("piece", "i8"),  # the first of them
     ("several", "i8"),  # 1 where the body has other pieces
     ("curved", "i8"),  # 1 where it has no vertices
-    ("round", "i8"),  # 1 of a ball or an ellipsoid: it touches in a point, as Hertz's law supposes
+    (
+        "ball_like",
+        "i8",
+    ),  # 1 of a ball or an ellipsoid: it touches in a point, as Hertz's law supposes
     ("radius", "f8"),  # of the ball that swells them
     ("extent", "f8"),  # of the whole shape
     ("reach", "f8"),  # largest distance of a core point from the mass centre
@@ -94,7 +97,7 @@ def _cores_of(shape: Shape, split, to_principal: tuple[float, ...]) -> CoresOfSh
         points.append(quaternion.rotate_back(np.array(to_principal), corners))
         rows["piece"][k], rows["radius"][k] = mine[0], pieces[mine[0]].radius
         rows["curved"][k], rows["last"][k] = pieces[mine[0]].corners is None, len(corners)
-        rows["round"][k] = pieces[mine[0]].kind in ROUND_KINDS
+        rows["ball_like"][k] = pieces[mine[0]].kind in ROUND_KINDS
         if len(corners):
             rows["reach"][k] = np.max(np.linalg.norm(points[k], axis=1))
     return CoresOfShape(rows, np.concatenate(points))

@@ -142,6 +142,6 @@ def taken_whole(stats: dict) -> tuple[str, ...]:
     if whole == 0:
         return ()
     return (
-        f"In {whole} of {steps} steps bodies that touch were taken whole, as a crowd, with order 1: their "
-        "impacts are at the ends of these steps, or of parts of them.",
+        f"In {whole} of {steps} steps bodies that touch were taken whole: their impacts are at the "
+        "ends of these steps, or of parts of them.",
     )

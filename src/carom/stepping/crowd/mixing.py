@@ -109,9 +109,9 @@ def solve_least(n, mixing):
             t = mixing.gram[i, j] * (1.0 + INDEPENDENT if i == j else 1.0)
             for s in range(j):
                 t -= L[i, s] * L[j, s] * L[s, s]
+            if i == j and not t > 0.0:
+                return False
             L[i, j] = t if i == j else t / L[j, j]
-        if not L[j, j] > 0.0:
-            return False
     for i in range(m):
         for s in range(i):
             theta[i] -= L[i, s] * theta[s]

@@ -23,7 +23,7 @@ FIRST, BETWEEN, MOST = 40, 30, 150  # sweeps: at first, after a step, and what a
 PROXIMAL, LAST_DIGITS = (1e-2, 1e-3, 1e-4), 1e-8
 PRECISE, AGREED = 1e-10, 1e-8  # of the largest velocity: wanted, and good enough if that is hard
 HARD = 0.1  # of the residual before: with less a turn has helped
-IDLE = 6  # turns that do not halve the residual: there will be no better
+IDLE = 4  # turns that do not halve the residual: another start, and then there will be no better
 # cost [us] of a contact in a sweep and of a body that joints tie to it, of factors and of their assembly
 SWEEP, TIE, UPDATE, CONTACT = 0.13, 0.015, 0.1, 0.45
 PATIENT = 4  # times as much while the step can afford it
@@ -49,8 +49,11 @@ def solve(system, crowd, k, n, tolerance, effort, clock):
     spent, least, turn, idle = done * each, r, 0, 0
     p, kept = work.vector[o.P], work.vector[o.KEPT]
     copy(k, p, kept)
-    while not least <= enough and spent < most and idle < IDLE:
+    while not least <= enough and spent < most and idle < 2 * IDLE:
         before = least
+        if idle == IDLE:  # from nothing: the last impulses may be a poor start
+            for i in range(3 * k):
+                p[i] = 0.0
         spent += newton_step(crowd, k, n, PROXIMAL[turn % 3])
         r, _, more = sweep_until(system, crowd, k, enough, BETWEEN)
         done, spent, turn = done + more, spent + more * each, turn + 1
