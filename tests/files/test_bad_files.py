@@ -57,13 +57,13 @@ def test_truncated(part, path):
 
 
 def test_newer_format(path, monkeypatch):
-    monkeypatch.setattr(sealed, "FORMAT", 4)
+    monkeypatch.setattr(sealed, "FORMAT", 5)
     rewrite_as_it_is = path.read_bytes()[: -sealed.LENGTH]
     line = (sealed.BEFORE % (4, 0)).encode()
     digest = sealed.hashlib.sha256(rewrite_as_it_is + line).hexdigest()
     path.write_bytes(rewrite_as_it_is + line + f"{digest}\n".encode())
     monkeypatch.undo()
-    with pytest.raises(ValueError, match=r"in format 3, got .* in format 4: update carom"):
+    with pytest.raises(ValueError, match=r"in format 4, got .* in format 5: update carom"):
         carom.Solution.load(path)
 
 
