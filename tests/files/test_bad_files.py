@@ -59,7 +59,7 @@ def test_truncated(part, path):
 def test_newer_format(path, monkeypatch):
     monkeypatch.setattr(sealed, "FORMAT", 5)
     rewrite_as_it_is = path.read_bytes()[: -sealed.LENGTH]
-    line = (sealed.BEFORE % (4, 0)).encode()
+    line = (sealed.BEFORE % (5, 0)).encode()
     digest = sealed.hashlib.sha256(rewrite_as_it_is + line).hexdigest()
     path.write_bytes(rewrite_as_it_is + line + f"{digest}\n".encode())
     monkeypatch.undo()

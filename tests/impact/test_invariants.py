@@ -54,7 +54,11 @@ def test_each_law_says_what_it_says(problem):
     assert poisson.impulse[0] == pytest.approx((1 + e) * p_c, rel=1e-11)
     lost = -stronge.compression_work
     assert stronge.restitution_work == pytest.approx(e**2 * lost, rel=1e-9, abs=1e-13 * lost)
-    np.testing.assert_allclose(newton.compression_impulse, stronge.compression_impulse, rtol=1e-12)
+    if (
+        "jam" not in newton.phases
+    ):  # where it compresses again, compression ends with the last zero of u_n
+        both = newton.compression_impulse, stronge.compression_impulse
+        np.testing.assert_allclose(*both, rtol=1e-12)
 
 
 @few

@@ -51,7 +51,7 @@ def solve(system, crowd, k, n, tolerance, effort, clock):
     copy(k, p, kept)
     while not least <= enough and spent < most and idle < 2 * IDLE:
         before = least
-        if idle == IDLE:  # from nothing: the last impulses may be a poor start
+        if idle == IDLE and n > 1:  # from nothing: the last impulses may be a poor start
             for i in range(3 * k):
                 p[i] = 0.0
         spent += newton_step(crowd, k, n, PROXIMAL[turn % 3])
