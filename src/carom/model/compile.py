@@ -6,18 +6,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom._compiled.record_arrays import table
+from carom._compiled.record_arrays import Columns, table
 from carom._compiled.user_functions import Functions
 from carom.geometry import quaternion
 from carom.geometry.frames import triad
 from carom.model import graph, solvers
 from carom.model.arrays import BODY, BUSHING, JOINT, KIND, LOAD, SCREW, SPRING, STATE, System
-from carom.model.contacts import compile_contacts
+from carom.model.contacts import Surfaces, compile_contacts, more_contacts
 from carom.model.more_forces import MoreForces, Pieces
 from carom.model.placement import Placement
 from carom.model.relations import Coordinates, Elements
 from carom.model.stops import with_stops
 from carom.options import Options
+from carom.scene.all_pairs import Defaults, PairTable, joined_tables, some_pairs
 from carom.scene.forces import Bushing, CurveSpring, Force, Spring, Torque
 from carom.scene.more_forces import JointInertia
 from carom.scene.scene import Scene
@@ -31,14 +32,18 @@ class Compiled(NamedTuple):
     to_principal: np.ndarray  # (N, 4) principal axes -> the scene's body axes
     flipped: np.ndarray  # (J,) joints whose parent and child were exchanged
     functions: Functions  # of the user's
+    pairs: PairTable  # what touches what, by the number of the contact
+    surfaces: Surfaces  # what rows of contacts are made from
+    later: Defaults | None  # pairs of bodies that get rows when they come near each other
 
 
 def compile_scene(
-    scene: Scene, options: Options, loops: bool = False, implicit: bool = False
+    scene: Scene, options: Options, loops: bool = False, implicit: bool = False, apart: bool = False
 ) -> Compiled:
     """Return the arrays of `scene`; with `loops` the block-sparse back end even for a forest.
 
-    With `implicit` springs are rows of the solve, not forces.
+    With `implicit` springs are rows of the solve, not forces. Where bodies move `apart`, in islands, many pairs
+    of them have no rows until they come near each other (`with_pairs`).
     """
     start, to_principal, moments = _start(scene)
     placement, functions = Placement(start, to_principal), Functions()
@@ -50,8 +55,8 @@ def compile_scene(
         elements.add_springs(scene, placement)
     more = MoreForces(scene, coordinates, functions, pieces, implicit)
     joints, flipped, solver = _joints(scene, moments, placement, elements, options, loops)
-    contacts, vertices, solids, hulls = compile_contacts(scene, to_principal, options)
-    contacts = with_stops(scene, contacts, coordinates, sizes, options)
+    touching = compile_contacts(scene, to_principal, options, apart)
+    contacts = with_stops(scene, touching.rows, coordinates, sizes, options)
     relations = elements.arrays(solver, more)
     springs, loads = _springs(scene, placement, more, implicit), _loads(scene, placement)
     bushings = _bushings(scene, placement)
@@ -67,12 +72,23 @@ def compile_scene(
         loads,
         bushings,
         contacts,
-        vertices,
-        solids,
-        hulls,
+        touching.vertices,
+        touching.solids,
+        touching.hulls,
         solver,
     )
-    return Compiled(system, start, to_principal, flipped, functions)
+    return Compiled(system, start, to_principal, flipped, functions, *touching[4:])
+
+
+def with_pairs(compiled: Compiled, scene: Scene, options: Options, found: np.ndarray) -> Compiled:
+    """Return a compiled scene with rows of contacts for further pairs (K, 2) of bodies."""
+    assert compiled.later is not None
+    pairs, system = some_pairs(compiled.later, *found.T), compiled.system
+    rows = more_contacts(scene, options, pairs, compiled.surfaces, len(compiled.pairs.body))
+    contacts = np.concatenate([system.contacts, rows]).view(Columns)
+    return compiled._replace(
+        system=system._replace(contacts=contacts), pairs=joined_tables(compiled.pairs, pairs)
+    )
 
 
 def principal(inertia: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

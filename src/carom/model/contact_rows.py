@@ -8,9 +8,12 @@ import numpy as np
 
 from carom._compiled.record_arrays import table
 from carom.model.cores import CORE, Cores
-from carom.scene.all_pairs import PairTable
+from carom.scene.all_pairs import Defaults, PairTable, every_pair, joined_tables, no_pairs
 from carom.scene.bodies import HalfSpace
 from carom.scene.scene import Scene
+
+#: pairs of bodies that are few: all of them have rows from the start, in the order of the scene
+FEW = 64 * 63 // 2
 
 
 class Rows(NamedTuple):
@@ -22,8 +25,31 @@ class Rows(NamedTuple):
 
 
 def touching_pairs(scene: Scene) -> PairTable:
-    """Return the pairs of the contacts of a scene: those added, then those of `set_contact_default`."""
-    added, rest = scene.contacts, scene.pairs_by_default()
+    """Return the pairs of all contacts of a scene: those added, then those of `set_contact_default`."""
+    return first_pairs(scene, False)[0]
+
+
+def first_pairs(scene: Scene, apart: bool) -> tuple[PairTable, Defaults | None]:
+    """Return the pairs that have rows from the start of a run, and what others may come, if any.
+
+    Where bodies move `apart`, in islands, and are many, the pairs of two bodies that touch by default are left
+    to when they come near each other.
+    """
+    default = scene._pairs.defaults(scene.bodies, scene.half_spaces)
+    if default is None:
+        return _added(scene, no_pairs()), None
+    solid = int(np.count_nonzero(default.solid))
+    if apart and solid * (solid - 1) > 2 * FEW:
+        added = _added(scene, default.grounded)
+        laws = default.grounded._replace(law=default.grounded.law + len(scene.contacts))
+        laws = laws._replace(laws=added.laws)
+        return added, default._replace(grounded=laws, law=default.law + len(scene.contacts))
+    return _added(scene, every_pair(default)), None
+
+
+def _added(scene: Scene, rest: PairTable) -> PairTable:
+    """Return the pairs of the contacts that were added, then the rest."""
+    added = scene.contacts
     ends = [
         (c.body.index, -1, c.other.index)
         if isinstance(c.other, HalfSpace)
@@ -31,15 +57,8 @@ def touching_pairs(scene: Scene) -> PairTable:
         for c in added
     ]
     body, other, plane = np.array(ends, dtype=np.int64).reshape(-1, 3).T
-    if not rest.laws:
-        return PairTable(body, other, plane, np.arange(len(added)), [*added])
-    return PairTable(
-        np.append(body, rest.body),
-        np.append(other, rest.other),
-        np.append(plane, rest.plane),
-        np.append(np.arange(len(added)), rest.law + len(added)),
-        [*added, *rest.laws],
-    )
+    first = PairTable(body, other, plane, np.arange(len(added)), [*added, *rest.laws])
+    return joined_tables(first, rest._replace(law=rest.law + len(added)))
 
 
 def contact_rows(pairs: PairTable, grounded: Cores, single: Cores) -> Rows:

@@ -2,47 +2,93 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from carom._compiled.record_arrays import table
-from carom.collision.layout import SOLID, no_hulls, solid_table
+from carom.collision.layout import SOLID, Hulls, no_hulls, solid_table
 from carom.geometry.frames import contact_axes
 from carom.model.arrays import CONTACT
-from carom.model.contact_rows import Rows, contact_rows, touching_pairs
+from carom.model.contact_rows import Rows, contact_rows, first_pairs
 from carom.model.cores import Cores, new_cores, singly, swollen_alike
 from carom.options import Options
-from carom.scene.all_pairs import PairTable
+from carom.scene.all_pairs import Defaults, PairTable, meeting
 from carom.scene.contacts import IMPACT_LAWS
 from carom.scene.materials import MULTIPLE
 from carom.scene.scene import Scene
 from carom.scene.shapes import Shape
 
 
-def compile_contacts(scene: Scene, to_principal, options: Options):
-    """Return contacts, vertices, and the solids and hulls of bodies whose points the kernels of pairs find.
+class Surfaces(NamedTuple):
+    """What bodies touch with: rows of contacts are made from it, at the start and later."""
+
+    grounded: Cores  # against half-spaces
+    single: Cores  # piece by piece, against each other
+    shared: int  # first vertex of `single`, after those of contacts with half-spaces
+    place: np.ndarray  # (N,) first solid of each body
+
+
+class Contacts(NamedTuple):
+    """The contacts of a scene at the start, and what more of them are made from."""
+
+    rows: np.recarray  # CONTACT
+    vertices: np.ndarray  # (V, 3)
+    solids: np.recarray  # SOLID, of bodies whose points the kernels of pairs find
+    hulls: Hulls
+    pairs: PairTable  # those of the rows, by number
+    surfaces: Surfaces
+    later: Defaults | None  # pairs of bodies that get rows when they come near each other
+
+
+def compile_contacts(scene: Scene, to_principal, options: Options, apart: bool = False) -> Contacts:
+    """Return the contacts of a scene.
 
     A contact of the scene has a row for each pair of pieces; against a half-space one for all vertices that
-    are swollen alike, and one for each curved piece.
+    are swollen alike, and one for each curved piece. Where bodies move `apart` there may be more to come.
     """
-    pairs = touching_pairs(scene)
+    pairs, later = first_pairs(scene, apart)
     meets = pairs.other >= 0
     grounded = new_cores(_shapes(scene, pairs.body[~meets]), swollen_alike, to_principal)
-    meeting = _shapes(scene, pairs.body[meets], pairs.other[meets])
-    single = new_cores(meeting, singly, to_principal)
+    others = np.zeros(0, dtype=np.int64) if later is None else np.flatnonzero(meeting(later))
+    every = _shapes(scene, pairs.body[meets], pairs.other[meets], others)
+    single = new_cores(every, singly, to_principal)
     which = contact_rows(pairs, grounded, single)
+    flat = pairs.other[which.number] < 0
+    curved = pairs.body[which.number[flat & (which.core["curved"] == 1)]]
+    place, solids, hulls = _solids(scene, every, curved, to_principal)
+    own = _own_vertices(which, flat & (which.core["curved"] == 0))
+    vertices = np.concatenate([grounded.vertices[own], single.vertices])
+    surfaces = Surfaces(grounded, single, len(own), place)
+    rows = _rows(scene, options, pairs, which, surfaces)
+    return Contacts(rows, vertices, solids, hulls, pairs, surfaces, later)
+
+
+def more_contacts(
+    scene: Scene, options: Options, pairs: PairTable, surfaces: Surfaces, first: int
+) -> np.recarray:
+    """Return the rows of further pairs of two bodies, numbered from `first` on."""
+    which = contact_rows(pairs, surfaces.grounded, surfaces.single)
+    rows = _rows(scene, options, pairs, which, surfaces)
+    rows["number"] += first
+    return rows
+
+
+def _rows(scene, options: Options, pairs: PairTable, which: Rows, surfaces: Surfaces):
+    """Return the rows of contacts."""
     rows = table(CONTACT, len(which.number))
     rows["number"], rows["body"] = which.number, pairs.body[which.number]
     rows["other"] = pairs.other[which.number]
     _write_half_spaces(rows, scene, pairs.plane[which.number])
     _write_shapes(rows, which)
-    vertices = _write_vertices(rows, which, grounded, single)
-    solids, hulls = _write_solids(rows, which, scene, to_principal)
+    _write_ranges(rows, which, surfaces.shared)
+    _write_solids(rows, which, surfaces.place)
     _write_laws(rows, pairs, which)
     extent = rows["extent"]
     rows["still"] = 1e-14 * _speed(scene, extent)
     rows["width"] = 1e-5 * extent if options.layer_width is None else options.layer_width
     rows["penetration"] = options.penetration
-    return rows, vertices, solids, hulls
+    return rows
 
 
 def _speed(scene: Scene, extent: np.ndarray) -> np.ndarray | float:
@@ -76,43 +122,52 @@ def _write_shapes(rows: np.recarray, which: Rows) -> None:
     rows["radius"], rows["core"] = core["radius"] + other["radius"], core["reach"]
 
 
-def _write_vertices(rows: np.recarray, which: Rows, grounded: Cores, single: Cores) -> np.ndarray:
-    """Write the ranges of vertices, and return these (V, 3).
+def _own_vertices(which: Rows, flat: np.ndarray) -> np.ndarray:
+    """Return which vertices the rows with half-spaces have: a contact is held at one, so each row has its own."""
+    length = np.where(flat, which.core["last"] - which.core["first"], 0)
+    first = np.cumsum(length) - length
+    return np.repeat(which.core["first"] - first, length) + np.arange(length.sum())
 
-    A vertex on a half-space is a feature that a contact is held at: each contact has its own. Points of two
-    bodies are found anew in each state, and all contacts of a piece share its vertices.
+
+def _write_ranges(rows: np.recarray, which: Rows, shared: int) -> None:
+    """Write the ranges of vertices: own ones on half-spaces, row by row.
+
+    Points of two bodies are found anew in each state, and all contacts of a piece share its vertices, which
+    begin at `shared`.
     """
     core, other, flat = which.core, which.other, rows["touches"] == 0
     length = np.where(flat, core["last"] - core["first"], 0)
     last = np.cumsum(length)
-    first = last - length
-    own = np.repeat(core["first"] - first, length) + np.arange(length.sum())
-    rows["first"][flat], rows["last"][flat] = first[flat], last[flat]
-    pair, shared = rows["other"] >= 0, len(own)
-    if not pair.any():
-        return grounded.vertices[own]
+    rows["first"][flat], rows["last"][flat] = (last - length)[flat], last[flat]
+    pair = rows["other"] >= 0
     for name, end, body in (
         ("first", "first", core), ("last", "last", core),
         ("other_first", "first", other), ("other_last", "last", other),
     ):  # fmt: skip
         rows[name][pair] = body[end][pair] + shared
-    return np.concatenate([grounded.vertices[own], single.vertices])
 
 
-def _write_solids(rows: np.recarray, which: Rows, scene: Scene, to_principal: np.ndarray):
-    """Write the solids of each row, and return the table of all, with their hulls."""
-    rows["solid"] = which.core["piece"]
-    if not rows["touches"].any():
-        return table(SOLID, 0), no_hulls()
-    found = np.append(rows.body[rows.touches == 1], rows.other[rows.other >= 0])
-    bodies, first = np.unique(found, return_index=True)
-    shaped = bodies[np.argsort(first)]
-    solids, hulls = solid_table([scene.bodies[b].shape for b in shaped], to_principal[shaped])
+def _solids(scene: Scene, every: list[Shape | None], curved: np.ndarray, to_principal: np.ndarray):
+    """Return the first solid (N,) of each body, and the table of all, with their hulls.
+
+    Of bodies that meet others, and of those with a curved piece on a half-space.
+    """
+    meets = [b for b, shape in enumerate(every) if shape is not None]
+    bodies = np.union1d(np.array(meets, dtype=np.int64), curved)
     place = np.zeros(len(scene.bodies), dtype=np.int64)
-    place[shaped] = np.searchsorted(solids.body, np.arange(len(shaped)))
-    rows["solid"] += place[rows.body]
-    rows["other_solid"] = np.where(rows.other >= 0, place[rows.other] + which.other.piece, 0)
-    return solids, hulls
+    if not len(bodies):
+        return place, table(SOLID, 0), no_hulls()
+    solids, hulls = solid_table([scene.bodies[b].shape for b in bodies], to_principal[bodies])
+    place[bodies] = np.searchsorted(solids.body, np.arange(len(bodies)))
+    return place, solids, hulls
+
+
+def _write_solids(rows: np.recarray, which: Rows, place: np.ndarray) -> None:
+    """Write the solids of each row."""
+    found = rows["touches"] == 1
+    rows["solid"] = which.core["piece"] + np.where(found, place[rows["body"]], 0)
+    between = rows["other"] >= 0
+    rows["other_solid"] = np.where(between, place[rows["other"]] + which.other["piece"], 0)
 
 
 def _write_laws(rows: np.recarray, pairs: PairTable, which: Rows) -> None:

@@ -1,7 +1,12 @@
-"""All pairs of a scene that may touch, but for those left out: as arrays, for they are many."""
+"""All pairs of a scene that may touch, but for those left out: as arrays, for they are many.
+
+Pairs of two bodies are N(N - 1)/2. What says which of them may touch, and by which law, is of the size of N:
+`Defaults`, from which a list of all, or of some, is made.
+"""
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Callable, Iterable, Sequence
 from typing import NamedTuple
 
@@ -9,6 +14,8 @@ import numpy as np
 
 from carom.scene.bodies import Body, HalfSpace
 from carom.scene.materials import ContactLaw
+
+MOST_AT_ONCE = 1 << 20  # balls whose distances are looked at in one go
 
 
 class PairTable(NamedTuple):
@@ -21,68 +28,184 @@ class PairTable(NamedTuple):
     laws: list[ContactLaw]
 
 
+class Defaults(NamedTuple):
+    """The pairs that touch by default: with half-spaces one by one, of two bodies by what they have."""
+
+    grounded: PairTable  # bodies and half-spaces, body by body
+    solid: np.ndarray  # (N,) whether a body has a shape
+    left_out: np.ndarray  # (E,) pairs of bodies i < j that do not touch so, as i N + j, rising
+    kind: np.ndarray  # (N,) number of the material
+    law: np.ndarray  # (K, K) place in `grounded.laws`, by the materials of two bodies
+
+
 def no_pairs() -> PairTable:
     """Return an empty list of pairs."""
     none = np.zeros(0, dtype=np.int64)
     return PairTable(none, none, none, none, [])
 
 
-def all_pairs(
+def joined_tables(first: PairTable, second: PairTable) -> PairTable:
+    """Return the pairs of two tables with the same laws."""
+    columns = (np.concatenate(pair) for pair in zip(first[:4], second[:4]))
+    return PairTable(*columns, first.laws)
+
+
+def defaults(
     bodies: Sequence[Body],
     half_spaces: Sequence[HalfSpace],
     left_out: Iterable[frozenset],
     law: Callable[[Body, Body | HalfSpace], ContactLaw],
-) -> PairTable:
-    """Return all pairs of bodies with shapes that are not `left_out`.
+) -> Defaults:
+    """Return what pairs of bodies with shapes may touch that are not `left_out`.
 
-    First those of bodies and half-spaces, body by body, then those of two bodies. `law` is asked once for each
-    pair of materials, with the first pair that has them.
+    `law` is asked once for each pair of materials, with the first pair that has them: first those of bodies and
+    half-spaces, body by body, then those of two bodies.
     """
-    grounded, joined = _open(bodies, half_spaces, left_out)
-    (b, h), (i, j) = np.nonzero(grounded), np.nonzero(joined)
-    body, other = np.concatenate([b, i]), np.concatenate([np.full_like(b, -1), j])
-    plane = np.concatenate([h, np.full_like(i, -1)])
+    count = len(bodies)
+    solid = np.array([body.shape is not None for body in bodies], dtype=bool)
+    meets, out = _open(solid, half_spaces, left_out)
     numbers: dict = {}
     kinds = [
         np.array([numbers.setdefault(p.material, len(numbers)) for p in parts], dtype=np.int64)
         for parts in (bodies, half_spaces)
     ]
-    materials = kinds[0][body] * len(numbers) + np.concatenate([kinds[1][h], kinds[0][j]])
-    _, first, which = np.unique(materials, return_index=True, return_inverse=True)
-    order = np.argsort(first)  # a pair that has no law is refused in the order of the pairs
-    laws = [
-        law(bodies[b], half_spaces[h] if j < 0 else bodies[j])
-        for b, j, h in np.stack([body, other, plane], axis=1)[first[order]].tolist()
-    ]
-    return PairTable(body, other, plane, np.argsort(order)[which], laws)
+    b, h = np.nonzero(meets)
+    materials = kinds[0][b] * len(numbers) + kinds[1][h]
+    found, first = np.unique(materials, return_index=True)
+    place = np.full((len(numbers), len(numbers)), -1, dtype=np.int64)
+    laws = []
+    for k in np.argsort(first):  # a pair that has no law is refused in the order of the pairs
+        place.flat[found[k]] = len(laws)
+        laws.append(law(bodies[b[first[k]]], half_spaces[h[first[k]]]))
+    for i, j in _first_of_kinds(kinds[0], solid, set(out.tolist())):
+        if place[kinds[0][i], kinds[0][j]] < 0:
+            place[kinds[0][i], kinds[0][j]] = len(laws)
+            laws.append(law(bodies[i], bodies[j]))
+    none = np.full(len(b), -1)
+    grounded = PairTable(b, none, h, place[kinds[0][b], kinds[1][h]], laws)
+    return Defaults(grounded, solid, out, kinds[0], place) if count else _nothing()
 
 
-def _open(bodies, half_spaces, left_out) -> tuple[np.ndarray, np.ndarray]:
-    """Return which bodies may touch which half-spaces (N, H), and which others (N, N), i < j."""
-    solid = np.array([body.shape is not None for body in bodies], dtype=bool)
-    grounded = np.repeat(solid[:, None], len(half_spaces), axis=1)
-    joined = np.triu(solid[:, None] & solid, 1)
+def _nothing() -> Defaults:
+    none = np.zeros(0, dtype=np.int64)
+    return Defaults(no_pairs(), np.zeros(0, dtype=bool), none, none, np.zeros((0, 0), np.int64))
+
+
+def _open(solid: np.ndarray, half_spaces, left_out) -> tuple[np.ndarray, np.ndarray]:
+    """Return which bodies may touch which half-spaces (N, H), and the pairs of two bodies that may not (E,)."""
+    meets = np.repeat(solid[:, None], len(half_spaces), axis=1)
+    out = set()
     for pair in left_out:
         ends = sorted(part.index for part in pair if isinstance(part, Body))
         planes = [part.index for part in pair if isinstance(part, HalfSpace)]
         if planes:
-            grounded[ends, planes] = False
+            meets[ends, planes] = False
         elif len(ends) == 2:  # else one of them is the ground
-            joined[ends[0], ends[1]] = False
-    return grounded, joined
+            out.add(ends[0] * len(solid) + ends[1])
+    return meets, np.array(sorted(out), dtype=np.int64)
 
 
-def near(pairs: PairTable, bodies: Sequence[Body], half_spaces: Sequence[HalfSpace]) -> np.ndarray:
-    """Return the pairs, by number, where the balls around the bodies reach the other."""
-    places = np.array([body.position for body in bodies]).reshape(-1, 3)
-    sizes = np.array([0.0 if body.shape is None else body.shape.size for body in bodies])
-    between = pairs.other >= 0
-    body, other = pairs.body[between], pairs.other[between]
+def _first_of_kinds(kind: np.ndarray, solid: np.ndarray, left_out: set) -> list[tuple[int, int]]:
+    """Return the first pair i < j that may touch of each two materials, in the order of the pairs."""
+    members: dict[int, list[int]] = {}
+    for b in np.flatnonzero(solid).tolist():
+        members.setdefault(int(kind[b]), []).append(b)
+    found = (
+        _first(mine, others, left_out, len(kind))
+        for mine in members.values()
+        for others in members.values()
+    )
+    return sorted(pair for pair in found if pair is not None)
+
+
+def _first(mine: list, others: list, left_out: set, count: int) -> tuple[int, int] | None:
+    """Return the first pair i < j, i of some bodies and j of others, that is not left out."""
+    for i in mine:
+        for k in range(bisect_right(others, i), len(others)):
+            if i * count + others[k] not in left_out:
+                return i, others[k]
+    return None
+
+
+def every_pair(of: Defaults) -> PairTable:
+    """Return all pairs: first those of bodies and half-spaces, body by body, then those of two bodies."""
+    solid = np.flatnonzero(of.solid)
+    i, j = np.triu_indices(len(solid), 1)
+    i, j = solid[i], solid[j]
+    may = ~np.isin(i * len(of.solid) + j, of.left_out)
+    return joined_tables(of.grounded, some_pairs(of, i[may], j[may]))
+
+
+def some_pairs(of: Defaults, body: np.ndarray, other: np.ndarray) -> PairTable:
+    """Return these pairs of two bodies, which may touch."""
+    law = of.law[of.kind[body], of.kind[other]]
+    return PairTable(body, other, np.full(len(body), -1), law, of.grounded.laws)
+
+
+def may_touch(of: Defaults, body: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """Return which of these pairs of two bodies, body < other, may touch."""
+    out = np.isin(body * len(of.solid) + other, of.left_out)
+    return of.solid[body] & of.solid[other] & ~out
+
+
+def meeting(of: Defaults) -> np.ndarray:
+    """Return which bodies (N,) may touch another one."""
+    out = np.divmod(of.left_out, max(1, len(of.solid)))
+    kept = of.solid[out[0]] & of.solid[out[1]]
+    partners = np.full(len(of.solid), np.count_nonzero(of.solid) - 1)
+    for side in out:
+        np.subtract.at(partners, side[kept], 1)
+    return of.solid & (partners > 0)
+
+
+def near_half_spaces(
+    pairs: PairTable, bodies: Sequence[Body], half_spaces: Sequence[HalfSpace]
+) -> np.ndarray:
+    """Return the pairs of bodies and half-spaces, by number, where the ball around the body reaches the other."""
+    places, sizes = balls(bodies)
     reach = np.zeros(len(pairs.body), dtype=bool)
-    distance = np.linalg.norm(places[other] - places[body], axis=1)
-    reach[between] = distance <= sizes[body] + sizes[other]
     for h, plane in enumerate(half_spaces):
         rows = np.flatnonzero(pairs.plane == h)
         body = pairs.body[rows]
         reach[rows] = (places[body] - plane.point) @ plane.normal <= sizes[body]
     return np.flatnonzero(reach)
+
+
+def near_each_other(of: Defaults, bodies: Sequence[Body]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the pairs i < j of bodies that may touch whose balls overlap, in their order.
+
+    Balls are sorted by where they begin along the axis on which they lie furthest apart; those that
+    begin before another one ends are looked at.
+    """
+    solid = np.flatnonzero(of.solid)
+    if len(solid) < 2:
+        return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
+    places, sizes = (a[solid] for a in balls(bodies))
+    along = places[:, np.argmax(np.ptp(places, axis=0))]
+    order = np.argsort(along - sizes, kind="stable")
+    low, high = (along - sizes)[order], (along + sizes)[order]
+    count = np.searchsorted(low, high, side="right") - np.arange(len(low)) - 1
+    count = np.maximum(count, 0)
+    total, keys = np.cumsum(count), []
+    first = 0
+    while first < len(low):
+        before = total[first] - count[first]
+        last = max(first + 1, int(np.searchsorted(total, before + MOST_AT_ONCE)))
+        own = count[first:last]
+        a = np.repeat(np.arange(first, first + len(own)), own)
+        b = a + 1 + np.arange(len(a)) - np.repeat(np.cumsum(own) - own, own)
+        a, b = order[a], order[b]
+        meet = np.linalg.norm(places[a] - places[b], axis=1) <= sizes[a] + sizes[b]
+        a, b = solid[a[meet]], solid[b[meet]]
+        keys.append(np.minimum(a, b) * len(of.solid) + np.maximum(a, b))
+        first = last
+    body, other = np.divmod(np.sort(np.concatenate(keys)), len(of.solid))
+    may = may_touch(of, body, other)
+    return body[may], other[may]
+
+
+def balls(bodies: Sequence[Body]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the centres (N, 3) and radii (N,) of the balls around bodies, radius 0 where there is no shape."""
+    places = np.array([body.position for body in bodies]).reshape(-1, 3)
+    sizes = np.array([0.0 if body.shape is None else body.shape.size for body in bodies])
+    return places, sizes

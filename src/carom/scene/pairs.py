@@ -5,7 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from carom import checks
-from carom.scene.all_pairs import PairTable, all_pairs, near, no_pairs
+from carom.scene.all_pairs import (
+    Defaults,
+    PairTable,
+    defaults,
+    every_pair,
+    meeting,
+    near_each_other,
+    near_half_spaces,
+    no_pairs,
+)
 from carom.scene.bodies import Body, HalfSpace
 from carom.scene.contacts import check_overlap
 from carom.scene.materials import ContactLaw, checked_rule, law_of
@@ -64,12 +73,17 @@ class Pairs:
             return None
         return self.law(body, other, {})
 
+    def defaults(self, bodies, half_spaces) -> Defaults | None:
+        """Return what pairs touch without a contact of their own, without a list of them; None if none do."""
+        if self.default is None:
+            return None
+        left_out = self._own | self._ignored
+        return defaults(bodies, half_spaces, left_out, lambda a, b: self.law(a, b, {}))
+
     def by_default(self, bodies, half_spaces) -> PairTable:
         """Return all pairs that touch without a contact of their own, with their laws."""
-        if self.default is None:
-            return no_pairs()
-        left_out = self._own | self._ignored
-        return all_pairs(bodies, half_spaces, left_out, lambda a, b: self.law(a, b, {}))
+        found = self.defaults(bodies, half_spaces)
+        return no_pairs() if found is None else every_pair(found)
 
     def count(self, bodies, half_spaces) -> int:
         """Return how many pairs touch without a contact of their own, without making them."""
@@ -87,15 +101,17 @@ class Pairs:
 
     def check_all(self, bodies, half_spaces) -> None:
         """Refuse pairs that touch by default and start inside each other, or have no law."""
-        pairs = self.by_default(bodies, half_spaces)
-        if not len(pairs.body):
+        found = self.defaults(bodies, half_spaces)
+        if found is None:
             return
-        for b in np.union1d(pairs.body, pairs.other[pairs.other >= 0]):
+        for b in np.union1d(found.grounded.body, np.flatnonzero(meeting(found))):
             _ = bodies[b].shape.pieces  # refused by a shape that has nothing to touch with
-        for k in near(pairs, bodies, half_spaces):
-            body, other = bodies[pairs.body[k]], pairs.other[k]
-            other = half_spaces[pairs.plane[k]] if other < 0 else bodies[other]
-            check_overlap(f"{body.name!r} and {other.name!r}", body, other)
+        pairs = found.grounded
+        for k in near_half_spaces(pairs, bodies, half_spaces):
+            body, plane = bodies[pairs.body[k]], half_spaces[pairs.plane[k]]
+            check_overlap(f"{body.name!r} and {plane.name!r}", body, plane)
+        for i, j in zip(*near_each_other(found, bodies)):
+            check_overlap(f"{bodies[i].name!r} and {bodies[j].name!r}", bodies[i], bodies[j])
 
 
 def _key(first, second):

@@ -167,6 +167,8 @@ class TouchingPairs:
     def pairs_by_default(self) -> PairTable:
         """Return all pairs that touch by `set_contact_default`, with their laws, as arrays.
 
+        N bodies have N(N - 1)/2 pairs; a run makes rows for those that come near each other (`Solution.pairs`).
+
         Raises
         ------
         ValueError
