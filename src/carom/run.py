@@ -14,7 +14,7 @@ from carom.impact.multiple.layout import MULTIPLE, MultipleSettings
 from carom.impact.workspace import new_group, new_multiple
 from carom.model import records as r
 from carom.model.answers import check_answers
-from carom.model.compile import compile_scene
+from carom.model.compile import compile_scene, with_pairs
 from carom.model.controls import LOCATE, PROJECT, WORK, Controls
 from carom.model.data import Data, Model
 from carom.model.method import IMPLICIT, THREE_FIELD
@@ -22,13 +22,14 @@ from carom.options import Options
 from carom.persistent.joint_events import first_modes
 from carom.results.accuracy import judge
 from carom.results.solution import Solution
+from carom.scene.all_pairs import PairTable
 from carom.scene.joints import Joint
 from carom.scene.scene import Scene
 from carom.status import Status
 from carom.stepping import record, time_loop
 from carom.stepping.crowd.layout import SPOTS, new_crowd, no_crowd, roomier_crowd
 from carom.stepping.energy_balance import SHARE, new_watch
-from carom.stepping.islands.layout import has_events, new_islands, no_islands, roomier
+from carom.stepping.islands.layout import has_events, new_islands, no_islands, roomier, with_partners
 
 LOCATIONS = {"locate": LOCATE, "project": PROJECT, "work": WORK}
 
@@ -54,7 +55,10 @@ class Run:
             "impact_location": impact_location, "save_every": save_every,
         }  # fmt: skip
         kind = METHODS[method].kind
-        self.compiled = compile_scene(scene, options, kind == THREE_FIELD, kind == IMPLICIT)
+        located = impact_location == "locate"
+        self.apart = located and tolerances is None and kind != THREE_FIELD
+        ways = kind == THREE_FIELD, kind == IMPLICIT, self.apart and is_ballistic(scene)
+        self.at_start = self.compiled = compile_scene(scene, options, *ways)
         system = self.compiled.system
         self.method = make_method(method, options, tolerances is not None)
         longest = step
@@ -86,18 +90,20 @@ class Run:
 
     def begin(self) -> None:
         """Make all that a run writes to, and check the start."""
+        self.compiled = self.at_start
         scene, options, system = self.scene, self.options, self.compiled.system
-        tolerances, method = self.tolerances, self.settings["method"]
+        tolerances, method, later = self.tolerances, self.settings["method"], self.compiled.later
         self.now = self.compiled.start
         self.active = r.new_active_set(system)
         self.work = r.new_work(system, self.method.b.size)
-        located = self.settings["impact_location"] == "locate"
-        apart = located and tolerances is None and METHODS[method].kind != THREE_FIELD
-        self.islands = (new_islands if apart else no_islands)(system, self.active)
-        again = apart and options.hold and has_events(system)
+        if self.apart:
+            self.islands = new_islands(system, self.active, later)
+        else:
+            self.islands = no_islands(system, self.active)
+        again = self.apart and options.hold and has_events(system, later is not None)
         whole = 1 if system.bodies["ballistic"].all() else 2
         self.controls = self.controls._replace(retry=whole if again else 0)
-        self.group = new_group(system)
+        self.group = new_group(system, later is not None)
         self.crowd = no_crowd()  # made when there is one
         self.multiple = new_multiple(1, multiple_settings(options))  # and this
         self.clock = r.new_clock()
@@ -117,7 +123,7 @@ class Run:
         check_answers(scene)
         check_start(scene, self.compiled, self.now, self.work, options)
         check_stops(scene, self.compiled, self.now, self.work, options)
-        if system.contacts.size:
+        if system.contacts.size or later is not None:
             self.work.body["label"] = system.bodies["component"]
         self.note_modes()
         self.save_now()
@@ -164,12 +170,37 @@ class Run:
             self.islands = roomier(self.islands)
         elif what == r.FULL_MULTIPLE:
             self.multiple = new_multiple(len(self.group.mu), self.multiple.settings)
+        elif what == r.NEW_PAIRS:
+            noted = self.islands.pair[0, : self.islands.plan[0].noted]
+            self.add_pairs(noted[np.lexsort(noted.T[::-1])])
         elif self.has_crowd:
             self.crowd = roomier_crowd(self.crowd)
         else:
             bodies = len(self.compiled.system.bodies)
             joined = int(np.sum(self.compiled.system.bodies.isolated == 0))
             self.crowd = new_crowd(bodies, len(self.active.points), SPOTS * bodies, joined)
+
+    def add_pairs(self, found: np.ndarray) -> None:
+        """Make contacts of pairs (K, 2) of bodies that have come near each other, in this order."""
+        later = self.compiled.later
+        assert later is not None
+        self.compiled = with_pairs(self.compiled, self.scene, self.options, found)
+        system = self.compiled.system
+        self.active = r.with_contacts(self.active, len(system.contacts))
+        self.islands = with_partners(self.islands, system, later)
+
+    @property
+    def pairs(self) -> PairTable:
+        """What touches what, by the number of the contact; stops in joints come after."""
+        return self.compiled.pairs
+
+    @property
+    def found(self) -> np.ndarray | None:
+        """Pairs (K, 2) of bodies that got contacts as they came near; None where all had them from the start."""
+        if self.compiled.later is None:
+            return None
+        first = len(self.at_start.pairs.body)
+        return np.stack([self.pairs.body[first:], self.pairs.other[first:]], axis=1)
 
     @property
     def has_crowd(self) -> bool:
@@ -190,11 +221,6 @@ class Run:
     def to_principal(self) -> np.ndarray:
         """Quaternions (N, 4) from principal axes to the scene's body axes."""
         return self.compiled.to_principal
-
-    @property
-    def contact_count(self) -> int:
-        """Number of contacts and stops."""
-        return int(self.compiled.system.contacts.number.max(initial=-1)) + 1
 
     @property
     def failure(self) -> BaseException | None:
@@ -262,6 +288,11 @@ class Run:
                 self.records = r.room_for_one(self.records, clock.saved)
                 self.save_now()
         return Solution.from_run(self, status)
+
+
+def is_ballistic(scene: Scene) -> bool:
+    """Return whether only gravity and contacts act on all bodies."""
+    return not (scene.joints or scene.constraints or scene.forces)
 
 
 def check_stops(scene: Scene, compiled, start, work, options: Options) -> None:

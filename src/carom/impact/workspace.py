@@ -76,8 +76,10 @@ class MultipleImpact(NamedTuple):
     ball_like: np.ndarray  # (K,) 1 of a ball or an ellipsoid
 
 
-def capacity(system: System) -> int:
-    """Return the greatest number of points that may be closed in one group."""
+def capacity(system: System, more: bool) -> int:
+    """Return the greatest number of points that may be closed in one group; `more` where contacts may come."""
+    if more:
+        return MOST
     contacts = system.contacts
     vertices, found = contacts["last"] - contacts["first"], contacts["touches"] == 1
     if found.any():
@@ -89,9 +91,9 @@ def capacity(system: System) -> int:
     return max(1, min(MOST, int(count.max())))
 
 
-def new_group(system: System) -> Group:
-    """Return the workspace for the largest group of `system`."""
-    n, k = system.bodies.size, capacity(system)
+def new_group(system: System, more: bool = False) -> Group:
+    """Return the workspace for the largest group of `system`, to which contacts may come if `more`."""
+    n, k = system.bodies.size, capacity(system, more)
     return Group(
         closed=table(CLOSED_POINT, k),
         points=table(POINT, 2, k),

@@ -164,8 +164,7 @@ def _solids(scene: Scene, every: list[Shape | None], curved: np.ndarray, to_prin
 
 def _write_solids(rows: np.recarray, which: Rows, place: np.ndarray) -> None:
     """Write the solids of each row."""
-    found = rows["touches"] == 1
-    rows["solid"] = which.core["piece"] + np.where(found, place[rows["body"]], 0)
+    rows["solid"] = which.core["piece"] + place[rows["body"]]
     between = rows["other"] >= 0
     rows["other_solid"] = np.where(between, place[rows["other"]] + which.other["piece"], 0)
 

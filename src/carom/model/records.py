@@ -140,8 +140,9 @@ PAUSE = 101  # much was done: the caller looks for Ctrl-C
 # within it:
 LEFT_BALL = 102  # a body has left the ball that its island gave it
 
-# what is to grow: records of impacts and events, saved rows, pairs of islands, points of a crowd, of an impact
-FULL_EVENTS, FULL_ROWS, FULL_PAIRS, FULL_SPOTS, FULL_MULTIPLE = range(5)
+# what is to grow: records of impacts and events, saved rows, pairs of islands, points of a crowd, of an impact;
+# the contacts, as bodies have come near each other
+FULL_EVENTS, FULL_ROWS, FULL_PAIRS, FULL_SPOTS, FULL_MULTIPLE, NEW_PAIRS = range(6)
 
 LONG = 5e4  # work after which the loop is left for a moment, about [us]
 # work for contacts, about [us]: what a step may take on the average, one after others that took less, and that
@@ -182,6 +183,14 @@ def new_active_set(system: System) -> ActiveSet:
     )
     active.contact_states["near"] = 1
     return active
+
+
+def with_contacts(active: ActiveSet, count: int) -> ActiveSet:
+    """Return the active set with the states of `count` contacts: those beyond the known are to be checked first."""
+    states = table(CONTACT_STATE, count)
+    known = len(active.contact_states)
+    states[:known], states["near"][known:] = active.contact_states, 1
+    return active._replace(contact_states=states)
 
 
 def new_work(system: System, stages: int) -> Work:
@@ -226,9 +235,8 @@ def longer(records: Records) -> Records:
     """Return the records with room for twice as many impacts, events and active points."""
     return records._replace(
         **{
-            name: np.concatenate([a, np.zeros_like(a)]).view(Columns)
+            name: _twice(getattr(records, name))
             for name in ("touch", "impact", "event", "snapshot")
-            for a in [getattr(records, name)]
         }
     )
 
@@ -237,11 +245,17 @@ def more_rows(records: Records) -> Records:
     """Return the records with room for twice as many saved steps."""
     return records._replace(
         **{
-            name: np.concatenate([a, np.zeros_like(a)]).view(Columns)
+            name: _twice(getattr(records, name))
             for name in ("series", "state")
-            for a in [getattr(records, name)]
         }
     )
+
+
+def _twice(rows: np.recarray) -> np.recarray:
+    """Return rows with room for as many more: zeros that are not written take no memory yet."""
+    longer = np.zeros((2 * len(rows), *rows.shape[1:]), rows.dtype)
+    longer[: len(rows)] = rows
+    return longer.view(Columns)
 
 
 def room_for_one(records: Records, saved: int) -> Records:

@@ -20,6 +20,7 @@ from carom.stepping.energy_balance import (
 )
 
 if TYPE_CHECKING:
+    from carom.scene.all_pairs import PairTable
     from carom.scene.scene import Scene
 
 INACCURATE = 100.0  # times the tolerance: what is no success any more
@@ -62,12 +63,17 @@ def judge(watch: np.record) -> Status:
     return Status.INACCURATE if off else Status.SUCCESS
 
 
-def sentences(watch: np.record, scene: Scene | None = None) -> tuple[str, ...]:
-    """Return what is not as it should be, when, and what to change: energy, depths, contacts not solved."""
+def sentences(
+    watch: np.record, scene: Scene | None = None, pairs: PairTable | None = None
+) -> tuple[str, ...]:
+    """Return what is not as it should be, when, and what to change: energy, depths, contacts not solved.
+
+    `pairs` are those of the contacts of the run, None for all of the scene.
+    """
     kinds = [i for i in (RESIDUAL, IMPACTS, FRICTION, BOUNCES) if beyond(i, watch)]
     if not kinds and beyond(ALL, watch):
         kinds = [ALL]
-    deep = [_of_depth(watch, scene)] if scene is not None and watch.depth > DEEP else []
+    deep = [_of_depth(watch, scene, pairs)] if scene is not None and watch.depth > DEEP else []
     poor = [] if watch.unsolved <= POOR * watch.speed else [_of_contacts(watch)]
     return (*(_sentence(i, watch) for i in kinds), *deep, *poor)
 
@@ -81,9 +87,9 @@ def _of_contacts(watch: np.record) -> str:
     )
 
 
-def _of_depth(watch: np.record, scene: Scene) -> str:
+def _of_depth(watch: np.record, scene: Scene, pairs: PairTable | None) -> str:
     """Return the sentence about a body that is in what it touches."""
-    number, pairs = int(watch.deep_contact), touching_pairs(scene)
+    number, pairs = int(watch.deep_contact), pairs or touching_pairs(scene)
     if number < len(pairs.body):
         other, plane = pairs.other[number], pairs.plane[number]
         what = scene.bodies[pairs.body[number]]

@@ -46,7 +46,7 @@ def assemble(run, status: Status) -> dict:
         "angular_velocity": np.array(state["w"]),
         "held_residual": np.array(series["residual"]),
         "status": status,
-        "warnings": sentences(run.watch[0], run.scene),
+        "warnings": sentences(run.watch[0], run.scene, run.pairs),
         "stats": {
             "steps": clock["step"], "trial_steps": clock["trials"], "rejected": clock["rejected"],
             "cuts": clock["cuts"], "located": clock["located"], "impacts": clock["struck"],
@@ -57,6 +57,7 @@ def assemble(run, status: Status) -> dict:
         },
         "scene": run.scene,
         "settings": dict(run.settings),
+        "pairs": run.pairs,
         "_run": run,
         "_touch": rec.touch.copy(),
         "_written": Written(

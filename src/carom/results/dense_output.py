@@ -27,13 +27,11 @@ class Flights(NamedTuple):
 
 def flights(solution) -> list[Flights | None]:
     """Return the flights of each body; None where it turns steadily, or where more than gravity acts on it."""
-    from carom.model.contact_rows import touching_pairs
-
     bodies, contacts = solution._run.bodies, solution.contacts
     free = (bodies["ballistic"] == 1) & (bodies["isotropic"] == 0)
     if not free.any():
         return [None] * len(bodies)
-    pairs = touching_pairs(solution.scene)
+    pairs = solution.pairs
     of_pair = contacts.contact < len(pairs.body)  # the rest are stops in joints
     which = contacts.contact[of_pair]
     sides = np.concatenate([pairs.body[which], pairs.other[which]])

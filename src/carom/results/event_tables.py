@@ -17,7 +17,7 @@ class ImpactRecord(NamedTuple):
     """One impact. Vectors are in contact axes (normal, tangent 1, tangent 2) unless said otherwise."""
 
     time: float  #: [s]
-    contact: int  #: index of the contact in `Scene.contacts`
+    contact: int  #: number of the contact: its place in `Solution.pairs`
     point: np.ndarray  #: (3,) where, world [m]
     normal: np.ndarray  #: (3,) from the half-space into free space, world
     relative_velocity_before: np.ndarray  #: (3,) [m/s], approach negative

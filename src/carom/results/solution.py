@@ -26,6 +26,7 @@ from carom.status import Status
 if TYPE_CHECKING:
     from carom.results.assemble import Written
     from carom.run import Run
+    from carom.scene.all_pairs import PairTable
     from carom.scene.scene import Scene
 
 SIDES = ("right", "left")
@@ -59,6 +60,12 @@ class Solution(Portable, Drawn):
         were applied, whoever found them: ``|p - P_K(p - rho (w + mu |w_t| n))| / rho`` of each point, with P_K
         the projection on the friction cone and rho its mass; of a point held alone, the velocity that it must
         not have. 0 where nothing is held.
+    pairs : PairTable
+        What touches what, by the number that tables call `contact`: columns `body`, `other` (-1 for a half-space),
+        `plane` (-1 for a body), `law` (a place in `laws`). First the contacts of `Scene.contacts`, then those of
+        `set_contact_default`: with half-spaces, body by body, then of two bodies. Of more than 64 bodies on which
+        only gravity acts those that came near each other, in the order in which they did.
+        Stops in joints have the numbers after these.
     ledger : Ledger
         Where the energy went.
     status : Status
@@ -99,6 +106,7 @@ class Solution(Portable, Drawn):
     status: Status
     stats: dict[str, int]
     scene: Scene = field(repr=False)
+    pairs: PairTable = field(repr=False)
     settings: dict[str, Any]
     _run: Run = field(repr=False)
     _touch: np.recarray = field(repr=False)
@@ -306,8 +314,7 @@ class Solution(Portable, Drawn):
     def forces(self) -> ForceTable:
         """Forces of all points of contact that stay, as a table: for scenes with many contacts.
 
-        `contact_mode` and `contact_force` have a place for each contact of the scene at each saved time:
-        with 500 bodies that may all touch, 3 MB a saved time.
+        `contact_mode` and `contact_force` have a place for each contact of `pairs` at each saved time.
         """
         return force_table(self._touch)
 
@@ -315,7 +322,8 @@ class Solution(Portable, Drawn):
     def _contact_sums(self) -> tuple[np.ndarray, np.ndarray]:
         from carom.results.assemble import contact_sums
 
-        return contact_sums(self._touch, len(self.t), self._run.contact_count)
+        count = len(self.pairs.body) + len(self.scene.stops)
+        return contact_sums(self._touch, len(self.t), count)
 
     @cached_property
     def _nodes(self):

@@ -85,20 +85,6 @@ class Pairs:
         found = self.defaults(bodies, half_spaces)
         return no_pairs() if found is None else every_pair(found)
 
-    def count(self, bodies, half_spaces) -> int:
-        """Return how many pairs touch without a contact of their own, without making them."""
-        if self.default is None:
-            return 0
-        solid = sum(body.shape is not None for body in bodies)
-        left_out = sum(
-            all(
-                isinstance(one, HalfSpace) or getattr(one, "shape", None) is not None
-                for one in pair
-            )
-            for pair in self._own | self._ignored
-        )
-        return solid * len(half_spaces) + solid * (solid - 1) // 2 - left_out
-
     def check_all(self, bodies, half_spaces) -> None:
         """Refuse pairs that touch by default and start inside each other, or have no law."""
         found = self.defaults(bodies, half_spaces)

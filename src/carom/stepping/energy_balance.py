@@ -147,11 +147,17 @@ def given_by_law(system, clock, records, watch):
 @kernel
 def may_give(system, number):
     """Return whether the contact with this number in the scene has Newton's law and friction."""
-    for c in range(system.contacts.shape[0]):
-        contact = system.contacts[c]
-        if contact.number == number:
-            return contact.law in laws.GAINING and contact.friction > 0.0
-    return False
+    low, high = 0, system.contacts.shape[0]
+    while low < high:  # numbers rise
+        middle = (low + high) // 2
+        if system.contacts[middle].number < number:
+            low = middle + 1
+        else:
+            high = middle
+    if low == system.contacts.shape[0]:
+        return False
+    contact = system.contacts[low]
+    return contact.number == number and contact.law in laws.GAINING and contact.friction > 0.0
 
 
 @inlined

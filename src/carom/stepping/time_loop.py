@@ -17,6 +17,7 @@ from carom.stepping.crowd.step import step_crowd
 from carom.stepping.energy_balance import watch_step
 from carom.stepping.event_step import NOT_FINITE, advance, is_whole, left_ball
 from carom.stepping.islands import one_island, parts
+from carom.stepping.islands.plan import READY
 from carom.stepping.record import finite, grow, save, still
 
 AGAIN = -1  # the step is to be done again
@@ -80,10 +81,11 @@ def step_apart(model, data, method, islands) -> int:
     clock, plan = data.clocks[0], islands.plan[0]
     if plan.planned == 0:
         plan.widen = max(1.0, plan.widen)
-        if not parts.begin_step(
+        code = parts.begin_step(
             model.system, data.active, data.state, clock.length, data.clocks, data.work, islands
-        ):
-            return grow(clock, r.FULL_PAIRS)
+        )
+        if code != READY:
+            return grow(clock, code)
     code = 0
     while code == 0 and plan.at < plan.count:
         i = plan.at

@@ -62,12 +62,15 @@ def capture(run) -> Checkpoint | None:
         "multiple": len(run.multiple.e),
         "spots": len(run.crowd.spots),
         "room": len(islands.which),
+        "pairs": 0 if run.found is None else len(run.found),
     }
     return Checkpoint(found, {name: array.copy() for name, array in _arrays(run)})
 
 
 def restore(run, checkpoint: Checkpoint, records: r.Records) -> None:
     """Put a new run of the same scene where another one stood; `records` are what that had written.
+
+    It has the contacts that the other one had (`Run.add_pairs`).
 
     Raises
     ------

@@ -57,7 +57,7 @@ def to_pandas(solution) -> Frames:
     """Return the tables of a solution."""
     pandas = need("pandas", "to_pandas")
     scene = solution.scene
-    contacts = np.array([*contact_names(scene)], dtype=object)
+    contacts = np.array([*contact_names(solution)], dtype=object)
     bodies = np.array([body.name for body in scene.bodies], dtype=object)
     time = pandas.Index(solution.t, name="time")
     blocks = [getattr(solution, name) for name in BODY]

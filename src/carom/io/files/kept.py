@@ -8,7 +8,10 @@ import numpy as np
 
 from carom.io.files.checkpoint import Checkpoint, restore
 from carom.model import records as r
+from carom.model.compile import with_pairs
+from carom.model.contact_rows import first_pairs, touching_pairs
 from carom.options import Options
+from carom.scene.all_pairs import PairTable, joined_tables, may_touch, some_pairs
 from carom.scene.scene import Scene
 
 
@@ -31,9 +34,9 @@ class KeptRun:
 
     def __init__(
         self, scene: Scene, settings: dict, options: Options, records: r.Records,
-        checkpoint: Checkpoint | None, missing: list[str], attributes: dict,
+        checkpoint: Checkpoint | None, missing: list[str], attributes: dict, found: np.ndarray | None,
     ):  # fmt: skip
-        self.attributes = attributes
+        self.attributes, self.found = attributes, found
         self.scene, self.settings, self.options = scene, settings, options
         self.records, self.checkpoint, self.missing = records, checkpoint, missing
         self.clock = r.new_clock()
@@ -45,6 +48,11 @@ class KeptRun:
     def revived(self):
         """Return a run that stands where the checkpoint says."""
         run = run_again(self.scene, self.settings, self.options)
+        if (run.found is None) != (self.found is None):
+            raise ValueError("the file was written by another version of carom")
+        if self.found is not None:  # it may have stood where it is earlier than the records end
+            known = None if self.checkpoint is None else self.checkpoint.found["pairs"]
+            run.add_pairs(self.found[:known])
         if self.checkpoint is not None:
             restore(run, self.checkpoint, self.records)
         return run
@@ -56,7 +64,11 @@ class KeptRun:
     @cached_property
     def compiled(self):
         """The compiled scene; with functions missing it cannot stand where the run did."""
-        return self._as_at_start if self.missing else self._run.compiled
+        if self.missing:
+            return self._as_at_start
+        made = self._run.compiled
+        rest = () if self.found is None else self.found[len(self._run.found) :]
+        return with_pairs(made, self.scene, self.options, rest) if len(rest) else made
 
     @cached_property
     def _as_at_start(self):
@@ -90,11 +102,24 @@ class KeptRun:
         return np.array([principal(body.inertia)[1] for body in self.scene.bodies])
 
     @cached_property
-    def contact_count(self) -> int:
-        """Number of contacts and stops."""
-        scene = self.scene
-        return (
-            len(scene.contacts)
-            + scene._pairs.count(scene.bodies, scene.half_spaces)
-            + len(scene.stops)
-        )
+    def pairs(self) -> PairTable:
+        """What touches what, by the number of the contact.
+
+        Raises
+        ------
+        ValueError
+            If bodies that came near each other are none that may touch.
+        """
+        if self.found is None:
+            return touching_pairs(self.scene)
+        first, later = first_pairs(self.scene, True)
+        if later is None:
+            raise ValueError("all pairs of the scene have contacts from the start")
+        body, other = self.found.T
+        inside = (body >= 0) & (body < other) & (other < len(self.scene.bodies))
+        keys = np.append(first.body, body) * len(self.scene.bodies) + np.append(first.other, other)
+        keys = keys[np.append(first.other, other) >= 0]
+        once = len(np.unique(keys)) == len(keys)
+        if not (once and inside.all() and may_touch(later, body, other).all()):
+            raise ValueError("it has contacts of bodies that do not touch")
+        return joined_tables(first, some_pairs(later, body, other))

@@ -77,8 +77,9 @@ def _fields(file: Sealed, scene, missing: list[str]) -> dict[str, Any]:
     records = raw.from_columns(arrays.column, arrays.sizes)
     note = index["checkpoint"]
     checkpoint = None if note is None else from_index(note, file.data)
-    run = KeptRun(scene, settings, options, records, checkpoint, missing, attributes)
-    check_numbers(records, run.contact_count)
+    found = _found(arrays, index["found"], len(scene.stops))
+    run = KeptRun(scene, settings, options, records, checkpoint, missing, attributes, found)
+    check_numbers(records, len(run.pairs.body) + len(scene.stops))
     derived = {name: arrays.array(name, dims) for name, dims in DERIVED.items()}
     entries = [arrays.array(f"ledger_{name}", ("time",)) for name in LEDGER if name != "residual"]
     return {
@@ -90,7 +91,7 @@ def _fields(file: Sealed, scene, missing: list[str]) -> dict[str, Any]:
             str(name): checks.integer(name, n) if isinstance(n, int) else checks.number(name, n)
             for name, n in json.loads(attributes["stats"]).items()
         },
-        "scene": scene, "settings": settings, "_run": run, "_touch": records.touch,
+        "scene": scene, "settings": settings, "pairs": run.pairs, "_run": run, "_touch": records.touch,
         "cached": {
             **derived,
             "impacts": ImpactTable(**arrays.table("impact", IMPACT)),
@@ -100,6 +101,18 @@ def _fields(file: Sealed, scene, missing: list[str]) -> dict[str, Any]:
             **_cached(arrays),
         },
     }  # fmt: skip
+
+
+def _found(arrays: _Arrays, count: int | None, stops: int) -> np.ndarray | None:
+    """Return the bodies (K, 2) of contacts that came with the run; None where it had all from the start."""
+    if count is None:
+        return None
+    if count == 0:
+        return np.zeros((0, 2), dtype=np.int64)
+    last = arrays.sizes["contact"] - stops
+    first = last - checks.integer("found", count, least=0, most=last)
+    ends = (arrays.array(f"contact_{side}", ("contact",), "i8") for side in ("body", "other"))
+    return np.stack([end[first:last] for end in ends], axis=1)
 
 
 def _settings(given: dict, options: Options) -> dict:

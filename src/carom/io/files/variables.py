@@ -22,7 +22,6 @@ from carom.io.files.layout import (
     table_variables,
 )
 from carom.io.files.scene_parts import scene_to_text
-from carom.model.contact_rows import touching_pairs
 from carom.scene.joints import Distance, Spherical
 
 
@@ -102,9 +101,10 @@ def _motion(solution) -> list[Variable]:
     ]  # fmt: skip
 
 
-def contact_names(scene) -> list[str]:
+def contact_names(solution) -> list[str]:
     """Return the names of all contacts in their order: those added, those by default, stops."""
-    pairs, bodies = touching_pairs(scene), scene.bodies
+    scene, pairs = solution.scene, solution.pairs
+    bodies = scene.bodies
     names = [contact.name for contact in scene.contacts]
     for k in range(len(names), len(pairs.body)):
         plane, other = pairs.plane[k], pairs.other[k]
@@ -115,10 +115,21 @@ def contact_names(scene) -> list[str]:
 
 def _contacts(solution) -> list[Variable]:
     scene = solution.scene
-    names = contact_names(scene)
+    names, pairs = contact_names(solution), solution.pairs
     if not names:
         return []
-    out = [Variable("contact", ("contact",), np.array(names), None, "contacts and stops by name")]
+    none = np.full(len(scene.stops), -1)
+    out = [
+        Variable("contact", ("contact",), np.array(names), None, "contacts and stops by name"),
+        Variable(
+            "contact_body", ("contact",), np.append(pairs.body, none), "1",
+            "place of its body among all bodies, from 0; -1 of a stop",
+        ),
+        Variable(
+            "contact_other", ("contact",), np.append(pairs.other, none), "1",
+            "place of the other body, -1 for a half-space or a stop",
+        ),
+    ]  # fmt: skip
     if scene.contact_default is not None:
         return out  # too many for a place at each time: the rows of `held_*` say the same
     return [

@@ -65,6 +65,7 @@ def file_of(solution, checkpoint: Checkpoint | None = None, whole: bool = True) 
         } | {dim: len(getattr(records, dim)) for dim in ("snapshot",)},
         "arrays": arrays,
         "words": {name: _coded(known[name], words) for name, words in raw.WORDS.items()},
+        "found": None if run.found is None else len(run.found),
         "checkpoint": None if checkpoint is None else packed(checkpoint, add),
     }  # fmt: skip
     return seal(parts, index)

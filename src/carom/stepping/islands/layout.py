@@ -11,6 +11,7 @@ from carom.collision.sweep import SweepWork, new_sweep_work
 from carom.model.arrays import BODY, CONTACT, STATE, System
 from carom.model.records import CLOCK
 from carom.model.workspace import ACTIVE_POINT, BODY_WORK, CONTACT_STATE, ActiveSet
+from carom.scene.all_pairs import Defaults
 
 #: state of a body in a step: asleep, in free flight, or in an island
 ASLEEP, FLIES, IN_ISLAND = range(3)
@@ -24,6 +25,9 @@ PLAN = [
     ("pairs", "i8"),  # balls that overlap
     ("used", "i8"),  # contacts in all islands
     ("kept", "i8"),  # active points after the step, so far
+    ("open", "i8"),  # 1 where bodies that are no partners may touch: their contacts are still to come
+    ("fixed", "i8"),  # contacts from the start, in the order of the scene; others follow by their bodies
+    ("noted", "i8"),  # pairs of bodies, at the beginning of `pair`, that contacts are asked for
 ]
 
 #: a body, while islands are sought
@@ -78,17 +82,22 @@ class Islands(NamedTuple):
     clock: np.recarray  # (1,) CLOCK at the start of the step
     centre: np.ndarray  # (N, 3)
     radius: np.ndarray  # (N,)
-    pair: np.ndarray  # (M, 2)
+    pair: np.ndarray  # (2, M, 2): of balls that overlap; workspace to sort them
+    pair_first: np.ndarray  # (N + 1,) and this
     sweep: SweepWork
-    partner: np.ndarray  # (2, P) other body and contact, sorted, body by body
+    # (2, P) other body and contact, sorted, body by body; contact -1 where the two never touch
+    partner: np.ndarray
     partner_first: np.ndarray  # (N + 1,)
     plane: np.ndarray  # (Q,) contacts with half-spaces, body by body
     plane_first: np.ndarray  # (N + 1,)
 
 
-def has_events(system: System) -> bool:
-    """Return whether steps may have events, which could follow each other too fast: contacts, dry friction."""
-    return system.contacts.size > 0 or system.relations.frictions.size > 0
+def has_events(system: System, more: bool = False) -> bool:
+    """Return whether steps may have events, which could follow each other too fast: contacts, dry friction.
+
+    With `more` contacts may come.
+    """
+    return more or system.contacts.size > 0 or system.relations.frictions.size > 0
 
 
 def new_single_island(system: System, active: ActiveSet) -> SingleIsland:
@@ -124,22 +133,46 @@ def no_islands(system: System, active: ActiveSet) -> Islands:
     )
 
 
-def new_islands(system: System, active: ActiveSet) -> Islands:
-    """Return the workspace for a scene whose bodies may move apart from each other."""
+def new_islands(system: System, active: ActiveSet, later: Defaults | None = None) -> Islands:
+    """Return the workspace for a scene whose bodies may move apart from each other.
+
+    Where there is `later`, its pairs of bodies get contacts when they come near each other (`with_partners`).
+    """
     n = system.bodies.size
     if n == 1 or not system.bodies["ballistic"].all():
         return no_islands(system, active)
     contacts = system.contacts
     rows = np.arange(contacts.size)
-    pairs = rows[contacts.other >= 0]
-    body, other = contacts.body[pairs], contacts.other[pairs]
-    low, high = np.minimum(body, other), np.maximum(body, other)
-    order = np.lexsort((pairs, high, low))
     planes = rows[contacts.other < 0]
     planes = planes[np.argsort(contacts.body[planes], kind="stable")]
-    room = min(rows.size, 8 * n + 64)
-    partner = low[order], high[order], pairs[order]
-    return _islands(n, partner, (contacts.body[planes], planes), room, len(active.points))
+    room = 8 * n + 64 if later is not None else min(rows.size, 8 * n + 64)
+    grounded = contacts.body[planes], planes
+    islands = _islands(n, _partners(system, later), grounded, room, len(active.points))
+    islands.plan["open"], islands.plan["fixed"] = int(later is not None), rows.size
+    return islands
+
+
+def with_partners(islands: Islands, system: System, later: Defaults) -> Islands:
+    """Return the workspace for a scene that has got contacts between further bodies."""
+    low, high, rows = _partners(system, later)
+    return islands._replace(
+        partner=np.stack([high, rows]),
+        partner_first=np.searchsorted(low, np.arange(system.bodies.size + 1)),
+    )
+
+
+def _partners(system: System, later: Defaults | None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return two bodies i < j and their contact, rising; -1 for those of `later` that never touch."""
+    n, contacts = system.bodies.size, system.contacts
+    rows = np.flatnonzero(contacts["other"] >= 0)
+    body, other = contacts["body"][rows], contacts["other"][rows]
+    keys = np.minimum(body, other) * n + np.maximum(body, other)
+    if later is not None:
+        never = np.setdiff1d(later.left_out, keys)
+        keys, rows = np.append(keys, never), np.append(rows, np.full(len(never), -1))
+    order = np.argsort(keys, kind="stable")
+    low, high = np.divmod(keys[order], n)
+    return low, high, rows[order]
 
 
 def _islands(n: int, partners: tuple, grounded: tuple, room: int, points: int) -> Islands:
@@ -168,7 +201,8 @@ def _islands(n: int, partners: tuple, grounded: tuple, room: int, points: int) -
         clock=table(CLOCK, 1),
         centre=np.zeros((n, 3)),
         radius=np.zeros(n),
-        pair=np.zeros((8 * n + 64, 2), dtype=np.int64),
+        pair=np.zeros((2, 8 * n + 64, 2), dtype=np.int64),
+        pair_first=np.zeros(n + 1, dtype=np.int64),
         sweep=new_sweep_work(n),
         partner=np.stack([high, pairs]),
         partner_first=np.searchsorted(low, numbers),
@@ -179,10 +213,10 @@ def _islands(n: int, partners: tuple, grounded: tuple, room: int, points: int) -
 
 def roomier(islands: Islands) -> Islands:
     """Return the workspace with room for twice as many pairs and contacts in a step."""
-    m, p = 2 * len(islands.which), 2 * len(islands.pair)
+    m, p = 2 * len(islands.which), 2 * islands.pair.shape[1]
     return islands._replace(
         which=np.zeros(m, dtype=np.int64),
         contacts=table(CONTACT, m),
         contact_states=table(CONTACT_STATE, m),
-        pair=np.zeros((p, 2), dtype=np.int64),
+        pair=np.zeros((2, p, 2), dtype=np.int64),
     )

@@ -9,7 +9,8 @@ from carom.model.arrays import System
 from carom.model.workspace import ActiveSet, Work
 from carom.persistent.active_set import regroup
 from carom.stepping.islands.layout import ASLEEP, FLIES
-from carom.stepping.islands.plan import number, root, seek
+from carom.stepping.islands.order import comes_before
+from carom.stepping.islands.plan import READY, number, root, seek
 
 # closed points from which on bodies that lie on each other are a crowd, and how many for each of them, on
 # average: a group that goes from event to event is solved with W whole, which takes the cube of its points
@@ -18,13 +19,14 @@ MANY, EACH = 24, 2
 
 @kernel
 def begin_step(system, active, now, length, clocks, work, islands):
-    """Find the islands of a step and fill their slots; return False if there is no room."""
+    """Find the islands of a step and fill their slots; return what is to grow before that, else `READY`."""
     plan, member = islands.plan[0], islands.member
     mark_active(system, active, work)
-    if not (seek(system, active, now, length, work, islands) and number(
-        system, active, now, work, islands
-    )):  # fmt: skip
-        return False
+    code = seek(system, active, now, length, work, islands)
+    if code == READY:
+        code = number(system, active, now, work, islands)
+    if code != READY:
+        return code
     for slot in range(islands.first[0, plan.count]):
         b = islands.body_of[slot]
         place = slot - islands.first[0, member[root(member, b)].island]
@@ -51,7 +53,7 @@ def begin_step(system, active, now, length, clocks, work, islands):
     plan.at, plan.entered, plan.planned = 0, 0, 1
     clocks[0].before = clocks[0].impacts
     islands.clock[0] = clocks[0]
-    return True
+    return READY
 
 
 @kernel
@@ -125,7 +127,7 @@ def enter(part, own, active, work, islands, begin, clock):
         active_point.body = local(islands, active_point.body)
         if active_point.other >= 0:
             active_point.other = local(islands, active_point.other)
-        active_point.contact = slot_of(islands, i, active_point.contact)
+        active_point.contact = slot_of(islands, i, active_point)
         own.count[0] += 1
     regroup(part, own, work)
     clock.spent, clock.in_step, clock.at_once, clock.now = 0.0, 0, 0, begin
@@ -134,13 +136,13 @@ def enter(part, own, active, work, islands, begin, clock):
 
 
 @kernel
-def slot_of(islands, i, c):
-    """Return the number of contact c within island i; its contacts are in order."""
-    first, last = islands.first[1, i], islands.first[1, i + 1]
-    low, high = first, last
+def slot_of(islands, i, active_point):
+    """Return the number within island i of the contact of an active point whose bodies are those of the island."""
+    first, last, fixed = islands.first[1, i], islands.first[1, i + 1], islands.plan[0].fixed
+    low, high, c = first, last, active_point.contact
     while low < high:
         middle = (low + high) // 2
-        if islands.which[middle] < c:
+        if comes_before(fixed, islands.which[middle], islands.contacts[middle], c, active_point):
             low = middle + 1
         else:
             high = middle

@@ -12,10 +12,16 @@ from carom._compiled.decorators import kernel
 from carom.collision.sweep import sweep
 from carom.contact.gap import along_normal
 from carom.geometry.rotation import norm
+from carom.model import records as r
 from carom.model.workspace import FREE, RESTS
 from carom.stepping.islands.layout import ASLEEP, FLIES, IN_ISLAND
+from carom.stepping.islands.order import sort_contacts, sort_pairs
 
 SLACK = 1e-6  # of a ball: what touches overlaps
+READY = -1  # nothing is to grow
+# contacts are made for bodies that may meet within so many steps more, but not for those that are further away
+# than this part of their balls
+AHEAD, WIDE = 8.0, 0.5
 
 
 @kernel
@@ -43,7 +49,7 @@ def join(member, a, b):
 
 @kernel
 def seek(system, active, now, length, work, islands):
-    """Find the sets of bodies that may meet; return False if there is no room for all pairs."""
+    """Find the sets of bodies that may meet; return `READY`, or what is to grow before that."""
     member, plan, fall = islands.member, islands.plan[0], norm(system.gravity)
     for b in range(system.bodies.shape[0]):
         v, w, memory, m = now[b].v, now[b].w, work.body[b], member[b]
@@ -58,17 +64,59 @@ def seek(system, active, now, length, work, islands):
             join(member, active.points[i].body, active.points[i].other)
     for turn in range(20):
         for b in range(system.bodies.shape[0]):
-            r, memory, ball = member[root(member, b)], work.body[b], system.bodies[b].ball
-            if turn > 0 and r.awake == 1 and r.bodies > 1:
-                room = 2.0 * plan.widen * (r.speed + fall * length) * length
+            whole, memory, ball = member[root(member, b)], work.body[b], system.bodies[b].ball
+            if turn > 0 and whole.awake == 1 and whole.bodies > 1:
+                room = 2.0 * plan.widen * (whole.speed + fall * length) * length
                 memory.room = max(memory.room, room)
             islands.radius[b] = (1.0 + SLACK) * ball + memory.room if ball > 0.0 else -1.0
-        plan.pairs = sweep(islands.centre, islands.radius, islands.pair, islands.sweep)
-        if plan.pairs > islands.pair.shape[0]:
-            return False
+        plan.pairs = sweep(islands.centre, islands.radius, islands.pair[0], islands.sweep)
+        if plan.pairs > islands.pair.shape[1]:
+            return r.FULL_PAIRS
         if not join_pairs(islands) and turn > 0:
             break
-    return True
+    if plan.open == 1 and any_new(islands):
+        return note_new(system, work, islands)
+    sort_pairs(islands)
+    return READY
+
+
+@kernel
+def any_new(islands):
+    """Return whether two bodies may meet that have no contact yet."""
+    for p in range(islands.plan[0].pairs):
+        if is_new(islands, islands.pair[0, p, 0], islands.pair[0, p, 1]):
+            return True
+    return False
+
+
+@kernel
+def is_new(islands, i, j):
+    """Return whether two bodies, not both asleep, may touch and have no contact yet."""
+    member = islands.member
+    awake = member[root(member, i)].awake + member[root(member, j)].awake
+    return awake > 0 and first_contact(islands, i, j) < 0
+
+
+@kernel
+def note_new(system, work, islands):
+    """Note all pairs of bodies that have no contact yet and may meet in this step or soon; return what is to grow.
+
+    Those of some further steps at once, as the loop is left for them.
+    """
+    plan, pair = islands.plan[0], islands.pair[0]
+    for b in range(system.bodies.shape[0]):
+        if islands.radius[b] > 0.0:
+            islands.radius[b] += min(AHEAD * work.body[b].room, WIDE * system.bodies[b].ball)
+    plan.pairs = sweep(islands.centre, islands.radius, pair, islands.sweep)
+    if plan.pairs > pair.shape[0]:
+        return r.FULL_PAIRS
+    plan.noted = 0
+    for p in range(plan.pairs):
+        i, j = pair[p, 0], pair[p, 1]
+        if is_new(islands, i, j):
+            pair[plan.noted, 0], pair[plan.noted, 1] = i, j
+            plan.noted += 1
+    return r.NEW_PAIRS
 
 
 @kernel
@@ -78,16 +126,23 @@ def join_pairs(islands):
     while more:
         more = False
         for p in range(islands.plan[0].pairs):
-            i, j = islands.pair[p, 0], islands.pair[p, 1]
+            i, j = islands.pair[0, p, 0], islands.pair[0, p, 1]
             awake = member[root(member, i)].awake + member[root(member, j)].awake
-            if awake > 0 and first_contact(islands, i, j) >= 0 and join(member, i, j):
+            if awake > 0 and may_touch(islands, i, j) and join(member, i, j):
                 more, any_joined = True, True
     return any_joined
 
 
 @kernel
+def may_touch(islands, i, j):
+    """Return whether two bodies i < j may touch, with a contact or with one that is to come."""
+    q = first_contact(islands, i, j)
+    return islands.partner[1, q] >= 0 if q >= 0 else islands.plan[0].open == 1
+
+
+@kernel
 def first_contact(islands, i, j):
-    """Return the place among partners of the first contact of bodies i < j, -1 if they have none."""
+    """Return the place among partners of the first contact of bodies i < j, -1 if they are none."""
     low, high = islands.partner_first[i], islands.partner_first[i + 1]
     end = high
     while low < high:
@@ -109,7 +164,7 @@ def near_plane(system, c, now, work):
 
 @kernel
 def number(system, active, now, work, islands):
-    """Give islands numbers, and bodies, contacts, active points slots; return False if there is no room."""
+    """Give islands numbers, and bodies, contacts, active points slots; return `READY`, or what is to grow."""
     member, plan, n = islands.member, islands.plan[0], system.bodies.shape[0]
     for b in range(n):
         member[b].island = -1
@@ -129,13 +184,13 @@ def number(system, active, now, work, islands):
             ranges(islands, s)
         plan.used = islands.first[1, plan.count]
         if plan.used > islands.which.shape[0]:
-            return False
+            return r.FULL_PAIRS
     for s in range(3):
         back(islands, s)
     for slot in range(islands.first[0, plan.count]):
         member[islands.body_of[slot]].place = slot
-    sort_contacts(islands)
-    return True
+    sort_contacts(system, islands)
+    return READY
 
 
 @kernel
@@ -162,10 +217,12 @@ def list_contacts(system, now, work, islands, phase):
                 if near_plane(system, islands.plane[q], now, work):
                     put(islands, 1, phase, member[root(member, b)].island, islands.plane[q])
     for p in range(plan.pairs):
-        i, j = islands.pair[p, 0], islands.pair[p, 1]
+        i, j = islands.pair[0, p, 0], islands.pair[0, p, 1]
         island = member[root(member, i)].island
         q = first_contact(islands, i, j)
         if island < 0 or q < 0 or root(member, j) != root(member, i):
+            continue
+        if islands.partner[1, q] < 0:  # the two never touch
             continue
         while q < islands.partner_first[i + 1] and islands.partner[0, q] == j:
             put(islands, 1, phase, island, islands.partner[1, q])
@@ -211,16 +268,3 @@ def put(islands, s, phase, island, i):
         slots = islands.body_of if s == 0 else islands.which if s == 1 else islands.active_of
         slots[islands.first[s, island]] = i
     islands.first[s, island] += 1
-
-
-@kernel
-def sort_contacts(islands):
-    """Put the contacts of each island into the order of the scene: by insertion, as they are few."""
-    for island in range(islands.plan[0].count):
-        first = islands.first[1, island]
-        for i in range(first + 1, islands.first[1, island + 1]):
-            c, j = islands.which[i], i
-            while j > first and islands.which[j - 1] > c:
-                islands.which[j] = islands.which[j - 1]
-                j -= 1
-            islands.which[j] = c

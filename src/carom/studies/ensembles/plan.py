@@ -72,7 +72,7 @@ def one(plan: Plan, values: dict[str, np.ndarray], k: int, part: Part) -> None:
         part.failures[part.first + k] = f"{status.message} (reached t = {run.reached:.9g} s)"
         if status.ended:
             part.failures[part.first + k] = " ".join(
-                (status.message, *sentences(run.watch[0], run.scene))
+                (status.message, *sentences(run.watch[0], run.scene, run.pairs))
             )
     if plan.observe is None:
         return

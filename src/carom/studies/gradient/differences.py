@@ -70,6 +70,9 @@ class Pieces:
         )  # fmt: skip
         self.labels, self.parameters = parameters.labels, parameters
         self.base, self.near = Run(solution.scene, *settings), Run(solution.scene, *settings)
+        if run.found is not None:  # so that contacts have the numbers that they have there
+            for again in (self.base, self.near):
+                again.add_pairs(run.found)
         system = self.near.compiled.system
         self.numbers = [
             (system.bodies.mass, parameters.mass),
@@ -200,6 +203,11 @@ class Pieces:
     def begin(self, start: Checkpoint, e: float, p: int) -> Run:
         """Return the neighbour, about to go on from `start` with e more of parameter p."""
         run = self.near
+        if len(run.pairs.body) != len(self.base.pairs.body):
+            raise ValueError(
+                "solution must be of a run whose neighbours have no contacts that it has not, got one where "
+                "further bodies come near each other"
+            )
         restore(run, start, self.base.records)
         for array, kept in self.fresh:  # what it remembers of poses holds for other numbers
             array[...] = kept

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from carom.geometry.frames import contact_axes
-from carom.model.contact_rows import touching_pairs
 from carom.visual.plots import style
 
 LINGER = 0.15  # how long an arrow is seen [s of the film]
@@ -20,7 +19,7 @@ class Marks:
 
     def __init__(self, solution, length: float):
         self.solution, self.linger = solution, LINGER
-        pairs = touching_pairs(solution.scene)
+        pairs = solution.pairs
         table = solution.impacts
         drawn = np.flatnonzero(table.contact < len(pairs.body))  # stops have no point of contact
         self.time, self.point = table.time[drawn], table.point[drawn]

@@ -135,7 +135,7 @@ def contact_names(solution) -> list[str]:
         return [contact.name for contact in solution.system.contacts]
     from carom.io.files.variables import contact_names as names
 
-    return names(solution.scene)
+    return names(solution)
 
 
 def need_impacts(solution) -> None:

@@ -90,9 +90,7 @@ def _plane(plane, solution, x) -> tuple[int, int]:
 
 def _blows(solution, body) -> np.ndarray:
     """Return the times of the impacts of a body."""
-    from carom.model.contact_rows import touching_pairs
-
-    pairs = touching_pairs(solution.scene)
+    pairs = solution.pairs
     mine = np.flatnonzero((pairs.body == body.index) | (pairs.other == body.index))
     return solution.impacts.time[np.isin(solution.impacts.contact, mine)]
 

@@ -7,7 +7,6 @@ from typing import NamedTuple
 import numpy as np
 
 from carom.geometry.frames import contact_axes
-from carom.model.contact_rows import touching_pairs
 from carom.scene.constraints import coordinate_kind
 
 LISTED = 1000  # impacts in the list: the strongest
@@ -47,7 +46,7 @@ def strikes_of(solution, listed: int = LISTED) -> Strikes:
     """Return the impacts to show."""
     impacts, scene = solution.impacts, solution.scene
     chosen = np.sort(_strongest(impacts)[:listed])
-    pairs = touching_pairs(scene)
+    pairs = solution.pairs
     stops = len(pairs.body)  # they come after contacts
     arrow = np.zeros((len(chosen), 3))
     for row, k in enumerate(chosen):
