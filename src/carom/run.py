@@ -111,7 +111,7 @@ class Run:
         self.watch = new_watch(options.energy_tolerance, share)
         self.clock["ahead"] = FIRST * self.controls.longest
         rows = 256 if tolerances else -(-self.controls.last // self.controls.save_every) + 1
-        self.records = r.new_records(system, rows, 512)
+        self.records = r.new_records(system, rows, 512, len(self.active.points))
         self.call = Entries(system, self.method, self.controls, self.multiple.settings)
         if options.project_start and len(system.joints):
             error = project_start(system, self.now, self.work)
@@ -163,9 +163,9 @@ class Run:
     def grow(self, what: int) -> None:
         """Make arrays longer that are full."""
         if what == r.FULL_EVENTS:
-            self.records = r.longer(self.records)
+            self.records = r.longer(self.records, self.clock)
         elif what == r.FULL_ROWS:
-            self.records = r.more_rows(self.records)
+            self.records = r.more_rows(self.records, self.clock)
         elif what == r.FULL_PAIRS:
             self.islands = roomier(self.islands)
         elif what == r.FULL_MULTIPLE:

@@ -27,6 +27,7 @@ class Surfaces(NamedTuple):
     single: Cores  # piece by piece, against each other
     shared: int  # first vertex of `single`, after those of contacts with half-spaces
     place: np.ndarray  # (N,) first solid of each body
+    fastest: float  # speed of a body at the start
 
 
 class Contacts(NamedTuple):
@@ -59,7 +60,8 @@ def compile_contacts(scene: Scene, to_principal, options: Options, apart: bool =
     place, solids, hulls = _solids(scene, every, curved, to_principal)
     own = _own_vertices(which, flat & (which.core["curved"] == 0))
     vertices = np.concatenate([grounded.vertices[own], single.vertices])
-    surfaces = Surfaces(grounded, single, len(own), place)
+    fastest = max((float(np.linalg.norm(body.velocity)) for body in scene.bodies), default=0.0)
+    surfaces = Surfaces(grounded, single, len(own), place, fastest)
     rows = _rows(scene, options, pairs, which, surfaces)
     return Contacts(rows, vertices, solids, hulls, pairs, surfaces, later)
 
@@ -85,17 +87,17 @@ def _rows(scene, options: Options, pairs: PairTable, which: Rows, surfaces: Surf
     _write_solids(rows, which, surfaces.place)
     _write_laws(rows, pairs, which)
     extent = rows["extent"]
-    rows["still"] = 1e-14 * _speed(scene, extent)
+    rows["still"] = 1e-14 * _speed(scene, extent, surfaces.fastest)
     rows["width"] = 1e-5 * extent if options.layer_width is None else options.layer_width
     rows["penetration"] = options.penetration
     return rows
 
 
-def _speed(scene: Scene, extent: np.ndarray) -> np.ndarray | float:
+def _speed(scene: Scene, extent: np.ndarray, fastest: float) -> np.ndarray | float:
     """Return the speed that gravity gives over the size of a body, or the greatest at the start without it."""
     if np.any(scene.gravity):
         return np.sqrt(np.linalg.norm(scene.gravity) * extent)
-    return max((float(np.linalg.norm(body.velocity)) for body in scene.bodies), default=0.0)
+    return fastest
 
 
 def _shapes(scene: Scene, *chosen: np.ndarray) -> list[Shape | None]:

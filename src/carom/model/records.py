@@ -218,44 +218,39 @@ def new_work(system: System, stages: int) -> Work:
     )
 
 
-def new_records(system: System, saves: int, events: int) -> Records:
-    """Return empty records for `saves` saved steps and `events` impacts and events."""
+def new_records(system: System, saves: int, events: int, held: int = 0) -> Records:
+    """Return empty records for `saves` saved steps, `events` impacts and events, and `held` more active points."""
     n = system.bodies.size
     return Records(
         series=table(SERIES, saves),
         state=table(STATE, saves, n),
-        touch=table(TOUCH, events),
+        touch=table(TOUCH, events + held),
         impact=table(IMPACTS, events),
         event=table(EVENT, events),
         snapshot=table(SNAPSHOT, 2 * events + 2 * n),
     )
 
 
-def longer(records: Records) -> Records:
+def longer(records: Records, clock: np.recarray) -> Records:
     """Return the records with room for twice as many impacts, events and active points."""
-    return records._replace(
-        **{
-            name: _twice(getattr(records, name))
-            for name in ("touch", "impact", "event", "snapshot")
-        }
-    )
+    return _twice(records, clock, ("touch", "impact", "event", "snapshot"))
 
 
-def more_rows(records: Records) -> Records:
+def more_rows(records: Records, clock: np.recarray) -> Records:
     """Return the records with room for twice as many saved steps."""
-    return records._replace(
-        **{
-            name: _twice(getattr(records, name))
-            for name in ("series", "state")
-        }
-    )
+    return _twice(records, clock, ("series", "state"))
 
 
-def _twice(rows: np.recarray) -> np.recarray:
-    """Return rows with room for as many more: zeros that are not written take no memory yet."""
-    longer = np.zeros((2 * len(rows), *rows.shape[1:]), rows.dtype)
-    longer[: len(rows)] = rows
-    return longer.view(Columns)
+def _twice(records: Records, clock: np.recarray, names: tuple[str, ...]) -> Records:
+    """Return the records with these tables twice as long: zeros that nobody has written take no memory."""
+    ends = dict(zip(records._fields, _ends(clock)))
+    out = {}
+    for name in names:
+        rows = getattr(records, name)
+        longer, end = np.zeros((2 * len(rows), *rows.shape[1:]), rows.dtype), ends[name] + MARGIN
+        longer[:end][: len(rows)] = rows[:end]
+        out[name] = longer.view(Columns)
+    return records._replace(**out)
 
 
 def room_for_one(records: Records, saved: int) -> Records:
@@ -278,10 +273,13 @@ def trimmed(records: Records, clock: np.recarray) -> Records:
 
 def written(records: Records, clock: np.recarray) -> Records:
     """Return the rows that were written: a run that goes on may write to them."""
+    return Records(*(rows[:end].view(Columns) for rows, end in zip(records, _ends(clock))))
+
+
+def _ends(clock: np.recarray) -> tuple[int, ...]:
+    """Return how many rows of each table were written."""
     row = as_numbers(clock)
-    saved = row["saved"]
-    ends = saved, saved, row["touched"], row["struck"], row["event"], row["snapped"]
-    return Records(*(rows[:end].view(Columns) for rows, end in zip(records, ends)))
+    return row["saved"], row["saved"], row["touched"], row["struck"], row["event"], row["snapped"]
 
 
 def as_numbers(clock: np.recarray) -> dict:

@@ -164,9 +164,9 @@ def _put_records(run, records: r.Records) -> None:
         "impact": clock.struck, "event": clock.event, "snapshot": clock.snapped,
     }  # fmt: skip
     while len(run.records.series) < clock.saved:
-        run.records = r.more_rows(run.records)
+        run.records = r.more_rows(run.records, run.clock)
     grows = ("touch", "impact", "event", "snapshot")
     while any(len(getattr(run.records, name)) < ends[name] for name in grows):
-        run.records = r.longer(run.records)
+        run.records = r.longer(run.records, run.clock)
     for name, end in ends.items():
         getattr(run.records, name)[:end] = getattr(records, name)[:end]
