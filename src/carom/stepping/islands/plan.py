@@ -21,7 +21,7 @@ SLACK = 1e-6  # of a ball: what touches overlaps
 READY = -1  # nothing is to grow
 # contacts are made for bodies that may meet within so many steps more, but not for those that are further away
 # than this part of their balls
-AHEAD, WIDE = 8.0, 0.5
+AHEAD, WIDE = 8.0, 1.0
 
 
 @kernel
