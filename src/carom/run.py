@@ -24,12 +24,19 @@ from carom.results.accuracy import judge
 from carom.results.solution import Solution
 from carom.scene.all_pairs import PairTable
 from carom.scene.joints import Joint
+from carom.scene.limits import is_ballistic
 from carom.scene.scene import Scene
 from carom.status import Status
 from carom.stepping import record, time_loop
 from carom.stepping.crowd.layout import SPOTS, new_crowd, no_crowd, roomier_crowd
 from carom.stepping.energy_balance import SHARE, new_watch
-from carom.stepping.islands.layout import has_events, new_islands, no_islands, roomier, with_partners
+from carom.stepping.islands.layout import (
+    has_events,
+    new_islands,
+    no_islands,
+    roomier,
+    with_partners,
+)
 
 LOCATIONS = {"locate": LOCATE, "project": PROJECT, "work": WORK}
 
@@ -196,7 +203,7 @@ class Run:
 
     @property
     def found(self) -> np.ndarray | None:
-        """Pairs (K, 2) of bodies that got contacts as they came near; None where all had them from the start."""
+        """Pairs (K, 2) of bodies that got contacts as they came near; None where all had them at the start."""
         if self.compiled.later is None:
             return None
         first = len(self.at_start.pairs.body)
@@ -288,11 +295,6 @@ class Run:
                 self.records = r.room_for_one(self.records, clock.saved)
                 self.save_now()
         return Solution.from_run(self, status)
-
-
-def is_ballistic(scene: Scene) -> bool:
-    """Return whether only gravity and contacts act on all bodies."""
-    return not (scene.joints or scene.constraints or scene.forces)
 
 
 def check_stops(scene: Scene, compiled, start, work, options: Options) -> None:

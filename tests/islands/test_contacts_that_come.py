@@ -88,7 +88,7 @@ def test_the_motion_is_that_with_all_contacts_from_the_start(
 
 @pytest.mark.plain
 def test_contacts_are_of_pairs_that_came_near():
-    """Of 70 balls that fly; two that touch have one; two that stay a diameter and their ways apart have none."""
+    """Of 70 balls that fly, two that touch have one; two that stay a diameter and their ways apart none."""
     step = 1e-3
     s = carom.simulate(swarm(carom.Sphere(R), 70), 20 * step, step=step, options=ALLOWED)
     pairs, first = s.pairs, 6 * 70
@@ -101,7 +101,7 @@ def test_contacts_are_of_pairs_that_came_near():
             least = np.min(np.linalg.norm(s.position[:, i] - s.position[:, j], axis=1))
             if least <= 2 * R:
                 assert (i, j) in known
-            # balls are as large as the body, the way of a step at twice the greatest speed, and once more the body
+            # balls hold the body, its way in a step at twice the greatest speed, and the body once more
             elif least > 2 * (2 * R + 2 * fastest * step) + 2 * fastest * step:
                 assert (i, j) not in known
     between = s.pairs.other[s.impacts.contact] >= 0

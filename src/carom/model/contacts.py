@@ -125,7 +125,7 @@ def _write_shapes(rows: np.recarray, which: Rows) -> None:
 
 
 def _own_vertices(which: Rows, flat: np.ndarray) -> np.ndarray:
-    """Return which vertices the rows with half-spaces have: a contact is held at one, so each row has its own."""
+    """Return which vertices the rows with half-spaces have: a contact is held at one, so each has its own."""
     length = np.where(flat, which.core["last"] - which.core["first"], 0)
     first = np.cumsum(length) - length
     return np.repeat(which.core["first"] - first, length) + np.arange(length.sum())

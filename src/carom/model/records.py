@@ -186,7 +186,7 @@ def new_active_set(system: System) -> ActiveSet:
 
 
 def with_contacts(active: ActiveSet, count: int) -> ActiveSet:
-    """Return the active set with the states of `count` contacts: those beyond the known are to be checked first."""
+    """Return the active set with the states of `count` contacts: new ones are to be checked first."""
     states = table(CONTACT_STATE, count)
     known = len(active.contact_states)
     states[:known], states["near"][known:] = active.contact_states, 1
@@ -219,7 +219,7 @@ def new_work(system: System, stages: int) -> Work:
 
 
 def new_records(system: System, saves: int, events: int, held: int = 0) -> Records:
-    """Return empty records for `saves` saved steps, `events` impacts and events, and `held` more active points."""
+    """Return empty records for `saves` saved steps, `events` impacts and events, `held` more active points."""
     n = system.bodies.size
     return Records(
         series=table(SERIES, saves),

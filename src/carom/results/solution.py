@@ -61,10 +61,10 @@ class Solution(Portable, Drawn):
         the projection on the friction cone and rho its mass; of a point held alone, the velocity that it must
         not have. 0 where nothing is held.
     pairs : PairTable
-        What touches what, by the number that tables call `contact`: columns `body`, `other` (-1 for a half-space),
-        `plane` (-1 for a body), `law` (a place in `laws`). First the contacts of `Scene.contacts`, then those of
-        `set_contact_default`: with half-spaces, body by body, then of two bodies. Of more than 64 bodies on which
-        only gravity acts those that came near each other, in the order in which they did.
+        What touches what, by the number that tables call `contact`: columns `body`, `other` (-1 for a
+        half-space), `plane` (-1 for a body), `law` (a place in `laws`). First the contacts of `Scene.contacts`,
+        then those of `set_contact_default`: with half-spaces, body by body, then of two bodies (of more than 64
+        bodies on which only gravity acts: of those that came near each other, in the order in which they did).
         Stops in joints have the numbers after these.
     ledger : Ledger
         Where the energy went.

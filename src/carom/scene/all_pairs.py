@@ -161,7 +161,7 @@ def meeting(of: Defaults) -> np.ndarray:
 def near_half_spaces(
     pairs: PairTable, bodies: Sequence[Body], half_spaces: Sequence[HalfSpace]
 ) -> np.ndarray:
-    """Return the pairs of bodies and half-spaces, by number, where the ball around the body reaches the other."""
+    """Return the pairs of bodies and half-spaces, by number, where the ball around the body reaches it."""
     places, sizes = balls(bodies)
     reach = np.zeros(len(pairs.body), dtype=bool)
     for h, plane in enumerate(half_spaces):

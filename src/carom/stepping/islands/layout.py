@@ -25,8 +25,8 @@ PLAN = [
     ("pairs", "i8"),  # balls that overlap
     ("used", "i8"),  # contacts in all islands
     ("kept", "i8"),  # active points after the step, so far
-    ("open", "i8"),  # 1 where bodies that are no partners may touch: their contacts are still to come
-    ("fixed", "i8"),  # contacts from the start, in the order of the scene; others follow by their bodies
+    ("open", "i8"),  # 1 where bodies that are no partners may touch, and get a contact then
+    ("fixed", "i8"),  # contacts from the start, in their order; others follow by their bodies
     ("noted", "i8"),  # pairs of bodies, at the beginning of `pair`, that contacts are asked for
 ]
 

@@ -137,7 +137,7 @@ def enter(part, own, active, work, islands, begin, clock):
 
 @kernel
 def slot_of(islands, i, active_point):
-    """Return the number within island i of the contact of an active point whose bodies are those of the island."""
+    """Return the number within island i of the contact of an active point; its bodies are the island's."""
     first, last, fixed = islands.first[1, i], islands.first[1, i + 1], islands.plan[0].fixed
     low, high, c = first, last, active_point.contact
     while low < high:

@@ -99,7 +99,7 @@ def is_new(islands, i, j):
 
 @kernel
 def note_new(system, work, islands):
-    """Note all pairs of bodies that have no contact yet and may meet in this step or soon; return what is to grow.
+    """Note pairs of bodies that have no contact yet and may meet in this step or soon; return what is to grow.
 
     Those of some further steps at once, as the loop is left for them.
     """
