@@ -46,8 +46,8 @@ def no_pairs() -> PairTable:
 
 def joined_tables(first: PairTable, second: PairTable) -> PairTable:
     """Return the pairs of two tables with the same laws."""
-    columns = (np.concatenate(pair) for pair in zip(first[:4], second[:4]))
-    return PairTable(*columns, first.laws)
+    body, other, plane, law = (np.concatenate(pair) for pair in zip(first[:4], second[:4]))
+    return PairTable(body, other, plane, law, first.laws)
 
 
 def defaults(
@@ -71,12 +71,12 @@ def defaults(
     ]
     b, h = np.nonzero(meets)
     materials = kinds[0][b] * len(numbers) + kinds[1][h]
-    found, first = np.unique(materials, return_index=True)
+    _, first = np.unique(materials, return_index=True)
     place = np.full((len(numbers), len(numbers)), -1, dtype=np.int64)
     laws = []
-    for k in np.argsort(first):  # a pair that has no law is refused in the order of the pairs
-        place.flat[found[k]] = len(laws)
-        laws.append(law(bodies[b[first[k]]], half_spaces[h[first[k]]]))
+    for k in np.sort(first).tolist():  # a pair that has no law is refused in the order of the pairs
+        place[kinds[0][b[k]], kinds[1][h[k]]] = len(laws)
+        laws.append(law(bodies[int(b[k])], half_spaces[int(h[k])]))
     for i, j in _first_of_kinds(kinds[0], solid, set(out.tolist())):
         if place[kinds[0][i], kinds[0][j]] < 0:
             place[kinds[0][i], kinds[0][j]] = len(laws)

@@ -67,7 +67,9 @@ class KeptRun:
         if self.missing:
             return self._as_at_start
         made = self._run.compiled
-        rest = () if self.found is None else self.found[len(self._run.found) :]
+        if self.found is None:
+            return made
+        rest = self.found[len(made.pairs.body) - len(self.pairs.body) + len(self.found) :]
         return with_pairs(made, self.scene, self.options, rest) if len(rest) else made
 
     @cached_property
