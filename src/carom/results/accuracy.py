@@ -66,9 +66,9 @@ def judge(watch: np.record) -> Status:
 def sentences(
     watch: np.record, scene: Scene | None = None, pairs: PairTable | None = None
 ) -> tuple[str, ...]:
-    """Return what is not as it should be, when, and what to change: energy, depths, contacts not solved.
+    """Return a sentence for each error that is too large: of energy, depth, or contacts that are not solved.
 
-    `pairs` are those of the contacts of the run, None for all of the scene.
+    Each says when the error arose, and what to change. `pairs` are those of the contacts of the run, None for all of the scene.
     """
     kinds = [i for i in (RESIDUAL, IMPACTS, FRICTION, BOUNCES) if beyond(i, watch)]
     if not kinds and beyond(ALL, watch):
