@@ -68,7 +68,8 @@ def sentences(
 ) -> tuple[str, ...]:
     """Return a sentence for each error that is too large: of energy, depth, or contacts that are not solved.
 
-    Each says when the error arose, and what to change. `pairs` are those of the contacts of the run, None for all of the scene.
+    Each says when the error arose, and what to change. `pairs` are those of the contacts of the
+    run, None for all of the scene.
     """
     kinds = [i for i in (RESIDUAL, IMPACTS, FRICTION, BOUNCES) if beyond(i, watch)]
     if not kinds and beyond(ALL, watch):
