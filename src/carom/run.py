@@ -108,8 +108,7 @@ class Run:
         else:
             self.islands = no_islands(system, self.active)
         again = self.apart and options.hold and has_events(system, later is not None)
-        whole = 1 if system.bodies["ballistic"].all() else 2
-        self.controls = self.controls._replace(retry=whole if again else 0)
+        self.controls = self.controls._replace(retry=int(again))
         self.group = new_group(system, later is not None)
         self.crowd = no_crowd()  # made when there is one
         self.multiple = new_multiple(1, multiple_settings(options))  # and this

@@ -15,6 +15,7 @@ from carom.impact.layout import WEDGED
 from carom.impact.multiple.layout import OK, SEQUENTIAL, CornerContacts, MultipleSettings
 from carom.impact.multiple.resolve import resolve_contacts
 from carom.impact.workspace import U
+from carom.persistent.step_control import affordable
 
 IMPACT_FAILED = 6
 SEED = 1e-7  # of the slip
@@ -96,13 +97,15 @@ def strike_several(model, data, c, k):
         multiple.ball_like[i] = contact.ball_like
         all_by_pairs = multiple.settings.multiple == SEQUENTIAL
         multiple.pair[i] = pair_of(i, system.contacts, group.closed, all_by_pairs)
+    passage = multiple.workspace.work.clock[0]
+    each = k * (STEP if exponent_of(k, multiple) == LINEAR else STAGES)
+    if model.controls.retry == 1:  # the group can be taken whole instead
+        passage.left = int(max(0.0, affordable(model.controls, clock) - clock.effort) / each)
     resolve_group(k, group.m[0], u, group.mu, multiple)
-    code = multiple.workspace.work.clock[0].code
-    each = STEP if exponent_of(k, multiple) == LINEAR else STAGES
-    worked = each * k * multiple.result.summary[0].steps
+    worked = each * multiple.result.summary[0].steps
     clock.effort += worked
     clock.since += worked
-    if code != OK:
+    if passage.code != OK or passage.left < 0:
         hit.code = IMPACT_FAILED
         return
     count_blows(active, k, group)

@@ -23,8 +23,7 @@ class Controls(NamedTuple):
     layer_time: int  # 1: add the duration of impacts to the clock
     max_impacts: int
     max_cuts: int
-    # 1 where a step that does not get on is given up, to be taken whole; 2 the same of joined or loaded bodies
-    retry: int
+    retry: int  # 1 where a step that does not get on is given up, to be taken whole
     order: int  # of the error of a step whose length is chosen; 0: all steps are `step`
     rtol: float
     atol: float

@@ -147,7 +147,7 @@ FULL_EVENTS, FULL_ROWS, FULL_PAIRS, FULL_SPOTS, FULL_MULTIPLE, NEW_PAIRS = range
 LONG = 5e4  # work after which the loop is left for a moment, about [us]
 # work for contacts, about [us]: what a step may take on the average, one after others that took less, and that
 # as many times as there are bodies
-EACH, SAVED, OWN = 1e4, 1e6, 2e5
+EACH, SAVED, OWN = 1e4, 3e5, 2e5
 
 
 class Records(NamedTuple):

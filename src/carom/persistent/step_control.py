@@ -39,8 +39,6 @@ SHORTEST, RETRIED = 1e-4, 1e-2
 # force grows without bound (near a jam, or as a rim becomes flat) no step is short enough, and it is taken
 # whole in the end. Of groups, and of one body
 WILD, GROSS = 100.0, 1e4
-# how much more work a step may take of bodies that are joined or loaded, or cannot be taken whole
-PATIENCE = 10.0
 # about what a step without contacts takes of a body [us], with closed loops and without
 LOOPS_STEP, OTHER_STEP = 25.0, 0.6
 # of a search for impulses: what an iteration takes for k points, by k^2 [us]; how many it has in any case
@@ -175,7 +173,7 @@ def plain_step(system):
 @kernel
 def affordable(controls, clock):
     """Return how much work a step may take for contacts, about [us]: more than that, and it is given up."""
-    return max(r.EACH, clock.credit) * (1.0 if controls.retry == 1 else PATIENCE)
+    return max(r.EACH, clock.credit) if controls.retry == 1 else r.SAVED
 
 
 @kernel

@@ -88,7 +88,7 @@ def may_go_on(model, data):
         return grow(clock, r.FULL_EVENTS)
     if clock.in_step > controls.max_impacts or clock.at_once > 1000:
         return TOO_MANY
-    if controls.retry > 0 and clock.effort > affordable(controls, clock):
+    if controls.retry == 1 and clock.effort > affordable(controls, clock):
         return TOO_MANY
     return 0
 

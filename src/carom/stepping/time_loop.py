@@ -169,7 +169,7 @@ def move_single(model, data, method, start):
     """Move all bodies to the end of the step: event by event, or at once where that made no progress."""
     system, work = model.system, data.work
     step = data.clocks[0].step
-    whole = model.controls.retry > 0 and parts.is_crowd(system, data.active, step, work)
+    whole = model.controls.retry == 1 and parts.is_crowd(system, data.active, step, work)
     if not whole and not is_whole(step, work):
         parts.recover(system, step, work)
         return advance(model, data, method)

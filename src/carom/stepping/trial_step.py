@@ -99,15 +99,15 @@ def trial_step(model, data, method):
     clock.tries += 1
     clock.effort += plain_step(system) if system.joints.shape[0] > 0 else 0.0
     clock.since += 1.0 + now.shape[0] + active.contact_states.shape[0]
-    if controls.retry > 0:
-        if clock.tries > TRIES or clock.effort > affordable(controls, clock):
-            return TOO_MANY
+    retry = controls.retry == 1
+    if retry and (clock.tries > TRIES or clock.effort > affordable(controls, clock)):
+        return TOO_MANY
     if active.count[0] > 0 and code == 0:
         end_forces(system, active, work.trial, work)
         contact_step(model, data, search.dt)
         if work.result[0].code != 0:
             return work.result[0].code
-        if controls.retry == 1 and clock.effort > affordable(controls, clock):
+        if retry and clock.effort > affordable(controls, clock):
             return TOO_MANY  # and its rounds were not all made
         search.applied += work.result[0].applied
         search.friction += work.result[0].friction

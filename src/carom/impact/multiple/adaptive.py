@@ -145,6 +145,7 @@ def traverse(k, work, rtol, p, max_events, max_steps):
         if (
             clock.events - first_events > max_events
             or clock.steps - first_steps > max_steps
+            or clock.steps > clock.left
             or not clock.step > 0.0
         ):
             return TRAPPED

@@ -45,7 +45,11 @@ def traverse_fixed(k, work, n, p, max_events, max_steps):
         before = clock.events
         if drift(k, work, _APART, p) == 1 or wedged(k, work, h, p):
             return ENDED
-        if clock.events - first_events > max_events or clock.steps - first_steps > max_steps:
+        if (
+            clock.events - first_events > max_events
+            or clock.steps - first_steps > max_steps
+            or clock.steps > clock.left
+        ):
             return TRAPPED
         if clock.events != before:
             m = gather_discs(k, work)

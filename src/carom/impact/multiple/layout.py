@@ -193,6 +193,8 @@ AT_D, AT_U = 0, 1
 FORCE, STAGE = 0, 1  # of `stage`
 ORDERS = 26  # room for series
 
+UNLIMITED = 2**62  # steps
+
 #: where the passage of the layer stands
 CLOCK = [
     ("step", "f8"),  # next step to try
@@ -208,6 +210,7 @@ CLOCK = [
     ("cut", "i8"),  # 1: the last step by series ended where a contact cannot stick with its share
     ("stiff", "i8"),  # implicit steps to take before series are tried again
     ("saved_stiff", "i8"),
+    ("left", "i8"),  # steps that the impact may still take; below 0: it was broken off
     # what the units answer
     ("error", "f8"),
     ("change", "f8"),
@@ -242,6 +245,7 @@ def new_multiple_workspace(capacity: int) -> MultipleWorkspace:
         stage=np.zeros((2, 6, n)),
         single=np.zeros(one.SIZE),
     )
+    work.clock["left"] = UNLIMITED
     blow = BlowWork(
         member=np.zeros(k, dtype=np.int64),
         W=np.zeros((n, n)),

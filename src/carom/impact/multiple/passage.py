@@ -22,7 +22,10 @@ def all_plastic(k, work):
 
 @kernel
 def pass_group(k, work, cones, settings, result):
-    """Resolve the group of `k` contacts in `work`; velocities before are in row U0, impulses go to P."""
+    """Resolve the group of `k` contacts in `work`; velocities before are in row U0, impulses go to P.
+
+    Where `left` of the clock is below 0 then, the group was broken off: it has taken all steps that it may.
+    """
     p = settings.exponent
     r.energetic(k, work)
     start(k, work)
@@ -48,7 +51,8 @@ def pass_group(k, work, cones, settings, result):
             result.error = max(result.error, abs(work.vector[TRY, i] - work.vector[U, i]))
     result.steps += work.clock[0].steps
     result.events += work.clock[0].events
-    if ended != ENDED:
+    work.clock[0].left -= work.clock[0].steps
+    if ended != ENDED and work.clock[0].left >= 0:
         end_plastically(k, work, cones, p)
         result.plastic_change += work.clock[0].change
         result.marks |= PLASTIC

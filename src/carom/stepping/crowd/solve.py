@@ -15,6 +15,7 @@ from carom.friction.newton import step
 from carom.friction.solve import scale_vectors
 from carom.friction.strategy import copy, residual
 from carom.stepping.crowd.graph import find_order
+from carom.stepping.crowd.splitting import split_until
 from carom.stepping.crowd.sweeps import sweep_until
 
 FIRST, BETWEEN, MOST = 40, 30, 150  # sweeps: at first, after a step, and what all may cost
@@ -23,10 +24,13 @@ FIRST, BETWEEN, MOST = 40, 30, 150  # sweeps: at first, after a step, and what a
 PROXIMAL, LAST_DIGITS = (1e-2, 1e-3, 1e-4), 1e-8
 PRECISE, AGREED = 1e-10, 1e-8  # of the largest velocity: wanted, and good enough if that is hard
 HARD = 0.1  # of the residual before: with less a turn has helped
+WRONG = 1e-2  # of the largest velocity: no result, whatever it takes
 IDLE = 4  # turns that do not halve the residual: another start, and then there will be no better
 # cost [us] of a contact in a sweep and of a body that joints tie to it, of factors and of their assembly
 SWEEP, TIE, UPDATE, CONTACT = 0.13, 0.015, 0.1, 0.45
 PATIENT = 4  # times as much while the step can afford it
+# iterations of alternating directions: usual, and most where the step can afford them; by what they cost more
+SPLIT, LONG_SPLIT, DEARER = 100, 1000, 1.3
 
 
 @kernel
@@ -64,6 +68,14 @@ def solve(system, crowd, k, n, tolerance, effort, clock):
             break
         idle = 0 if least < 0.5 * before else idle + 1
     copy(k, kept, p)
+    if not least <= good and find_order(n, k, crowd):
+        allowed = SPLIT
+        if not least <= WRONG * speed:
+            allowed = LONG_SPLIT
+        elif patient:
+            allowed = max(SPLIT, min(LONG_SPLIT, int(left / (DEARER * each))))
+        least, more = split_until(system, crowd, by_reference(at_hand(crowd, n)), k, enough, allowed)
+        done, spent = done + more, spent + DEARER * more * each
     if goal < least <= good:  # once more for the last digits
         spent += newton_step(crowd, k, n, LAST_DIGITS)
         r, _, _ = residual(work, k)
@@ -92,15 +104,15 @@ def newton_step(crowd, k, n, eps):
     """Make one step of Newton's method, if there is room for it; return what it costs [us]."""
     if not find_order(n, k, crowd):
         return 0.0
-    pairs, updates = crowd.graph.count[3], crowd.graph.count[2]
-    work = by_reference(part(crowd.problem, n, pairs, updates))
+    work, updates = by_reference(at_hand(crowd, n)), crowd.graph.count[2]
     step(work, k, eps)
     return UPDATE * updates + CONTACT * k + TIE * work.link[k - 1].others_end
 
 
 @kernel
-def part(work, n, pairs, updates):
+def at_hand(crowd, n):
     """Return the problem with its arrays as long as the bodies and blocks at hand are many."""
+    work, pairs, updates = crowd.problem, crowd.graph.count[3], crowd.graph.count[2]
     return ContactWork(
         work.kind,
         work.contact,
