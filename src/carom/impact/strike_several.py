@@ -15,7 +15,7 @@ from carom.impact.layout import WEDGED
 from carom.impact.multiple.layout import OK, SEQUENTIAL, CornerContacts, MultipleSettings
 from carom.impact.multiple.resolve import resolve_contacts
 from carom.impact.workspace import U
-from carom.persistent.step_control import affordable
+from carom.model.allowance import affordable
 
 IMPACT_FAILED = 6
 SEED = 1e-7  # of the slip

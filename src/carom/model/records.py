@@ -8,6 +8,7 @@ import numpy as np
 
 from carom._compiled.record_arrays import Columns, table
 from carom.collision.layout import new_pair_work, new_points
+from carom.model.allowance import SAVED
 from carom.model.arrays import STATE, System
 from carom.model.workspace import (
     ACTIVE_POINT,
@@ -145,9 +146,6 @@ LEFT_BALL = 102  # a body has left the ball that its island gave it
 FULL_EVENTS, FULL_ROWS, FULL_PAIRS, FULL_SPOTS, FULL_MULTIPLE, NEW_PAIRS = range(6)
 
 LONG = 5e4  # work after which the loop is left for a moment, about [us]
-# work for contacts, about [us]: what a step may take on the average, one after others that took less, and that
-# as many times as there are bodies
-EACH, SAVED, OWN = 1e4, 3e5, 2e5
 
 
 class Records(NamedTuple):

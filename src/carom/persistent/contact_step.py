@@ -38,12 +38,12 @@ from carom.friction.solve import solve_cones
 from carom.geometry.rotation import rotate, rotate_back
 from carom.impact.workspace import BACK, OLD, C, P, U
 from carom.kinematics.contact_point import contact_velocity
+from carom.model.allowance import affordable
 from carom.persistent.finish import finish, forces_at_end, gained
 from carom.persistent.middle_state import halfway, mean_velocity, spin_momentum
 from carom.persistent.return_to_surfaces import onto_surfaces
 from carom.persistent.rolling_friction import bound_turning, first_torque
 from carom.persistent.step_control import (
-    affordable,
     charge_iterations,
     iterations_left,
     plain_step,

@@ -10,7 +10,7 @@ import math
 
 from carom._compiled.decorators import inlined, kernel
 from carom.geometry.rotation import norm
-from carom.model import records as r
+from carom.model.allowance import affordable
 from carom.model.arrays import LOOPS
 from carom.model.workspace import ONE
 from carom.persistent.middle_state import spin_momentum
@@ -168,12 +168,6 @@ def plain_step(system):
     """Return about what a step without contacts takes [us]."""
     each = LOOPS_STEP if system.solver.kind == LOOPS else OTHER_STEP
     return system.bodies.shape[0] * each
-
-
-@kernel
-def affordable(controls, clock):
-    """Return how much work a step may take for contacts, about [us]: more than that, and it is given up."""
-    return max(r.EACH, clock.credit) if controls.retry == 1 else r.SAVED
 
 
 @kernel

@@ -22,6 +22,7 @@ from carom.impact.strike import strike
 from carom.kinematics.contact_point import contact_velocity
 from carom.model import records as r
 from carom.model.actions import NOTHING, PERSIST, RENEW_MODE, STRIKE
+from carom.model.allowance import affordable
 from carom.model.arrays import STOP
 from carom.model.controls import LOCATE
 from carom.model.workspace import FREE
@@ -36,7 +37,6 @@ from carom.persistent.modes import change_mode, turn_modes
 from carom.persistent.step_control import (
     UNSOLVED,
     USELESS,
-    affordable,
     goes_wild,
     next_pace,
     unsolved,
@@ -191,7 +191,7 @@ def act(model, data, method, action):
         closed = work.hit[0].closed
         clock.since += 10.0
         if work.hit[0].code != 0:
-            search.pending = STRIKE
+            search.pending = STRIKE if work.hit[0].code >= r.GROW else NOTHING
             return work.hit[0].code
         review_joints(system, data.active, data.state, work)
         if controls.layer_time == 1 and clock.struck > struck:

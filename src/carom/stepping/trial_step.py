@@ -13,12 +13,13 @@ from carom.dynamics.more_forces import turns_round
 from carom.dynamics.step import step
 from carom.model import records as r
 from carom.model.actions import STRIKE
+from carom.model.allowance import affordable
 from carom.model.controls import LOCATE
 from carom.persistent.contact_step import contact_step
 from carom.persistent.events import GAP, end_forces
 from carom.persistent.joint_events import STOPS
 from carom.persistent.margins import note_due
-from carom.persistent.step_control import affordable, plain_step, too_long
+from carom.persistent.step_control import plain_step, too_long
 from carom.stepping.energy_balance import IN_A_ROW, SHORTEST, off_balance
 from carom.stepping.event_search import (
     begin_search,

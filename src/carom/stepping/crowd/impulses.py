@@ -15,9 +15,9 @@ from carom.dynamics.rotors import add_rates, note_rates
 from carom.friction.layout import P
 from carom.geometry.rotation import rotate, rotate_back
 from carom.kinematics.contact_point import contact_velocity
+from carom.model.allowance import affordable
 from carom.model.arrays import STOP
 from carom.persistent.middle_state import halfway, spin_momentum
-from carom.persistent.step_control import affordable
 from carom.stepping.crowd.pose import note_drift, pose
 from carom.stepping.crowd.response import answer
 from carom.stepping.crowd.solve import solve

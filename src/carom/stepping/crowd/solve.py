@@ -74,7 +74,9 @@ def solve(system, crowd, k, n, tolerance, effort, clock):
             allowed = LONG_SPLIT
         elif patient:
             allowed = max(SPLIT, min(LONG_SPLIT, int(left / (DEARER * each))))
-        least, more = split_until(system, crowd, by_reference(at_hand(crowd, n)), k, enough, allowed)
+        least, more = split_until(
+            system, crowd, by_reference(at_hand(crowd, n)), k, enough, allowed
+        )
         done, spent = done + more, spent + DEARER * more * each
     if goal < least <= good:  # once more for the last digits
         spent += newton_step(crowd, k, n, LAST_DIGITS)

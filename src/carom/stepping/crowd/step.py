@@ -22,8 +22,8 @@ from carom.dynamics.more_forces import note_turns
 from carom.dynamics.project import project_velocity
 from carom.geometry.rotation import norm
 from carom.model import records as r
+from carom.model.allowance import affordable
 from carom.persistent.joint_events import review_joints
-from carom.persistent.step_control import affordable
 from carom.stepping.crowd.balance import energy_gained, off, slow_down, take_out, take_over
 from carom.stepping.crowd.finish import finish
 from carom.stepping.crowd.free_motion import (
