@@ -24,7 +24,7 @@ FIRST, BETWEEN, MOST = 40, 30, 150  # sweeps: at first, after a step, and what a
 PROXIMAL, LAST_DIGITS = (1e-2, 1e-3, 1e-4), 1e-8
 PRECISE, AGREED = 1e-10, 1e-8  # of the largest velocity: wanted, and good enough if that is hard
 HARD = 0.1  # of the residual before: with less a turn has helped
-WRONG = 1e-2  # of the largest velocity: no result, whatever it takes
+WRONG = 1e-2  # of the largest velocity, or change of velocity: no result, whatever it takes
 IDLE = 4  # turns that do not halve the residual: another start, and then there will be no better
 # cost [us] of a contact in a sweep and of a body that joints tie to it, of factors and of their assembly
 SWEEP, TIE, UPDATE, CONTACT = 0.13, 0.015, 0.1, 0.45
@@ -70,7 +70,7 @@ def solve(system, crowd, k, n, tolerance, effort, clock):
     copy(k, kept, p)
     if not least <= good and find_order(n, k, crowd):
         allowed = SPLIT
-        if not least <= WRONG * speed:
+        if not least <= WRONG * max(speed, greatest_change(crowd, k) / gamma):
             allowed = LONG_SPLIT
         elif patient:
             allowed = max(SPLIT, min(LONG_SPLIT, int(left / (DEARER * each))))
@@ -98,6 +98,15 @@ def greatest_speed(crowd, k):
     for i in range(k):
         u = crowd.spots[i].before
         most = max(most, abs(u[0]), abs(u[1]), abs(u[2]))
+    return most
+
+
+@kernel
+def greatest_change(crowd, k):
+    """Return the greatest velocity that impulses are to change [m/s]: at rest, what gravity gives."""
+    most = 0.0
+    for i in range(3 * k):
+        most = max(most, abs(crowd.c[i]))
     return most
 
 
