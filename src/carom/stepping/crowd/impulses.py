@@ -19,13 +19,14 @@ from carom.model.allowance import affordable
 from carom.model.arrays import STOP
 from carom.persistent.middle_state import halfway, spin_momentum
 from carom.stepping.crowd.pose import note_drift, pose
-from carom.stepping.crowd.response import answer
+from carom.stepping.crowd.response import answer, write_responses
 from carom.stepping.crowd.solve import solve
-from carom.stepping.crowd.spots import gather, place_all
+from carom.stepping.crowd.spots import gather, gather_sunk, place_all
 from carom.stepping.crowd.surface import onto_surfaces
 
 FINE = 0.1  # of the speed below which bodies rest: to be reached, or they never would
 NOTHING = 1e-9  # of the work of all impulses: that is not given
+LIFTS = 4  # times that what has sunk in besides is looked for
 
 
 @kernel
@@ -38,12 +39,12 @@ def find_points(model, data, h, fall, wide):
         return k
     for b in range(n):
         halfway(now[b], crowd.flight[b], work.stage[b])
-    place_all(system, k, crowd.flight, crowd, crowd.points[1], work)
+    place_all(system, 0, k, crowd.flight, crowd, crowd.points[1], work)
     for i in range(k):
         crowd.spots[i].left = crowd.points[1][i].gap
-    place_all(system, k, work.stage, crowd, crowd.points[0], work)
+    place_all(system, 0, k, work.stage, crowd, crowd.points[0], work)
     if n > 1:
-        place_all(system, k, now, crowd, crowd.points[1], work)
+        place_all(system, 0, k, now, crowd, crowd.points[1], work)
     note_drift(active, k, n > 1, now, crowd)
     return k
 
@@ -170,6 +171,29 @@ def impose(model, data, k, h):
         carry_velocity(system, end, work)
         driven += driven_power(system, end, work)
     return driven, holds
+
+
+@kernel
+def lift_others(system, k, depth, crowd, work):
+    """Bring out what is deeper than that and was not looked at, with what was; angular momenta are kept.
+
+    The piece has found no impulses for it: it is another feature of what touches, as a corner that has come
+    over an edge of a face. Returns whether joints hold.
+    """
+    end, holds = work.trial, True
+    for b in range(end.shape[0]):
+        copy_state(end[b], work.stage[b])
+    for _ in range(LIFTS):
+        last = gather_sunk(system, k, depth, end, crowd, work)
+        if last == k:
+            break
+        place_all(system, k, last, end, crowd, crowd.points[0], work)
+        write_responses(system, k, last, crowd, work)
+        holds = onto_surfaces(system, last, end.shape[0], end, crowd, work) <= LOST
+    respin(system, work.stage, end)
+    if system.joints.shape[0] > 0:
+        carry_velocity(system, end, work)
+    return holds
 
 
 @kernel

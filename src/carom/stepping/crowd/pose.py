@@ -19,7 +19,7 @@ def pose(system, active, k, h, fall, start, crowd, work):
     (p . (w + e u) - (1 - e)/2 p . W p)/(1 + e), which is never positive, and 0 without friction if e = 1.
     """
     alone = start.shape[0] == 1
-    write_responses(system, k, crowd, work)
+    write_responses(system, 0, k, crowd, work)
     for i in range(k):
         spot, point = crowd.spots[i], crowd.points[0][i]
         contact, p = system.contacts[spot.contact], crowd.p

@@ -18,10 +18,11 @@ from carom.geometry.rotation import cross, rotate, rotate_back
 
 
 @kernel
-def write_responses(system, k, crowd, work):
-    """Write rows and answers of the k points in `crowd.points[0]`, with the masses at the end of the flight."""
-    problem, points, last = crowd.problem, crowd.points[0], 0
-    for i in range(k):
+def write_responses(system, first, k, crowd, work):
+    """Write rows and answers of points `first` to k in `crowd.points[0]`, with the masses after the flight."""
+    problem, points = crowd.problem, crowd.points[0]
+    last = problem.link[first - 1].others_end if first > 0 else 0
+    for i in range(first, k):
         link, point = problem.link[i], points[i]
         link.body[0], link.body[1], link.others = point.a, point.b, last
         write_rows(point, link)

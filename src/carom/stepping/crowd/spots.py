@@ -6,6 +6,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.contact.closed_points import apart
+from carom.contact.depth import least_gap
 from carom.contact.pair_point import (
     ACTIVE_REACH,
     REACH,
@@ -73,6 +74,28 @@ def gather(system, active, h, fall, wide, state, crowd, work):
         if k < 0:
             return -1
     return k
+
+
+@kernel
+def gather_sunk(system, k, depth, end, crowd, work):
+    """Add to the k spots what is inside the ground or a body by more than `depth` of the smaller body.
+
+    Returns the new count; k where there is no room.
+    """
+    last = k
+    for c in range(system.contacts.shape[0]):
+        contact = system.contacts[c]
+        if contact.touches == STOP or apart(contact, end, 0.0):
+            continue
+        if least_gap(system, contact, end, work) >= -depth * smaller(contact):
+            continue
+        if contact.touches == 0:
+            last = add_vertices(system, contact, c, 0.0, end, last, crowd, work)
+        else:
+            last = add_touches(system, contact, c, 0.0, end, last, crowd, work)
+        if last < 0:
+            return k
+    return last
 
 
 @kernel
@@ -175,9 +198,9 @@ def find_active(active, spot, crowd):
 
 
 @kernel
-def place_all(system, k, state, crowd, points, work):
-    """Write all points as they are in a state."""
-    i = 0
+def place_all(system, first_spot, k, state, crowd, points, work):
+    """Write the points from `first_spot` to k as they are in a state."""
+    i = first_spot
     while i < k:
         c = crowd.spots[i].contact
         contact = system.contacts[c]

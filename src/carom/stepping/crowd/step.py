@@ -39,6 +39,7 @@ from carom.stepping.crowd.impulses import (
     find_impulses,
     find_points,
     impose,
+    lift_others,
 )
 from carom.stepping.crowd.layout import SPOTS
 from carom.stepping.crowd.solve import greatest_speed
@@ -208,8 +209,10 @@ def collide(model, data, h, fall, patient, careful):
         if sunk <= SUNK:
             return 0, k, residual, driven
         if times >= AGAIN or (wide == WIDEST and k == before):
-            deep = sunk > DEEP and h > SHORTER * model.controls.step
-            return MISSED if deep else 0, k, residual, driven
+            if sunk > DEEP and h > SHORTER * model.controls.step:
+                return MISSED, k, residual, driven
+            code = 0 if lift_others(system, k, SUNK, crowd, work) else CONSTRAINTS_LOST
+            return code, k, residual, driven
         wide, before = min(WIDEST, wide * WIDER), k
 
 

@@ -25,7 +25,7 @@ def onto_surfaces(system, k, count, end, crowd, work):
     """
     missed = project_position(system, end, True, 1e-14, work)
     for _ in range(PASSES):
-        place_all(system, k, end, crowd, crowd.points[1], work)
+        place_all(system, 0, k, end, crowd, crowd.points[1], work)
         deepest, tiny = 0.0, 1.0
         for i in range(k):
             gap = crowd.points[1][i].gap
