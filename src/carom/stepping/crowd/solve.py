@@ -69,15 +69,13 @@ def solve(system, crowd, k, n, tolerance, effort, clock):
         idle = 0 if least < 0.5 * before else idle + 1
     copy(k, kept, p)
     if not least <= good and find_order(n, k, crowd):
-        allowed = SPLIT
-        if not least <= WRONG * max(speed, greatest_change(crowd, k) / gamma):
-            allowed = LONG_SPLIT
-        elif patient:
-            allowed = max(SPLIT, min(LONG_SPLIT, int(left / (DEARER * each))))
-        least, more = split_until(
-            system, crowd, by_reference(at_hand(crowd, n)), k, enough, allowed
-        )
+        wrong = not least <= WRONG * max(speed, greatest_change(crowd, k) / gamma)
+        goes_on = LONG_SPLIT if wrong else SPLIT
+        allowed = LONG_SPLIT if wrong or (patient and spent < left) else SPLIT
+        ordered = by_reference(at_hand(crowd, n))
+        least, more = split_until(system, crowd, ordered, k, enough, goes_on, allowed)
         done, spent = done + more, spent + DEARER * more * each
+        copy(k, p, kept)
     if goal < least <= good:  # once more for the last digits
         spent += newton_step(crowd, k, n, LAST_DIGITS)
         r, _, _ = residual(work, k)

@@ -25,18 +25,23 @@ EACH = 25  # iterations between looks at the residual
 
 
 @kernel
-def split_until(system, crowd, work, k, tolerance, most):
+def split_until(system, crowd, work, k, tolerance, least_of_all, most):
     """Iterate until the scaled residual is small, from the impulses at hand; return it, and how often.
 
-    `work`: the problem, its bodies in an order of elimination. The best impulses that were met are kept.
+    At least so often, and on to `most` as long as as many more halve it. `work`: the problem, its bodies in an
+    order of elimination. The best impulses that were met are kept.
     """
     z, u, best = work.vector[o.P], work.vector[o.CENTRE], work.vector[o.BEST]
     least, goal, _ = residual(work, k)
     copy(k, z, best)
     begin(work, k)
     factor_shifted(work, k, RHO)
-    done = 0
+    done, before = 0, least
     while not least <= max(tolerance, goal) and done < most:
+        if done > 0 and done % least_of_all == 0:
+            if not least < 0.5 * before:
+                break
+            before = least
         bound_torques(system, crowd, k)
         for _ in range(EACH):
             iterate(work, k, z, u)
