@@ -302,3 +302,23 @@ def test_what_is_pushed_within_a_step_pushes_on():
     assert np.min(np.diff(s.position[:, :, 0], axis=1)) >= 2 * r - 1e-12
     np.testing.assert_allclose(s.velocity[:, :, 0].sum(axis=1), 5.0, rtol=1e-12)
     assert np.all(np.diff(s.kinetic_energy) <= 1e-12)
+
+
+@pytest.mark.parametrize("seed", [12, 30, 31])
+def test_nothing_sinks_in_at_long_steps(seed):
+    """At the end of each step, of 5 ms, bodies are in each other by no more than 1e-9 of their size.
+
+    Corners come over edges of faces within such steps, and what falls on a body at rest pushes it aside.
+    """
+    scene, rng = carom.Scene(gravity=(0, 0, -G)), np.random.default_rng(seed)
+    scene.add_half_space((0, 0, 0), (0, 0, 1))
+    for k in range(12):
+        q = rng.normal(size=4)
+        place = (*rng.uniform(-0.01, 0.01, 2), 0.03 + 0.06 * k)
+        scene.add_body(
+            carom.Box(0.02, 0.03, 0.04), mass=0.02, position=place, orientation=q / np.linalg.norm(q)
+        )
+    scene.set_contact_default(restitution=0.0, friction=0.4)
+    s = carom.simulate(scene, 0.4, step=5e-3, throw=False)
+    assert s.stats["whole_steps"] > 10
+    assert min(deepest(scene, s, row) for row in range(len(s.t))) > -1e-9 * 0.02

@@ -17,6 +17,8 @@ from carom.persistent.active_set import begin_point
 from carom.persistent.step_control import rest_speed
 from carom.stepping.crowd.response import block_of_point
 
+ASIDE = 1e-9  # of its size: a body that has moved so far in a step was pushed
+
 
 @kernel
 def finish(model, data, k, h, fall, residual):
@@ -166,10 +168,22 @@ def root(parent, b):
 
 
 @kernel
+def way(start, end, size):
+    """Return how far a body has moved, and turned by its size [m]."""
+    moved, turned = 0.0, 0.0
+    for j in range(3):
+        moved += (end.x[j] - start.x[j]) ** 2
+    for j in range(4):
+        turned += (end.Q[j] - start.Q[j]) ** 2
+    return math.sqrt(moved) + 2.0 * size * math.sqrt(turned)
+
+
+@kernel
 def come_to_rest(system, tolerance, count, start, end, crowd):
     """Stop bodies that press on each other or are joined, exactly, where all of them are slower than that.
 
-    Those that did not move at the start are where they were, and rest from now on.
+    Those that did not move at the start are where they were, and rest from now on; unless one was pushed aside,
+    as something has sunk into it.
     """
     parent, speed, n, joined = crowd.parent, crowd.speed, end.shape[0], -1
     for b in range(n):
@@ -183,6 +197,8 @@ def come_to_rest(system, tolerance, count, start, end, crowd):
     for b in range(n):
         g, size = root(parent, b), system.bodies[b].extent
         speed[0, g] = max(speed[0, g], norm(start[b].v) + size * norm(start[b].w))
+        if way(start[b], end[b], size) > ASIDE * size:
+            speed[0, g] = math.inf
         speed[1, g] = max(speed[1, g], norm(end[b].v) + size * norm(end[b].w))
     for b in range(n):
         g = root(parent, b)
