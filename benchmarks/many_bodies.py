@@ -13,6 +13,7 @@ import numpy as np
 
 import carom
 from common import report
+from heaps import poured
 
 G, STEP = 9.81, 1e-3
 ROBOTS = Path(__file__).parents[1] / "tests" / "data" / "models"
@@ -125,13 +126,19 @@ def row(name: str, scene: carom.Scene, duration: float) -> list[str]:
 
 def main() -> None:
     """Measure and report."""
-    humanoid = carom.load_model(ROBOTS / "dm_control" / "humanoid.xml", restitution=0.3).scene
+    humanoid, quadruped = (
+        carom.load_model(ROBOTS / "dm_control" / f"{name}.xml", restitution=0.3).scene
+        for name in ("humanoid", "quadruped")
+    )
     rows = [
         row("wall of 6 bricks, ball on a rod", wall(6, 2), 1.5),
         row("12 bricks", wall(12, 3), 1.5),
         row("24 bricks", wall(24, 6), 1.5),
+        row("96 bricks", wall(96, 12), 1.5),
         row("break, e = .95, mu = .1", rack(0.95, 0.1), 0.2),
         row("humanoid of dm_control", humanoid, 1.0),
+        row("quadruped of dm_control", quadruped, 1.0),
+        row("500 balls poured, rolling friction", poured(500, 1e-4), 1.0),
         row("100 dice poured", dice(100), 1.5),
         dice_by_mujoco(100, 1.5),
     ]
