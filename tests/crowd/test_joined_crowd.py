@@ -135,8 +135,8 @@ def test_a_ball_on_a_joint_goes_through_a_wall():
     """What energy is lost has its name, and joints hold.
 
     A swing of a ball on a spherical joint into nine bricks that lie on each other. The balance closes to 1e-3
-    of what is lost, and velocities after a step fit its impulses to 1e-3 of the speed of the ball, though bricks
-    are wedged when it strikes, with impulses a hundred times those of a free impact.
+    of what is lost, and velocities after a step fit its impulses to 1e-3 of the speed of the ball, though
+    bricks are wedged when it strikes, with impulses a hundred times those of a free impact.
     """
     scene = carom.Scene(gravity=(0, 0, -G))
     scene.add_half_space((0, 0, 0), (0, 0, 1))
