@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 
-# what a step may take on the average; one after others that took less; and that for each body
-EACH, SAVED, OWN = 1e4, 3e5, 2e5
+EACH, SAVED = 1e4, 2e5  # what a step may take on the average, and one after others that took less
 
 
 @kernel

@@ -10,7 +10,7 @@ from carom.contact.depth import watch_depth
 from carom.dynamics.adapt import begin_step
 from carom.impact.driven import BLOCKED
 from carom.model import records as r
-from carom.model.allowance import EACH, OWN, SAVED
+from carom.model.allowance import EACH, SAVED
 from carom.model.controls import LOCATE
 from carom.model.data import Data, Model
 from carom.persistent.active_set import regroup
@@ -162,7 +162,7 @@ def earn(now, clock, work):
     for b in range(now.shape[0]):
         if work.body[b].whole_until >= clock.step:
             return
-    clock.credit = min(min(SAVED, OWN * now.shape[0]), clock.credit + EACH)
+    clock.credit = min(SAVED, clock.credit + EACH)
 
 
 @inlined
