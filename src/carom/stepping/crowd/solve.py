@@ -68,7 +68,7 @@ def solve(system, crowd, k, n, tolerance, effort, clock):
             break
         idle = 0 if least < 0.5 * before else idle + 1
     copy(k, kept, p)
-    if not least <= good and find_order(n, k, crowd):
+    if not least <= good and not turns(work, k) and find_order(n, k, crowd):
         wrong = not least <= WRONG * max(speed, greatest_change(crowd, k) / gamma)
         goes_on = LONG_SPLIT if wrong else SPLIT
         allowed = LONG_SPLIT if wrong or (patient and spent < left) else SPLIT
@@ -97,6 +97,15 @@ def greatest_speed(crowd, k):
         u = crowd.spots[i].before
         most = max(most, abs(u[0]), abs(u[1]), abs(u[2]))
     return most
+
+
+@kernel
+def turns(work, k):
+    """Return whether there is rolling or pivoting friction, whose bounds follow the normal impulses."""
+    for i in range(k):
+        if work.contact[i].kind == o.DISC:
+            return True
+    return False
 
 
 @kernel
