@@ -316,7 +316,10 @@ def test_nothing_sinks_in_at_long_steps(seed):
         q = rng.normal(size=4)
         place = (*rng.uniform(-0.01, 0.01, 2), 0.03 + 0.06 * k)
         scene.add_body(
-            carom.Box(0.02, 0.03, 0.04), mass=0.02, position=place, orientation=q / np.linalg.norm(q)
+            carom.Box(0.02, 0.03, 0.04),
+            mass=0.02,
+            position=place,
+            orientation=q / np.linalg.norm(q),
         )
     scene.set_contact_default(restitution=0.0, friction=0.4)
     s = carom.simulate(scene, 0.4, step=5e-3, throw=False)
