@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 
-EACH, SAVED = 1e4, 2e5  # what a step may take on the average, and one after others that took less
+EACH, SAVED = 1e4, 3e5  # what a step may take on the average, and one after others that took less
 
 
 @kernel

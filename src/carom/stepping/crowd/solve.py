@@ -24,7 +24,7 @@ FIRST, BETWEEN, MOST = 40, 30, 150  # sweeps: at first, after a step, and what a
 PROXIMAL, LAST_DIGITS = (1e-2, 1e-3, 1e-4), 1e-8
 PRECISE, AGREED = 1e-10, 1e-8  # of the largest velocity: wanted, and good enough if that is hard
 HARD = 0.1  # of the residual before: with less a turn has helped
-WRONG = 1e-2  # of the largest velocity, or change of velocity: no result, whatever it takes
+WRONG = 1e-2  # of the largest velocity: no result, whatever it takes; at rest there is none to compare with
 IDLE = 4  # turns that do not halve the residual: another start, and then there will be no better
 # cost [us] of a contact in a sweep and of a body that joints tie to it, of factors and of their assembly
 SWEEP, TIE, UPDATE, CONTACT = 0.13, 0.015, 0.1, 0.45
@@ -69,7 +69,7 @@ def solve(system, crowd, k, n, tolerance, effort, clock):
         idle = 0 if least < 0.5 * before else idle + 1
     copy(k, kept, p)
     if not least <= good and not turns(work, k) and find_order(n, k, crowd):
-        wrong = not least <= WRONG * max(speed, greatest_change(crowd, k) / gamma)
+        wrong = not least <= WRONG * speed
         goes_on = LONG_SPLIT if wrong else SPLIT
         allowed = LONG_SPLIT if wrong or (patient and spent < left) else SPLIT
         ordered = by_reference(at_hand(crowd, n))
@@ -106,15 +106,6 @@ def turns(work, k):
         if work.contact[i].kind == o.DISC:
             return True
     return False
-
-
-@kernel
-def greatest_change(crowd, k):
-    """Return the greatest velocity that impulses are to change [m/s]: at rest, what gravity gives."""
-    most = 0.0
-    for i in range(3 * k):
-        most = max(most, abs(crowd.c[i]))
-    return most
 
 
 @kernel
