@@ -82,7 +82,7 @@ def resolve_contacts(contacts, settings, workspace, out):
         _together(part, scale, settings, workspace, blow.result)
         take(contacts, m, blow, out)
         count += 1
-        if ends:
+        if ends or workspace.work.clock[0].left < 0:
             break
     if count > 1:
         out.summary[0].events += count
@@ -111,6 +111,8 @@ def _together(contacts, scale, settings, workspace, out):
     code = NOT_RESOLVED if settings.multiple == BY_NEWTON else OK
     for g in range(groups if code == OK else 0):
         code = max(code, _group(g, acting, still, settings, workspace, out))
+        if work.clock[0].left < 0:
+            return  # broken off: there is no result
     if code == OK:
         _finish(contacts, out)
     exact = (result.marks & EXACT) != 0  # that of one contact may gain energy, by Newton's law

@@ -178,13 +178,15 @@ def lift_others(system, k, depth, crowd, work):
     """Bring out what is deeper than that and was not looked at, with what was; angular momenta are kept.
 
     The piece has found no impulses for it: it is another feature of what touches, as a corner that has come
-    over an edge of a face. Returns whether joints hold.
+    over an edge of a face. Returns whether there was room, and whether joints hold.
     """
     end, holds = work.trial, True
     for b in range(end.shape[0]):
         copy_state(end[b], work.stage[b])
     for _ in range(LIFTS):
         last = gather_sunk(system, k, depth, end, crowd, work)
+        if last < 0:
+            return False, holds
         if last == k:
             break
         place_all(system, k, last, end, crowd, crowd.points[0], work)
@@ -193,7 +195,7 @@ def lift_others(system, k, depth, crowd, work):
     respin(system, work.stage, end)
     if system.joints.shape[0] > 0:
         carry_velocity(system, end, work)
-    return holds
+    return True, holds
 
 
 @kernel

@@ -68,12 +68,12 @@ def solve(system, crowd, k, n, tolerance, effort, clock):
             break
         idle = 0 if least < 0.5 * before else idle + 1
     copy(k, kept, p)
-    if not least <= good and not turns(work, k) and find_order(n, k, crowd):
+    if not least <= good and not has_discs(work, k) and find_order(n, k, crowd):
         wrong = not least <= WRONG * speed
-        goes_on = LONG_SPLIT if wrong else SPLIT
+        at_least = LONG_SPLIT if wrong else SPLIT
         allowed = LONG_SPLIT if wrong or (patient and spent < left) else SPLIT
         ordered = by_reference(at_hand(crowd, n))
-        least, more = split_until(system, crowd, ordered, k, enough, goes_on, allowed)
+        least, more = split_until(ordered, k, enough, at_least, allowed)
         done, spent = done + more, spent + DEARER * more * each
         copy(k, p, kept)
     if goal < least <= good:  # once more for the last digits
@@ -100,7 +100,7 @@ def greatest_speed(crowd, k):
 
 
 @kernel
-def turns(work, k):
+def has_discs(work, k):
     """Return whether there is rolling or pivoting friction, whose bounds follow the normal impulses."""
     for i in range(k):
         if work.contact[i].kind == o.DISC:

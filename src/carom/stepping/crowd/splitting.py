@@ -17,7 +17,6 @@ from carom.friction import layout as o
 from carom.friction.cone import nearest, shift
 from carom.friction.operators import factor_shifted, solve_shifted
 from carom.friction.strategy import copy, residual
-from carom.stepping.crowd.sweeps import bound_torques
 
 RHO = 0.05  # of the mean of the diagonal of W
 AHEAD = 1.6  # a
@@ -25,11 +24,11 @@ EACH = 25  # iterations between looks at the residual
 
 
 @kernel
-def split_until(system, crowd, work, k, tolerance, least_of_all, most):
+def split_until(work, k, tolerance, at_least, most):
     """Iterate until the scaled residual is small, from the impulses at hand; return it, and how often.
 
-    At least so often, and on to `most` as long as as many more halve it. `work`: the problem, its bodies in an
-    order of elimination. The best impulses that were met are kept.
+    `at_least` so often, and on to `most` while as many more halve it. `work`: the problem, without rolling and
+    pivoting, its bodies in an order of elimination. The best impulses that were met are kept.
     """
     z, u, best = work.vector[o.P], work.vector[o.CENTRE], work.vector[o.BEST]
     least, goal, _ = residual(work, k)
@@ -38,11 +37,10 @@ def split_until(system, crowd, work, k, tolerance, least_of_all, most):
     factor_shifted(work, k, RHO)
     done, before = 0, least
     while not least <= max(tolerance, goal) and done < most:
-        if done > 0 and done % least_of_all == 0:
+        if done > 0 and done % at_least == 0:
             if not least < 0.5 * before:
                 break
             before = least
-        bound_torques(system, crowd, k)
         for _ in range(EACH):
             iterate(work, k, z, u)
         done += EACH

@@ -80,7 +80,7 @@ def gather(system, active, h, fall, wide, state, crowd, work):
 def gather_sunk(system, k, depth, end, crowd, work):
     """Add to the k spots what is inside the ground or a body by more than `depth` of the smaller body.
 
-    Returns the new count; k where there is no room.
+    Returns the new count, -1 if there is no room.
     """
     last = k
     for c in range(system.contacts.shape[0]):
@@ -94,7 +94,7 @@ def gather_sunk(system, k, depth, end, crowd, work):
         else:
             last = add_touches(system, contact, c, 0.0, end, last, crowd, work)
         if last < 0:
-            return k
+            return -1
     return last
 
 

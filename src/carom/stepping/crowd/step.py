@@ -211,8 +211,10 @@ def collide(model, data, h, fall, patient, careful):
         if times >= AGAIN or (wide == WIDEST and k == before):
             if sunk > DEEP and h > SHORTER * model.controls.step:
                 return MISSED, k, residual, driven
-            code = 0 if lift_others(system, k, SUNK, crowd, work) else CONSTRAINTS_LOST
-            return code, k, residual, driven
+            room, holds = lift_others(system, k, SUNK, crowd, work)
+            if not room:
+                return grow(clock, r.FULL_SPOTS), k, residual, driven
+            return 0 if holds else CONSTRAINTS_LOST, k, residual, driven
         wide, before = min(WIDEST, wide * WIDER), k
 
 
