@@ -24,7 +24,6 @@ from carom.results.accuracy import judge
 from carom.results.solution import Solution
 from carom.scene.all_pairs import PairTable
 from carom.scene.joints import Joint
-from carom.scene.limits import is_ballistic
 from carom.scene.scene import Scene
 from carom.status import Status
 from carom.stepping import record, time_loop
@@ -64,7 +63,7 @@ class Run:
         kind = METHODS[method].kind
         located = impact_location == "locate"
         self.apart = located and tolerances is None and kind != THREE_FIELD
-        ways = kind == THREE_FIELD, kind == IMPLICIT, self.apart and is_ballistic(scene)
+        ways = kind == THREE_FIELD, kind == IMPLICIT, self.apart
         self.at_start = self.compiled = compile_scene(scene, options, *ways)
         system = self.compiled.system
         self.method = make_method(method, options, tolerances is not None)

@@ -55,13 +55,15 @@ def compile_scene(
         elements.add_springs(scene, placement)
     more = MoreForces(scene, coordinates, functions, pieces, implicit)
     joints, flipped, solver = _joints(scene, moments, placement, elements, options, loops)
-    touching = compile_contacts(scene, to_principal, options, apart)
-    contacts = with_stops(scene, touching.rows, coordinates, sizes, options)
-    relations = elements.arrays(solver, more)
     springs, loads = _springs(scene, placement, more, implicit), _loads(scene, placement)
     bushings = _bushings(scene, placement)
     bodies = _bodies(scene, moments, joints, elements, springs, loads, bushings, more)
     bodies["axes"] = to_principal
+    # stops have the numbers after those of all pairs
+    few = apart and bool(bodies["ballistic"].any()) and not scene.stops
+    touching = compile_contacts(scene, to_principal, options, few)
+    contacts = with_stops(scene, touching.rows, coordinates, sizes, options)
+    relations = elements.arrays(solver, more)
     gravity = np.array(scene.gravity)
     system = System(
         bodies,

@@ -26,8 +26,3 @@ def check_location(scene, impact_location: str) -> None:
             else "bodies may touch each other"
         )
         raise ValueError(f'impact_location must be "locate" where {why}, got {impact_location!r}')
-
-
-def is_ballistic(scene) -> bool:
-    """Return whether nothing but gravity and contacts acts on any body."""
-    return not (scene.joints or scene.constraints or scene.forces)

@@ -240,9 +240,11 @@ def left_ball(system, now, dt, work):
 
     Both ends of a piece of its path are within it by what a fall of that time can bulge between them.
     """
-    bulge = 0.125 * dt * dt * norm(system.gravity)
+    fall = norm(system.gravity)
     for b in range(now.shape[0]):
         memory, d = work.body[b], 0.0
+        most = fall if system.bodies[b].ballistic == 1 else max(fall, memory.bound[0])
+        bulge = 0.125 * dt * dt * most
         if not math.isfinite(memory.room):
             continue
         for k in range(3):

@@ -220,7 +220,7 @@ def retry_apart(model, data, islands, code):
     clock, again = data.clocks[0], code == r.LEFT_BALL
     if again:
         islands.plan[0].widen *= 2.0
-    elif model.controls.hold == 1:
+    elif model.controls.hold == 1 and code != BLOCKED:
         again = parts.give_up(islands, clock.step, data.work)
     spent = clock.effort
     parts.forget_step(data.active, data.clocks, islands)

@@ -16,8 +16,9 @@ import numpy as np
 from carom import checks
 from carom.model import records as r
 
-#: arrays that are the same in every run of a scene, or hold addresses
+#: what is the same in every run of a scene, holds addresses, or is written anew when a step begins
 FIXED = {
+    "islands.joined", "islands.others",
     "islands.partner", "islands.partner_first", "islands.plane", "islands.plane_first",
     "relations.relations", "relations.terms", "relations.user", "relations.pieces",
     "relations.pushes", "relations.forces", "relations.named",
@@ -148,8 +149,10 @@ def _arrays(run) -> Iterator[tuple[str, np.ndarray]]:
 
 
 def _walk(name: str, value) -> Iterator[tuple[str, np.ndarray]]:
+    if name in FIXED:
+        return
     if isinstance(value, np.ndarray):
-        if name not in FIXED and value.size:
+        if value.size:
             yield name, value
     elif isinstance(value, tuple):
         for field, one in zip(value._fields, value):  # pyright: ignore[reportAttributeAccessIssue]

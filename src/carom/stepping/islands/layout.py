@@ -8,10 +8,11 @@ import numpy as np
 
 from carom._compiled.record_arrays import table
 from carom.collision.sweep import SweepWork, new_sweep_work
-from carom.model.arrays import BODY, CONTACT, STATE, System
+from carom.model.arrays import BODY, CONTACT, STATE, STOP, System
 from carom.model.records import CLOCK
 from carom.model.workspace import ACTIVE_POINT, BODY_WORK, CONTACT_STATE, ActiveSet
 from carom.scene.all_pairs import Defaults
+from carom.stepping.islands.joined import Joined, joined_bodies, no_bodies
 
 #: state of a body in a step: asleep, in free flight, or in an island
 ASLEEP, FLIES, IN_ISLAND = range(3)
@@ -28,6 +29,7 @@ PLAN = [
     ("open", "i8"),  # 1 where bodies that are no partners may touch, and get a contact then
     ("fixed", "i8"),  # contacts from the start, in their order; others follow by their bodies
     ("noted", "i8"),  # pairs of bodies, at the beginning of `pair`, that contacts are asked for
+    ("joined", "i8"),  # the island of the joined and loaded bodies, -1 for none
 ]
 
 #: a body, while islands are sought
@@ -43,12 +45,11 @@ MEMBER = [
 
 
 class SingleIsland(NamedTuple):
-    """All bodies as one island: a single body, or joined bodies. The start of a step is kept, to go back to.
+    """All bodies as one island: a single body, or joined ones alone. The start of a step is kept.
 
     No state is kept where a step is not done in another way: nothing touches, and no joint sticks.
     """
 
-    free: int  # 1 where gravity and contacts alone act
     begun: np.ndarray  # (1,) 1 while a step is going on
     state: np.recarray  # (N,) STATE
     contact_states: np.recarray  # (M,) CONTACT_STATE
@@ -65,6 +66,8 @@ class Islands(NamedTuple):
 
     apart: int  # 1 where bodies may move apart from each other, in islands of their own
     single: SingleIsland
+    joined: Joined  # the bodies that joints and loads act on
+    others: Joined  # the same of islands of other bodies: there is nothing
 
     plan: np.recarray  # (1,) PLAN
     member: np.recarray  # (N,) MEMBER
@@ -104,7 +107,6 @@ def new_single_island(system: System, active: ActiveSet) -> SingleIsland:
     """Return the workspace for bodies that are stepped together."""
     keeps = has_events(system)
     return SingleIsland(
-        free=int(system.bodies["ballistic"].all()),
         begun=np.zeros(1, dtype=np.int64),
         state=table(STATE, system.bodies.size if keeps else 0),
         contact_states=table(CONTACT_STATE, len(active.contact_states)),
@@ -115,7 +117,6 @@ def new_single_island(system: System, active: ActiveSet) -> SingleIsland:
 
 
 _NOWHERE = SingleIsland(
-    free=1,
     begun=np.zeros(1, dtype=np.int64),
     state=table(STATE, 0),
     contact_states=table(CONTACT_STATE, 0),
@@ -128,7 +129,7 @@ _NOWHERE = SingleIsland(
 def no_islands(system: System, active: ActiveSet) -> Islands:
     """Return the workspace for bodies that are stepped together."""
     none = np.zeros(0, dtype=np.int64)
-    return _islands(0, (none, none, none), (none, none), 0, 0)._replace(
+    return _islands(system, 0, (none, none, none), (none, none), 0, 0)._replace(
         single=new_single_island(system, active)
     )
 
@@ -139,15 +140,16 @@ def new_islands(system: System, active: ActiveSet, later: Defaults | None = None
     Where there is `later`, its pairs of bodies get contacts when they come near each other (`with_partners`).
     """
     n = system.bodies.size
-    if n == 1 or not system.bodies["ballistic"].all():
+    if n == 1 or not system.bodies["ballistic"].any():
         return no_islands(system, active)
     contacts = system.contacts
     rows = np.arange(contacts.size)
-    planes = rows[contacts.other < 0]
+    planes = rows[(contacts.other < 0) & (contacts.touches != STOP)]
     planes = planes[np.argsort(contacts.body[planes], kind="stable")]
     room = 8 * n + 64 if later is not None else min(rows.size, 8 * n + 64)
     grounded = contacts.body[planes], planes
-    islands = _islands(n, _partners(system, later), grounded, room, len(active.points))
+    islands = _islands(system, n, _partners(system, later), grounded, room, len(active.points))
+    islands = islands._replace(joined=joined_bodies(system))
     islands.plan["open"], islands.plan["fixed"] = int(later is not None), rows.size
     return islands
 
@@ -164,7 +166,7 @@ def with_partners(islands: Islands, system: System, later: Defaults) -> Islands:
 def _partners(system: System, later: Defaults | None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return two bodies i < j and their contact, rising; -1 for those of `later` that never touch."""
     n, contacts = system.bodies.size, system.contacts
-    rows = np.flatnonzero(contacts["other"] >= 0)
+    rows = np.flatnonzero((contacts["other"] >= 0) & (contacts["touches"] != STOP))
     body, other = contacts["body"][rows], contacts["other"][rows]
     keys = np.minimum(body, other) * n + np.maximum(body, other)
     if later is not None:
@@ -175,8 +177,10 @@ def _partners(system: System, later: Defaults | None) -> tuple[np.ndarray, np.nd
     return low, high, rows[order]
 
 
-def _islands(n: int, partners: tuple, grounded: tuple, room: int, points: int) -> Islands:
-    """Return islands of `n` bodies.
+def _islands(
+    system: System, n: int, partners: tuple, grounded: tuple, room: int, points: int
+) -> Islands:
+    """Return islands of `n` bodies, all free.
 
     `partners`: two bodies and their row of contacts; `grounded`: a body and its row with a half-space.
     """
@@ -185,6 +189,8 @@ def _islands(n: int, partners: tuple, grounded: tuple, room: int, points: int) -
     return Islands(
         apart=int(n > 0),
         single=_NOWHERE,
+        joined=no_bodies(system),
+        others=no_bodies(system),
         plan=table(PLAN, 1),
         member=table(MEMBER, n),
         first=np.zeros((3, n + 1), dtype=np.int64),

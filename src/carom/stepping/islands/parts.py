@@ -8,6 +8,7 @@ from carom.kinematics.flight import free_flight
 from carom.model.arrays import System
 from carom.model.workspace import ActiveSet, Work
 from carom.persistent.active_set import regroup
+from carom.stepping.islands.joined import end_joined, enter_joined, solver_of
 from carom.stepping.islands.layout import ASLEEP, FLIES
 from carom.stepping.islands.order import comes_before
 from carom.stepping.islands.plan import READY, number, root, seek
@@ -29,9 +30,10 @@ def begin_step(system, active, now, length, clocks, work, islands):
         return code
     for slot in range(islands.first[0, plan.count]):
         b = islands.body_of[slot]
-        place = slot - islands.first[0, member[root(member, b)].island]
+        i = member[root(member, b)].island
+        place, count = slot - islands.first[0, i], islands.first[0, i + 1] - islands.first[0, i]
         islands.bodies[slot] = system.bodies[b]
-        islands.bodies[slot].component = place
+        islands.bodies[slot].component = place if system.bodies[b].isolated == 1 else count
         islands.state[slot] = now[b]
         islands.memory[slot] = work.body[b]
     for slot in range(plan.used):
@@ -50,6 +52,8 @@ def begin_step(system, active, now, length, clocks, work, islands):
         if member[root(member, active.points[i].body)].island < 0:
             islands.points[1, plan.kept] = active.points[i]
             plan.kept += 1
+    if plan.joined >= 0:
+        enter_joined(system, islands.joined)
     plan.at, plan.entered, plan.planned = 0, 0, 1
     clocks[0].before = clocks[0].impacts
     islands.clock[0] = clocks[0]
@@ -67,19 +71,20 @@ def local(islands, b):
 def part_system(system, islands, i):
     """Return island i as a system."""
     first = islands.first
+    own = islands.joined if i == islands.plan[0].joined else islands.others
     return System(
         islands.bodies[first[0, i] : first[0, i + 1]],
         system.gravity,
-        system.joints,
-        system.relations,
-        system.springs,
-        system.loads,
-        system.bushings,
+        own.joints,
+        own.relations,
+        own.springs,
+        own.loads,
+        own.bushings,
         islands.contacts[first[1, i] : first[1, i + 1]],
         system.vertices,
         system.solids,
         system.hulls,
-        system.solver,
+        solver_of(own.solver, first[0, i + 1] - first[0, i]),
     )
 
 
@@ -229,6 +234,8 @@ def end_step(system, active, now, length, clock, work, islands):
     for i in range(plan.kept):
         active.points[i] = islands.points[1, i]
     active.count[0] = plan.kept
+    if plan.joined >= 0:
+        end_joined(system, islands.joined)
     plan.planned, plan.widen = 0, 1.0
 
 

@@ -55,10 +55,14 @@ def seek(system, active, now, length, work, islands):
         v, w, memory, m = now[b].v, now[b].w, work.body[b], member[b]
         m.parent, m.bodies, m.awake = b, 1, 0 if memory.status == RESTS else 1
         m.speed = norm(v) + norm(w) * system.bodies[b].ball
+        if system.bodies[b].ballistic == 0:  # as in the step before, and it never sleeps
+            m.awake, m.speed = 1, m.speed + memory.bound[0] * length
         memory.room = m.awake * plan.widen * (m.speed + fall * length) * length
         for k in range(3):
             memory.home[k] = now[b].x[k]
             islands.centre[b, k] = now[b].x[k]
+    for k in range(1, islands.joined.body.shape[0]):
+        join(member, islands.joined.body[0], islands.joined.body[k])
     for i in range(active.count[0]):
         if active.points[i].other >= 0:
             join(member, active.points[i].body, active.points[i].other)
@@ -174,6 +178,8 @@ def number(system, active, now, work, islands):
         if member[b].kind == IN_ISLAND and root(member, b) == b:
             member[b].island = plan.count
             plan.count += 1
+    joined = islands.joined.body
+    plan.joined = member[root(member, joined[0])].island if joined.shape[0] > 0 else -1
     for s in range(3):
         for i in range(plan.count + 1):
             islands.first[s, i] = 0
@@ -199,7 +205,7 @@ def kind_of(system, b, now, work, islands):
     whole = islands.member[root(islands.member, b)]
     if whole.awake != 1:
         return ASLEEP
-    if whole.bodies != 1 or work.body[b].status != FREE:
+    if whole.bodies != 1 or work.body[b].status != FREE or system.bodies[b].ballistic == 0:
         return IN_ISLAND
     for q in range(islands.plane_first[b], islands.plane_first[b + 1]):
         if near_plane(system, islands.plane[q], now, work):
@@ -211,6 +217,8 @@ def kind_of(system, b, now, work, islands):
 def list_contacts(system, now, work, islands, phase):
     """Count (phase 0) or write (1) the contacts of islands; half-spaces first, as they are numbered."""
     member, plan = islands.member, islands.plan[0]
+    for k in range(islands.joined.stops.shape[0]):
+        put(islands, 1, phase, plan.joined, islands.joined.stops[k])
     for b in range(system.bodies.shape[0]):
         if member[b].kind == IN_ISLAND:
             for q in range(islands.plane_first[b], islands.plane_first[b + 1]):
@@ -231,10 +239,13 @@ def list_contacts(system, now, work, islands, phase):
 
 @kernel
 def list_bodies(system, active, islands, phase):
-    """Count (phase 0) or write (1) the bodies and the active points of islands, in their own order."""
-    member = islands.member
+    """Count (phase 0) or write (1) the bodies and the active points of islands, joined bodies first."""
+    member, joined = islands.member, islands.joined.body
+    for k in range(joined.shape[0]):
+        put(islands, 0, phase, islands.plan[0].joined, joined[k])
     for b in range(system.bodies.shape[0]):
-        put(islands, 0, phase, member[root(member, b)].island, b)
+        if system.bodies[b].ballistic == 1:
+            put(islands, 0, phase, member[root(member, b)].island, b)
     for i in range(active.count[0]):
         put(islands, 2, phase, member[root(member, active.points[i].body)].island, i)
 
