@@ -109,9 +109,17 @@ def full_mass(m, d):
 
 
 def first_accelerations(scene):
-    """Return the accelerations (N, 6) with which a run begins: the first stage of its first step."""
-    solution = carom.simulate(scene, 1e-9, step=1e-9)
-    return solution._run.work.stages.rate[0].copy()
+    """Return the accelerations (N, 6) with which a run begins: the first stage of its first step.
+
+    Bodies that are free have none: they have that of gravity, and turn as balls do.
+    """
+    run = carom.simulate(scene, 1e-9, step=1e-9)._run
+    rate = run.work.stages.rate[0].copy()
+    if not run.islands.apart:
+        return rate
+    out, joined = np.tile([*scene.gravity, 0.0, 0.0, 0.0], (len(rate), 1)), run.islands.joined.body
+    out[joined] = rate[: len(joined)]
+    return out
 
 
 def accelerations(m, d, J, model):

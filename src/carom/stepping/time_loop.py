@@ -90,7 +90,8 @@ def step_apart(model, data, method, islands) -> int:
     code = 0
     while code == 0 and plan.at < plan.count:
         i = plan.at
-        system = parts.part_system(model.system, islands, i)
+        solver = by_reference(parts.part_solver(islands, i))
+        system = parts.part_system(model.system, islands, i, solver)
         active, work = (
             parts.part_active(data.active, islands, i),
             parts.part_work(data.work, islands, i),

@@ -116,13 +116,3 @@ def end_joined(system, joined):
         there.coordinates[i].reference = here.coordinates[i].reference
     for i in range(here.frictions.shape[0]):
         there.frictions[i] = here.frictions[i]
-
-
-@kernel
-def solver_of(solver, n):
-    """Return the back end for the first n bodies."""
-    return Solver(
-        solver.kind, solver.links[:n], solver.rotor[:n], solver.workspace[:n], solver.order, solver.column,
-        solver.row, solver.update, solver.triple, solver.term, solver.rows, solver.sides, solver.block,
-        solver.drop, solver.pose[:n], solver.usual, solver.fine, solver.digits, solver.scaled[:n],
-    )  # fmt: skip

@@ -5,10 +5,10 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom.dynamics.explicit import copy_state, mark_active
 from carom.kinematics.flight import free_flight
-from carom.model.arrays import System
+from carom.model.arrays import Solver, System
 from carom.model.workspace import ActiveSet, Work
 from carom.persistent.active_set import regroup
-from carom.stepping.islands.joined import end_joined, enter_joined, solver_of
+from carom.stepping.islands.joined import end_joined, enter_joined
 from carom.stepping.islands.layout import ASLEEP, FLIES
 from carom.stepping.islands.order import comes_before
 from carom.stepping.islands.plan import READY, number, root, seek
@@ -68,10 +68,25 @@ def local(islands, b):
 
 
 @kernel
-def part_system(system, islands, i):
+def joints_of(islands, i):
+    """Return the joints and loads in island i."""
+    return islands.joined if i == islands.plan[0].joined else islands.others
+
+
+@kernel
+def part_solver(islands, i):
+    """Return the back end of island i: that of its joints, for as many bodies as it has."""
+    s, n = joints_of(islands, i).solver, islands.first[0, i + 1] - islands.first[0, i]
+    return Solver(
+        s.kind, s.links[:n], s.rotor[:n], s.workspace[:n], s.order, s.column, s.row, s.update, s.triple, s.term,
+        s.rows, s.sides, s.block, s.drop, s.pose[:n], s.usual, s.fine, s.digits, s.scaled[:n],
+    )  # fmt: skip
+
+
+@kernel
+def part_system(system, islands, i, solver):
     """Return island i as a system."""
-    first = islands.first
-    own = islands.joined if i == islands.plan[0].joined else islands.others
+    first, own = islands.first, joints_of(islands, i)
     return System(
         islands.bodies[first[0, i] : first[0, i + 1]],
         system.gravity,
@@ -84,7 +99,7 @@ def part_system(system, islands, i):
         system.vertices,
         system.solids,
         system.hulls,
-        solver_of(own.solver, first[0, i + 1] - first[0, i]),
+        solver,
     )
 
 
