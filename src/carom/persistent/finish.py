@@ -14,7 +14,7 @@ from carom.kinematics.contact_point import contact_velocity
 from carom.persistent.forces import pose_forces, solve_forces, take_forces
 from carom.persistent.jam import jams_among
 from carom.persistent.margins import greatest_push, set_margins
-from carom.persistent.step_control import rest_speed
+from carom.persistent.step_control import POORLY, rest_speed
 
 
 @kernel
@@ -43,7 +43,8 @@ def finish(model, data, k, h, count):
         data.work,
     )
     friction = 0.0
-    tolerance = rest_speed(controls, gained(start, count, group), work.result[0].residual, k)
+    speed = gained(start, count, group)
+    tolerance = rest_speed(controls, speed, work.result[0].residual, k, POORLY)
     at_rest = come_to_rest(system, tolerance, start, end, count, group)
     stop, away = tolerance * controls.step / h, 1e-6 * gained(start, count, group)
     for i in range(k):

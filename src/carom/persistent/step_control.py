@@ -31,8 +31,8 @@ TURN = 0.5
 # residual of contacts, as a part of what gravity gives in a step: where a step is cut, then taken whole; where
 # there is nothing to take whole, and the run stops
 UNSOLVED, USELESS = 0.01, 10.0
-# what is solved so much worse than rest asks for is not rest
-POORLY = 10.0
+# what is solved so much worse than rest asks for is not rest: of a few bodies, and of a crowd
+POORLY, MANY = 10.0, 1e3
 # of the step: what is no longer is cut no more, for what it loses and for a solution
 SHORTEST, RETRIED = 1e-4, 1e-2
 # what is so many times more than may be lost, in a step that is cut no more, is not lost by its length: where a
@@ -184,11 +184,11 @@ def charge_iterations(clock, k, iterations):
 
 
 @kernel
-def rest_speed(controls, gained, residual, k):
+def rest_speed(controls, gained, residual, k, poorly):
     """Return the speed [m/s] below which bodies rest that are held at k points.
 
     `Options.rest_tolerance` of the speed that applied forces give them in the step, or what k contacts that are
-    solved to a residual may leave of it, up to ten times the former.
+    solved to a residual may leave of it, up to so many times the former.
     """
     least = controls.rest * gained
-    return max(least, min(k * residual, POORLY * least))
+    return max(least, min(k * residual, poorly * least))
