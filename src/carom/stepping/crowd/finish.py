@@ -14,7 +14,7 @@ from carom.kinematics.contact_point import contact_velocity
 from carom.model.event_rows import note_event
 from carom.model.records import IMPACT, OPENS, PERSIST, SLIPS, STICKS
 from carom.persistent.active_set import begin_point
-from carom.persistent.step_control import MANY, rest_speed
+from carom.persistent.step_control import MANY, POORLY, rest_speed
 from carom.stepping.crowd.response import block_of_point
 
 ASIDE = 1e-9  # of its size: a body that has moved so far in a step was pushed
@@ -32,7 +32,7 @@ def finish(model, data, k, h, fall, residual):
         data.clocks[0],
         data.records,
     )
-    tolerance = rest_speed(controls, fall * h, residual, k, MANY)
+    tolerance = rest_speed(controls, fall * h, residual, k, POORLY)
     blows, pressing, rubbing = 0.0, 0.0, 0.0
     for i in range(k):
         spot, point = crowd.spots[i], crowd.points[0][i]
@@ -58,7 +58,8 @@ def finish(model, data, k, h, fall, residual):
     clock.friction += rubbing
     clock.bounces += pressing
     count = list_active(model, data, k, h, tolerance)
-    come_to_rest(system, tolerance, count, start, end, crowd)
+    still = rest_speed(controls, fall * h, residual, k, MANY)
+    come_to_rest(system, still, count, start, end, crowd)
     for i in range(active.count[0]):
         if active.points[i].touches == 0:
             active.carries[active.points[i].feature] = 0

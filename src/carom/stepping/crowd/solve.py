@@ -24,7 +24,8 @@ FIRST, BETWEEN, MOST = 40, 30, 150  # sweeps: at first, after a step, and what a
 PROXIMAL, LAST_DIGITS = (1e-2, 1e-3, 1e-4), 1e-8
 PRECISE, AGREED = 1e-10, 1e-8  # of the largest velocity: wanted, and good enough if that is hard
 HARD = 0.1  # of the residual before: with less a turn has helped
-WRONG = 1e-2  # of the largest velocity: no result, whatever it takes; at rest there is none to compare with
+WRONG = 1e-2  # of the largest velocity: no result, whatever it takes
+AT_REST = 1e3  # times the tolerance: good enough for bodies to come to rest, and no result at rest if it is not
 IDLE = 4  # turns that do not halve the residual: another start, and then there will be no better
 # cost [us] of a contact in a sweep and of a body that joints tie to it, of factors and of their assembly
 SWEEP, TIE, UPDATE, CONTACT = 0.13, 0.015, 0.1, 0.45
@@ -50,6 +51,7 @@ def solve(system, crowd, k, n, tolerance, effort, clock):
     speed = greatest_speed(crowd, k) / gamma
     r, goal, done = sweep_until(system, crowd, k, max(tolerance / gamma, PRECISE * speed), FIRST)
     enough, good = max(tolerance / gamma, goal, PRECISE * speed), max(goal, AGREED * speed)
+    good = max(good, AT_REST * tolerance / gamma)
     spent, least, turn, idle = done * each, r, 0, 0
     p, kept = work.vector[o.P], work.vector[o.KEPT]
     copy(k, p, kept)
@@ -69,7 +71,7 @@ def solve(system, crowd, k, n, tolerance, effort, clock):
         idle = 0 if least < 0.5 * before else idle + 1
     copy(k, kept, p)
     if not least <= good and not has_discs(work, k) and find_order(n, k, crowd):
-        wrong = not least <= WRONG * speed
+        wrong = not least <= max(WRONG * speed, AT_REST * tolerance / gamma)
         at_least = LONG_SPLIT if wrong else SPLIT
         allowed = LONG_SPLIT if wrong or (patient and spent < left) else SPLIT
         ordered = by_reference(at_hand(crowd, n))
