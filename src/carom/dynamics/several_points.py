@@ -5,6 +5,7 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom.dynamics.contact_impulse import (
     add_impulse,
+    alone,
     clear_wrenches,
     spread,
 )
@@ -42,15 +43,27 @@ def still(motion):
 
 
 @kernel
+def still_ends(point, work):
+    """Zero the motions of the bodies of a point."""
+    still(work.body[point.a].motion)
+    if point.b >= 0:
+        still(work.body[point.b].motion)
+
+
+@kernel
+def still_all(k, points, work):
+    """Zero the motions of the bodies of k points."""
+    for i in range(k):
+        still_ends(points[i], work)
+
+
+@kernel
 def inverse_masses(system, k, points, state, work, W):
     """Write W (3k, 3k) = G P G^T. Columns are answers to unit impulses, then made symmetric."""
     if of_one_body(system, k, points):
         inverse_masses_of_one(system.bodies[points[0].a], k, points, state, W)
         return
-    for i in range(k):
-        still(work.body[points[i].a].motion)
-        if points[i].b >= 0:
-            still(work.body[points[i].b].motion)
+    still_all(k, points, work)
     for j in range(k):
         for r in range(3):
             e0, e1, e2 = 1.0 if r == 0 else 0.0, 1.0 if r == 1 else 0.0, 1.0 if r == 2 else 0.0
@@ -58,9 +71,10 @@ def inverse_masses(system, k, points, state, work, W):
             m = 3 * j + r
             for i in range(k):
                 W[3 * i, m], W[3 * i + 1, m], W[3 * i + 2, m] = contact_motion(points[i], work)
-        still(work.body[points[j].a].motion)
-        if points[j].b >= 0:
-            still(work.body[points[j].b].motion)
+        if alone(system, points[j]):
+            still_ends(points[j], work)
+        else:  # it has moved all that is joined, which a free pair does not
+            still_all(k, points, work)
     for i in range(3 * k):
         for j in range(i):
             m = 0.5 * (W[i, j] + W[j, i])
