@@ -55,6 +55,16 @@ def change_mode(model, data, i, kind):
 
 
 @kernel
+def only_free(system, body, work):
+    """Return whether nothing but gravity and contacts acts on any body of a group: it rests as a whole."""
+    label = work.body[body].label
+    for b in range(work.body.shape[0]):
+        if work.body[b].label == label and system.bodies[b].ballistic == 0:
+            return False
+    return True
+
+
+@kernel
 def turn_modes(model, data):
     """Take over the modes that a step of several active points has ended with, and the residual of the step."""
     system, controls = model.system, model.controls
@@ -73,12 +83,8 @@ def turn_modes(model, data):
         active_point = active.points[i]
         if active_point.several == 0 or active_point.rest == 1:
             continue
-        if active_point.comes_to_rest == 1:
-            active_point.rest = system.bodies[active_point.body].ballistic
-            if active_point.other >= 0:
-                active_point.rest = min(
-                    active_point.rest, system.bodies[active_point.other].ballistic
-                )
+        if active_point.comes_to_rest == 1 and only_free(system, active_point.body, work):
+            active_point.rest = 1
         if active_point.jams == 1:
             note_jam(active, active_point)
         if active_point.next == active_point.mode:

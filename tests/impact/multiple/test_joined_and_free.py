@@ -33,3 +33,24 @@ def test_impulses_move_bodies_as_their_inverse_mass_says(law):
     lost = -solution.ledger.impacts[-1]
     assert lost > 0.1
     assert np.max(np.abs(solution.ledger.residual)) < 1e-6 * lost
+
+
+def test_a_group_with_joined_bodies_does_not_rest_in_part():
+    """Two joined balls fall on two columns: what lies below them bears them, and nothing sinks into anything.
+
+    Points between free bodies rested by themselves; then the group was not stepped, and fell.
+    """
+    scene = carom.Scene(gravity=(0, 0, -9.81))
+    scene.add_half_space((0, 0, 0), (0, 0, 1))
+    for x in (0.0, 0.3):
+        for k in range(3):
+            scene.add_body(carom.Sphere(R), mass=0.2, position=(x, 0, (2 * k + 1) * R))
+    top = [
+        scene.add_body(carom.Sphere(R), mass=0.3, position=(x, 0, 7 * R + 0.1)) for x in (0, 0.3)
+    ]
+    scene.add_joint(carom.joints.Spherical(anchor=(0.15, 0, 7 * R + 0.1)), *top)
+    scene.set_contact_default(restitution=0.0, friction=0.5)
+    solution = carom.simulate(scene, 0.3, step=5e-3)
+    assert solution.status is carom.Status.SUCCESS
+    height = np.array([1, 3, 5, 1, 3, 5, 7, 7]) * R
+    np.testing.assert_allclose(solution.position[-1][:, 2], height, atol=1e-9)
