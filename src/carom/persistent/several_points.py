@@ -27,6 +27,7 @@ from carom.persistent.jam import jams_among, note_jam
 from carom.persistent.one_point import bounces_end, name_work, spare
 
 DROP = 1e-10  # of a pivot, relative to its row
+LITTLE = 1e-4  # of the speed: what may be taken for round-off of rest
 ROUNDS = 60  # of friction with what it does to the normal impulses
 
 
@@ -121,14 +122,17 @@ def end_bounces(model, data, k, label, horizon):
 
     A point without slip keeps none: else it would stick with the slip that this gives it. With slip that lasts
     friction goes with the impulse (`carom.persistent.one_point.begin_contact`). Where that leaves nothing but
-    round-off it leaves nothing.
+    round-off it leaves nothing: a small part of the speed before, whatever forces are at hand (the point of a rim
+    that is nearly flat runs along it with 1e13 m/s^2).
     """
     system, controls = model.system, model.controls
     state, group, work, clock = data.state, data.group, data.work, data.clocks[0]
     count = members(work, label, group.member)
-    still = 1e-12 * speed_of(system, state, count, group.member)
+    speed = speed_of(system, state, count, group.member)
+    still = 1e-12 * speed
     for i in range(3 * k):
         still = max(still, controls.rest * controls.step * abs(group.v[C][i]))
+    still = min(still, LITTLE * speed)
     for i in range(k):
         group.closed[i].stopped = 0 if time_to_stop(i, group) > horizon else 1
     x = group.v[OLD]
