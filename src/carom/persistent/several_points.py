@@ -122,8 +122,8 @@ def end_bounces(model, data, k, label, horizon):
 
     A point without slip keeps none: else it would stick with the slip that this gives it. With slip that lasts
     friction goes with the impulse (`carom.persistent.one_point.begin_contact`). Where that leaves nothing but
-    round-off it leaves nothing: a small part of the speed before, whatever forces are at hand (the point of a rim
-    that is nearly flat runs along it with 1e13 m/s^2).
+    round-off it leaves nothing: a small part of the speed before, whatever forces are at hand (the point of a
+    rim that is nearly flat runs along it with 1e13 m/s^2).
     """
     system, controls = model.system, model.controls
     state, group, work, clock = data.state, data.group, data.work, data.clocks[0]
