@@ -59,9 +59,9 @@ def compile_scene(
     bushings = _bushings(scene, placement)
     bodies = _bodies(scene, moments, joints, elements, springs, loads, bushings, more)
     bodies["axes"] = to_principal
-    # stops have the numbers after those of all pairs
-    few = apart and bool(bodies["ballistic"].any()) and not scene.stops
-    touching = compile_contacts(scene, to_principal, options, few)
+    # stops have the numbers after those of all pairs, so none may come later
+    may_come = apart and bool(bodies["ballistic"].any()) and not scene.stops
+    touching = compile_contacts(scene, to_principal, options, may_come)
     contacts = with_stops(scene, touching.rows, coordinates, sizes, options)
     relations = elements.arrays(solver, more)
     gravity = np.array(scene.gravity)

@@ -23,7 +23,7 @@ def column(law):
 
 @pytest.mark.parametrize("law", ["newton", "poisson", "stronge"])
 def test_impulses_move_bodies_as_their_inverse_mass_says(law):
-    """What impacts lose by their impulses and velocities, W, is what bodies lose: 1e-9 of the energy.
+    """What impacts lose by their impulses and velocities, W, is what bodies lose, to 1e-6 of it.
 
     Free pairs were given what the last joined body had done to others: parts of the energy came from nowhere.
     """
