@@ -26,6 +26,7 @@ def distance(pair, accuracy, x, y, z):
     `accuracy` of the distance. The simplex and its weights stay in the workspace: they give the two points.
     """
     s = pair.state
+    s.searches += 1
     propose(pair, x, y, z)
     move_corner(s, 4, 0)
     s.points, s.weight[0] = 1, 1.0

@@ -69,6 +69,7 @@ PAIR_STATE = [
     ("weight", "f8", 4),  # of the corners in the point nearest to the origin
     ("points", "i8"),  # corners in the simplex
     ("total", "i8"),  # points handed on by `touch_unit`
+    ("searches", "i8"),  # distances that were sought, for who limits work
     ("start", "f8", (15, 4)),  # directions in which they may part, and their separations
     ("edge", "f8", (2, 3)),  # directions of the edges that are nearest
     ("owner", "i8", 2),  # whose they are, 0 of A, 1 of B

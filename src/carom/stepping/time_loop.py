@@ -67,7 +67,7 @@ def run(model, data, method, islands, until):
 def step_single(model, data, method, start):
     """Move all bodies to the end of the step together; return 0, AGAIN, or a code."""
     clock = data.clocks[0]
-    one_island.begin_single(model.system, data.active, data.state, data.clocks, start)
+    one_island.begin_single(model.system, data.active, data.state, data.clocks, data.work, start)
     code = 0
     while code == 0 and clock.spent < clock.length:
         code = move_single(model, data, method, start)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import inlined
+from carom._compiled.decorators import inlined, kernel
 from carom.contact.continuous_detection import AGAIN, CLEAR, FLAT_RIM, UNSURE
 from carom.dynamics.acceleration import SLIP
 from carom.dynamics.adapt import NOTHING_LEFT, plan_next, shorter, step_error
@@ -33,6 +33,7 @@ from carom.stepping.record import finite
 STEP_CUT, TOO_MANY, NOT_FINITE = 2, 3, 4
 STEP_TOO_SMALL, UNSTABLE = 12, 14
 TRIES = 3000  # trial steps of a step that is given up
+SEARCH = 4.0  # about what the distance of two solids of any kind takes [us]
 ONCE_MORE = -1  # another trial step is to be made
 
 
@@ -99,6 +100,7 @@ def trial_step(model, data, method):
     clock.trials += 1
     clock.tries += 1
     clock.effort += plain_step(system) if system.joints.shape[0] > 0 else 0.0
+    charge_searches(clock, work)
     clock.since += 1.0 + now.shape[0] + active.contact_states.shape[0]
     retry = controls.retry == 1
     if retry and (clock.tries > TRIES or clock.effort > affordable(controls, clock)):
@@ -113,6 +115,14 @@ def trial_step(model, data, method):
         search.applied += work.result[0].applied
         search.friction += work.result[0].friction
     return 0
+
+
+@kernel
+def charge_searches(clock, work):
+    """Add to the work of the step what was spent since the last trial step on nearest points of solids."""
+    pair = work.pair.state[0]
+    clock.effort += SEARCH * pair.searches
+    pair.searches = 0
 
 
 @inlined

@@ -184,7 +184,7 @@ def come_to_rest(system, tolerance, count, start, end, crowd):
     """Stop bodies that press on each other or are joined, exactly, where all of them are slower than that.
 
     Those that did not move at the start are where they were, and rest from now on; unless one was pushed aside,
-    as something has sunk into it.
+    as something has sunk into it, or has loads or joints.
     """
     parent, speed, n, joined = crowd.parent, crowd.speed, end.shape[0], -1
     for b in range(n):
@@ -208,6 +208,9 @@ def come_to_rest(system, tolerance, count, start, end, crowd):
                 copy_state(start[b], end[b])
             for j in range(3):
                 end[b].v[j], end[b].w[j] = 0.0, 0.0
+    for b in range(n):  # what acts on it may change with time: it is stopped only
+        if system.bodies[b].ballistic == 0:
+            speed[0, root(parent, b)] = math.inf
     for i in range(count):
         active_point = crowd.active[i]
         g = root(parent, active_point.body)

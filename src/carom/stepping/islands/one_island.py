@@ -11,12 +11,13 @@ from carom.stepping.islands.parts import give_up_body
 
 
 @kernel
-def begin_single(system, active, now, clocks, start):
+def begin_single(system, active, now, clocks, work, start):
     """Begin a step, unless it has begun already."""
     if start.begun[0] == 1:
         return
     clock = clocks[0]
     clock.first_touch, clock.tries, clock.effort = 0, 0, 0.0
+    work.pair.state[0].searches = 0
     clock.before = clock.impacts
     if start.state.shape[0] == 0:  # it is not done in another way
         return

@@ -151,7 +151,7 @@ def enter(part, own, active, work, islands, begin, clock):
         own.count[0] += 1
     regroup(part, own, work)
     clock.spent, clock.in_step, clock.at_once, clock.now = 0.0, 0, 0, begin
-    clock.tries, clock.effort = 0, 0.0
+    clock.tries, clock.effort, work.pair.state[0].searches = 0, 0.0, 0
     islands.plan[0].entered = 1
 
 
