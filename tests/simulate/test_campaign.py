@@ -2,7 +2,7 @@
 
 import pytest
 
-from campaigns import piles, strikes, throws
+from campaigns import crowds, piles, strikes, throws
 from campaigns.case import run
 
 
@@ -30,6 +30,24 @@ def test_piles_end_and_lose_nothing_without_a_name(first):
         assert found.reached == 1.0, seed
         assert found.depth <= 1e-5, seed
         assert found.residual <= 1e-3 or found.warned, seed
+
+
+@pytest.mark.parametrize("first", range(2000, 2036, 12))
+def test_crowds_end_and_lose_nothing_without_a_name(first):
+    # The twelve are of each kind, at two steps. Bounds far above what 2000 others met.
+    for seed in range(first, first + 12):
+        found = run(crowds.case(seed))
+        assert found.status in ("SUCCESS", "INACCURATE"), seed
+        assert found.reached == 1.0, seed
+        assert found.depth <= 1e-5, seed
+        assert found.residual <= 1e-3 or found.warned, seed
+
+
+def test_what_runs_along_a_rim_that_is_nearly_flat_is_not_at_rest():
+    # The point of contact of two cylinders had 1e13 m/s^2: their 3 m/s were taken for round-off of rest.
+    found = run(crowds.case(970024))
+    assert found.status == "SUCCESS"
+    assert found.residual <= 1e-3
 
 
 @pytest.mark.parametrize("seed", [1266, 201976, 204977])
