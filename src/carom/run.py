@@ -6,7 +6,7 @@ import numpy as np
 
 from carom._compiled.units import Entries
 from carom.contact.stop import write_stop_gaps
-from carom.dynamics.adapt import FIRST, time_of_bounces
+from carom.dynamics.adapt import FIRST, complete, time_of_bounces
 from carom.dynamics.methods import EXPLICIT, METHODS, make_method
 from carom.dynamics.project import project_start
 from carom.dynamics.reactions import start_errors, start_speeds
@@ -29,6 +29,7 @@ from carom.status import Status
 from carom.stepping import record, time_loop
 from carom.stepping.crowd.layout import SPOTS, new_crowd, no_crowd, roomier_crowd
 from carom.stepping.energy_balance import SHARE, new_watch
+from carom.stepping.grid import STATES, Grid, longest_step, make_grid
 from carom.stepping.islands.layout import (
     has_events,
     new_islands,
@@ -36,6 +37,7 @@ from carom.stepping.islands.layout import (
     roomier,
     with_partners,
 )
+from carom.stepping.settings import Settings
 
 LOCATIONS = {"locate": LOCATE, "project": PROJECT, "work": WORK}
 
@@ -51,32 +53,25 @@ def multiple_settings(options: Options) -> MultipleSettings:
 class Run:
     """A run that can be continued step by step; `solution` may be taken at any time."""
 
-    def __init__(
-        self, scene: Scene, duration, step, steps, method, impact_location, save_every, options,
-        tolerances: tuple[float, float] | None = None,
-    ):  # fmt: skip
-        self.scene, self.options, self.steps = scene, options, steps
-        self.settings = {
-            "duration": duration, "step": step, "method": method,
-            "impact_location": impact_location, "save_every": save_every,
-        }  # fmt: skip
-        kind = METHODS[method].kind
-        located = impact_location == "locate"
-        self.apart = located and tolerances is None and kind != THREE_FIELD
+    def __init__(self, scene: Scene, settings: Settings):
+        self.scene, self.options, self.how = scene, settings.options, settings
+        options, definition = settings.options, METHODS[settings.method]
+        kind, adapts = definition.kind, settings.adapts
+        self.apart = settings.impact_location == "locate" and kind != THREE_FIELD
         ways = kind == THREE_FIELD, kind == IMPLICIT, self.apart
         self.at_start = self.compiled = compile_scene(scene, options, *ways)
         system = self.compiled.system
-        self.method = make_method(method, options, tolerances is not None)
-        longest = step
-        if tolerances is not None:
-            self.settings.update(step="auto", rtol=tolerances[0], atol=tolerances[1])
-            longest, step = step, time_of_bounces(system, tolerances, step)
+        self.method = make_method(settings.method, options, adapts)
+        self.tolerances = complete(settings.rtol, settings.atol, system) if adapts else None
+        self.grid = self.make_grid()
+        step = self.grid.interval
+        if self.tolerances is not None:
+            step = time_of_bounces(system, self.tolerances, step)
         self.controls = Controls(
             step=step,
-            duration=duration,
-            location=LOCATIONS[impact_location],
-            save_every=save_every,
-            last=steps if tolerances is None else 0,
+            interval=self.grid.interval,
+            duration=settings.duration,
+            location=LOCATIONS[settings.impact_location],
             gap=options.gap_tolerance,
             tie=options.tie_tolerance,
             hold=int(options.hold),
@@ -86,19 +81,31 @@ class Run:
             max_impacts=options.max_impacts_per_step,
             max_cuts=options.max_cuts,
             retry=0,
-            order=0 if tolerances is None else METHODS[method].order,
-            rtol=tolerances[0] if tolerances else 0.0,
-            atol=tolerances[1] if tolerances else 0.0,
-            longest=longest,
+            order=definition.order if adapts else 0,
+            rtol=self.tolerances[0] if self.tolerances else 0.0,
+            atol=self.tolerances[1] if self.tolerances else 0.0,
         )
-        self.tolerances = tolerances
         self.begin()
+
+    def make_grid(self) -> Grid:
+        """Return the steps of the run."""
+        how, later = self.how, self.compiled.later is not None
+        duration, save_at, save_every = how.duration, how.save_at, how.save_every
+        if how.step is not None:
+            return make_grid(duration, how.step, save_every, save_at)
+        longest = longest_step(
+            self.compiled.system, self.compiled.start, duration, self.options.max_step, later
+        )
+        if save_at is not None:
+            return make_grid(duration, longest, 1, save_at)
+        grid = make_grid(duration, longest, 1, duration / STATES)
+        return grid._replace(save_every=grid.save_every * save_every)
 
     def begin(self) -> None:
         """Make all that a run writes to, and check the start."""
         self.compiled = self.at_start
         scene, options, system = self.scene, self.options, self.compiled.system
-        tolerances, method, later = self.tolerances, self.settings["method"], self.compiled.later
+        later = self.compiled.later
         self.now = self.compiled.start
         self.active = r.new_active_set(system)
         self.work = r.new_work(system, self.method.b.size)
@@ -112,11 +119,10 @@ class Run:
         self.crowd = no_crowd()  # made when there is one
         self.multiple = new_multiple(1, multiple_settings(options))  # and this
         self.clock = r.new_clock()
-        share = SHARE * options.energy_tolerance if method in EXPLICIT else np.inf
+        share = SHARE * options.energy_tolerance if self.how.method in EXPLICIT else np.inf
         self.watch = new_watch(options.energy_tolerance, share)
-        self.clock["ahead"] = FIRST * self.controls.longest
-        rows = 256 if tolerances else -(-self.controls.last // self.controls.save_every) + 1
-        self.records = r.new_records(system, rows, 512, len(self.active.points))
+        self.work.body["ahead"] = FIRST * self.grid.interval
+        self.records = r.new_records(system, self.grid.rows, 512, len(self.active.points))
         self.call = Entries(system, self.method, self.controls, self.multiple.settings)
         if options.project_start and len(system.joints):
             error = project_start(system, self.now, self.work)
@@ -142,7 +148,19 @@ class Run:
         """Make anew all that a run writes to; nothing is saved."""
         self.begin()
         self.clock[:] = r.new_clock()
-        self.clock["ahead"] = FIRST * self.controls.longest
+
+    @property
+    def settings(self) -> dict:
+        """What the run was asked for, by name."""
+        known = self.how.as_dict()
+        if self.tolerances is not None:
+            known["rtol"], known["atol"] = self.tolerances
+        return known
+
+    @property
+    def steps(self) -> int:
+        """Number of steps to the end."""
+        return self.grid.last
 
     @property
     def model(self) -> Model:
@@ -169,8 +187,6 @@ class Run:
         """Make arrays longer that are full."""
         if what == r.FULL_EVENTS:
             self.records = r.longer(self.records, self.clock)
-        elif what == r.FULL_ROWS:
-            self.records = r.more_rows(self.records, self.clock)
         elif what == r.FULL_PAIRS:
             self.islands = roomier(self.islands)
         elif what == r.FULL_MULTIPLE:
@@ -237,10 +253,10 @@ class Run:
         """Time that the run has come to."""
         return float(self.clock["now"][0])
 
-    def go_on(self, until: float) -> Status:
-        """Go on to step number `until`, or to that time if steps vary, or to a failure."""
+    def go_on(self, until: int) -> Status:
+        """Go on to step number `until`, or to a failure."""
         while True:
-            state = (self.model, self.data, self.method, self.islands, float(until))
+            state = (self.model, self.data, self.method, self.islands, self.grid, int(until))
             code = self.call(time_loop.run, *state)
             if code == r.GROW:
                 self.grow(self.clock[0].grow)

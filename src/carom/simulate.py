@@ -6,6 +6,8 @@ import os
 from collections.abc import Callable
 from typing import overload
 
+from numpy.typing import ArrayLike
+
 from carom import checks
 from carom.dynamics.methods import EXPLICIT
 from carom.generalized.solution import GeneralizedSolution
@@ -24,9 +26,9 @@ from carom.stepping.settings import (
 
 @overload
 def simulate(
-    scene: Scene, duration: float, *, step: float | str, method: str | None = ...,
-    rtol: float | None = ..., atol: float | None = ..., impact_location: str = ...,
-    save_every: int = ..., progress: bool | Callable[[float, float], None] | None = ...,
+    scene: Scene, duration: float, *, step: float | str = ..., method: str | None = ...,
+    rtol: float | None = ..., atol: float | None = ..., impact_location: str = ..., save_every: int = ...,
+    save_at: float | ArrayLike | None = ..., progress: bool | Callable[[float, float], None] | None = ...,
     options: Options | None = ..., throw: bool = ..., save: str | os.PathLike | None = ...,
     save_seconds: float = ...,
 ) -> Solution: ...  # fmt: skip
@@ -34,9 +36,9 @@ def simulate(
 
 @overload
 def simulate(
-    scene: GeneralizedSystem, duration: float, *, step: float | str, method: str | None = ...,
-    rtol: float | None = ..., atol: float | None = ..., impact_location: str = ...,
-    save_every: int = ..., progress: bool | Callable[[float, float], None] | None = ...,
+    scene: GeneralizedSystem, duration: float, *, step: float | str = ..., method: str | None = ...,
+    rtol: float | None = ..., atol: float | None = ..., impact_location: str = ..., save_every: int = ...,
+    save_at: float | ArrayLike | None = ..., progress: bool | Callable[[float, float], None] | None = ...,
     options: Options | None = ..., throw: bool = ..., save: str | os.PathLike | None = ...,
     save_seconds: float = ...,
 ) -> GeneralizedSolution: ...  # fmt: skip
@@ -46,12 +48,13 @@ def simulate(
     scene: Scene | GeneralizedSystem,
     duration: float,
     *,
-    step: float | str,
+    step: float | str = "auto",
     method: str | None = None,
     rtol: float | None = None,
     atol: float | None = None,
     impact_location: str = "locate",
     save_every: int = 1,
+    save_at: float | ArrayLike | None = None,
     progress: bool | Callable[[float, float], None] | None = None,
     options: Options | None = None,
     throw: bool = True,
@@ -142,29 +145,28 @@ def simulate(
         )
     check_handling(progress, throw, save_seconds)
     settings = checked_settings(
-        duration, step, method, impact_location, rtol, atol, save_every, options
-    )
-    duration, h, steps, method, impact_location, save_every, options, tolerances = settings
-    adapts = tolerances is not None
+        duration, step, method, impact_location, save_every=save_every, save_at=save_at, rtol=rtol,
+        atol=atol, options=options,
+    )  # fmt: skip
     if isinstance(scene, GeneralizedSystem):
-        if adapts:
+        if settings.adapts:
             raise ValueError('step of a system in coordinates must be a number [s], got "auto"')
         if save is not None:
             raise ValueError(
                 f"save must be left out with a system in coordinates, got {checks.shown(save)}"
             )
-        checks.choice("method of a system in coordinates", method, EXPLICIT)
+        checks.choice("method of a system in coordinates", settings.method, EXPLICIT)
         checks.choice("impact_location of a system in coordinates", impact_location, LOCATIONS[:1])
 
         from carom.generalized.run import GeneralizedRun
 
-        run = GeneralizedRun(scene, duration, h, steps, method, save_every, options)
+        run = GeneralizedRun(scene, settings)
     else:
-        check_scene(scene, method, impact_location)
+        check_scene(scene, settings)
 
         from carom.run import Run
 
-        run = Run(scene, *settings)
+        run = Run(scene, settings)
     keeper = None
     if save is not None:
         from carom.io.files.keeper import Keeper

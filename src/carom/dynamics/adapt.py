@@ -13,8 +13,9 @@ step is good if for all bodies
 
 Order 8 has two estimates: miss = miss_5^2 / sqrt(miss_5^2 + miss_3^2/100) (Hairer, Norsett and Wanner 1993). Of
 groups in contact at several points (order 2) the errors of a turn, (h w)^3/12, and of a stop inside the step,
-a h^2/8, are bounded. Free flight has none. The next step is 0.9 times the one whose error would be 1, within
-0.2 and 10 times the last.
+a h^2/8, are bounded. Free flight has none. The next step is 0.9 times the one whose error would be a tenth of
+what is allowed (errors of many steps add up), within 0.2 and 10 times the last. Each island has steps of its
+own: `ahead` of its bodies.
 """
 
 from __future__ import annotations
@@ -28,7 +29,8 @@ from carom.geometry.rotation import multiply, norm
 from carom.model.workspace import ONE, SEVERAL
 
 SAFETY, LEAST, MOST = 0.9, 0.2, 10.0
-FIRST = 1e-3  # of the longest step: the first
+LOCAL = 0.1  # of what a run may miss by: the part that one step may, of those in the time T
+FIRST = 1e-3  # of a step of the run: the first of its bodies
 NOTHING_LEFT = 1e-14  # of the time that is left: no step is shorter
 
 
@@ -91,7 +93,7 @@ def step_error(system, rtol, atol, start, h, end, work):
     first, second = 0.0, 0.0
     for b in range(start.shape[0]):
         body, memory = system.bodies[b], work.body[b]
-        miss, allowed = memory.miss, atol + rtol * max(body.extent, memory.miss[2])
+        miss, allowed = memory.miss, LOCAL * (atol + rtol * max(body.extent, memory.miss[2]))
         a = miss[0] / allowed
         if not a <= first:
             first = a
@@ -113,19 +115,28 @@ def error_of_stop(L, start, h, end):
 
 
 @kernel
-def shorter(dt, error, controls, clock):
-    """Return the length to try after a step of too great an error: there the present step ends, too."""
+def allowed_step(left, work):
+    """Return the length of the next step of an island: what is left, in equal steps if less than two."""
+    ahead = math.inf
+    for b in range(work.body.shape[0]):
+        ahead = min(ahead, work.body[b].ahead)
+    return ahead if 2.0 * ahead <= left else 0.5 * left if ahead < left else left
+
+
+@kernel
+def shorter(dt, error, controls, clock, work):
+    """Return the length to try after a step of too great an error."""
     factor = LEAST
     if math.isfinite(error):
         factor = max(LEAST, SAFETY * error ** (-1.0 / controls.order))
     clock.rejected += 1
-    clock.ahead = factor * dt
-    clock.length = clock.spent + clock.ahead
-    return clock.ahead
+    for b in range(work.body.shape[0]):
+        work.body[b].ahead = factor * dt
+    return factor * dt
 
 
 @kernel
-def plan_next(dt, error, again, controls, clock):
+def plan_next(dt, error, again, controls, work):
     """Note the length of the next step after one of length dt; `again`: one was refused just before.
 
     A short step (what is left after an event) does not shorten the next.
@@ -135,19 +146,15 @@ def plan_next(dt, error, again, controls, clock):
         factor = min(MOST, SAFETY * error ** (-1.0 / controls.order))
     if again:
         factor = min(1.0, factor)
-    ahead = dt * factor if factor < MOST else max(clock.ahead, MOST * dt)
-    clock.ahead = min(ahead, controls.longest)
+    for b in range(work.body.shape[0]):
+        memory = work.body[b]
+        ahead = dt * factor if factor < MOST else max(memory.ahead, MOST * dt)
+        memory.ahead = min(ahead, controls.interval)
 
 
-@kernel
-def begin_step(controls, clock):
-    """Note start and length of a step; what is left of the run, if less than two steps, in equal ones."""
-    if clock.spent != 0.0 or clock.paused == 1:
-        return
-    left = controls.duration - clock.now
-    clock.begin, clock.length = clock.now, min(clock.ahead, left)
-    if clock.length < left < 2.0 * clock.length:
-        clock.length = 0.5 * left
+def complete(rtol: float, atol: float | None, system) -> tuple[float, float]:
+    """Return (rtol, atol [m]); where `atol` is left out, `rtol` of the size of the smallest body."""
+    return rtol, rtol * float(np.min(system.bodies.extent)) if atol is None else atol
 
 
 def time_of_bounces(system, tolerances: tuple[float, float], longest: float) -> float:

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from carom.model.method import Method
+from carom.stepping.grid import Grid
 
 # The four functions, by their place in `Coordinates.address`.
 INERTIA = 0  #: M (n, n), Gamma_kij v_i v_j (n,), first kind
@@ -95,12 +96,11 @@ class Motion(NamedTuple):
 
 
 class Plan(NamedTuple):
-    """The length of a run, its step, and which states it saves."""
+    """The length of a run, its steps, and which states it saves."""
 
     duration: float
-    step: float
-    steps: int
-    every: int  # steps from one saved state to the next
+    step: float  # the longest
+    grid: Grid
 
 
 #: one run: where it is

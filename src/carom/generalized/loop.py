@@ -8,6 +8,7 @@ from carom.generalized.events import locate, note_start, turned
 from carom.generalized.layout import DONE, EVENT, LOADS, NOTHING, PAUSE, TOUCHES, N
 from carom.generalized.motion import copy_row, find_metric
 from carom.generalized.step import take
+from carom.stepping.grid import begin_and_length, is_saved
 
 CUTS = 12  # most halvings of a step in which slip turns
 LONG = 20_000  # trial steps, times the square of the coordinates, after which the loop is left for a moment
@@ -20,15 +21,15 @@ def time_loop(motion, x, plan, until, record):
     PAUSE after much work: so that Ctrl-C is seen.
     """
     system, work = motion.system, motion.work
-    c, h = record.clock[0], plan.step
+    c = record.clock[0]
     most = c.trials + LONG // (system.size[N] * system.size[N]) + 1
     while c.step < until:
         if c.trials > most:
             return PAUSE
-        last = c.step + 1 == plan.steps
-        target = plan.duration if last else (c.step + 1) * h
+        begin, length = begin_and_length(plan.grid, plan.duration, c.step)
+        target = plan.duration if c.step + 1 == plan.grid.last else begin + length
         left = target - c.now
-        if left > 1e-13 * h:
+        if left > 1e-13 * length:
             note_start(system, c.now, x, work)
             part, code = first_part(motion, x, left, c)
             if code != 0:
@@ -48,7 +49,7 @@ def time_loop(motion, x, plan, until, record):
                 continue
         c.now = target
         c.step += 1
-        if c.step % plan.every == 0 or last:
+        if is_saved(plan.grid, c.step):
             save(x, record)
     return DONE
 

@@ -25,10 +25,11 @@ from carom.generalized.layout import (
 from carom.generalized.loop import save_now, time_loop
 from carom.generalized.step import project_rates
 from carom.status import Status
+from carom.stepping.grid import make_grid
 
 if TYPE_CHECKING:
     from carom.generalized.system import GeneralizedSystem
-    from carom.options import Options
+    from carom.stepping.settings import Settings
 
 AT_ONCE = 200  # events at one instant
 
@@ -36,16 +37,13 @@ AT_ONCE = 200  # events at one instant
 class GeneralizedRun:
     """State, records and workspace of a run."""
 
-    def __init__(
-        self, system: GeneralizedSystem, duration: float, step: float, steps: int, method: str,
-        save_every: int, options: Options,
-    ):  # fmt: skip
-        self.user, self.options, self.steps = system, options, steps
-        self.plan = Plan(duration, step, steps, save_every)
-        self.settings = {
-            "duration": duration, "step": step, "method": method, "save_every": save_every,
-            "options": options.as_dict(),
-        }  # fmt: skip
+    def __init__(self, system: GeneralizedSystem, settings: Settings):
+        options = settings.options
+        self.user, self.options = system, options
+        assert settings.step is not None
+        grid = make_grid(settings.duration, settings.step, settings.save_every, settings.save_at)
+        self.plan = Plan(settings.duration, grid.interval, grid)
+        self.settings = {**settings.as_dict(), "options": options.as_dict()}
         made = system.evaluation()
         same = made.system.drop == options.drop_tolerance
         self.made: Evaluation = made if same else Evaluation(system, options.drop_tolerance)
@@ -53,12 +51,12 @@ class GeneralizedRun:
         self.system = self.made.system
         n, h, k, C = (int(one) for one in self.system.size)
         self.n = n
-        self.method = make_method(method, options)
+        self.method = make_method(settings.method, options)
         self.active, self.work = new_active_set(C), new_work(n, h, k, C, len(self.method.b))
         self.motion = Motion(self.system, self.method, self.active, self.work)
         self.x = np.concatenate([system.position, system.velocity])
         self.clock = table(CLOCK, 1)
-        rows = -(-steps // save_every) + 3
+        rows = grid.rows + 2
         self.series, self.states = table(SERIES, rows), np.zeros((rows, 2 * n))
         self.record = Record(self.clock, self.series, self.states)
         self.nodes: list[tuple[float, np.ndarray, np.ndarray]] = []  # time, state before, after
@@ -97,6 +95,11 @@ class GeneralizedRun:
             )
         if seen.status == 0 and self.system.size[2] > 0:
             project_rates(self.system, self.active, 0.0, x, self.work)
+
+    @property
+    def steps(self) -> int:
+        """Number of steps to the end."""
+        return self.plan.grid.last
 
     @property
     def steps_done(self) -> int:

@@ -18,18 +18,17 @@ LOOKS = 4  # parts in the time between two savings, about
 
 def finish(run, progress, keeper: Keeper | None, throw: bool):
     """Take a run to its end and return its solution; `throw` raises that of a run that failed."""
-    adapts = run.settings["step"] == "auto"
-    total = run.settings["duration"] if adapts else run.steps
-    report = reporter(progress, total, "s" if adapts else "step")
+    total = run.steps
+    report = reporter(progress, total, "step")
     status = Status.SUCCESS
     try:
-        for until in goals(lambda: reached(run, adapts), total, report is not None, keeper):
+        for until in goals(lambda: run.steps_done, total, report is not None, keeper):
             status = run.go_on(until)
             if report is not None:
-                report(reached(run, adapts), total)
+                report(run.steps_done, total)
             if status is not Status.SUCCESS:
                 break
-            if keeper is not None and reached(run, adapts) < total:
+            if keeper is not None and run.steps_done < total:
                 keeper.look()
     except KeyboardInterrupt:
         status = Status.INTERRUPTED
@@ -55,32 +54,21 @@ def finish(run, progress, keeper: Keeper | None, throw: bool):
     return solution
 
 
-def reached(run, adapts: bool) -> float:
-    """Return how far a run has come: the time, or the number of steps."""
-    return run.reached if adapts else run.steps_done
-
-
-def goals(done, total: float, reports: bool, keeper: Keeper | None):
-    """Go through the numbers of steps, or times, at which a run stops on its way, up to `total`.
+def goals(done, total: int, reports: bool, keeper: Keeper | None):
+    """Go through the numbers of steps at which a run stops on its way, up to `total`.
 
     All at once if nobody waits for it; in `CHUNKS` parts to report; to save, in parts that take a small part of
     the time between two savings, found by doubling and halving.
     """
-    least = 1 if isinstance(total, int) else total * 1e-6
-    most = -(-total // CHUNKS) if isinstance(total, int) else total / CHUNKS
-    most = max(least, most) if reports else total
-    part = least if keeper is not None else most
+    most = max(1, -(-total // CHUNKS)) if reports else total
+    part = 1 if keeper is not None else most
     while done() < total:
         begin = perf_counter()
         yield min(total, done() + part)
         if keeper is not None:
             took, wish = perf_counter() - begin, keeper.interval / LOOKS
             part = min(most, 2 * part) if took < 0.5 * wish else part
-            part = (
-                max(least, part // 2 if isinstance(total, int) else part / 2)
-                if took > wish
-                else part
-            )
+            part = max(1, part // 2) if took > wish else part
 
 
 class _Bar:

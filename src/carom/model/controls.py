@@ -10,11 +10,10 @@ LOCATE, PROJECT, WORK = range(3)  # what is done about an impact within a step
 class Controls(NamedTuple):
     """Settings of a run, as numbers."""
 
-    step: float
+    step: float  # or, with tolerances, the time in which bounces are too small to matter
+    interval: float  # the longest step of the run
     duration: float
     location: int  # LOCATE, PROJECT or WORK
-    save_every: int
-    last: int  # number of the last step; 0 where steps vary
     gap: float  # tolerance of a located gap, relative to the body
     tie: float  # vertices this near the lowest strike together, relative to the body
     hold: int
@@ -24,7 +23,6 @@ class Controls(NamedTuple):
     max_impacts: int
     max_cuts: int
     retry: int  # 1 where a step that does not get on is given up, to be taken whole
-    order: int  # of the error of a step whose length is chosen; 0: all steps are `step`
+    order: int  # of the estimate of the error, with tolerances; 0 without
     rtol: float
     atol: float
-    longest: float

@@ -36,12 +36,8 @@ LEDGER = [("loads", "f8"), ("impacts", "f8"), ("friction", "f8"), ("bounces", "f
 CLOCK = [
     ("now", "f8"),
     ("spent", "f8"),  # of the present step
-    (
-        "begin",
-        "f8",
-    ),  # start and length of the present step, and length of the next, where it varies
+    ("begin", "f8"),  # start and length of the present step
     ("length", "f8"),
-    ("ahead", "f8"),
     *ENERGIES,
     *LEDGER,
     ("before", "f8"),  # line of the impacts when the step began
@@ -141,9 +137,9 @@ PAUSE = 101  # much was done: the caller looks for Ctrl-C
 # within it:
 LEFT_BALL = 102  # a body has left the ball that its island gave it
 
-# what is to grow: records of impacts and events, saved rows, pairs of islands, points of a crowd, of an impact;
-# the contacts, as bodies have come near each other
-FULL_EVENTS, FULL_ROWS, FULL_PAIRS, FULL_SPOTS, FULL_MULTIPLE, NEW_PAIRS = range(6)
+# what is to grow: records of impacts and events, pairs of islands, points of a crowd, of an impact; the
+# contacts, as bodies have come near each other
+FULL_EVENTS, FULL_PAIRS, FULL_SPOTS, FULL_MULTIPLE, NEW_PAIRS = range(5)
 
 LONG = 5e4  # work after which the loop is left for a moment, about [us]
 
@@ -230,20 +226,13 @@ def new_records(system: System, saves: int, events: int, held: int = 0) -> Recor
 
 
 def longer(records: Records, clock: np.recarray) -> Records:
-    """Return the records with room for twice as many impacts, events and active points."""
-    return _twice(records, clock, ("touch", "impact", "event", "snapshot"))
+    """Return the records with room for twice as many impacts, events and active points.
 
-
-def more_rows(records: Records, clock: np.recarray) -> Records:
-    """Return the records with room for twice as many saved steps."""
-    return _twice(records, clock, ("series", "state"))
-
-
-def _twice(records: Records, clock: np.recarray, names: tuple[str, ...]) -> Records:
-    """Return the records with these tables twice as long: zeros that nobody has written take no memory."""
+    Zeros that nobody has written take no memory.
+    """
     ends = dict(zip(records._fields, _ends(clock)))
     out = {}
-    for name in names:
+    for name in ("touch", "impact", "event", "snapshot"):
         rows = getattr(records, name)
         longer, end = np.zeros((2 * len(rows), *rows.shape[1:]), rows.dtype), ends[name] + MARGIN
         longer[:end][: len(rows)] = rows[:end]

@@ -90,6 +90,7 @@ BODY_WORK = [
     ("motion", "f8", 6),  # what a solve gives: linear, angular
     ("bound", "f8", 3),  # greatest linear, angular acceleration and spin of the last step
     ("miss", "f8", 3),  # two estimates of the error of a step [m], and what they are measured by
+    ("ahead", "f8"),  # with tolerances: length of the next step of its island
     ("inverse", "f8", 6),  # inverse inertia, world axes
     ("label", "i8"),  # bodies with the same number move each other: joined, or held to each other
     ("n_active", "i8"),  # of the body that its group is named after: active points of the group
@@ -158,6 +159,7 @@ SEARCH = [
     ("dt", "f8"),  # the trial step,
     ("pace", "f8"),  # the longest that may be taken,
     ("cuts", "i8"),  # how often it was cut,
+    ("effort", "f8"),  # work of the step until it was proposed [us],
     ("again", "i8"),  # whether one was refused for its error,
     ("code", "i8"),  # of the step without contacts,
     ("applied", "f8"),  # work of loads and of friction in it,

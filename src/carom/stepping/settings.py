@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import numpy as np
+from typing import Any, NamedTuple
 
 from carom import checks
 from carom.dynamics.methods import ADAPTIVE, CARRIES, EXPLICIT, METHODS
@@ -10,8 +10,11 @@ from carom.options import Options
 from carom.scene.limits import check_location
 from carom.scene.more_forces import JointFriction, JointInertia
 from carom.scene.scene import Scene
+from carom.stepping.grid import MOST_STEPS, check_save_at
 
 LOCATIONS = ("locate", "project", "work")
+RTOL = 1e-8  # where nothing is said
+TIGHT = 1e-9  # from here on the default is the method of order 8
 _DEFAULT = Options()
 
 
@@ -24,45 +27,86 @@ def check_handling(progress, throw, save_seconds) -> None:
     checks.number("save_seconds", save_seconds, least=0.0, unit="s")
 
 
-def spacing(duration: float, step: float | str, options: Options) -> tuple[float, int]:
-    """Return the step, or the longest one where steps vary, and the number of steps."""
-    adapts = isinstance(step, str)
-    h = min(duration, options.max_step or duration / 50.0) if adapts else float(step)
-    if not duration < 1e12 * h:
-        name = "duration / 50 or Options.max_step" if adapts else "step"
-        raise ValueError(
-            f"{name} must be above duration / 1e12 = {duration / 1e12:g} s, got {checks.shown(h)}"
-        )
-    return h, max(1, int(np.ceil(duration / h * (1.0 - 1e-12))))
+class Settings(NamedTuple):
+    """What `simulate` was asked for, checked and completed."""
+
+    duration: float
+    step: float | None  # None: tolerances choose
+    method: str
+    impact_location: str
+    save_every: int
+    save_at: float | tuple[float, ...] | None
+    rtol: float  # where tolerances choose; else 0
+    atol: float | None  # None: `rtol` of the size of the smallest body
+    options: Options
+
+    @property
+    def adapts(self) -> bool:
+        """Whether tolerances choose the steps."""
+        return self.step is None
+
+    def as_dict(self) -> dict:
+        """All but the options, by name, and no tolerances where the step was given."""
+        known = self._asdict()
+        del known["options"]
+        if self.step is None:
+            known["step"] = "auto"
+        else:
+            del known["rtol"], known["atol"]
+        return known
+
+
+def settings_of(known: dict, options: Options) -> Settings:
+    """Return the settings that `Settings.as_dict` has written."""
+    given: dict[str, Any] = {name: known.get(name) for name in Settings._fields}
+    given["options"] = options
+    if given["step"] == "auto":
+        given["step"] = None
+    else:
+        given["rtol"] = 0.0
+    return Settings(**given)
 
 
 def checked_settings(
-    duration, step, method, impact_location, rtol, atol, save_every, options
-) -> tuple[float, float, int, str, str, int, Options, tuple[float, float] | None]:
-    """Return the settings of a `carom.run.Run`, checked: those of `simulate`, and what follows from them."""
+    duration, step: Any = "auto", method=None, impact_location="locate", *, save_every=1, save_at=None,
+    rtol=None, atol=None, options=None,
+) -> Settings:  # fmt: skip
+    """Return the settings of a run, checked: those of `simulate`."""
     duration = checks.number("duration", duration, above=0.0, unit="s")
-    adapts = isinstance(step, str) and step == "auto"
-    if not adapts:
-        if isinstance(step, str):
+    if isinstance(step, str):
+        if step != "auto":
             raise ValueError(f'step must be a number [s] or "auto", got {checks.shown(step)}')
-        step = checks.number("step", step, above=0.0, unit="s")
-    method = ("rk5" if adapts else "rk4") if method is None else method
-    checks.choice("method", method, METHODS)
+        h = None
+    else:
+        h = checks.number("step", step, above=0.0, unit="s")
     checks.choice("impact_location", impact_location, LOCATIONS)
-    tolerances = check_tolerances(adapts, method, impact_location, rtol, atol)
+    rtol, atol = check_tolerances(h is None, rtol, atol)
+    if method is None:
+        method = "rk4" if h is not None else "rk8" if rtol <= TIGHT else "rk5"
+    checks.choice("method", method, METHODS)
+    if h is None:
+        check_adaptive(method, impact_location)
     save_every = checks.integer("save_every", save_every, least=1)
+    save_at = check_save_at(save_at, duration)
+    if save_at is not None and save_every != 1:
+        raise ValueError(f"save_every must be left out with save_at, got {save_every}")
     options = _DEFAULT if options is None else options
     if not isinstance(options, Options):
         raise TypeError(f"options must be carom.Options, got {type(options).__name__}")
-    h, steps = spacing(duration, step, options)
-    return duration, h, steps, method, impact_location, save_every, options, tolerances
+    longest = h or options.max_step or duration
+    if not duration < MOST_STEPS * longest:
+        raise ValueError(
+            f"{'step' if h else 'Options.max_step'} must be above duration / {MOST_STEPS:g} = "
+            f"{duration / MOST_STEPS:g} s, got {checks.shown(longest)}"
+        )
+    return Settings(duration, h, method, impact_location, save_every, save_at, rtol, atol, options)
 
 
-def check_scene(scene: Scene, method: str, location: str) -> None:
+def check_scene(scene: Scene, settings: Settings) -> None:
     """Raise for a scene that cannot start, or cannot start with this method."""
     scene.validate()
-    check_location(scene, location)
-    check_method(scene, method)
+    check_location(scene, settings.impact_location)
+    check_method(scene, settings.method)
 
 
 def check_method(scene: Scene, method: str) -> None:
@@ -86,25 +130,25 @@ def either(names) -> str:
     return " or ".join([*([", ".join(first)] if first else []), last])
 
 
-def check_tolerances(adapts: bool, method: str, location: str, rtol, atol):
-    """Return the tolerances (rtol, atol) of steps of varying length, or None for steps of one length."""
-    if not adapts:
-        for name, value in (("rtol", rtol), ("atol", atol)):
-            if value is not None:
-                raise ValueError(
-                    f'{name} is for step="auto", got {checks.shown(value)} with a given step'
-                )
-        return None
+def check_tolerances(adapts: bool, rtol, atol) -> tuple[float, float | None]:
+    """Return the tolerances; refuse them with a given step."""
+    if adapts:
+        rtol = checks.number("rtol", RTOL if rtol is None else rtol, least=1e-13, most=0.1)
+        return rtol, None if atol is None else checks.number("atol", atol, least=0.0, unit="m")
+    for name, value in (("rtol", rtol), ("atol", atol)):
+        if value is not None:
+            raise ValueError(
+                f"{name} must be left out with a given step, got {checks.shown(value)}"
+            )
+    return 0.0, None
+
+
+def check_adaptive(method: str, location: str) -> None:
+    """Refuse, with tolerances, a method that does not estimate its error, and impacts that are not located."""
     if method not in ADAPTIVE:
         raise ValueError(
-            f'method must be {" or ".join(map(repr, ADAPTIVE))} for step="auto" (they estimate their error), '
-            f"got {checks.shown(method)}"
+            f"step must be given for method={method!r}: only {either(ADAPTIVE)} estimate their error, and "
+            "choose their steps"
         )
     if location != "locate":
-        raise ValueError(
-            f"impact_location must be 'locate' for step=\"auto\", got {checks.shown(location)}"
-        )
-    return (
-        checks.number("rtol", 1e-6 if rtol is None else rtol, least=1e-13, most=0.1),
-        checks.number("atol", 1e-9 if atol is None else atol, least=0.0, unit="m"),
-    )
+        raise ValueError(f"step must be given for impact_location={location!r}")

@@ -7,7 +7,6 @@ import math
 from carom._compiled.decorators import by_reference, entry, inlined, kernel
 from carom._compiled.units import unit
 from carom.contact.depth import watch_depth
-from carom.dynamics.adapt import begin_step
 from carom.impact.driven import BLOCKED
 from carom.model import records as r
 from carom.model.allowance import EACH, SAVED
@@ -17,32 +16,28 @@ from carom.persistent.active_set import regroup
 from carom.stepping.crowd.step import step_crowd
 from carom.stepping.energy_balance import watch_step
 from carom.stepping.event_step import NOT_FINITE, advance, is_whole, left_ball
+from carom.stepping.grid import begin_and_length, is_saved
 from carom.stepping.islands import one_island, parts
 from carom.stepping.islands.plan import READY
 from carom.stepping.record import finite, grow, save, still
+from carom.stepping.trial_step import STEP_TOO_SMALL
 
 AGAIN = -1  # the step is to be done again
 
 
 @entry
-def run(model, data, method, islands, until):
-    """Go on to step number `until`, or to that time if the length of steps is chosen.
+def run(model, data, method, islands, grid, until):
+    """Go on to step number `until`.
 
     Returns 0, what the caller is to do, or a `Status`.
     """
     controls, clock = model.controls, data.clocks[0]
     clock.since = 0.0
-    while (clock.now if controls.order > 0 else clock.step) < until:
+    while clock.step < until:
         if clock.since > r.LONG:
             return r.PAUSE
         clock.since += 0.1 * data.state.shape[0]
-        if controls.order > 0:
-            if clock.saved >= data.records.series.shape[0]:
-                return grow(clock, r.FULL_ROWS)
-            begin_step(controls, clock)
-        else:
-            clock.begin = clock.step * controls.step
-            clock.length = min(controls.step, controls.duration - clock.begin)
+        clock.begin, clock.length = begin_and_length(grid, controls.duration, clock.step)
         if islands.apart == 1:
             code = step_apart(model, data, method, islands)
         else:
@@ -57,7 +52,7 @@ def run(model, data, method, islands, until):
             end_islands(model, data, islands)
         else:
             islands.single.begun[0] = 0
-        code = finish_step(model, data)
+        code = finish_step(model, data, grid)
         if code != 0:
             return code
     return 0
@@ -121,7 +116,7 @@ def pay(clock):
 
 
 @inlined
-def finish_step(model, data):
+def finish_step(model, data, grid):
     """Set the clock to the end of the step, look at its balance, and save its row if it is one of those."""
     system, controls, clock, state = model.system, model.controls, data.clocks[0], data.state
     clock.spent = 0.0
@@ -131,13 +126,10 @@ def finish_step(model, data):
     earn(state, clock, data.work)
     clock.now = clock.begin + clock.length
     clock.still = min(clock.still, clock.now) if still(state) else math.inf
-    last = clock.step == controls.last
-    if controls.order > 0 and clock.length == controls.duration - clock.begin:
-        clock.now, last = controls.duration, True
     if not finite(state):
         return NOT_FINITE
     watch_step(system, state, clock, data.records, data.watch[0])
-    if clock.step % controls.save_every == 0 or last:
+    if is_saved(grid, clock.step):
         if controls.location == LOCATE:
             watch_depth(system, state, clock.now, data.work, data.watch[0])
         save(system, data.active, state, clock, data.work, data.records)
@@ -196,10 +188,16 @@ def move_island(model, data, method):
 
 
 @inlined
+def may_be_whole(code):
+    """Return whether a step that ended with this code may succeed as that of a crowd."""
+    return code not in (BLOCKED, STEP_TOO_SMALL)
+
+
+@inlined
 def retry_single(model, data, start, code):
     """Go back to the start of a step that could not be taken from event to event; return whether so."""
     clock = data.clocks[0]
-    if code >= r.GROW or code == BLOCKED or model.controls.retry == 0:
+    if code >= r.GROW or model.controls.retry == 0 or not may_be_whole(code):
         return False
     if not one_island.give_up_single(clock.step, data.work):
         return False
@@ -221,7 +219,7 @@ def retry_apart(model, data, islands, code):
     clock, again = data.clocks[0], code == r.LEFT_BALL
     if again:
         islands.plan[0].widen *= 2.0
-    elif model.controls.hold == 1 and code != BLOCKED:
+    elif model.controls.hold == 1 and may_be_whole(code):
         again = parts.give_up(islands, clock.step, data.work)
     spent = clock.effort
     parts.forget_step(data.active, data.clocks, islands)

@@ -7,7 +7,7 @@ import math
 from carom._compiled.decorators import inlined, kernel
 from carom.contact.continuous_detection import AGAIN, CLEAR, FLAT_RIM, UNSURE
 from carom.dynamics.acceleration import SLIP
-from carom.dynamics.adapt import NOTHING_LEFT, plan_next, shorter, step_error
+from carom.dynamics.adapt import NOTHING_LEFT, allowed_step, plan_next, shorter, step_error
 from carom.dynamics.explicit import CONSTRAINTS_LOST
 from carom.dynamics.more_forces import turns_round
 from carom.dynamics.step import step
@@ -45,9 +45,12 @@ def propose_step(model, data):
         clock.paused = 0
         return
     dt = min(search.left, search.pace)
+    if model.controls.order > 0:
+        dt = min(dt, allowed_step(search.left, data.work))
     if data.active.count[0] > 0:
         dt = until_stop(model.controls, data.active, dt, clock)
     search.dt, search.cuts, search.again, search.active = dt, 0, 0, 0
+    search.effort = clock.effort
     search.eager = 1 if clock.in_step < 20 else 0
 
 
@@ -138,12 +141,11 @@ def fits(model, data):
                 system, controls.rtol, controls.atol, data.state, dt, work.trial, work
             )
         if error <= 1.0:
-            plan_next(dt, error, search.again == 1, controls, clock)
+            plan_next(dt, error, search.again == 1, controls, work)
             return 0
         if not dt > NOTHING_LEFT * controls.duration:
             return code if code != 0 else STEP_TOO_SMALL
-        search.dt, search.again = shorter(dt, error, controls, clock), 1
-        search.left = search.dt
+        search.dt, search.again = shorter(dt, error, controls, clock, work), 1
         return ONCE_MORE
     if code == CONSTRAINTS_LOST and dt > SHORTEST * controls.step:
         search.active = 0

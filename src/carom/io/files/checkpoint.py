@@ -166,8 +166,6 @@ def _put_records(run, records: r.Records) -> None:
         "series": clock.saved, "state": clock.saved, "touch": clock.touched,
         "impact": clock.struck, "event": clock.event, "snapshot": clock.snapped,
     }  # fmt: skip
-    while len(run.records.series) < clock.saved:
-        run.records = r.more_rows(run.records, run.clock)
     grows = ("touch", "impact", "event", "snapshot")
     while any(len(getattr(run.records, name)) < ends[name] for name in grows):
         run.records = r.longer(run.records, run.clock)

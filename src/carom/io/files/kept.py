@@ -18,15 +18,9 @@ from carom.scene.scene import Scene
 def run_again(scene: Scene, settings: dict, options: Options):
     """Return a run that has not begun, from the settings of another one."""
     from carom.run import Run
-    from carom.stepping.settings import spacing
+    from carom.stepping.settings import settings_of
 
-    adapts = settings["step"] == "auto"
-    h, steps = spacing(settings["duration"], settings["step"], options)
-    tolerances = (settings["rtol"], settings["atol"]) if adapts else None
-    return Run(
-        scene, settings["duration"], h, steps, settings["method"], settings["impact_location"],
-        settings["save_every"], options, tolerances,
-    )  # fmt: skip
+    return Run(scene, settings_of(settings, options))
 
 
 class KeptRun:

@@ -117,11 +117,13 @@ def _found(arrays: _Arrays, count: int | None, stops: int) -> np.ndarray | None:
 
 def _settings(given: dict, options: Options) -> dict:
     """Return the settings of a run, checked as those of `simulate` are."""
+    save_at = given.get("save_at")
     checked_settings(
         given["duration"], given["step"], given["method"], given["impact_location"],
-        given.get("rtol"), given.get("atol"), given["save_every"], options,
+        save_every=given["save_every"], save_at=save_at, rtol=given.get("rtol"), atol=given.get("atol"),
+        options=options,
     )  # fmt: skip
-    return given
+    return {**given, "save_at": tuple(save_at) if isinstance(save_at, list) else save_at}
 
 
 class _Arrays:

@@ -78,14 +78,14 @@ def step_crowd(model, data, method):
         if clock.since > r.LONG:
             result.code = r.PAUSE
             return
-        dt = min(piece(system, now, controls.step, clock.length - clock.spent), search.pace)
+        dt = min(piece(system, now, controls.interval, clock.length - clock.spent), search.pace)
         while True:
             clock.tries += 1
             dear = clock.effort + DEAR * data.active.count[0] > affordable(controls, clock)
             patient = clock.tries <= CAREFUL and not dear
-            careful = patient and dt > SHORTEST * controls.step
+            careful = patient and dt > SHORTEST * controls.interval
             result.code = move_on(model, data, method, dt, patient, careful)
-            if result.code == CONSTRAINTS_LOST and dt > SHORTEST * controls.step:
+            if result.code == CONSTRAINTS_LOST and dt > SHORTEST * controls.interval:
                 result.code = MISSED
             if result.code != MISSED:
                 break
@@ -134,7 +134,7 @@ def move_on(model, data, method, h, patient, careful):
     clock, n, end, loaded = data.clocks[0], now.shape[0], work.trial, is_loaded(system)
 
     # the motion without contacts, then the impulses
-    shortest = h <= SHORTEST * model.controls.step
+    shortest = h <= SHORTEST * model.controls.interval
     code = fly(model, data, method, h, loaded, not shortest)
     if code != 0:
         return code
@@ -209,7 +209,7 @@ def collide(model, data, h, fall, patient, careful):
         if sunk <= SUNK:
             return 0, k, residual, driven
         if times >= AGAIN or (wide == WIDEST and k == before):
-            if sunk > DEEP and h > SHORTER * model.controls.step:
+            if sunk > DEEP and h > SHORTER * model.controls.interval:
                 return MISSED, k, residual, driven
             room, holds = lift_others(system, k, SUNK, crowd, work)
             if not room:

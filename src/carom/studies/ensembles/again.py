@@ -15,20 +15,21 @@ from carom._compiled.record_arrays import Columns
 from carom.model.compile import attitudes
 from carom.run import Run, check_start, check_stops
 from carom.scene.scene import Scene
+from carom.stepping.settings import Settings
 from carom.studies.ensembles.targets import Target, changed, check_places
 
 
 class Again:
     """A `Run` with values that differ from one start to the next."""
 
-    def __init__(self, scene: Scene, settings: tuple, targets: list[Target]):
+    def __init__(self, scene: Scene, settings: Settings, targets: list[Target]):
         self.scene, self.settings, self.targets = scene, settings, targets
         projected = (
-            settings[6].project_start and len(scene.joints) > 0
+            settings.options.project_start and len(scene.joints) > 0
         )  # a start of its own each time
         self.light = all(target.light for target in targets) and not projected
         if self.light:
-            self.run = Run(scene, *settings)
+            self.run = Run(scene, settings)
             start = self.run.compiled.start.copy()
             self.first = start.view(Columns)  # `Run.now` is written to
             self.remember()
@@ -42,7 +43,7 @@ class Again:
             If bodies start inside each other, or the start breaks a joint.
         """
         if not self.light:
-            return Run(changed(self.scene, self.targets, values), *self.settings)
+            return Run(changed(self.scene, self.targets, values), self.settings)
         run = self.run
         # something may have grown, or been made, while it ran
         if any(a is not b for a, b in zip(self.parts(), self.known)):

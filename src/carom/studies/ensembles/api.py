@@ -12,6 +12,7 @@ from carom.io.run_to_end import reporter
 from carom.options import Options
 from carom.scene.scene import Scene
 from carom.stepping.settings import (
+    Settings,
     check_handling,
     check_scene,
     checked_settings,
@@ -22,13 +23,14 @@ from carom.studies.ensembles.result import Ensemble
 from carom.studies.ensembles.sampling import draw
 
 CHUNK = 64  # runs in a part
+NEVER = 10**15  # states of a run that are saved: only the last
 
 
 def ensemble(
     scene: Scene | Callable[..., Scene],
     duration: float,
     *,
-    step: float | str,
+    step: float | str = "auto",
     vary: Mapping,
     runs: int | None = None,
     seed: int = 0,
@@ -137,9 +139,9 @@ def ensemble(
     chunk = checks.integer("chunk", chunk, least=1)
     if workers is not None:
         workers = checks.integer("workers", workers, least=1)
-    settings = checked_settings(duration, step, method, "locate", rtol, atol, 1, options)
+    settings = checked_settings(duration, step, method, rtol=rtol, atol=atol, options=options)
     if observe is None:  # nothing is read but the end
-        settings = (*settings[:5], settings[2], *settings[6:])
+        settings = settings._replace(save_every=NEVER)
     inputs = draw(vary, runs, checks.integer("seed", seed, least=0), sampling)
     plan = _plan(scene, settings, inputs, observe)
     count = len(next(iter(inputs.values())))
@@ -169,12 +171,12 @@ def ensemble(
     return _collect(plan, inputs, parts, count)
 
 
-def _plan(scene, settings: tuple, inputs: dict[str, np.ndarray], observe):
+def _plan(scene, settings: Settings, inputs: dict[str, np.ndarray], observe):
     from carom.studies.ensembles.plan import Plan
     from carom.studies.ensembles.targets import find_targets
 
     if isinstance(scene, Scene):
-        check_scene(scene, settings[3], settings[4])
+        check_scene(scene, settings)
         return Plan(scene, settings, find_targets(scene, inputs), len(scene.bodies), observe)
     values = {name: array[0] for name, array in inputs.items()}
     plain = {name: float(v) if np.ndim(v) == 0 else v for name, v in values.items()}

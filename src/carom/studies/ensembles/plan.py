@@ -13,7 +13,7 @@ import numpy as np
 from carom.results.accuracy import sentences
 from carom.run import Run
 from carom.scene.scene import Scene
-from carom.stepping.settings import check_scene
+from carom.stepping.settings import Settings, check_scene
 from carom.studies.ensembles.again import Again
 from carom.studies.ensembles.outcome import REFUSED, no_outcomes, write_outcome
 from carom.studies.ensembles.targets import Target
@@ -24,7 +24,7 @@ class Plan:
     """One ensemble: its scene, or what makes the scene of a run from its values, and how it is run."""
 
     scene: Scene | Callable[..., Scene]
-    settings: tuple  # of a `Run`
+    settings: Settings
     targets: list[Target]
     bodies: int
     observe: Callable | None
@@ -65,8 +65,7 @@ def one(plan: Plan, values: dict[str, np.ndarray], k: int, part: Part) -> None:
         raise ValueError(
             f"scene must have {plan.bodies} bodies as that of run 0, got {len(run.now)}"
         )
-    auto = run.tolerances is not None
-    status = run.judged(run.go_on(run.controls.duration if auto else run.controls.last))
+    status = run.judged(run.go_on(run.steps))
     write_outcome(run, status, part.outcomes[k])
     if status != 0:
         part.failures[part.first + k] = f"{status.message} (reached t = {run.reached:.9g} s)"
@@ -90,8 +89,8 @@ def begin(plan: Plan, values: dict[str, np.ndarray]) -> Run:
         scene = plan.scene(**{name: _plain(value) for name, value in values.items()})
         if not isinstance(scene, Scene):
             raise TypeError(f"scene must return a carom.Scene, got {type(scene).__name__}")
-        check_scene(scene, plan.settings[3], plan.settings[4])
-        return Run(scene, *plan.settings)
+        check_scene(scene, plan.settings)
+        return Run(scene, plan.settings)
     if getattr(_here, "token", None) != plan.token:
         _here.again, _here.token = Again(plan.scene, plan.settings, plan.targets), plan.token
     return _here.again.start(values)

@@ -116,15 +116,12 @@ class Ensemble:
                 "with the same arguments and the same save"
             )
         values = {name: array[run] for name, array in self.inputs.items()}
-        duration, step, _, method, _, _, options, tolerances = plan.settings
         if isinstance(plan.scene, Scene):
             scene = changed(plan.scene, plan.targets, values)
         else:
             scene = plan.scene(**{k: float(v) if np.ndim(v) == 0 else v for k, v in values.items()})
-        how: dict = {"step": step}
-        if tolerances is not None:
-            how = {"step": "auto", "rtol": tolerances[0], "atol": tolerances[1]}
-        return simulate(scene, duration, method=method, options=options, throw=False, **how)
+        how = plan.settings._replace(save_every=1)
+        return simulate(scene, **how.as_dict(), options=how.options, throw=False)
 
     def to_xarray(self):
         """Return the ensemble as an `xarray.Dataset` with the dimension `run`."""

@@ -21,6 +21,8 @@ from carom.io.files.checkpoint import Checkpoint, capture, restore
 from carom.results.solution import Solution
 from carom.run import Run
 from carom.status import Status
+from carom.stepping.grid import make_grid
+from carom.stepping.settings import settings_of
 from carom.studies.gradient.parameters import Parameters
 from carom.studies.gradient.result import Sensitivities
 from carom.studies.gradient.tangents import Steps
@@ -40,9 +42,11 @@ def differentiate(solution: Solution, parameters: Parameters) -> Sensitivities:
     ValueError
         If steps vary, for crowds, and for parameters that have no neighbours on both sides.
     """
-    run = solution._run
-    if run.tolerances is not None:
-        raise ValueError('solution must be of a run with steps of one length, got step="auto"')
+    given, run = solution.settings, solution._run
+    if given["step"] == "auto":
+        raise ValueError('solution must be of a run with a given step, got step="auto"')
+    if isinstance(given.get("save_at"), tuple):
+        raise ValueError("solution must be of a run with steps of one length, got times in save_at")
     if solution.stats["whole_steps"]:
         raise ValueError("solution must be without crowds, got a run that has taken steps whole")
     if np.any(parameters.inertia):
@@ -63,13 +67,13 @@ class Pieces:
     """A run once more, piece by piece, and its neighbours on both sides by each parameter."""
 
     def __init__(self, solution: Solution, parameters: Parameters):
-        given, run = solution.settings, solution._run
-        settings = (
-            given["duration"], given["step"], run.steps, given["method"], given["impact_location"], 1,
-            run.options,
-        )  # fmt: skip
+        run = solution._run
+        settings = settings_of(solution.settings, run.options)
+        assert settings.step is not None
+        grid = make_grid(settings.duration, settings.step, 1, settings.save_at)
+        settings = settings._replace(step=grid.interval, save_at=None, save_every=1)
         self.labels, self.parameters = parameters.labels, parameters
-        self.base, self.near = Run(solution.scene, *settings), Run(solution.scene, *settings)
+        self.base, self.near = Run(solution.scene, settings), Run(solution.scene, settings)
         if run.found is not None:  # so that contacts have the numbers that they have there
             for again in (self.base, self.near):
                 again.add_pairs(run.found)
@@ -94,7 +98,7 @@ class Pieces:
         self.rows: dict[str, list] = {name: [] for name in ROWS}
         self.errors: list[float] = []
         self.alive = np.ones(P, dtype=bool)
-        self.ends = ends_of(solution, steps)
+        self.ends = ends_of(solution, self.base.grid.interval, steps)
         if len(solution.scene.joints) + len(solution.scene.constraints):
             self.bring_to_joints()
         for first, last in zip([0, *self.ends], self.ends):
@@ -259,13 +263,10 @@ class Pieces:
         )
 
 
-def ends_of(solution: Solution, steps: int) -> list[int]:
+def ends_of(solution: Solution, step: float, steps: int) -> list[int]:
     """Return the steps with which pieces end: those of events, and so that none is too long."""
-    h, events = (
-        solution.settings["step"],
-        solution._run.records.event[: solution._run.clock[0].event],
-    )
-    after = np.floor(events["time"] / h * (1.0 - 1e-12)).astype(int) + 1
+    events = solution._run.records.event[: solution._run.clock[0].event]
+    after = np.floor(events["time"] / step * (1.0 - 1e-12)).astype(int) + 1
     ends: list[int] = []
     for end in [*np.unique(after[(after > 0) & (after < steps)]).tolist(), steps]:
         while end - (ends[-1] if ends else 0) > LONGEST:

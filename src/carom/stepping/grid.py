@@ -1,0 +1,141 @@
+"""The steps of a run: where each of them ends, and which of the states there are saved.
+
+A step of a run is the time for which islands are found once. Within it each island moves from event to event,
+and with tolerances in steps of its own (`carom.dynamics.adapt`).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from carom import checks
+from carom._compiled.decorators import inlined
+from carom.model.arrays import System
+
+STATES = 200  # states that a run saves after its first, where nothing else is asked for
+# with tolerances, of the time of a fall by the least size of a body: a step of the run is no longer. Several
+# bodies stay near what they are near to; one has nothing to look for
+ONE_BODY, SEVERAL_BODIES = 0.25, 0.015
+ALIKE = 1e-12  # of a spacing: by so much a whole number of them may miss the duration
+FEW = 1e4  # steps at most of a scene without weight, by its speed
+MOST_STEPS = 1e12
+
+
+class Grid(NamedTuple):
+    """The ends of steps: all `interval` apart, but the last; or `ends`, where times to save at were given."""
+
+    interval: float  # the length of a step, or of the longest
+    last: int  # number of steps
+    save_every: (
+        int  # with no `ends`: steps from one saved state to the next; the last is always saved
+    )
+    ends: np.ndarray  # (last + 1,) from 0, or (0,)
+    saves: np.ndarray  # (last + 1,) 1 where the state is saved, or (0,)
+
+    @property
+    def rows(self) -> int:
+        """Number of states that are saved, the first among them."""
+        if len(self.saves):
+            return int(np.sum(self.saves))
+        return -(-self.last // self.save_every) + 1
+
+
+_NONE = np.zeros(0), np.zeros(0, dtype=np.int64)
+
+
+def make_grid(
+    duration: float, longest: float, save_every: int, save_at: float | tuple[float, ...] | None
+) -> Grid:
+    """Return the steps of a run: no longer than `longest`, and as long where no times to save at are given.
+
+    Between two times that are saved are equal steps.
+    """
+    if isinstance(save_at, tuple):
+        return _grid_of_times(np.array(save_at), duration, longest)
+    interval = longest
+    if save_at is not None:
+        parts = count(save_at, longest)
+        interval, save_every = save_at / parts, parts * save_every
+    return Grid(interval, count(duration, interval), save_every, *_NONE)
+
+
+def count(whole: float, part: float) -> int:
+    """Return how many parts make the whole, if the last may be shorter."""
+    return max(1, math.ceil(whole / part * (1.0 - ALIKE)))
+
+
+def _grid_of_times(times: np.ndarray, duration: float, longest: float) -> Grid:
+    """Return steps that end at these times, and at the end."""
+    marks = np.unique(np.concatenate([[0.0], times, [duration]]))
+    parts = [count(wait, longest) for wait in np.diff(marks)]
+    pieces = [np.linspace(a, b, n + 1)[1:] for a, b, n in zip(marks, marks[1:], parts)]
+    ends = np.concatenate([[0.0], *pieces])
+    saves = np.zeros(len(ends), dtype=np.int64)
+    saves[np.concatenate([[0], np.cumsum(parts)])] = 1
+    return Grid(float(np.max(np.diff(ends))), len(ends) - 1, 0, ends, saves)
+
+
+def longest_step(
+    system: System, start: np.recarray, duration: float, most: float | None, more: bool
+) -> float:
+    """Return how long a step of a run with tolerances may be: `most`, or by how soon bodies meet others.
+
+    With `more` contacts may come, of any of the bodies.
+    """
+    if most is not None or not (system.contacts.size or more):
+        return min(duration, most or duration)
+    extent = system.bodies.extent
+    size = float(np.min(extent if more else extent[system.contacts.body]))
+    several, g = len(system.bodies) > 1, float(np.linalg.norm(system.gravity))
+    if g > 0.0:
+        part = SEVERAL_BODIES if several else ONE_BODY
+        return min(duration, part * math.sqrt(2.0 * size / g))
+    speed = float(
+        np.max(np.linalg.norm(start.v, axis=-1) + extent * np.linalg.norm(start.w, axis=-1))
+    )
+    if not several or speed == 0.0:
+        return duration
+    return min(duration, max(0.5 * size / speed, duration / FEW))
+
+
+@inlined
+def begin_and_length(grid, duration, step):
+    """Return where a step begins, and its length."""
+    if grid.ends.shape[0] > 0:
+        return grid.ends[step], grid.ends[step + 1] - grid.ends[step]
+    begin = step * grid.interval
+    return begin, min(grid.interval, duration - begin)
+
+
+@inlined
+def is_saved(grid, step):
+    """Return whether the state after so many steps is saved."""
+    if grid.ends.shape[0] > 0:
+        return grid.saves[step] == 1
+    return step == grid.last or step % grid.save_every == 0
+
+
+def check_save_at(save_at, duration: float) -> float | tuple[float, ...] | None:
+    """Return the spacing or the times at which states are saved, checked.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If it is no spacing above 0, and no times that rise within the run.
+    """
+    if save_at is None:
+        return None
+    if np.ndim(save_at) == 0:
+        spacing = checks.number("save_at", save_at, above=0.0, unit="s")
+        if not duration < MOST_STEPS * spacing:
+            raise ValueError(
+                f"save_at must be above duration / 1e12 = {duration / MOST_STEPS:g} s, got {spacing:g}"
+            )
+        return spacing
+    times = checks.times("save_at", save_at, 0.0, duration)
+    if not (len(times) and np.all(np.diff(times) > 0.0)):
+        raise ValueError(f"save_at must be times that rise, got {checks.shown(save_at)}")
+    return tuple(times.tolist())
