@@ -121,7 +121,8 @@ class Run:
         self.clock = r.new_clock()
         share = SHARE * options.energy_tolerance if self.how.method in EXPLICIT else np.inf
         self.watch = new_watch(options.energy_tolerance, share)
-        self.work.body["ahead"] = FIRST * self.grid.interval
+        flies = system.bodies["ballistic"] == 1  # in closed form: any step is good
+        self.work.body["ahead"] = np.where(flies, 1.0, FIRST) * self.grid.interval
         self.records = r.new_records(system, self.grid.rows, 512, len(self.active.points))
         self.call = Entries(system, self.method, self.controls, self.multiple.settings)
         if options.project_start and len(system.joints):

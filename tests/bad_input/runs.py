@@ -68,13 +68,16 @@ def run(folder):
 
     given = dict(
         duration=0.02, step=0.01, method="rk4", rtol=None, atol=None, impact_location="locate", save_every=1,
-        progress=None, options=carom.Options(), throw=True, save=None, save_seconds=60.0,
+        save_at=None, progress=None, options=carom.Options(), throw=True, save=None, save_seconds=60.0,
     )  # fmt: skip
     found |= {
         "simulate": lambda: (carom.simulate, dict(scene=thrown(), **given)),
         "simulate with steps of its own": lambda: (
             carom.simulate, dict(scene=thrown(), **{**given, "step": "auto", "rtol": 1e-6, "atol": 1e-6,
                                                     "method": "rk5"}),
+        ),
+        "simulate at times": lambda: (
+            carom.simulate, dict(scene=thrown(), **{**given, "save_at": [0.0, 0.01, 0.02]}),
         ),
         "simulate to a file": lambda: (
             carom.simulate, dict(scene=thrown(), **{**given, "save": folder / "run.nc"}),

@@ -35,12 +35,14 @@ def run(
     ] = None,
     step: Annotated[
         str | None,
-        typer.Option(metavar="S|auto", show_default="0.001", help="Time step [s], or 'auto' (rk5 and rk8)."),
+        typer.Option(
+            metavar="S|auto", show_default="auto", help="Time step [s]; 'auto': as the tolerances ask for."
+        ),
     ] = None,
     method: Annotated[
         str | None,
         typer.Option(
-            show_default="rk4, or rk5 with --step auto",
+            show_default="rk5 or rk8 by the tolerance; rk4 with a given step",
             help="How free motion is stepped: rk4, rk5, rk8, rattle, rattle4, rattle6, implicit, paper,"
             " paper-ode.",
         ),
@@ -49,10 +51,16 @@ def run(
         str | None,
         typer.Option(show_default="locate", help="How impacts are found: locate, project (the paper's), work."),
     ] = None,
-    rtol: Annotated[float | None, typer.Option(show_default="1e-6", help="Of --step auto.")] = None,
-    atol: Annotated[float | None, typer.Option(show_default="1e-9", help="Of --step auto [m].")] = None,
+    rtol: Annotated[float | None, typer.Option(show_default="1e-8", help="Relative tolerance.")] = None,
+    atol: Annotated[
+        float | None, typer.Option(show_default="rtol of the smallest body", help="Absolute tolerance [m].")
+    ] = None,
+    save_at: Annotated[
+        float | None,
+        typer.Option(metavar="S", show_default="duration / 200", help="Keep a state so often [s]."),
+    ] = None,
     save_every: Annotated[
-        int | None, typer.Option(metavar="N", show_default="1", help="Keep each N-th step.")
+        int | None, typer.Option(metavar="N", show_default="1", help="Keep each N-th of them, or of the steps.")
     ] = None,
     save_seconds: Annotated[
         float, typer.Option(metavar="S", help="Write the file so often while the run goes [s of real time].")
@@ -88,7 +96,7 @@ def run(
 
     For example:
       carom simulate die.py -o die.h5 --duration 2
-      carom simulate die.py -o die.h5 --duration 2 --step auto --rtol 1e-8
+      carom simulate die.py -o die.h5 --duration 2 --rtol 1e-10 --save-at 0.001
       carom simulate --resume die.h5
       carom simulate die.h5 -o finer.h5 --step 1e-4      the same scene again
       carom simulate robot.xml -o robot.h5 -d 5 --restitution 0.3 --friction 0.5
@@ -105,7 +113,7 @@ def run(
     }  # fmt: skip
     given = {
         "duration": duration, "step": _step(step), "method": method, "impact_location": impact_location,
-        "rtol": rtol, "atol": atol, "save_every": save_every,
+        "rtol": rtol, "atol": atol, "save_every": save_every, "save_at": save_at,
     }  # fmt: skip
     begin = time.perf_counter()
     if resume is not None:
@@ -140,9 +148,10 @@ def _start(scene, out, given: dict[str, Any], model, save_seconds: float, force:
         )
     found = scenes.load(scene, **model)
     kept = {k: v for k, v in found.settings.items() if k in _SETTINGS and v is not None}
-    if "step" in given and given["step"] != "auto":  # tolerances are of steps of varying length
-        kept = {k: v for k, v in kept.items() if k not in ("rtol", "atol")}
-    settings = {"step": 1e-3, **kept, **given}
+    for name, others in _INSTEAD.items():
+        if name in given:
+            kept = {k: v for k, v in kept.items() if k not in others}
+    settings = {**kept, **given}
     if "duration" not in settings:
         raise Refused("--duration must be given [s]")
     duration = settings.pop("duration")
@@ -154,7 +163,14 @@ def _start(scene, out, given: dict[str, Any], model, save_seconds: float, force:
 
 
 #: what a result file knows of how it was made, and a new run takes over
-_SETTINGS = ("duration", "step", "method", "impact_location", "rtol", "atol", "save_every")
+_SETTINGS = (
+    "duration", "step", "method", "impact_location", "rtol", "atol", "save_every", "save_at",
+)  # fmt: skip
+#: what it does not take over where another setting is given in its place
+_INSTEAD = {
+    "step": ("rtol", "atol", "method"), "rtol": ("step", "method"), "atol": ("step", "method"),
+    "save_at": ("save_every",), "save_every": ("save_at",),
+}  # fmt: skip
 
 
 def _go_on(path: Path, scene, given: dict[str, Any], save_seconds: float):

@@ -96,7 +96,7 @@ def checked_settings(
     longest = h or options.max_step or duration
     if not duration < MOST_STEPS * longest:
         raise ValueError(
-            f"{'step' if h else 'Options.max_step'} must be above duration / {MOST_STEPS:g} = "
+            f"{'step' if h else 'Options.max_step'} must be above duration / 1e12 = "
             f"{duration / MOST_STEPS:g} s, got {checks.shown(longest)}"
         )
     return Settings(duration, h, method, impact_location, save_every, save_at, rtol, atol, options)
