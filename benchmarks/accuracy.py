@@ -12,9 +12,10 @@ from carom import GROUND, forces, joints
 from carom.bench.problems.chain import scene as chain_scene
 from carom.bench.problems.four_bar import scene as four_bar_scene
 from carom.bench.problems.spatial_die import scene as die_scene
-from common import FEW, report
+from common import FEW, OUT, report
 
 TOLERANCES = (1e-4, 1e-6) if FEW else (1e-4, 1e-6, 1e-8, 1e-10)
+FLOOR = 1e-17  # errors of zero are drawn here
 FINE = {
     "rtol": 1e-13,
     "method": "rk8",
@@ -199,13 +200,25 @@ def measured(**how) -> dict[str, list[tuple[float, float]]]:
 
 
 def draw(found: dict[str, list[tuple[float, float]]]) -> None:
-    """Draw errors against what was asked for."""
+    """Draw errors against the tolerance: what is on the line is what was asked for."""
     from carom.visual.plots import style as look
 
     colours = (look.BLUE, look.SKY, look.GREEN, look.ORANGE, look.RED, look.PURPLE, look.BLACK)
     with look.style():
-        figure, (ax,) = look.new(look.PAGE, 3.4, 1, 1, squeeze=False)[1]
-    del figure, ax, colours
+        figure, ax = look.new(look.PAGE, 3.2)
+        asked = np.array(TOLERANCES)
+        ax.fill_between(asked, asked, 10.0 * asked, color="#eeeeee", lw=0, zorder=0)
+        ax.plot(asked, asked, color=look.GREY, lw=0.8, ls="--", zorder=1)
+        for i, (title, errors) in enumerate(found.items()):
+            parts = np.maximum([part for part, _ in errors], FLOOR / asked)
+            mark = "os"[i // len(colours)]
+            colour = colours[i % len(colours)]
+            ax.plot(asked, parts * asked, f"{mark}-", color=colour, lw=0.8, ms=3, label=title)
+        ax.set(xscale="log", yscale="log", xlabel="rtol", ylabel="error / size of the body")
+        ax.grid(alpha=0.25, lw=0.4)
+        figure.legend(loc="outside right center", fontsize=7)
+        OUT.mkdir(parents=True, exist_ok=True)
+        figure.savefig(OUT / "accuracy.png", dpi=220)
 
 
 def main() -> None:

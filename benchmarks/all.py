@@ -7,7 +7,7 @@
     python benchmarks/all.py chain heaps         these alone
 
 Each script runs in a process of its own. A table belongs between <!-- table: NAME --> and <!-- end --> in
-docs/benchmarks.md.
+docs/benchmarks.md or docs/howto/accuracy.md.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ from pathlib import Path
 HERE = Path(__file__).parent
 ROOT = HERE.parent
 SCRIPTS = (
-    "free_step", "impact", "corner", "coulomb", "location", "convergence", "work_precision", "chain", "loops",
-    "methods", "contacts", "heaps", "pairs", "ensembles", "scaling", "allocation", "startup",
+    "free_step", "impact", "corner", "coulomb", "location", "convergence", "accuracy", "work_precision",
+    "chain", "loops", "methods", "contacts", "heaps", "pairs", "ensembles", "scaling", "allocation", "startup",
 )  # fmt: skip
-PICTURES = ("work_precision", "scaling", "convergence", "location")
+TABLES = (ROOT / "docs" / "benchmarks.md", ROOT / "docs" / "howto" / "accuracy.md")
+PICTURES = ("work_precision", "accuracy", "scaling", "convergence", "location")
 
 
 def into_docs(out: Path) -> list[str]:
     """Put what was measured into the documentation; return what was put."""
-    page = ROOT / "docs" / "benchmarks.md"
-    text, put = page.read_text(encoding="utf-8"), []
+    put = []
 
     def fill(found: re.Match) -> str:
         table = out / f"{found[1]}.md"
@@ -43,8 +43,10 @@ def into_docs(out: Path) -> list[str]:
         inside = table.read_text(encoding="utf-8").split("\n", 2)[2].strip()  # without its title
         return f"<!-- table: {found[1]} -->\n{inside}\n<!-- end -->"
 
-    filled = re.sub(r"<!-- table: (\w+) -->\n.*?<!-- end -->", fill, text, flags=re.DOTALL)
-    page.write_text(filled, encoding="utf-8")
+    for page in TABLES:
+        text = page.read_text(encoding="utf-8")
+        filled = re.sub(r"<!-- table: (\w+) -->\n.*?<!-- end -->", fill, text, flags=re.DOTALL)
+        page.write_text(filled, encoding="utf-8")
     for name in PICTURES:
         if (out / f"{name}.png").exists():
             shutil.copy(out / f"{name}.png", ROOT / "docs" / "_static" / f"{name}.png")

@@ -101,7 +101,7 @@ def test_simulate_refuses(arguments, words, made, capsys):
 
 def test_simulate_keeps_what_simulate_gives(made):
     kept = carom.Solution.load(made / "die.h5")
-    again = carom.simulate(kept.scene, 0.05, step=1e-3)
+    again = carom.simulate(kept.scene, 0.05)
     np.testing.assert_array_equal(kept.position, again.position)
     assert len(kept.impacts) == len(again.impacts) >= 1
 

@@ -70,11 +70,13 @@ def simulate(
     duration : float
         Time to simulate [s].
     step : float or "auto"
-        Time step h [s]. The last step is shorter where `duration` is not a multiple of it. ``"auto"``: steps as
-        long as `rtol` and `atol` allow, for ``"rk5"`` and ``"rk8"``.
+        ``"auto"`` (default): steps as long as `rtol` and `atol` allow. A number h [s]: steps of this length,
+        the last one shorter where `duration` is not a multiple of it. A system in coordinates needs a number.
     method : {"rk4", "rk5", "rk8", "rattle", "rattle4", "rattle6", "implicit", "paper", "paper-ode"}
-        How free motion is stepped. ``"rk4"`` (default): explicit, order 4, constraints exact, free bodies
-        exact in energy and momentum, impacts solved to round-off. ``"rk5"`` (default of ``step="auto"``),
+        How free motion is stepped. Default: with tolerances ``"rk5"``, or ``"rk8"`` from ``rtol=1e-9`` on; with
+        a given step ``"rk4"``. The methods other than ``"rk5"`` and ``"rk8"`` need a given step.
+        ``"rk4"``: explicit, order 4, constraints exact, free bodies
+        exact in energy and momentum, impacts solved to round-off. ``"rk5"``,
         ``"rk8"``: the same with order 5 (6 stages) and 8 (12 stages), for joints, loads and contact held at
         one point; bodies of unequal moments fly with order 4 all the same. ``"rattle"``, ``"rattle4"``,
         ``"rattle6"``: symplectic, of order 2, 4 and 6, for joints and loads over long times: no trend in
@@ -85,19 +87,24 @@ def simulate(
         cubic splines. ``"paper-ode"``: the same with the paper's second-order equations of the multipliers
         instead of exact constraints.
     rtol, atol : float, optional
-        Only for ``step="auto"``: no body misses in a step by more than ``atol + rtol * max(size, way)`` [m].
-        `size` is the body's, `way` what it goes in the step; errors of angles count at the distance
-        `size`, those of velocities as what they do while the body goes its size. Defaults 1e-6 and
-        1e-9 m. (Mathematics page, II.3.)
+        How exact the motion is to be, for steps that are not given: in the end no body should miss its place by
+        more than about ``atol + rtol * size`` [m]. `size` is the body's; errors of angles count at that
+        distance. Defaults: 1e-8, and `rtol` times the size of the smallest body. What flies freely, and times
+        of impacts, are exact to round-off. Errors grow in chaotic motion; contact held at several points is of
+        order 2. (Mathematics page, II.3; page "Choose an accuracy".)
     impact_location : {"locate", "project", "work"}
         ``"locate"`` (default): the time of an impact is found inside the step, the return map is its last
         polish. ``"project"``: the paper literally, the step is kept and the return map brings the system back
         to the boundary. ``"work"``: as ``"project"``, with the energy of the return made good.
     save_every : int
-        Save each `save_every`-th step (the first and the last always), of whatever length. Default 1.
+        Save each `save_every`-th state only, of those that are saved without it: of all steps where the step is
+        given, else of 200. The first and the last are always saved. Default 1.
+    save_at : float or (n,), optional
+        Which states are saved: a spacing [s], or rising times [s] within the run. Steps end there, so that the
+        states are those of the motion, not of a curve through others. The first and the last are saved too.
+        Default: 200 states at equal times; each step where the step is given.
     progress : bool or callable, optional
-        True shows a progress bar (needs tqdm); a function is called with (steps done, steps in all), or
-        for ``step="auto"`` with (time reached, duration).
+        True shows a progress bar (needs tqdm); a function is called with (steps done, steps in all).
     options : Options, optional
         Tolerances, boundary layer, limits.
     throw : bool
@@ -129,13 +136,13 @@ def simulate(
 
     Examples
     --------
-    A ball that falls 0.4 m strikes after sqrt(2 h / g), whatever the step:
+    A ball that falls 0.4 m strikes after sqrt(2 h / g), to the last digit:
 
     >>> scene = carom.Scene(gravity=(0, 0, -9.81))
     >>> floor = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1))
     >>> ball = scene.add_body(carom.Sphere(0.1), mass=1.0, position=(0, 0, 0.5))
     >>> contact = scene.add_contact(ball, floor, restitution=0.8)
-    >>> solution = carom.simulate(scene, duration=0.5, step=0.01)
+    >>> solution = carom.simulate(scene, duration=0.5)
     >>> bool(abs(solution.impacts.time[0] - (2 * 0.4 / 9.81) ** 0.5) < 1e-14)
     True
     """

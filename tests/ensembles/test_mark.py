@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import carom
+from carom.stepping.settings import checked_settings
 from carom.studies.ensembles.api import _plan
 from carom.studies.ensembles.mark import digest, mark_of
 
@@ -50,7 +51,7 @@ def pendulum(stiffness=3.0, friction=None, force=None):
 
 
 def mark(scene):
-    settings = (0.1, 1e-3, 100, "rk4", "locate", 1, carom.Options())
+    settings = checked_settings(0.1, 1e-3)
     return digest(_plan(scene, settings, {}, None), VALUES)
 
 

@@ -8,6 +8,7 @@ from carom.io.files.checkpoint import capture
 from carom.io.files.kept import run_again
 from carom.io.files.writing import write
 from carom.model import contact_rows
+from carom.stepping.settings import checked_settings
 from carom.studies.ensembles.again import Again
 from carom.studies.ensembles.targets import find_targets
 
@@ -237,7 +238,7 @@ def test_runs_of_an_ensemble_do_not_know_of_each_other(monkeypatch):
     scene = row_of_balls()
     scene.set_contact_default(restitution=0.5)
     speeds = {"body1.velocity": np.array([[1.0, 0, 0], [-1.0, 0, 0], [1.0, 0, 0]])}
-    settings = (0.1, 1e-3, 100, "rk4", "locate", 1, ALLOWED, None)
+    settings = checked_settings(0.1, 1e-3, options=ALLOWED)
     again = Again(scene, settings, find_targets(scene, speeds))
     numbers = []
     for k in range(3):

@@ -93,8 +93,8 @@ def test_from_a_file(tmp_path):
 @pytest.mark.parametrize(
     ("save_at", "message"),
     [
-        (0.0, r"save_at must be finite and above 0 \[s\], got 0.0"),
-        (-0.1, r"save_at must be finite and above 0 \[s\], got -0.1"),
+        (0.0, r"save_at must be finite and above 0 and at most 1 \[s\], got 0.0"),
+        (1.5, r"save_at must be finite and above 0 and at most 1 \[s\], got 1.5"),
         ([0.1, 1.5], r"save_at must be within \[0, 1\] s"),
         ([-0.1, 0.5], r"save_at must be within \[0, 1\] s"),
         ([0.5, 0.1], r"save_at must be times that rise"),

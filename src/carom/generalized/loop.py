@@ -8,7 +8,7 @@ from carom.generalized.events import locate, note_start, turned
 from carom.generalized.layout import DONE, EVENT, LOADS, NOTHING, PAUSE, TOUCHES, N
 from carom.generalized.motion import copy_row, find_metric
 from carom.generalized.step import take
-from carom.stepping.grid import begin_and_length, is_saved
+from carom.stepping.grid import end_of, is_saved
 
 CUTS = 12  # most halvings of a step in which slip turns
 LONG = 20_000  # trial steps, times the square of the coordinates, after which the loop is left for a moment
@@ -26,10 +26,9 @@ def time_loop(motion, x, plan, until, record):
     while c.step < until:
         if c.trials > most:
             return PAUSE
-        begin, length = begin_and_length(plan.grid, plan.duration, c.step)
-        target = plan.duration if c.step + 1 == plan.grid.last else begin + length
+        target = end_of(plan.grid, plan.duration, c.step + 1)
         left = target - c.now
-        if left > 1e-13 * length:
+        if left > 1e-13 * plan.step:
             note_start(system, c.now, x, work)
             part, code = first_part(motion, x, left, c)
             if code != 0:

@@ -74,7 +74,7 @@ class Solution(Portable, Drawn):
         What has gone beyond `Options.energy_tolerance`, and bodies that are in a surface: when, how much, what
         to change. Empty if all is well.
     stats : dict
-        Counts: steps, trial steps, rejected ones (``step="auto"``), cuts, located events, impacts, holds;
+        Counts: steps, trial steps, rejected ones (by their error), cuts, located events, impacts, holds;
         steps of active points and their rounds (or sweeps); `explicit_steps`, those that a symplectic
         method left to the explicit one in singular positions; `parts`, by how many those outnumber the (trial)
         steps that were made in parts, as a body turned far; and `whole_steps`, in how many steps bodies that

@@ -11,7 +11,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom import checks
 from carom._compiled.decorators import inlined
 from carom.model.arrays import System
 
@@ -21,7 +20,6 @@ STATES = 200  # states that a run saves after its first, where nothing else is a
 ONE_BODY, SEVERAL_BODIES = 0.25, 0.015
 ALIKE = 1e-12  # of a spacing: by so much a whole number of them may miss the duration
 FEW = 1e4  # steps at most of a scene without weight, by its speed
-MOST_STEPS = 1e12
 
 
 class Grid(NamedTuple):
@@ -111,31 +109,16 @@ def begin_and_length(grid, duration, step):
 
 
 @inlined
+def end_of(grid, duration, step):
+    """Return the time after so many steps, to the last digit."""
+    if grid.ends.shape[0] > 0:
+        return grid.ends[step]
+    return duration if step == grid.last else step * grid.interval
+
+
+@inlined
 def is_saved(grid, step):
     """Return whether the state after so many steps is saved."""
     if grid.ends.shape[0] > 0:
         return grid.saves[step] == 1
     return step == grid.last or step % grid.save_every == 0
-
-
-def check_save_at(save_at, duration: float) -> float | tuple[float, ...] | None:
-    """Return the spacing or the times at which states are saved, checked.
-
-    Raises
-    ------
-    TypeError, ValueError
-        If it is no spacing above 0, and no times that rise within the run.
-    """
-    if save_at is None:
-        return None
-    if np.ndim(save_at) == 0:
-        spacing = checks.number("save_at", save_at, above=0.0, unit="s")
-        if not duration < MOST_STEPS * spacing:
-            raise ValueError(
-                f"save_at must be above duration / 1e12 = {duration / MOST_STEPS:g} s, got {spacing:g}"
-            )
-        return spacing
-    times = checks.times("save_at", save_at, 0.0, duration)
-    if not (len(times) and np.all(np.diff(times) > 0.0)):
-        raise ValueError(f"save_at must be times that rise, got {checks.shown(save_at)}")
-    return tuple(times.tolist())

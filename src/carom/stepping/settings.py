@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from carom import checks
 from carom.dynamics.methods import ADAPTIVE, CARRIES, EXPLICIT, METHODS
 from carom.options import Options
 from carom.scene.limits import check_location
 from carom.scene.more_forces import JointFriction, JointInertia
 from carom.scene.scene import Scene
-from carom.stepping.grid import MOST_STEPS, check_save_at
 
 LOCATIONS = ("locate", "project", "work")
 RTOL = 1e-8  # where nothing is said
 TIGHT = 1e-9  # from here on the default is the method of order 8
+MOST_STEPS = 1e12
 _DEFAULT = Options()
 
 
@@ -100,6 +102,30 @@ def checked_settings(
             f"{duration / MOST_STEPS:g} s, got {checks.shown(longest)}"
         )
     return Settings(duration, h, method, impact_location, save_every, save_at, rtol, atol, options)
+
+
+def check_save_at(save_at, duration: float) -> float | tuple[float, ...] | None:
+    """Return the spacing or the times at which states are saved, checked.
+
+    Raises
+    ------
+    TypeError, ValueError
+        If it is no spacing above 0, and no times that rise within the run.
+    """
+    if save_at is None:
+        return None
+    several = isinstance(save_at, (list, tuple, range)) or getattr(save_at, "shape", ()) != ()
+    if not several:
+        spacing = checks.number("save_at", save_at, above=0.0, most=duration, unit="s")
+        if not duration < MOST_STEPS * spacing:
+            raise ValueError(
+                f"save_at must be above duration / 1e12 = {duration / MOST_STEPS:g} s, got {spacing:g}"
+            )
+        return spacing
+    times = checks.times("save_at", save_at, 0.0, duration)
+    if not (len(times) and np.all(np.diff(times) > 0.0)):
+        raise ValueError(f"save_at must be times that rise, got {checks.shown(save_at)}")
+    return tuple(times.tolist())
 
 
 def check_scene(scene: Scene, settings: Settings) -> None:

@@ -16,7 +16,7 @@ from carom.persistent.active_set import regroup
 from carom.stepping.crowd.step import step_crowd
 from carom.stepping.energy_balance import watch_step
 from carom.stepping.event_step import NOT_FINITE, advance, is_whole, left_ball
-from carom.stepping.grid import begin_and_length, is_saved
+from carom.stepping.grid import begin_and_length, end_of, is_saved
 from carom.stepping.islands import one_island, parts
 from carom.stepping.islands.plan import READY
 from carom.stepping.record import finite, grow, save, still
@@ -124,7 +124,7 @@ def finish_step(model, data, grid):
     clock.step += 1
     clock.in_step = 0
     earn(state, clock, data.work)
-    clock.now = clock.begin + clock.length
+    clock.now = end_of(grid, controls.duration, clock.step)
     clock.still = min(clock.still, clock.now) if still(state) else math.inf
     if not finite(state):
         return NOT_FINITE
