@@ -26,7 +26,7 @@ import numpy as np
 
 from carom._compiled.decorators import kernel
 from carom.geometry.rotation import multiply, norm
-from carom.model.workspace import ONE, SEVERAL
+from carom.model.workspace import ONE
 
 SAFETY, LEAST, MOST = 0.9, 0.2, 10.0
 LOCAL = 0.1  # of what a run may miss by: the part that one step may, of those in the time T
@@ -88,30 +88,25 @@ def greatest_error(weight, h, L, T, b, work):
 
 
 @kernel
-def step_error(system, rtol, atol, start, h, end, work):
+def allowed_error(rtol, atol, extent, scale):
+    """Return by how much a body may miss in a step [m]."""
+    return LOCAL * (atol + rtol * max(extent, scale))
+
+
+@kernel
+def step_error(system, rtol, atol, work):
     """Return the greatest error of the bodies in a step, as a part of what is allowed."""
     first, second = 0.0, 0.0
-    for b in range(start.shape[0]):
-        body, memory = system.bodies[b], work.body[b]
-        miss, allowed = memory.miss, LOCAL * (atol + rtol * max(body.extent, memory.miss[2]))
+    for b in range(work.body.shape[0]):
+        miss = work.body[b].miss
+        allowed = allowed_error(rtol, atol, system.bodies[b].extent, miss[2])
         a = miss[0] / allowed
         if not a <= first:
             first = a
         second = max(second, miss[1] / allowed)
-        if memory.status == SEVERAL:
-            turn = abs(h) * max(norm(start[b].w), norm(end[b].w))
-            first = max(first, body.extent * turn * turn * turn / (12.0 * allowed))
-            first = max(first, error_of_stop(body.extent, start[b], h, end[b]) / allowed)
     if second > 0.0:
         return first * first / math.sqrt(first * first + 0.01 * second * second)
     return first
-
-
-@kernel
-def error_of_stop(L, start, h, end):
-    """Return a h^2/8 [m] if the body loses half its speed or more, else 0: it may stop inside."""
-    before, after = norm(start.v) + L * norm(start.w), norm(end.v) + L * norm(end.w)
-    return 0.125 * abs(h) * (before - after) if after < 0.5 * before else 0.0
 
 
 @kernel

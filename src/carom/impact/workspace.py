@@ -60,6 +60,7 @@ class Group(NamedTuple):
     heading: np.ndarray  # (K, 2)
     member: np.ndarray  # (N,) bodies of the group
     flight: np.recarray  # (N,) STATE at the end of the step without the contacts
+    kept: np.recarray  # (2,) STATE of a body alone: the end of a step taken whole, its beginning
     cone: ContactWork
 
 
@@ -104,6 +105,7 @@ def new_group(system: System, more: bool = False) -> Group:
         heading=np.zeros((k, 2)),
         member=np.zeros(n, dtype=np.int64),
         flight=table(STATE, n),
+        kept=table(STATE, 2),
         cone=new_contact_work(k),
     )
 

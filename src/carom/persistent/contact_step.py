@@ -23,6 +23,7 @@ from carom._compiled.units import unit
 from carom.contact.closed_points import gather_active, place_closed
 from carom.contact.groups import members
 from carom.dynamics.acceleration import SLIP
+from carom.dynamics.adapt import allowed_error
 from carom.dynamics.elements import driven_power
 from carom.dynamics.explicit import copy_state
 from carom.dynamics.forces import applied_wrenches, difference_of_loads
@@ -38,7 +39,16 @@ from carom.friction.solve import solve_cones
 from carom.geometry.rotation import rotate, rotate_back
 from carom.impact.workspace import BACK, OLD, C, P, U
 from carom.kinematics.contact_point import contact_velocity
+from carom.kinematics.flight import free_flight
 from carom.model.allowance import affordable
+from carom.persistent.extrapolation import (
+    BEGIN,
+    WHOLE,
+    bound_of_step,
+    extrapolate,
+    note_bounds,
+    same_modes,
+)
 from carom.persistent.finish import finish, forces_at_end, gained
 from carom.persistent.middle_state import halfway, mean_velocity, spin_momentum
 from carom.persistent.return_to_surfaces import onto_surfaces
@@ -82,6 +92,44 @@ def contact_step(model, data, h):
 
 
 @kernel
+def step_group(model, data, label, h):
+    """Correct the step of one group; with tolerances to order 4 where they ask for it and it can be done."""
+    system, controls, active = model.system, model.controls, data.active
+    start, end, group, work = data.state, data.work.trial, data.group, data.work
+    result = work.result[0]
+    unnamed_before, friction = result.unnamed, result.friction
+    k, count, alone = step_once(model, data, label, h)
+    if controls.order == 0:
+        return
+    b = group.member[0]
+    L, pattern = system.bodies[b].extent, same_modes(active, k, group)
+    bound, allowed = (
+        bound_of_step(L, start[b], h, end[b]),
+        allowed_error(controls.rtol, controls.atol, L, L),
+    )
+    if not (alone and pattern >= 0 and bound > allowed):
+        note_bounds(system, h, start, end, count, group, work)
+        return
+    whole = result.friction - friction
+    copy_state(end[b], group.kept[WHOLE])
+    copy_state(start[b], group.kept[BEGIN])
+    result.friction, same = friction, True
+    for half in range(2):
+        free_flight(system.bodies[b], system.gravity, 0.5 * h, start[b], end[b], work.body[b])
+        k, count, alone = step_once(model, data, label, 0.5 * h)
+        same = same and same_modes(active, k, group) == pattern
+        if half == 0:
+            copy_state(end[b], start[b])
+    copy_state(group.kept[BEGIN], start[b])
+    result.friction += (result.friction - friction - whole) / 3.0
+    error = extrapolate(system, active, k, h, start, end, group, work)
+    miss = work.body[b].miss
+    miss[0], miss[2] = max(miss[0], error if same else bound), max(miss[2], L)
+    over = unnamed(system, controls, start, end, result.friction - friction, count, group.member)
+    result.unnamed = max(unnamed_before, over)
+
+
+@kernel
 def seen(active, i, label, work):
     """Return whether an earlier active point is of the same group."""
     for j in range(i):
@@ -91,8 +139,11 @@ def seen(active, i, label, work):
 
 
 @kernel
-def step_group(model, data, label, h):
-    """Correct the step of one group."""
+def step_once(model, data, label, h):
+    """Correct the step of one group to order 2.
+
+    Returns how many points and bodies it has, and whether it is a body alone, without joints and loads.
+    """
     system, controls = model.system, model.controls
     active, start, end, group, work, clock = (
         data.active,
@@ -150,6 +201,7 @@ def step_group(model, data, label, h):
         over = unnamed(system, controls, start, end, friction, count, group.member)
         work.result[0].unnamed = max(work.result[0].unnamed, over)
     forces_at_end(model, data, k, end)
+    return k, count, single and not loaded
 
 
 @kernel

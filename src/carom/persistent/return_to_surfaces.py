@@ -17,7 +17,7 @@ from carom.contact.gap import round_off
 from carom.contact.place import place_any
 from carom.dynamics.acceleration import STICK
 from carom.dynamics.project import project_position, shift
-from carom.dynamics.several_points import factor, spread_all, substitute, yields
+from carom.dynamics.several_points import factor, spread_all, substitute, velocities, yields
 from carom.impact.workspace import BACK, P, U
 from carom.kinematics.contact_point import in_axes
 
@@ -88,6 +88,28 @@ def onto_surfaces(system, active, k, count, state, group, work):
             shift(work.body[group.member[m]].motion, state[group.member[m]])
         if system.joints.shape[0] > 0:
             project_position(system, state, False, 1e-14, work)
+
+
+@kernel
+def onto_tangents(system, active, k, state, group, work):
+    """Take out the velocities of a body that points which press forbid, by the factor of `onto_surfaces`."""
+    b, some = group.member[0], False
+    x = group.v[U]
+    velocities(k, group.points[0], state, x)
+    for i in range(3 * k):
+        given = gives(group, i)
+        x[i] = -x[i] if given else 0.0
+        some = some or given
+    if not some:
+        return
+    substitute(3 * k, group.m[1], x)
+    for i in range(3 * k):
+        x[i] = x[i] if gives(group, i) else 0.0
+    spread_all(system, k, group.points[0], x, 1, group.member, work.stage, work)
+    motion = work.body[b].motion
+    for i in range(3):
+        state[b].v[i] += motion[i]
+        state[b].w[i] += motion[3 + i]
 
 
 @kernel

@@ -137,9 +137,7 @@ def fits(model, data):
     if controls.order > 0 and search.active == 0:
         error = math.inf
         if code == 0:
-            error = step_error(
-                system, controls.rtol, controls.atol, data.state, dt, work.trial, work
-            )
+            error = step_error(system, controls.rtol, controls.atol, work)
         if error <= 1.0:
             plan_next(dt, error, search.again == 1, controls, work)
             return 0
