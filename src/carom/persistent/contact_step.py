@@ -68,6 +68,9 @@ FAR, ROUGH = 1e-4, 1e-8
 # of a body alone, whose motion is unique though forces are not: how well the first round solves for these, and
 # the others as a part of what the last has changed
 FIRST, PART = 1e-5, 1e-4
+WORTH = (
+    0.1  # of the error, and of the energy, that a step may have: from here on it is extrapolated
+)
 ROUND = 1.0  # of a round of joined bodies, by a step without contacts
 
 
@@ -107,7 +110,8 @@ def step_group(model, data, label, h):
         bound_of_step(L, start[b], h, end[b]),
         allowed_error(controls.rtol, controls.atol, L, L),
     )
-    if not (alone and pattern >= 0 and bound > allowed):
+    pays = bound > WORTH * allowed or result.unnamed > WORTH
+    if not (alone and pattern >= 0 and pays):
         note_bounds(system, h, start, end, count, group, work)
         return
     whole = result.friction - friction
@@ -121,10 +125,11 @@ def step_group(model, data, label, h):
         if half == 0:
             copy_state(end[b], start[b])
     copy_state(group.kept[BEGIN], start[b])
-    result.friction += (result.friction - friction - whole) / 3.0
-    error = extrapolate(system, active, k, h, start, end, group, work)
-    miss = work.body[b].miss
-    miss[0], miss[2] = max(miss[0], error if same else bound), max(miss[2], L)
+    error, miss = bound, work.body[b].miss
+    if same:  # else the end is that of two halves
+        result.friction += (result.friction - friction - whole) / 3.0
+        error = extrapolate(system, active, k, h, start, end, group, work)
+    miss[0], miss[2] = max(miss[0], error), max(miss[2], L)
     over = unnamed(system, controls, start, end, result.friction - friction, count, group.member)
     result.unnamed = max(unnamed_before, over)
 

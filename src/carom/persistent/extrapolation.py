@@ -22,6 +22,7 @@ from carom.geometry.rotation import exp, log, multiply, norm, normalize
 from carom.impact.workspace import BACK
 from carom.persistent.return_to_surfaces import onto_surfaces, onto_tangents
 
+SAFE = 3.0  # how much more than estimated the error is taken for
 WHOLE, BEGIN = range(2)  # states that are kept: the end of the whole step, and its beginning
 
 
@@ -120,4 +121,4 @@ def left_over(L, h, start, end, away, faster):
     least = min(norm(start.v) + L * norm(start.w), norm(end.v) + L * norm(end.w))
     theta = min(1.0, turn + change / least if least > 0.0 else 1.0)
     T = L / (least + change) if change + least > 0.0 else 0.0
-    return max(away, T * faster) / 3.0 * theta * theta
+    return SAFE * max(away, T * faster) / 3.0 * theta * theta

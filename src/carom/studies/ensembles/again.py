@@ -45,7 +45,7 @@ class Again:
         if not self.light:
             return Run(changed(self.scene, self.targets, values), self.settings)
         run = self.run
-        # something may have grown, or been made, while it ran
+        # contacts may have come, or room for them, while it ran
         if any(a is not b for a, b in zip(self.parts(), self.known)):
             run.compiled.start[:] = self.first
             run.renew()
@@ -98,12 +98,13 @@ class Again:
         self.known = self.parts()
 
     def parts(self) -> tuple:
-        """Return all that a run writes to, but its records, which are written anew from the top."""
+        """Return all that a step of a run goes on from.
+
+        Not its records, which are written anew from the top, nor the workspace of impacts, groups and crowds,
+        which a step writes before it reads it: where that has grown it stays so.
+        """
         run = self.run
-        return (
-            run.now, run.active, run.work, run.islands, run.group, run.multiple, run.crowd, run.clock,
-            run.compiled.system, run.method, run.watch,
-        )  # fmt: skip
+        return run.now, run.active, run.work, run.islands, run.clock, run.compiled.system, run.watch
 
 
 def arrays_of(value) -> Iterator[np.ndarray]:

@@ -1,0 +1,92 @@
+"""One body on several points, with tolerances: steps of order 4 by extrapolation, errors as asked for."""
+
+import numpy as np
+import pytest
+
+import carom
+
+
+def floor(gravity=(0.0, 0.0, -9.81)):
+    scene = carom.Scene(gravity=gravity)
+    return scene, scene.add_half_space((0, 0, 0), (0, 0, 1))
+
+
+def slides(spin):
+    """A block that slides on a floor, and turns."""
+    scene, ground = floor()
+    block = scene.add_body(
+        carom.Box(0.2, 0.1, 0.1), mass=1.0, position=(0, 0, 0.05), velocity=(1, 0, 0),
+        angular_velocity=(0, 0, spin),
+    )  # fmt: skip
+    scene.add_contact(block, ground, restitution=0.0, friction=0.3)
+    return scene
+
+
+def incline():
+    """The same on a slope of half a radian, thrown across it: the direction of slip turns all the time."""
+    scene, ground = floor(9.81 * np.array([np.sin(0.5), 0.0, -np.cos(0.5)]))
+    block = scene.add_body(
+        carom.Box(0.2, 0.1, 0.1), mass=1.0, position=(0, 0, 0.05), velocity=(0, 0.5, 0),
+        angular_velocity=(0, 0, 4),
+    )  # fmt: skip
+    scene.add_contact(block, ground, restitution=0.0, friction=0.3)
+    return scene
+
+
+def tips():
+    """A cube that tips over an edge, which sticks."""
+    scene, ground = floor()
+    a, w = 0.3, np.array([0.0, 1.0, 0.0])
+    edge = 0.05 * np.array([np.cos(a) - np.sin(a), 0.0, -np.sin(a) - np.cos(a)])  # the lower one
+    cube = scene.add_body(
+        carom.Box(0.1, 0.1, 0.1), mass=1.0, position=(0, 0, -edge[2]), velocity=-np.cross(w, edge),
+        angular_velocity=w, orientation=(np.cos(a / 2), 0, np.sin(a / 2), 0),
+    )  # fmt: skip
+    scene.add_contact(cube, ground, restitution=0.0, friction=0.8)
+    return scene
+
+
+CASES = {
+    "slides": (lambda: slides(5.0), 0.2, 2e-4),
+    "incline": (incline, 0.5, 2e-4),
+    "tips": (tips, 0.1, 1e-4),
+}
+
+
+def known_end(make, duration, step):
+    """Two runs of order 2 with given steps, extrapolated: the error is some 1e-12."""
+    coarse, fine = (
+        carom.simulate(make(), duration, step=h, save_every=10**9).position[-1, 0]
+        for h in (step, step / 2)
+    )
+    return fine + (fine - coarse) / 3.0
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_errors_are_those_asked_for(case):
+    make, duration, step = CASES[case]
+    known = known_end(make, duration, step)
+    for rtol in (1e-6, 1e-8, 1e-10):
+        s = carom.simulate(make(), duration, rtol=rtol, save_at=duration)
+        asked = rtol * 2.0 * s._run.bodies["extent"][0]
+        assert np.linalg.norm(s.position[-1, 0] - known) < 10.0 * asked + 1e-12, rtol
+        assert s.stats["whole_steps"] == 0
+        z = s.position[-1, 0, 2]
+        assert case == "tips" or z == pytest.approx(0.05, abs=1e-15)  # on the floor to round-off
+
+
+def test_fewer_steps_than_order_two_needs():
+    """A hundredth of the tolerance, 2.5 times the steps: order 4. (Order 2 would need 4.6 times.)"""
+    steps = [
+        carom.simulate(slides(5.0), 0.2, rtol=rtol, save_at=0.2).stats["trial_steps"]
+        for rtol in (1e-8, 1e-10)
+    ]
+    assert steps[1] < 3.5 * steps[0]
+
+
+def test_energy_is_that_of_friction():
+    """The ledger names all that a turning block loses, to the tolerance."""
+    s = carom.simulate(slides(30.0), 0.8)
+    assert s.kinetic_energy[-1] == 0.0
+    assert np.max(np.abs(s.ledger.residual)) < 1e-7 * s.kinetic_energy[0]
+    assert s.ledger.friction[-1] == pytest.approx(-s.kinetic_energy[0], rel=1e-6)
