@@ -71,6 +71,18 @@ def block(spin: float) -> carom.Scene:
     )
 
 
+def slope() -> carom.Scene:
+    """Return a block on a slope of half a radian, thrown across it: the direction of its slip turns."""
+    scene = carom.Scene(gravity=9.81 * np.array([np.sin(0.5), 0.0, -np.cos(0.5)]))
+    floor = scene.add_half_space((0, 0, 0), (0, 0, 1))
+    one = scene.add_body(
+        carom.Box(0.2, 0.1, 0.1), mass=1.0, position=(0, 0, 0.05), velocity=(0, 0.5, 0),
+        angular_velocity=(0, 0, 4),
+    )  # fmt: skip
+    scene.add_contact(one, floor, restitution=0.0, friction=0.3)
+    return scene
+
+
 def block_end() -> np.ndarray:
     """Return where one that does not turn stops: v^2/(2 mu g)."""
     return np.array([0.5 / (0.3 * 9.81), 0.0, 0.05])
@@ -165,6 +177,7 @@ PROBLEMS = (
     Problem("ellipsoid that rolls", egg, 1.0),
     Problem("block that slides", lambda: block(0.0), 0.5, block_end),
     Problem("block that slides, turns", lambda: block(5.0), 0.2, None, {"step": 1e-6}),
+    Problem("block thrown across a slope", slope, 0.5, None, {"step": 2e-6}),
 )
 
 

@@ -46,10 +46,10 @@ def tips():
     return scene
 
 
-CASES = {
-    "slides": (lambda: slides(5.0), 0.2, 2e-4),
-    "incline": (incline, 0.5, 2e-4),
-    "tips": (tips, 0.1, 1e-4),
+CASES = {  # and by how much errors grow until then: what tips is an inverted pendulum
+    "slides": (lambda: slides(5.0), 0.2, 2e-4, 1.0),
+    "incline": (incline, 0.5, 2e-4, 1.0),
+    "tips": (tips, 0.1, 1e-4, 3.0),
 }
 
 
@@ -64,12 +64,12 @@ def known_end(make, duration, step):
 
 @pytest.mark.parametrize("case", CASES)
 def test_errors_are_those_asked_for(case):
-    make, duration, step = CASES[case]
+    make, duration, step, grows = CASES[case]
     known = known_end(make, duration, step)
     for rtol in (1e-6, 1e-8, 1e-10):
         s = carom.simulate(make(), duration, rtol=rtol, save_at=duration)
         asked = rtol * 2.0 * s._run.bodies["extent"][0]
-        assert np.linalg.norm(s.position[-1, 0] - known) < 10.0 * asked + 1e-12, rtol
+        assert np.linalg.norm(s.position[-1, 0] - known) < 10.0 * grows * asked + 1e-11, rtol
         assert s.stats["whole_steps"] == 0
         z = s.position[-1, 0, 2]
         assert case == "tips" or z == pytest.approx(0.05, abs=1e-15)  # on the floor to round-off

@@ -9,7 +9,7 @@ from carom._compiled.units import unit
 from carom.impact.multiple import events, law
 from carom.impact.multiple.by_series import series_step
 from carom.impact.multiple.by_stages import by_stages
-from carom.impact.multiple.layout import SAVED_D, SAVED_P, SAVED_WHEN, WHEN, D, P, U
+from carom.impact.multiple.layout import DISC_T, SAVED_D, SAVED_P, SAVED_WHEN, WHEN, D, P, U
 from carom.impact.multiple.motion import set_velocity
 
 ENDED, TRAPPED = 0, 1
@@ -31,6 +31,7 @@ def start(k, work):
     clock.rest, clock.cut, clock.stretched = 0, 0, 0
     for i in range(3 * k):
         work.vector[P, i] = 0.0
+        work.vector[DISC_T, i] = 0.0  # a first guess: not that of another impact
     for i in range(k):
         c = work.contact[i]
         c.mode, c.slope, c.rest, c.most = law.OPEN, 0.0, 0.0, 0.0
