@@ -46,6 +46,7 @@ from carom.persistent.extrapolation import (
     WHOLE,
     bound_of_step,
     extrapolate,
+    guess_forces,
     note_bounds,
     same_modes,
 )
@@ -103,18 +104,21 @@ def step_group(model, data, label, h):
     unnamed_before, friction = result.unnamed, result.friction
     k, count, alone = step_once(model, data, label, h)
     if controls.order == 0:
+        forces_at_end(model, data, k, end)
         return
     b = group.member[0]
     L, pattern = system.bodies[b].extent, same_modes(active, k, group)
     bound, allowed = (
-        bound_of_step(L, start[b], h, end[b]),
+        bound_of_step(L, pattern < 0, start[b], h, end[b]),
         allowed_error(controls.rtol, controls.atol, L, L),
     )
     pays = bound > WORTH * allowed or result.unnamed > WORTH
     if not (alone and pattern >= 0 and pays):
-        note_bounds(system, h, start, end, count, group, work)
+        note_bounds(system, pattern < 0, h, start, end, count, group, work)
+        forces_at_end(model, data, k, end)
         return
     whole = result.friction - friction
+    guess_forces(active, k, 1.0 / h, group)
     copy_state(end[b], group.kept[WHOLE])
     copy_state(start[b], group.kept[BEGIN])
     result.friction, same = friction, True
@@ -124,6 +128,7 @@ def step_group(model, data, label, h):
         same = same and same_modes(active, k, group) == pattern
         if half == 0:
             copy_state(end[b], start[b])
+            guess_forces(active, k, -2.0 / h, group)
     copy_state(group.kept[BEGIN], start[b])
     error, miss = bound, work.body[b].miss
     if same:  # else the end is that of two halves
@@ -132,6 +137,7 @@ def step_group(model, data, label, h):
     miss[0], miss[2] = max(miss[0], error), max(miss[2], L)
     over = unnamed(system, controls, start, end, result.friction - friction, count, group.member)
     result.unnamed = max(unnamed_before, over)
+    forces_at_end(model, data, k, end)
 
 
 @kernel
@@ -145,7 +151,7 @@ def seen(active, i, label, work):
 
 @kernel
 def step_once(model, data, label, h):
-    """Correct the step of one group to order 2.
+    """Correct the step of one group to order 2; forces at its end are still to be found.
 
     Returns how many points and bodies it has, and whether it is a body alone, without joints and loads.
     """
@@ -205,7 +211,6 @@ def step_once(model, data, label, h):
     else:
         over = unnamed(system, controls, start, end, friction, count, group.member)
         work.result[0].unnamed = max(work.result[0].unnamed, over)
-    forces_at_end(model, data, k, end)
     return k, count, single and not loaded
 
 

@@ -16,10 +16,11 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.contact.closed_points import place_closed
+from carom.dynamics.acceleration import SLIP
 from carom.dynamics.explicit import copy_state
 from carom.dynamics.several_points import inverse_masses
 from carom.geometry.rotation import exp, log, multiply, norm, normalize
-from carom.impact.workspace import BACK
+from carom.impact.workspace import BACK, P
 from carom.persistent.return_to_surfaces import onto_surfaces, onto_tangents
 
 SAFE = 3.0  # how much more than estimated the error is taken for
@@ -27,16 +28,16 @@ WHOLE, BEGIN = range(2)  # states that are kept: the end of the whole step, and 
 
 
 @kernel
-def bound_of_step(L, start, h, end):
-    """Return the error [m] of a step of order 2.
+def bound_of_step(L, changes, start, h, end):
+    """Return the error [m] of a step of order 2, in which modes change or not.
 
     Of its turn, L (h w)^3/12; of friction whose direction turns, h |dv| alpha/12, alpha being the angle between
-    the velocities (v, L w) at both ends; of a stop inside, h |dv|/8.
+    the velocities (v, L w) at both ends; of a stop inside, h |dv|/8, where half the speed is lost.
     """
     turn = abs(h) * max(norm(start.w), norm(end.w))
     before, after = norm(start.v) + L * norm(start.w), norm(end.v) + L * norm(end.w)
     change, alpha = change_of_velocity(L, start, end)
-    stop = 0.125 * abs(h) * (before - after) if after < 0.5 * before else 0.0
+    stop = 0.125 * abs(h) * (before - after) if changes and after < 0.5 * before else 0.0
     return max(max(L * turn * turn, abs(h) * change) * (turn + alpha) / 12.0, stop)
 
 
@@ -62,12 +63,12 @@ def change_of_velocity(L, start, end):
 
 
 @kernel
-def note_bounds(system, h, start, end, count, group, work):
+def note_bounds(system, changes, h, start, end, count, group, work):
     """Keep the errors of the bodies of a group in a step of order 2, and their sizes."""
     for m in range(count):
         b = group.member[m]
         L, miss = system.bodies[b].extent, work.body[b].miss
-        miss[0] = max(miss[0], bound_of_step(L, start[b], h, end[b]))
+        miss[0] = max(miss[0], bound_of_step(L, changes, start[b], h, end[b]))
         miss[2] = max(miss[2], L)
 
 
@@ -77,10 +78,24 @@ def same_modes(active, k, group):
     pattern = 1
     for i in range(k):
         active_point, closed_point = active.points[group.closed[i].active], group.closed[i]
-        if active_point.next != active_point.mode or active_point.comes_to_rest == 1:
+        stops = active_point.mode == SLIP and closed_point.stopped == 1
+        if active_point.next != active_point.mode or active_point.comes_to_rest == 1 or stops:
             return -1
         pattern = (pattern * 7 + 2 * closed_point.rows + closed_point.stopped) % 1000003
     return pattern
+
+
+@kernel
+def guess_forces(active, k, part, group):
+    """Let the next step begin with the mean forces of the last; with `part` < 0, of what a first half left.
+
+    The impulses of the last step times `part` are its mean forces.
+    """
+    for i in range(k):
+        force = active.points[group.closed[i].active].force
+        for r in range(3):
+            mean = abs(part) * group.v[P][3 * i + r]
+            force[r] = mean if part > 0.0 else 2.0 * force[r] - mean
 
 
 @kernel
@@ -115,10 +130,11 @@ def extrapolate(system, active, k, h, start, end, group, work):
 
 @kernel
 def left_over(L, h, start, end, away, faster):
-    """Return d theta^2 [m]; an error of the velocity counts as what it does while the body goes its size."""
+    """Return d theta^2 [m]; errors of the velocity count as in `carom.dynamics.adapt`."""
     turn = abs(h) * max(norm(start.w), norm(end.w))
     change, _ = change_of_velocity(L, start, end)
     least = min(norm(start.v) + L * norm(start.w), norm(end.v) + L * norm(end.w))
     theta = min(1.0, turn + change / least if least > 0.0 else 1.0)
-    T = L / (least + change) if change + least > 0.0 else 0.0
+    pace = max(least + change, math.sqrt(L * change / abs(h)))
+    T = L / pace if pace > 0.0 else 0.0
     return SAFE * max(away, T * faster) / 3.0 * theta * theta
