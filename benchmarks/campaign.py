@@ -29,12 +29,12 @@ from campaigns.case import as_row, run, wrong
 LIMIT = 20.0
 
 
-def work(tasks, results) -> None:
+def work(tasks, results, tolerances: bool) -> None:
     """Run cases until there are none: in a process of its own, which may be ended at any time."""
     for family, seed in iter(tasks.get, None):
         try:
             case = FAMILIES[family](seed)
-            results.put(as_row(family, seed, case, run(case)))
+            results.put(as_row(family, seed, case, run(case, tolerances)))
         except Exception as error:
             results.put(
                 {"family": family, "seed": seed, "error": f"{type(error).__name__}: {error}"}
@@ -44,15 +44,15 @@ def work(tasks, results) -> None:
 class Worker:
     """A process that runs one case at a time."""
 
-    def __init__(self, context):
-        self.context = context
+    def __init__(self, context, tolerances: bool):
+        self.context, self.tolerances = context, tolerances
         self.begin()
 
     def begin(self) -> None:
         """Start the process."""
         self.tasks, self.results = self.context.SimpleQueue(), self.context.SimpleQueue()
         self.process = self.context.Process(
-            target=work, args=(self.tasks, self.results), daemon=True
+            target=work, args=(self.tasks, self.results, self.tolerances), daemon=True
         )
         self.process.start()
         self.at, self.since = None, 0.0
@@ -68,10 +68,10 @@ class Worker:
         self.process.join()
 
 
-def campaign(jobs: list[tuple[str, int]], workers: int, limit: float):
+def campaign(jobs: list[tuple[str, int]], workers: int, limit: float, tolerances: bool = False):
     """Yield a row for each job, in the order in which they end."""
     context = multiprocessing.get_context("spawn")
-    waiting, pool = list(reversed(jobs)), [Worker(context) for _ in range(workers)]
+    waiting, pool = list(reversed(jobs)), [Worker(context, tolerances) for _ in range(workers)]
     while waiting or any(worker.at for worker in pool):
         for worker in pool:
             if worker.at is None:
@@ -146,6 +146,11 @@ def main() -> int:
         "--limit", type=float, default=3 * LIMIT, help="seconds that a run may take"
     )
     parser.add_argument("--out", type=Path, default=Path("out") / "campaign")
+    parser.add_argument(
+        "--tolerances",
+        action="store_true",
+        help="steps by the default tolerances, not those of the cases",
+    )
     parser.add_argument("--report", action="store_true", help="tables of what was run before")
     given = parser.parse_args()
     seeds = range(given.first, given.first + given.count)
@@ -159,8 +164,9 @@ def main() -> int:
         if path.exists():
             known = {row["seed"]: row for row in map(json.loads, path.open(encoding="utf-8"))}
         if not given.report:
+            jobs = [(family, s) for s in seeds]
             with path.open("a", encoding="utf-8") as file:
-                for row in campaign([(family, s) for s in seeds], given.workers, given.limit):
+                for row in campaign(jobs, given.workers, given.limit, given.tolerances):
                     known[row["seed"]] = row
                     file.write(json.dumps(row) + "\n")
                     file.flush()

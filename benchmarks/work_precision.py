@@ -11,16 +11,19 @@ from carom.bench import measure
 from carom.bench.problems import ALL, Task
 from common import FEW, OUT, ROUNDS, decades, peer, report
 
+TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10)
 FLOOR = 1e-16  # errors of zero are drawn here
 
 
 def tasks(problem: ModuleType, mujoco) -> dict[str, list[Task]]:
-    """Return the work of each tool and method, by its name, long steps first."""
+    """Return the work of each tool and method, by its name, long steps first; of tolerances the large ones."""
     steps = problem.STEPS[:2] if FEW else problem.STEPS
     found = {
         f"carom {method}": [problem.ours(step, method) for step in steps]
         for method in problem.METHODS
     }
+    tolerances = TOLERANCES[:2] if FEW else TOLERANCES
+    found["carom by tolerance"] = [problem.ours(rtol, measure.TOLERANCE) for rtol in tolerances]
     if mujoco:
         theirs = problem.PEER_STEPS[:2] if FEW else problem.PEER_STEPS
         found["MuJoCo"] = [problem.mujoco(mujoco, step) for step in theirs]
@@ -42,12 +45,18 @@ def measured(problem: ModuleType, mujoco) -> dict[str, list[dict]]:
     }
 
 
+def asked(name: str, step: float) -> str:
+    """Return the step of a run, or its tolerance."""
+    return f"{step:.0e}" if name == "carom by tolerance" else f"{1e3 * step:g} ms"
+
+
 def draw(results: dict[str, dict[str, list[dict]]]) -> None:
     """Draw one small picture a problem, with the same colours in all."""
     from carom.visual.plots import style as look
 
     colours = {
-        "carom rk4": look.BLUE, "carom rk5": look.SKY, "carom rk8": look.GREEN, "MuJoCo": look.RED,
+        "carom by tolerance": look.BLACK, "carom rk4": look.BLUE, "carom rk5": look.SKY,
+        "carom rk8": look.GREEN, "MuJoCo": look.RED,
     }  # fmt: skip
     with look.style():
         figure, axes = look.new(look.PAGE, 4.6, 2, 3)
@@ -88,7 +97,7 @@ def main() -> None:
     results = {problem.NAME: measured(problem, mujoco) for problem in ALL}
     rows = [
         [
-            problem.TITLE, name, f"{1e3 * p['step']:g}", f"{p['error']:.1e}",
+            problem.TITLE, name, asked(name, p["step"]), f"{p['error']:.1e}",
             measure.Spread(p["median"], p["low"], p["high"], ROUNDS).text(1e-3),
         ]
         for problem in ALL
@@ -97,7 +106,7 @@ def main() -> None:
     ]  # fmt: skip
     report(
         "work_precision", "Work and precision, problem by problem",
-        ["problem", "tool", "step / ms", "error", "time / ms"], rows,
+        ["problem", "tool", "step, or rtol", "error", "time / ms"], rows,
         "Errors: " + "; ".join(f"{p.TITLE}: {p.ERROR}" for p in ALL) + ".",
     )  # fmt: skip
     facts = {"machine": measure.machine(), "results": results}

@@ -83,6 +83,16 @@ def stepper(scene, step: float, **how) -> Callable[[int], Any]:
     return run
 
 
+TOLERANCE = "tolerance"  # in the place of a method: the step is what `rtol` is
+
+
+def ends_only(step: float, method: str, duration: float) -> dict[str, Any]:
+    """Return the settings of a run with a step, or by a tolerance, of which nothing is saved but both ends."""
+    if method == TOLERANCE:
+        return {"rtol": step, "save_at": duration}
+    return {"step": step, "method": method, "save_every": 10**9}
+
+
 def peer(name: str) -> ModuleType | None:
     """Return the module of another tool, or None where it cannot be imported."""
     try:

@@ -9,13 +9,12 @@ L its size (`extent`), V its greatest speed and a its greatest acceleration in t
 at the distance L. So an error of velocity counts as the way it makes while the body moves by its own size. A
 step is good if for all bodies
 
-    miss <= atol + rtol max(L, h V).
+    miss <= LOCAL (atol + rtol max(L, h V)),
 
-Order 8 has two estimates: miss = miss_5^2 / sqrt(miss_5^2 + miss_3^2/100) (Hairer, Norsett and Wanner 1993). Of
-groups in contact at several points (order 2) the errors of a turn, (h w)^3/12, and of a stop inside the step,
-a h^2/8, are bounded. Free flight has none. The next step is 0.9 times the one whose error would be a tenth of
-what is allowed (errors of many steps add up), within 0.2 and 10 times the last. Each island has steps of its
-own: `ahead` of its bodies.
+a part of what a run may miss by, as errors of steps add up. Order 8 has two estimates: miss = miss_5^2 /
+sqrt(miss_5^2 + miss_3^2/100) (Hairer, Norsett and Wanner 1993). Groups in contact at several points have those
+of `carom.persistent.extrapolation`; free flight has none. The next step is 0.9 times the one whose error would
+be what is allowed, within 0.2 and 10 times the last. Each island has steps of its own: `ahead` of its bodies.
 """
 
 from __future__ import annotations
@@ -29,7 +28,7 @@ from carom.geometry.rotation import multiply, norm
 from carom.model.workspace import ONE
 
 SAFETY, LEAST, MOST = 0.9, 0.2, 10.0
-LOCAL = 0.1  # of what a run may miss by: the part that one step may, of those in the time T
+LOCAL = 0.1
 FIRST = 1e-3  # of a step of the run: the first of its bodies
 NOTHING_LEFT = 1e-14  # of the time that is left: no step is shorter
 

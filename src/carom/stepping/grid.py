@@ -27,9 +27,7 @@ class Grid(NamedTuple):
 
     interval: float  # the length of a step, or of the longest
     last: int  # number of steps
-    save_every: (
-        int  # with no `ends`: steps from one saved state to the next; the last is always saved
-    )
+    save_every: int  # without `ends`: steps from a saved state to the next; the last is saved too
     ends: np.ndarray  # (last + 1,) from 0, or (0,)
     saves: np.ndarray  # (last + 1,) 1 where the state is saved, or (0,)
 

@@ -10,7 +10,7 @@ import math
 
 import numpy as np
 
-from carom.bench.measure import stepper
+from carom.bench.measure import TOLERANCE, ends_only, stepper
 from carom.bench.problems.task import Task
 
 NAME, TITLE = "four_bar", "Four-bars (A02), 10 s"
@@ -41,13 +41,21 @@ def scene(count: int = N):
 
 def ours(step: float, method: str = "rk4") -> Task:
     """Return the work of carom."""
-    steps, count = stepper(scene(), step, method=method), round(DURATION / step)
+    import carom
+
+    made = scene()
+
+    def run():
+        return carom.simulate(made, DURATION, **ends_only(step, method, DURATION))
 
     def error() -> float:
-        tip = 2.0 * steps(count).position[-1, 0, :2]
+        tip = 2.0 * run().position[-1, 0, :2]
         return float(np.hypot(*(tip - TIP)))
 
-    return Task(f"carom {method}", step, lambda: steps(count), error, steps, count)
+    if method == TOLERANCE:
+        return Task("carom by tolerance", step, run, error)
+    steps = stepper(made, step, method=method)
+    return Task(f"carom {method}", step, run, error, steps, round(DURATION / step))
 
 
 def mujoco(module, step: float) -> Task:

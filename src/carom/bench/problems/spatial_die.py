@@ -7,6 +7,7 @@ from time import perf_counter
 
 import numpy as np
 
+from carom.bench.measure import ends_only
 from carom.bench.problems import planar_die
 from carom.bench.problems.task import Task
 
@@ -36,7 +37,7 @@ def ours(step: float, method: str = "rk4", duration: float = DURATION) -> Task:
     made = scene()
 
     def run(until=duration):
-        return carom.simulate(made, until, step=step, method=method, save_every=10**9)
+        return carom.simulate(made, until, **ends_only(step, method, until))
 
     def error() -> float:
         return float(np.linalg.norm(run(END).position[-1, 0] - centre()))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom.bench.measure import stepper
+from carom.bench.measure import TOLERANCE, ends_only, stepper
 from carom.bench.problems.task import Task
 
 NAME, TITLE = "stack", "Stack of 20 boxes that slides, 0.2 s"
@@ -42,12 +42,20 @@ def places(count: int = BOXES) -> np.ndarray:
 
 def ours(step: float, method: str = "rk4", boxes: int = BOXES) -> Task:
     """Return the work of carom."""
-    steps, count = stepper(scene(boxes), step, method=method), round(DURATION / step)
+    import carom
+
+    made = scene(boxes)
+
+    def run():
+        return carom.simulate(made, DURATION, **ends_only(step, method, DURATION))
 
     def error() -> float:
-        return float(np.abs(steps(count).position[-1] - places(boxes)).max())
+        return float(np.abs(run().position[-1] - places(boxes)).max())
 
-    return Task("carom", step, lambda: steps(count), error, steps, count)
+    if method == TOLERANCE:
+        return Task("carom by tolerance", step, run, error)
+    steps = stepper(made, step, method=method)
+    return Task("carom", step, run, error, steps, round(DURATION / step))
 
 
 def mujoco(module, step: float, boxes: int = BOXES) -> Task:
