@@ -178,7 +178,7 @@ def event_within(model, data):
     loses = too_long(model, data)
     if search.active == 0 and search.dt > SHORTEST * controls.step:
         loses = loses or turns_round(system, now, work.trial, search.dt)
-    if not loses and controls.order == 0:
+    if not loses and (controls.order == 0 or active.count[0] > 0):
         loses, gains = off_balance(model, data)
         if gains == IN_A_ROW:
             return UNSTABLE if finite(work.trial) else NOT_FINITE
