@@ -145,8 +145,8 @@ def accept_step(model, data):
     if active.count[0] > 0:
         turn_modes(model, data)
     if search.found == 0:
-        if controls.order > 0 and search.cuts == 0:  # work that tolerances ask for is not counted
-            clock.tries, clock.effort = 0, search.effort
+        if controls.order > 0 and search.dt < 0.5 * search.pace:
+            clock.tries, clock.effort = 0, search.effort  # what tolerances ask for is not counted
         return 0, NOTHING
 
     # its event
