@@ -106,6 +106,21 @@ def test_simulate_keeps_what_simulate_gives(made):
     assert len(kept.impacts) == len(again.impacts) >= 1
 
 
+def test_simulate_saves_at_times_and_to_a_tolerance(made):
+    """A given tolerance takes the place of both of the file's; a given step takes the place of tolerances."""
+    out = ["-o", str(made / "finer.h5"), "--force"]
+    assert main(["simulate", str(made / "die.h5"), "--save-at", "0.02", *out]) == OK
+    found = carom.Solution.load(made / "finer.h5")
+    np.testing.assert_allclose(found.t, [0.0, 0.02, 0.04, 0.05], rtol=0, atol=1e-16)
+    assert main(["simulate", str(made / "die.h5"), "--rtol", "1e-10", *out]) == OK
+    found = carom.Solution.load(made / "finer.h5").settings
+    assert (found["method"], found["rtol"]) == ("rk8", 1e-10)
+    assert found["atol"] < 1e-10
+    assert main(["simulate", str(made / "finer.h5"), "--step", "0.01", *out]) == OK
+    found = carom.Solution.load(made / "finer.h5").settings
+    assert (found["step"], found["method"], "rtol" in found) == (0.01, "rk4", False)
+
+
 def test_simulate_does_not_write_over_a_result(made, capsys):
     before = (made / "die.h5").read_bytes()
     command = ["simulate", str(made / "die.py"), "-o", str(made / "die.h5"), "-d", "0.01"]

@@ -198,9 +198,17 @@ def test_processes():
     assert same(throw(runs=4), throw(runs=4, executor="processes", workers=1, chunk=2))
 
 
-def test_steps_of_varying_length():
-    e = carom.ensemble(die(), 0.3, step="auto", rtol=1e-7, vary=THROWN, runs=3)
+def test_by_tolerance():
+    e = carom.ensemble(die(), 0.3, rtol=1e-7, vary=THROWN, runs=3)
     assert all(agrees(e, k) for k in range(3))
+    assert not same(e, carom.ensemble(die(), 0.3, vary=THROWN, runs=3))  # 1e-8
+
+
+def test_workspace_is_no_state():
+    """What impacts of several corners have left in their workspace is nothing to the next run."""
+    e = carom.ensemble(die(), 0.6, step=2e-3, vary=THROWN, runs=60, executor="serial")
+    assert e.impacts.max() > 30
+    assert all(agrees(e, k) for k in range(0, 60, 4))
 
 
 @pytest.mark.parametrize(

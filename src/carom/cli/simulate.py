@@ -98,7 +98,7 @@ def run(
       carom simulate die.py -o die.h5 --duration 2
       carom simulate die.py -o die.h5 --duration 2 --rtol 1e-10 --save-at 0.001
       carom simulate --resume die.h5
-      carom simulate die.h5 -o finer.h5 --step 1e-4      the same scene again
+      carom simulate die.h5 -o finer.h5 --rtol 1e-10     the same scene again
       carom simulate robot.xml -o robot.h5 -d 5 --restitution 0.3 --friction 0.5
 
     die.py:
@@ -168,7 +168,7 @@ _SETTINGS = (
 )  # fmt: skip
 #: what it does not take over where another setting is given in its place
 _INSTEAD = {
-    "step": ("rtol", "atol", "method"), "rtol": ("step", "method"), "atol": ("step", "method"),
+    "step": ("rtol", "atol", "method"), "rtol": ("step", "method", "atol"), "atol": ("step", "method"),
     "save_at": ("save_every",), "save_every": ("save_at",),
 }  # fmt: skip
 

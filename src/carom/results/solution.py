@@ -242,7 +242,7 @@ class Solution(Portable, Drawn):
         ==================  ========================================================================
 
         Turns are counted over the run by the mean of the rates between two saved times, which must
-        not be wrong by half a turn: save often enough (`save_every`). At an impact the rate is that after it.
+        not be wrong by half a turn: save often enough (`save_at`). At an impact the rate is that after it.
 
         Parameters
         ----------
