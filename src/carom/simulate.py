@@ -77,8 +77,9 @@ def simulate(
         a given step ``"rk4"``. The methods other than ``"rk5"`` and ``"rk8"`` need a given step. ``"rk4"``:
         explicit, order 4, constraints exact, free flight in closed form, impacts solved to round-off.
         ``"rk5"``, ``"rk8"``: the same with order 5 (6 stages) and 8 (12 stages), for joints, loads and contact
-        held at one point. ``"rattle"``, ``"rattle4"``, ``"rattle6"``: symplectic, of order 2, 4 and 6, for joints and loads over long times: no trend in
-        energy, momenta of floating systems kept; persistent contacts go by ``"rk4"`` (``"rattle6"``:
+        held at one point. ``"rattle"``, ``"rattle4"``, ``"rattle6"``: symplectic, of order 2, 4 and 6, for
+        joints and loads over long times: no trend in energy, momenta of floating systems kept; persistent
+        contacts go by ``"rk4"`` (``"rattle6"``:
         ``"rk8"``), and so do steps across a singular position. ``"implicit"``: of order 2 and L-stable for
         springs and dampers of any stiffness, which are rows of the solve. ``"paper"``: the paper's chain,
         three fields of order 2 with exact constraints, impacts through the boundary layer by
@@ -88,8 +89,8 @@ def simulate(
         How exact the motion is to be, for steps that are not given: in the end no body should miss its place by
         more than about ``atol + rtol * size`` [m]. `size` is the body's; errors of angles count at that
         distance. Defaults: 1e-8, and `rtol` times the size of the smallest body. What flies freely, and times
-        of impacts, are exact to round-off. Errors grow in chaotic motion; contact of several or of joined bodies at
-        several points is of order 2. (Mathematics page, II.3; page "Choose an accuracy".)
+        of impacts, are exact to round-off. Errors grow in chaotic motion; contact of several or of joined
+        bodies at several points is of order 2. (Mathematics page, II.3; page "Choose an accuracy".)
     impact_location : {"locate", "project", "work"}
         ``"locate"`` (default): the time of an impact is found inside the step, the return map is its last
         polish. ``"project"``: the paper literally, the step is kept and the return map brings the system back
