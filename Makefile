@@ -19,7 +19,7 @@ test: $(VENV)/installed-test ## all checks: style, types, tests, a part of them 
 	$(BIN)/ruff format --check .
 	$(BIN)/basedpyright
 	$(BIN)/python -m pytest -n auto
-	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -m plain
+	NUMBA_DISABLE_JIT=1 $(BIN)/python -m pytest -n auto -m plain
 	NUMBA_CPU_NAME=generic NUMBA_CPU_FEATURES= $(BIN)/python -m pytest -n auto --dist loadfile -m processors
 
 lint: $(VENV)/installed-test

@@ -87,7 +87,6 @@ def test_the_motion_is_that_with_all_contacts_from_the_start(
     assert_same_motion(every, later)
 
 
-@pytest.mark.plain
 def test_contacts_are_of_pairs_that_came_near():
     """Of 70 balls that fly, two that touch have one; two that stay a diameter and their ways apart none."""
     step = 1e-3

@@ -7,8 +7,6 @@ import carom
 from carom import GROUND, constraints, forces, joints
 from carom.geometry import quaternion
 
-pytestmark = pytest.mark.plain
-
 KINDS = {  # of joints, with the coordinates that have inertia
     "Revolute": (lambda at: joints.Revolute(at, (0.3, 1.0, -0.2)), (0,)),
     "Prismatic": (lambda at: joints.Prismatic((0.3, 1.0, -0.2)), (0,)),
@@ -55,6 +53,7 @@ def add_loop(scene):
     scene.add_constraint(constraints.Driver(bearing, rate=0.0))
 
 
+@pytest.mark.plain
 def test_a_turn_under_a_torque():
     """q = M t^2/(2 (J + I)); the wrench of the hinge does not turn it."""
     scene = carom.Scene(gravity=(0, 0, 0))
@@ -69,6 +68,7 @@ def test_a_turn_under_a_torque():
     assert np.max(np.abs(solution.joint_reactions)) < 1e-13
 
 
+@pytest.mark.plain
 def test_a_slide_falls_slowly():
     """a = g m/(m + I)."""
     scene = carom.Scene(gravity=(0, 0, -10.0))
@@ -155,6 +155,7 @@ def test_contact_at_several_points_is_of_order_2(loops):
     assert errors[0] / errors[2] > 11.0  # 16 of order 2, 4 of order 1
 
 
+@pytest.mark.plain
 def test_momentum_of_what_floats_is_kept():
     """Forces along the angles of a universal joint turn both bodies, and all together nothing."""
     scene = carom.Scene(gravity=(0, 0, 0))
@@ -177,6 +178,7 @@ def test_momentum_of_what_floats_is_kept():
     assert np.max(np.abs(solution.ledger.residual)) < 1e-8
 
 
+@pytest.mark.plain
 def test_it_is_no_constraint():
     scene, joint = linked("Revolute", floats=False, turned=False)
     before = scene.check()
