@@ -58,17 +58,17 @@ def puck(step, height):
 def test_a_puck_on_three_legs():
     # Its centre as good as in their plane each leg carries m g/3: m v' = -mu m g/3 sum e_i, J w' = -mu m g/3
     # sum r_i x e_i, integrated to 12 digits. The height of 1e-7 m changes 2e-7 of it,
-    # the step 2e-6 (order 2).
+    # the step less (order 4).
     exact = [0.151118974161, 0.000014067182, 2.295902646, 0.510325876786, 0.015089939846]
     np.testing.assert_allclose(puck(5e-4, 1e-7), [*exact, 8.17333425], rtol=0, atol=3e-6)
 
 
-def test_a_higher_puck_at_order_2():
+def test_a_higher_puck_at_order_4():
     best = puck(2.5e-4, 0.0075)
     errors = [np.max(np.abs(puck(step, 0.0075) - best)) for step in (0.01, 0.005, 0.0025)]
     rates = np.log2(np.array(errors[:-1]) / errors[1:])
-    np.testing.assert_allclose(rates, 2.0, rtol=0, atol=0.2)
-    assert errors[-1] < 1e-4
+    assert np.all(rates > 3.8)
+    assert errors[-1] < 1e-7
 
 
 @pytest.mark.parametrize(

@@ -47,18 +47,24 @@ def note_misses(system, E, h, work):
     for b in range(work.body.shape[0]):
         if system.bodies[b].ballistic == 1 and work.body[b].status != ONE:
             continue
-        L, bound, miss = system.bodies[b].extent, work.body[b].bound, work.body[b].miss
-        speed = L * bound[2]
-        for s in range(E.shape[1]):
-            u = work.stages[s, b].speed
-            speed = max(speed, math.sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]) + L * norm(u[3:]))
-        pace = max(speed, math.sqrt(L * (bound[0] + L * bound[1])))
-        T = L / pace if pace > 0.0 else 0.0
-        for e in range(E.shape[0]):
-            m = greatest_error(E[e], h, L, T, b, work)
-            if not m <= miss[e]:  # NaN too
-                miss[e] = m
-        miss[2] = max(miss[2], max(L, abs(h) * speed))
+        note_miss(system, E, h, math.inf, b, work)
+
+
+@kernel
+def note_miss(system, E, h, longest, b, work):
+    """Keep the greatest errors [m] of body b by the rows of E, and its scale; T is `longest` at most."""
+    L, bound, miss = system.bodies[b].extent, work.body[b].bound, work.body[b].miss
+    speed = L * bound[2]
+    for s in range(E.shape[1]):
+        u = work.stages[s, b].speed
+        speed = max(speed, math.sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]) + L * norm(u[3:]))
+    pace = max(speed, math.sqrt(L * (bound[0] + L * bound[1])))
+    T = min(longest, L / pace if pace > 0.0 else 0.0)
+    for e in range(E.shape[0]):
+        m = greatest_error(E[e], h, L, T, b, work)
+        if not m <= miss[e]:  # NaN too
+            miss[e] = m
+    miss[2] = max(miss[2], max(L, abs(h) * speed))
 
 
 @kernel

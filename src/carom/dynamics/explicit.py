@@ -208,24 +208,30 @@ def node(weights, count):
 def combine(weight, count, h, start, stages, out):
     """Write start + h sum of weight[r] * derivative of stage r, r < count."""
     for b in range(start.shape[0]):
-        x0, v0, w0, q = start[b].x, start[b].v, start[b].w, start[b].Q
-        x, v, w = out[b].x, out[b].v, out[b].w
-        for k in range(3):
-            x[k], v[k], w[k] = x0[k], v0[k], w0[k]
-        q0, q1, q2, q3 = q[0], q[1], q[2], q[3]
-        for r in range(count):
-            a = h * weight[r]
-            if a != 0.0:
-                u, rate, p = stages[r, b].speed, stages[r, b].rate, stages[r, b].attitude
-                for k in range(3):
-                    x[k] += a * u[k]
-                    v[k] += a * rate[k]
-                    w[k] += a * rate[3 + k]
-                f = 0.5 * a  # dQ/dt = 1/2 (0, w) Q
-                d = multiply(0.0, f * u[3], f * u[4], f * u[5], p[0], p[1], p[2], p[3])
-                q0, q1, q2, q3 = q0 + d[0], q1 + d[1], q2 + d[2], q3 + d[3]
-        Q = out[b].Q
-        Q[0], Q[1], Q[2], Q[3] = normalize(q0, q1, q2, q3) if count > 0 else (q0, q1, q2, q3)
+        combine_body(weight, count, h, start[b], stages, b, out[b])
+
+
+@kernel
+def combine_body(weight, count, h, start, stages, b, out):
+    """Write the same of one body."""
+    x0, v0, w0, q = start.x, start.v, start.w, start.Q
+    x, v, w = out.x, out.v, out.w
+    for k in range(3):
+        x[k], v[k], w[k] = x0[k], v0[k], w0[k]
+    q0, q1, q2, q3 = q[0], q[1], q[2], q[3]
+    for r in range(count):
+        a = h * weight[r]
+        if a != 0.0:
+            u, rate, p = stages[r, b].speed, stages[r, b].rate, stages[r, b].attitude
+            for k in range(3):
+                x[k] += a * u[k]
+                v[k] += a * rate[k]
+                w[k] += a * rate[3 + k]
+            f = 0.5 * a  # dQ/dt = 1/2 (0, w) Q
+            d = multiply(0.0, f * u[3], f * u[4], f * u[5], p[0], p[1], p[2], p[3])
+            q0, q1, q2, q3 = q0 + d[0], q1 + d[1], q2 + d[2], q3 + d[3]
+    Q = out.Q
+    Q[0], Q[1], Q[2], Q[3] = normalize(q0, q1, q2, q3) if count > 0 else (q0, q1, q2, q3)
 
 
 @kernel
@@ -240,11 +246,17 @@ def forget_bounds(work):
 def bound_accelerations(work, stages):
     """Raise the bounds of |linear| and |angular| acceleration and |w| of each body to those of the stages."""
     for b in range(work.body.shape[0]):
-        bound = work.body[b].bound
-        linear, angular, spin = bound[0] * bound[0], bound[1] * bound[1], bound[2] * bound[2]
-        for s in range(stages):
-            a, u = work.stages[s, b].rate, work.stages[s, b].speed
-            linear = max(linear, a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
-            angular = max(angular, a[3] * a[3] + a[4] * a[4] + a[5] * a[5])
-            spin = max(spin, u[3] * u[3] + u[4] * u[4] + u[5] * u[5])
-        bound[0], bound[1], bound[2] = math.sqrt(linear), math.sqrt(angular), math.sqrt(spin)
+        bound_accelerations_of(work, b, stages)
+
+
+@kernel
+def bound_accelerations_of(work, b, stages):
+    """Raise the bounds of one body."""
+    bound = work.body[b].bound
+    linear, angular, spin = bound[0] * bound[0], bound[1] * bound[1], bound[2] * bound[2]
+    for s in range(stages):
+        a, u = work.stages[s, b].rate, work.stages[s, b].speed
+        linear = max(linear, a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
+        angular = max(angular, a[3] * a[3] + a[4] * a[4] + a[5] * a[5])
+        spin = max(spin, u[3] * u[3] + u[4] * u[4] + u[5] * u[5])
+    bound[0], bound[1], bound[2] = math.sqrt(linear), math.sqrt(angular), math.sqrt(spin)

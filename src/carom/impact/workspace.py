@@ -55,12 +55,14 @@ class Group(NamedTuple):
     )  # (2, K) POINT: in the state at hand, or in the middle of a step; at its end
     v: np.ndarray  # (5, 3K) vectors
     m: np.ndarray  # (2, 3K, 3K) inverse mass W, and a factor
+    rows: (
+        np.ndarray
+    )  # (2, 3K, 6) of one body: rows of G, and the motions that forces along them give
     mu: np.ndarray  # (K,)
     kind: np.ndarray  # (K,) of `carom.friction`
     heading: np.ndarray  # (K, 2)
     member: np.ndarray  # (N,) bodies of the group
     flight: np.recarray  # (N,) STATE at the end of the step without the contacts
-    kept: np.recarray  # (2,) STATE of a body alone: the end of a step taken whole, its beginning
     cone: ContactWork
 
 
@@ -100,12 +102,12 @@ def new_group(system: System, more: bool = False) -> Group:
         points=table(POINT, 2, k),
         v=np.zeros((5, 3 * k)),
         m=np.zeros((2, 3 * k, 3 * k)),
+        rows=np.zeros((2, 3 * k, 6)),
         mu=np.zeros(k),
         kind=np.zeros(k, dtype=np.int64),
         heading=np.zeros((k, 2)),
         member=np.zeros(n, dtype=np.int64),
         flight=table(STATE, n),
-        kept=table(STATE, 2),
         cone=new_contact_work(k),
     )
 

@@ -89,3 +89,16 @@ def point_bound(body, q, w, memory):
         return w[0] * w[0] + w[1] * w[1] + w[2] * w[2]
     board(body.inertia, q, w, memory)
     return memory.fastest
+
+
+@kernel
+def free_rates(body, g, state, rate):
+    """Write the accelerations (linear, angular; world) of a body in free flight: J dW/dt = (J W) x W."""
+    q, J = state.Q, body.inertia
+    W = rotate_back(q[0], q[1], q[2], q[3], state.w[0], state.w[1], state.w[2])
+    a = rotate(
+        q[0], q[1], q[2], q[3], (J[1] - J[2]) * W[1] * W[2] / J[0],
+        (J[2] - J[0]) * W[2] * W[0] / J[1], (J[0] - J[1]) * W[0] * W[1] / J[2],
+    )  # fmt: skip
+    for k in range(3):
+        rate[k], rate[3 + k] = g[k], a[k]

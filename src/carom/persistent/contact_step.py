@@ -23,7 +23,6 @@ from carom._compiled.units import unit
 from carom.contact.closed_points import gather_active, place_closed
 from carom.contact.groups import members
 from carom.dynamics.acceleration import SLIP
-from carom.dynamics.adapt import allowed_error
 from carom.dynamics.elements import driven_power
 from carom.dynamics.explicit import copy_state
 from carom.dynamics.forces import applied_wrenches, difference_of_loads
@@ -39,21 +38,14 @@ from carom.friction.solve import solve_cones
 from carom.geometry.rotation import rotate, rotate_back
 from carom.impact.workspace import BACK, OLD, C, P, U
 from carom.kinematics.contact_point import contact_velocity
-from carom.kinematics.flight import free_flight
 from carom.model.allowance import affordable
-from carom.persistent.extrapolation import (
-    BEGIN,
-    WHOLE,
-    bound_of_step,
-    extrapolate,
-    guess_forces,
-    note_bounds,
-    same_modes,
-)
+from carom.model.method import RUNGE_KUTTA
+from carom.persistent.error_bound import is_better_bounded, modes_change, note_bounds
 from carom.persistent.finish import finish, forces_at_end, gained
 from carom.persistent.middle_state import halfway, mean_velocity, spin_momentum
 from carom.persistent.return_to_surfaces import onto_surfaces
 from carom.persistent.rolling_friction import bound_turning, first_torque
+from carom.persistent.smooth_step import smooth_step
 from carom.persistent.step_control import (
     charge_iterations,
     iterations_left,
@@ -69,14 +61,11 @@ FAR, ROUGH = 1e-4, 1e-8
 # of a body alone, whose motion is unique though forces are not: how well the first round solves for these, and
 # the others as a part of what the last has changed
 FIRST, PART = 1e-5, 1e-4
-WORTH = (
-    0.1  # of the error, and of the energy, that a step may have: from here on it is extrapolated
-)
 ROUND = 1.0  # of a round of joined bodies, by a step without contacts
 
 
 @unit
-def contact_step(model, data, h):
+def contact_step(model, data, method, h):
     """Correct the step from `start` to `end` of all bodies that are in contact at several points.
 
     Forces at the end go to the active points; work of friction, of loads and a status to `work.result`.
@@ -90,54 +79,40 @@ def contact_step(model, data, h):
         label = work.body[active_point.body].label
         if active_point.several == 0 or active_point.rest == 1 or seen(active, i, label, work):
             continue
-        step_group(model, data, label, h)
+        step_group(model, data, method, label, h)
         if result.code != 0:
             return
 
 
 @kernel
-def step_group(model, data, label, h):
-    """Correct the step of one group; with tolerances to order 4 where they ask for it and it can be done."""
+def step_group(model, data, method, label, h):
+    """Correct the step of one group: of a body alone whose modes stay by the method of the run."""
     system, controls, active = model.system, model.controls, data.active
     start, end, group, work = data.state, data.work.trial, data.group, data.work
     result = work.result[0]
-    unnamed_before, friction = result.unnamed, result.friction
-    k, count, alone = step_once(model, data, label, h)
-    if controls.order == 0:
-        forces_at_end(model, data, k, end)
-        return
-    b = group.member[0]
-    L, pattern = system.bodies[b].extent, same_modes(active, k, group)
-    bound, allowed = (
-        bound_of_step(L, pattern < 0, start[b], h, end[b]),
-        allowed_error(controls.rtol, controls.atol, L, L),
-    )
-    pays = bound > WORTH * allowed or result.unnamed > WORTH
-    if not (alone and pattern >= 0 and pays):
-        note_bounds(system, pattern < 0, h, start, end, count, group, work)
-        forces_at_end(model, data, k, end)
-        return
-    whole = result.friction - friction
-    guess_forces(active, k, 1.0 / h, group)
-    copy_state(end[b], group.kept[WHOLE])
-    copy_state(start[b], group.kept[BEGIN])
-    result.friction, same = friction, True
-    for half in range(2):
-        free_flight(system.bodies[b], system.gravity, 0.5 * h, start[b], end[b], work.body[b])
-        k, count, alone = step_once(model, data, label, 0.5 * h)
-        same = same and same_modes(active, k, group) == pattern
-        if half == 0:
-            copy_state(end[b], start[b])
-            guess_forces(active, k, -2.0 / h, group)
-    copy_state(group.kept[BEGIN], start[b])
-    error, miss = bound, work.body[b].miss
-    if same:  # else the end is that of two halves
-        result.friction += (result.friction - friction - whole) / 3.0
-        error = extrapolate(system, active, k, h, start, end, group, work)
-    miss[0], miss[2] = max(miss[0], error), max(miss[2], L)
-    over = unnamed(system, controls, start, end, result.friction - friction, count, group.member)
-    result.unnamed = max(unnamed_before, over)
-    forces_at_end(model, data, k, end)
+    k = gather_active(system, active, label, start, group, work)
+    count = members(work, label, group.member)
+    loaded = False
+    for m in range(count):
+        b = group.member[m]
+        copy_state(end[b], group.flight[b])
+        loaded = loaded or system.bodies[b].ballistic == 0
+    alone = of_one_body(system, k, group.points[0]) and not loaded
+    alone = alone and method.kind == RUNGE_KUTTA
+    friction, over = result.friction, result.unnamed
+    smooth = alone and smooth_step(model, data, method, k, h)
+    if smooth and controls.order > 0:
+        smooth = not is_better_bounded(system, controls, h, start, end, group.member[0], work)
+    if not smooth:
+        result.friction, result.unnamed = friction, over
+        for m in range(count):
+            copy_state(group.flight[group.member[m]], end[group.member[m]])
+        if alone:
+            place_closed(system, k, start, group, group.points[0], work)
+        step_once(model, data, k, count, loaded, h)
+        if controls.order > 0:
+            note_bounds(system, modes_change(active, k, group), h, start, end, count, group, work)
+    forces_at_end(model, data, k, smooth, end)
 
 
 @kernel
@@ -150,25 +125,10 @@ def seen(active, i, label, work):
 
 
 @kernel
-def step_once(model, data, label, h):
-    """Correct the step of one group to order 2; forces at its end are still to be found.
-
-    Returns how many points and bodies it has, and whether it is a body alone, without joints and loads.
-    """
-    system, controls = model.system, model.controls
-    active, start, end, group, work, clock = (
-        data.active,
-        data.state,
-        data.work.trial,
-        data.group,
-        data.work,
-        data.clocks[0],
-    )
-    k = gather_active(system, active, label, start, group, work)
-    count = members(work, label, group.member)
-    loaded = False
-    for m in range(count):
-        loaded = loaded or system.bodies[group.member[m]].ballistic == 0
+def step_once(model, data, k, count, loaded, h):
+    """Correct the step of one group of k points and `count` bodies to order 2."""
+    system, controls, clock = model.system, model.controls, data.clocks[0]
+    start, end, group, work = data.state, data.work.trial, data.group, data.work
     begin(model, data, k, h, count, loaded)
     before, single = math.inf, of_one_body(system, k, group.points[0])
     clock.contact_steps += 1
@@ -211,7 +171,6 @@ def step_once(model, data, label, h):
     else:
         over = unnamed(system, controls, start, end, friction, count, group.member)
         work.result[0].unnamed = max(work.result[0].unnamed, over)
-    return k, count, single and not loaded
 
 
 @kernel
@@ -266,7 +225,7 @@ def moved(n, group):
 
 @kernel
 def begin(model, data, k, h, count, loaded):
-    """Note the step without contacts, the directions of slip, and the last forces as a first guess."""
+    """Note the directions of slip, and the last forces as a first guess."""
     system, controls = model.system, model.controls
     active, start, end, group, work = (
         data.active,
@@ -275,8 +234,6 @@ def begin(model, data, k, h, count, loaded):
         data.group,
         data.work,
     )
-    for m in range(count):
-        copy_state(end[group.member[m]], group.flight[group.member[m]])
     if loaded:  # springs may lead to any body
         for b in range(start.shape[0]):
             halfway(start[b], end[b], work.stage[b])

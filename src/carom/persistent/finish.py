@@ -13,6 +13,7 @@ from carom.impact.workspace import P, U
 from carom.kinematics.contact_point import contact_velocity
 from carom.persistent.forces import pose_forces, solve_forces, take_forces
 from carom.persistent.jam import jams_among
+from carom.persistent.known_modes import as_known, note_accelerations, solve_given
 from carom.persistent.margins import greatest_push, set_margins
 from carom.persistent.step_control import POORLY, rest_speed
 
@@ -102,8 +103,8 @@ def come_to_rest(system, tolerance, start, end, count, group):
 
 
 @kernel
-def forces_at_end(model, data, k, end):
-    """Put the forces in the state at the end into the list of active points."""
+def forces_at_end(model, data, k, known, end):
+    """Put the forces in the state at the end into the list of active points; by `known` modes if these hold."""
     system, active, group, work = model.system, data.active, data.group, data.work
     for i in range(k):
         closed_point = group.closed[i]
@@ -111,7 +112,15 @@ def forces_at_end(model, data, k, end):
         closed_point.stays = 1 if active_point.next != OPEN else 0
     place_closed(system, k, end, group, group.points[0], work)
     pose_forces(system, model.controls, active, k, end, group, work)
-    status = solve_forces(model, data, k)
+    status = 0
+    if (
+        known
+        and as_known(k, group)
+        and solve_given(system.bodies[group.member[0]], k, end, group, work)
+    ):
+        note_accelerations(k, group, work)
+    else:
+        status = solve_forces(model, data, k)
     push = greatest_push(k, group)
     for i in range(k):
         active_point = active.points[group.closed[i].active]

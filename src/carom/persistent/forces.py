@@ -14,10 +14,16 @@ from carom._compiled.decorators import kernel
 from carom.contact.gap import slow
 from carom.contact.place import drift_of
 from carom.dynamics.acceleration import acceleration
-from carom.dynamics.several_points import accelerations, inverse_masses, velocities
+from carom.dynamics.several_points import (
+    accelerations,
+    inverse_masses,
+    of_one_body,
+    velocities,
+)
 from carom.friction.layout import BUDGET, CONE, ENOUGH, NEAR, SLIDING
 from carom.friction.solve import solve_cones
 from carom.impact.workspace import OLD, C, P, U
+from carom.kinematics.flight import free_rates
 from carom.persistent.rolling_friction import bound_turning, take_torque
 from carom.persistent.step_control import charge_iterations, iterations_left
 
@@ -25,7 +31,14 @@ from carom.persistent.step_control import charge_iterations, iterations_left
 @kernel
 def pose_forces(system, controls, active, k, state, group, work):
     """Write W, u, and c = du/dt without contact forces, of the k points of the group, and how each slips."""
-    acceleration(system, state, active, work, work.stages[0])
+    if (
+        of_one_body(system, k, group.points[0])
+        and system.bodies[group.points[0][0].a].ballistic == 1
+    ):
+        b = group.points[0][0].a
+        free_rates(system.bodies[b], system.gravity, state[b], work.stages[0][b].rate)
+    else:
+        acceleration(system, state, active, work, work.stages[0])
     inverse_masses(system, k, group.points[0], state, work, group.m[0])
     velocities(k, group.points[0], state, group.v[U])
     accelerations(k, group.points[0], state, work.stages[0], group.v[C])

@@ -50,9 +50,21 @@ def mark_rows(system, active, k, group):
 
 
 @kernel
-def gives(group, i):
-    """Return whether row i is given, and can be."""
-    return i % 3 < group.closed[i // 3].rows and yields(group.m[0], i)
+def given(group, row):
+    """Return whether a row is given, and can be."""
+    return row % 3 < group.closed[row // 3].rows and yields(group.m[0], row)
+
+
+@kernel
+def factor_given(k, group):
+    """Write the factor of W of the rows that are given."""
+    n, L = 3 * k, group.m[1]
+    for i in range(n):
+        row = given(group, i)
+        for j in range(n):
+            both = row and given(group, j)
+            L[i, j] = group.m[0][i, j] if both else 1.0 if i == j else 0.0
+    factor(n, DROP, L)
 
 
 @kernel
@@ -62,16 +74,11 @@ def onto_surfaces(system, active, k, count, state, group, work):
     if not mark_rows(system, active, k, group):
         return
     n, L = 3 * k, group.m[1]
-    for i in range(n):
-        row = gives(group, i)
-        for j in range(n):
-            both = row and gives(group, j)
-            L[i, j] = group.m[0][i, j] if both else 1.0 if i == j else 0.0
-    factor(n, DROP, L)
+    factor_given(k, group)
     x, way = group.v[U], group.v[BACK]
     known = False
     for i in range(n):
-        x[i] = way[i] if gives(group, i) else 0.0
+        x[i] = way[i] if given(group, i) else 0.0
         way[i], known = 0.0, known or x[i] != 0.0
     for _ in range(11):
         if not known:
@@ -79,7 +86,7 @@ def onto_surfaces(system, active, k, count, state, group, work):
                 break
             substitute(n, L, x)
             for i in range(n):
-                x[i] = -x[i] if gives(group, i) else 0.0
+                x[i] = -x[i] if given(group, i) else 0.0
         known = False
         for i in range(n):
             way[i] += x[i]
@@ -91,20 +98,16 @@ def onto_surfaces(system, active, k, count, state, group, work):
 
 
 @kernel
-def onto_tangents(system, active, k, state, group, work):
-    """Take out the velocities of a body that points which press forbid, by the factor of `onto_surfaces`."""
-    b, some = group.member[0], False
-    x = group.v[U]
+def onto_tangents(system, k, state, group, work):
+    """Take out the velocities of a body in the rows that are given."""
+    b, x = group.member[0], group.v[U]
+    factor_given(k, group)
     velocities(k, group.points[0], state, x)
     for i in range(3 * k):
-        given = gives(group, i)
-        x[i] = -x[i] if given else 0.0
-        some = some or given
-    if not some:
-        return
+        x[i] = -x[i] if given(group, i) else 0.0
     substitute(3 * k, group.m[1], x)
     for i in range(3 * k):
-        x[i] = x[i] if gives(group, i) else 0.0
+        x[i] = x[i] if given(group, i) else 0.0
     spread_all(system, k, group.points[0], x, 1, group.member, work.stage, work)
     motion = work.body[b].motion
     for i in range(3):

@@ -110,7 +110,7 @@ def trial_step(model, data, method):
         return TOO_MANY
     if active.count[0] > 0 and code == 0:
         end_forces(system, active, work.trial, work)
-        contact_step(model, data, search.dt)
+        contact_step(model, data, method, search.dt)
         if work.result[0].code != 0:
             return work.result[0].code
         if retry and clock.effort > affordable(controls, clock):

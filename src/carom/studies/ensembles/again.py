@@ -51,8 +51,8 @@ class Again:
             run.renew()
             self.remember()
         else:
-            for array, kept in self.kept:
-                array[...] = kept
+            for there, kept in self.kept:
+                there[:] = kept
         run.clock.saved = 0
         run.compiled.functions.failed = None  # what a function of the user's raised in the last run
         self.write(values)
@@ -93,8 +93,9 @@ class Again:
                     contacts.friction_held[rows] = value
 
     def remember(self) -> None:
-        """Keep what all arrays hold before the first step."""
-        self.kept = [(array, array.copy()) for array in arrays_of(self.parts())]
+        """Keep what all arrays hold before the first step, as bytes: records are slow to copy by fields."""
+        flat = [array.reshape(-1).view(np.uint8) for array in arrays_of(self.parts())]
+        self.kept = [(there, there.copy()) for there in flat]
         self.known = self.parts()
 
     def parts(self) -> tuple:
@@ -111,7 +112,7 @@ def arrays_of(value) -> Iterator[np.ndarray]:
     """Yield the arrays in nested tuples that can be written to."""
     if isinstance(value, np.ndarray):
         if value.size and value.flags.writeable:
-            yield value
+            yield np.asarray(value)
     elif isinstance(value, tuple):
         for part in value:
             yield from arrays_of(part)

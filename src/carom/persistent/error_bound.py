@@ -1,0 +1,80 @@
+"""The error of a step of order 2 of bodies on several points (`carom.persistent.contact_step`), bounded."""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom.dynamics.acceleration import SLIP
+from carom.dynamics.adapt import allowed_error
+from carom.geometry.rotation import norm
+
+
+@kernel
+def bound_of_step(L, changes, start, h, end):
+    """Return the error [m] of a step of order 2, in which modes change or not.
+
+    Of its turn, L (h w)^3/12; of friction whose direction turns, h |dv| alpha/12, alpha being the angle between
+    the velocities (v, L w) at both ends; of a stop inside, h |dv|/8, where half the speed is lost.
+    """
+    turn = abs(h) * max(norm(start.w), norm(end.w))
+    before, after = norm(start.v) + L * norm(start.w), norm(end.v) + L * norm(end.w)
+    change, alpha = change_of_velocity(L, start, end)
+    stop = 0.125 * abs(h) * (before - after) if changes and after < 0.5 * before else 0.0
+    return max(max(L * turn * turn, abs(h) * change) * (turn + alpha) / 12.0, stop)
+
+
+@kernel
+def change_of_velocity(L, start, end):
+    """Return |dv| of the velocities (v, L w) at both ends, and the sine of the angle between them."""
+    change, along, first, last = 0.0, 0.0, 0.0, 0.0
+    for i in range(3):
+        v, w, dv, dw = start.v[i], L * start.w[i], end.v[i], L * end.w[i]
+        along, first, last = (
+            along + v * dv + w * dw,
+            first + v * v + w * w,
+            last + dv * dv + dw * dw,
+        )
+        change += (dv - v) ** 2 + (dw - w) ** 2
+    if not (first > 0.0 and last > 0.0):
+        return math.sqrt(change), 0.0
+    across = 0.0
+    for i in range(3):
+        across += (end.v[i] - along / first * start.v[i]) ** 2
+        across += (L * (end.w[i] - along / first * start.w[i])) ** 2
+    return math.sqrt(change), math.sqrt(across / last)
+
+
+@kernel
+def note_bounds(system, changes, h, start, end, count, group, work):
+    """Keep the errors of the bodies of a group in a step of order 2, and their sizes."""
+    for m in range(count):
+        b = group.member[m]
+        L, miss = system.bodies[b].extent, work.body[b].miss
+        miss[0] = max(miss[0], bound_of_step(L, changes, start[b], h, end[b]))
+        miss[2] = max(miss[2], L)
+
+
+@kernel
+def is_better_bounded(system, controls, h, start, end, b, work):
+    """Return whether the error of a step of order 2 would do for body b where that of its method does not.
+
+    So it is just before a body stops, where the directions of slip turn ever faster.
+    """
+    L, miss = system.bodies[b].extent, work.body[b].miss
+    allowed = allowed_error(controls.rtol, controls.atol, L, miss[2])
+    if miss[0] <= allowed or bound_of_step(L, True, start[b], h, end[b]) > allowed:
+        return False
+    miss[0], miss[1] = 0.0, 0.0
+    return True
+
+
+@kernel
+def modes_change(active, k, group):
+    """Return whether a point opens, slips anew or stops in a step, or its body comes to rest."""
+    for i in range(k):
+        active_point, closed_point = active.points[group.closed[i].active], group.closed[i]
+        stops = active_point.mode == SLIP and closed_point.stopped == 1
+        if active_point.next != active_point.mode or active_point.comes_to_rest == 1 or stops:
+            return True
+    return False

@@ -1,0 +1,165 @@
+"""Forces of the points of one body whose modes are known: one linear system, checked against Coulomb's law.
+
+    (G dv/dt)_n = 0 of points that press, all three rows of those that stick,
+    lam_t = -mu lam_n d of those that slip along d.
+
+Forces need not be unique (four corners of a face): those are taken to which a face of equal springs comes,
+(A + eps S) lam = -c for eps -> 0, with S the scales of the points, as in `carom.friction.newton`.
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom.friction import lu
+from carom.friction.layout import SLIDING
+from carom.geometry.rotation import cross, rotate, rotate_back
+from carom.impact.workspace import OLD, C, P
+from carom.kinematics.contact_point import contact_motion
+
+# weight of S; corrections of the forces, and how well they must fit: relative to the accelerations without them
+EPS, CORRECTIONS, FITS = 1e-5, 12, 1e-12
+PULL = 1e-9  # of the greatest force or acceleration: what may be taken for round-off of none
+
+
+@kernel
+def rows_of(push, slides):
+    """Return how many rows of a point are given: none where it does not press."""
+    if not push > 0.0:
+        return 0
+    return 1 if slides else 3
+
+
+@kernel
+def as_known(k, group):
+    """Return whether the points that press slip or stick as the rows say that are given."""
+    for i in range(k):
+        slides, rows = group.kind[i] == SLIDING or group.mu[i] == 0.0, group.closed[i].rows
+        if rows > 0 and slides != (rows == 1):
+            return False
+    return True
+
+
+@kernel
+def solve_given(body, k, state, group, work):
+    """Write the forces that meet the given rows into P, what they do to the body into its `motion`.
+
+    Returns whether they obey Coulomb's law. C holds the accelerations without them.
+    """
+    A, L, rows, x = group.m[1], group.cone.matrix, group.cone.active, group.v[OLD]
+    p, c, motion = group.v[P], group.v[C], work.body[group.points[0][0].a].motion
+    n, push = write_rows(body, k, state, group), 0.0
+    for row in range(3 * k):
+        p[row], push = 0.0, max(push, abs(c[row]))
+    for i in range(n):
+        for j in range(n):
+            A[i, j] = L[i, j] = dot(group.rows[0, i], group.rows[1, j])
+        L[i, i] += EPS * scale_of(body, state, group.points[0][rows[i] // 3])
+    lu.factor(L, n, group.cone.pivot, 0.0)
+    for r in range(6):
+        motion[r] = 0.0
+    for _ in range(CORRECTIONS):
+        wrong = 0.0
+        for i in range(n):
+            x[i] = -c[rows[i]] - dot(group.rows[0, i], motion)
+            wrong = max(wrong, abs(x[i]))
+        if wrong <= FITS * push:
+            return obeys(k, push, group, work)
+        lu.substitute(L, n, group.cone.pivot, x)
+        for i in range(n):
+            add_force(group, rows[i], x[i])
+            for r in range(6):
+                motion[r] += group.rows[1, i, r] * x[i]
+    return False
+
+
+@kernel
+def write_rows(body, k, state, group):
+    """Write the given rows, and the motions that forces along them give; return how many."""
+    n, q, J = 0, state[group.points[0][0].a].Q, body.inertia
+    for i in range(k):
+        point, d = group.points[0][i], group.heading[i]
+        r, E = point.arm_a, point.axes
+        mu = group.mu[i] if group.kind[i] == SLIDING else 0.0
+        for a in range(group.closed[i].rows):
+            G, Y = group.rows[0, n], group.rows[1, n]
+            for b in range(3):
+                G[b], Y[b] = E[a, b], E[a, b] - mu * (d[0] * E[1, b] + d[1] * E[2, b])
+            G[3], G[4], G[5] = cross(r[0], r[1], r[2], G[0], G[1], G[2])
+            t = cross(r[0], r[1], r[2], Y[0], Y[1], Y[2])
+            t = rotate_back(q[0], q[1], q[2], q[3], t[0], t[1], t[2])
+            t = rotate(q[0], q[1], q[2], q[3], t[0] / J[0], t[1] / J[1], t[2] / J[2])
+            for b in range(3):
+                Y[b], Y[3 + b] = Y[b] / body.mass, t[b]
+            group.cone.active[n], n = 3 * i + a, n + 1
+    return n
+
+
+@kernel
+def dot(a, b):
+    """Return the product of a row with a motion."""
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3] + a[4] * b[4] + a[5] * b[5]
+
+
+@kernel
+def scale_of(body, state, point):
+    """Return a third of the trace of W of a point."""
+    q, J, r = state[point.a].Q, body.inertia, point.arm_a
+    x, y, z = rotate_back(q[0], q[1], q[2], q[3], r[0], r[1], r[2])
+    turning = (y * y + z * z) / J[0] + (z * z + x * x) / J[1] + (x * x + y * y) / J[2]
+    return 1.0 / body.mass + turning / 3.0
+
+
+@kernel
+def add_force(group, row, x):
+    """Add a force along a given row, with its friction."""
+    p, i = group.v[P], row // 3
+    p[row] += x
+    if group.kind[i] == SLIDING:
+        for r in range(2):
+            p[row + 1 + r] -= group.mu[i] * group.heading[i, r] * x
+
+
+@kernel
+def note_accelerations(k, group, work):
+    """Write the accelerations of all points under the forces that were found into OLD."""
+    a = group.v[OLD]
+    for i in range(k):
+        q = 3 * i
+        a[q], a[q + 1], a[q + 2] = contact_motion(group.points[0][i], work)
+        for r in range(3):
+            a[q + r] += group.v[C][q + r]
+
+
+@kernel
+def obeys(k, push, group, work):
+    """Return whether no force pulls or leaves its cone, and no point without one approaches."""
+    p, most = group.v[P], 0.0
+    for i in range(k):
+        most = max(most, p[3 * i])
+    for i in range(k):
+        q = 3 * i
+        if group.closed[i].rows == 0:
+            if group.v[C][q] + contact_motion(group.points[0][i], work)[0] < -PULL * push:
+                return False
+        if p[q] < -PULL * most:
+            return False
+        if group.closed[i].rows == 3:
+            friction = math.sqrt(p[q + 1] * p[q + 1] + p[q + 2] * p[q + 2])
+            if friction > group.mu[i] * p[q] + PULL * most:
+                return False
+    return True
+
+
+@kernel
+def note_given(k, group):
+    """Note which points press by the forces in P; return whether those that stick are inside their cones."""
+    p = group.v[P]
+    for i in range(k):
+        q, slides = 3 * i, group.kind[i] == SLIDING
+        group.closed[i].rows = rows_of(p[q], slides)
+        friction = math.sqrt(p[q + 1] * p[q + 1] + p[q + 2] * p[q + 2])
+        if not slides and p[q] > 0.0 and friction >= (1.0 - 1e-9) * group.mu[i] * p[q]:
+            return False
+    return True

@@ -1,0 +1,216 @@
+"""A step of one body on several points by the Runge-Kutta method of the run, as long as their modes stay.
+
+While the same points press, slip and stick the motion is smooth:
+
+    M dv/dt = f + G^T lam,    (G dv/dt)_n = 0 of points that press, all three rows of those that stick,
+                              lam_t = -mu lam_n u_t/|u_t| of those that slip,
+
+one linear system at each stage (`carom.persistent.known_modes`); where its forces do not obey Coulomb's law the
+stage is solved as a contact problem (`carom.persistent.forces`). At its end the body returns to the surfaces.
+(Mathematics page, VI.1.)
+"""
+
+from __future__ import annotations
+
+import math
+
+from carom._compiled.decorators import kernel
+from carom.contact.closed_points import place_closed
+from carom.contact.gap import slow
+from carom.contact.place import drift_of
+from carom.dynamics.acceleration import OPEN, SLIP, accelerate
+from carom.dynamics.adapt import note_miss
+from carom.dynamics.explicit import bound_accelerations_of, combine_body, copy_state
+from carom.dynamics.several_points import (
+    accelerations,
+    inverse_masses_of_one,
+    spread_all,
+    velocities,
+)
+from carom.friction.layout import CONE, SLIDING
+from carom.geometry.rotation import norm
+from carom.impact.workspace import BACK, C, P, U
+from carom.kinematics.contact_point import contact_velocity
+from carom.kinematics.flight import free_rates
+from carom.persistent.finish import finish
+from carom.persistent.forces import solve_forces
+from carom.persistent.known_modes import note_given, rows_of, solve_given
+from carom.persistent.return_to_surfaces import onto_surfaces, onto_tangents
+from carom.persistent.step_control import kinetic, unnamed
+
+# least cosine between the directions of slip in a step; most that friction may change of the speed of slip
+# across it, as a part: beyond about 2.7 an explicit step is unstable
+SAME_WAY, STIFF = 0.5, 2.0
+
+
+@kernel
+def smooth_step(model, data, method, k, h):
+    """Write the end of a step of the one body of a group, and its error; return whether modes stay in it."""
+    system, controls = model.system, model.controls
+    start, end, group, work = data.state, data.work.trial, data.group, data.work
+    b, result, clock = group.member[0], data.work.result[0], data.clocks[0]
+    u, p = group.v[U], group.v[P]
+    if not begin(model, data, k, h):
+        return False
+    stages, friction = method.b.size, 0.0
+    for s in range(stages):
+        stage, rates = work.stage[b], work.stages[s, b]
+        combine_body(method.A[s], s, h, start[b], work.stages, b, stage)
+        for r in range(3):
+            rates.speed[r], rates.speed[3 + r] = stage.v[r], stage.w[r]
+        for r in range(4):
+            rates.attitude[r] = stage.Q[r]
+        if not add_forces(model, data, k, s):
+            return False
+        for i in range(k):
+            power = p[3 * i + 1] * u[3 * i + 1] + p[3 * i + 2] * u[3 * i + 2]
+            friction += h * method.b[s] * power if group.kind[i] == SLIDING else 0.0
+    clock.contact_steps, clock.rounds = clock.contact_steps + 1, clock.rounds + stages
+    clock.since += 5.0 * k * stages
+    combine_body(method.b, stages, h, start[b], work.stages, b, end[b])
+    if not finish_smoothly(model, data, k, h):
+        return False
+    if method.E.shape[0] > 0:
+        work.body[b].bound[:3] = 0.0
+        bound_accelerations_of(work, b, stages)
+        note_miss(system, method.E, h, lasting(model, data, k, h, friction), b, work)
+    result.friction += friction
+    over = unnamed(system, controls, start, end, friction, 1, group.member)
+    result.unnamed = max(result.unnamed, over)
+    return True
+
+
+@kernel
+def begin(model, data, k, h):
+    """Note which points press, slip and stick; return whether that can last for the step."""
+    system, controls, active = model.system, model.controls, data.active
+    start, group = data.state, data.group
+    b = group.member[0]
+    push = norm(system.gravity) + system.bodies[b].extent * norm(start[b].w) ** 2
+    for i in range(k):
+        closed_point = group.closed[i]
+        contact = system.contacts[closed_point.contact]
+        active_point, mu = active.points[closed_point.active], contact.friction_held
+        _, u1, u2 = contact_velocity(group.points[0][i], start)
+        speed = math.sqrt(u1 * u1 + u2 * u2)
+        still = max(10.0 * slow(contact, start), controls.rest * push * controls.step)
+        slips = active_point.mode == SLIP
+        if active_point.mode == OPEN or (slips and mu > 0.0 and not speed > still):
+            return False
+        slides = slips or mu == 0.0
+        closed_point.stays, group.mu[i] = 1, mu
+        group.kind[i] = SLIDING if slides else CONE
+        closed_point.rows = rows_of(active_point.force[0], slides)
+        heading, part = active_point.heading, 1.0 / speed if slips and speed > still else 0.0
+        heading[0], heading[1], active_point.speed = part * u1, part * u2, speed
+    return True
+
+
+@kernel
+def lasting(model, data, k, h, friction):
+    """Return how long an error of the velocity lasts at most: of what friction stops, until then."""
+    system, start, end, group = model.system, data.state, data.work.trial, data.group
+    b = group.member[0]
+    L, body, before = system.bodies[b].extent, system.bodies[b], start[b]
+    for i in range(k):
+        if group.closed[i].rows == 3:
+            return math.inf
+    if kinetic(body, before) - kinetic(body, end[b]) > -1.1 * friction:
+        return math.inf
+    speed = norm(before.v) + L * norm(before.w)
+    loss = speed - norm(end[b].v) - L * norm(end[b].w)
+    return h * speed / loss if loss > 0.0 else math.inf
+
+
+@kernel
+def add_forces(model, data, k, s):
+    """Write the accelerations of stage s, with the forces of the points; return whether modes stay."""
+    system, active, group, work = model.system, data.active, data.group, data.work
+    b, points = data.group.member[0], data.group.points[0]
+    state, rates = work.stage, work.stages[s]
+    place_closed(system, k, state, group, points, work)
+    free_rates(system.bodies[b], system.gravity, state[b], rates[b].rate)
+    velocities(k, points, state, group.v[U])
+    accelerations(k, points, state, rates, group.v[C])
+    for i in range(k):
+        closed_point = group.closed[i]
+        contact = system.contacts[closed_point.contact]
+        if contact.touches != 0:
+            d = drift_of(
+                system, contact, closed_point.feature, closed_point.point, points[i], state, work
+            )
+            for r in range(3):
+                group.v[C][3 * i + r] += d[r]
+        if not set_direction(active.points[closed_point.active], i, group):
+            return False
+    if not solve_given(system.bodies[b], k, state, group, work):
+        if s > 0 and model.controls.order == 0:
+            return False
+        inverse_masses_of_one(system.bodies[b], k, points, state, group.m[0])
+        solve_forces(model, data, k)
+        if not note_given(k, group):
+            return False
+        spread_all(system, k, points, group.v[P], 1, group.member, state, work)
+    accelerate(work.body[b].motion, rates[b].rate)
+    return True
+
+
+@kernel
+def set_direction(active_point, i, group):
+    """Let point i slide as it moves now; return whether that is about as it did at the start of the step."""
+    group.heading[i, 0], group.heading[i, 1] = 0.0, 0.0
+    if group.kind[i] != SLIDING or group.mu[i] == 0.0:
+        return True
+    u1, u2 = group.v[U][3 * i + 1], group.v[U][3 * i + 2]
+    speed, d = math.sqrt(u1 * u1 + u2 * u2), active_point.heading
+    if not u1 * d[0] + u2 * d[1] > SAME_WAY * speed:
+        return False
+    group.heading[i, 0], group.heading[i, 1] = u1 / speed, u2 / speed
+    return True
+
+
+@kernel
+def finish_smoothly(model, data, k, h):
+    """Return the body to the surfaces; note modes, bounds and forces; return whether modes have stayed."""
+    system, active = model.system, data.active
+    end, group, work = data.work.trial, data.group, data.work
+    b = group.member[0]
+    for row in range(3 * k):
+        group.v[BACK][row] = 0.0
+    place_at(system, k, end, group, work)
+    onto_surfaces(system, active, k, 1, end, group, work)
+    place_at(system, k, end, group, work)
+    for i in range(k):
+        if group.closed[i].rows > 0 and group.kind[i] != SLIDING:
+            group.closed[i].rows = 3
+    onto_tangents(system, k, end, group, work)
+    velocities(k, group.points[0], end, group.v[U])
+    for row in range(3 * k):
+        group.v[P][row] *= h
+    finish(model, data, k, h, 1)
+    braked, worst = 0.0, 0.0
+    for i in range(k):
+        braked += group.v[P][3 * i] / system.bodies[b].mass
+    for i in range(k):
+        active_point, rows = active.points[group.closed[i].active], group.closed[i].rows
+        if active_point.next != active_point.mode or active_point.comes_to_rest == 1:
+            return False
+        if not set_direction(active_point, i, group):
+            return False
+        u1, u2 = group.v[U][3 * i + 1], group.v[U][3 * i + 2]
+        slower = min(active_point.speed, math.sqrt(u1 * u1 + u2 * u2))
+        if group.kind[i] == SLIDING and group.mu[i] * braked > STIFF * slower:
+            return False
+        for r in range(rows):
+            worst = max(worst, abs(group.v[U][3 * i + r]))
+    work.result[0].residual = max(work.result[0].residual, worst)
+    return True
+
+
+@kernel
+def place_at(system, k, state, group, work):
+    """Write the points of the body in a state, and their W."""
+    b = group.member[0]
+    copy_state(state[b], work.stage[b])
+    place_closed(system, k, state, group, group.points[0], work)
+    inverse_masses_of_one(system.bodies[b], k, group.points[0], state, group.m[0])
