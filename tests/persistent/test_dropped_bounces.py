@@ -45,7 +45,9 @@ def test_a_box_that_tumbles_until_it_slides_on_a_face(step):
     s, error = slide(carom.Box(0.2, 0.2, 0.2), step)
     assert len(s.impacts) > 20
     assert np.all(s.angular_velocity[-1] == pytest.approx(0.0, abs=1e-9))
-    assert abs(error) < 1e-9  # of steps of order 4; 3e-3 and 4e-4 m/s if bounces took no friction along
+    assert (
+        abs(error) < 1e-9
+    )  # of steps of order 4; 3e-3 and 4e-4 m/s if bounces took no friction along
 
 
 def test_friction_takes_no_energy_back():

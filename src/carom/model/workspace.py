@@ -148,6 +148,9 @@ SEARCH = [
     ("t", "f8"),  # last trial
     ("f", "f8"),
     ("rate", "f8"),
+    ("before", "f8"),  # the same one trial before: its time, value and rate
+    ("f_before", "f8"),
+    ("rate_before", "f8"),
     ("d1", "f8"),  # direction of slip at the start
     ("d2", "f8"),
     ("width", "f8"),

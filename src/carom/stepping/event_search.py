@@ -1,11 +1,14 @@
 """Search for the first event inside a step: examination of a trial step, and the root of an event function.
 
-For a gap the rate is known: Newton's method, kept inside the bracket. For persistent contacts: regula falsi
-with the Illinois rule. Every trial is a step of the method itself from the start of the step, so that
-an event is as exact as the method.
+For a gap the rate is known: a root of the cubic through the last two values and rates, kept inside the bracket
+(exact of a ball that falls); else Newton's method. For persistent contacts: regula falsi with the Illinois
+rule. Every trial is a step of the method itself from the start of the step, so that an event is as exact as the
+method.
 """
 
 from __future__ import annotations
+
+import math
 
 from carom._compiled.decorators import inlined, kernel
 from carom.contact.closed_points import round_off_of_both
@@ -18,6 +21,8 @@ from carom.model.arrays import STOP
 from carom.persistent.events import GAP, contact_event_value, find_contact_event, turned
 from carom.persistent.joint_events import STOPS, find_joint_event, joint_event_value
 from carom.persistent.margins import LEAST, NEAR
+
+NEWTON = 6  # steps to the root of a cubic, from near by
 
 
 @inlined
@@ -83,11 +88,13 @@ def begin_search(search, kind, contact, low, high, d1, d2):
     search.low, search.high, search.width = low, high, high
     search.d1, search.d2 = d1, d2
     search.f_low, search.side, search.tolerance = -1.0, 0, -1.0
+    search.t, search.f, search.rate = 0.0, 0.0, 0.0
 
 
 @kernel
 def update_bracket(search, t, f, rate):
     """Narrow the bracket by the value f at t; return 1 if that is the event, 0 if not yet, -1 if f is NaN."""
+    search.before, search.f_before, search.rate_before = search.t, search.f, search.rate
     search.t, search.f, search.rate = t, f, rate
     if search.f_low < 0.0:  # the first value; nothing is known at the low end but the sign
         search.f_low = abs(f)
@@ -111,10 +118,30 @@ def update_bracket(search, t, f, rate):
 
 
 @kernel
+def cubic_root(search):
+    """Return a root of the cubic through the last two values and rates by Newton's method from the last."""
+    a, h = search.before, search.t - search.before
+    if search.rate_before == 0.0 or h == 0.0:  # not known
+        return math.inf
+    f, r, slope = search.f_before, search.rate_before, (search.f - search.f_before) / h
+    c = (3.0 * slope - 2.0 * r - search.rate) / h
+    d = (r + search.rate - 2.0 * slope) / (h * h)
+    x = h
+    for _ in range(NEWTON):
+        value, rate = f + x * (r + x * (c + x * d)), r + x * (2.0 * c + x * 3.0 * d)
+        if not rate < 0.0:
+            return math.inf
+        x -= value / rate
+    return a + x
+
+
+@kernel
 def next_trial(search):
-    """Return the next time to try: Newton's, else the regula falsi's, else the middle."""
+    """Return the next time to try: of a cubic, Newton's or the regula falsi's, else the middle."""
     if search.kind == GAP and search.rate < 0.0:
-        t = search.t - search.f / search.rate
+        t = cubic_root(search)
+        if not (search.low < t < search.high):
+            t = search.t - search.f / search.rate
     else:
         low, high = search.low, search.high
         if search.tolerance == NEAR and search.f_low <= LEAST:  # nothing is known but the sign

@@ -230,6 +230,10 @@ def bracket(model, data):
     if search.kind == GAP and controls.location != LOCATE:
         search.found = 1
         return 0
+    if (
+        search.kind == GAP and system.contacts[search.contact].touches == 0
+    ):  # what is known at the start
+        search.f, search.rate = event_value(system, controls, data.active, search, data.state, work)
     f, rate = event_value(system, controls, data.active, search, work.trial, work)
     update_bracket(search, search.dt, f, rate)
     search.dt = next_trial(search)
