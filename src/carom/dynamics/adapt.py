@@ -12,10 +12,10 @@ step is good if for all bodies
     miss <= LOCAL (atol + rtol max(L, h V)),
 
 a part of what a run may miss by, as errors of steps add up. Order 8 has two estimates: miss = miss_5^2 /
-sqrt(miss_5^2 + miss_3^2/100) (Hairer, Norsett and Wanner 1993). Groups in contact at several
-points have those of `carom.persistent.smooth_step`, or a bound; free flight has none. The next step is 0.9 times the one
-whose error would be what is allowed, within 0.2 and 10 times the last. Each island has steps of its own: `ahead`
-of its bodies.
+sqrt(miss_5^2 + miss_3^2/100) (Hairer, Norsett and Wanner 1993). Groups in contact at several points have those
+of `carom.persistent.smooth_step`, or a bound; free flight has none. The next step is 0.9 times the one whose
+error would be what is allowed, within 0.2 and 10 times the last. Each island has steps of its own: `ahead` of
+its bodies.
 """
 
 from __future__ import annotations
