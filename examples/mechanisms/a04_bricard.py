@@ -36,9 +36,9 @@ def main(out="out/examples"):
     motion, drift = figure.subplots(1, 2)
     for method, h in (("rk4", 0.01), ("rk5", 0.01), ("rk8", 0.02)):
         s = carom.simulate(mechanism(), 10.0, step=h, method=method)
-        energy, kept = np.abs(s.ledger.residual), np.max(s.constraint_errors, axis=1)
-        print(f"{method}, {h} s: energy {np.max(energy):.1e} J, constraints {kept[0]:.1e} m, "
-              f"{kept[1]:.1e} m/s")  # fmt: skip
+        energy, kept = np.abs(s.ledger.residual), np.max(s.constraint_errors, axis=(1, 2))
+        print(f"{method}, {h} s: energy {np.max(energy):.1e} J, constraints {kept[0]:.1e} m or rad, "
+              f"{kept[1]:.1e} m/s or rad/s")  # fmt: skip
         drift.semilogy(s.t, energy, lw=1, label=f"{method}, {1e3 * h:.0f} ms")
         assert np.max(energy) < 2e-8
         assert np.max(kept) < 1e-12

@@ -50,7 +50,8 @@ def test_dimensions_and_units(swung):
     assert all("long_name" in one.attrs for one in data.variables.values())
     numbers = {name for name, one in data.variables.items() if one.dtype.kind in "fi"}
     without = {name for name in numbers if units[name] is None}
-    assert without == {"joint_coordinate", "joint_rate"}  # in coordinate_units
+    own = {"joint_coordinate", "joint_rate"}  # in coordinate_units
+    assert without == own | {"position_error", "velocity_error"}  # in constraint_unit
 
 
 def test_attributes(thrown):

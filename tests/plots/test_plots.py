@@ -130,11 +130,13 @@ def test_contacts_are_bars_where_they_are_held(slid):
 
 def test_constraint_errors(swung):
     ax = plots.constraint_errors(swung)
-    position, velocity = swung.constraint_errors
-    shown = line(ax, "of positions [m]")[1]
-    assert np.array_equal(shown[position > 0], position[position > 0])
-    shown = line(ax, "of velocities [m/s]")[1]
-    assert np.array_equal(shown[velocity > 0], velocity[velocity > 0])
+    unit = swung.constraint_rows.unit
+    assert set(unit) == {"m", "rad"}
+    for of, errors, per in zip(("positions", "velocities"), swung.constraint_errors, ("", "/s")):
+        for one in ("m", "rad"):
+            greatest = errors[:, unit == one].max(axis=1)
+            shown = line(ax, f"of {of} [{one}{per}]")[1]
+            assert np.array_equal(shown[greatest > 0], greatest[greatest > 0])
 
 
 def test_phase_of_a_body_steps_at_impacts(thrown):

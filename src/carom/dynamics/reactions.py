@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from carom._compiled.decorators import entry, kernel
+from carom._compiled.units import unit
 from carom.dynamics.elements import (
     acceleration_bias,
     build_rows,
@@ -16,10 +17,12 @@ from carom.dynamics.elements import (
 from carom.dynamics.forces import applied_wrenches
 from carom.dynamics.light_bodies import factor_geometry, geometric_motion
 from carom.dynamics.loops import add_reactions, factor, free_motion, substitute, subtract_rows
+from carom.dynamics.relations import prescribed
 from carom.dynamics.solve import joint_wrench, solve
 from carom.dynamics.stiff import add_stiff
 from carom.dynamics.tree import joint_wrenches
-from carom.model.arrays import FOREST, LOOPS
+from carom.kinematics.coordinate import rate, value
+from carom.model.arrays import FOREST, LOOPS, RELATION
 
 
 @kernel
@@ -122,12 +125,46 @@ def add_touch(touch, work):
             wrench[3 + k] += touch.other_moment[k]
 
 
+@unit
+def _follow_turns(system, times, states, k):
+    """Count the whole turns of all angles at saved state k; those of the states before are counted.
+
+    The angle of a motor is the one that it prescribes; others turn by the mean of the rates at both times.
+    """
+    relations = system.relations
+    for i in range(relations.coordinates.shape[0]):
+        c = relations.coordinates[i]
+        if k == 0:
+            c.reference = 0.0
+        else:
+            mean = 0.5 * (rate(c, states[k - 1]) + rate(c, states[k]))
+            c.reference += mean * (times[k] - times[k - 1])
+    for j in range(system.joints.shape[0]):
+        if system.joints[j].kind == RELATION:
+            relation = relations.relations[system.joints[j].number]
+            if relation.last - relation.first == 1:
+                term = relations.terms[relation.first]
+                angle = prescribed(relations, relation, times[k])[0] / term.factor
+                relations.coordinates[term.coordinate].reference = angle
+    for i in range(relations.coordinates.shape[0]):
+        c = relations.coordinates[i]
+        c.reference = value(c, states[k])
+
+
+@kernel
+def follow_turns(system, times, states, k):
+    """Count the whole turns of all angles at saved state k; those of the states before are counted."""
+    if system.relations.there == 1:
+        _follow_turns(system, times, states, k)
+
+
 @entry
 def reactions(system, augment, times, states, touch, work, out):
     """Write the wrench (T, J, 6) of each joint on its child at saved states."""
     h = 0
     for k in range(states.shape[0]):
         state, work.result[0].time = states[k], times[k]
+        follow_turns(system, times, states, k)
         applied_wrenches(system, state, True, work)
         add_stiff(system, state, work)
         while h < touch.shape[0] and touch[h].saved == k:
@@ -143,22 +180,16 @@ def reactions(system, augment, times, states, touch, work, out):
 
 
 @entry
-def row_errors(system, times, states, work, out):
-    """Write the largest error of position and of velocity over all rows, (T, 2)."""
+def row_errors(system, times, states, work, position, velocity):
+    """Write the errors of position and velocity of each row of each element at saved states, (T, J, 6) each."""
     for k in range(states.shape[0]):
-        position, velocity = 0.0, 0.0
-        work.result[0].time = times[k]
+        state, work.result[0].time = states[k], times[k]
+        follow_turns(system, times, states, k)
         for j in range(system.joints.shape[0]):
-            joint, record = system.joints[j], work.joint[j]
-            position_error(system, j, states[k], work)
-            row_target(system, j, states[k], record.bias, record.target)
-            for r in range(joint.rows):
-                position = max(position, abs(record.target[r]))
-            velocity_error(system, j, states[k], work)
-            row_target(system, j, states[k], record.bias, record.target)
-            for r in range(joint.rows):
-                velocity = max(velocity, abs(record.target[r]))
-        out[k, 0], out[k, 1] = position, velocity
+            position_error(system, j, state, work)
+            row_target(system, j, state, work.joint[j].bias, position[k, j])
+            velocity_error(system, j, state, work)
+            row_target(system, j, state, work.joint[j].bias, velocity[k, j])
 
 
 @entry

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from typing import NamedTuple
 
 import numpy as np
@@ -12,6 +13,7 @@ from carom.impact.layout import AT_END, WEDGED
 from carom.model import records as r
 from carom.model.arrays import STOP
 from carom.results.accuracy import sentences
+from carom.results.constraint_rows import constrained, row_units
 from carom.results.event_tables import ContactTable, EventTable, ImpactTable, contact_table
 from carom.results.ledger import Ledger
 from carom.scene.forces import AppliedForce
@@ -191,6 +193,15 @@ def contact_sums(touch: np.recarray, saved: int, contacts: int) -> tuple[np.ndar
     return mode, force
 
 
+@contextmanager
+def _kept_turns(system):
+    """Put back the whole turns of angles, which reports count along the saved states."""
+    reference = system.relations.coordinates["reference"]
+    kept = reference.copy()
+    yield
+    reference[:] = kept
+
+
 def element_reactions(solution) -> np.ndarray:
     """Return what each joint, then each constraint answers with (T, E, 6), as the solver has it."""
     from carom.dynamics.reactions import reactions
@@ -199,7 +210,8 @@ def element_reactions(solution) -> np.ndarray:
     system, rec = run.compiled.system, r.trimmed(run.records, run.clock)
     out = np.zeros((len(rec.state), system.joints.size, 6))
     work = r.new_work(system, run.method.b.size)
-    reactions(system, run.options.augmentation, rec.series.t, rec.state, rec.touch, work, out)
+    with _kept_turns(system):
+        reactions(system, run.options.augmentation, rec.series.t, rec.state, rec.touch, work, out)
     return out
 
 
@@ -231,11 +243,16 @@ def joint_reactions(solution) -> np.ndarray:
 
 
 def constraint_errors(solution) -> tuple[np.ndarray, np.ndarray]:
-    """Return the largest errors of position and velocity of all joint rows at saved times."""
+    """Return the errors of position and velocity (T, R) of all rows at saved times."""
     from carom.dynamics.reactions import row_errors
 
     run = solution._run
     system, rec = run.compiled.system, r.trimmed(run.records, run.clock)
-    out = np.zeros((len(rec.state), 2))
-    row_errors(system, rec.series.t, rec.state, r.new_work(system, run.method.b.size), out)
-    return out[:, 0], out[:, 1]
+    work = r.new_work(system, run.method.b.size)
+    position, velocity = np.zeros((2, len(rec.state), system.joints.size, 6))
+    with _kept_turns(system):
+        row_errors(system, rec.series.t, rec.state, work, position, velocity)
+    counts = [len(row_units(part.definition)) for part in constrained(run.scene)]
+    rows = np.arange(6) < np.array(counts, dtype=np.int64).reshape(-1, 1)
+    position, velocity = (np.abs(e[:, : len(counts)][:, rows]) for e in (position, velocity))
+    return position, velocity

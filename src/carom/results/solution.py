@@ -10,6 +10,7 @@ import numpy as np
 
 from carom import checks
 from carom.geometry import quaternion
+from carom.results.constraint_rows import ConstraintRows, constraint_rows
 from carom.results.dense_output import between, flights
 from carom.results.drawn import Drawn
 from carom.results.event_tables import (
@@ -262,10 +263,22 @@ class Solution(Portable, Drawn):
 
     @cached_property
     def constraint_errors(self) -> tuple[np.ndarray, np.ndarray]:
-        """Largest error of the joints at each saved time: position (T,) [m] and velocity (T,) [m/s]."""
+        """How well joints and constraints are kept at saved times: position and velocity, (T, R) each.
+
+        Absolute errors of the R rows of `constraint_rows`, which names them and their units (velocities: a
+        second). The error of an angle does not count whole turns.
+        """
         from carom.results.assemble import constraint_errors
 
         return constraint_errors(self)
+
+    @cached_property
+    def constraint_rows(self) -> ConstraintRows:
+        """The R rows of joints and constraints that `constraint_errors` is of: columns `name` and `unit`.
+
+        Units are "m" or "rad"; "" where factors of your own make it (`Rows`, a `Coupling` of turns and slides).
+        """
+        return constraint_rows(self.scene)
 
     def evaluate(self, t, side: str = "right"):
         """Return (position, orientation, velocity, angular_velocity) at times between saved ones.

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 #: version of the layout of what carom reads
-FORMAT = 4
+FORMAT = 5
 CONVENTIONS = "CF-1.11"
 DOI = "10.1007/978-3-030-81166-2_44"
 CITATION = (

@@ -221,7 +221,8 @@ def _cached(arrays: _Arrays) -> dict[str, Any]:
     if "position_error" not in arrays:
         return {}
     saved = arrays.sizes["time"]
-    errors = (arrays.array(name, ("time",)) for name in ("position_error", "velocity_error"))
+    names, of = ("position_error", "velocity_error"), ("time", "constraint_row")
+    errors = (arrays.array(name, of) for name in names)
     out: dict[str, Any] = {
         "joint_reactions": np.zeros((saved, 0, 6)),
         "constraint_forces": np.zeros((saved, 0)),

@@ -208,8 +208,11 @@ def _constraints(solution) -> list[Variable]:
         ]
     if scene.joints or scene.constraints:
         position, velocity = solution.constraint_errors
+        rows, of = solution.constraint_rows, ("time", "constraint_row")
         out += [
-            Variable("position_error", ("time",), position, "m", "greatest of all joints"),
-            Variable("velocity_error", ("time",), velocity, "m s-1", "greatest of all joints"),
+            Variable("constraint_row", of[1:], rows.name, None, "rows of joints and constraints"),
+            Variable("constraint_unit", of[1:], rows.unit, None, "unit of position_error"),
+            Variable("position_error", of, position, None, "error, in constraint_unit"),
+            Variable("velocity_error", of, velocity, None, "error, in constraint_unit a second"),
         ]
     return out

@@ -6,11 +6,13 @@ import numpy as np
 
 from carom.visual.plots import figure, style
 
+ORDER = ("m", "rad", "")  # of the units
+
 
 def constraint_errors(solution, *, ax=None):
     """Draw the greatest error of joints and constraints at each saved time, of positions and of velocities.
 
-    Logarithmic; errors that are exactly zero do not show.
+    Lengths and angles apart. Logarithmic; errors that are exactly zero do not show.
 
     Parameters
     ----------
@@ -34,12 +36,17 @@ def constraint_errors(solution, *, ax=None):
     position, velocity = solution.constraint_errors
     if not whole and not np.any(position) and not np.any(velocity):
         raise ValueError(f"the system must have constraints, got {solution!r}")
-    units = (" [m]", " [m/s]") if whole else ("", "")
+    units = solution.constraint_rows.unit if whole else np.array([""])
     with figure.drawing(ax, 1, (style.COLUMN, 2.0)) as axes:
-        lines = (("positions", position, style.BLUE, "-"), ("velocities", velocity, style.RED, "-"))
-        for (name, error, colour, line), unit in zip(lines, units):
-            shown = np.where(error > 0.0, error, np.nan)
-            axes.plot(solution.t, shown, line, color=colour, lw=0.9, label=f"of {name}{unit}")
+        for unit, dashes in zip(sorted(set(units.tolist()), key=ORDER.index), ("-", "--", ":")):
+            for of, error, colour, end in (
+                ("positions", position, style.BLUE, ""),
+                ("velocities", velocity, style.RED, "/s"),
+            ):
+                greatest = error.reshape(len(solution.t), -1)[:, units == unit].max(axis=1)
+                shown = np.where(greatest > 0.0, greatest, np.nan)
+                label = f"of {of} [{unit}{end}]" if unit else f"of {of}"
+                axes.plot(solution.t, shown, dashes, color=colour, lw=0.9, label=label)
         axes.set(xlabel="time [s]", ylabel="error", xlim=solution.t[[0, -1]])
         if np.any(position > 0.0) or np.any(velocity > 0.0):
             axes.set_yscale("log")

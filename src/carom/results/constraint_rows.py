@@ -1,0 +1,64 @@
+"""The rows by which joints and constraints are kept: their names, and the units of their errors."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from carom.scene.constraints import (
+    Constraint,
+    ConstraintDefinition,
+    Coupling,
+    Driver,
+    Gear,
+    coordinate_kind,
+)
+from carom.scene.joints import Joint, JointDefinition, Screw
+from carom.scene.joints.definition import ACTIVE_POINT
+
+UNITS = {"turn": "rad", "slide": "m"}
+
+
+class ConstraintRows(NamedTuple):
+    """The R rows of all joints, and then of all constraints, in the order of the scene."""
+
+    name: (
+        np.ndarray
+    )  #: (R,) of the joint or constraint, with a number where it has several rows: ``hinge[2]``
+    unit: (
+        np.ndarray
+    )  #: (R,) of an error of position: "m", "rad", or "" where factors of your own make it
+
+
+def constrained(scene) -> list[Joint | Constraint]:
+    """Return what has rows: joints, then constraints."""
+    return [*scene.joints, *scene.constraints]
+
+
+def constraint_rows(scene) -> ConstraintRows:
+    """Return the rows of a scene."""
+    names, units = [], []
+    for part in constrained(scene):
+        own = row_units(part.definition)
+        units += own
+        many = len(own) > 1
+        names += [f"{part.name}[{k}]" if many else part.name for k in range(len(own))]
+    return ConstraintRows(np.array(names, dtype=str), np.array(units, dtype=str))
+
+
+def row_units(definition: JointDefinition | ConstraintDefinition) -> list[str]:
+    """Return the unit of each row of a joint or a constraint."""
+    if isinstance(definition, JointDefinition):
+        # first those that hold the anchor (`kinematics.rows.direction`); the third of a screw is along its axis
+        ways = ACTIVE_POINT.get(definition.guide, definition.rows) + isinstance(definition, Screw)
+        return ["m"] * ways + ["rad"] * (definition.rows - ways)
+    if isinstance(definition, Driver):
+        return [UNITS[coordinate_kind(definition.joint, definition.coordinate)]]
+    if isinstance(definition, Gear):  # the ratio makes the first coordinate what the second one is
+        joint, coordinate, _ = definition.terms[1]
+        return [UNITS[coordinate_kind(joint, coordinate)]]
+    if isinstance(definition, Coupling):
+        kinds = {coordinate_kind(joint, k) for joint, k, _ in definition.terms}
+        return [UNITS[kinds.pop()] if len(kinds) == 1 else ""]
+    return [""] * definition.rows
