@@ -14,6 +14,7 @@ from carom.model import records as r
 from carom.model.arrays import STOP
 from carom.results.accuracy import sentences
 from carom.results.constraint_rows import constrained, row_units
+from carom.results.contact_names import contact_names
 from carom.results.event_tables import ContactTable, EventTable, ImpactTable, contact_table
 from carom.results.ledger import Ledger
 from carom.scene.forces import AppliedForce
@@ -135,6 +136,7 @@ def impact_table(solution) -> ImpactTable:
         friction=contacts["friction"][c],
         wedged=(rows.phases & WEDGED) // WEDGED,
         located=1 - (rows.phases & AT_END) // AT_END,
+        **named(rows.contact, solution.scene, solution.pairs),
         **{
             name: np.array(rows[name])
             for name in (
@@ -143,6 +145,11 @@ def impact_table(solution) -> ImpactTable:
             )
         },
     )  # fmt: skip
+
+
+def named(contact: np.ndarray, scene, pairs) -> dict[str, np.ndarray]:
+    """Return the names (K,) of contacts and of the two that touch, by the number of the contact."""
+    return {name: part[contact] for name, part in contact_names(scene, pairs)._asdict().items()}
 
 
 class Nodes(NamedTuple):

@@ -14,7 +14,13 @@ CURVED = 1 << 40  # features of curved pieces are above, numbers of vertices bel
 
 
 class ImpactRecord(NamedTuple):
-    """One impact. Vectors are in contact axes (normal, tangent 1, tangent 2) unless said otherwise."""
+    """One point of an impact. Vectors are in contact axes (normal, tangent 1, tangent 2) unless said otherwise.
+
+    Where several points strike together, as both ends of an edge between two bodies, each has a record of its
+    own, for each has its own velocity, effective mass and impulse: records of the same time with `together`
+    above 1. What their impulses do adds up, and so do their energies. (Points of one body on a half-space that
+    move alike are one point, their mean, and one record. A point that gets no impulse has none.)
+    """
 
     time: float  #: [s]
     contact: int  #: number of the contact: its place in `Solution.pairs`
@@ -23,7 +29,9 @@ class ImpactRecord(NamedTuple):
     relative_velocity_before: np.ndarray  #: (3,) [m/s], approach negative
     relative_velocity_after: np.ndarray  #: (3,) [m/s]
     impulse: np.ndarray  #: (3,) on the body [N s]
-    energy_change: float  #: of the whole system [J]
+    energy_change: (
+        float  #: of the whole system [J]; of several points that strike together its share
+    )
     penetration: float  #: greatest penetration of the boundary layer, delta b [m]
     duration: float  #: in the boundary layer [s]
     law: str  #: law of restitution
@@ -33,9 +41,12 @@ class ImpactRecord(NamedTuple):
     compression_work: float  #: of the normal force [J]
     restitution_work: float  #: of the normal force [J]
     friction_loss: float  #: [J]
-    together: int  #: points that were resolved together, each with a row of its own; 1 for most
+    together: int  #: points that were resolved together, each with a record of its own; 1 for most
     wedged: int  #: 1 where friction held the pair, and its law of restitution could not be met; 0 for most
     located: int  #: 1 for most; 0 where bodies of a crowd met within a step, whose end is the time
+    name: str  #: of the contact, or of the stop; ``body-other`` of a pair that touches by default
+    body: str  #: name of the body that the impulse acts on; of a stop the child of its joint
+    other: str  #: name of the half-space or body that it strikes; of a stop the parent of its joint
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -54,6 +65,8 @@ class ImpactTable:
     >>> blow = impacts[0]
     >>> print(blow.relative_velocity_before[0].round(6), blow.relative_velocity_after[0].round(6))
     -2.801428 1.400714
+    >>> print(blow.body, "on", blow.other)
+    body1 on half_space1
     """
 
     time: np.ndarray
@@ -76,6 +89,9 @@ class ImpactTable:
     together: np.ndarray
     wedged: np.ndarray
     located: np.ndarray
+    name: np.ndarray
+    body: np.ndarray
+    other: np.ndarray
 
     def __len__(self) -> int:
         return len(self.time)
@@ -91,7 +107,7 @@ class ImpactTable:
     def __repr__(self) -> str:
         head = f"<ImpactTable: {len(self)} impacts"
         rows = [
-            f"  t = {r.time:.9f} s  contact {r.contact}  u_n {r.relative_velocity_before[0]:+.6g} -> "
+            f"  t = {r.time:.9f} s  {r.name}  u_n {r.relative_velocity_before[0]:+.6g} -> "
             f"{r.relative_velocity_after[0]:+.6g} m/s  dE = {r.energy_change:.6g} J"
             for r in (self[k] for k in range(min(len(self), 8)))
         ]

@@ -8,7 +8,8 @@ import numpy as np
 
 from carom.io.files.layout import EVENT, HELD, IMPACT, INTERVAL, LEDGER
 from carom.io.files.needs import need
-from carom.io.files.variables import attributes, contact_names, labelled
+from carom.io.files.variables import attributes, labelled
+from carom.results.contact_names import contact_names
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -34,8 +35,8 @@ class Frames(NamedTuple):
     energy: pd.DataFrame
     """Saved times down: kinetic, potential and the entries of the ledger [J]."""
     impacts: pd.DataFrame
-    """A row for each impact; vectors as columns ``impulse_n``, ``impulse_t1``, ..., ``point_x``, ...;
-    contacts by name."""
+    """A row for each point of each impact; vectors as columns ``impulse_n``, ``impulse_t1``, ...,
+    ``point_x``, ...; contact, body and other (the half-space or body that it strikes) by name."""
     events: pd.DataFrame
     """A row for each event: time, kind, contact."""
     contacts: pd.DataFrame
@@ -57,7 +58,7 @@ def to_pandas(solution) -> Frames:
     """Return the tables of a solution."""
     pandas = need("pandas", "to_pandas")
     scene = solution.scene
-    contacts = np.array([*contact_names(solution)], dtype=object)
+    contacts = contact_names(scene, solution.pairs).name.astype(object)
     bodies = np.array([body.name for body in scene.bodies], dtype=object)
     time = pandas.Index(solution.t, name="time")
     blocks = [getattr(solution, name) for name in BODY]
@@ -75,6 +76,8 @@ def to_pandas(solution) -> Frames:
     ]  # fmt: skip
     for table in tables:
         table["contact"] = contacts[table["contact"]]
+    for name in ("body", "other"):
+        tables[0][name] = getattr(solution.impacts, name).astype(object)
     forces = {"time": solution.t[tables[3].pop("saved")], **tables[3]}
     forces["body"] = bodies[forces["body"]]
     other = forces["other"]

@@ -23,6 +23,7 @@ from carom.io.files.scene_parts import scene_from_text
 from carom.io.files.sealed import Sealed, refusal, unsealed
 from carom.model import records as r
 from carom.options import Options
+from carom.results.assemble import named
 from carom.results.event_tables import ContactTable, EventTable, ImpactTable
 from carom.results.ledger import Ledger
 from carom.status import Status
@@ -94,13 +95,19 @@ def _fields(file: Sealed, scene, missing: list[str]) -> dict[str, Any]:
         "scene": scene, "settings": settings, "pairs": run.pairs, "_run": run, "_touch": records.touch,
         "cached": {
             **derived,
-            "impacts": ImpactTable(**arrays.table("impact", IMPACT)),
+            "impacts": _impacts(arrays, scene, run.pairs),
             "events": EventTable(**arrays.table("event", EVENT)),
             "contacts": ContactTable(**arrays.table("interval", INTERVAL)),
             "ledger": Ledger(derived["kinetic_energy"], derived["potential_energy"], *entries),
             **_cached(arrays),
         },
     }  # fmt: skip
+
+
+def _impacts(arrays: _Arrays, scene, pairs) -> ImpactTable:
+    """Return the table of impacts, with the names of what strikes what."""
+    columns = arrays.table("impact", IMPACT)
+    return ImpactTable(**columns, **named(columns["contact"], scene, pairs))
 
 
 def _found(arrays: _Arrays, count: int | None, stops: int) -> np.ndarray | None:

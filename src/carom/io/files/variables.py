@@ -22,6 +22,7 @@ from carom.io.files.layout import (
     table_variables,
 )
 from carom.io.files.scene_parts import scene_to_text
+from carom.results.contact_names import contact_names
 from carom.scene.joints import Distance, Spherical
 
 
@@ -101,26 +102,15 @@ def _motion(solution) -> list[Variable]:
     ]  # fmt: skip
 
 
-def contact_names(solution) -> list[str]:
-    """Return the names of all contacts in their order: those added, those by default, stops."""
-    scene, pairs = solution.scene, solution.pairs
-    bodies = scene.bodies
-    names = [contact.name for contact in scene.contacts]
-    for k in range(len(names), len(pairs.body)):
-        plane, other = pairs.plane[k], pairs.other[k]
-        second = scene.half_spaces[plane] if plane >= 0 else bodies[other]
-        names.append(f"{bodies[pairs.body[k]].name}-{second.name}")
-    return [*names, *(stop.name for stop in scene.stops)]
-
-
 def _contacts(solution) -> list[Variable]:
     scene = solution.scene
-    names, pairs = contact_names(solution), solution.pairs
-    if not names:
+    pairs = solution.pairs
+    names = contact_names(scene, pairs).name
+    if not len(names):
         return []
     none = np.full(len(scene.stops), -1)
     out = [
-        Variable("contact", ("contact",), np.array(names), None, "contacts and stops by name"),
+        Variable("contact", ("contact",), names, None, "contacts and stops by name"),
         Variable(
             "contact_body", ("contact",), np.append(pairs.body, none), "1",
             "place of its body among all bodies, from 0; -1 of a stop",

@@ -54,7 +54,7 @@ def strikes_of(solution, listed: int = LISTED) -> Strikes:
         if c < stops:
             axes = _axes(impacts.normal[k], bool(pairs.plane[c] >= 0))
             arrow[row] = impacts.impulse[k] @ axes
-    names = [_name(scene, pairs, impacts.contact[k]) for k in chosen]
+    names = impacts.name[chosen].tolist()
     turning = [c >= stops and _turns(scene.stops[c - stops]) for c in impacts.contact[chosen]]
     return Strikes(chosen, arrow, names, np.array(turning, dtype=bool))
 
@@ -103,14 +103,3 @@ def _axes(normal: np.ndarray, of_plane: bool) -> np.ndarray:
 
 def _turns(stop) -> bool:
     return coordinate_kind(stop.joint, stop.coordinate) == "turn"
-
-
-def _name(scene, pairs, contact: int) -> str:
-    """Return the name of a contact or stop."""
-    if contact < len(scene.contacts):
-        return scene.contacts[contact].name
-    if contact >= len(pairs.body):
-        return scene.stops[contact - len(pairs.body)].name
-    plane = pairs.plane[contact]
-    other = scene.half_spaces[plane] if plane >= 0 else scene.bodies[pairs.other[contact]]
-    return f"{scene.bodies[pairs.body[contact]].name}-{other.name}"

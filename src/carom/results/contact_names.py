@@ -1,0 +1,34 @@
+"""What touches what, in words: names of contacts and stops, and of the two that each is between."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+
+class ContactNames(NamedTuple):
+    """All contacts of a run in the order of their numbers, and then the stops of joints."""
+
+    name: np.ndarray  #: (C,) of the contact; ``body-other`` of one by default
+    body: np.ndarray  #: (C,) of a stop the child of its joint
+    other: np.ndarray  #: (C,) the half-space or body; of a stop the parent of its joint
+
+
+def contact_names(scene, pairs) -> ContactNames:
+    """Return the names of all contacts of a scene (`pairs` of the run), and of its stops."""
+    bodies = [body.name for body in scene.bodies]
+    planes = [plane.name for plane in scene.half_spaces]
+    body = [bodies[b] for b in pairs.body.tolist()]
+    other = [
+        planes[h] if h >= 0 else bodies[b]
+        for b, h in zip(pairs.other.tolist(), pairs.plane.tolist())
+    ]
+    own = [contact.name for contact in scene.contacts]
+    name = own + [f"{b}-{o}" for b, o in zip(body[len(own) :], other[len(own) :])]
+    joints = [stop.joint for stop in scene.stops]
+    return ContactNames(
+        np.array([*name, *(stop.name for stop in scene.stops)], dtype=str),
+        np.array([*body, *(joint.child.name for joint in joints)], dtype=str),
+        np.array([*other, *(joint.parent.name for joint in joints)], dtype=str),
+    )
