@@ -47,6 +47,25 @@ def test_what_a_call_costs_besides_steps_cancels(monkeypatch):
     assert measure.per_step(run, 4, 20, rounds=2) == [0.5, 0.5]
 
 
+@pytest.mark.parametrize("noisy", [4, 1000])
+def test_what_noise_hides_is_measured_longer_or_not_at_all(monkeypatch, noisy):
+    """A clock that goes back in the first calls, by more than steps take: up to ten times as many rounds."""
+    now, calls = [0.0], [0]
+    monkeypatch.setattr(measure, "clock", lambda: now[0])
+
+    def run(steps):
+        calls[0] += 1
+        now[0] += 0.5 * steps - (100.0 if calls[0] < 2 * noisy and steps == 20 else 0.0)
+
+    found = measure.per_step(run, 4, 20, rounds=2)
+    if noisy == 4:
+        assert 2 < len(found) < 20
+        assert measure.spread(found).low > 0.0
+    else:
+        assert len(found) == 20
+        assert measure.spread(found).text() == "lost in noise"
+
+
 def test_height_of_the_ball():
     """At 0 and after each period 2 sqrt(2h/g) it is at the top, half-way between on the floor."""
     half = math.sqrt(2 * 0.4 / 9.81)

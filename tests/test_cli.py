@@ -186,6 +186,31 @@ def test_interrupted_simulate_keeps_the_run_and_resumes(made, capsys, monkeypatc
     np.testing.assert_array_equal(runs[0].position, runs[1].position)
 
 
+def test_a_finished_run_goes_on(made, capsys):
+    out, straight = made / "short.h5", made / "whole.h5"
+    command = ["simulate", str(made / "die.py"), "--step", "0.001"]
+    assert main([*command, "-d", "0.1", "-o", str(out)]) == OK
+    assert main(["simulate", "--resume", str(out), "-d", "0.2"]) == OK
+    assert "t = 0 to 0.2 s" in capsys.readouterr().out
+    assert main([*command, "-d", "0.2", "-o", str(straight)]) == OK
+    runs = [carom.Solution.load(path) for path in (out, straight)]
+    np.testing.assert_array_equal(runs[0].position, runs[1].position)
+    assert main(["simulate", "--resume", str(out), "-d", "0.1"]) == USAGE
+    assert "duration must be finite and above 0.2" in one_line(capsys)
+
+
+def test_the_suffix_of_out_decides(made, capsys):
+    command = ["simulate", str(made / "die.py"), "-d", "0.1", "-o"]
+    assert main([*command, str(made / "die.csv")]) == OK
+    head = (made / "die.csv").read_text().splitlines()[0]
+    assert head.startswith("time,die.x,die.y,die.z,die.qw")
+    assert (made / "die.impacts.csv").read_text().startswith("time,contact,")
+    capsys.readouterr()
+    assert main([*command, str(made / "die.xlsx")]) == USAGE
+    assert "--out must end in .nc, .h5, .hdf5" in one_line(capsys)
+    assert not (made / "die.xlsx").exists()
+
+
 def test_functions_of_a_scene_by_their_names_in_files():
     scene = carom.Scene()
     body = scene.add_body(carom.Sphere(0.1), mass=1.0, position=(0, 0, 1))

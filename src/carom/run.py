@@ -29,7 +29,7 @@ from carom.status import Status
 from carom.stepping import record, time_loop
 from carom.stepping.crowd.layout import SPOTS, new_crowd, no_crowd, roomier_crowd
 from carom.stepping.energy_balance import SHARE, new_watch
-from carom.stepping.grid import STATES, Grid, longest_step, make_grid
+from carom.stepping.grid import STATES, Grid, longer_grid, longest_step, make_grid
 from carom.stepping.islands.layout import (
     has_events,
     new_islands,
@@ -88,9 +88,17 @@ class Run:
         self.begin()
 
     def make_grid(self) -> Grid:
-        """Return the steps of the run."""
+        """Return the steps of the run; one that goes on has those that it had, and then more of them."""
+        first, *later = *self.how.earlier, self.how.duration
+        grid = self.first_grid(first)
+        for begin, end in zip((first, *later), later):
+            grid = longer_grid(grid, begin, end)
+        return grid
+
+    def first_grid(self, duration: float) -> Grid:
+        """Return the steps of a run of this duration."""
         how, later = self.how, self.compiled.later is not None
-        duration, save_at, save_every = how.duration, how.save_at, how.save_every
+        save_at, save_every = how.save_at, how.save_every
         if how.step is not None:
             return make_grid(duration, how.step, save_every, save_at)
         longest = longest_step(

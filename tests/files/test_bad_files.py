@@ -57,13 +57,16 @@ def test_truncated(part, path):
 
 
 def test_newer_format(path, monkeypatch):
-    monkeypatch.setattr(sealed, "FORMAT", 5)
+    newer = sealed.FORMAT + 1
+    monkeypatch.setattr(sealed, "FORMAT", newer)
     rewrite_as_it_is = path.read_bytes()[: -sealed.LENGTH]
-    line = (sealed.BEFORE % (5, 0)).encode()
+    line = (sealed.BEFORE % (newer, 0)).encode()
     digest = sealed.hashlib.sha256(rewrite_as_it_is + line).hexdigest()
     path.write_bytes(rewrite_as_it_is + line + f"{digest}\n".encode())
     monkeypatch.undo()
-    with pytest.raises(ValueError, match=r"in format 4, got .* in format 5: update carom"):
+    with pytest.raises(
+        ValueError, match=rf"in format {newer - 1}, got .* in format {newer}: update"
+    ):
         carom.Solution.load(path)
 
 

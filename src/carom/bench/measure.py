@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime
 import importlib
+import math
 import os
 import platform
 import statistics
@@ -15,6 +16,7 @@ from types import ModuleType
 from typing import Any, NamedTuple
 
 ROUNDS = 5
+PATIENCE = 10  # times as many rounds as were asked for, at most
 PEERS = ("mujoco", "pybullet")
 
 #: Processor time: what is measured runs in one thread, and others use the machine too.
@@ -31,6 +33,8 @@ class Spread(NamedTuple):
 
     def text(self, unit: float = 1.0, digits: int = 3) -> str:
         """Return ``median (quartile to quartile)``, in units of `unit`."""
+        if math.isnan(self.median):
+            return "lost in noise"
         mid, low, high = (value / unit for value in self[:3])
         return f"{mid:.{digits}g} ({low:.{digits}g} to {high:.{digits}g})"
 
@@ -59,18 +63,21 @@ def seconds(
 def per_step(run: Callable[[int], Any], few: int, many: int, rounds: int = ROUNDS) -> list[float]:
     """Return the time [s] of one more step: ``run(many)`` against ``run(few)``, each round anew.
 
-    What a call costs besides its steps (setting up, handing back) cancels.
+    What a call costs besides its steps (setting up, handing back) cancels. Where the lower quartile is not
+    above 0 there are up to `PATIENCE` times as many rounds; nan where that does not help.
     """
     run(few)
     slopes = []
-    for _ in range(rounds):
+    while len(slopes) < rounds or (
+        len(slopes) < PATIENCE * rounds and not spread(slopes).low > 0.0
+    ):
         times = []
         for steps in (few, many):
             begin = clock()
             run(steps)
             times.append(clock() - begin)
         slopes.append((times[1] - times[0]) / (many - few))
-    return slopes
+    return slopes if spread(slopes).low > 0.0 else [math.nan] * len(slopes)
 
 
 def stepper(scene, step: float, **how) -> Callable[[int], Any]:

@@ -25,8 +25,8 @@ def run(
         Path | None,
         typer.Option(
             "--out", "-o", metavar="FILE", show_default=False,
-            help="File for the result (netCDF-4, which is HDF5), written as the run goes. Without it nothing is"
-            " kept.",
+            help="File for the result: .nc or .h5 (all of it, written as the run goes), .csv or .parquet (its"
+            " tables, written at the end). Without it nothing is kept.",
         ),
     ] = None,
     duration: Annotated[
@@ -69,8 +69,8 @@ def run(
         Path | None,
         typer.Option(
             exists=True, dir_okay=False, metavar="FILE", show_default=False,
-            help="Go on with the interrupted run in this file. SCENE is only needed where the scene has"
-            " functions of yours, which files do not hold.",
+            help="Go on with the interrupted run in this file, or with --duration beyond the end of a finished"
+            " one. SCENE is only needed where the scene has functions of yours, which files do not hold.",
         ),
     ] = None,
     force: Annotated[bool, typer.Option("--force", help="Write over a FILE that is there.")] = False,
@@ -98,6 +98,7 @@ def run(
       carom simulate die.py -o die.h5 --duration 2
       carom simulate die.py -o die.h5 --duration 2 --rtol 1e-10 --save-at 0.001
       carom simulate --resume die.h5
+      carom simulate --resume die.h5 --duration 4        on to 4 s
       carom simulate die.h5 -o finer.h5 --rtol 1e-10     the same scene again
       carom simulate robot.xml -o robot.h5 -d 5 --restitution 0.3 --friction 0.5
 
@@ -118,7 +119,7 @@ def run(
     begin = time.perf_counter()
     if resume is not None:
         out = resume
-        solution = _go_on(resume, scene, {**given, **model}, save_seconds)
+        solution = _go_on(resume, scene, duration, {**given, **model}, save_seconds)
     else:
         solution = _start(scene, out, {k: v for k, v in given.items() if v is not None}, model,
                           save_seconds, force)  # fmt: skip
@@ -136,6 +137,7 @@ def _step(given: str | None) -> float | str | None:
 
 def _start(scene, out, given: dict[str, Any], model, save_seconds: float, force: bool):
     import carom
+    from carom.io.files.tables import is_table
 
     if scene is None:
         raise Refused(
@@ -146,6 +148,10 @@ def _start(scene, out, given: dict[str, Any], model, save_seconds: float, force:
             f"--out must be a new file, got {str(out)!r}; --force writes over it, and "
             f"'carom simulate --resume {out}' goes on with an interrupted run"
         )
+    try:
+        tables = out is not None and is_table(out)
+    except ValueError as error:
+        raise Refused(str(error).replace("path must", "--out must", 1)) from None
     found = scenes.load(scene, **model)
     kept = {k: v for k, v in found.settings.items() if k in _SETTINGS and v is not None}
     for name, others in _INSTEAD.items():
@@ -156,10 +162,13 @@ def _start(scene, out, given: dict[str, Any], model, save_seconds: float, force:
         raise Refused("--duration must be given [s]")
     duration = settings.pop("duration")
     with show.progress("simulate") as bar:
-        return carom.simulate(
-            found.scene, duration, progress=bar, throw=False, save=out, save_seconds=save_seconds,
-            **settings,
+        solution = carom.simulate(
+            found.scene, duration, progress=bar, throw=False, save=None if tables else out,
+            save_seconds=save_seconds, **settings,
         )  # fmt: skip
+    if out is not None and tables:
+        solution.save(out)
+    return solution
 
 
 #: what a result file knows of how it was made, and a new run takes over
@@ -173,21 +182,24 @@ _INSTEAD = {
 }  # fmt: skip
 
 
-def _go_on(path: Path, scene, given: dict[str, Any], save_seconds: float):
+def _go_on(path: Path, scene, duration: float | None, given: dict[str, Any], save_seconds: float):
     import carom
 
-    if any(value is not None for value in given.values()):
-        name = next(k for k, v in given.items() if v is not None).replace("_", "-")
+    names = [k for k, v in given.items() if v is not None and k != "duration"]
+    if names:
+        name = names[0].replace("_", "-")
         raise Refused(f"--{name} must be left out with --resume: the run goes on as it was begun")
     mine = scenes.functions(scenes.load(scene).scene) if scene is not None else None
     with show.progress("resume") as bar:
         return carom.resume(
-            path, functions=mine or None, progress=bar, throw=False, save_seconds=save_seconds
-        )
+            path, duration=duration, functions=mine or None, progress=bar, throw=False,
+            save_seconds=save_seconds,
+        )  # fmt: skip
 
 
 def _end(solution, out: Path | None, scene: Path | None, seconds: float, json: bool) -> int:
     """Say what came of it; return the exit code."""
+    from carom.io.files.tables import TABLES
     from carom.status import Status
 
     facts = {
@@ -209,8 +221,8 @@ def _end(solution, out: Path | None, scene: Path | None, seconds: float, json: b
     if solution.status is not Status.INTERRUPTED:
         warn("simulate", solution.message)
         return FAILED
-    more = "nothing was kept, which needs -o FILE"
-    if out is not None:
+    more = "nothing was kept to go on with, which needs -o FILE.nc"
+    if out is not None and out.suffix.lower() not in TABLES:
         also = f" {scene}" if scene is not None and _has_functions(solution) else ""
         more = f"go on with: carom simulate --resume {out}{also}"
     warn("simulate", f"interrupted at t = {facts['reached']:g} s; {more}")

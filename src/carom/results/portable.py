@@ -16,32 +16,44 @@ class Portable:
     """Saving, loading and converting a `Solution`; needs ``carom[files]``."""
 
     def save(self, path: str | os.PathLike) -> None:
-        """Write all of the run to one netCDF-4 (HDF5) file, which needs no carom to be read.
+        """Write the run to a file, whose suffix says what: all of it, or tables.
 
-        With labelled dimensions, units, the tables of impacts, events and persistent contacts, the ledger,
+        ``.nc`` and ``.h5``: all of the run in one netCDF-4 (HDF5) file, which needs no carom to be read, with
+        labelled dimensions, units, the tables of impacts, events and persistent contacts, the ledger,
         reactions and coordinates of joints, the scene as JSON, settings, options, version and citation. The
         file appears when it is complete, in the place of what was there, and has a digest of all its bytes.
         (How to: keep results in files.)
 
+        ``.csv`` and ``.parquet``: the tables of `to_pandas`. The motion of the bodies goes to this file
+        (columns ``time``, ``die.x``, ...), the others beside it, as ``run.impacts.csv``. `load` does not read
+        them.
+
         Parameters
         ----------
         path : str or path
-            In a folder that exists; ``.nc`` is what other programs expect.
+            In a folder that exists, with one of these suffixes (or ``.hdf5``).
 
         Raises
         ------
         ImportError
-            Without h5netcdf.
+            Without h5netcdf (``.nc``), pandas (tables), pyarrow (``.parquet``).
         OSError
             If it cannot be written, as on a full disk; what was there is as it was.
         ValueError
-            If the folder is not there.
+            If the folder is not there, or the suffix is another one.
         """
-        from carom.io.files.keeper import checked_path
+        from carom import checks
+        from carom.io.files.checkpoint import state_at_end
+        from carom.io.files.needs import need
+        from carom.io.files.tables import is_table, write_tables
         from carom.io.files.writing import write
 
-        where = checked_path(path, "path")
-        write(where, self, getattr(self._run, "checkpoint", None))  # pyright: ignore
+        where = checks.file_to_write("path", path)
+        if is_table(where):
+            write_tables(where, self)
+            return
+        need("h5netcdf", "saving a run")
+        write(where, self, state_at_end(self))
 
     @classmethod
     def load(

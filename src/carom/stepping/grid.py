@@ -74,6 +74,27 @@ def _grid_of_times(times: np.ndarray, duration: float, longest: float) -> Grid:
     return Grid(float(np.max(np.diff(ends))), len(ends) - 1, 0, ends, saves)
 
 
+def longer_grid(grid: Grid, duration: float, end: float) -> Grid:
+    """Return the steps of a run that goes on from `duration` to `end`: those that it had, and more like them.
+
+    Where the last one was whole, and its end is saved in any case, they are those of a run of this length.
+    """
+    whole = grid.last * grid.interval == duration and grid.last % max(1, grid.save_every) == 0
+    if whole and not len(grid.ends):
+        return grid._replace(last=count(end, grid.interval))
+    ends, saves = grid.ends, grid.saves
+    if not len(ends):
+        steps = np.arange(grid.last + 1)
+        ends = np.append(steps[:-1] * grid.interval, duration)
+        saves = np.where((steps % grid.save_every == 0) | (steps == grid.last), 1, 0)
+    more = np.arange(1, count(end - duration, grid.interval) + 1)
+    every = max(1, grid.save_every)  # 0 with times to save at: all that come after them are saved
+    ends = np.append(ends, duration + more * grid.interval)
+    ends[-1] = end
+    saves = np.append(saves, (more % every == 0) | (more == more[-1])).astype(np.int64)
+    return Grid(grid.interval, len(ends) - 1, grid.save_every, ends, saves)
+
+
 def longest_step(
     system: System, start: np.recarray, duration: float, most: float | None, more: bool
 ) -> float:

@@ -41,6 +41,9 @@ class Settings(NamedTuple):
     rtol: float  # where tolerances choose; else 0
     atol: float | None  # None: `rtol` of the size of the smallest body
     options: Options
+    earlier: tuple[
+        float, ...
+    ] = ()  # durations that the run had before it went on to the present one
 
     @property
     def adapts(self) -> bool:
@@ -51,6 +54,8 @@ class Settings(NamedTuple):
         """All but the options, by name, and no tolerances where the step was given."""
         known = self._asdict()
         del known["options"]
+        if not self.earlier:
+            del known["earlier"]
         if self.step is None:
             known["step"] = "auto"
         else:
@@ -61,7 +66,7 @@ class Settings(NamedTuple):
 def settings_of(known: dict, options: Options) -> Settings:
     """Return the settings that `Settings.as_dict` has written."""
     given: dict[str, Any] = {name: known.get(name) for name in Settings._fields}
-    given["options"] = options
+    given["options"], given["earlier"] = options, tuple(known.get("earlier", ()))
     if given["step"] == "auto":
         given["step"] = None
     else:

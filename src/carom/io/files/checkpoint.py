@@ -68,6 +68,15 @@ def capture(run) -> Checkpoint | None:
     return Checkpoint(found, {name: array.copy() for name, array in _arrays(run)})
 
 
+def state_at_end(solution) -> Checkpoint | None:
+    """Return where the run of a finished solution stands; None if it has gone on since."""
+    run = solution._run
+    if hasattr(run, "checkpoint"):  # from a file
+        return run.checkpoint
+    stands = solution.status.ended and run.reached == solution.t[-1]
+    return capture(run) if stands else None
+
+
 def restore(run, checkpoint: Checkpoint, records: r.Records) -> None:
     """Put a new run of the same scene where another one stood; `records` are what that had written.
 

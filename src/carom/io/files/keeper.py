@@ -11,6 +11,7 @@ from carom import checks
 from carom.io.files.checkpoint import Checkpoint, capture
 from carom.io.files.needs import need
 from carom.io.files.scene_parts import scene_to_text
+from carom.io.files.tables import RUN, TABLES
 from carom.io.files.writing import write
 from carom.results.solution import Solution
 from carom.status import Status
@@ -56,8 +57,8 @@ class Keeper:
         self.checkpoint = capture(self.run) or self.checkpoint
 
     def finish(self, solution: Solution) -> Exception | None:
-        """Write the end, with a checkpoint only if it was interrupted; return what went wrong."""
-        going_on = solution.status is Status.INTERRUPTED
+        """Write the end, with where the run stands unless it failed; return what went wrong."""
+        going_on = solution.status is Status.INTERRUPTED or solution.status.ended
         try:
             write(self.path, solution, self.checkpoint if going_on else None)
         except Exception as error:
@@ -65,7 +66,14 @@ class Keeper:
         return None
 
 
-def checked_path(path: str | os.PathLike, name: str = "save") -> Path:
-    """Return the path of a file to be written; refuse one whose folder is not there, before anything runs."""
+def checked_path(path: str | os.PathLike) -> Path:
+    """Return the path of a file that a run is saved to as it goes; refuse another before anything runs."""
     need("h5netcdf", "saving a run")
-    return checks.file_to_write(name, path)
+    where = checks.file_to_write("save", path)
+    if where.suffix.lower() not in RUN:
+        tables = f"; tables are written at the end: Solution.save({str(where)!r})"
+        raise ValueError(
+            f"save must end in {', '.join(RUN)}, got {str(where)!r}"
+            f"{tables if where.suffix.lower() in TABLES else ''}"
+        )
+    return where

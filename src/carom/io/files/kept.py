@@ -39,21 +39,29 @@ class KeptRun:
         clock.struck, clock.event = len(records.impact), len(records.event)
         clock.snapped = len(records.snapshot)
 
-    def revived(self):
-        """Return a run that stands where the checkpoint says."""
-        run = run_again(self.scene, self.settings, self.options)
+    def revived(self, duration: float | None = None, stand: bool = True):
+        """Return a run that stands where the checkpoint says, or (not `stand`) at the start.
+
+        With a duration it is to go on to that time.
+        """
+        settings = self.settings
+        if duration is not None:
+            earlier = (*settings.get("earlier", ()), settings["duration"])
+            settings = {**settings, "earlier": earlier, "duration": duration}
+        run = run_again(self.scene, settings, self.options)
         if (run.found is None) != (self.found is None):
             raise ValueError("the file was written by another version of carom")
         if self.found is not None:  # it may have stood where it is earlier than the records end
-            known = None if self.checkpoint is None else self.checkpoint.found["pairs"]
+            known = self.checkpoint.found["pairs"] if self.checkpoint and stand else None
             run.add_pairs(self.found[:known])
-        if self.checkpoint is not None:
+        if self.checkpoint is not None and stand:
             restore(run, self.checkpoint, self.records)
         return run
 
     @cached_property
     def _run(self):
-        return self.revived()
+        # of one that has ended what is compiled is enough, by any version of carom
+        return self.revived(stand=self.attributes["status"] == "INTERRUPTED")
 
     @cached_property
     def compiled(self):

@@ -130,7 +130,14 @@ def _settings(given: dict, options: Options) -> dict:
         save_every=given["save_every"], save_at=save_at, rtol=given.get("rtol"), atol=given.get("atol"),
         options=options,
     )  # fmt: skip
-    return {**given, "save_at": tuple(save_at) if isinstance(save_at, list) else save_at}
+    known = {**given, "save_at": tuple(save_at) if isinstance(save_at, list) else save_at}
+    if "earlier" in given:
+        known["earlier"] = tuple(
+            checks.number("earlier", one, above=0.0) for one in given["earlier"]
+        )
+        if not np.all(np.diff((*known["earlier"], given["duration"])) > 0.0):
+            raise ValueError(f"durations must rise, got {known['earlier']}, {given['duration']}")
+    return known
 
 
 class _Arrays:

@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
+from carom import checks
 from carom.io.files.kept import KeptRun
 from carom.results.solution import Solution
 from carom.status import Status
@@ -14,12 +15,13 @@ from carom.status import Status
 def resume(
     path: str | os.PathLike,
     *,
+    duration: float | None = None,
     functions: Mapping[str, Callable] | None = None,
     save_seconds: float = 60.0,
     progress: bool | Callable[[float, float], None] | None = None,
     throw: bool = True,
 ) -> Solution:
-    """Go on with a run that `simulate` was saving when it ended before its time.
+    """Go on with a run that `simulate` was saving when it was interrupted, or beyond its end.
 
     With the same version of carom on the same machine the result is that of a run without interruption, bit
     for bit. It is saved to the same file. The state that it goes on from is taken from the file as it is: go on
@@ -28,7 +30,10 @@ def resume(
     Parameters
     ----------
     path : str or path
-        File of ``simulate(..., save=path)``. A run that has reached its end is returned as it is.
+        File of ``simulate(..., save=path)``, or of `Solution.save`.
+    duration : float, optional
+        Time from the start to go on to [s], beyond what the run was to reach. States are saved as often as
+        before. Default: what the run was to reach; if it has, it is returned as it is.
     functions : mapping, optional
         Functions of the user's that the scene has, which the file cannot hold: ``"part.field"`` (as in
         ``"motor.force"``) to function. What they remember themselves between calls is not restored.
@@ -43,7 +48,7 @@ def resume(
     ------
     ValueError
         If the file is not that of a run, holds no checkpoint, or one of another version of carom; if
-        functions of the scene are missing, or one is none of it.
+        `duration` is not beyond that of the run; if functions of the scene are missing, or one is none of it.
     SimulationError
         If the run fails later on and `throw` is True.
     """
@@ -54,14 +59,19 @@ def resume(
     check_handling(progress, throw, save_seconds)
 
     solution = Solution.load(path, functions=functions)
-    if solution.status.ended:
-        return solution
     kept = solution._run
     assert isinstance(kept, KeptRun)
-    if solution.status is not Status.INTERRUPTED or kept.checkpoint is None:
+    if duration is not None:
+        duration = checks.number(
+            "duration", duration, above=solution.settings["duration"], unit="s"
+        )
+    elif solution.status.ended:
+        return solution
+    going_on = solution.status is Status.INTERRUPTED or solution.status.ended
+    if not going_on or kept.checkpoint is None:
         why = (
             "it holds no checkpoint, which simulate(save=...) writes"
-            if solution.status is Status.INTERRUPTED
+            if going_on
             else f"it ended by itself: {solution.message}"
         )
         raise ValueError(f"path must be a file of a run to go on with, got {str(path)!r}: {why}")
@@ -69,7 +79,7 @@ def resume(
         names = ", ".join(map(repr, kept.missing))
         raise ValueError(f"functions must be given for {names}, which the file does not hold")
     try:
-        run = kept.revived()
+        run = kept.revived(duration)
     except ValueError as error:
         raise ValueError(f"path must be a run of this carom, got {str(path)!r}: {error}") from error
     return finish(run, progress, Keeper(run, Path(path), save_seconds), throw)
