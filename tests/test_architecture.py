@@ -18,7 +18,6 @@ ORDER = (
 DOORS = {
     ("scene.scene", "dynamics.mobility"),
     ("scene.contacts", "collision.api"),
-    ("results.portable", "io.files.keeper"),
     ("results.portable", "io.files.writing"),
     ("results.portable", "io.files.reading"),
     ("results.portable", "io.files.convert"),

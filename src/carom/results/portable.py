@@ -42,18 +42,9 @@ class Portable:
         ValueError
             If the folder is not there, or the suffix is another one.
         """
-        from carom import checks
-        from carom.io.files.checkpoint import state_at_end
-        from carom.io.files.needs import need
-        from carom.io.files.tables import is_table, write_tables
-        from carom.io.files.writing import write
+        from carom.io.files.writing import save
 
-        where = checks.file_to_write("path", path)
-        if is_table(where):
-            write_tables(where, self)
-            return
-        need("h5netcdf", "saving a run")
-        write(where, self, state_at_end(self))
+        save(path, self)
 
     @classmethod
     def load(

@@ -7,18 +7,31 @@ version 2.0 ends the process.)
 from __future__ import annotations
 
 import io
+import os
 from pathlib import Path
 
 import numpy as np
 
+from carom import checks
 from carom.io.files import raw
-from carom.io.files.checkpoint import Checkpoint, packed
+from carom.io.files.checkpoint import Checkpoint, packed, state_at_end
 from carom.io.files.disk import put
 from carom.io.files.layout import Variable
 from carom.io.files.needs import need
 from carom.io.files.sealed import seal
+from carom.io.files.tables import is_table, write_tables
 from carom.io.files.variables import attributes, labelled
 from carom.model import records as r
+
+
+def save(path: str | os.PathLike, solution) -> None:
+    """Write a solution to a file, whose suffix says how; see `Solution.save`."""
+    where = checks.file_to_write("path", path)
+    if is_table(where):
+        write_tables(where, solution)
+        return
+    need("h5netcdf", "saving a run")
+    write(where, solution, state_at_end(solution))
 
 
 def write(path: Path, solution, checkpoint: Checkpoint | None = None, whole: bool = True) -> None:
