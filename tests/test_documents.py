@@ -162,7 +162,7 @@ MODULES = (
 SHOWN = [
     "Scene", "Scene.add_body", "Scene.add_contact", "Scene.add_joint", "Scene.check", "simulate",
     "Solution", "results.event_tables.ImpactTable", "resolve_impact", "impact_layer", "ensemble",
-    "sensitivities", "solve_contacts",
+    "sensitivities", "solve_contacts", "euler", "axis_angle",
 ]  # fmt: skip
 
 

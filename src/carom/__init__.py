@@ -10,6 +10,7 @@ import importlib
 from typing import TYPE_CHECKING
 
 from carom.generalized import GeneralizedSystem
+from carom.geometry.attitude import axis_angle, euler
 from carom.options import Options
 from carom.results.solution import Solution
 from carom.scene import (
@@ -77,10 +78,12 @@ __all__ = [
     "Sphere",
     "Status",
     "UniformOrientation",
+    "axis_angle",
     "baselines",
     "constraints",
     "contact_sequence",
     "ensemble",
+    "euler",
     "film",
     "forces",
     "identify",

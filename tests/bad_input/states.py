@@ -65,6 +65,8 @@ def stated():
             kind(**given).support, dict(direction=three),
         )  # fmt: skip
     found |= {
+        "euler": lambda: (carom.euler, dict(axes="zyx", angles=(90.0, 0.0, 30.0))),
+        "axis_angle": lambda: (carom.axis_angle, dict(axis=three, angle=90.0)),
         "Material": lambda: (carom.Material, number),
         "ContactLaw": lambda: (carom.scene.ContactLaw, {**number, **words}),
         "Options": lambda: (

@@ -110,7 +110,7 @@ BAD_BODIES = [
     ),
     ({"orientation": (1, 1, 0, 0)}, "got (1, 1, 0, 0) of length 1.41421356"),
     ({"orientation": (1, 0, 0, math.nan)}, "orientation must be finite, got (1, 0, 0, nan)"),
-    ({"orientation": (1, 0, 0)}, "orientation must have shape (4,), got shape (3,)"),
+    ({"orientation": (1, 0, 0)}, "or a SciPy Rotation, got shape (3,)"),
     *[
         ({name: bad}, f"{name} must {message}")
         for name in ("position", "velocity", "angular_velocity")

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from carom import checks
 from carom._compiled.record_arrays import Columns
+from carom.geometry.attitude import attitude
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,7 @@ def nearest_points(shape_a, pose_a, shape_b, pose_b) -> PairPoint:
     shape_a, shape_b
         Of one or several convex pieces.
     pose_a, pose_b : ((3,), (4,))
-        Position [m] and orientation (w, x, y, z) in the world.
+        Position [m] and orientation in the world, as of `Scene.add_body`.
     """
     best = None
     for points in _touches(shape_a, pose_a, shape_b, pose_b, 0.0):
@@ -97,4 +98,4 @@ def _workspace():
 def pair_pose(name: str, pose: tuple[ArrayLike, ArrayLike]) -> tuple[np.ndarray, np.ndarray]:
     """Return a checked pose."""
     x, q = pose
-    return checks.finite_array(f"{name}[0]", x, (3,)), checks.unit_quaternion(f"{name}[1]", q)
+    return checks.finite_array(f"{name}[0]", x, (3,)), attitude(f"{name}[1]", q)

@@ -8,6 +8,7 @@ from typing import ClassVar
 import numpy as np
 
 from carom import checks
+from carom.geometry.attitude import attitude
 from carom.scene.inertia import inertia_matrix
 from carom.scene.materials import Material
 from carom.scene.shapes import SHAPES, Shape
@@ -128,7 +129,7 @@ def make_body(
         mass=mass,
         inertia=inertia_matrix(inertia),
         position=point("position", position),
-        orientation=checks.unit_quaternion("orientation", orientation),
+        orientation=attitude("orientation", orientation),
         velocity=point("velocity", velocity),
         angular_velocity=point("angular_velocity", angular_velocity),
         material=_material(material),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from numpy.typing import ArrayLike
 
 from carom import checks
@@ -17,6 +19,9 @@ from carom.scene.shapes import Shape
 from carom.scene.stops import Stop, make_stop
 from carom.scene.summary import counts, summary
 from carom.scene.touching import TouchingPairs
+
+if TYPE_CHECKING:
+    from carom.geometry.attitude import Orientation
 
 
 class Scene(TouchingPairs):
@@ -78,7 +83,7 @@ class Scene(TouchingPairs):
         density: float | None = None,
         inertia: ArrayLike | None = None,
         position: ArrayLike = (0.0, 0.0, 0.0),
-        orientation: ArrayLike = (1.0, 0.0, 0.0, 0.0),
+        orientation: Orientation = (1.0, 0.0, 0.0, 0.0),
         velocity: ArrayLike = (0.0, 0.0, 0.0),
         angular_velocity: ArrayLike = (0.0, 0.0, 0.0),
         material: Material | None = None,
@@ -98,8 +103,10 @@ class Scene(TouchingPairs):
             mass centre [kg m^2]. Default: that of the solid shape; needed where there is none.
         position : (3,)
             Of the mass centre, in the world [m].
-        orientation : (4,)
-            Unit quaternion (w, x, y, z), body to world.
+        orientation : (4,), (3, 3) or scipy.spatial.transform.Rotation
+            Body to world: a unit quaternion (w, x, y, z) with the scalar first, a rotation matrix, or a SciPy
+            Rotation. `carom.euler` and `carom.axis_angle` make one from angles in degrees. What is off by less
+            than 1e-3, like (0.7071, 0, 0, 0.7071), is taken for rounding and normalised.
         velocity : (3,)
             Of the mass centre, in world axes [m/s].
         angular_velocity : (3,)
@@ -136,8 +143,8 @@ class Scene(TouchingPairs):
         parent: Body | Ground,
         child: Body,
         *,
-        parent_frame: tuple[ArrayLike, ArrayLike] | None = None,
-        child_frame: tuple[ArrayLike, ArrayLike] | None = None,
+        parent_frame: tuple[ArrayLike, Orientation] | None = None,
+        child_frame: tuple[ArrayLike, Orientation] | None = None,
         name: str | None = None,
     ) -> Joint:
         """Join two bodies, or a body and the ground.
@@ -153,10 +160,10 @@ class Scene(TouchingPairs):
             Another body.
         parent_frame, child_frame
             Where that frame is in the parent (in the world, of the ground) and in the child: a pair (position
-            (3,), unit quaternion (4,)) in body axes, from the mass centre. Coordinates of the joint are 0 where
-            the two agree. The bodies need not be placed so that they fit: `Options(project_start=True)` brings
-            them together, else a start that does not fit is refused. Default None: the definition is in the
-            world.
+            (3,), orientation as of `add_body`) in body axes, from the mass centre. Coordinates of the joint are
+            0 where the two agree. The bodies need not be placed so that they fit:
+            `Options(project_start=True)` brings them together, else a start that does not fit is refused.
+            Default None: the definition is in the world.
         name
             Default ``"joint1"``, ``"joint2"``, ...
 

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from carom.checks import listed, shown, unit_quaternion
+from carom.checks import listed, shown
+from carom.geometry.attitude import attitude
 from carom.scene.bodies import Body, Ground
 from carom.scene.joints.definition import JointDefinition
 from carom.scene.joints.rolling import KnifeEdge, RollingDisc, RollingSphere
@@ -82,7 +83,7 @@ def frame(name: str, value) -> tuple[np.ndarray, np.ndarray]:
         )
     position, orientation = pair
     position = point(f"{name} position", position)
-    orientation = unit_quaternion(f"{name} orientation", orientation)
+    orientation = attitude(f"{name} orientation", orientation)
     for array in (position, orientation):
         array.setflags(write=False)
     return position, orientation

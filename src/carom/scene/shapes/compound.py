@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from carom import checks
 from carom.geometry import quaternion
+from carom.geometry.attitude import attitude
 from carom.scene.pieces import IDENTITY, Piece, Shape
 from carom.scene.values import keep, point
 
@@ -24,8 +25,8 @@ class Compound(Shape):
     Parameters
     ----------
     parts : sequence of (shape, position) or (shape, position, orientation)
-        `position` (3,) of the mass centre of the part [m]; `orientation` (4,), unit quaternion
-        (w, x, y, z), part to compound, default none. Parts may overlap; the common volume counts in
+        `position` (3,) of the mass centre of the part [m]; `orientation` as of `Scene.add_body`, part to
+        compound, default none. Parts may overlap; the common volume counts in
         each of them.
     masses : sequence of float, optional
         What the parts weigh in proportion to each other, each at least 0. Default: their volumes (one
@@ -140,7 +141,7 @@ def _part(number: int, part) -> tuple:
     shape, position, *turn = part
     checks.instance(f"{name}[0]", shape, (Shape,), "; a shape is needed")
     position = point(f"{name}[1]", position)
-    orientation = checks.unit_quaternion(f"{name}[2]", turn[0] if turn else IDENTITY)
+    orientation = attitude(f"{name}[2]", turn[0] if turn else IDENTITY)
     for array in (position, orientation):
         array.setflags(write=False)
     return shape, position, orientation

@@ -66,7 +66,8 @@ def ensemble(
         ``"die.position"``, ``orientation``, ``velocity``, ``angular_velocity``, ``mass``, ``inertia`` of a
         body called die; ``"die-ground.restitution"``, ``friction``, ``friction_held``, ``rolling_friction``,
         ``pivoting_friction`` of a contact. Inertia goes with the mass unless it is varied, and
-        `friction_held` with `friction` where the two were the same.
+        `friction_held` with `friction` where the two were the same. Orientations may be a SciPy Rotation or
+        matrices, too.
     runs : int, optional
         How many; not needed where an array says so.
     seed : int

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from carom import checks
 from carom.geometry import quaternion
+from carom.geometry.attitude import quaternions
+
+if TYPE_CHECKING:
+    from carom.geometry.attitude import Orientation
 
 #: faces by the axis of the body that points up: +x, -x, +y, -y, +z, -z; opposite ones make seven
 FACES = np.array([5, 2, 4, 3, 6, 1])
@@ -16,12 +20,12 @@ FACES = np.array([5, 2, 4, 3, 6, 1])
 UP = 1e-6
 
 
-def face_up(orientation: ArrayLike) -> np.ndarray:
+def face_up(orientation: Orientation) -> np.ndarray:
     """Return the face, 1 to 6, that is up in each orientation (..., 4); 0 where none is level.
 
     Faces +x, -x, +y, -y, +z, -z of the body bear 5, 2, 4, 3, 6, 1.
     """
-    Q = checks.real_array("orientation", orientation, "(..., 4)")
+    Q = checks.real_array("orientation", quaternions("orientation", orientation), "(..., 4)")
     if Q.shape[-1:] != (4,):
         raise ValueError(f"orientation must have shape (..., 4), got shape {Q.shape}")
     with np.errstate(invalid="ignore"):

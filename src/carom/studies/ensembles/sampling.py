@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from carom import checks
+from carom.geometry.attitude import quaternions
 
 SAMPLING = ("random", "sobol", "halton", "latin")
 
@@ -91,6 +92,8 @@ def _columns(name: str, spec) -> int:
 
 def _given(name: str, spec) -> np.ndarray:
     """Return the values of an array that was given."""
+    if name.endswith("orientation"):
+        spec = quaternions(f"vary[{name!r}]", spec)
     try:
         return checks.real_array("values", spec, "")
     except ValueError:

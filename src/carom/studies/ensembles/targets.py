@@ -8,6 +8,7 @@ from difflib import get_close_matches
 
 import numpy as np
 
+from carom.geometry.attitude import ROUNDED
 from carom.scene.bodies import Body
 from carom.scene.contacts import Contact, check_overlap
 from carom.scene.scene import Scene
@@ -52,7 +53,7 @@ def _find(scene: Scene, name: str, values: np.ndarray) -> Target:
         _shaped(name, values, (STATE_FIELDS[field],))
         if field == "orientation":
             length = np.linalg.norm(values, axis=1)
-            _all(name, np.abs(length - 1.0) <= 1e-6, values, "unit quaternions (w, x, y, z)")
+            _all(name, np.abs(length - 1.0) <= ROUNDED, values, "unit quaternions (w, x, y, z)")
     elif field == "inertia":
         if values.shape[1:] not in ((3,), (3, 3)):
             raise ValueError(

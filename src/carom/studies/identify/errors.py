@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from carom import checks
 from carom.geometry import quaternion
+from carom.geometry.attitude import quaternions
+
+if TYPE_CHECKING:
+    from carom.geometry.attitude import Orientation
 
 
 class TrajectoryError(NamedTuple):
@@ -99,7 +103,7 @@ def squared_error(length: float, angle: float) -> Callable:
     return objective
 
 
-def face_up(orientation: ArrayLike, up: ArrayLike = (0.0, 0.0, 1.0)) -> np.ndarray:
+def face_up(orientation: Orientation, up: ArrayLike = (0.0, 0.0, 1.0)) -> np.ndarray:
     """Return which body axis points up: 0, 1, 2 for x, y, z and 3, 4, 5 for -x, -y, -z.
 
     Parameters
@@ -113,6 +117,6 @@ def face_up(orientation: ArrayLike, up: ArrayLike = (0.0, 0.0, 1.0)) -> np.ndarr
     -------
     ndarray of int (...)
     """
-    Q = checks.vectors("orientation", orientation, 4)
+    Q = checks.vectors("orientation", quaternions("orientation", orientation), 4)
     seen = quaternion.rotate_back(Q, checks.unit_vector("up", up))
     return np.argmax(np.concatenate([seen, -seen], axis=-1), axis=-1)

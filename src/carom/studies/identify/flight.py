@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from carom import checks
 from carom.geometry import quaternion
+from carom.geometry.attitude import quaternions
 from carom.scene.shapes import SHAPES
 from carom.studies.identify.attitude import fit_attitude
 from carom.studies.identify.recording import State, poses, times, unit
+
+if TYPE_CHECKING:
+    from carom.geometry.attitude import Orientation
 
 _ROOM = "a fit needs one sample more than it has unknowns"
 
@@ -67,7 +72,7 @@ class FreeFlight:
 def fit_free_flight(
     t: ArrayLike,
     position: ArrayLike,
-    orientation: ArrayLike,
+    orientation: Orientation,
     gravity: ArrayLike | None = (0.0, 0.0, -9.81),
     *,
     inertia: ArrayLike | None = None,
@@ -108,7 +113,7 @@ def fit_free_flight(
     """
     t = times(t)
     x = poses("position", position, t.size, 3)
-    q = poses("orientation", orientation, t.size, 4)
+    q = poses("orientation", quaternions("orientation", orientation), t.size, 4)
     for name, array in (("position", x), ("orientation", q)):
         if array.shape[1] != 1:
             raise ValueError(f"{name} must be of one body, got {array.shape[1]}")
@@ -163,7 +168,7 @@ def _fit_positions(t, x, gravity) -> dict:
 
 def free_samples(
     position: ArrayLike,
-    orientation: ArrayLike,
+    orientation: Orientation,
     shape,
     *,
     point: ArrayLike = (0.0, 0.0, 0.0),
@@ -191,7 +196,7 @@ def free_samples(
     checks.instance("shape", shape, SHAPES, "; a shape is needed")
     count = len(np.atleast_1d(checks.real_array("position", position, "(n, 3)")))
     x = poses("position", position, count, 3)[:, 0]
-    turns = checks.vectors("orientation", orientation, 4)
+    turns = checks.vectors("orientation", quaternions("orientation", orientation), 4)
     if len(turns) != len(x):
         raise ValueError(
             f"orientation must have as many samples as position, got {len(turns)} and {len(x)}"

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from carom import checks
 from carom.geometry import quaternion
+from carom.geometry.attitude import ROUNDED, quaternions
 from carom.scene.values import keep
 
 
@@ -34,6 +35,7 @@ class Recording:
         Mass centres, world [m].
     orientation : (n, 4) or (n, N, 4)
         Quaternions (w, x, y, z), body to world. They are normalised; a length more than 1e-3 from 1 is refused.
+        A SciPy Rotation, or matrices (n, 3, 3) or (n, N, 3, 3), are taken, too.
     start : State, optional
         State at ``t[0]``, where the run is to begin: recorded, or from `fit_free_flight`. Default: what the
         scene says.
@@ -55,7 +57,10 @@ class Recording:
     def __post_init__(self):
         t = times(self.t)
         x = poses("position", self.position, t.size, 3)
-        q = unit("orientation", poses("orientation", self.orientation, t.size, 4))
+        q = unit(
+            "orientation",
+            poses("orientation", quaternions("orientation", self.orientation), t.size, 4),
+        )
         if x.shape[1] != q.shape[1]:
             raise ValueError(
                 f"orientation must be of as many bodies as position, got {q.shape[1]} and {x.shape[1]}"
@@ -114,7 +119,7 @@ def poses(name: str, value: ArrayLike, n: int, components: int) -> np.ndarray:
 def unit(name: str, q: np.ndarray) -> np.ndarray:
     """Return recorded quaternions (..., 4) of length 1; refuse what is none to 1e-3."""
     length = np.linalg.norm(q, axis=-1)
-    if not np.all(np.abs(length - 1.0) <= 1e-3):
+    if not np.all(np.abs(length - 1.0) <= ROUNDED):
         k = np.unravel_index(np.argmax(np.abs(length - 1.0)), length.shape)
         raise ValueError(
             f"{name} must be unit quaternions (w, x, y, z), got {q[k].tolist()} of length {length[k]:.6g} "
@@ -132,6 +137,7 @@ def checked_state(start, count: int) -> State:
         )
     fields = {}
     for name, value, size in zip(State._fields, start, (3, 4, 3, 3)):
+        value = quaternions(f"start.{name}", value) if size == 4 else value
         array = checks.real_array(f"start.{name}", value, f"({count}, {size})")
         array = array[None] if array.ndim == 1 else array
         fields[name] = checks.finite_array(f"start.{name}", array, (count, size))
