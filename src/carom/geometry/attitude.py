@@ -41,8 +41,8 @@ def euler(axes: str, angles: ArrayLike) -> np.ndarray:
     --------
     >>> carom.euler("z", 90).round(3)
     array([0.707, 0.   , 0.   , 0.707])
-    >>> carom.euler("ZYX", (90, 0, 180)).round(3)
-    array([ 0.   ,  0.707,  0.707,  0.   ])
+    >>> carom.euler("ZYX", (90, 0, 90)).round(3)
+    array([0.5, 0.5, 0.5, 0.5])
     """
     one_frame = isinstance(axes, str) and axes in (axes.lower(), axes.upper())
     if not one_frame or not 1 <= len(axes) <= 3 or not set(axes.lower()) <= set("xyz"):
