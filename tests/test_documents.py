@@ -3,6 +3,7 @@
 import contextlib
 import doctest
 import importlib
+import inspect
 import io
 import re
 from pathlib import Path
@@ -131,7 +132,7 @@ def test_names_in_a_page_exist(path):
                     levels = package.split(".")
                     tried = [".".join([*levels[:k], name]) for k in range(1, len(levels) + 1)]
                     asked = getattr(
-                        named(package), "__code__", None
+                        inspect.unwrap(named(package)), "__code__", None
                     )  # or an argument of a function
                     tried = [] if asked and name in asked.co_varnames else tried
                     missing += (
@@ -152,8 +153,10 @@ ASKED = re.compile(r">>> (?!.*\+SKIP)")
 MODULES = (
     "baselines",
     "constraints",
+    "films",
     "forces",
     "geometry",
+    "gradient",
     "identify",
     "joints",
     "models",
@@ -162,7 +165,7 @@ MODULES = (
 SHOWN = [
     "Scene", "Scene.add_body", "Scene.add_contact", "Scene.add_joint", "Scene.check", "simulate",
     "Solution", "results.event_tables.ImpactTable", "resolve_impact", "impact_layer", "ensemble",
-    "sensitivities", "solve_contacts", "euler", "axis_angle",
+    "sensitivities", "solve_contacts", "euler", "axis_angle", "Scene.ignore_contact",
 ]  # fmt: skip
 
 

@@ -7,6 +7,7 @@ at import.
 from __future__ import annotations
 
 import importlib
+from difflib import get_close_matches
 from typing import TYPE_CHECKING
 
 from carom.generalized import GeneralizedSystem
@@ -32,20 +33,20 @@ from carom.scene import (
 )
 from carom.scene import shapes as _shapes
 from carom.simulate import simulate
-from carom.status import AccuracyWarning, SimulationError, Status
+from carom.status import AccuracyWarning, MistakeWarning, SimulationError, Status
 
 if TYPE_CHECKING:
-    from carom import baselines
+    from carom import baselines, geometry
     from carom.friction import ContactSolution, solve_contacts
     from carom.impact import Impact, LayerHistory, impact_layer, resolve_impact
     from carom.impact.multiple.api import CornerImpact, resolve_impacts
     from carom.io import models
     from carom.io.files.resume import resume
     from carom.io.models import Model, load_model
-    from carom.studies import identify
+    from carom.studies import gradient, identify
     from carom.studies.ensembles import Ensemble, UniformOrientation, ensemble
     from carom.studies.gradient import Sensitivities, contact_sequence, sensitivities
-    from carom.visual import plots
+    from carom.visual import films, plots
     from carom.visual.films import film
     from carom.visual.viewer.api import view
 
@@ -69,6 +70,7 @@ __all__ = [
     "LayerHistory",
     "Material",
     "Mesh",
+    "MistakeWarning",
     "Model",
     "Options",
     "Scene",
@@ -85,7 +87,10 @@ __all__ = [
     "ensemble",
     "euler",
     "film",
+    "films",
     "forces",
+    "geometry",
+    "gradient",
     "identify",
     "impact_layer",
     "joints",
@@ -142,4 +147,10 @@ def __getattr__(name: str):
         return getattr(_shapes, name)
     if name in _PACKAGES:
         return importlib.import_module(_PACKAGES[name])
-    raise AttributeError(f"module 'carom' has no attribute {name!r}")
+    near = get_close_matches(name, __all__, n=1)
+    hint = f"; did you mean {near[0]!r}?" if near and name[:1] != "_" else ""
+    raise AttributeError(f"module 'carom' has no attribute {name!r}{hint}")
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "__version__"]

@@ -55,7 +55,9 @@ def real_array(name: str, value, shape: str) -> np.ndarray:
     except OverflowError:  # a whole number beyond all floats
         raise ValueError(f"{name} must be finite, got {shown(value)}") from None
     except _ERRORS:
-        raise ValueError(f"{name} must be numbers of shape {shape}, got {shown(value)}") from None
+        raise ValueError(
+            f"{name} must be numbers of shape {shape}, got {shown(value)}{_text(value)}"
+        ) from None
 
 
 def number(
@@ -76,7 +78,9 @@ def number(
     except OverflowError:  # a whole number beyond all floats
         result = np.inf
     except _ERRORS:
-        raise ValueError(f"{name} must be a number{_in(unit)}, got {shown(value)}") from None
+        raise ValueError(
+            f"{name} must be a number{_in(unit)}, got {shown(value)}{_text(value)}"
+        ) from None
     inside = (
         np.isfinite(result)
         and (above is None or result > above)
@@ -292,6 +296,11 @@ def _no_number(value) -> bool:
             return any(map(_no_number, value.flat))
         return value.dtype.kind not in "iufc" or bool(np.ma.is_masked(value))
     return value is None or isinstance(value, _NO_NUMBERS)
+
+
+def _text(value) -> str:
+    """Return that a value is a text, where it looks like a number."""
+    return ", a string" if isinstance(value, str) and value.strip("+-. ")[:1].isdigit() else ""
 
 
 def _shape(shape) -> str:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 
-from carom import checks
+from carom import arguments, checks
 
 
+@arguments.known
 @dataclass(frozen=True, kw_only=True)
 class Options:
     """Settings of `simulate`. Tolerances are relative to the scene's own lengths and speeds.

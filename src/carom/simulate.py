@@ -3,21 +3,26 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Callable
 from typing import overload
 
 from numpy.typing import ArrayLike
 
-from carom import checks
+from carom import arguments, checks
 from carom.dynamics.methods import EXPLICIT
 from carom.generalized.solution import GeneralizedSolution
 from carom.generalized.system import GeneralizedSystem
 from carom.io.run_to_end import finish
 from carom.options import Options
+from carom.results.coarse import too_long
 from carom.results.solution import Solution
+from carom.scene.remarks import remarks
 from carom.scene.scene import Scene
+from carom.status import MistakeWarning
 from carom.stepping.settings import (
     LOCATIONS,
+    Settings,
     check_handling,
     check_scene,
     checked_settings,
@@ -44,6 +49,7 @@ def simulate(
 ) -> GeneralizedSolution: ...  # fmt: skip
 
 
+@arguments.known
 def simulate(
     scene: Scene | GeneralizedSystem,
     duration: float,
@@ -103,7 +109,8 @@ def simulate(
         states are those of the motion, not of a curve through others. The first and the last are saved too.
         Default: 200 states at equal times; each step where the step is given.
     progress : bool or callable, optional
-        True shows a progress bar (needs tqdm); a function is called with (steps done, steps in all).
+        True shows a progress bar (of tqdm, or plain text without it); a function is called with (steps done,
+        steps in all).
     options : Options, optional
         Tolerances, boundary layer, limits.
     throw : bool
@@ -132,6 +139,15 @@ def simulate(
         For `save` without its packages.
     SimulationError
         If the run fails part-way, or cannot be saved at its end, and `throw` is True.
+
+    Warns
+    -----
+    MistakeWarning
+        Of what is nearly always a mistake: a free body that nothing can touch where others touch something, a
+        contact of which neither restitution nor friction is stated, a step longer than the run or far too long
+        for the motion.
+    AccuracyWarning
+        Where energy comes or goes without a name, or a body gets into what it touches.
 
     Examples
     --------
@@ -178,4 +194,27 @@ def simulate(
         from carom.io.files.keeper import Keeper
 
         keeper = Keeper(run, save, save_seconds)
-    return finish(run, progress, keeper, throw)
+    for mistake in before(scene, settings):
+        warnings.warn(mistake, MistakeWarning, stacklevel=3)
+    solution = finish(run, progress, keeper, throw)
+    for mistake in after(solution, settings):
+        warnings.warn(mistake, MistakeWarning, stacklevel=3)
+    return solution
+
+
+def before(scene, settings: Settings) -> tuple[str, ...]:
+    """Return sentences about what is nearly always a mistake, from what is stated."""
+    found = remarks(scene) if isinstance(scene, Scene) else ()
+    if settings.step is not None and settings.step > settings.duration:
+        said = f"step={settings.step:g} s is longer than the run of {settings.duration:g} s"
+        return (*found, f"{said}, which takes one step. Give a shorter one, or leave step out.")
+    return found
+
+
+def after(solution, settings: Settings) -> tuple[str, ...]:
+    """Return a sentence about a step that was far too long for the motion, if it was."""
+    if settings.step is None or settings.save_every != 1 or settings.save_at is not None:
+        return ()  # not each step is saved
+    if settings.method == "implicit" or not isinstance(solution, Solution):
+        return ()
+    return too_long(solution, solution._run.bodies["ballistic"] == 1, settings.step)

@@ -103,6 +103,10 @@ class AccuracyWarning(UserWarning):
     """A run has energy without a name, or a body in a surface; `Solution.warnings` says how much."""
 
 
+class MistakeWarning(UserWarning):
+    """Something that is nearly always a mistake: a body that nothing can touch, a step that is far too long."""
+
+
 class SimulationError(RuntimeError):
     """A run that failed. `solution` holds everything up to the failure, all of it if it was inaccurate."""
 

@@ -94,7 +94,7 @@ def run(folder):
         "Solution.evaluate": lambda: (solution().evaluate, dict(t=0.01, side="left")),
         "Solution.impact_history": lambda: (solution().impact_history, dict(k=0, steps=4)),
         "Solution.joint_coordinates": lambda: (swing().joint_coordinates, dict(joint="j")),
-        "Solution.plot": lambda: (solution().plot, dict(kind="energy")),
+        "Solution.plot": lambda: (solution().plot, dict(kind="impacts", what="ball-floor")),
         "ensemble": lambda: (
             carom.ensemble,
             dict(scene=thrown(), duration=0.02, step=0.01, vary={"ball.velocity": np.zeros((2, 3))}, runs=2,

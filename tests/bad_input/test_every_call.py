@@ -46,7 +46,7 @@ MODULES = (
 #: what the library hands back, and nobody makes
 HANDED_BACK = {
     "AccuracyWarning", "GROUND", "ContactSolution", "CornerImpact", "Ensemble", "Impact", "LayerHistory",
-    "Model", "Sensitivities", "SimulationError", "Solution", "Solution.from_run", "Status",
+    "MistakeWarning", "Model", "Sensitivities", "SimulationError", "Solution", "Solution.from_run", "Status",
     "generalized.CoordinateContact", "generalized.solution.GeneralizedSolution",
     "generalized.solution.CoordinateImpactTable", "generalized.solution.CoordinateImpact",
     "dynamics.mobility.Mobility", "results.event_tables.ImpactTable", "results.event_tables.ImpactRecord",

@@ -38,6 +38,7 @@ DOCUMENTED = {
 INSTEAD = {
     ("Scene.add_force", "definition"): "parent",
     ("gradient.impact_derivative", "friction"): "the impact",
+    ("Solution.plot", "what"): "contacts",
     ("load_model", "source"): "model file",
     ("view", "solution"): "path",
 }

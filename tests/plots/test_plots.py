@@ -45,6 +45,14 @@ def test_trajectory_of_chosen_bodies_up_against_gravity(swung):
     ]
 
 
+def test_plot_takes_what_is_drawn_as_its_second_argument(swung):
+    name = swung.scene.bodies[-1].name
+    (path,) = [one for one in swung.plot("trajectory", name).lines if one.get_label() == name]
+    np.testing.assert_array_equal(path.get_data(), line(plots.trajectory(swung, name), name))
+    with pytest.raises(ValueError, match="what must be left out with kind 'energy', got 'rod'"):
+        swung.plot("energy", "rod")
+
+
 def test_outlines_are_the_silhouette(thrown):
     # The die starts with its axes along those of the world: from the side it is a square.
     ax = plots.trajectory(thrown, outlines=[0.0], plane="xz")

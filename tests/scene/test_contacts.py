@@ -126,10 +126,14 @@ def test_a_pair_once():
 
 def test_wrong_handles():
     scene, contact = place(Sphere(1), 2)
-    with pytest.raises(TypeError, match="body must be a Body, got 'die'"):
-        scene.add_contact("die", contact.half_space)
-    with pytest.raises(TypeError, match=r"other must be a HalfSpace or Body, got 'ground'"):
-        scene.add_contact(contact.body, "ground")
+    with pytest.raises(
+        ValueError, match="body must be a part of the scene, which has none called 'dye';"
+    ):
+        scene.add_contact("dye", contact.half_space)
+    with pytest.raises(TypeError, match=r"other must be a Body or HalfSpace, got <"):
+        scene.add_contact(contact.body, scene)
+    with pytest.raises(ValueError, match="body and other must not both be half-spaces, got"):
+        scene.add_contact(contact.half_space, contact.half_space)
     other = place(Sphere(1), 2)[1]
     with pytest.raises(ValueError, match=r"body must belong to this scene, got .* of another one"):
         scene.add_contact(other.body, contact.half_space)

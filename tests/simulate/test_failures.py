@@ -1,5 +1,7 @@
 """Runs that end early: status, message, solution up to there; progress and interruption."""
 
+import sys
+
 import numpy as np
 import pytest
 
@@ -140,6 +142,12 @@ def test_progress_does_not_change_the_run():
     b = carom.simulate(ball(0.8), 2.0, step=0.001)
     np.testing.assert_array_equal(a.position, b.position)
     np.testing.assert_array_equal(a.impacts.time, b.impacts.time)
+
+
+def test_progress_is_plain_text_without_tqdm(capsys, monkeypatch):
+    monkeypatch.setitem(sys.modules, "tqdm", None)  # as if it were not installed
+    assert carom.simulate(ball(0.8), 0.2, step=0.1, progress=True).success
+    assert capsys.readouterr().err == "\rstep 1 of 2\rstep 2 of 2\n"
 
 
 def test_progress_bar(capsys):

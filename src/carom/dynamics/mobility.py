@@ -9,6 +9,7 @@ import numpy as np
 from carom.geometry import quaternion
 from carom.model.arrays import INERTIA, RELATION
 from carom.options import Options
+from carom.scene.remarks import remarks
 
 DEPENDENT = 1e-8  # of the largest singular value of rows of length 1
 TAKES_PART = 1e-6  # of a vector of length 1
@@ -35,6 +36,8 @@ class Mobility:
     velocity_errors : dict of str to float
         How much the initial velocities break each joint [m/s; angular ones times the size of the body].
         `Options(project_start=True)` takes that out.
+    remarks : tuple of str
+        What is nearly always a mistake, in sentences: `simulate` warns of it.
     """
 
     bodies: int
@@ -44,6 +47,7 @@ class Mobility:
     nonholonomic: int
     redundant_joints: tuple[str, ...]
     velocity_errors: dict[str, float]
+    remarks: tuple[str, ...] = ()
 
     def __str__(self) -> str:
         lines = [
@@ -60,7 +64,7 @@ class Mobility:
             lines.append(
                 f"initial velocities break {worst} most, by {self.velocity_errors[worst]:.3g} m/s"
             )
-        return "\n".join(lines)
+        return "\n".join([*lines, *self.remarks])
 
 
 def mobility(scene) -> Mobility:
@@ -72,7 +76,7 @@ def mobility(scene) -> Mobility:
 
     n, joints = len(scene.bodies), (*scene.joints, *scene.constraints)
     if not joints:
-        return Mobility(n, 0, 0, 6 * n, 0, (), {})
+        return Mobility(n, 0, 0, 6 * n, 0, (), {}, remarks(scene))
     compiled = compile_scene(scene, Options(), loops=True)  # no joint is flipped
     system, start = compiled.system, compiled.start
     work = new_work(system, 1)
@@ -96,6 +100,7 @@ def mobility(scene) -> Mobility:
         velocity_errors={
             joint.name: float(np.max(np.abs(speeds[owner == j]))) for j, joint in enumerate(joints)
         },
+        remarks=remarks(scene),
     )
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from carom import checks
+from carom import arguments, checks
 
 
 @dataclass(frozen=True)
@@ -49,6 +49,7 @@ class Impact:
     wedged: bool
 
 
+@arguments.known
 def resolve_impact(
     inverse_mass, velocity, friction: float, restitution: float, law: str = "newton"
 ) -> Impact:

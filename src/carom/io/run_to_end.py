@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import warnings
 from time import perf_counter
 from typing import TYPE_CHECKING
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
     from carom.io.files.keeper import Keeper
 
 CHUNKS = 100  # reports of a run
+CALLER = 4  # frames up: `finish`, `simulate` or `resume`, its guard, and who called it
 LOOKS = 4  # parts in the time between two savings, about
 
 
@@ -46,11 +48,11 @@ def finish(run, progress, keeper: Keeper | None, throw: bool):
         what = f"The run ended and could not be saved: {lost}"
         if throw and solution.success:
             raise SimulationError(what, solution) from lost
-        warnings.warn(what, RuntimeWarning, stacklevel=3)
+        warnings.warn(what, RuntimeWarning, stacklevel=CALLER)
     if throw and not solution.success:
         raise SimulationError(solution.message, solution) from run.failure
     if solution.warnings and solution.success:
-        warnings.warn(" ".join(solution.warnings), AccuracyWarning, stacklevel=3)
+        warnings.warn(" ".join(solution.warnings), AccuracyWarning, stacklevel=CALLER)
     return solution
 
 
@@ -69,6 +71,19 @@ def goals(done, total: int, reports: bool, keeper: Keeper | None):
             took, wish = perf_counter() - begin, keeper.interval / LOOKS
             part = min(most, 2 * part) if took < 0.5 * wish else part
             part = max(1, part // 2) if took > wish else part
+
+
+class _Text:
+    """Progress as plain text: one line, written over."""
+
+    def __init__(self, unit: str):
+        self.unit = unit
+
+    def __call__(self, done: float, total: float) -> None:
+        print(f"\r{self.unit} {done:g} of {total:g}", end="", file=sys.stderr, flush=True)
+
+    def close(self) -> None:
+        print(file=sys.stderr)
 
 
 class _Bar:
@@ -91,7 +106,10 @@ def reporter(progress, total: float, unit: str):
     if progress is None or progress is False:
         return None
     if progress is True:
-        return _Bar(total, unit)
+        try:
+            return _Bar(total, unit)
+        except ImportError:  # tqdm belongs to extras
+            return _Text(unit)
     if callable(progress):
         return lambda done, total: checks.call("progress", progress, done, total)
     raise TypeError(f"progress must be True, False or a function, got {checks.shown(progress)}")

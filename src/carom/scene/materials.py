@@ -12,7 +12,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields
 
-from carom import checks
+from carom import arguments, checks
 from carom.scene.values import keep
 
 IMPACT_LAWS = ("newton", "poisson", "stronge")
@@ -69,6 +69,7 @@ class ContactLaw:
         checks.choice("multiple", self.multiple, MULTIPLE)
 
 
+@arguments.known
 @dataclass(frozen=True)
 class Material:
     """What a surface gives to the contacts of a body or half-space; see `Scene.set_contact_default`.

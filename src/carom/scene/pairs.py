@@ -29,6 +29,8 @@ class Pairs:
         self._rules: dict[str, str] = {}
         self._values: ContactLaw | None = None
         self.default: ContactLaw | None = None
+        self.unsaid_default = True  # whether neither restitution nor friction of it was stated
+        self._unsaid: set = set()  # pairs with a contact of which neither was
 
     def check_new(self, body: Body, other: HalfSpace | Body) -> None:
         """Refuse a body with itself, and a pair that has a contact already."""
@@ -41,9 +43,16 @@ class Pairs:
                 "got a second contact of the two"
             )
 
-    def add(self, body, other) -> None:
-        """Keep a pair as one with a contact of its own."""
+    def add(self, body, other, given) -> None:
+        """Keep a pair as one with a contact of its own, for which some values were given."""
         self._own.add(_key(body, other))
+        stated = given["restitution"] is not None or given["friction"] is not None
+        if not stated and self.unsaid_default and body.material is None:
+            self._unsaid.add(_key(body, other))
+
+    def is_unsaid(self, body, other) -> bool:
+        """Return whether neither restitution nor friction of a contact was stated, there or as a default."""
+        return _key(body, other) in self._unsaid
 
     def ignore(self, body, other) -> None:
         """Let a pair pass through each other."""
@@ -53,12 +62,13 @@ class Pairs:
         """Two bodies with a joint do not touch by default."""
         self._ignored.add(_key(parent, child))
 
-    def set_default(self, law: ContactLaw, combine, all_pairs: bool) -> None:
-        """Keep the values of pairs that have none of their own."""
+    def set_default(self, law: ContactLaw, combine, all_pairs: bool, stated: bool) -> None:
+        """Keep the values of pairs that have none of their own; `stated`: restitution or friction was given."""
         all_pairs = checks.flag("all_pairs", all_pairs)
         self._rules = checked_rule(combine)
         self._values = law
         self.default = law if all_pairs else None
+        self.unsaid_default = not stated
 
     def law(self, body, other, given) -> ContactLaw:
         """Return the law of a pair with some values given."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from difflib import get_close_matches
+from typing import Any
 
 from carom import checks
 from carom.scene.bodies import Body, Ground
@@ -58,24 +59,37 @@ class Registry:
     def __getitem__(self, name: str):
         if isinstance(name, str) and name in self._parts:
             return self._parts[name]
-        near = get_close_matches(checks.shown(name).strip("'"), self._parts, n=1)
-        hint = f"did you mean {near[0]!r}?" if near else f"it has {len(self._parts)} named parts"
-        raise KeyError(f"the scene has no part called {checks.shown(name)}; {hint}")
+        raise KeyError(f"the scene has no part {self._called(name)}")
 
-    def member(self, argument: str, part, kinds: tuple[type, ...], hint: str = "") -> None:
-        """Refuse a `part` that is of none of `kinds`, or of another scene."""
+    def member(self, argument: str, part, kinds: tuple[type, ...], hint: str = "") -> Any:
+        """Return a `part`, given itself or by its name; refuse one of none of `kinds`, or of another scene."""
+        if isinstance(part, str):
+            if part not in self._parts:
+                raise ValueError(
+                    f"{argument} must be a part of the scene, which has none {self._called(part)}"
+                )
+            part = self._parts[part]
         checks.instance(argument, part, kinds, hint)
         if not isinstance(part, Ground) and self._parts.get(part.name) is not part:
             raise ValueError(
                 f"{argument} must belong to this scene, got {checks.shown(part)} of another one"
             )
+        return part
 
-    def pair(self, parent, child) -> None:
-        """Refuse a `parent` and a `child` that cannot be joined."""
+    def _called(self, name) -> str:
+        """Return a name that no part has, and which one is near."""
+        near = get_close_matches(checks.shown(name).strip("'"), self._parts, n=1)
+        hint = f"did you mean {near[0]!r}?" if near else f"it has {len(self._parts)} named parts"
+        return f"called {checks.shown(name)}; {hint}"
+
+    def pair(self, parent, child) -> tuple[Any, Any]:
+        """Return a `parent` and a `child`, given themselves or by name; refuse what cannot be joined."""
         hint = "; the world itself is carom.GROUND"
-        self.member("parent", parent, (Body, Ground), hint)
-        self.member("child", child, (Body,))
+        parent = self.member("parent", parent, (Body, Ground), hint)
+        hint = "; the world is the parent: add_joint(definition, carom.GROUND, body)"
+        child = self.member("child", child, (Body,), hint if isinstance(child, Ground) else "")
         if parent is child:
             raise ValueError(
                 f"parent and child must be two bodies, got {checks.shown(child)} for both"
             )
+        return parent, child

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from numpy.typing import ArrayLike
 
-from carom import checks
+from carom import arguments, checks
 from carom.scene.bodies import GROUND, Body, Ground, HalfSpace, make_body, make_half_space
 from carom.scene.constraints import CONSTRAINTS, Constraint, ConstraintDefinition
 from carom.scene.contacts import check_gap
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from carom.geometry.attitude import Orientation
 
 
+@arguments.known
 class Scene(TouchingPairs):
     """Bodies, half-spaces, contacts, joints and forces, as they stand at the start.
 
@@ -51,6 +52,7 @@ class Scene(TouchingPairs):
         self._parts = Registry()
         self._pairs = Pairs()
 
+    @arguments.known
     def add_half_space(
         self,
         point: ArrayLike,
@@ -75,6 +77,7 @@ class Scene(TouchingPairs):
         index, name = self._parts.new(HalfSpace, name, "half_space")
         return self._parts.add(make_half_space(index, name, point, normal, material))
 
+    @arguments.known
     def add_body(
         self,
         shape: Shape | None = None,
@@ -137,11 +140,12 @@ class Scene(TouchingPairs):
         body = make_body(index, name, shape, mass, density, inertia, *motion, material)
         return self._parts.add(body)
 
+    @arguments.known
     def add_joint(
         self,
         definition: JointDefinition,
-        parent: Body | Ground,
-        child: Body,
+        parent: Body | Ground | str | None = None,
+        child: Body | str | None = None,
         *,
         parent_frame: tuple[ArrayLike, Orientation] | None = None,
         child_frame: tuple[ArrayLike, Orientation] | None = None,
@@ -155,9 +159,9 @@ class Scene(TouchingPairs):
             Of `carom.joints`: what is held, placed in the world at the start; or, with frames, in a frame that
             both bodies carry.
         parent
-            A body, or `carom.GROUND`.
+            A body, or its name; or `carom.GROUND`.
         child
-            Another body.
+            Another body, or its name.
         parent_frame, child_frame
             Where that frame is in the parent (in the world, of the ground) and in the child: a pair (position
             (3,), orientation as of `add_body`) in body axes, from the mass centre. Coordinates of the joint are
@@ -175,19 +179,27 @@ class Scene(TouchingPairs):
         >>> scene.add_joint(hinge, carom.GROUND, rod, name="hinge")
         Joint('hinge', Revolute, 'GROUND' -> 'rod')
         """
-        checks.instance("definition", definition, JOINTS)
-        self._parts.pair(parent, child)
+        order = "; the order is add_joint(definition, parent, child)"
+        checks.instance("definition", definition, JOINTS, order if _is_side(definition) else "")
+        if parent is None or child is None:
+            raise TypeError(
+                "parent and child must be given: add_joint(definition, carom.GROUND, body) joins a body to the "
+                "world, add_joint(definition, parent, child) two bodies; got "
+                f"{checks.shown(parent)} and {checks.shown(child)}"
+            )
+        parent, child = self._parts.pair(parent, child)
         index, name = self._parts.new(Joint, name, "joint")
         self._pairs.join(parent, child)
         return self._parts.add(
             make_joint(index, name, definition, parent, child, parent_frame, child_frame)
         )
 
+    @arguments.known
     def add_force(
         self,
         definition: ForceDefinition,
-        parent: Body | Ground = GROUND,
-        child: Body | None = None,
+        parent: Body | Ground | str = GROUND,
+        child: Body | str | None = None,
         *,
         name: str | None = None,
     ) -> AppliedForce:
@@ -202,9 +214,9 @@ class Scene(TouchingPairs):
         definition
             Of `carom.forces`.
         parent
-            A body, or `carom.GROUND`. A body given alone is the child.
+            A body, or its name; or `carom.GROUND`. A body given alone is the child.
         child
-            Another body.
+            Another body, or its name.
         name
             Default ``"force1"``, ``"force2"``, ...
         """
@@ -222,12 +234,13 @@ class Scene(TouchingPairs):
             parent, child = (
                 (first.parent, first.child) if isinstance(first, Joint) else (GROUND, first)
             )
-        if child is None and isinstance(parent, Body):
+        if child is None and isinstance(parent, (Body, str)):
             parent, child = GROUND, parent
-        self._parts.pair(parent, child)
+        parent, child = self._parts.pair(parent, child)
         index, name = self._parts.new(AppliedForce, name, "force")
         return self._parts.add(make_force(index, name, definition, parent, child))
 
+    @arguments.known
     def add_constraint(
         self, definition: ConstraintDefinition, *, name: str | None = None
     ) -> Constraint:
@@ -247,9 +260,10 @@ class Scene(TouchingPairs):
             self._parts.member("definition", part, (Joint, Body))
         return self._parts.add(constraint)
 
+    @arguments.known
     def add_stop(
         self,
-        joint: Joint,
+        joint: Joint | str,
         *,
         lower: float | None = None,
         upper: float | None = None,
@@ -268,7 +282,7 @@ class Scene(TouchingPairs):
         Parameters
         ----------
         joint
-            A joint of the scene with coordinates of its own.
+            A joint of the scene with coordinates of its own, or its name.
         lower, upper
             One of the two: the least or the greatest value of the coordinate [rad or m], which is 0 as the
             joint stands at the start. For two ends add two stops.
@@ -282,7 +296,7 @@ class Scene(TouchingPairs):
         name
             Default ``"stop1"``, ``"stop2"``, ...
         """
-        self._parts.member("joint", joint, (Joint,))
+        joint = self._parts.member("joint", joint, (Joint,))
         index, name = self._parts.new(Stop, name, "stop")
         return self._parts.add(
             make_stop(index, name, joint, lower, upper, restitution, impact_law, coordinate)
@@ -342,7 +356,7 @@ class Scene(TouchingPairs):
         self._pairs.check_all(self.bodies, self.half_spaces)
 
     def check(self):
-        """Return the degrees of freedom of the scene, and which constraints are redundant.
+        """Return the degrees of freedom of the scene, redundant constraints, and what is likely a mistake.
 
         Returns
         -------
@@ -377,3 +391,8 @@ class Scene(TouchingPairs):
 
     def __str__(self) -> str:
         return summary(self)
+
+
+def _is_side(part) -> bool:
+    """Return whether a part is a side of a joint, not its definition."""
+    return isinstance(part, (Body, Ground, str))

@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from itertools import combinations
+
+from carom import arguments, checks
 from carom.scene.all_pairs import PairTable
-from carom.scene.bodies import Body, HalfSpace
+from carom.scene.bodies import Body, Ground, HalfSpace
 from carom.scene.contacts import Contact, make_contact
 from carom.scene.materials import ContactLaw, Rule
 from carom.scene.pairs import Pairs
 from carom.scene.registry import Registry
+
+One = Body | HalfSpace | str
+Some = One | Sequence[One]
 
 
 class TouchingPairs:
@@ -16,10 +23,11 @@ class TouchingPairs:
     _parts: Registry
     _pairs: Pairs
 
+    @arguments.known
     def add_contact(
         self,
-        body: Body,
-        other: HalfSpace | Body,
+        body: One,
+        other: One,
         *,
         restitution: float | None = None,
         friction: float | None = None,
@@ -38,10 +46,9 @@ class TouchingPairs:
 
         Parameters
         ----------
-        body
-            With a shape, and not inside the other.
-        other
-            What it may touch: a half-space or another body.
+        body, other
+            The two, themselves or by their names: a body with a shape, and a half-space or another body that it
+            is not inside of. The order matters for two bodies alone: the normal points from `other` to `body`.
         restitution
             e, from 0 (plastic) to 1 (elastic). Default 0.5.
         friction
@@ -78,8 +85,7 @@ class TouchingPairs:
         >>> scene.add_contact(ball, table, restitution=0.8, friction=0.3, impact_law="stronge")
         Contact('ball-table', restitution=0.8, friction=0.3, impact_law='stronge')
         """
-        self._parts.member("body", body, (Body,))
-        self._parts.member("other", other, (HalfSpace, Body))
+        body, other = self._two(body, other)
         self._pairs.check_new(body, other)
         name = f"{body.name}-{other.name}" if name is None else name
         index, name = self._parts.new(Contact, name, "contact")
@@ -95,14 +101,15 @@ class TouchingPairs:
         }
         law = self._pairs.law(body, other, given)
         contact = self._parts.add(make_contact(index, name, body, other, law))
-        self._pairs.add(body, other)
+        self._pairs.add(body, other, given)
         return contact
 
+    @arguments.known
     def set_contact_default(
         self,
         *,
-        restitution: float = 0.5,
-        friction: float = 0.0,
+        restitution: float | None = None,
+        friction: float | None = None,
         friction_held: float | None = None,
         impact_law: str = "newton",
         stiffness: float = 1.0,
@@ -135,8 +142,8 @@ class TouchingPairs:
         Contacts that were added before keep their values.
         """
         default = ContactLaw(
-            restitution=restitution,
-            friction=friction,
+            restitution=0.5 if restitution is None else restitution,
+            friction=0.0 if friction is None else friction,
             friction_held=friction_held,
             impact_law=impact_law,
             stiffness=stiffness,
@@ -144,15 +151,40 @@ class TouchingPairs:
             pivoting_friction=pivoting_friction,
             multiple=multiple,
         )
-        self._pairs.set_default(default, combine, all_pairs)
+        stated = restitution is not None or friction is not None
+        self._pairs.set_default(default, combine, all_pairs, stated)
 
-    def ignore_contact(self, body: Body, other: HalfSpace | Body) -> None:
-        """Let a pair pass through each other where `set_contact_default` lets all pairs touch."""
-        self._parts.member("body", body, (Body,))
-        self._parts.member("other", other, (HalfSpace, Body))
-        self._pairs.ignore(body, other)
+    def ignore_contact(self, body: Some, other: Some | None = None) -> None:
+        """Let bodies pass through each other where `set_contact_default` lets all pairs touch.
 
-    def contact_law(self, body: Body, other: HalfSpace | Body) -> ContactLaw | None:
+        Parameters
+        ----------
+        body, other
+            Each a body or half-space, its name, or a sequence of these: no one of the first touches one of the
+            second. Without `other` no two of the first touch each other.
+
+        Examples
+        --------
+        A chain whose links pass through each other, and a second one that passes through it:
+
+        >>> scene = carom.Scene()
+        >>> scene.set_contact_default(restitution=0, friction=0.3)
+        >>> one, two = ([scene.add_body(carom.Sphere(0.1), mass=1, position=(k, y, 0)) for k in range(3)]
+        ...             for y in (0, 5))
+        >>> scene.ignore_contact(one)
+        >>> scene.ignore_contact(one, two)
+        >>> len(scene.pairs_by_default().body)  # of two with each other
+        3
+        """
+        first = self._some("body", body)
+        if other is None:
+            pairs = list(combinations(first, 2))
+        else:
+            pairs = [(a, b) for a in first for b in self._some("other", other) if a is not b]
+        for a, b in pairs:
+            self._pairs.ignore(a, b)
+
+    def contact_law(self, body: One, other: One) -> ContactLaw | None:
         """Return how a pair without a contact of its own touches by `set_contact_default`; None if not.
 
         Raises
@@ -160,8 +192,7 @@ class TouchingPairs:
         ValueError
             If materials are given that no rule combines.
         """
-        self._parts.member("body", body, (Body,))
-        self._parts.member("other", other, (HalfSpace, Body))
+        body, other = self._two(body, other)
         return self._pairs.default_law(body, other)
 
     def pairs_by_default(self) -> PairTable:
@@ -175,6 +206,28 @@ class TouchingPairs:
             If materials are given that no rule combines.
         """
         return self._pairs.by_default(self._parts.parts(Body), self._parts.parts(HalfSpace))
+
+    def _two(self, body, other) -> tuple[Body, HalfSpace | Body]:
+        """Return two that may touch, given themselves or by name, a half-space as the second."""
+        kinds, hint = (Body, HalfSpace), "; a floor is made by scene.add_half_space(point, normal)"
+        first = self._parts.member("body", body, kinds, hint if isinstance(body, Ground) else "")
+        second = self._parts.member(
+            "other", other, kinds, hint if isinstance(other, Ground) else ""
+        )
+        if isinstance(first, HalfSpace):
+            first, second = second, first
+        if isinstance(first, HalfSpace):
+            raise ValueError(
+                f"body and other must not both be half-spaces, got {second.name!r} and {first.name!r}"
+            )
+        return first, second
+
+    def _some(self, argument: str, given) -> list:
+        """Return bodies and half-spaces, of one or several given themselves or by name."""
+        single = isinstance(given, (str, Body, HalfSpace))
+        what = "bodies and half-spaces"
+        several = [given] if single else checks.listed(argument, given, what)
+        return [self._parts.member(argument, one, (Body, HalfSpace)) for one in several]
 
     @property
     def contacts(self) -> tuple[Contact, ...]:

@@ -6,12 +6,13 @@ import os
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
-from carom import checks
+from carom import arguments, checks
 from carom.io.files.kept import KeptRun
 from carom.results.solution import Solution
 from carom.status import Status
 
 
+@arguments.known
 def resume(
     path: str | os.PathLike,
     *,

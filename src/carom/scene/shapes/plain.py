@@ -8,11 +8,12 @@ from functools import cached_property
 
 import numpy as np
 
-from carom import checks
+from carom import arguments, checks
 from carom.scene.pieces import Piece, Shape
 from carom.scene.values import keep
 
 
+@arguments.known
 @dataclass(frozen=True)
 class Sphere(Shape):
     """A solid ball of `radius` [m], above 0."""
@@ -43,6 +44,7 @@ class Sphere(Shape):
         return np.eye(3) * (0.4 * mass * self.radius**2)
 
 
+@arguments.known
 @dataclass(frozen=True)
 class Box(Shape):
     """A solid box, its edges and corners rounded if a radius is given.
@@ -115,6 +117,7 @@ class Box(Shape):
         return np.diag([y + z, x + z, x + y]) * mass
 
 
+@arguments.known
 @dataclass(frozen=True)
 class Ellipsoid(Shape):
     """A solid ellipsoid with semi-axes `a`, `b`, `c` [m] along body x, y, z, each above 0."""

@@ -9,11 +9,12 @@ from typing import ClassVar
 
 import numpy as np
 
-from carom import checks
+from carom import arguments, checks
 from carom.scene.pieces import Piece, Shape
 from carom.scene.values import keep
 
 
+@arguments.known
 @dataclass(frozen=True)
 class Capsule(Shape):
     """A solid cylinder along body z with half balls as its ends.
@@ -60,6 +61,7 @@ class Capsule(Shape):
         return np.diag([across, across, along])
 
 
+@arguments.known
 @dataclass(frozen=True)
 class Cylinder(Shape):
     """A solid cylinder of `radius` and `length` [m], each above 0, along body z."""
@@ -95,6 +97,7 @@ class Cylinder(Shape):
         return mass * np.diag([across, across, r**2 / 2])
 
 
+@arguments.known
 @dataclass(frozen=True)
 class Disc(Shape):
     """A flat disc, or a ring, without thickness, about body z: a coin, a hoop.

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 
-from carom import checks
+from carom import arguments, checks
 from carom.io.run_to_end import reporter
 from carom.options import Options
 from carom.scene.scene import Scene
@@ -26,6 +26,7 @@ CHUNK = 64  # runs in a part
 NEVER = 10**15  # states of a run that are saved: only the last
 
 
+@arguments.known
 def ensemble(
     scene: Scene | Callable[..., Scene],
     duration: float,
@@ -160,7 +161,7 @@ def ensemble(
         warnings.warn(
             f"interrupted after {int(done.sum())} of {count} runs{more}",
             RuntimeWarning,
-            stacklevel=2,
+            stacklevel=3,
         )
     finally:
         close = getattr(report, "close", None)

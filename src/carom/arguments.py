@@ -1,0 +1,86 @@
+"""Names of arguments: one that a function does not have is refused by the name that is meant."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from difflib import get_close_matches
+from functools import wraps
+from typing import Any, TypeVar
+
+F = TypeVar("F", bound=Callable)
+
+#: what arguments are called elsewhere: in formulas, and by other engines
+ELSEWHERE = {
+    "friction": "mu mu_s mus friction_coefficient coefficient_of_friction lateralFriction",
+    "friction_held": "mu_held",
+    "restitution": "e eps cor bounce bounciness elasticity restitution_coefficient",
+    "rolling_friction": "mu_r rollingFriction",
+    "pivoting_friction": "spinningFriction torsional_friction",
+    "impact_law": "law model",
+    "stiffness": "k ke",
+    "mass": "m weight",
+    "density": "rho",
+    "inertia": "I J moi inertia_tensor",
+    "position": "pos x xyz origin location translation p",
+    "orientation": "quat q quaternion rotation rot rpy attitude R pose",
+    "velocity": "vel v linear_velocity v0 lin_vel",
+    "angular_velocity": "omega w angvel ang_vel angular",
+    "shape": "geom geometry size box",
+    "gravity": "g",
+    "point": "anchor origin position offset",
+    "normal": "n axis up direction",
+    "name": "label id",
+    "duration": "T time t tf t_end t_final end tspan t_span",
+    "step": "dt h timestep time_step step_size stepsize max_step",
+    "save_at": "t_eval saveat output_times",
+    "method": "integrator solver scheme",
+    "rtol": "reltol tol tolerance",
+    "atol": "abstol",
+    "progress": "verbose progress_bar",
+    "save": "path filename file output",
+    "lower": "low minimum min",
+    "upper": "high maximum max",
+    "parent": "body1 body_a bodyA base",
+    "child": "body2 body_b bodyB body",
+    "other": "other_body ground plane",
+    "definition": "joint force constraint",
+    "law": "impact_law model",
+    "inverse_mass": "W delassus",
+    "radius": "r R",
+    "length": "height h L",
+}
+_MEANT: dict[str, list[str]] = {}
+for _ours, _others in ELSEWHERE.items():
+    for _other in _others.split():
+        _MEANT.setdefault(_other, []).append(_ours)
+
+
+def known(function: F) -> F:
+    """Decorate a function, or a class and its ``__init__``: it says which argument an unknown one means."""
+    made: Any = function
+    if not isinstance(function, type):
+        return _guarded(function, function.__name__)
+    made.__init__ = _guarded(made.__init__, made.__name__)
+    return made
+
+
+def _guarded(function: Any, shown: str) -> Any:
+    code = function.__code__
+    names = code.co_varnames[: code.co_argcount + code.co_kwonlyargcount]
+    has = frozenset(names)
+
+    @wraps(function)
+    def guarded(*args, **kwargs):
+        if not kwargs.keys() <= has:
+            raise TypeError(_sentence(shown, [n for n in names if n != "self"], kwargs, has))
+        return function(*args, **kwargs)
+
+    return guarded
+
+
+def _sentence(shown: str, names: list[str], given, has) -> str:
+    unknown = next(name for name in given if name not in has)
+    meant = [name for name in _MEANT.get(unknown, ()) if name in has]
+    meant = meant or get_close_matches(unknown, names, n=1)
+    hint = f"it is called {meant[0]}=" if meant else f"it has {', '.join(names)}"
+    return f"{shown} has no argument {unknown}=; {hint}"

@@ -1,0 +1,52 @@
+"""Steps that are far too long for the motion: seen from the states at their ends."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from carom.results.solution import Solution
+
+#: of the way at the greatest speed: a harmonic motion is so far off where it turns by 1.1 rad in a step
+COARSE = 0.1
+GOOD = 1e-3  # the same for a step that is short enough to begin with
+
+
+def too_long(solution: Solution, flies: np.ndarray, step: float) -> tuple[str, ...]:
+    """Return a sentence where a given step is far too long for the motion of joined or loaded bodies.
+
+    The trapezoidal rule is compared with the way of such a body in a step: the two are (omega h)^2 / 12 of the
+    way apart for an angular frequency omega. Flight is exact at any step, and steps with impacts have kinks.
+
+    Parameters
+    ----------
+    solution
+        Of which each step is saved.
+    flies : (N,)
+        Whether a body is neither joined nor loaded.
+    step : float
+        [s].
+    """
+    t, bound = solution.t, np.flatnonzero(~flies)
+    if len(t) < 3 or not len(bound):
+        return ()
+    x, v = solution.position[:, bound], solution.velocity[:, bound]
+    h = np.diff(t)[:, None, None]
+    off = np.linalg.norm(np.diff(x, axis=0) - 0.5 * h * (v[1:] + v[:-1]), axis=-1)
+    fastest = np.linalg.norm(v, axis=-1).max(axis=0)
+    strikes = np.searchsorted(t, solution.impacts.time)
+    smooth = np.ones(len(t) - 1, dtype=bool)
+    for k in (strikes - 1, strikes):
+        smooth[np.clip(k, 0, len(smooth) - 1)] = False
+    part = np.where(smooth[:, None], off, 0.0) / np.maximum(step * fastest, 1e-300)
+    worst = np.unravel_index(np.argmax(part), part.shape)
+    if not part[worst] > COARSE:
+        return ()
+    name = solution.scene.bodies[bound[worst[1]]].name
+    good = step * np.sqrt(GOOD / part[worst])
+    return (
+        f"step={step:g} s is far too long for the motion of {name!r}, whose velocity turns too much within "
+        f"one (most at t = {t[worst[0]]:.6g} s). Take step={good:.1g} or less, or leave step out.",
+    )

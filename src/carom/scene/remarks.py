@@ -1,0 +1,84 @@
+"""What a scene says that is nearly always a mistake, in sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from carom.scene.all_pairs import meeting
+from carom.scene.bodies import Body
+from carom.scene.forces import Force, Torque
+
+if TYPE_CHECKING:
+    from carom.scene.scene import Scene
+
+MOST = 6  # names in a sentence
+
+
+def remarks(scene: Scene) -> tuple[str, ...]:
+    """Return sentences about bodies that nothing can touch, and contacts of which nothing is stated."""
+    return (*_of_untouched(scene), *_of_unsaid(scene))
+
+
+def _of_untouched(scene: Scene) -> list[str]:
+    """Return a sentence about free bodies that nothing can touch, where there is something to be touched by."""
+    if not (scene.half_spaces or scene.contacts):
+        return []
+    touched = _touched(scene)
+    held = {id(part) for joint in scene.joints for part in (joint.parent, joint.child)}
+    held |= {id(part) for constraint in scene.constraints for part in constraint.parts}
+    for force in scene.forces:
+        if not isinstance(
+            force.definition, (Force, Torque)
+        ):  # springs and what the user writes may hold it
+            held |= {id(part) for part in (force.parent, force.child)}
+            held |= {id(part) for part in getattr(force.definition, "bodies", ())}
+    free = [b for b in scene.bodies if not touched[b.index] and id(b) not in held]
+    if not free:
+        return []
+    bare = [b for b in free if b.shape is None]
+    why = f", {_names(bare)} for want of a shape" if bare and scene.contact_default else ""
+    return [
+        f"Nothing can touch {_names(free)}{why}: what is in the way is passed through. Add contacts with "
+        "add_contact, or let all pairs touch with set_contact_default."
+    ]
+
+
+def _touched(scene: Scene) -> np.ndarray:
+    """Return which bodies (N,) have a contact of their own or by default."""
+    touched = np.zeros(len(scene.bodies), dtype=bool)
+    for contact in scene.contacts:
+        touched[
+            [part.index for part in (contact.body, contact.other) if isinstance(part, Body)]
+        ] = True
+    found = scene._pairs.defaults(scene.bodies, scene.half_spaces)
+    if found is not None:
+        touched[found.grounded.body] = True
+        touched |= meeting(found)
+    return touched
+
+
+def _of_unsaid(scene: Scene) -> list[str]:
+    """Return a sentence about contacts whose restitution and friction nobody has stated."""
+    pairs = scene._pairs
+    found = [contact for contact in scene.contacts if pairs.is_unsaid(contact.body, contact.other)]
+    what = [_names(found)] if found else []
+    if pairs.default is not None and pairs.unsaid_default and not _all_of_materials(scene):
+        what.append("set_contact_default")
+    if not what:
+        return []
+    return [
+        f"Of {' and '.join(what)} neither restitution nor friction is stated: taken are 0.5 and 0. State them, "
+        "as in restitution=0.5, friction=0.3."
+    ]
+
+
+def _all_of_materials(scene: Scene) -> bool:
+    return all(part.material is not None for part in (*scene.bodies, *scene.half_spaces))
+
+
+def _names(parts: Sequence) -> str:
+    shown = ", ".join(repr(part.name) for part in parts[:MOST])
+    return shown + (f" and {len(parts) - MOST} more" if len(parts) > MOST else "")
