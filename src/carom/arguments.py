@@ -1,4 +1,4 @@
-"""Names of arguments: one that a function does not have is refused by the name that is meant."""
+"""Arguments that a function does not have, or lacks: refused with their names, or the name that is meant."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ for _ours, _others in ELSEWHERE.items():
 
 
 def known(function: F) -> F:
-    """Decorate a function, or a class and its ``__init__``: it says which argument an unknown one means."""
+    """Decorate a function, or a class and its ``__init__``: it says what an unknown or missing argument is."""
     made: Any = function
     if not isinstance(function, type):
         return _guarded(function, function.__name__)
@@ -67,18 +67,29 @@ def known(function: F) -> F:
 def _guarded(function: Any, shown: str) -> Any:
     code = function.__code__
     names = code.co_varnames[: code.co_argcount + code.co_kwonlyargcount]
-    has = frozenset(names)
+    by_place, by_name = names[: code.co_argcount], names[code.co_argcount :]
+    has, most = frozenset(names), len(by_place)
+    required = [*by_place[: most - len(function.__defaults__ or ())]]
+    required += [name for name in by_name if name not in (function.__kwdefaults__ or {})]
 
     @wraps(function)
     def guarded(*args, **kwargs):
         if not kwargs.keys() <= has:
-            raise TypeError(_sentence(shown, [n for n in names if n != "self"], kwargs, has))
+            raise TypeError(_unknown(shown, [n for n in names if n != "self"], kwargs, has))
+        missing = [n for n in required if n not in by_place[: len(args)] and n not in kwargs]
+        if missing:
+            call = f"{shown}({', '.join(name for name in required if name != 'self')})"
+            raise TypeError(f"{shown} needs {' and '.join(missing)}: {call}")
+        if len(args) > most:
+            firsts = ", ".join(name for name in by_place if name != "self")
+            rest = f", and all else by name, like {by_name[0]}=" if by_name else ""
+            raise TypeError(f"{shown} takes {firsts or 'nothing'} by place{rest}")
         return function(*args, **kwargs)
 
     return guarded
 
 
-def _sentence(shown: str, names: list[str], given, has) -> str:
+def _unknown(shown: str, names: list[str], given, has) -> str:
     unknown = next(name for name in given if name not in has)
     meant = [name for name in _MEANT.get(unknown, ()) if name in has]
     meant = meant or get_close_matches(unknown, names, n=1)

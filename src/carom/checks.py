@@ -274,6 +274,8 @@ def instance(name: str, value, kinds: tuple[type, ...], hint: str = "") -> None:
     if isinstance(value, kinds):
         return
     allowed = " or ".join(kind.__name__ for kind in kinds)
+    if isinstance(value, type) and issubclass(value, kinds):
+        hint = f"; that is the class, make one by {value.__name__}(...)"
     raise TypeError(f"{name} must be a {allowed}, got {shown(value)}{hint}")
 
 
@@ -299,7 +301,9 @@ def _no_number(value) -> bool:
 
 
 def _text(value) -> str:
-    """Return that a value is a text, where it looks like a number."""
+    """Return that a value is a string, or has some, where it looks like a number."""
+    if isinstance(value, (list, tuple)) and any(isinstance(one, str) for one in value):
+        return ", which has strings"
     return ", a string" if isinstance(value, str) and value.strip("+-. ")[:1].isdigit() else ""
 
 

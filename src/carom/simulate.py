@@ -17,7 +17,6 @@ from carom.io.run_to_end import finish
 from carom.options import Options
 from carom.results.coarse import too_long
 from carom.results.solution import Solution
-from carom.scene.remarks import remarks
 from carom.scene.scene import Scene
 from carom.status import MistakeWarning
 from carom.stepping.settings import (
@@ -26,6 +25,7 @@ from carom.stepping.settings import (
     check_handling,
     check_scene,
     checked_settings,
+    mistakes,
 )
 
 
@@ -194,21 +194,12 @@ def simulate(
         from carom.io.files.keeper import Keeper
 
         keeper = Keeper(run, save, save_seconds)
-    for mistake in before(scene, settings):
+    for mistake in mistakes(scene, settings):
         warnings.warn(mistake, MistakeWarning, stacklevel=3)
     solution = finish(run, progress, keeper, throw)
     for mistake in after(solution, settings):
         warnings.warn(mistake, MistakeWarning, stacklevel=3)
     return solution
-
-
-def before(scene, settings: Settings) -> tuple[str, ...]:
-    """Return sentences about what is nearly always a mistake, from what is stated."""
-    found = remarks(scene) if isinstance(scene, Scene) else ()
-    if settings.step is not None and settings.step > settings.duration:
-        said = f"step={settings.step:g} s is longer than the run of {settings.duration:g} s"
-        return (*found, f"{said}, which takes one step. Give a shorter one, or leave step out.")
-    return found
 
 
 def after(solution, settings: Settings) -> tuple[str, ...]:

@@ -13,7 +13,7 @@ def on_plane(body, *, gravity=(0, 0, -G), point=(0, 0, 0), normal=(0, 0, 1), con
     scene = carom.Scene(gravity=gravity)
     ground = scene.add_half_space(point, normal)
     part = scene.add_body(body.pop("shape"), **body)
-    scene.add_contact(part, ground, **(contact or {}))
+    scene.add_contact(part, ground, **(contact or {"friction": 0.0}))
     return scene
 
 

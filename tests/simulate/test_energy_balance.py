@@ -286,7 +286,7 @@ def test_a_body_in_another_and_a_joint_beyond_its_stop_are_said():
         scene.add_body(carom.Sphere(0.05), mass=1.0, position=(x, 0, 0), name=name)
         for x, name in ((0.0, "left"), (0.2, "right"))
     )
-    scene.add_contact(right, left)
+    scene.add_contact(right, left, friction=0)
     run = carom.simulate(scene, 0.1, step=0.01)._run
     run.now["x"][1, 0] = 0.1 - 1e-6
     look_at_depth(run.compiled.system, run.now, 0.1, run.work, run.watch)
@@ -314,8 +314,8 @@ def test_a_body_in_what_it_touches_is_said():
         scene.add_body(carom.Box(0.2, 0.2, 0.2), mass=1.0, position=(0, 0, z), name=name)
         for z, name in ((0.1, "low"), (0.3, "high"))
     )
-    scene.add_contact(low, floor)
-    scene.add_contact(high, low)
+    scene.add_contact(low, floor, friction=0)
+    scene.add_contact(high, low, friction=0)
     size = 0.1 * np.sqrt(3.0)
     for body, words in ((0, "Body 'low' is in 'floor'"), (1, "Body 'high' is in 'low'")):
         run = carom.simulate(scene, 0.1, step=0.01)._run

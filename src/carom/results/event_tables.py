@@ -98,7 +98,7 @@ class ImpactTable:
 
     def __getitem__(self, k: int) -> ImpactRecord:
         if not -len(self) <= k < len(self):
-            raise IndexError(f"impact {k} of {len(self)}")
+            raise IndexError(f"there is no impact {k} of {len(self)}; the first has the number 0")
         return ImpactRecord(*(_plain(getattr(self, name)[k]) for name in ImpactRecord._fields))
 
     def __iter__(self) -> Iterator[ImpactRecord]:

@@ -11,6 +11,7 @@ from carom.dynamics.methods import ADAPTIVE, CARRIES, EXPLICIT, METHODS
 from carom.options import Options
 from carom.scene.limits import check_location
 from carom.scene.more_forces import JointFriction, JointInertia
+from carom.scene.remarks import remarks
 from carom.scene.scene import Scene
 
 LOCATIONS = ("locate", "project", "work")
@@ -138,6 +139,15 @@ def check_scene(scene: Scene, settings: Settings) -> None:
     scene.validate()
     check_location(scene, settings.impact_location)
     check_method(scene, settings.method)
+
+
+def mistakes(scene, settings: Settings) -> tuple[str, ...]:
+    """Return sentences about what is nearly always a mistake, from what is stated."""
+    found = remarks(scene) if isinstance(scene, Scene) else ()
+    if settings.step is not None and settings.step > settings.duration:
+        said = f"step={settings.step:g} s is longer than the run of {settings.duration:g} s"
+        return (*found, f"{said}, which takes one step. Give a shorter one, or leave step out.")
+    return found
 
 
 def check_method(scene: Scene, method: str) -> None:

@@ -11,11 +11,13 @@ from carom import arguments, checks
 from carom.io.run_to_end import reporter
 from carom.options import Options
 from carom.scene.scene import Scene
+from carom.status import MistakeWarning
 from carom.stepping.settings import (
     Settings,
     check_handling,
     check_scene,
     checked_settings,
+    mistakes,
 )
 from carom.studies.ensembles.engines import check_engine
 from carom.studies.ensembles.outcome import PENDING
@@ -146,6 +148,8 @@ def ensemble(
         settings = settings._replace(save_every=NEVER)
     inputs = draw(vary, runs, checks.integer("seed", seed, least=0), sampling)
     plan = _plan(scene, settings, inputs, observe)
+    for mistake in mistakes(scene, settings):
+        warnings.warn(mistake, MistakeWarning, stacklevel=3)
     count = len(next(iter(inputs.values())))
     store = _store(save, plan, inputs, chunk) if save is not None else None
     chunk = store.chunk if store is not None else chunk

@@ -1,0 +1,37 @@
+"""Mistakes of a newcomer: the sentence that is printed for each, word by word (`newcomer.txt`)."""
+
+import re
+import warnings
+from pathlib import Path
+
+import matplotlib as mpl
+import pytest
+
+mpl.use("agg")
+TEXT = (Path(__file__).parent / "newcomer.txt").read_text(encoding="utf-8")
+HEAD, *ENTRIES = re.split(r"^>>> ", TEXT, flags=re.M)
+BEGIN = "\n".join(line[4:] for line in HEAD.split("\n") if line.startswith("    "))
+MISTAKES = [entry.strip().split("\n", 1) for entry in ENTRIES]
+
+
+def printed(line):
+    """What is printed for a line after the first ones: the last line of a traceback, or a warning."""
+    names = {}
+    exec(BEGIN, names)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        try:
+            exec(line, names)
+        except Exception as error:
+            return f"{type(error).__name__}: {error}"
+    return "nothing"
+
+
+@pytest.mark.parametrize(("line", "sentence"), MISTAKES, ids=[line for line, _ in MISTAKES])
+def test_a_mistake_is_answered_by_this_sentence(line, sentence):
+    assert printed(line).split() == sentence.split()
+
+
+def test_there_are_mistakes_enough_and_none_twice():
+    assert len(MISTAKES) >= 60
+    assert len({line for line, _ in MISTAKES}) == len(MISTAKES)
