@@ -7,7 +7,7 @@ from pathlib import Path
 
 import carom
 
-sys.path.insert(0, str(Path(__file__).parent))  # examples_gallery
+sys.path.insert(0, str(Path(__file__).parent))  # api_pages, examples_gallery
 
 project = "carom"
 author = "The carom developers"
@@ -15,6 +15,7 @@ copyright = "The carom developers"
 version = release = carom.__version__
 
 extensions = [
+    "api_pages",
     "myst_parser",
     "numpydoc",
     "sphinx.ext.autodoc",

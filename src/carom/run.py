@@ -317,7 +317,7 @@ class Run:
             if further and whole:
                 self.records = r.room_for_one(self.records, clock.saved)
                 self.save_now()
-        return Solution.from_run(self, status)
+        return Solution._from_run(self, status)
 
 
 def check_stops(scene: Scene, compiled, start, work, options: Options) -> None:

@@ -108,7 +108,13 @@ class MistakeWarning(UserWarning):
 
 
 class SimulationError(RuntimeError):
-    """A run that failed. `solution` holds everything up to the failure, all of it if it was inaccurate."""
+    """A run that failed.
+
+    Attributes
+    ----------
+    solution : Solution or None
+        Everything up to the failure; all of the run if it was inaccurate.
+    """
 
     def __init__(self, message: str, solution=None):
         super().__init__(message)

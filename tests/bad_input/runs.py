@@ -61,7 +61,7 @@ def run(folder):
         "GeneralizedSystem.return_map": lambda: (
             one_oscillator().return_map, dict(position=[1.0], contact="wall"),
         ),
-        "generalized.solution.GeneralizedSolution.evaluate": lambda: (
+        "generalized.GeneralizedSolution.evaluate": lambda: (
             oscillation().evaluate, dict(t=0.01, side="left"),
         ),
     }  # fmt: skip
@@ -130,13 +130,13 @@ def run(folder):
             dict(inverse_mass=W, velocity=(-1.0, 1.0, 0.0), friction=0.1, kind="sliding",
                  heading=[(1.0, 0.0)], start=(0.0, 0.0, 0.0)),
         ),
-        "impact.slip_directions.invariant_directions": lambda: (
+        "impact.invariant_directions": lambda: (
             slip_directions.invariant_directions, dict(inverse_mass=W, friction=0.1),
         ),
-        "impact.slip_directions.critical_friction": lambda: (
+        "impact.critical_friction": lambda: (
             slip_directions.critical_friction, dict(inverse_mass=W),
         ),
-        "impact.geometry.diagonal_form": lambda: (
+        "impact.diagonal_form": lambda: (
             geometry.diagonal_form, dict(inverse_mass=W, velocity=(-1.0, 1.0, 0.0), force=(1.0, 0.0, 0.0)),
         ),
         "sensitivities": lambda: (

@@ -17,8 +17,8 @@ pytest.importorskip("h5netcdf")
 pytest.importorskip("zarr")
 pytest.importorskip("PIL")
 
-API = Path(__file__).parents[2] / "docs" / "api.rst"
-ENTRY = r"^   (?:scene\.)?(?:more_)?([a-z]\w*(?:\.\w+)+|[A-Za-z]\w*)$"  # of a list in that page
+API = Path(__file__).parents[2] / "docs" / "api"
+ENTRY = r"^   carom\.(?:scene\.)?([a-z]\w*(?:\.\w+)+|[A-Za-z]\w*)$"  # of a list in its pages
 SOME = 12  # kinds of wrong values for each parameter, half of them as look like numbers
 FEW = 4  # of calls that take a tenth of a second
 DEAR = (
@@ -46,21 +46,23 @@ MODULES = (
 #: what the library hands back, and nobody makes
 HANDED_BACK = {
     "AccuracyWarning", "GROUND", "ContactSolution", "CornerImpact", "Ensemble", "Impact", "LayerHistory",
-    "MistakeWarning", "Model", "Sensitivities", "SimulationError", "Solution", "Solution.from_run", "Status",
-    "generalized.CoordinateContact", "generalized.solution.GeneralizedSolution",
-    "generalized.solution.CoordinateImpactTable", "generalized.solution.CoordinateImpact",
-    "dynamics.mobility.Mobility", "results.event_tables.ImpactTable", "results.event_tables.ImpactRecord",
-    "results.event_tables.EventTable", "results.event_tables.ContactTable",
-    "results.event_tables.ForceTable", "all_pairs.PairTable", "results.ledger.Ledger",
+    "MistakeWarning", "Model", "Sensitivities", "SimulationError", "Solution", "Status",
+    "generalized.CoordinateContact", "generalized.GeneralizedSolution",
+    "generalized.CoordinateImpactTable", "generalized.CoordinateImpact",
+    "dynamics.mobility.Mobility", "results.ImpactTable", "results.ImpactRecord",
+    "results.EventTable", "results.ContactTable",
+    "results.ForceTable", "all_pairs.PairTable", "results.Ledger",
     "io.files.convert.Frames",
     "visual.viewer.live.LiveView", "visual.viewer.page.Exported", "models.Coordinate", "models.Model",
-    "models.Report", "models.Entry", "impact.slip_directions.InvariantDirections",
-    "impact.geometry.NormalMotion", "gradient.Sensitivities", "gradient.Derivative", "gradient.Margin",
+    "models.Report", "models.Entry", "impact.InvariantDirections",
+    "impact.NormalMotion", "gradient.Sensitivities", "gradient.Derivative", "gradient.Margin",
     "gradient.ImpactKind", "gradient.ImpactDerivative", "gradient.ByInputs", "identify.Identification",
     "identify.State", "identify.FreeFlight", "identify.RollOut", "identify.TrajectoryError",
     "identify.Uncertainty", "baselines.HHTRun", "baselines.LayerRun", "baselines.MoreauJeanRun",
     "joints.Joint", "joints.Joint.anchor", "forces.AppliedForce", "constraints.Constraint",
     "Options.as_dict",
+    "Body", "HalfSpace", "Ground", "Contact", "Constraint", "AppliedForce", "stops.Stop",
+    "joints.JointDefinition",
 }  # fmt: skip
 
 
@@ -113,8 +115,9 @@ def public():
         for own in listed:
             if own not in carom.__all__:
                 yield from members(f"{name}.{own}", getattr(module, own))
-    for name in re.findall(ENTRY, API.read_text(), re.MULTILINE):
-        yield short(name)
+    for page in API.glob("*.rst"):
+        for name in re.findall(ENTRY, page.read_text(), re.MULTILINE):
+            yield short(name)
 
 
 def short(name):

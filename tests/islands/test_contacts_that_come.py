@@ -186,7 +186,7 @@ def half_way(path):
     """Write a run of which 12 of 30 steps are done; return how many contacts it had."""
     run = run_again(swarm(carom.Sphere(R), 70), SETTINGS, ALLOWED)
     run.go_on(12)
-    so_far = carom.Solution.from_run(run, carom.Status.INTERRUPTED)
+    so_far = carom.Solution._from_run(run, carom.Status.INTERRUPTED)
     write(path, so_far, capture(run), whole=False)
     return len(run.pairs.body)
 

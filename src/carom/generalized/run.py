@@ -165,4 +165,4 @@ class GeneralizedRun:
         clock = self.clock[0]
         if status is not Status.SUCCESS and clock.now > self.series.t[clock.saved - 1]:
             self.save_now()
-        return GeneralizedSolution.from_run(self, status)
+        return GeneralizedSolution._from_run(self, status)

@@ -33,8 +33,8 @@ class CoordinateImpact(NamedTuple):
     energy_change: float  #: of the whole system [J]
     law: str  #: law of restitution
     inverse_mass: np.ndarray  #: (3, 3) W of the contact
-    restitution: float
-    friction: float
+    restitution: float  #: e of the contact
+    friction: float  #: mu of the contact
     compression_work: float  #: of the normal force [J]
     restitution_work: float  #: of the normal force [J]
     friction_loss: float  #: [J]
@@ -121,6 +121,10 @@ class GeneralizedSolution(Drawn):
         time themselves.)
     stats : dict
         Counts: steps, located events, impacts, holds.
+    system : GeneralizedSystem
+        What was run.
+    settings : dict
+        The arguments of the run.
     """
 
     t: np.ndarray
@@ -139,7 +143,7 @@ class GeneralizedSolution(Drawn):
     warnings: tuple[str, ...] = ()
 
     @classmethod
-    def from_run(cls, run: GeneralizedRun, status: Status) -> GeneralizedSolution:
+    def _from_run(cls, run: GeneralizedRun, status: Status) -> GeneralizedSolution:
         """Collect what a run has written down."""
         from carom.generalized.loop import energies
         from carom.results.accuracy import judge, sentences, watched

@@ -13,7 +13,17 @@ from carom.scene.materials import IMPACT_LAWS
 
 @dataclass(frozen=True)
 class CoordinateContact:
-    """A contact of a system in coordinates: its law; its gap function says what touches."""
+    """A contact of a system in coordinates: its law; its gap function says what touches.
+
+    Attributes
+    ----------
+    name : str
+    restitution, friction : float
+        e and mu.
+    impact_law : {"newton", "poisson", "stronge"}
+    index : int
+        Place in `GeneralizedSystem.contacts`.
+    """
 
     name: str
     restitution: float

@@ -1,6 +1,22 @@
 """One frictional impact: the boundary layer, slip and stick, restitution laws, the resolver."""
 
 from carom.impact.api import Impact, resolve_impact
+from carom.impact.geometry import NormalMotion, diagonal_form
 from carom.impact.history import LayerHistory, impact_layer
+from carom.impact.slip_directions import (
+    InvariantDirections,
+    critical_friction,
+    invariant_directions,
+)
 
-__all__ = ["Impact", "LayerHistory", "impact_layer", "resolve_impact"]
+__all__ = [
+    "Impact",
+    "InvariantDirections",
+    "LayerHistory",
+    "NormalMotion",
+    "critical_friction",
+    "diagonal_form",
+    "impact_layer",
+    "invariant_directions",
+    "resolve_impact",
+]

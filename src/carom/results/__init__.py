@@ -1,1 +1,12 @@
 """What a run gives: the solution, its tables, its ledger, and its states between saved times."""
+
+from carom.results.event_tables import (
+    ContactTable,
+    EventTable,
+    ForceTable,
+    ImpactRecord,
+    ImpactTable,
+)
+from carom.results.ledger import Ledger
+
+__all__ = ["ContactTable", "EventTable", "ForceTable", "ImpactRecord", "ImpactTable", "Ledger"]

@@ -36,8 +36,8 @@ class ImpactRecord(NamedTuple):
     duration: float  #: in the boundary layer [s]
     law: str  #: law of restitution
     inverse_mass: np.ndarray  #: (3, 3) W of the contact [1/kg]
-    restitution: float
-    friction: float
+    restitution: float  #: e of the contact
+    friction: float  #: mu of the contact
     compression_work: float  #: of the normal force [J]
     restitution_work: float  #: of the normal force [J]
     friction_loss: float  #: [J]

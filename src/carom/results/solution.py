@@ -81,6 +81,11 @@ class Solution(Portable, Drawn):
         steps that were made in parts, as a body turned far; and `whole_steps`, in how many steps bodies that
         touch were taken whole, as a crowd: impacts of these are at the ends of steps (`impacts.located`).
 
+    scene : Scene
+        What was run.
+    settings : dict
+        Duration, step, method and tolerances of the run.
+
     Examples
     --------
     >>> scene = carom.Scene(gravity=(0, 0, -9.81))
@@ -116,7 +121,7 @@ class Solution(Portable, Drawn):
     warnings: tuple[str, ...] = ()
 
     @classmethod
-    def from_run(cls, run: Run, status: Status) -> Solution:
+    def _from_run(cls, run: Run, status: Status) -> Solution:
         """Collect what a run has written down."""
         from carom.results.assemble import assemble
 

@@ -21,11 +21,11 @@ MOST_AT_ONCE = 1 << 20  # balls whose distances are looked at in one go
 class PairTable(NamedTuple):
     """C pairs that may touch: a body, and a half-space or another body."""
 
-    body: np.ndarray  # (C,) its index
-    other: np.ndarray  # (C,) index of the other body, -1 for a half-space
-    plane: np.ndarray  # (C,) index of the half-space, -1 for a body
-    law: np.ndarray  # (C,) place in `laws`
-    laws: list[ContactLaw]
+    body: np.ndarray  #: (C,) its index
+    other: np.ndarray  #: (C,) index of the other body, -1 for a half-space
+    plane: np.ndarray  #: (C,) index of the half-space, -1 for a body
+    law: np.ndarray  #: (C,) place in `laws`
+    laws: list[ContactLaw]  #: each law once
 
 
 class Defaults(NamedTuple):

@@ -84,8 +84,8 @@ class HalfSpace:
 class Ground:
     """The world, as a partner of joints and forces: there is one, `carom.GROUND`."""
 
-    index: ClassVar[int] = -1
-    name: ClassVar[str] = "GROUND"
+    index: ClassVar[int] = -1  #: in the place of that of a body
+    name: ClassVar[str] = "GROUND"  #: in messages
 
     def __new__(cls) -> Ground:
         """Return the one ground."""

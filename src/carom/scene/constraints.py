@@ -61,7 +61,7 @@ class Coupling:
         From joints, or pairs (joint, number of the coordinate), to factors other than 0.
     """
 
-    terms: tuple[tuple[Joint, int, float], ...]
+    terms: tuple[tuple[Joint, int, float], ...]  #: joint, number of its coordinate, factor
 
     def __init__(self, factors: Mapping[Joint | tuple[Joint, int], float]):
         if not isinstance(factors, Mapping) or not factors:

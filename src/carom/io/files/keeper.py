@@ -41,7 +41,7 @@ class Keeper:
             return
         self.checkpoint = capture(self.run)
         try:
-            so_far = Solution.from_run(self.run, Status.INTERRUPTED)
+            so_far = Solution._from_run(self.run, Status.INTERRUPTED)
             write(self.path, so_far, self.checkpoint, whole=False)
         except Exception as error:  # a full disk, or whatever else, is no reason to lose the run
             warnings.warn(

@@ -24,7 +24,7 @@ class Distance(JointDefinition):
 
     anchor_parent: np.ndarray
     anchor_child: np.ndarray
-    length: float
+    length: float  #: distance of the two points at the start [m]
 
     def __init__(self, anchor_parent: ArrayLike, anchor_child: ArrayLike):
         start, end, length = apart(anchor_parent, anchor_child)

@@ -67,7 +67,7 @@ class Mesh(Shape):
     convex: bool
     _pieces: tuple[Piece, ...]
     _spread: np.ndarray
-    radius = 0.0
+    radius = 0.0  #: a mesh is not swollen [m]
 
     def __init__(self, vertices: ArrayLike, faces: ArrayLike, parts: Sequence | str | None = None):
         points = checks.finite_array("vertices", vertices, (None, 3), unit="m")

@@ -29,6 +29,8 @@ class Ensemble:
         What `observe` returned.
     failures : dict of int to str
         Why a run stopped before its end, or could not begin, by its number.
+    about : dict
+        Version and settings of the runs.
 
     Notes
     -----

@@ -18,7 +18,7 @@ class UniformOrientation:
     Shoemake, *Uniform random rotations*, Graphics Gems III (1992), from three uniform numbers.
     """
 
-    columns = 3
+    columns = 3  #: numbers that it takes of each point
 
     def ppf(self, u: np.ndarray) -> np.ndarray:
         """Return the quaternions (n, 4) of points `u` (n, 3) of the unit cube."""

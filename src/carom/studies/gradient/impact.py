@@ -12,9 +12,8 @@ from carom.impact.api import checked_impact
 class ByInputs(NamedTuple):
     """Derivatives of a vector (3,) in contact axes by what an impact is given."""
 
-    inverse_mass: (
-        np.ndarray
-    )  #: (3, 3, 3): a change dW, symmetric, changes it by einsum("ijk,jk", D, dW)
+    #: (3, 3, 3): a change dW, symmetric, changes it by einsum("ijk,jk", D, dW)
+    inverse_mass: np.ndarray
     velocity: np.ndarray  #: (3, 3)
     friction: np.ndarray  #: (3,); from above where friction is 0
     restitution: np.ndarray  #: (3,); from above where restitution is 0
@@ -23,8 +22,8 @@ class ByInputs(NamedTuple):
 class ImpactDerivative(NamedTuple):
     """Derivatives of an impact."""
 
-    impulse: ByInputs
-    velocity_after: ByInputs
+    impulse: ByInputs  #: of the impulse
+    velocity_after: ByInputs  #: of the relative velocity after the impact
     error: float  #: estimate of the relative error of `impulse`
 
 

@@ -38,7 +38,9 @@ class Identification:
     failed : (M,)
         How many runs stopped early in each evaluation.
     converged : bool
-        Whether the search ended by itself; `message` says how.
+        Whether the search ended by itself.
+    message : str
+        How it ended.
     uncertainty : Uncertainty or None
         Samples behind `error` and `interval`.
     """

@@ -15,10 +15,10 @@ ROUGH = 1e-9  # relative to the largest curvature: below it a surface has no min
 class Uncertainty(NamedTuple):
     """What resampled recordings say about the parameters."""
 
-    centre: np.ndarray  # (p,) minimum of the surface of all recordings
-    samples: np.ndarray  # (B, p) minima of the resampled surfaces
-    reach: np.ndarray  # (p,) half width of the region that the surface is fitted to
-    at_edge: np.ndarray  # (p,) share of samples at the edge of the region: the spread is larger
+    centre: np.ndarray  #: (p,) minimum of the surface of all recordings
+    samples: np.ndarray  #: (B, p) minima of the resampled surfaces
+    reach: np.ndarray  #: (p,) half width of the region that the surface is fitted to
+    at_edge: np.ndarray  #: (p,) share of samples at the edge of the region: the spread is larger
 
 
 def bootstrap(evaluate: Evaluator, resamples: int, seed: int) -> Uncertainty:

@@ -27,7 +27,7 @@ POINTS = 1500  # of the curves of energy
 class Exported(NamedTuple):
     """What was written."""
 
-    path: Path
+    path: Path  #: of the file
     size: int  #: [bytes]
     left_out: list[str]  #: in words
 
