@@ -1,7 +1,7 @@
 """Bodies on one joint that strike the ground: random kinds of joints, shapes, laws, friction and restitution.
 
 A body with few freedoms has an inverse mass W of rank 1 or 2 where it touches: slip and approach stop together,
-and friction may hold it wedged (mathematics page, II.9). What must be: the run ends at its time, the ledger
+and friction may hold it wedged (mathematics page, §1.9). What must be: the run ends at its time, the ledger
 closes, no line of it gains energy (but impacts by Newton's law), and no impulse is absurd.
 """
 

@@ -35,7 +35,7 @@ class Options:
         Impacts while several points of the bodies are closed: their boundary layers are passed together
         (default, but for pairs of which `Scene.add_contact` says otherwise), or one blow after the other, the
         pair that approaches fastest first, or all by Newton's law in one contact problem (Moreau 1988), which
-        is the quickest. (Mathematics page, V.)
+        is the quickest. (Mathematics page, part 2.)
     corner_tolerance : float
         Relative error of the velocities after a simultaneous impact. Default 1e-8.
     corner_exponent : float or None
@@ -54,7 +54,7 @@ class Options:
         impacts, friction and bounces. What is beyond it is in `Solution.warnings`, and an `AccuracyWarning`;
         beyond a hundred times that a run ends as `Status.INACCURATE`. Watched after each step. A step of joined
         or loaded bodies by an explicit method that has more than 1e-3 of it by itself is taken in shorter
-        ones. Default 1e-4. (Mathematics page, II.12.)
+        ones. Default 1e-4. (Mathematics page, §1.12.)
     constraint_tolerance : float
         Greatest error of position (relative to the size of the bodies) and of velocity (relative
         to their speeds) that joints may have at the start. Default 1e-8.
@@ -77,7 +77,7 @@ class Options:
     max_iterations : int
         Most block iterations in one step of the paper's methods. Default 100.
     max_impacts_per_step : int
-        Most impacts in one step; with more the step is taken whole (mathematics page, VI.9), and without
+        Most impacts in one step; with more the step is taken whole (mathematics page, §3.9), and without
         `hold`, or with impacts that are not located, the run stops with a status. Default 1000. (More than
         1000 events at one instant count as too many, too.)
     max_cuts : int

@@ -96,7 +96,7 @@ def simulate(
         more than about ``atol + rtol * size`` [m]. `size` is the body's; errors of angles count at that
         distance. Defaults: 1e-8, and `rtol` times the size of the smallest body. What flies freely, and times
         of impacts, are exact to round-off. Errors grow in chaotic motion; contact of several or of joined
-        bodies at several points is of order 2. (Mathematics page, II.3; page "Choose an accuracy".)
+        bodies at several points is of order 2. (Mathematics page, §1.3; page "Choose an accuracy".)
     impact_location : {"locate", "project", "work"}
         ``"locate"`` (default): the time of an impact is found inside the step, the return map is its last
         polish. ``"project"``: the paper literally, the step is kept and the return map brings the system back

@@ -40,7 +40,7 @@ def test_two_balls_head_on(e, masses):
     assert hit.energy_change == pytest.approx(loss, abs=1e-12)
 
 
-#: e, balls: velocities after (mathematics page, V; equal linear layers)
+#: e, balls: velocities after (mathematics page, part 2; equal linear layers)
 CRADLE = [
     (1.0, (-0.1302616951, 0.1502295694, 0.9800321256)),
     (1.0, (-0.1322752748, -0.0649747653, 0.2369776074, 0.9602724328)),

@@ -64,7 +64,7 @@ def test_open_contact_has_no_impulse():
 
 def test_painleve_rod_jumps_to_rest():
     # mu = 1.6 > 1.347: sliding towards the contact there is no finite force; the impulse stops the rod.
-    # P = W^-1 (0, 1): the e = 0 jump of mathematics page VI.6. The approach of 1e-12 is what gravity gives.
+    # P = W^-1 (0, 1): the e = 0 jump of mathematics page §3.6. The approach of 1e-12 is what gravity gives.
     solved = solve(ROD, np.array([-1e-12, 1.0, 0.0]), 1.6)
     assert solved.status == SOLVED
     np.testing.assert_allclose(solved.p, [0.3247595264, -0.4375, 0.0], atol=1e-10)

@@ -116,7 +116,7 @@ def test_puck_in_the_plane_stops_along_its_line():
 
 def test_jam_is_resolved_by_an_impact():
     # Painleve: a rod of 1 m, 1 kg at 60 degrees, mu = 1.6: W = [[1.75, 1.299], [1.299, 3.25]], u = (0, 1),
-    # e = 0: P = (.3247595264, -.4375), at rest at once at the point. (Mathematics page, VI.6.)
+    # e = 0: P = (.3247595264, -.4375), at rest at once at the point. (Mathematics page, §3.6.)
     q, v = symbols("x z a")
     x, z, a = q
     foot = x - sp.cos(a) / 2, z - sp.sin(a) / 2

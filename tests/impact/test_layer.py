@@ -21,7 +21,7 @@ def pass_layer(W, u, mu, e, law="newton", steps=2, delta=0.8, width=B):
 @pytest.mark.plain
 @pytest.mark.parametrize("law", LAWS)
 def test_two_steps_are_exact_for_e_1(law):
-    # Law A: s is a parabola in each phase, so the cubic of one step a phase is exact (II.8, II.11).
+    # Law A: s is a parabola in each phase, so the cubic of one step a phase is exact (§1.8, §1.11).
     layer = pass_layer(np.diag([2.0, 1, 1]), (-3, 0, 0), 0.3, 1.0, law)
     exact = NormalMotion(3.0, 1.0, B, 0.8)
     assert len(layer.t) == 3
@@ -48,7 +48,7 @@ def test_exit_speed_depth_and_duration(e, delta, law):
     assert layer.normal_force[-1] == pytest.approx(e**2 * v0 / t_c / W[0, 0], rel=1e-11)
 
 
-# Orders 4 (II.11): errors of u+ at 1, 2, 4, 8 steps a phase as the mathematics page prints them.
+# Orders 4 (§1.11): errors of u+ at 1, 2, 4, 8 steps a phase as the mathematics page prints them.
 def test_order_in_space():
     exact = resolve_impact(W_SPACE, U_SPACE, 0.2, 0.5).velocity_after
     errors = np.array([

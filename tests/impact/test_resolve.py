@@ -167,7 +167,7 @@ def test_die_in_space_by_the_other_laws():
 
 
 def test_jam_passes_through():
-    # Painleve rod (VI.6), an impact without collision: slip stops at p = .2563470311.
+    # Painleve rod (§3.6), an impact without collision: slip stops at p = .2563470311.
     W = planar(1.75, 1.299038105677, 3.25)
     impact = resolve_impact(W, (-1e-9, 1, 0), 1.6, 0.5, "stronge")
     assert impact.phases == ("slip", "jam", "stick")

@@ -1,4 +1,4 @@
-"""Impacts of bodies with few freedoms: W of rank 1 to 3, regular or nearly singular, all laws (II.9)."""
+"""Impacts of bodies with few freedoms: W of rank 1 to 3, regular or nearly singular, all laws (§1.9)."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Bodies on one joint that strike with friction: wedged or not, no impulse is absurd (II.9)."""
+"""Bodies on one joint that strike with friction: wedged or not, no impulse is absurd (§1.9)."""
 
 import numpy as np
 import pytest

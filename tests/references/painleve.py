@@ -1,4 +1,4 @@
-"""Impact without collision: a contact that slips and jams (Painleve; mathematics page, VI.6)."""
+"""Impact without collision: a contact that slips and jams (Painleve; mathematics page, §3.6)."""
 
 from __future__ import annotations
 

@@ -162,7 +162,7 @@ def bound(bodies, Q, w, memory):
 
 
 def test_no_point_is_accelerated_more_than_the_bound():
-    # II.6 rests on it. And it is sharp: no more than four times what occurs
+    # §1.6 rests on it. And it is sharp: no more than four times what occurs
     rng = np.random.default_rng(3)
     body, memory = table(BODY, 1), table(BODY_WORK, 1)
     for kind in KINDS:

@@ -9,7 +9,7 @@ quaternions as the map):
     P_1 = P_h + h/2 f(q_1, v_1) + A(q_1)^T Mu      with Mu such that A(q_1) v_1 = 0.
 
 Reactions of a joint do no work on a common motion of all bodies, so momenta of a floating system are kept;
-what turns a body is in the map, no gyroscopic torque is applied. (Mathematics page, II.3.)
+what turns a body is in the map, no gyroscopic torque is applied. (Mathematics page, §1.3.)
 
 Lam by repeated solves in q_0: with no wrench and the bias -phi(q_1)/h the constrained solve gives the motion
 dV with M dV = A(q_0)^T dLam and A dV = -phi/h, so P_h gains M dV. Each turn gains a factor of the order of

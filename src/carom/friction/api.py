@@ -85,7 +85,7 @@ def solve_contacts(
 
     Notes
     -----
-    Mathematics page, VI.2. Semi-smooth Newton on the equations of Alart and Curnier [1]_ with a proximal
+    Mathematics page, §3.2. Semi-smooth Newton on the equations of Alart and Curnier [1]_ with a proximal
     term, started from sweeps of Gauss-Seidel or from alternating directions on the form of de Saxce
     [2]_ where it does not converge; one contact is solved exactly. Impulses are not unique in
     general. Where Newton converges at once, those of least norm (in units that make contacts equally

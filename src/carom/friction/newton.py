@@ -2,7 +2,7 @@
 
 f(p) = p - project(p - w) = 0 with w = W p + c + eps (p - centre), in scaled variables. W is often singular
 (four corners of a box: rank 6 of 12); eps makes the step unique, and with the centre at 0 the
-solution that of least norm. Mathematics page, VI.2.
+solution that of least norm. Mathematics page, §3.2.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Where slip stops, u_t = 0: stick, or a new start along the one ray that leads away.
 
-Impulse form (mathematics page, II.9), a = W_tn, B = W_tt: in slip du_t/dp = a - mu B e with e the
+Impulse form (mathematics page, §1.9), a = W_tn, B = W_tt: in slip du_t/dp = a - mu B e with e the
 direction of slip; in stick B tau = -a. Stick needs |tau| <= mu.
 """
 

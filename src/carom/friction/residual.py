@@ -1,4 +1,4 @@
-"""The residual of the contact problem for given impulses (mathematics page, VI.2).
+"""The residual of the contact problem for given impulses (mathematics page, §3.2).
 
 That of a contact, in units of velocity, is |p - P_K(p - rho (w + s e_n))| / rho, rho = 3 / trace W_ii, with
 s = mu |w_t| (the natural map of de Saxce's form). It is to be at most ``RELATIVE`` of the

@@ -2,7 +2,7 @@
 
     q'' + Gamma(q', q') = 0,   Exp_q(xi) = q(1) for q(0) = q, q'(0) = xi
 
-(Mathematics page, VII.2; paper, Eqs. (1), (6), (10).)
+(Mathematics page, §4.2; paper, Eqs. (1), (6), (10).)
 """
 
 from __future__ import annotations

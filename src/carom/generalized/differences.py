@@ -4,7 +4,7 @@
 
 of order 4: its error is about 1e-12 of f's own scale, round-off and truncation alike, where f changes over
 lengths of 1. Second derivatives, of constraints and held gaps along the velocity, take h = eps^(1/6): 1e-10.
-(Mathematics page, VII.1.)
+(Mathematics page, §4.1.)
 
 What is made of compiled functions is compiled too. So all is in loops over numbers: array expressions would
 take Numba seconds to compile.

@@ -5,7 +5,7 @@ RATE       d gap/dt, turned     where a gap dips below zero and returns within a
 SEPARATE   N                    of a persistent contact
 CONE       mu N - |T|           while it sticks
 REVERSE    u_t . e              while it slips, e its direction at the start of the step
-JAM        W_nn - mu W_nt . e   while it slips (mathematics page, VI.6)
+JAM        W_nn - mu W_nt . e   while it slips (mathematics page, §3.6)
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Accelerations in coordinates: ``M v' = Q - dV - Gamma(v, v) + D^T lam`` with ``R v' = -R' v``.
 
 R are the constraint rows and those of persistent contacts; D = R, but for a contact that slips, whose reaction
-is N (G_n - mu e G_t). (Mathematics page, VII.1 and VII.4.)
+is N (G_n - mu e G_t). (Mathematics page, §4.1 and §4.4.)
 """
 
 from __future__ import annotations

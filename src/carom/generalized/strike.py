@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from carom.generalized.contacts import Contacts
 
 BLOWS = 200  # at one instant
-SEED = 1e-7  # approach of a contact that jams, as a part of its slip (mathematics page, VI.6)
+SEED = 1e-7  # approach of a contact that jams, as a part of its slip (mathematics page, §3.6)
 SPENT = 1e-6
 
 
@@ -77,7 +77,7 @@ class Strike:
         return 0
 
     def several(self, closed: list[int], now: float, jams: int) -> int:
-        """Resolve the impact of all closed contacts together (mathematics page, V)."""
+        """Resolve the impact of all closed contacts together (mathematics page, part 2)."""
         from carom.impact.multiple.layout import (
             MULTIPLE,
             OK,

@@ -280,7 +280,7 @@ class GeneralizedSystem:
     def return_map(self, position, contact: CoordinateContact | str) -> np.ndarray:
         """Return coordinates where the gap of a contact is zero, along an autoparallel normal to it there.
 
-        Normal in the metric (paper, contact detection; mathematics page, VII.2), and within the constraints.
+        Normal in the metric (paper, contact detection; mathematics page, §4.2), and within the constraints.
 
         Raises
         ------

@@ -83,7 +83,7 @@ def resolve_impact(
 
     Notes
     -----
-    Mathematics page, II.9 and II.10. Slip follows its Taylor series and ends where the contact
+    Mathematics page, §1.9 and §1.10. Slip follows its Taylor series and ends where the contact
     sticks, if the friction suffices to hold it, or else starts anew along the one direction that
     leads away from rest.
 

@@ -1,4 +1,4 @@
-"""Geometry of the boundary layer, and its closed forms without friction (mathematics page, II.8).
+"""Geometry of the boundary layer, and its closed forms without friction (mathematics page, §1.8).
 
 The layer is 0 < x < b. Its metric is singular at the boundary x = 0, g_11 = m (b/x)^2, so that the
 boundary is infinitely far: in the flat coordinate s = b ln(x/b) motion is as usual.

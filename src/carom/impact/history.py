@@ -127,7 +127,7 @@ def impact_layer(
 
     Notes
     -----
-    Mathematics page, II.8 to II.11; the paper, section on the boundary layer.
+    Mathematics page, §1.8 to §1.11; the paper, section on the boundary layer.
 
     Examples
     --------

@@ -2,10 +2,10 @@
 
 Flat coordinates (s, x^2, x^3), s = b ln(x/b). Two ways of giving the normal force:
 
-- Newton's law: law A (mathematics page, II.8), the normal acceleration is prescribed, constant in
+- Newton's law: law A (mathematics page, §1.8), the normal acceleration is prescribed, constant in
   compression, v_0^2/(2 b l), and e^2 of it in restitution; N = a/k(tau).
 - Poisson and Stronge, and Newton when k(tau) <= 0 on the way (jam): the steps are taken in the
-  normal impulse and replayed in time with constant N_c = |A_c|/(b l), N_r = A_r/(b l) (II.10).
+  normal impulse and replayed in time with constant N_c = |A_c|/(b l), N_r = A_r/(b l) (§1.10).
 
 Either way s returns to 0 from exactly -b l; where the pair is wedged it stays there, compressed. The
 instant at which slip ends, where a step must be split, is taken from the resolver; every velocity is the

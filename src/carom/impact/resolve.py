@@ -1,6 +1,6 @@
 """One frictional impact by the Darboux-Keller equation, solved to round-off.
 
-The normal impulse p is the time (mathematics page, II.9): du/dp = W (1, tau), tau = -mu u_t/|u_t|
+The normal impulse p is the time (mathematics page, §1.9): du/dp = W (1, tau), tau = -mu u_t/|u_t|
 in slip, tau = -W_tt^-1 W_tn in stick. Where the direction of slip is constant u is linear in p and
 the piece is closed; else it is stepped (`taylor`). A jam needs no care here: p always grows. Where no
 impulse moves anything any more (`wedge`) the velocity that was reached stays.
@@ -171,7 +171,7 @@ def _follow(contact, u, e, law):
 
 @inlined
 def _from_rest(contact):
-    """Return the line along which the contact goes on from u_t = 0 (II.9, 2 and 3).
+    """Return the line along which the contact goes on from u_t = 0 (§1.9, 2 and 3).
 
     It sticks to the end, or slip starts again along the outgoing ray.
     """

@@ -30,7 +30,7 @@ class InvariantDirections:
 
 
 def invariant_directions(inverse_mass, friction: float) -> InvariantDirections:
-    """Return all directions of slip that are constant through an impact (mathematics page, II.9).
+    """Return all directions of slip that are constant through an impact (mathematics page, §1.9).
 
     Parameters
     ----------

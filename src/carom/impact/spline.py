@@ -1,4 +1,4 @@
-"""One step of the geometric cubic spline through the boundary layer (mathematics page, II.11).
+"""One step of the geometric cubic spline through the boundary layer (mathematics page, §1.11).
 
 In the flat coordinates of the layer the equation is du/dt = N W (1, tau); the unknown is the cubic
 Hermite of the step, given by the velocity at its end, U, and its mean velocity, Y. The weak form
@@ -50,9 +50,9 @@ class Step(NamedTuple):
 
 @kernel
 def force(contact, t1, t2):
-    """Return N (paper, Eq. (8)) and k for the ratio (t1, t2): N = accel / k (law A, II.9), or 1.
+    """Return N (paper, Eq. (8)) and k for the ratio (t1, t2): N = accel / k (law A, §1.9), or 1.
 
-    N is 1 if `accel` is 0: the time of the step is the normal impulse then, scaled later by `layer` (II.10).
+    N is 1 if `accel` is 0: the time of the step is the normal impulse then, scaled later by `layer` (§1.10).
     """
     m, accel = contact.m, contact.accel
     k = m[0] + m[1] * t1 + m[2] * t2

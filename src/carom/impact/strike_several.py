@@ -73,7 +73,7 @@ def pair_of(i, contacts, closed, all_by_pairs):
 def strike_several(model, data, c, k):
     """Resolve the impact of all k closed points; add their impulses, write a row for each that has one.
 
-    A point that jams begins with a little approach (mathematics page, VI.6).
+    A point that jams begins with a little approach (mathematics page, §3.6).
     """
     system = model.system
     active, state, group, multiple = data.active, data.state, data.group, data.multiple

@@ -1,6 +1,6 @@
 """One step of slip, by the Taylor series of its solution.
 
-With dtau = dp/|u_t| in place of the normal impulse p, Coulomb slip (mathematics page, II.9) is
+With dtau = dp/|u_t| in place of the normal impulse p, Coulomb slip (mathematics page, §1.9) is
 
     du_t/dtau = r W_tn - mu W_tt u_t,    r = |u_t|,
 

@@ -11,7 +11,7 @@ the cone holds with the velocity at the end. Each round solves with the symmetri
 
     w = w(p_old) + W (p - p_old),
 
-so that the fixed point is exact. Order 2. (Mathematics page, VI.1.)
+so that the fixed point is exact. Order 2. (Mathematics page, §3.1.)
 """
 
 from __future__ import annotations

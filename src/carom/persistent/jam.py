@@ -1,4 +1,4 @@
-"""Contact that slips and jams (Painleve): no finite force keeps it closed (mathematics page, VI.6).
+"""Contact that slips and jams (Painleve): no finite force keeps it closed (mathematics page, §3.6).
 
 While a point slips along e its force is N (1, -mu e), and its normal acceleration a_n + k N with
 

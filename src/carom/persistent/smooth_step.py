@@ -7,7 +7,7 @@ While the same points press, slip and stick the motion is smooth:
 
 one linear system at each stage (`carom.persistent.known_modes`); where its forces do not obey Coulomb's law the
 stage is solved as a contact problem (`carom.persistent.forces`). At its end the body returns to the surfaces.
-(Mathematics page, VI.1.)
+(Mathematics page, §3.1.)
 """
 
 from __future__ import annotations

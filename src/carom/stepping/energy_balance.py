@@ -8,7 +8,7 @@ After each step, with sums since the start,
 
 No zero of the potential is in it. Impacts may rise where Newton's law with friction says so. The greatest
 unnamed energy of a run is judged by all that was exchanged in it; 1e-13 of what energies are made of is
-round-off. (Mathematics page, II.12.)
+round-off. (Mathematics page, §1.12.)
 """
 
 from __future__ import annotations

@@ -87,7 +87,7 @@ def test_two_balls_in():
 
 
 def test_poisson_in_a_row():
-    # V.4: p_r = e p_c of each contact, by energetic coefficients .464 and .580.
+    # §2.4: p_r = e p_c of each contact, by energetic coefficients .464 and .580.
     v, impact = strike_row([1, 0, 0], 0.5, "poisson", rtol=1e-10)
     np.testing.assert_allclose(np.diff(v), (0.002432063, 0.394066127), rtol=0, atol=2e-9)
     assert impact.law_missed == 0

@@ -41,7 +41,7 @@ def test_stronge(name):
 @pytest.mark.parametrize("law", ["newton", "poisson"])
 @pytest.mark.parametrize("name", ["slip", "slip, mu .5", "stick"])
 def test_newton_and_poisson_by_iteration(name, law):
-    # V.4: the outer fixed point meets the laws of one contact. It stops at 3 rtol.
+    # §2.4: the outer fixed point meets the laws of one contact. It stops at 3 rtol.
     W, u, mu, e = ONE[name]
     exact = resolve_impact(W, u, mu, e, law)
     both = resolve_impacts(np.tile(W, (2, 2)), [u, u], mu, e, law, stiffness=(1, 3), rtol=1e-10)

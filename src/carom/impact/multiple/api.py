@@ -112,7 +112,7 @@ def resolve_impacts(
 
     Notes
     -----
-    Mathematics page, V. The normals of rigid bodies do not say how an impact divides among contacts: the
+    Mathematics page, part 2. The normals of rigid bodies do not say how an impact divides among contacts: the
     stiffness does. **It is physics, not a numerical parameter.** A row of three equal balls struck at one end
     (Newton's cradle, e = 1, v = 1) ends with (-.130, .150, .980) for equal linear contacts, with (-.071, .076,
     .995) for Hertz's (``exponent=1.5``), and tends to the (0, 0, 1) of the textbook as stiffness falls

@@ -1,4 +1,4 @@
-"""Friction for given normal forces: min_T T.A T/2 + T.c with |T_i| <= rho_i (mathematics page, V.3).
+"""Friction for given normal forces: min_T T.A T/2 + T.c with |T_i| <= rho_i (mathematics page, §2.3).
 
 A = W_tt is positive semidefinite, often singular (redundant contacts): the minimum w = A T + c is
 unique, T need not be. Convex, so there is always a solution: no jam. Gauss-Seidel with each disc solved

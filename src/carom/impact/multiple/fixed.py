@@ -1,4 +1,4 @@
-"""The layers of a multiple impact in fixed steps: leap-frog for depths, friction implicit (mathematics, V.5).
+"""The layers of a multiple impact in fixed steps: leap-frog for depths, friction implicit (mathematics, §2.5).
 
 Modes change at the ends of steps. Of order two between changes; for many contacts cheaper than to
 locate each change.

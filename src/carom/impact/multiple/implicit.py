@@ -1,7 +1,7 @@
 """A step of order four, implicit in friction: the pair ARK4(3)6L[2]SA, depths explicit, impulses implicit.
 
 C. A. Kennedy and M. H. Carpenter, Applied Numerical Mathematics 44 (2003) 139-181. At each stage the depths
-and so the normal forces are known, and friction is the convex problem of V.3 for the velocity at the end
+and so the normal forces are known, and friction is the convex problem of §2.3 for the velocity at the end
 of the stage. Stick is exact (u_t = 0 at every stage), slip that begins from rest, where the direction is stiff
 (at a rate mu N W/|u_t|), needs no small steps, and no threshold divides stick from slip.
 """

@@ -1,4 +1,4 @@
-"""The normal law of a contact in the layer: continuous, hysteretic, energetic (mathematics page, V.2).
+"""The normal law of a contact in the layer: continuous, hysteretic, energetic (mathematics page, §2.2).
 
 Of the depth d = -s in the logarithmic coordinate, with the memory (d0, dm), erased at opening:
 

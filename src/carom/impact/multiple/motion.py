@@ -1,4 +1,4 @@
-"""Velocities and forces of the layers of a group: udot = W lambda, ddot = -u_n, Pdot = lambda (V.1)."""
+"""Velocities and forces of the layers of a group: udot = W lambda, ddot = -u_n, Pdot = lambda (§2.1)."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def normal_forces(k, work, d, p, out):
 def friction_now(k, m, work, horizon, slow, tolerance, out):
     """Add the friction of this instant to the normal forces `out`; `m` discs are gathered.
 
-    Of a contact that slips T = -mu N u_t/|u_t|; of those at rest, slower than `slow`, the solution of V.3:
+    Of a contact that slips T = -mu N u_t/|u_t|; of those at rest, slower than `slow`, the solution of §2.3:
     both are the friction for the velocity a time `horizon` ahead, in the limit of none. `tolerance` is for
     accelerations.
     """

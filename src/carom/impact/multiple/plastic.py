@@ -1,4 +1,4 @@
-"""The plastic event: Coulomb's cones at the velocity after (mathematics page, V.6).
+"""The plastic event: Coulomb's cones at the velocity after (mathematics page, §2.6).
 
 For e = 0 everywhere, and to close what does not end by itself (a body trapped between two walls).
 """

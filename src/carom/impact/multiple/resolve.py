@@ -1,4 +1,4 @@
-"""An impact at a corner: several contacts closed while one or more of them strike (mathematics page, V)."""
+"""An impact at a corner: several contacts closed while one or more of them strike (mathematics, part 2)."""
 
 from __future__ import annotations
 

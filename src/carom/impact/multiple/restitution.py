@@ -1,4 +1,4 @@
-"""Newton's and Poisson's law for several contacts: an outer iteration on the whole event (V.4).
+"""Newton's and Poisson's law for several contacts: an outer iteration on the whole event (§2.4).
 
 Each law enters through an energetic coefficient e_* of each contact, with which Newton's target
 u_n+ = e v0, or Poisson's p_r = e p_c, is met. Logarithms x = ln e_* are iterated by Broyden's method, which

@@ -1,4 +1,4 @@
-"""The outer iteration of Newton's and Poisson's law over passages of the layer (mathematics page, V.4)."""
+"""The outer iteration of Newton's and Poisson's law over passages of the layer (mathematics page, §2.4)."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 The Delassus operator W = G P G^T is never formed: rows G stand with each point, and the answers P G^T of the
 bodies that an impulse moves. Those are the two of the point and, where these have joints, what joints tie to
-them (`OTHER`): motions that the back end finds for unit impulses. (Mathematics page, VI.9.)
+them (`OTHER`): motions that the back end finds for unit impulses. (Mathematics page, §3.9.)
 """
 
 from __future__ import annotations

@@ -7,7 +7,7 @@ With rows G of the middle of the free flight from (q_0, v_0) to (q_f, v_f), and 
 
 b = e |u_n| where a contact strikes, 0 where it stays (`pose.set_bound`). So q_1 goes with the mean of the
 velocities, and the energy changes by p . (G v_0 + G v_1)/2, up to what the return to the surfaces moves.
-Order 1. (Mathematics page, VI.9.)
+Order 1. (Mathematics page, §3.9.)
 """
 
 from __future__ import annotations

@@ -60,7 +60,7 @@ def sensitivities(
 
     Notes
     -----
-    Mathematics page, part VIII. The derivative belongs to the sequence of contact of this run; `margins` and
+    Mathematics page, part 5. The derivative belongs to the sequence of contact of this run; `margins` and
     `reach` say how far it is from another one.
 
     Examples

@@ -1,6 +1,6 @@
 """Derivatives of one frictional impact: of its impulse, with respect to W, u, mu and e.
 
-The resolver is exact to 1e-14, so differences of order 6 of it are to 1e-11 (mathematics page, VIII.2).
+The resolver is exact to 1e-14, so differences of order 6 of it are to 1e-11 (mathematics page, §5.2).
 Steps are halved until all points of the stencil pass the same phases, and until halving no longer helps.
 """
 

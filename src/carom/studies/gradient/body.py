@@ -5,7 +5,7 @@ angular momentum L = R J R^T w is constant, and the change phi = R^T dtheta of a
 
     dphi/dt = -W x phi - J^-1 (phi x l) + J^-1 R^T dL - J^-1 dJ J^-1 l,    l = R^T L,  W = J^-1 l
 
-(mathematics page, VIII.1). With equal moments that do not change it is closed: exp and its differential.
+(mathematics page, §5.1). With equal moments that do not change it is closed: exp and its differential.
 """
 
 from __future__ import annotations

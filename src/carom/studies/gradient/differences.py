@@ -8,7 +8,7 @@ changes D that a unit of each parameter makes,
 by central differences with e and e/2, extrapolated: (4 D(e/2) - D(e))/3. A piece ends with the step of an
 event, so that what impacts multiply is multiplied exactly, however long the run; differences of whole runs
 would lose it in round-off, or leave the sequence of contact. The derivative is that of the steps as they
-are taken, impacts located anew in each. (Mathematics page, VIII.4.)
+are taken, impacts located anew in each. (Mathematics page, §5.4.)
 """
 
 from __future__ import annotations

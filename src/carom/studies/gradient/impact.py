@@ -49,7 +49,7 @@ def impact_derivative(
 
     Notes
     -----
-    Mathematics page, VIII.2.
+    Mathematics page, §5.2.
     """
     from carom.studies.gradient.blow import UPPER, blow
 

@@ -1,6 +1,6 @@
 """How far a run is from another sequence of contact: at each impact, and between impacts.
 
-A margin is a number that is zero at the change, with its derivative (mathematics page, VIII.3).
+A margin is a number that is zero at the change, with its derivative (mathematics page, §5.3).
 """
 
 from __future__ import annotations

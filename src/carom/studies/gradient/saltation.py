@@ -5,7 +5,7 @@ The impact of a changed motion happens at another time, t* + dt, with the gap ze
     dt = -(dg/dq . dq)/gdot,   dq(t* + dt) = dq + v- dt,   dv(t* + dt) = dv + a- dt.
 
 There the map of the impact is differentiated, W and u with the point and the axes of contact, and what follows
-is carried back to t*, so that all tangents belong to the same time (mathematics page, VIII.2).
+is carried back to t*, so that all tangents belong to the same time (mathematics page, §5.2).
 """
 
 from __future__ import annotations

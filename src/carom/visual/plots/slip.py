@@ -17,7 +17,7 @@ def hodograph(solution, k: int = 0, *, flow: bool = True, ax=None):
     Left: the path of the slip velocity from before the impact (square) to after it (dot), and rays that slip
     does not leave (`invariant_directions`): outgoing ones, along which it grows, and incoming ones, along which
     it dies. Grey lines: how slip of any start moves while it lasts, along ``W_tn - mu W_tt e`` with e its
-    direction (mathematics page, II.9). Right: friction force by normal force; on the circle of radius mu
+    direction (mathematics page, §1.9). Right: friction force by normal force; on the circle of radius mu
     while the contact slips, inside while it sticks.
 
     Parameters
