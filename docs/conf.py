@@ -61,10 +61,11 @@ html_theme = "pydata_sphinx_theme"
 html_title = "carom"
 html_static_path = ["_static"]
 html_css_files = ["carom.css", "gallery.css"]
-_ALONE = ("start", "notation", "benchmarks", "comparison", "limits", "changes", "cite")
+_ALONE = ("index", "start", "notation", "benchmarks", "comparison", "limits", "changes", "cite")
 html_sidebars = {page: [] for page in _ALONE}  # pages without others beside them
 html_theme_options = {
     "show_toc_level": 2,
+    "header_links_before_dropdown": 6,
     "navigation_with_keys": False,
     "secondary_sidebar_items": ["page-toc"],
 }

@@ -15,7 +15,7 @@ import carom
 
 ROOT = Path(__file__).parents[1]
 FOLDERS = (ROOT / "docs" / "tutorial", ROOT / "docs" / "howto")
-PAGES = ["README.md", "docs/start.md"]
+PAGES = ["README.md", "docs/index.md", "docs/start.md"]
 PAGES += sorted(str(p.relative_to(ROOT)) for folder in FOLDERS for p in folder.glob("*.md"))
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)
 

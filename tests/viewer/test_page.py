@@ -124,6 +124,18 @@ def test_an_address_may_name_a_moment(page, browser, thrown):
 
 
 @needs_browser
+def test_an_address_may_play_again_and_again(page, browser):
+    browser.open("about:blank")
+    browser.open(page.as_uri() + "#play")
+    browser.wait_for("window.carom !== undefined")
+    assert browser.run("carom.state.playing && panel.hidden")
+    browser.run("carom.seek(0.249)")
+    browser.wait_for("carom.state.time < 0.2")  # past the end it begins anew
+    assert browser.run("carom.state.playing")
+    assert browser.said == []
+
+
+@needs_browser
 def test_keys_play_and_step(opened):
     def press(key):
         opened.run(f"document.dispatchEvent(new KeyboardEvent('keydown', {{key: '{key}'}}))")

@@ -7,7 +7,7 @@ const run = await unpacked();
 const motion = new Motion(run);
 run.span = motion.end - motion.start || 1;
 const state = {
-  time: motion.start, playing: false, speed: run.speed, follow: -1, chosen: -1,
+  time: motion.start, playing: false, again: false, speed: run.speed, follow: -1, chosen: -1,
   arrows: true, ways: true, labels: false, length: 1,
   get fading() { return Math.max(FADE * this.speed, 1e-9); },
 };
@@ -112,7 +112,7 @@ function frameOfPage(now) {
   if (state.playing && before !== null) {
     const t = state.time + (state.speed * Math.min(now - before, 100)) / 1000;
     seek(t);
-    if (t >= motion.end) play(false);
+    if (t >= motion.end) play(state.again); // from the start, or no longer
   }
   before = now;
   if (stale) {
