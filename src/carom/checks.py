@@ -307,6 +307,14 @@ def _text(value) -> str:
     return ", a string" if isinstance(value, str) and value.strip("+-. ")[:1].isdigit() else ""
 
 
+def missing_package(what: str, package: str, extra: str) -> ModuleNotFoundError:
+    """Return the error for an optional package that is not installed; its last line installs it."""
+    message = (
+        f'{what} needs the package {package}; install it with\n\n    pip install "carom[{extra}]"\n'
+    )
+    return ModuleNotFoundError(message, name=package.split(".")[0])
+
+
 def _shape(shape) -> str:
     return (
         "("

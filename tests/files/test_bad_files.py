@@ -133,7 +133,7 @@ def test_hdf5_that_fails(thrown, path, monkeypatch):
 )
 def test_without_its_packages(package, use, thrown, path, monkeypatch):
     monkeypatch.setitem(sys.modules, package, None)
-    with pytest.raises(ImportError, match=rf'{package}: pip install "carom\[files\]"'):
+    with pytest.raises(ImportError, match=rf'{package}; .*\n\n    pip install "carom\[files\]"'):
         use(thrown, path)
 
 

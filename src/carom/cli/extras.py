@@ -7,8 +7,8 @@ import tomllib
 from importlib import metadata
 from pathlib import Path
 
-#: extras for those who work on carom itself
-OWN = ("test", "docs", "bench")
+#: extras that are made of others, and those for who works on carom itself
+OWN = ("all", "test", "docs", "bench")
 
 
 def requirements() -> dict[str, tuple[str, ...]]:

@@ -19,9 +19,7 @@ def sympy() -> Any:
     try:
         import sympy
     except ImportError:
-        raise ImportError(
-            'GeneralizedSystem.from_sympy needs the package sympy: pip install "carom[sympy]"'
-        ) from None
+        raise checks.missing_package("GeneralizedSystem.from_sympy", "sympy", "sympy") from None
     return sympy
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 from typing import Any
 
-EXTRA = 'pip install "carom[files]"'
+from carom import checks
 
 
 def need(package: str, what: str) -> Any:
@@ -21,4 +21,4 @@ def need(package: str, what: str) -> Any:
     except ImportError as error:
         if error.name is not None and error.name.split(".")[0] != package:
             raise  # it is there, and lacks something itself
-        raise ImportError(f"{what} needs the package {package}: {EXTRA}") from None
+        raise checks.missing_package(what, package, "files") from None

@@ -5,6 +5,8 @@ from __future__ import annotations
 import importlib
 from typing import Any
 
+from carom import checks
+
 
 def need_mujoco() -> Any:
     """Return the module ``mujoco``, or say how to install it.
@@ -19,6 +21,4 @@ def need_mujoco() -> Any:
     except ModuleNotFoundError as error:
         if error.name != "mujoco":
             raise  # it is there, and lacks something itself
-        raise ModuleNotFoundError(
-            'load_model needs the package mujoco: pip install "carom[models]"', name="mujoco"
-        ) from None
+        raise checks.missing_package("load_model", "mujoco", "models") from None

@@ -198,8 +198,6 @@ def _decomposed(points, triangles) -> list:
     try:
         import coacd  # pyright: ignore[reportMissingImports]
     except ImportError:
-        raise ImportError(
-            'parts="coacd" needs the package coacd: pip install "carom[shapes]"'
-        ) from None
+        raise checks.missing_package('parts="coacd"', "coacd", "shapes") from None
     coacd.set_log_level("error")
     return [vertices for vertices, _ in coacd.run_coacd(coacd.Mesh(points, triangles), seed=0)]

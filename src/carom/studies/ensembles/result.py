@@ -130,9 +130,7 @@ class Ensemble:
         try:
             import xarray
         except ImportError as error:
-            raise ImportError(
-                'to_xarray needs the package xarray; try: pip install "carom[ensemble]"'
-            ) from error
+            raise checks.missing_package("to_xarray", "xarray", "ensemble") from error
         units = {
             "t": "s", "rest_time": "s", "first_impact": "s", "position": "m", "velocity": "m/s",
             "angular_velocity": "rad/s", "kinetic_energy": "J", "impact_loss": "J",

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from carom import checks
 from carom.io.files.disk import put, sync
 from carom.studies.ensembles.outcome import PENDING, no_outcomes, outcome_type
 from carom.studies.ensembles.plan import Part
@@ -31,9 +32,7 @@ def _zarr():
     try:
         import zarr
     except ImportError as error:
-        raise ImportError(
-            'save needs the package zarr; try: pip install "carom[ensemble]"'
-        ) from error
+        raise checks.missing_package("save", "zarr", "ensemble") from error
     return zarr
 
 

@@ -114,9 +114,8 @@ def _write_mp4(path: Path, pictures, fps: float) -> None:
         import imageio.v2 as imageio
         import imageio_ffmpeg  # noqa: F401
     except ImportError:
-        raise ImportError(
-            'MP4 needs imageio and imageio-ffmpeg: pip install "carom[film]"; or write a .gif'
-        ) from None
+        what = "a film in MP4 (one in .gif does not)"
+        raise checks.missing_package(what, "imageio-ffmpeg", "film") from None
     with imageio.get_writer(
         path, format="FFMPEG", fps=fps, codec="libx264", pixelformat="yuv420p", macro_block_size=2,  # pyright: ignore
         output_params=["-crf", "18", "-preset", "medium", "-movflags", "+faststart"],

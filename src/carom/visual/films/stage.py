@@ -249,7 +249,7 @@ def pillow() -> tuple[Any, Any, Any]:
     try:
         from PIL import Image, ImageDraw, ImageFont
     except ImportError:
-        raise ImportError('films need pillow: pip install "carom[film]"') from None
+        raise checks.missing_package("a film or a still", "pillow", "film") from None
     return Image, ImageDraw, ImageFont
 
 

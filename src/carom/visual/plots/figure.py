@@ -75,7 +75,7 @@ def pyplot() -> Any:
     try:
         import matplotlib.pyplot as plt
     except ImportError:
-        raise ImportError('plots need matplotlib: pip install "carom[plot]"') from None
+        raise checks.missing_package("a plot", "matplotlib", "plot") from None
     return plt
 
 

@@ -12,6 +12,7 @@ from typing import Self
 
 import numpy as np
 
+from carom import checks
 from carom.visual.viewer.frames import poses_at
 from carom.visual.viewer.show import Show, body_number, playing_speed
 
@@ -27,10 +28,8 @@ def need_viser() -> None:
     except ImportError as error:
         if error.name is not None and error.name.split(".")[0] != "viser":
             raise  # it is there, and lacks something itself
-        raise ImportError(
-            'a live view needs the package viser: pip install "carom[view]"; a page that plays by '
-            'itself needs nothing: carom.view(solution, export="run.html")'
-        ) from None
+        what = 'a live view (not a page: carom.view(solution, export="run.html"))'
+        raise checks.missing_package(what, "viser", "view") from None
 
 
 class LiveView:
