@@ -17,7 +17,9 @@ PAGE = HERE / "tutorial" / "robot.md"
 def main() -> None:
     """Make the page of the last run."""
     names = {}
-    for block in re.findall(r"^```python\n(.*?)^```", PAGE.read_text(encoding="utf-8"), re.M | re.S):
+    for block in re.findall(
+        r"^```python\n(.*?)^```", PAGE.read_text(encoding="utf-8"), re.M | re.S
+    ):
         exec(block, names)
     title = "A robot strikes a crate"
     print(carom.view(names["solution"], export=HERE / "_static" / "robot.html", title=title))
