@@ -21,6 +21,7 @@ DOORS = {
     ("results.portable", "io.files.writing"),
     ("results.portable", "io.files.reading"),
     ("results.portable", "io.files.convert"),
+    ("results.portable", "io.files.resume"),
     ("results.drawn", "visual.plots"),
 }
 LOOSE = 8

@@ -88,6 +88,7 @@ def run(folder):
             dict(path=saved(folder), functions={}, save_seconds=60.0, progress=None, throw=True),
         ),
         "Solution.load": lambda: (carom.Solution.load, dict(path=saved(folder), functions={})),
+        "Solution.simulate": lambda: (solution().simulate, dict(duration=0.1)),
         "Solution.save": lambda: (solution().save, dict(path=folder / "again.nc")),
         "Solution.to_xarray": lambda: (solution().to_xarray, {}),
         "Solution.to_pandas": lambda: (solution().to_pandas, {}),

@@ -95,3 +95,37 @@ def test_not_beyond_the_end(tmp_path, duration):
     carom.simulate(die(), 0.1, step=0.01, save=path)
     with pytest.raises(ValueError, match="duration must be"):
         carom.resume(path, duration=duration)
+
+
+@pytest.mark.parametrize(
+    "make", [lambda: die(mu=0.3), slider, pendulum], ids=["die", "slider", "pendulum"]
+)
+def test_a_solution_goes_on(make):
+    """Without a file, twice, bit for bit the run of the whole time; the solution itself stays as it is."""
+    short = carom.simulate(make(), 0.25, step=5e-3)
+    known = short.position.copy()
+    longer = short.simulate(0.25)
+    again = short.simulate(0.5)
+    assert but_settings(longer, carom.simulate(make(), 0.5, step=5e-3)) == []
+    assert but_settings(again, carom.simulate(make(), 0.75, step=5e-3)) == []
+    assert but_settings(longer.simulate(0.25), again) == []
+    assert np.array_equal(short.position, known)
+    assert short.t[-1] == 0.25
+
+
+def test_a_loaded_solution_goes_on(tmp_path):
+    short = carom.simulate(die(mu=0.3), 0.25, step=5e-3)
+    short.save(tmp_path / "run.nc")
+    longer = carom.Solution.load(tmp_path / "run.nc").simulate(0.25)
+    assert but_settings(longer, short.simulate(0.25)) == []
+
+
+def test_a_run_that_was_stopped_does_not_go_on():
+    def stop(done, total):
+        if done > 50:
+            raise KeyboardInterrupt
+
+    s = carom.simulate(die(), 0.5, step=5e-3, progress=stop, throw=False)
+    assert s.status is carom.Status.INTERRUPTED
+    with pytest.raises(ValueError, match="the run must have come to its end to go on from there"):
+        s.simulate(0.1)

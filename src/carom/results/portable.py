@@ -88,6 +88,40 @@ class Portable:
         vars(solution).update(cached)
         return solution
 
+    def simulate(
+        self,
+        duration: float,
+        *,
+        progress: bool | Callable[[float, float], None] | None = None,
+        throw: bool = True,
+    ) -> Self:
+        """Go on from the end of the run, as if it had been longer from the start, bit for bit.
+
+        This solution stays as it is. States are saved as often as before, with the settings of the run.
+
+        Parameters
+        ----------
+        duration : float
+            Time to simulate from here on [s].
+        progress, throw
+            As of `simulate`.
+
+        Returns
+        -------
+        Solution
+            Of the whole time, from the start.
+
+        Raises
+        ------
+        ValueError
+            If the run failed, or functions of its scene are missing (those of a file).
+        SimulationError
+            If it fails later on and `throw` is True.
+        """
+        from carom.io.files.resume import go_on
+
+        return go_on(self, duration, progress, throw)
+
     def to_xarray(self) -> xr.Dataset:
         """Return all of the run as an `xarray.Dataset`: what `save` writes, and `xarray.open_dataset` reads.
 

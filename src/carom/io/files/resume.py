@@ -84,3 +84,34 @@ def resume(
     except ValueError as error:
         raise ValueError(f"path must be a run of this carom, got {str(path)!r}: {error}") from error
     return finish(run, progress, Keeper(run, Path(path), save_seconds), throw)
+
+
+def go_on(solution, duration: float, progress, throw: bool):
+    """Return the solution of a run that goes on for `duration` [s] from the end of another one."""
+    from carom.io.files.checkpoint import state_at_end
+    from carom.io.run_to_end import finish
+    from carom.stepping.settings import check_handling
+
+    check_handling(progress, throw, 60.0)
+    duration = checks.number("duration", duration, above=0.0, unit="s")
+    checkpoint, kept = state_at_end(solution), solution._run
+    if not solution.status.ended or checkpoint is None:
+        raise ValueError(
+            "the run must have come to its end to go on from there, got one of which this is said: "
+            f"{solution.message}"
+        )
+    if not isinstance(kept, KeptRun):
+        kept = KeptRun(
+            kept.scene,
+            solution.settings,
+            kept.options,
+            kept.records,
+            checkpoint,
+            [],
+            {},
+            kept.found,
+        )
+    if kept.missing:
+        names = ", ".join(map(repr, kept.missing))
+        raise ValueError(f"functions must be given to Solution.load to go on, got none for {names}")
+    return finish(kept.revived(solution.settings["duration"] + duration), progress, None, throw)
