@@ -34,7 +34,7 @@ history: $(VENV)/installed-bench ## measure this commit for benchmarks/history (
 	cd benchmarks && ../$(BIN)/asv machine --yes && ../$(BIN)/asv run 'HEAD^!'
 
 docs: $(VENV)/installed-docs ## the pages; the examples of the gallery are run anew
-	rm -rf docs/gallery
+	rm -rf docs/gallery docs/_static/gallery docs/api/carom.*
 	$(BIN)/sphinx-build -W -b html docs out/docs
 
 release-check: $(VENV)/installed-test ## build wheel and sdist, look inside, install the wheel in an empty environment, run it
@@ -46,4 +46,4 @@ wheel: $(VENV)/installed-test ## a wheel for this platform with everything compi
 	$(BIN)/python tools/build_wheel.py
 
 clean:
-	rm -rf $(VENV) out docs/gallery
+	rm -rf $(VENV) out docs/gallery docs/_static/gallery docs/api/carom.*

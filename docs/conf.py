@@ -47,14 +47,15 @@ sphinx_gallery_conf = {
     "subsection_order": [f"../examples/{name}" for name in SECTIONS],
     "within_subsection_order": "examples_gallery.Order",
     "image_scrapers": ("examples_gallery.pictures",),
-    "reset_modules": (),
+    "reset_modules": ("examples_gallery.thumbnails",),
+    "reset_modules_order": "both",
     "abort_on_example_error": True,
     "download_all_examples": False,
     "show_signature": False,
     "write_computation_times": False,
     "min_reported_time": 1e6,
     "copyfile_regex": r"",
-    "thumbnail_size": (600, 360),
+    "thumbnail_size": (400, 400),
 }
 
 html_theme = "pydata_sphinx_theme"

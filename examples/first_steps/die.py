@@ -16,6 +16,10 @@ import carom
 
 mass, edge, e = 0.016, 0.02, 0.5
 
+# %%
+# One throw: a scene with a table and a die, and the friction between them. The die has no motion across its
+# way, so all of this happens in a plane.
+
 
 def throw(mu):
     scene = carom.Scene(gravity=(0, 0, -9.81))
@@ -26,6 +30,11 @@ def throw(mu):
     )  # fmt: skip
     scene.add_contact(die, table, restitution=e, friction=mu)
     return carom.simulate(scene, 0.42, step=1e-3)
+
+
+# %%
+# Two throws, which differ in friction alone. The record of an impact has what Routh's formula needs: W, and the
+# velocity before. What the formula says of the horizontal speed is compared with the run.
 
 
 def main(out="out/examples"):

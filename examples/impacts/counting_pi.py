@@ -15,6 +15,9 @@ from carom.visual.plots import style
 
 m = 1.0
 
+# %%
+# The scene is in line: no gravity, a wall, a light ball before it, and a heavy one that comes in.
+
 
 def run(M, duration=6.0):
     scene = carom.Scene(gravity=(0, 0, 0))
@@ -27,6 +30,11 @@ def run(M, duration=6.0):
     # 3141 impacts come within some milliseconds: small steps, and none may be left out
     options = carom.Options(hold=False, max_impacts_per_step=10000)
     return carom.simulate(scene, duration, step=2e-4, options=options)
+
+
+# %%
+# Four mass ratios. The picture is of the second: where the balls are, and their velocities on the circle of
+# energy.
 
 
 def main(out="out/examples"):

@@ -17,6 +17,9 @@ from carom.visual.plots import style
 
 g, radius, length, angle = 9.81, 0.02, 0.2, np.radians(20)
 
+# %%
+# What is expected of balls that touch: forces :math:`d^{3/2}` between them, integrated by SciPy.
+
 
 def hertz():  # speeds in the end, as parts of the first at the start, with forces d^(3/2)
     def rates(t, y):
@@ -24,6 +27,10 @@ def hertz():  # speeds in the end, as parts of the first at the start, with forc
         return [*y[3:], -first, first - second, second]
 
     return solve_ivp(rates, (0, 50), [0, 0, 0, 1, 0, 0], rtol=1e-10, atol=1e-12).y[3:, -1]
+
+
+# %%
+# The cradle itself: three balls on hinges, elastic, with one of two models for impacts that happen together.
 
 
 def swing(multiple):
@@ -35,6 +42,10 @@ def swing(multiple):
         scene.add_joint(carom.joints.Revolute(pivot, (0, 1, 0)), carom.GROUND, ball)
     scene.set_contact_default(restitution=1, multiple=multiple)
     return carom.simulate(scene, 1.5, step=1e-3)
+
+
+# %%
+# Both models, and what each ball has after the first impact, beside the exact values.
 
 
 def main(out="out/examples"):
