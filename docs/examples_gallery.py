@@ -34,6 +34,7 @@ PLOTTED = {
     "own_force",
     "restitution_laws",
     "counting_pi",
+    "painleve",
     "vibrating_table",
     "heap",
 }
@@ -49,7 +50,7 @@ def pictures(block, block_vars, gallery_conf):
         PAGES.mkdir(exist_ok=True)
         (PAGES / page.name).write_bytes(page.read_bytes())
         page.unlink()
-        address = f"../../_static/gallery/{page.name}#play"
+        address = f"../../_static/gallery/{page.name}#loop"
         text += f'.. raw:: html\n\n   <iframe class="run" src="{address}" title="{source.stem}"></iframe>\n\n'
     if made.exists():
         place = Path(next(block_vars["image_path_iterator"]))
@@ -110,9 +111,10 @@ class Thumbnails:
 def largest_panel(figure, savefig) -> Image.Image:
     """Return the largest panel of a figure with its labels, on a white square."""
     renderer = FigureCanvasAgg(figure).get_renderer()
-    if len(figure.axes) == 1:
-        figure.set_size_inches(3.4, 3.4)
     panel = max(figure.axes, key=lambda axes: np.prod(axes.get_window_extent(renderer).size))
+    if panel.get_aspect() == "auto":  # it becomes a square, and the figure what it must be for that
+        figure.set_size_inches(2.4 * figure.bbox.size / panel.get_window_extent(renderer).size)
+    figure.draw_without_rendering()
     inches = panel.get_tightbbox(renderer).transformed(figure.dpi_scale_trans.inverted())
     box = Bbox.from_extents(*(inches.min - 0.03), *(inches.max + 0.03))
     drawn = io.BytesIO()

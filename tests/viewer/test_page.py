@@ -126,7 +126,7 @@ def test_an_address_may_name_a_moment(page, browser, thrown):
 @needs_browser
 def test_an_address_may_play_again_and_again(page, browser):
     browser.open("about:blank")
-    browser.open(page.as_uri() + "#play")
+    browser.open(page.as_uri() + "#loop")
     browser.wait_for("window.carom !== undefined")
     assert browser.run("carom.state.playing && panel.hidden")
     browser.run("carom.seek(0.249)")

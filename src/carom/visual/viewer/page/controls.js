@@ -90,16 +90,16 @@ document.addEventListener("keydown", (event) => {
 });
 
 if (run.follow >= 0) follow(run.follow);
-// run.html#t=0.25 begins at that time, run.html#impact=3 at that impact; run.html#play plays again and again,
+// run.html#t=0.25 begins at that time, run.html#impact=3 at that impact; run.html#loop plays again and again,
 // without energy and impacts beside it.
 const begin = new URLSearchParams(location.hash.slice(1));
 if (begin.has("t")) seek(Number(begin.get("t")) || motion.start);
 if (begin.has("impact")) choose(run.impacts.number.indexOf(Number(begin.get("impact")) - 1));
-if (begin.has("play")) {
+if (begin.has("loop")) {
   state.again = true;
   play(true);
 }
-if (window.innerWidth < 820 || begin.has("play")) find("panel").hidden = true;
+if (window.innerWidth < 820 || begin.has("loop")) find("panel").hidden = true;
 requestAnimationFrame(frameOfPage);
 
 // For scripts and tests: poses in the world as they are shown.
