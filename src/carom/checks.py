@@ -178,11 +178,16 @@ def choice(name: str, value, allowed: Iterable[str]) -> str:
         )
     if value in options:
         return value
-    near = get_close_matches(value, options, n=1)
-    hint = f"; did you mean {near[0]!r}?" if near else ""
     raise ValueError(
-        f"{name} must be one of {', '.join(map(repr, options))}, got {shown(value)}{hint}"
+        f"{name} must be one of {', '.join(map(repr, options))}, got {shown(value)}"
+        f"{nearest(value, options)}"
     )
+
+
+def nearest(value: str, options: Iterable[str]) -> str:
+    """Return the end of a message that suggests the nearest of some words, or nothing."""
+    near = get_close_matches(value, options, n=1)
+    return f"; did you mean {near[0]!r}?" if near else ""
 
 
 def flag(name: str, value) -> bool:

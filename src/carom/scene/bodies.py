@@ -9,6 +9,7 @@ import numpy as np
 
 from carom import checks
 from carom.geometry.attitude import attitude
+from carom.scene.colors import hex_color
 from carom.scene.inertia import inertia_matrix
 from carom.scene.materials import Material
 from carom.scene.shapes import SHAPES, Shape
@@ -37,6 +38,8 @@ class Body:
         In world axes [m/s], [rad/s].
     material : Material or None
         Of its surface.
+    color : str or None
+        ``#rrggbb`` of pages, pictures and films; None: one of their own.
     """
 
     index: int
@@ -49,6 +52,7 @@ class Body:
     velocity: np.ndarray
     angular_velocity: np.ndarray
     material: Material | None = None
+    color: str | None = None
 
     def __repr__(self) -> str:
         return f"Body({self.name!r}, {self.shape!r}, mass={self.mass:g})"
@@ -113,6 +117,7 @@ def make_body(
     velocity,
     angular_velocity,
     material=None,
+    color=None,
 ) -> Body:
     """Return a checked `Body`; the arguments are those of `Scene.add_body`."""
     if shape is not None:
@@ -133,6 +138,7 @@ def make_body(
         velocity=point("velocity", velocity),
         angular_velocity=point("angular_velocity", angular_velocity),
         material=_material(material),
+        color=None if color is None else hex_color("color", color),
     )
     keep(body, **vars(body))
     return body

@@ -90,6 +90,7 @@ class Scene(TouchingPairs):
         velocity: ArrayLike = (0.0, 0.0, 0.0),
         angular_velocity: ArrayLike = (0.0, 0.0, 0.0),
         material: Material | None = None,
+        color: str | ArrayLike | None = None,
         name: str | None = None,
     ) -> Body:
         """Add a rigid body.
@@ -116,8 +117,11 @@ class Scene(TouchingPairs):
             In world axes [rad/s].
         material
             Of its surface, see `set_contact_default`.
+        color : str or (3,)
+            Of pages, pictures and films: a name that matplotlib has (``"tab:red"``, ``"gold"``), ``"#rrggbb"``,
+            or red, green and blue from 0 to 1. Default: one of a palette.
         name
-            Default ``"body1"``, ``"body2"``, ...
+            A cube with "die" in its name is drawn with pips. Default ``"body1"``, ``"body2"``, ...
 
         Raises
         ------
@@ -137,7 +141,7 @@ class Scene(TouchingPairs):
         """
         index, name = self._parts.new(Body, name, "body")
         motion = (position, orientation, velocity, angular_velocity)
-        body = make_body(index, name, shape, mass, density, inertia, *motion, material)
+        body = make_body(index, name, shape, mass, density, inertia, *motion, material, color)
         return self._parts.add(body)
 
     @arguments.known

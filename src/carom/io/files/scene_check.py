@@ -82,8 +82,9 @@ def _made(parts, part: Any) -> Any:
     if isinstance(part, bodies.Body):
         motion = part.position, part.orientation, part.velocity, part.angular_velocity
         return bodies.make_body(
-            index, name, part.shape, part.mass, None, part.inertia, *motion, part.material
-        )
+            index, name, part.shape, part.mass, None, part.inertia, *motion, part.material,
+            part.color,
+        )  # fmt: skip
     if isinstance(part, bodies.HalfSpace):
         return bodies.make_half_space(index, name, part.point, part.normal, part.material)
     if isinstance(part, joints.Joint):

@@ -11,10 +11,13 @@ from carom.scene.bodies import GROUND
 from carom.scene.shapes import Sphere
 from carom.scene.shapes.convex import Convex
 from carom.scene.shapes.revolved import Capsule, Disc
+from carom.visual.details import colour_of, is_die, pins, pip_colour, pips
 from carom.visual.plots import style
 from carom.visual.surfaces import is_round, surface
 
 COLOURS = (style.BLUE, style.ORANGE, style.GREEN, style.RED, style.PURPLE, style.SKY)
+JOINT = "#5b6873"
+MOST = 20_000  # triangles of a body, from which on large ones are not split any more
 SHARP = np.cos(np.radians(35.0))  # of the angle from which an edge is one
 FACET = np.cos(np.radians(1.0))  # the same of a polyhedron, whose faces are all flat
 NARROW = 0.8  # inner radius by outer radius from which a ring has no room for lines at its edges
@@ -44,10 +47,53 @@ def models(scene, length: float) -> list[Model]:
             model = made[shape]
         else:
             model = _rods(scene, body, ROD * length)
-        colour = rgb(COLOURS[body.index % len(COLOURS)])
-        pale = model.colours[:, :1]
-        out.append(model._replace(colours=colour + pale * (1.0 - colour)))
+        name = colour_of(body, COLOURS)
+        colour, pale = rgb(name), model.colours[:, :1]
+        made_of = [model._replace(colours=colour + pale * (1.0 - colour))]
+        if shape is not None:
+            made_of += [_painted(pin, JOINT) for pin in pins(scene, body, ROD * length)]
+            made_of += [_painted(pips(shape), pip_colour(name))] if is_die(body) else []
+        out.append(Model(*(np.concatenate(columns) for columns in zip(*made_of))))
     return out
+
+
+def split(model: Model, longest: float) -> Model:
+    """Return a model whose triangles have no side longer than `longest`, or as many of them as is sensible.
+
+    What is much larger than what is seen reaches behind the camera, where nothing can be drawn: its parts can.
+    """
+    while len(model.corners) < MOST:
+        ways = np.roll(model.corners, -1, axis=1) - np.roll(model.corners, 1, axis=1)
+        sides = np.linalg.norm(ways, axis=2)  # opposite each corner
+        large = sides.max(axis=1) > longest
+        if not np.any(large):
+            break
+        order = (sides[large].argmax(axis=1)[:, None] + np.arange(3)) % 3
+        rows = np.flatnonzero(large)[:, None]
+        corners, normals, edges = (
+            a[rows, order] for a in (model.corners, model.normals, model.edges)
+        )
+        halves = []
+        for k in (1, 2):  # the corner in whose place the middle of the longest side comes
+            half, turned, drawn = corners.copy(), normals.copy(), edges.copy()
+            half[:, k] = 0.5 * (corners[:, 1] + corners[:, 2])
+            turned[:, k] = 0.5 * (normals[:, 1] + normals[:, 2])
+            drawn[:, 3 - k] = 0  # the new side
+            halves.append(Model(half, turned, model.colours[large], drawn))
+        rest = Model(*(column[~large] for column in model))
+        model = Model(*(np.concatenate(columns) for columns in zip(rest, *halves)))
+    return model
+
+
+def _painted(surface, colour: str) -> Model:
+    """Return a surface of one colour, without lines at its edges and with flat triangles."""
+    vertices, triangles = surface
+    corners = vertices[triangles]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-300)[:, None]
+    normals = np.repeat(normals[:, None], 3, axis=1)
+    edges = np.zeros(triangles.shape, dtype=np.int8)
+    return Model(corners, normals, np.tile(rgb(colour), (len(triangles), 1)), edges)
 
 
 def rgb(colour: str) -> np.ndarray:

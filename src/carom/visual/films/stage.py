@@ -10,9 +10,10 @@ from carom import checks
 from carom.geometry import quaternion
 from carom.scene.joints import Distance
 from carom.scene.shapes.revolved import Cylinder
+from carom.visual.details import moving
 from carom.visual.films import marks
 from carom.visual.films.camera import Camera, axes_of, fitted, vertical
-from carom.visual.films.models import Model, anchors, model_of, models, rgb, turned_to
+from carom.visual.films.models import Model, anchors, model_of, models, rgb, split, turned_to
 from carom.visual.plots.figure import bodies as named_bodies
 from carom.visual.plots.figure import need_bodies
 from carom.visual.surfaces import surface
@@ -42,26 +43,33 @@ class Stage:
             raise ValueError(f"follow must be one body or None, got {checks.shown(follow)}")
         begin, end = span or (float(solution.t[0]), float(solution.t[-1]))
         times = np.linspace(begin, end, SAMPLES)
-        places = solution.evaluate(times)[0]
+        places, turns = solution.evaluate(times)[:2]
         middle = places.reshape(-1, 3).mean(axis=0)
         spread = float(np.linalg.norm(places - middle, axis=2).max())
         self.radii = np.array(
             [b.shape.size if b.shape is not None else 0.05 * spread for b in scene.bodies]
         )
         self.axes = axes_of(view, scene)
-        self.camera = self._camera(places)
+        self.camera = self._camera(places, turns)
         self.length = self.camera.distance * 0.46  # height of what is seen, about
         self._place_models()
         self._place_planes(places)
         self.marks = marks.Marks(solution, self.length)
         self._kept = None
 
-    def _camera(self, places) -> Camera:
-        """Return the camera that sees all that happens, or the one body that it follows."""
+    def _camera(self, places, turns) -> Camera:
+        """Return the camera that sees all that moves, and what is as small; or the body that it follows."""
         width, height = (FINER * n for n in self.size)
         if self.followed is None:
-            radii = np.tile(self.radii, len(places))
-            flat = places.reshape(-1, 3)
+            seen = moving(places, turns)
+            if np.any(seen):
+                seen |= self.radii <= np.max(
+                    np.ptp(places[:, seen], axis=(0, 1)) + self.radii[seen].max()
+                )
+            else:
+                seen[:] = True
+            radii = np.tile(self.radii[seen], len(places))
+            flat = places[:, seen].reshape(-1, 3)
             ends = [
                 at
                 for part, at in anchors(self.solution.scene.joints)
@@ -75,7 +83,7 @@ class Stage:
         return camera._replace(distance=camera.distance / self.zoom)
 
     def _place_models(self) -> None:
-        made = models(self.solution.scene, self.length)
+        made = [split(one, self.length) for one in models(self.solution.scene, self.length)]
         counts = [len(model.corners) for model in made]
         self.owner = np.repeat(np.arange(len(made)), counts)
         self.all = Model(*(np.concatenate(columns) for columns in zip(*made)))

@@ -9,6 +9,7 @@ from carom.geometry import quaternion
 from carom.visual.plots import figure, style
 
 GROUND = "#ececec"
+FLAT = 0.02  # height by width of motion on a level table
 MOST = 200  # outlines: more would cover each other
 
 
@@ -27,7 +28,8 @@ def trajectory(
         Names (or handles). Default: all.
     plane : str, optional
         Two of "x", "y", "z": the axis to the right and the axis up. Default: up against gravity, and to the
-        right the other axis along which there is more motion.
+        right the other axis along which there is more motion; of motion on a level table the plane of the
+        table, as seen from above.
     outlines : (m,) or int, optional
         Times [s] at which the outlines of the bodies are drawn, or how many, spread evenly over the run; at
         most 200. Default: none.
@@ -83,6 +85,9 @@ def _plane(plane, solution, x) -> tuple[int, int]:
     gravity = solution.scene.gravity
     moved = np.ptp(x, axis=0).max(axis=0)
     up = int(np.argmax(np.abs(gravity))) if np.any(gravity) else 2
+    first, second = sorted({0, 1, 2} - {up})
+    if moved[up] < FLAT * min(moved[first], moved[second]):
+        return first, second
     if not np.any(gravity) and moved[2] < 1e-9 * moved.max():
         up = 1
     return max((k for k in range(3) if k != up), key=lambda k: moved[k] * (1 - 1e-9 * k)), up

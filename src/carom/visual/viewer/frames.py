@@ -7,10 +7,12 @@ from typing import NamedTuple
 import numpy as np
 
 from carom.geometry import quaternion
+from carom.visual.details import moving
 
 MOST = 5000  # frames, if nothing else is asked for
 VALUES = 3_000_000  # numbers of all poses together: 12 MB before packing
 FLAT = 1e-4  # part of the square of the displacements that leaves a plane, up to which it is one
+NEAR = 0.5  # of the width of what moves: so near is what rests and is shown in full
 SMOOTH = 600  # about as many frames has a run with fewer saved times, so that nothing jerks
 
 
@@ -82,16 +84,28 @@ def place_of(solution, frames: Frames, outlines: list[Outline], fixed: list[np.n
     fixed
         Points (3,) of the ground that are to be seen too.
     """
-    least, greatest = [*fixed], [*fixed]
-    for b, (points, size) in enumerate(outlines):
-        for point in points:
-            way = frames.position[:, b] + quaternion.rotate(frames.orientation[:, b], point)
-            least.append(np.min(way, axis=0) - size)
-            greatest.append(np.max(way, axis=0) + size)
-    low, high = np.min(least, axis=0), np.max(greatest, axis=0)
+    boxes = np.array([_box(frames, b, outline) for b, outline in enumerate(outlines)])  # (N, 2, 3)
+    seen = moving(frames.position, frames.orientation)
+    if np.any(seen):  # and of what rests only that which is as small as all that moves, and near it
+        low, high = boxes[seen, 0].min(axis=0), boxes[seen, 1].max(axis=0)
+        far = NEAR * (high - low).max()
+        seen |= np.all((boxes[:, 0] > low - far) & (boxes[:, 1] < high + far), axis=1)
+    else:
+        seen[:] = True
+    low = np.min([*fixed, *boxes[seen, 0]], axis=0)
+    high = np.max([*fixed, *boxes[seen, 1]], axis=0)
     radius = max(0.5 * float(np.linalg.norm(high - low)), 1e-9)
     up = _up(solution.scene.gravity, frames.position)
     return Place(0.5 * (low + high), radius, up, *_view(frames.position, up))
+
+
+def _box(frames: Frames, b: int, outline: Outline) -> tuple[np.ndarray, np.ndarray]:
+    """Return the lowest and the highest coordinates (3,) of a body over the run."""
+    ways = [
+        frames.position[:, b] + quaternion.rotate(frames.orientation[:, b], point)
+        for point in outline.points
+    ]
+    return np.min(ways, axis=(0, 1)) - outline.size, np.max(ways, axis=(0, 1)) + outline.size
 
 
 def _up(gravity: np.ndarray, position: np.ndarray) -> np.ndarray:

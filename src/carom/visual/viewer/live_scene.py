@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from carom.geometry import quaternion
+from carom.visual.details import colour_of, pip_colour
 from carom.visual.viewer.frames import poses_at
 from carom.visual.viewer.grids import grid_lines, round_length
 from carom.visual.viewer.show import COLOURS, FORCE, IMPULSE, Show
@@ -87,9 +88,12 @@ class LiveScene:
         away = np.linalg.norm(points - np.outer(points @ along, along), axis=1)
         return int(np.argmin(away))
 
+    def _colour(self, b: int, look: str) -> str:
+        own = colour_of(self.show.solution.scene.bodies[b], COLOURS)
+        return DARK if look == "joint" else pip_colour(own) if look == "pip" else own
+
     def _part(self, k: int, part, x: np.ndarray, Q: np.ndarray):
-        joint = part.look == "joint"
-        colours = [_rgb(DARK if joint else COLOURS[b % len(COLOURS)]) for b in part.bodies]
+        colours = [_rgb(self._colour(b, part.look)) for b in part.bodies]
         return self.stage.add_batched_meshes_simple(
             f"/bodies/{k}", part.vertices.astype(np.float32), part.triangles.astype(np.uint32),
             Q[part.bodies], x[part.bodies], batched_colors=np.array(colours, dtype=np.uint8),

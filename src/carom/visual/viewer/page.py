@@ -13,6 +13,7 @@ import numpy as np
 
 import carom
 from carom import checks
+from carom.visual.details import colour_of, pip_colour
 from carom.visual.viewer.pack import Packer, header_text
 from carom.visual.viewer.show import COLOURS, FORCE, IMPULSE, Show, body_number, playing_speed
 from carom.visual.viewer.strikes import Inside, insides_of
@@ -67,12 +68,16 @@ def page_text(show: Show, follow: str | None = None, speed: float | None = None)
 def header(show: Show, packer: Packer) -> dict:
     """Return the header of the page, and put its arrays into `packer`."""
     solution, frames, place = show.solution, show.frames, show.place
+    colours = [colour_of(body, COLOURS) for body in solution.scene.bodies]
     return {
         "title": show.title,
         "note": "; ".join(show.left_out),
         "longest": show.longest,
         "status": " ".join(solution.warnings) if solution.success else solution.message,
-        "colours": {"bodies": COLOURS, "impulse": IMPULSE, "force": FORCE},
+        "colours": {
+            "bodies": colours, "pips": [pip_colour(one) for one in colours],
+            "impulse": IMPULSE, "force": FORCE,
+        },
         "bodies": [body.name for body in solution.scene.bodies],
         "sizes": [float(size) for size in show.sizes],
         "place": {
@@ -119,10 +124,11 @@ def _energy(solution, packer: Packer) -> dict:
     """Return the energies at saved times, thinned."""
     last = len(solution.t) - 1
     chosen = np.unique(np.linspace(0, last, min(last + 1, POINTS)).round().astype(int))
+    potential = solution.potential_energy[chosen]
     return {
         "time": packer.add(solution.t[chosen], "f8"),
         "kinetic": packer.add(solution.kinetic_energy[chosen]),
-        "potential": packer.add(solution.potential_energy[chosen]),
+        "potential": packer.add(potential - np.min(potential)),
     }
 
 

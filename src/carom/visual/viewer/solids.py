@@ -14,6 +14,7 @@ from carom.scene.more_forces import CurveSpring
 from carom.scene.shapes import Box, Sphere
 from carom.scene.shapes.revolved import Cylinder
 from carom.visual import surfaces
+from carom.visual.details import is_die, pins, pips, turn_to
 from carom.visual.viewer.frames import Outline
 
 ROD = 0.012  # radius of rods of bodies without a shape, by that of the whole place
@@ -28,7 +29,7 @@ class Part(NamedTuple):
     vertices: np.ndarray  #: (V, 3) body axes [m]
     triangles: np.ndarray  #: (F, 3) counter-clockwise from outside
     bodies: list[int]
-    look: str  #: "solid", "round" (with a pattern) or "joint"
+    look: str  #: "solid", "round" (with a pattern), "joint" or "pip"
 
 
 class Plane(NamedTuple):
@@ -62,6 +63,8 @@ def parts_of(scene, radius: float) -> list[Part]:
             if shape not in known:
                 known[shape] = surfaces.surface(shape, fineness)
             pieces = [(*known[shape], "round" if surfaces.is_round(shape) else "solid")]
+            pieces += [(*pin, "joint") for pin in pins(scene, body, ROD * radius)]
+            pieces += [(*pips(shape), "pip")] if is_die(body) else []
         for vertices, triangles, look in pieces:
             key = (vertices.tobytes(), triangles.tobytes(), look)
             parts.setdefault(key, Part(vertices, triangles, [], look)).bodies.append(body.index)
@@ -92,7 +95,7 @@ def _without_shape(scene, body: Body, thick: float) -> list[tuple[np.ndarray, np
         if joint.child is body and isinstance(d, RollingDisc):
             vertices, triangles = surfaces.surface(Cylinder(d.radius, 0.08 * d.radius))
             axis = quaternion.rotate_back(body.orientation, d.axis)
-            return [(quaternion.rotate(_turn_to(axis), vertices), triangles, "round")]
+            return [(quaternion.rotate(turn_to(axis), vertices), triangles, "round")]
     anchors = _anchors(scene, body)
     if not anchors:  # the ellipsoid of even density with this mass and inertia
         moments, axes = np.linalg.eigh(body.inertia)
@@ -106,7 +109,7 @@ def _without_shape(scene, body: Body, thick: float) -> list[tuple[np.ndarray, np
         length = float(np.linalg.norm(anchor))
         if length > 1e-6 * thick:
             vertices, triangles = surfaces.surface(Cylinder(0.6 * thick, length), 16)
-            turned = quaternion.rotate(_turn_to(anchor / length), vertices)
+            turned = quaternion.rotate(turn_to(anchor / length), vertices)
             out.append((turned + 0.5 * anchor, triangles, "solid"))
         vertices, triangles = surfaces.surface(Sphere(thick), 16)
         out.append((vertices + anchor, triangles, "joint"))
@@ -199,11 +202,3 @@ def _in_body(body: Body, point: np.ndarray) -> np.ndarray:
 
 def _gyration(body: Body) -> float:
     return float(np.sqrt(np.trace(body.inertia) / body.mass))
-
-
-def _turn_to(axis: np.ndarray) -> np.ndarray:
-    """Return a quaternion (4,) that takes z to the unit vector `axis`."""
-    if axis[2] < -1.0 + 1e-9:
-        return np.array([0.0, 1.0, 0.0, 0.0])
-    half = np.array([1.0 + axis[2], -axis[1], axis[0], 0.0])
-    return half / np.linalg.norm(half)

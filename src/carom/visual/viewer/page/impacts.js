@@ -2,11 +2,19 @@
 
 const INK = "#1d252c", BLUE = "#0072B2", ORANGE = "#E69F00", GREEN = "#009E73";
 
+/** Decimals with which times of impacts can be told apart, up to three more than the run needs. */
+function decimals(run) {
+  const { time } = run.impacts, least = Math.max(3, 3 - Math.floor(Math.log10(run.span)));
+  let gap = run.span;
+  for (let k = 1; k < time.length; k++) if (time[k] > time[k - 1]) gap = Math.min(gap, time[k] - time[k - 1]);
+  return clamp(1 - Math.floor(Math.log10(gap)), least, least + 3);
+}
+
 /** Fill the table; `choose(k)` is called with the place of the row that was clicked. */
 function listImpacts(run, choose) {
-  const { impacts } = run, body = document.querySelector("#list tbody");
+  const { impacts } = run, body = document.querySelector("#list tbody"), digits = decimals(run);
   const cells = (k) => [
-    impacts.number[k] + 1, impacts.time[k].toFixed(Math.max(3, 3 - Math.floor(Math.log10(run.span)))),
+    impacts.number[k] + 1, impacts.time[k].toFixed(digits),
     impacts.contact[k],
     `${short(impacts.before[3 * k])} → ${short(impacts.after[3 * k])}`,
     short(norm(row(impacts.impulse, k))), short(impacts.energy[k]),

@@ -43,16 +43,16 @@ class Painter {
     };
   }
 
-  colourOf(b) {
-    const { bodies } = this.run.colours;
-    return bodies[b % bodies.length];
+  colourOf(b, look) {
+    const { bodies, pips } = this.run.colours;
+    return look === "joint" ? "#5b6873" : look === "pip" ? pips[b] : bodies[b];
   }
 
   solids(poses) {
     const out = [];
     for (const { mesh, bodies, look } of this.parts)
       for (const b of bodies) {
-        const colour = rgba(look === "joint" ? "#5b6873" : this.colourOf(b));
+        const colour = rgba(this.colourOf(b, look));
         out.push({ mesh, colour, model: frame(...axesOf(poses[b].Q), poses[b].x), pattern: look === "round" });
       }
     const thick = 0.02 * this.run.place.radius;
