@@ -206,6 +206,7 @@ def after(solution, settings: Settings) -> tuple[str, ...]:
     """Return a sentence about a step that was far too long for the motion, if it was."""
     if settings.step is None or settings.save_every != 1 or settings.save_at is not None:
         return ()  # not each step is saved
-    if settings.method == "implicit" or not isinstance(solution, Solution):
+    if settings.method == "implicit" or not isinstance(solution, Solution) or not solution.success:
         return ()
-    return too_long(solution, solution._run.bodies["ballistic"] == 1, settings.step)
+    flies = solution._run.bodies["ballistic"] == 1
+    return too_long(solution, flies, settings.step, settings.method)

@@ -9,12 +9,13 @@ import numpy as np
 if TYPE_CHECKING:
     from carom.results.solution import Solution
 
-#: of the way at the greatest speed: a harmonic motion is so far off where it turns by 1.1 rad in a step
-COARSE = 0.1
+#: of the way at the greatest speed: a harmonic motion is so far off where it turns by 1.1 rad in a step, and
+#: by 2.2 rad, which the method of order 8 still follows
+COARSE, OF_ORDER_8 = 0.1, 0.4
 GOOD = 1e-3  # the same for a step that is short enough to begin with
 
 
-def too_long(solution: Solution, flies: np.ndarray, step: float) -> tuple[str, ...]:
+def too_long(solution: Solution, flies: np.ndarray, step: float, method: str) -> tuple[str, ...]:
     """Return a sentence where a given step is far too long for the motion of joined or loaded bodies.
 
     The trapezoidal rule is compared with the way of such a body in a step: the two are (omega h)^2 / 12 of the
@@ -28,6 +29,8 @@ def too_long(solution: Solution, flies: np.ndarray, step: float) -> tuple[str, .
         Whether a body is neither joined nor loaded.
     step : float
         [s].
+    method : str
+        By which it was taken.
     """
     t, bound = solution.t, np.flatnonzero(~flies)
     if len(t) < 3 or not len(bound):
@@ -42,7 +45,7 @@ def too_long(solution: Solution, flies: np.ndarray, step: float) -> tuple[str, .
         smooth[np.clip(k, 0, len(smooth) - 1)] = False
     part = np.where(smooth[:, None], off, 0.0) / np.maximum(step * fastest, 1e-300)
     worst = np.unravel_index(np.argmax(part), part.shape)
-    if not part[worst] > COARSE:
+    if not part[worst] > (OF_ORDER_8 if method == "rk8" else COARSE):
         return ()
     name = solution.scene.bodies[bound[worst[1]]].name
     good = step * np.sqrt(GOOD / part[worst])

@@ -94,7 +94,7 @@ def _put_pairs(scene: Scene, data: dict, decoder: Decoder) -> None:
     )
     checks.instance("combine", data["combine"], (dict,))
     pairs._rules = checked_rule(data["combine"])
-    pairs._values = values
+    pairs._values, pairs.unsaid_default = values, False
     pairs.default = values if checks.flag("all_pairs", data["all_pairs"]) else None
 
 
