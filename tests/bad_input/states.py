@@ -86,6 +86,10 @@ def stated():
             position=three, orientation=(1.0, 0, 0, 0), velocity=three, angular_velocity=three,
             material=None, name=None,
         ),
+        "Scene.add_static": of_scene(
+            "add_static", shape=carom.Sphere(0.1), position=three, orientation=(1.0, 0, 0, 0),
+            material=carom.Material(0.5, 0.1), name="new",
+        ),
         "Scene.add_joint": of_scene(
             "add_joint", definition=joints.Spherical((0, 0, 0)), parent="@ball", child="@box",
             parent_frame=(three, (1.0, 0, 0, 0)), child_frame=(three, (1.0, 0, 0, 0)), name="new",

@@ -14,6 +14,7 @@ from carom.contact.pair_point import (
     write_touch,
 )
 from carom.contact.place import place_any
+from carom.contact.place_of_other import centre_of_other, on_half_space
 from carom.contact.rim import OTHER_SIDE, closed_rim, way_round
 from carom.contact.stop import is_active_stop, place_stop
 from carom.kinematics.contact_point import place
@@ -34,9 +35,9 @@ def closed_within(controls, contact, state):
 def round_off_of_both(contact, state):
     """Return the round-off of a gap that the coordinates of both bodies cause [m]."""
     tiny = round_off(contact, state)
-    if contact.other < 0:
+    if on_half_space(contact):
         return tiny
-    x = state[contact.other].x
+    x = centre_of_other(contact, state)
     return max(tiny, 1e-15 * (abs(x[0]) + abs(x[1]) + abs(x[2]) + contact.other_extent))
 
 
@@ -52,9 +53,9 @@ def concerns(contact, label, work):
 def apart(contact, state, near):
     """Return whether the balls around the two are further apart than `near`."""
     x = state[contact.body].x
-    if contact.other < 0:
+    if on_half_space(contact):
         return along_normal(contact, x) - contact.offset - contact.radius - contact.extent > near
-    y = state[contact.other].x
+    y = centre_of_other(contact, state)
     d = contact.extent + contact.other_extent + near
     return (x[0] - y[0]) ** 2 + (x[1] - y[1]) ** 2 + (x[2] - y[2]) ** 2 > d * d
 

@@ -27,6 +27,7 @@ from carom.contact.continuous_detection import (
 from carom.contact.gap import slow
 from carom.contact.pair_point import REACH, find_touches, smaller, touch_rate
 from carom.contact.parting import time_parted
+from carom.contact.place_of_other import centre_of_other, on_half_space
 from carom.contact.rim import OTHER_SIDE, SMOOTH, closed_rim, longest_way, same_point
 from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.kinematics.flight import point_bound
@@ -58,17 +59,18 @@ def relative_bound(system, contact, state, work):
     """Return bounds of the relative acceleration of the two centres, and of any two points."""
     a, b, g = contact.body, contact.other, system.gravity
     free_a = system.bodies[a].ballistic == 1 and work.body[a].status == FREE
-    free_b = system.bodies[b].ballistic == 1 and work.body[b].status == FREE
+    free_b = b >= 0 and system.bodies[b].ballistic == 1 and work.body[b].status == FREE
     fall = math.sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2])
     centres = 0.0
     if not (free_a and free_b):  # two in free flight fall alike
         for body, free in ((a, free_a), (b, free_b)):
-            if work.body[body].status != RESTS:
+            if body >= 0 and work.body[body].status != RESTS:
                 centres += fall if free else 2.0 * work.body[body].bound[0]
     r = core_extent(system.solids[contact.solid])
     spin = spin_bound(system.bodies[a], r, state[a], work.body[a])
-    r = core_extent(system.solids[contact.other_solid])
-    spin += spin_bound(system.bodies[b], r, state[b], work.body[b])
+    if b >= 0:
+        r = core_extent(system.solids[contact.other_solid])
+        spin += spin_bound(system.bodies[b], r, state[b], work.body[b])
     return centres, centres + spin
 
 
@@ -84,12 +86,12 @@ def balls_apart(s, u, radii, sign, a):
 @kernel
 def balls_clear(contact, start, end, h, centres):
     """Return whether the balls around both bodies stay apart during the step."""
-    a, b, radii = contact.body, contact.other, contact.extent + contact.other_extent
+    a, radii = contact.body, contact.extent + contact.other_extent
     time = 0.0
     for side in range(2):
         state, sign = (start, 1.0) if side == 0 else (end, -1.0)
-        x, y, v, w = state[a].x, state[b].x, state[a].v, state[b].v
-        s, u = (x[0] - y[0], x[1] - y[1], x[2] - y[2]), (v[0] - w[0], v[1] - w[1], v[2] - w[2])
+        x, v, y = state[a].x, state[a].v, centre_of_other(contact, state)
+        s, u = (x[0] - y[0], x[1] - y[1], x[2] - y[2]), (v[0] - y[3], v[1] - y[4], v[2] - y[5])
         time += balls_apart(s, u, radii, sign, centres)
     return time >= h
 
@@ -102,11 +104,14 @@ def solids_clear(system, contact, start, end, h, most):
     time = 0.0
     for side in range(2):
         state, sign = (start, 1.0) if side == 0 else (end, -1.0)
-        x, y = state[a].x, state[b].x
+        x = state[a].x
         r = rotate_by(state[a], p.x)
-        t = rotate_by(state[b], q.x)
         v = point_velocity(state, a, r[0], r[1], r[2])
-        w = point_velocity(state, b, t[0], t[1], t[2])
+        y, t, w = (0.0, 0.0, 0.0), (q.x[0], q.x[1], q.x[2]), (0.0, 0.0, 0.0)
+        if b >= 0:
+            y = (state[b].x[0], state[b].x[1], state[b].x[2])
+            t = rotate_by(state[b], q.x)
+            w = point_velocity(state, b, t[0], t[1], t[2])
         s = (x[0] - y[0] + (r[0] - t[0]), x[1] - y[1] + (r[1] - t[1]), x[2] - y[2] + (r[2] - t[2]))
         u = (v[0] - w[0], v[1] - w[1], v[2] - w[2])
         time += balls_apart(s, u, p.extent + q.extent, sign, most)
@@ -141,7 +146,10 @@ def time_apart(system, contact, n, sign, state, a, h):
     for i in range(contact.first, contact.last):
         z, rate = seen_along(n, contact.body, state, system.vertices[i])
         for j in range(contact.other_first, contact.other_last):
-            y, other = seen_along(n, contact.other, state, system.vertices[j])
+            p = system.vertices[j]
+            y, other = n[0] * p[0] + n[1] * p[1] + n[2] * p[2], 0.0
+            if contact.static == 0:
+                y, other = seen_along(n, contact.other, state, p)
             least = min(least, reach(z - y - contact.radius, sign * (rate - other), a))
     return least
 
@@ -196,12 +204,12 @@ def _lowest_pair(system, contact, c, active, state, work) -> tuple[float, float]
 def far_apart(system, contact, start, end, h, work):
     """Return a bound of the relative acceleration of any two points; -1 where balls keep the two apart."""
     a, b = contact.body, contact.other
-    if b < 0:
+    if on_half_space(contact):
         if work.body[a].status == RESTS:
             return -1.0
         centre, most = greatest_acceleration(system, contact, start, work)
         return -1.0 if ball_clears(system, contact, start, end, h, centre, work) else most
-    if work.body[a].status == RESTS and work.body[b].status == RESTS:
+    if work.body[a].status == RESTS and (b < 0 or work.body[b].status == RESTS):
         return -1.0
     centres, most = relative_bound(system, contact, start, work)
     if balls_clear(contact, start, end, h, centres):
@@ -277,12 +285,12 @@ def _passage_pair(system, controls, active, c, start, h, work) -> tuple[int, flo
 @kernel
 def way_past(contact, start, end, h):
     """Return how far two bodies may pass each other in a step, by the velocities of their centres."""
-    a, b, most = contact.body, contact.other, 0.0
-    if b < 0:
+    most = 0.0
+    if on_half_space(contact):
         return 0.0
     for state in (start, end):
-        v, w = state[a].v, state[b].v
-        most = max(most, (v[0] - w[0]) ** 2 + (v[1] - w[1]) ** 2 + (v[2] - w[2]) ** 2)
+        v, y = state[contact.body].v, centre_of_other(contact, state)
+        most = max(most, (v[0] - y[3]) ** 2 + (v[1] - y[4]) ** 2 + (v[2] - y[5]) ** 2)
     return h * math.sqrt(most)
 
 

@@ -13,10 +13,12 @@ from carom.collision.frame import place
 from carom.collision.layout import Placed, Plane
 from carom.collision.plane import plane_unit
 from carom.collision.touch import touch_unit
+from carom.contact.place_of_other import on_half_space
 from carom.contact.rim import same_point
 from carom.contact.roll import roll_on_plane
 from carom.geometry.rotation import exp, multiply, normalize, rotate, rotate_back
 from carom.kinematics.wrench import point_velocity
+from carom.model.workspace import STATIC
 
 REACH = 1e-3  # of the smaller body: points that are looked for beyond the nearest
 ACTIVE_REACH = (
@@ -30,12 +32,19 @@ def find_touches(system, contact, state, reach, work):
     solid, body, pose = system.solids[contact.solid], state[contact.body], work.solid_pose
     place(solid, body.x, body.Q, pose[0, :3], pose[0, 3:])
     a = Placed(solid, pose[0, :3], pose[0, 3:])
-    if contact.other < 0:
+    if on_half_space(contact):
         plane = Plane(contact.axes[0], contact.offset)
         plane_unit(a, plane, system.hulls, reach, work.pair, work.touches)
     else:
-        other, body = system.solids[contact.other_solid], state[contact.other]
-        place(other, body.x, body.Q, pose[1, :3], pose[1, 3:])
+        other = system.solids[contact.other_solid]
+        if contact.static == 1:
+            for k in range(4):
+                pose[1, 3 + k] = other.Q[k]
+                if k < 3:
+                    pose[1, k] = other.x[k]
+        else:
+            body = state[contact.other]
+            place(other, body.x, body.Q, pose[1, :3], pose[1, 3:])
         b = Placed(other, pose[1, :3], pose[1, 3:])
         touch_unit(a, b, system.hulls, reach, work.pair, work.touches)
     return work.pair.state[0].total
@@ -44,7 +53,7 @@ def find_touches(system, contact, state, reach, work):
 @kernel
 def smaller(contact):
     """Return the size of the smaller of two bodies, or that of the one."""
-    if contact.other < 0:
+    if on_half_space(contact):
         return contact.extent
     return min(contact.extent, contact.other_extent)
 
@@ -72,6 +81,8 @@ def write_touch(contact, touch, state, point):
     """Write a found point as a point of contact."""
     n = touch.normal
     point.a, point.b, point.gap, point.turns = contact.body, contact.other, touch.gap, 0
+    if contact.static == 1:
+        point.b = STATIC
     for k in range(3):
         point.arm_a[k] = touch.on_a[k] - state[contact.body].x[k]
         point.core[k] = (
@@ -79,7 +90,9 @@ def write_touch(contact, touch, state, point):
         )
         if contact.other >= 0:
             point.arm_b[k] = touch.on_b[k] - state[contact.other].x[k]
-    if contact.other >= 0:
+        elif contact.static == 1:
+            point.arm_b[k] = touch.on_b[k]
+    if not on_half_space(contact):
         tangents(n[0], n[1], n[2], point.axes)
         return
     for k in range(3):
@@ -161,10 +174,10 @@ def _drift(system, contact, feature, p, point, state, work) -> tuple[float, floa
     normals and points turn and roll with the shapes, whatever they are.
     """
     a, b = contact.body, contact.other
-    if b < 0:
+    if on_half_space(contact):
         return roll_on_plane(system, contact, feature, point, state)
     speed = 0.0
-    for side in range(2):
+    for side in range(2 if b >= 0 else 1):
         body = a if side == 0 else b
         v, w = state[body].v, state[body].w
         spin = math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
@@ -177,7 +190,8 @@ def _drift(system, contact, feature, p, point, state, work) -> tuple[float, floa
     for side in range(2):
         s = t if side == 1 else -t
         advance(state[a], s, moved[a])
-        advance(state[b], s, moved[b])
+        if b >= 0:
+            advance(state[b], s, moved[b])
         count = find_touches(system, contact, moved, ACTIVE_REACH * smaller(contact), work)
         touch = work.touches[which_touch(system, contact, count, feature, p, moved, work)]
         ux, uy, uz = slip_velocity(contact, touch, moved)

@@ -19,6 +19,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.collision.layout import BOX, CYLINDER, ELLIPSOID, HULL, SEGMENT
+from carom.contact.place_of_other import on_half_space
 from carom.geometry.rotation import cross, rotate_back
 
 HALVES = 30  # of the step, until the bound is above zero
@@ -66,10 +67,12 @@ def least_gap(system, contact, n, state, t, a):
     hulls, solid = system.hulls, system.solids[contact.solid]
     gap = m[6] + t * m[7] - contact.radius - 0.5 * a * t * t
     gap -= height(solid, hulls, -m[0] - t * m[3], -m[1] - t * m[4], -m[2] - t * m[5])
-    if contact.other < 0:
+    if on_half_space(contact):
         return gap - contact.offset
-    m = seen(n, state[contact.other])
     solid = system.solids[contact.other_solid]
+    if contact.static == 1:
+        return gap - height(solid, hulls, n[0], n[1], n[2])
+    m = seen(n, state[contact.other])
     gap -= m[6] + t * m[7]
     return gap - height(solid, hulls, m[0] + t * m[3], m[1] + t * m[4], m[2] + t * m[5])
 

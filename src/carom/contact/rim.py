@@ -12,6 +12,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.collision.layout import CYLINDER
+from carom.contact.place_of_other import on_half_space
 from carom.geometry.rotation import rotate, rotate_back
 
 FLAT = 0.2  # sine of the tilt below which a rim is looked at here
@@ -20,11 +21,13 @@ SMOOTH = 0.03  # up to which a step may follow it: 10 degrees
 
 
 @kernel
-def along_axis(solid, body, n):
-    """Return the component of a unit world vector along z of a solid."""
-    q, s = body.Q, solid.Q
-    a = rotate_back(q[0], q[1], q[2], q[3], n[0], n[1], n[2])
-    return rotate_back(s[0], s[1], s[2], s[3], a[0], a[1], a[2])[2]
+def in_solid(solid, contact, side, state, n):
+    """Return a world vector in axes of the solid of the body (side 0), or of what it touches (1)."""
+    s, a = solid.Q, (n[0], n[1], n[2])
+    if side == 0 or contact.static == 0:
+        q = state[contact.body if side == 0 else contact.other].Q
+        a = rotate_back(q[0], q[1], q[2], q[3], n[0], n[1], n[2])
+    return rotate_back(s[0], s[1], s[2], s[3], a[0], a[1], a[2])
 
 
 @kernel
@@ -33,22 +36,13 @@ def flat_rim(system, contact, n, state):
 
     The radius is 0 if there is none; the tilt is a sine.
     """
-    for side in range(2 if contact.other >= 0 else 1):
+    for side in range(1 if on_half_space(contact) else 2):
         solid = system.solids[contact.solid if side == 0 else contact.other_solid]
         if solid.kind == CYLINDER:
-            c = along_axis(solid, state[contact.body if side == 0 else contact.other], n)
-            if 1.0 - c * c < FLAT * FLAT:
-                return solid.half[0], tilt_of(solid, state, contact, side, n)
+            x, y, z = in_solid(solid, contact, side, state, n)
+            if 1.0 - z * z < FLAT * FLAT:
+                return solid.half[0], math.sqrt(x * x + y * y)  # exact also where it is small
     return 0.0, 0.0
-
-
-@kernel
-def tilt_of(solid, state, contact, side, n):
-    """Return the sine of the tilt of a solid's axis from n, exact also where it is small."""
-    q, s = state[contact.body if side == 0 else contact.other].Q, solid.Q
-    a = rotate_back(q[0], q[1], q[2], q[3], n[0], n[1], n[2])
-    x, y, _ = rotate_back(s[0], s[1], s[2], s[3], a[0], a[1], a[2])
-    return math.sqrt(x * x + y * y)
 
 
 @kernel

@@ -211,7 +211,9 @@ BUSHING = [
 CONTACT = [
     ("number", "i8"),  # among all contacts of the scene
     ("body", "i8"),
-    ("other", "i8"),  # -1 for a half-space
+    ("other", "i8"),  # -1 for a half-space or a static body
+    ("static", "i8"),  # 1 where the other solid does not move: it is placed in the world
+    ("centre", "f8", 3),  # of it
     (
         "touches",
         "i8",

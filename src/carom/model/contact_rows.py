@@ -9,7 +9,7 @@ import numpy as np
 from carom._compiled.record_arrays import table
 from carom.model.cores import CORE, Cores
 from carom.scene.all_pairs import Defaults, PairTable, every_pair, joined_tables, no_pairs
-from carom.scene.bodies import HalfSpace
+from carom.scene.bodies import Body
 from carom.scene.scene import Scene
 
 #: pairs of bodies that are few: all of them have rows from the start, in the order of the scene
@@ -35,7 +35,7 @@ def first_pairs(scene: Scene, apart: bool) -> tuple[PairTable, Defaults | None]:
     Where bodies move `apart`, in islands, and are many, the pairs of two bodies that touch by default are left
     to when they come near each other.
     """
-    default = scene._pairs.defaults(scene.bodies, scene.half_spaces)
+    default = scene._pairs.defaults(scene.bodies, scene.fixed)
     if default is None:
         return _added(scene, no_pairs()), None
     solid = int(np.count_nonzero(default.solid))
@@ -50,10 +50,11 @@ def first_pairs(scene: Scene, apart: bool) -> tuple[PairTable, Defaults | None]:
 def _added(scene: Scene, rest: PairTable) -> PairTable:
     """Return the pairs of the contacts that were added, then the rest."""
     added = scene.contacts
+    places = {part: h for h, part in enumerate(scene.fixed)}
     ends = [
-        (c.body.index, -1, c.other.index)
-        if isinstance(c.other, HalfSpace)
-        else (c.body.index, c.other.index, -1)
+        (c.body.index, c.other.index, -1)
+        if isinstance(c.other, Body)
+        else (c.body.index, -1, places[c.other])
         for c in added
     ]
     body, other, plane = np.array(ends, dtype=np.int64).reshape(-1, 3).T

@@ -8,6 +8,7 @@ import numpy as np
 
 from carom._compiled.record_arrays import table
 from carom.collision.layout import SOLID, Hulls, no_hulls, solid_table
+from carom.geometry import quaternion
 from carom.geometry.frames import contact_axes
 from carom.model.arrays import CONTACT
 from carom.model.contact_rows import Rows, contact_rows, first_pairs
@@ -48,7 +49,8 @@ def compile_contacts(scene: Scene, to_principal, options: Options, apart: bool =
     A contact of the scene has a row for each pair of pieces; against a half-space one for all vertices that
     are swollen alike, and one for each curved piece. Where bodies move `apart` there may be more to come.
     """
-    pairs, later = first_pairs(scene, apart)
+    known, later = first_pairs(scene, apart)
+    pairs, to_principal = _with_statics(scene, known), _and_of_statics(scene, to_principal)
     meets = pairs.other >= 0
     grounded = new_cores(_shapes(scene, pairs.body[~meets]), swollen_alike, to_principal)
     others = np.zeros(0, dtype=np.int64) if later is None else np.flatnonzero(meeting(later))
@@ -58,12 +60,35 @@ def compile_contacts(scene: Scene, to_principal, options: Options, apart: bool =
     flat = pairs.other[which.number] < 0
     curved = pairs.body[which.number[flat & (which.core["curved"] == 1)]]
     place, solids, hulls = _solids(scene, every, curved, to_principal)
+    _place_statics(scene, single, solids, place)
     own = _own_vertices(which, flat & (which.core["curved"] == 0))
     vertices = np.concatenate([grounded.vertices[own], single.vertices])
     fastest = max((float(np.linalg.norm(body.velocity)) for body in scene.bodies), default=0.0)
     surfaces = Surfaces(grounded, single, len(own), place, fastest)
     rows = _rows(scene, options, pairs, which, surfaces)
-    return Contacts(rows, vertices, solids, hulls, pairs, surfaces, later)
+    return Contacts(rows, vertices, solids, hulls, known, surfaces, later)
+
+
+def _with_statics(scene: Scene, pairs: PairTable) -> PairTable:
+    """Return the pairs with static bodies as bodies, which come after those that move."""
+    static = pairs.plane - len(scene.half_spaces)
+    other = np.where(static >= 0, len(scene.bodies) + static, pairs.other)
+    return pairs._replace(other=other, plane=np.where(static >= 0, -1, pairs.plane))
+
+
+def _and_of_statics(scene: Scene, to_principal: np.ndarray) -> np.ndarray:
+    """Return the rotations (N + S, 4) from the axes that are used, of static bodies those of the world."""
+    axes = [quaternion.conjugate(solid.orientation) for solid in scene.statics]
+    return np.concatenate([to_principal, np.reshape(axes, (-1, 4))])
+
+
+def _place_statics(scene: Scene, single: Cores, solids: np.recarray, place: np.ndarray) -> None:
+    """Move vertices and solids of static bodies, which are turned already, to where these are in the world."""
+    for b, solid in enumerate(scene.statics, start=len(scene.bodies)):
+        mine = single.group[single.first[b] : single.first[b + 1]]
+        if len(mine):
+            single.vertices[mine["first"][0] : mine["last"][-1]] += solid.position
+            solids["x"][place[b] : place[b] + len(mine)] += solid.position
 
 
 def more_contacts(
@@ -86,6 +111,7 @@ def _rows(scene, options: Options, pairs: PairTable, which: Rows, surfaces: Surf
     _write_ranges(rows, which, surfaces.shared)
     _write_solids(rows, which, surfaces.place)
     _write_laws(rows, pairs, which)
+    _write_statics(rows, scene)
     extent = rows["extent"]
     rows["still"] = 1e-14 * _speed(scene, extent, surfaces.fastest)
     rows["width"] = 1e-5 * extent if options.layer_width is None else options.layer_width
@@ -103,7 +129,21 @@ def _speed(scene: Scene, extent: np.ndarray, fastest: float) -> np.ndarray | flo
 def _shapes(scene: Scene, *chosen: np.ndarray) -> list[Shape | None]:
     """Return the shape of each body, None for those that are not chosen."""
     bodies = {b for some in chosen for b in some.tolist()}
-    return [body.shape if body.index in bodies else None for body in scene.bodies]
+    return [part.shape if b in bodies else None for b, part in enumerate(_parts(scene))]
+
+
+def _parts(scene: Scene) -> tuple:
+    """Return the bodies, then the static ones."""
+    return (*scene.bodies, *scene.statics)
+
+
+def _write_statics(rows: np.recarray, scene: Scene) -> None:
+    """Write of each row whether the other is static, and where that is: to the kernels it is no body."""
+    count = len(scene.bodies)
+    rows["static"] = rows["other"] >= count
+    for b, solid in enumerate(scene.statics, start=count):
+        rows["centre"][rows["other"] == b] = solid.position
+    rows["other"][rows["static"] == 1] = -1
 
 
 def _write_half_spaces(rows: np.recarray, scene: Scene, plane: np.ndarray) -> None:
@@ -156,10 +196,11 @@ def _solids(scene: Scene, every: list[Shape | None], curved: np.ndarray, to_prin
     """
     meets = [b for b, shape in enumerate(every) if shape is not None]
     bodies = np.union1d(np.array(meets, dtype=np.int64), curved)
-    place = np.zeros(len(scene.bodies), dtype=np.int64)
+    parts = _parts(scene)
+    place = np.zeros(len(parts), dtype=np.int64)
     if not len(bodies):
         return place, table(SOLID, 0), no_hulls()
-    solids, hulls = solid_table([scene.bodies[b].shape for b in bodies], to_principal[bodies])
+    solids, hulls = solid_table([parts[b].shape for b in bodies], to_principal[bodies])
     place[bodies] = np.searchsorted(solids.body, np.arange(len(bodies)))
     return place, solids, hulls
 

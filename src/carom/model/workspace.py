@@ -48,7 +48,7 @@ ACTIVE_POINT = [
 #: a point of contact as it is in one state
 POINT = [
     ("a", "i8"),  # body on the side that the normal points to
-    ("b", "i8"),  # the other, -1 for the ground
+    ("b", "i8"),  # the other, -1 for the ground, STATIC for a static body
     ("arm_a", "f8", 3),  # from the mass centre, world axes
     ("arm_b", "f8", 3),
     (
@@ -63,6 +63,9 @@ POINT = [
     ("turns", "i8"),
     ("length", "f8"),  # that makes a speed of an angular velocity
 ]
+
+#: in the place of a body that does not move
+STATIC = -2
 
 #: the flight that a body is on, or was on last (`carom.kinematics.flight`, `carom.kinematics.torque_free_top`)
 FLIGHT = [

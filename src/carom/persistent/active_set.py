@@ -17,6 +17,7 @@ from carom.contact.pair_point import (
     touch_rate,
 )
 from carom.contact.place import place_any
+from carom.contact.place_of_other import on_half_space
 from carom.contact.rim import same_point
 
 
@@ -105,7 +106,7 @@ def copy(a, b):
 @kernel
 def always_several(contact):
     """Return whether a point of a contact is always stepped as one of several."""
-    own = contact.touches == 0 or (contact.touches == 1 and contact.other < 0)
+    own = contact.touches == 0 or (contact.touches == 1 and on_half_space(contact))
     return not own or contact.turning[0] > 0.0 or contact.turning[1] > 0.0
 
 
@@ -178,7 +179,7 @@ def _refresh_pairs(system, controls, active, state, work) -> bool:
             free = active.count[0] < active.points.shape[0]
             if touch.gap > near or is_active(system, active, c, touch, state):
                 continue
-            if free and (contact.other >= 0 or touch_rate(contact, touch, state) >= -still):
+            if free and (not on_half_space(contact) or touch_rate(contact, touch, state) >= -still):
                 activate_touch(contact, c, touch, mode, state, active)
     return changed
 

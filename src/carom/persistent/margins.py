@@ -32,7 +32,7 @@ def greatest_push(k, group):
     push = 0.0
     for i in range(k):
         a = group.closed[i]
-        for j in range(i if a.turns == 0 and group.points[0][i].b >= 0 else 0):
+        for j in range(i if a.turns == 0 and group.points[0][i].b != -1 else 0):
             if group.closed[j].contact == a.contact and group.closed[j].turns == 0:
                 return 0.0
     for i in range(3 * k):

@@ -94,7 +94,7 @@ def _of_depth(watch: np.record, scene: Scene, pairs: PairTable | None) -> str:
     if number < len(pairs.body):
         other, plane = pairs.other[number], pairs.plane[number]
         what = scene.bodies[pairs.body[number]]
-        where = scene.bodies[other] if other >= 0 else scene.half_spaces[plane]
+        where = scene.bodies[other] if other >= 0 else scene.fixed[plane]
         said = f"Body {what.name!r} is in {where.name!r} by {watch.depth:.2g} of its size"
     else:
         stop = scene.stops[number - len(pairs.body)]

@@ -12,13 +12,15 @@ class ContactNames(NamedTuple):
 
     name: np.ndarray  #: (C,) of the contact; ``body-other`` of one by default
     body: np.ndarray  #: (C,) of a stop the child of its joint
-    other: np.ndarray  #: (C,) the half-space or body; of a stop the parent of its joint
+    other: (
+        np.ndarray
+    )  #: (C,) the half-space, static body or body; of a stop the parent of its joint
 
 
 def contact_names(scene, pairs) -> ContactNames:
     """Return the names of all contacts of a scene (`pairs` of the run), and of its stops."""
     bodies = [body.name for body in scene.bodies]
-    planes = [plane.name for plane in scene.half_spaces]
+    planes = [part.name for part in scene.fixed]
     body = [bodies[b] for b in pairs.body.tolist()]
     other = [
         planes[h] if h >= 0 else bodies[b]

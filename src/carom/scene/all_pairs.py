@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from carom.scene.bodies import Body, HalfSpace
+from carom.scene.bodies import FIXED, Body, HalfSpace, StaticBody
 from carom.scene.materials import ContactLaw
 
 MOST_AT_ONCE = 1 << 20  # balls whose distances are looked at in one go
@@ -22,8 +22,10 @@ class PairTable(NamedTuple):
     """C pairs that may touch: a body, and a half-space or another body."""
 
     body: np.ndarray  #: (C,) its index
-    other: np.ndarray  #: (C,) index of the other body, -1 for a half-space
-    plane: np.ndarray  #: (C,) index of the half-space, -1 for a body
+    other: np.ndarray  #: (C,) index of the other body, -1 for what never moves
+    plane: (
+        np.ndarray
+    )  #: (C,) place in `Scene.fixed` of the half-space or static body, -1 for a body
     law: np.ndarray  #: (C,) place in `laws`
     laws: list[ContactLaw]  #: each law once
 
@@ -52,9 +54,9 @@ def joined_tables(first: PairTable, second: PairTable) -> PairTable:
 
 def defaults(
     bodies: Sequence[Body],
-    half_spaces: Sequence[HalfSpace],
+    fixed: Sequence[HalfSpace | StaticBody],
     left_out: Iterable[frozenset],
-    law: Callable[[Body, Body | HalfSpace], ContactLaw],
+    law: Callable[[Body, Body | HalfSpace | StaticBody], ContactLaw],
 ) -> Defaults:
     """Return what pairs of bodies with shapes may touch that are not `left_out`.
 
@@ -63,11 +65,11 @@ def defaults(
     """
     count = len(bodies)
     solid = np.array([body.shape is not None for body in bodies], dtype=bool)
-    meets, out = _open(solid, half_spaces, left_out)
+    meets, out = _open(solid, fixed, left_out)
     numbers: dict = {}
     kinds = [
         np.array([numbers.setdefault(p.material, len(numbers)) for p in parts], dtype=np.int64)
-        for parts in (bodies, half_spaces)
+        for parts in (bodies, fixed)
     ]
     b, h = np.nonzero(meets)
     materials = kinds[0][b] * len(numbers) + kinds[1][h]
@@ -76,7 +78,7 @@ def defaults(
     laws = []
     for k in np.sort(first).tolist():  # a pair that has no law is refused in the order of the pairs
         place[kinds[0][b[k]], kinds[1][h[k]]] = len(laws)
-        laws.append(law(bodies[int(b[k])], half_spaces[int(h[k])]))
+        laws.append(law(bodies[int(b[k])], fixed[int(h[k])]))
     for i, j in _first_of_kinds(kinds[0], solid, set(out.tolist())):
         if place[kinds[0][i], kinds[0][j]] < 0:
             place[kinds[0][i], kinds[0][j]] = len(laws)
@@ -91,13 +93,14 @@ def _nothing() -> Defaults:
     return Defaults(no_pairs(), np.zeros(0, dtype=bool), none, none, np.zeros((0, 0), np.int64))
 
 
-def _open(solid: np.ndarray, half_spaces, left_out) -> tuple[np.ndarray, np.ndarray]:
+def _open(solid: np.ndarray, fixed, left_out) -> tuple[np.ndarray, np.ndarray]:
     """Return which bodies may touch which half-spaces (N, H), and the pairs of two bodies that may not (E,)."""
-    meets = np.repeat(solid[:, None], len(half_spaces), axis=1)
+    meets = np.repeat(solid[:, None], len(fixed), axis=1)
+    places = {part: h for h, part in enumerate(fixed)}
     out = set()
     for pair in left_out:
         ends = sorted(part.index for part in pair if isinstance(part, Body))
-        planes = [part.index for part in pair if isinstance(part, HalfSpace)]
+        planes = [places[part] for part in pair if isinstance(part, FIXED)]
         if planes:
             meets[ends, planes] = False
         elif len(ends) == 2:  # else one of them is the ground
@@ -158,15 +161,19 @@ def meeting(of: Defaults) -> np.ndarray:
     return of.solid & (partners > 0)
 
 
-def near_half_spaces(
-    pairs: PairTable, bodies: Sequence[Body], half_spaces: Sequence[HalfSpace]
+def near_fixed(
+    pairs: PairTable, bodies: Sequence[Body], fixed: Sequence[HalfSpace | StaticBody]
 ) -> np.ndarray:
     """Return the pairs of bodies and half-spaces, by number, where the ball around the body reaches it."""
     places, sizes = balls(bodies)
     reach = np.zeros(len(pairs.body), dtype=bool)
-    for h, plane in enumerate(half_spaces):
+    for h, plane in enumerate(fixed):
         rows = np.flatnonzero(pairs.plane == h)
         body = pairs.body[rows]
+        if isinstance(plane, StaticBody):
+            way = np.linalg.norm(places[body] - plane.position, axis=1)
+            reach[rows] = way <= sizes[body] + plane.shape.size
+            continue
         reach[rows] = (places[body] - plane.point) @ plane.normal <= sizes[body]
     return np.flatnonzero(reach)
 

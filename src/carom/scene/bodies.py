@@ -85,6 +85,39 @@ class HalfSpace:
         return f"HalfSpace({self.name!r}, point={self.point}, normal={self.normal})"
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class StaticBody:
+    """A solid that never moves: a wall, a peg, a ramp, a mesh. Made by `Scene.add_static`.
+
+    Attributes
+    ----------
+    index : int
+        Place in `Scene.statics`.
+    name : str
+    shape : Sphere, Box, Capsule, Cylinder, Disc, Ellipsoid, Convex, Mesh or Compound
+    position : (3,)
+        Of the origin of the shape, in the world [m].
+    orientation : (4,)
+        Unit quaternion (w, x, y, z), shape to world.
+    material : Material or None
+        Of its surface.
+    """
+
+    index: int
+    name: str
+    shape: Shape
+    position: np.ndarray
+    orientation: np.ndarray
+    material: Material | None = None
+
+    def __repr__(self) -> str:
+        return f"StaticBody({self.name!r}, {self.shape!r}, position={self.position})"
+
+
+#: what a body may touch beside other bodies
+FIXED = (HalfSpace, StaticBody)
+
+
 class Ground:
     """The world, as a partner of joints and forces: there is one, `carom.GROUND`."""
 
@@ -152,6 +185,16 @@ def make_half_space(index, name, on_plane, normal, material=None) -> HalfSpace:
     return plane
 
 
+def make_static(index, name, shape, position, orientation, material=None) -> StaticBody:
+    """Return a checked `StaticBody`; the arguments are those of `Scene.add_static`."""
+    checks.instance("shape", shape, SHAPES)
+    _ = shape.pieces  # refused by a shape that has nothing to touch with
+    place = point("position", position), attitude("orientation", orientation)
+    solid = StaticBody(index, name, shape, *place, _material(material))
+    keep(solid, **vars(solid))
+    return solid
+
+
 def _material(material) -> Material | None:
     if material is not None:
         checks.instance("material", material, (Material,))
@@ -165,6 +208,8 @@ def _mass(shape: Shape | None, mass, density) -> float:
             f"density={checks.shown(density)}"
         )
     if density is None:
+        if isinstance(mass, (float, np.floating)) and mass == np.inf:
+            raise ValueError("mass must be finite, got inf; what never moves is made by add_static")
         return checks.mass("mass", mass)
     density = checks.number("density", density, above=0, unit="kg/m^3")
     if shape is None:

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from carom.geometry import quaternion
-from carom.scene.bodies import Body, HalfSpace
+from carom.scene.bodies import Body, HalfSpace, StaticBody
 from carom.scene.materials import IMPACT_LAWS, ContactLaw
 
 __all__ = ["IMPACT_LAWS", "Contact", "check_gap", "check_overlap", "initial_gap", "make_contact"]
@@ -25,18 +25,18 @@ class Contact(ContactLaw):
         Place in `Scene.contacts`.
     name : str
     body : Body
-    other : HalfSpace or Body
+    other : HalfSpace, StaticBody or Body
         What the body may touch. The normal of the contact points from it to `body`.
     """
 
     index: int
     name: str
     body: Body
-    other: HalfSpace | Body
+    other: HalfSpace | StaticBody | Body
 
     @property
     def half_space(self) -> HalfSpace | None:
-        """The half-space, or None where the other is a body."""
+        """The half-space, or None where the other is a body, static or not."""
         return self.other if isinstance(self.other, HalfSpace) else None
 
     def __repr__(self) -> str:
@@ -52,7 +52,7 @@ class Contact(ContactLaw):
 
 
 def make_contact(
-    index: int, name: str, body: Body, other: HalfSpace | Body, law: ContactLaw
+    index: int, name: str, body: Body, other: HalfSpace | StaticBody | Body, law: ContactLaw
 ) -> Contact:
     """Return a checked `Contact` with the values of `law`."""
     for part in (body, other):
@@ -75,7 +75,7 @@ def check_gap(contact: Contact) -> None:
     check_overlap(f"contact {contact.name!r}", contact.body, contact.other)
 
 
-def check_overlap(what: str, body: Body, other: HalfSpace | Body) -> None:
+def check_overlap(what: str, body: Body, other: HalfSpace | StaticBody | Body) -> None:
     """Refuse two that start inside each other by more than rounding; `what` names the pair."""
     if _far(body, other):
         return
@@ -88,7 +88,7 @@ def check_overlap(what: str, body: Body, other: HalfSpace | Body) -> None:
         )
 
 
-def _far(body: Body, other: HalfSpace | Body) -> bool:
+def _far(body: Body, other: HalfSpace | StaticBody | Body) -> bool:
     """Return whether the ball around a body does not reach the other: nothing else is to be worked out."""
     assert body.shape is not None
     if isinstance(other, HalfSpace):
@@ -98,7 +98,7 @@ def _far(body: Body, other: HalfSpace | Body) -> bool:
     return float(way @ way) > (body.shape.size + other.shape.size) ** 2
 
 
-def overlap(body: Body, other: HalfSpace | Body) -> tuple[float, np.ndarray]:
+def overlap(body: Body, other: HalfSpace | StaticBody | Body) -> tuple[float, np.ndarray]:
     """Return how deep [m] a body starts inside the other, 0 where it is rounding, and the way out (3,)."""
     assert body.shape is not None
     gap, normal = _gap(body, other)
@@ -111,7 +111,7 @@ def overlap(body: Body, other: HalfSpace | Body) -> tuple[float, np.ndarray]:
     return (0.0 if gap >= -TOUCH * length else -gap), normal
 
 
-def _gap(body: Body, other: HalfSpace | Body) -> tuple[float, np.ndarray]:
+def _gap(body: Body, other: HalfSpace | StaticBody | Body) -> tuple[float, np.ndarray]:
     """Return the gap [m], negative inside, and the normal (3,) from the other to the body."""
     assert body.shape is not None
     if isinstance(other, HalfSpace):

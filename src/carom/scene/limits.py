@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from carom.scene.bodies import Body
+from carom.scene.bodies import HalfSpace
 
 
 def check_location(scene, impact_location: str) -> None:
@@ -13,10 +13,10 @@ def check_location(scene, impact_location: str) -> None:
         raise ValueError(
             f'impact_location must be "locate" where joints have stops, got {impact_location!r}'
         )
-    between = any(isinstance(c.other, Body) for c in scene.contacts)
+    between = any(not isinstance(c.other, HalfSpace) for c in scene.contacts)
     touching = [c.body for c in scene.contacts]
     if scene.contact_default is not None:
-        between = between or len(scene.bodies) > 1
+        between = between or len(scene.bodies) > 1 or bool(scene.statics)
         touching += [body for body in scene.bodies if body.shape is not None]
     curved = [body for body in touching if any(p.corners is None for p in body.shape.pieces)]
     if between or curved:

@@ -12,10 +12,10 @@ from carom.scene.all_pairs import (
     every_pair,
     meeting,
     near_each_other,
-    near_half_spaces,
+    near_fixed,
     no_pairs,
 )
-from carom.scene.bodies import Body, HalfSpace
+from carom.scene.bodies import Body, HalfSpace, StaticBody
 from carom.scene.contacts import check_overlap
 from carom.scene.materials import ContactLaw, checked_rule, law_of
 
@@ -32,12 +32,12 @@ class Pairs:
         self.unsaid_default = True  # whether neither restitution nor friction of it was stated
         self._unsaid: set = set()  # pairs with a contact of which neither was
 
-    def check_new(self, body: Body, other: HalfSpace | Body) -> None:
+    def check_new(self, body: Body, other: HalfSpace | StaticBody | Body) -> None:
         """Refuse a body with itself, and a pair that has a contact already."""
         if body is other:
             raise ValueError(f"body and other must be two, got {body!r} for both")
         if _key(body, other) in self._own:
-            kind = "half_space" if isinstance(other, HalfSpace) else "body"
+            kind = {HalfSpace: "half_space", StaticBody: "static body"}.get(type(other), "body")
             raise ValueError(
                 f"body {body.name!r} and {kind} {other.name!r} must be given once, "
                 "got a second contact of the two"
@@ -83,28 +83,28 @@ class Pairs:
             return None
         return self.law(body, other, {})
 
-    def defaults(self, bodies, half_spaces) -> Defaults | None:
+    def defaults(self, bodies, fixed) -> Defaults | None:
         """Return what pairs touch without a contact of their own, without a list of them; None if none do."""
         if self.default is None:
             return None
         left_out = self._own | self._ignored
-        return defaults(bodies, half_spaces, left_out, lambda a, b: self.law(a, b, {}))
+        return defaults(bodies, fixed, left_out, lambda a, b: self.law(a, b, {}))
 
-    def by_default(self, bodies, half_spaces) -> PairTable:
+    def by_default(self, bodies, fixed) -> PairTable:
         """Return all pairs that touch without a contact of their own, with their laws."""
-        found = self.defaults(bodies, half_spaces)
+        found = self.defaults(bodies, fixed)
         return no_pairs() if found is None else every_pair(found)
 
-    def check_all(self, bodies, half_spaces) -> None:
+    def check_all(self, bodies, fixed) -> None:
         """Refuse pairs that touch by default and start inside each other, or have no law."""
-        found = self.defaults(bodies, half_spaces)
+        found = self.defaults(bodies, fixed)
         if found is None:
             return
         for b in np.union1d(found.grounded.body, np.flatnonzero(meeting(found))):
             _ = bodies[b].shape.pieces  # refused by a shape that has nothing to touch with
         pairs = found.grounded
-        for k in near_half_spaces(pairs, bodies, half_spaces):
-            body, plane = bodies[pairs.body[k]], half_spaces[pairs.plane[k]]
+        for k in near_fixed(pairs, bodies, fixed):
+            body, plane = bodies[pairs.body[k]], fixed[pairs.plane[k]]
             check_overlap(f"{body.name!r} and {plane.name!r}", body, plane)
         for i, j in zip(*near_each_other(found, bodies)):
             check_overlap(f"{bodies[i].name!r} and {bodies[j].name!r}", bodies[i], bodies[j])

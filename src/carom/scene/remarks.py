@@ -24,7 +24,7 @@ def remarks(scene: Scene) -> tuple[str, ...]:
 
 def _of_untouched(scene: Scene) -> list[str]:
     """Return a sentence about free bodies that nothing can touch, where there is something to be touched by."""
-    if not (scene.half_spaces or scene.contacts):
+    if not (scene.fixed or scene.contacts):
         return []
     touched = _touched(scene)
     held = {id(part) for joint in scene.joints for part in (joint.parent, joint.child)}
@@ -53,7 +53,7 @@ def _touched(scene: Scene) -> np.ndarray:
         touched[
             [part.index for part in (contact.body, contact.other) if isinstance(part, Body)]
         ] = True
-    found = scene._pairs.defaults(scene.bodies, scene.half_spaces)
+    found = scene._pairs.defaults(scene.bodies, scene.fixed)
     if found is not None:
         touched[found.grounded.body] = True
         touched |= meeting(found)
@@ -76,7 +76,7 @@ def _of_unsaid(scene: Scene) -> list[str]:
 
 
 def _all_of_materials(scene: Scene) -> bool:
-    return all(part.material is not None for part in (*scene.bodies, *scene.half_spaces))
+    return all(part.material is not None for part in (*scene.bodies, *scene.fixed))
 
 
 def _names(parts: Sequence) -> str:

@@ -7,7 +7,16 @@ from typing import TYPE_CHECKING
 from numpy.typing import ArrayLike
 
 from carom import arguments, checks
-from carom.scene.bodies import GROUND, Body, Ground, HalfSpace, make_body, make_half_space
+from carom.scene.bodies import (
+    GROUND,
+    Body,
+    Ground,
+    HalfSpace,
+    StaticBody,
+    make_body,
+    make_half_space,
+    make_static,
+)
 from carom.scene.constraints import CONSTRAINTS, Constraint, ConstraintDefinition
 from carom.scene.contacts import check_gap
 from carom.scene.forces import FORCES, AppliedForce, ForceDefinition, force_on, make_force
@@ -143,6 +152,47 @@ class Scene(TouchingPairs):
         motion = (position, orientation, velocity, angular_velocity)
         body = make_body(index, name, shape, mass, density, inertia, *motion, material, color)
         return self._parts.add(body)
+
+    @arguments.known
+    def add_static(
+        self,
+        shape: Shape,
+        *,
+        position: ArrayLike = (0.0, 0.0, 0.0),
+        orientation: Orientation = (1.0, 0.0, 0.0, 0.0),
+        material: Material | None = None,
+        name: str | None = None,
+    ) -> StaticBody:
+        """Add a solid that never moves: a wall, a peg, a ramp, a mesh.
+
+        Bodies touch it as they touch each other. It has no mass and no degrees of freedom, and what touches it
+        is not joined to one island.
+
+        Parameters
+        ----------
+        shape
+            As of `add_body`.
+        position : (3,)
+            Of the origin of the shape (its mass centre), in the world [m].
+        orientation
+            As of `add_body`.
+        material
+            Of its surface, see `set_contact_default`.
+        name
+            Default ``"static1"``, ``"static2"``, ...
+
+        Examples
+        --------
+        A ball that falls on a step:
+
+        >>> scene = carom.Scene()
+        >>> step = scene.add_static(carom.Box(1, 1, 0.2), position=(0, 0, 0.1), name="step")
+        >>> ball = scene.add_body(carom.Sphere(0.1), mass=1, position=(0, 0, 0.8), name="ball")
+        >>> scene.add_contact(ball, step, restitution=0.5, friction=0.3)
+        Contact('ball-step', restitution=0.5, friction=0.3, impact_law='newton')
+        """
+        index, name = self._parts.new(StaticBody, name, "static")
+        return self._parts.add(make_static(index, name, shape, position, orientation, material))
 
     @arguments.known
     def add_joint(
@@ -322,6 +372,16 @@ class Scene(TouchingPairs):
         return self._parts.parts(HalfSpace)
 
     @property
+    def statics(self) -> tuple[StaticBody, ...]:
+        """The static bodies, in the order added."""
+        return self._parts.parts(StaticBody)
+
+    @property
+    def fixed(self) -> tuple[HalfSpace | StaticBody, ...]:
+        """What bodies may touch that never moves: the half-spaces, then the static bodies."""
+        return (*self.half_spaces, *self.statics)
+
+    @property
     def joints(self) -> tuple[Joint, ...]:
         """The joints, in the order added."""
         return self._parts.parts(Joint)
@@ -357,7 +417,7 @@ class Scene(TouchingPairs):
             raise ValueError("scene must have at least one body, got none; add it with add_body")
         for contact in self.contacts:
             check_gap(contact)
-        self._pairs.check_all(self.bodies, self.half_spaces)
+        self._pairs.check_all(self.bodies, self.fixed)
 
     def check(self):
         """Return the degrees of freedom of the scene, redundant constraints, and what is likely a mistake.

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-KINDS = ("bodies", "half_spaces", "contacts", "joints", "constraints", "stops", "forces")
-ONE = {"bodies": "body", "half_spaces": "half-space"}
+KINDS = ("bodies", "half_spaces", "statics", "contacts", "joints", "constraints", "stops", "forces")
+ONE = {"bodies": "body", "half_spaces": "half-space", "statics": "static body"}
+MANY = {"statics": "static bodies"}
 
 
 def counts(scene) -> str:
     """Return how many there are of each kind, in a line."""
-    rare = ("constraints", "stops")
+    rare = ("statics", "constraints", "stops")
     shown = [kind for kind in KINDS if kind not in rare or getattr(scene, kind)]
     return ", ".join(_count(kind, len(getattr(scene, kind))) for kind in shown)
 
@@ -25,4 +26,4 @@ def summary(scene) -> str:
 
 def _count(kind: str, n: int) -> str:
     one = ONE.get(kind, kind.removesuffix("s"))
-    return f"{n} {one if n == 1 else kind.replace('_', '-')}"
+    return f"{n} {one if n == 1 else MANY.get(kind, kind.replace('_', '-'))}"

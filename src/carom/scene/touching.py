@@ -7,13 +7,13 @@ from itertools import combinations
 
 from carom import arguments, checks
 from carom.scene.all_pairs import PairTable
-from carom.scene.bodies import Body, Ground, HalfSpace
+from carom.scene.bodies import FIXED, Body, Ground, HalfSpace, StaticBody
 from carom.scene.contacts import Contact, make_contact
 from carom.scene.materials import ContactLaw, Rule
 from carom.scene.pairs import Pairs
 from carom.scene.registry import Registry
 
-One = Body | HalfSpace | str
+One = Body | HalfSpace | StaticBody | str
 Some = One | Sequence[One]
 
 
@@ -39,7 +39,7 @@ class TouchingPairs:
         multiple: str | None = None,
         name: str | None = None,
     ) -> Contact:
-        """Let a body and a half-space, or two bodies, touch.
+        """Let a body and a half-space, a static body or another body touch.
 
         A value that is not given is that of the two materials, else that of `set_contact_default`, else the
         default named here.
@@ -47,8 +47,9 @@ class TouchingPairs:
         Parameters
         ----------
         body, other
-            The two, themselves or by their names: a body with a shape, and a half-space or another body that it
-            is not inside of. The order matters for two bodies alone: the normal points from `other` to `body`.
+            The two, themselves or by their names: a body with a shape, and a half-space, a static body or
+            another body that it is not inside of. The order matters for two bodies alone: the normal points
+            from `other` to `body`.
         restitution
             e, from 0 (plastic) to 1 (elastic). Default 0.5.
         friction
@@ -134,7 +135,7 @@ class TouchingPairs:
             no default: materials that differ need a rule. Stiffness is combined as of two springs in
             series, ``2 / (1 / s1 + 1 / s2)``.
         all_pairs
-            True (default): every body touches every half-space and every other body, but for those that
+            True (default): every body touches every half-space, static body and other body, but for those that
             a joint joins and those of `ignore_contact`. False: only pairs of `add_contact` touch.
 
         Notes
@@ -160,8 +161,8 @@ class TouchingPairs:
         Parameters
         ----------
         body, other
-            Each a body or half-space, its name, or a sequence of these: no one of the first touches one of the
-            second. Without `other` no two of the first touch each other.
+            Each a body, half-space or static body, its name, or a sequence of these: no one of the first
+            touches one of the second. Without `other` no two of the first touch each other.
 
         Examples
         --------
@@ -205,29 +206,30 @@ class TouchingPairs:
         ValueError
             If materials are given that no rule combines.
         """
-        return self._pairs.by_default(self._parts.parts(Body), self._parts.parts(HalfSpace))
+        fixed = (*self._parts.parts(HalfSpace), *self._parts.parts(StaticBody))
+        return self._pairs.by_default(self._parts.parts(Body), fixed)
 
-    def _two(self, body, other) -> tuple[Body, HalfSpace | Body]:
-        """Return two that may touch, given themselves or by name, a half-space as the second."""
-        kinds, hint = (Body, HalfSpace), "; a floor is made by scene.add_half_space(point, normal)"
+    def _two(self, body, other) -> tuple[Body, HalfSpace | StaticBody | Body]:
+        """Return two that may touch, given themselves or by name, what does not move as the second."""
+        kinds, hint = (Body, *FIXED), "; a floor is made by scene.add_half_space(point, normal)"
         first = self._parts.member("body", body, kinds, hint if isinstance(body, Ground) else "")
         second = self._parts.member(
             "other", other, kinds, hint if isinstance(other, Ground) else ""
         )
-        if isinstance(first, HalfSpace):
+        if isinstance(first, FIXED):
             first, second = second, first
-        if isinstance(first, HalfSpace):
+        if isinstance(first, FIXED):
             raise ValueError(
-                f"body and other must not both be half-spaces, got {second.name!r} and {first.name!r}"
+                f"body and other must not both be what never moves, got {second.name!r} and {first.name!r}"
             )
         return first, second
 
     def _some(self, argument: str, given) -> list:
         """Return bodies and half-spaces, of one or several given themselves or by name."""
-        single = isinstance(given, (str, Body, HalfSpace))
-        what = "bodies and half-spaces"
+        single = isinstance(given, (str, Body, *FIXED))
+        what = "bodies, half-spaces and static bodies"
         several = [given] if single else checks.listed(argument, given, what)
-        return [self._parts.member(argument, one, (Body, HalfSpace)) for one in several]
+        return [self._parts.member(argument, one, (Body, *FIXED)) for one in several]
 
     @property
     def contacts(self) -> tuple[Contact, ...]:

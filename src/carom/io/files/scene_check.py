@@ -27,7 +27,7 @@ from carom.scene.shapes.convex import Convex
 from carom.scene.shapes.mesh import Mesh
 
 ROUNDING = 1e-9  # of what is worked out once more: of unit vectors, lengths, inertias
-KINDS = (bodies.Body, bodies.HalfSpace)
+KINDS = (bodies.Body, *bodies.FIXED)
 
 
 def check_record(record: Any) -> None:
@@ -70,7 +70,9 @@ def check_pair(pair: frozenset) -> frozenset:
     """Return a pair of parts that may touch, or be left out; raise for anything else."""
     allowed = (*KINDS, bodies.Ground)
     if len(pair) != 2 or not all(isinstance(one, allowed) for one in pair):
-        raise ValueError(f"a pair must be two bodies, or a body and a half-space, got {set(pair)}")
+        raise ValueError(
+            f"a pair must be two bodies, or a body and what never moves, got {set(pair)}"
+        )
     if not any(isinstance(one, bodies.Body) for one in pair):
         raise ValueError(f"one of a pair must be a body, got {set(pair)}")
     return pair
@@ -87,26 +89,29 @@ def _made(parts, part: Any) -> Any:
         )  # fmt: skip
     if isinstance(part, bodies.HalfSpace):
         return bodies.make_half_space(index, name, part.point, part.normal, part.material)
+    if isinstance(part, bodies.StaticBody):
+        place = part.position, part.orientation
+        return bodies.make_static(index, name, part.shape, *place, part.material)
     if isinstance(part, joints.Joint):
         checks.instance("definition", part.definition, joints.JOINTS)
-        parts.pair(part.parent, part.child)
+        parent, child = parts.pair(part.parent, part.child)  # a name is no body: `_same` finds out
         frames = (None, None) if part.frames is None else part.frames
-        return joints.make_joint(index, name, part.definition, part.parent, part.child, *frames)
+        return joints.make_joint(index, name, part.definition, parent, child, *frames)
     if isinstance(part, forces.AppliedForce):
         checks.instance("definition", part.definition, forces.FORCES)
         for one in forces.force_on(part.definition) or ():
             parts.member("definition", one, (joints.Joint, bodies.Body))
-        parts.pair(part.parent, part.child)
-        return forces.make_force(index, name, part.definition, part.parent, part.child)
+        ends = parts.pair(part.parent, part.child)
+        return forces.make_force(index, name, part.definition, *ends)
     if isinstance(part, Constraint):
         checks.instance("definition", part.definition, CONSTRAINTS)
         for one in part.parts:
             parts.member("definition", one, (joints.Joint, bodies.Body))
         return part
     if isinstance(part, stops.Stop):
-        parts.member("joint", part.joint, (joints.Joint,))
+        joint = parts.member("joint", part.joint, (joints.Joint,))
         given = part.lower, part.upper, part.restitution, part.impact_law, part.coordinate
-        return stops.make_stop(index, name, part.joint, *given)
+        return stops.make_stop(index, name, joint, *given)
     checks.instance("part", part, (contacts.Contact,))
     return _made_contact(parts, part)
 

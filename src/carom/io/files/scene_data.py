@@ -28,7 +28,7 @@ import numpy as np
 
 from carom import checks
 from carom.io.files.scene_check import check_record
-from carom.scene.bodies import GROUND, Body, Ground, HalfSpace
+from carom.scene.bodies import FIXED, GROUND, Body, Ground
 from carom.scene.constraints import CONSTRAINTS, Constraint, Gear
 from carom.scene.contacts import Contact
 from carom.scene.forces import FORCES, AppliedForce
@@ -40,7 +40,7 @@ from carom.scene.stops import Stop
 from carom.scene.values import keep
 
 #: parts that have a name in the scene
-PARTS = (HalfSpace, Body, Joint, AppliedForce, Constraint, Stop, Contact)
+PARTS = (*FIXED, Body, Joint, AppliedForce, Constraint, Stop, Contact)
 TYPES: dict[str, type[Any]] = {
     kind.__name__: kind
     for kind in (*PARTS, *SHAPES, *JOINTS, *FORCES, *CONSTRAINTS, Gear, ContactLaw, Material, Piece)

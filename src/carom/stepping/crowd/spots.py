@@ -16,6 +16,7 @@ from carom.contact.pair_point import (
     which_touch,
     write_touch,
 )
+from carom.contact.place_of_other import on_half_space
 from carom.contact.stop import place_stop
 from carom.geometry.rotation import norm
 from carom.kinematics.contact_point import contact_velocity, place
@@ -221,7 +222,7 @@ def place_all(system, first_spot, k, state, crowd, points, work):
             write_touch(contact, work.touches[t], state, points[i])
             points[i].turns, points[i].length = spot.turns, smaller(contact)
             i += 1
-        if contact.other >= 0:
+        if not on_half_space(contact):
             share_plane(points, first, i, state)
 
 
@@ -237,11 +238,12 @@ def share_plane(points, first, last, state):
         if points[i].gap < points[nearest].gap:
             nearest = i
     plane = points[nearest]
-    a, b, n = state[plane.a].x, state[plane.b].x, plane.axes[0]
+    a, n = state[plane.a].x, plane.axes[0]
     for i in range(first, last):
         point = points[i]
         for j in range(3):
-            half = 0.5 * (a[j] + point.arm_a[j] - b[j] - point.arm_b[j])
+            b = state[plane.b].x[j] if plane.b >= 0 else 0.0
+            half = 0.5 * (a[j] + point.arm_a[j] - b - point.arm_b[j])
             point.arm_a[j], point.arm_b[j] = point.arm_a[j] - half, point.arm_b[j] + half
     for i in range(first, last):
         point, turned, away = points[i], 0.0, 0.0

@@ -160,10 +160,14 @@ def first_contact(islands, i, j):
 
 @kernel
 def near_plane(system, c, now, work):
-    """Return whether a body may come to a half-space in the step."""
-    contact = system.contacts[c]
+    """Return whether a body may come to a half-space, or to a static body, in the step."""
+    contact, x = system.contacts[c], now[system.contacts[c].body].x
+    if contact.static == 1:
+        y, reach = contact.centre, (1.0 + SLACK) * (contact.extent + contact.other_extent)
+        reach += work.body[contact.body].room
+        return (x[0] - y[0]) ** 2 + (x[1] - y[1]) ** 2 + (x[2] - y[2]) ** 2 <= reach * reach
     reach = contact.extent * (1.0 + SLACK) + contact.radius + work.body[contact.body].room
-    return along_normal(contact, now[contact.body].x) - contact.offset <= reach
+    return along_normal(contact, x) - contact.offset <= reach
 
 
 @kernel

@@ -87,6 +87,10 @@ def sensitivities(
             f'solution must be of a scene of free bodies for by="saltation", got one with {parts[0]!r}; take '
             'by="differences"'
         )
+    if scene.statics:
+        raise ValueError(
+            f"solution must be of a scene without static bodies, got one with {scene.statics[0]!r}"
+        )
     differences = by == "differences" or bool(parts)
     settings, run = solution.settings, solution._run
     if METHODS[settings["method"]].kind == THREE_FIELD or settings["impact_location"] != "locate":

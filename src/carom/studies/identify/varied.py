@@ -74,6 +74,10 @@ def varied(
     parts: dict = {}
     for plane in scene.half_spaces:
         parts[plane] = copy.add_half_space(plane.point, plane.normal, name=plane.name)
+    for solid in scene.statics:
+        parts[solid] = copy.add_static(
+            solid.shape, position=solid.position, orientation=solid.orientation, name=solid.name
+        )
     for k, body in enumerate(scene.bodies):
         state = _state(body) if start is None else State(*(field[k] for field in start))
         parts[body] = copy.add_body(

@@ -25,7 +25,7 @@ class Marks:
         self.time, self.point = table.time[drawn], table.point[drawn]
         push = np.zeros((len(drawn), 3))
         for row, k in enumerate(drawn):
-            flat = pairs.plane[table.contact[k]] >= 0
+            flat = 0 <= pairs.plane[table.contact[k]] < len(solution.scene.half_spaces)
             n = table.normal[k]
             push[row] = table.impulse[k] @ (contact_axes(n) if flat else pair_axes(n))
         size = np.linalg.norm(push, axis=1)

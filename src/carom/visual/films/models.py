@@ -22,6 +22,7 @@ SHARP = np.cos(np.radians(35.0))  # of the angle from which an edge is one
 FACET = np.cos(np.radians(1.0))  # the same of a polyhedron, whose faces are all flat
 NARROW = 0.8  # inner radius by outer radius from which a ring has no room for lines at its edges
 PALE = 0.55  # of the second colour of round bodies, which shows how they turn
+STATIC = "#c3ccd4"  # colour of what never moves
 ROD = 0.012  # thickness of a rod that stands for a body without a shape, by the size of the scene
 
 
@@ -94,6 +95,19 @@ def _painted(surface, colour: str) -> Model:
     normals = np.repeat(normals[:, None], 3, axis=1)
     edges = np.zeros(triangles.shape, dtype=np.int8)
     return Model(corners, normals, np.tile(rgb(colour), (len(triangles), 1)), edges)
+
+
+def placed_model(solid) -> Model:
+    """Return the model of a static body, in the world."""
+    model, turn = (
+        model_of(*surface(solid.shape, 48), solid.shape),
+        quaternion.matrix(solid.orientation),
+    )
+    return model._replace(
+        corners=model.corners @ turn.T + solid.position,
+        normals=model.normals @ turn.T,
+        colours=np.zeros((len(model.colours), 3)) + rgb(STATIC),
+    )
 
 
 def rgb(colour: str) -> np.ndarray:

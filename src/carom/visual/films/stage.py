@@ -13,7 +13,16 @@ from carom.scene.shapes.revolved import Cylinder
 from carom.visual.details import moving
 from carom.visual.films import marks
 from carom.visual.films.camera import Camera, axes_of, fitted, vertical
-from carom.visual.films.models import Model, anchors, model_of, models, rgb, split, turned_to
+from carom.visual.films.models import (
+    Model,
+    anchors,
+    model_of,
+    models,
+    placed_model,
+    rgb,
+    split,
+    turned_to,
+)
 from carom.visual.plots.figure import bodies as named_bodies
 from carom.visual.plots.figure import need_bodies
 from carom.visual.surfaces import surface
@@ -87,6 +96,7 @@ class Stage:
         counts = [len(model.corners) for model in made]
         self.owner = np.repeat(np.arange(len(made)), counts)
         self.all = Model(*(np.concatenate(columns) for columns in zip(*made)))
+        self.still = [placed_model(solid) for solid in self.solution.scene.statics]
         scene = self.solution.scene
         held = [j for j in scene.joints if isinstance(j.definition, Distance)]
         self.links = anchors([*held, *(f for f in scene.forces if f.kind == "Spring")])
@@ -161,7 +171,7 @@ class Stage:
         turn = quaternion.matrix(Q).reshape(-1, 3, 3)[self.owner]
         corners = np.einsum("fij,fkj->fki", turn, self.all.corners) + x[self.owner][:, None]
         normals = np.einsum("fij,fkj->fki", turn, self.all.normals)
-        parts = [self.all._replace(corners=corners, normals=normals)]
+        parts = [self.all._replace(corners=corners, normals=normals), *self.still]
         ends = [
             at if part.index < 0 else x[part.index] + quaternion.rotate(Q[part.index], at)
             for part, at in self.links

@@ -19,7 +19,7 @@ def trajectory(
     """Draw the paths of mass centres as seen along a coordinate axis.
 
     A square is the start, dots are impacts of the body; a corner at each. Half-spaces whose planes are seen
-    edge-on are drawn as the ground.
+    edge-on, and static bodies, are drawn as the ground.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def trajectory(
         Times [s] at which the outlines of the bodies are drawn, or how many, spread evenly over the run; at
         most 200. Default: none.
     ground : bool
-        Whether to draw half-spaces. Default True.
+        Whether to draw half-spaces and static bodies. Default True.
     ax : Axes, optional
         To draw into. Default: a new figure.
 
@@ -73,6 +73,8 @@ def trajectory(
         if ground:
             for half_space in solution.scene.half_spaces:
                 _ground(drawn, half_space, seen)
+            for solid in solution.scene.statics:
+                _static(drawn, solid, seen)
         figure.legend(drawn, loc="best")
     return drawn
 
@@ -142,6 +144,20 @@ def _outlines(axes, solution, body, times, seen, colour) -> None:
         axes.add_collection(
             LineCollection(list(flat[edge]), colors=colour, linewidths=0.6, capstyle="round")
         )
+
+
+def _static(axes, solid, seen) -> None:
+    """Draw a static body as the ground: the shadow of all its triangles."""
+    from matplotlib.collections import PolyCollection
+
+    from carom.visual.surfaces import surface
+
+    vertices, triangles = surface(solid.shape, 24)
+    flat = (solid.position + quaternion.rotate(solid.orientation, vertices))[:, seen]
+    shadow = PolyCollection(
+        list(flat[triangles]), facecolor=GROUND, edgecolor=GROUND, lw=0.5, zorder=0
+    )
+    axes.add_collection(shadow, autolim=False)  # as of the ground, the view is that of the motion
 
 
 def _ground(axes, half_space, seen) -> None:

@@ -13,6 +13,7 @@ from carom.visual.viewer.show import COLOURS, FORCE, IMPULSE, Show
 PATHS = 20  # bodies whose paths are drawn
 SHADE = (236, 240, 243)
 DARK, FAINT = "#5b6873", (184, 194, 202)
+STATIC = "#c3ccd4"
 
 
 class LiveScene:
@@ -61,6 +62,8 @@ class LiveScene:
         """Bring all to a time; impulses are seen for `fading` [s]."""
         x, Q = poses_at(self.show.frames, t)
         for part, handle in zip(self.show.parts, self.bodies):
+            if part.look == "static":
+                continue
             handle.batched_positions = x[part.bodies].astype(np.float32)
             handle.batched_wxyzs = Q[part.bodies].astype(np.float32)
         if self.links is not None:
@@ -93,11 +96,15 @@ class LiveScene:
         return DARK if look == "joint" else pip_colour(own) if look == "pip" else own
 
     def _part(self, k: int, part, x: np.ndarray, Q: np.ndarray):
-        colours = [_rgb(self._colour(b, part.look)) for b in part.bodies]
+        if part.look == "static":
+            x, Q = np.zeros((1, 3)), np.array([[1.0, 0, 0, 0]])
+            colours = [_rgb(STATIC)]
+        else:
+            colours = [_rgb(self._colour(b, part.look)) for b in part.bodies]
         return self.stage.add_batched_meshes_simple(
             f"/bodies/{k}", part.vertices.astype(np.float32), part.triangles.astype(np.uint32),
             Q[part.bodies], x[part.bodies], batched_colors=np.array(colours, dtype=np.uint8),
-            flat_shading=part.look == "solid", lod="off",
+            flat_shading=part.look in ("solid", "static"), lod="off",
         )  # fmt: skip
 
     def _paths(self) -> list:

@@ -90,7 +90,7 @@ def header(show: Show, packer: Packer) -> dict:
         "orientation": packer.add(frames.orientation),
         "parts": [
             {
-                "vertices": packer.add(part.vertices),
+                "vertices": packer.add(part.vertices - (place.centre if part.look == "static" else 0.0)),
                 "triangles": packer.add(part.triangles, "i4"),
                 "bodies": part.bodies,
                 "look": part.look,

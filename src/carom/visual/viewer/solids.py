@@ -26,10 +26,10 @@ WIDE = 1.5  # half a side of the part of a half-space that is drawn, by the radi
 class Part(NamedTuple):
     """A surface and the bodies that it moves with."""
 
-    vertices: np.ndarray  #: (V, 3) body axes [m]
+    vertices: np.ndarray  #: (V, 3) body axes [m]; of a static body in the world
     triangles: np.ndarray  #: (F, 3) counter-clockwise from outside
-    bodies: list[int]
-    look: str  #: "solid", "round" (with a pattern), "joint" or "pip"
+    bodies: list[int]  #: -1 for a static one
+    look: str  #: "solid", "round" (with a pattern), "joint", "pip" or "static"
 
 
 class Plane(NamedTuple):
@@ -68,7 +68,14 @@ def parts_of(scene, radius: float) -> list[Part]:
         for vertices, triangles, look in pieces:
             key = (vertices.tobytes(), triangles.tobytes(), look)
             parts.setdefault(key, Part(vertices, triangles, [], look)).bodies.append(body.index)
-    return list(parts.values())
+    return [*parts.values(), *(_static(solid) for solid in scene.statics)]
+
+
+def _static(solid) -> Part:
+    """Return the surface of a static body, in the world."""
+    vertices, triangles = surfaces.surface(solid.shape, 32)
+    placed = solid.position + quaternion.rotate(solid.orientation, vertices)
+    return Part(placed, triangles, [-1], "static")
 
 
 def outline_of(scene, body: Body) -> Outline:

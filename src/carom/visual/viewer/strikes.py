@@ -52,7 +52,7 @@ def strikes_of(solution, listed: int = LISTED) -> Strikes:
     for row, k in enumerate(chosen):
         c = impacts.contact[k]
         if c < stops:
-            axes = _axes(impacts.normal[k], bool(pairs.plane[c] >= 0))
+            axes = _axes(impacts.normal[k], bool(0 <= pairs.plane[c] < len(scene.half_spaces)))
             arrow[row] = impacts.impulse[k] @ axes
     names = impacts.name[chosen].tolist()
     turning = [c >= stops and _turns(scene.stops[c - stops]) for c in impacts.contact[chosen]]

@@ -1,6 +1,7 @@
 // ---- From the run and a time to what is drawn ----
 
 const WAYS = 20; // bodies whose ways are drawn all at once; of more only that of the followed one
+const STILL = { x: [0, 0, 0], Q: [1, 0, 0, 0] }; // the pose of what never moves
 const DOTS = 400; // impacts that are marked
 
 const rgba = (hex, alpha = 1) => [1, 3, 5].map((k) => parseInt(hex.slice(k, k + 2), 16) / 255).concat(alpha);
@@ -52,8 +53,9 @@ class Painter {
     const out = [];
     for (const { mesh, bodies, look } of this.parts)
       for (const b of bodies) {
-        const colour = rgba(this.colourOf(b, look));
-        out.push({ mesh, colour, model: frame(...axesOf(poses[b].Q), poses[b].x), pattern: look === "round" });
+        const { x, Q } = b < 0 ? STILL : poses[b];
+        const colour = rgba(look === "static" ? "#c3ccd4" : this.colourOf(b, look));
+        out.push({ mesh, colour, model: frame(...axesOf(Q), x), pattern: look === "round" });
       }
     const thick = 0.02 * this.run.place.radius;
     for (const { bodies, anchors, kind } of this.run.links) {
