@@ -40,7 +40,9 @@ TOPICS = {
             "contacts", "contact_mode", "contact_force", "forces", "held_residual", "pairs",
         ),
         "Energy": ("kinetic_energy", "potential_energy", "total_energy", "ledger"),
-        "Joints": ("joint_coordinates", "joint_reactions", "constraint_forces", "constraint_errors", "constraint_rows"),
+        "Joints": (
+            "joint_coordinates", "joint_reactions", "constraint_forces", "constraint_errors", "constraint_rows",
+        ),
         "How the run ended, and going on": ("status", "success", "message", "warnings", "stats", "simulate"),
         "What was run": ("scene", "settings"),
         "Files, tables and plots": ("save", "load", "to_xarray", "to_pandas", "plot"),
