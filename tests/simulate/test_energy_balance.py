@@ -29,7 +29,7 @@ def spring(stiffness, damping=0.0, height=0.0, gravity=0.0):
 def quiet(*given, **named):
     """Simulate without raising or warning."""
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", carom.AccuracyWarning)
+        warnings.simplefilter("ignore", UserWarning)
         return carom.simulate(*given, throw=False, **named)
 
 

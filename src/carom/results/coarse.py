@@ -43,13 +43,15 @@ def too_long(solution: Solution, flies: np.ndarray, step: float, method: str) ->
     smooth = np.ones(len(t) - 1, dtype=bool)
     for k in (strikes - 1, strikes):
         smooth[np.clip(k, 0, len(smooth) - 1)] = False
-    part = np.where(smooth[:, None], off, 0.0) / np.maximum(step * fastest, 1e-300)
-    worst = np.unravel_index(np.argmax(part), part.shape)
+    if not smooth.any():
+        return ()
+    # more than that in a quarter of all steps: what a stiff damper ends in its first steps does not count
+    part = np.quantile(off[smooth], 0.75, axis=0) / np.maximum(step * fastest, 1e-300)
+    worst = int(np.argmax(part))
     if not part[worst] > (OF_ORDER_8 if method == "rk8" else COARSE):
         return ()
-    name = solution.scene.bodies[bound[worst[1]]].name
-    good = step * np.sqrt(GOOD / part[worst])
+    name, good = solution.scene.bodies[bound[worst]].name, step * np.sqrt(GOOD / part[worst])
     return (
         f"step={step:g} s is far too long for the motion of {name!r}, whose velocity turns too much within "
-        f"one (most at t = {t[worst[0]]:.6g} s). Take step={good:.1g} or less, or leave step out.",
+        f"one. Take step={good:.1g} or less, or leave step out.",
     )
