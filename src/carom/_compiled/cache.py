@@ -14,7 +14,7 @@ from pathlib import Path
 
 from numba.core.caching import FunctionCache, IndexDataCacheFile
 
-from carom._compiled import ahead
+from carom._compiled import ahead, notice
 from carom._compiled.cache_key import stamp
 from carom._compiled.file_lock import FileLock
 
@@ -29,7 +29,7 @@ class StampedCache(FunctionCache):
 
     def __init__(self, py_func):
         super().__init__(py_func)
-        self._kept = py_func
+        self._kept, self._noted = py_func, False
         self._lock = FileLock(Path(self._cache_path) / f"{self._impl.filename_base}.lock")
         del self._cache_file  # made when it is first asked for: what is called may be defined later
 
@@ -38,9 +38,22 @@ class StampedCache(FunctionCache):
         found = self._load(sig, target_context)
         if found is None:
             ahead.start()
+            self._begin()
             if self._lock.take(ahead.compile_one):  # another process has compiled it
                 found = self._load(sig, target_context)
+            if found is not None:
+                self._end()
         return found
+
+    def _begin(self):
+        if not self._noted:
+            self._noted = True
+            notice.begin()
+
+    def _end(self):
+        if self._noted:
+            self._noted = False
+            notice.end()
 
     def is_taken(self) -> bool:
         """Return whether another process compiles this function."""
@@ -49,6 +62,7 @@ class StampedCache(FunctionCache):
     def release(self):
         """Let other processes have what was compiled, or compile it if it could not be."""
         self._lock.release()
+        self._end()
 
     def _load(self, sig, target_context):
         """Load a compiled function; a file that is broken is as good as none, and is written anew."""
@@ -86,6 +100,22 @@ class StampedCache(FunctionCache):
                     RuntimeWarning,
                     stacklevel=2,
                 )
+
+    def note_asked(self, packed: bytes) -> None:
+        """Keep by which types compiled code calls this function, for `carom warmup`; where it fails, do not."""
+        file = self._asked_file(self._cache_path)
+        with contextlib.suppress(OSError):
+            if not file.exists() or file.read_bytes() != packed:
+                file.write_bytes(packed)
+
+    def asked(self) -> bytes | None:
+        """Return what `note_asked` has kept, in this process or another one."""
+        with contextlib.suppress(OSError):
+            return self._asked_file(self._cache_path).read_bytes()
+        return None
+
+    def _asked_file(self, place: str) -> Path:
+        return Path(place) / f"{self._impl.filename_base}.asked"
 
     @cached_property
     def _cache_file(self):

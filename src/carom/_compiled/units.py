@@ -11,6 +11,7 @@ Uncompiled a unit is a plain function.
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import hashlib
 import importlib
@@ -96,6 +97,9 @@ def _call(context, builder, name, result, kinds, values):
     pointer, number = ir.IntType(8).as_pointer(), ir.IntType(64)
     ASKED[name, kinds] = None
     packed = pack(kinds)
+    cache: Any = getattr(UNITS[name].compiled, "_cache", None)
+    if hasattr(cache, "note_asked"):
+        cache.note_asked(packed)
     ahead.tell(name, packed)
     digest = hashlib.sha256(packed).hexdigest()[:16]
     slot = _global(builder.module, f"slot.{name}.{digest}", ir.Constant(pointer, None), False)
@@ -144,6 +148,17 @@ def pack(kinds: tuple) -> bytes:
 def unpack(packed: bytes) -> tuple:
     """Return the types of arguments that were packed."""
     return pickle.loads(zlib.decompress(packed))
+
+
+def asked_before() -> set[tuple[str, tuple]]:
+    """Return units of modules that are loaded, with the types by which compiled code on disk calls them."""
+    out = set()
+    for name, made in UNITS.items():
+        packed = getattr(made.compiled._cache, "asked", lambda: None)()
+        if packed is not None:
+            with contextlib.suppress(Exception):  # of another version of Numba
+                out.add((name, unpack(packed)))
+    return out
 
 
 def find(name: str) -> Any:

@@ -17,6 +17,11 @@ TOGETHER = (
     ("loops",),
     ("tree",),
 )
+#: folders with units
+ROOMS = (
+    "geometry", "collision", "kinematics", "contact", "friction", "dynamics", "impact", "persistent",
+    "stepping",
+)  # fmt: skip
 
 
 def run(
@@ -54,6 +59,7 @@ def compile_all(workers: int | None = None) -> list[dict]:
     from concurrent.futures import ProcessPoolExecutor, as_completed
 
     from carom._compiled.ahead import do_without
+    from carom._compiled.decorators import COMPILES
 
     workers = min(workers or os.cpu_count() or 1, len(TOGETHER))
     total, rows, asked = len(work()), [], set()
@@ -65,12 +71,28 @@ def compile_all(workers: int | None = None) -> list[dict]:
                 rows, asked = rows + new, asked | more
                 bar(len(rows), total)
             known: set = set()
+            asked |= asked_by_disk() if COMPILES else set()
             while asked - known:  # what no scene above has called
                 parts = [sorted(asked - known, key=str)[k::workers] for k in range(workers)]
                 known |= asked
                 asked = asked.union(*pool.map(compile_units, parts))
     order = {kind: k for k, kind in enumerate(kind for kinds in TOGETHER for kind in kinds)}
     return sorted(rows, key=lambda row: order[row["kind"]])
+
+
+def asked_by_disk() -> set:
+    """Return all units that code on disk may call: what was compiled before does not ask for them again."""
+    import importlib
+    import pkgutil
+
+    import carom
+    from carom._compiled.units import asked_before
+
+    for room in ROOMS:
+        place = importlib.import_module(f"carom.{room}")
+        for module in pkgutil.walk_packages(place.__path__, f"{carom.__name__}.{room}."):
+            importlib.import_module(module.name)
+    return asked_before()
 
 
 def compile_units(wanted: list) -> set:
