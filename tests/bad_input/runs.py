@@ -85,10 +85,10 @@ def run(folder):
         "simulate in coordinates": lambda: (carom.simulate, dict(scene=one_oscillator(), **given)),
         "resume": lambda: (
             carom.resume,
-            dict(path=saved(folder), functions={}, save_seconds=60.0, progress=None, throw=True),
+            dict(path=saved(folder), duration=None, functions={}, save_seconds=60.0, progress=None, throw=True),
         ),
         "Solution.load": lambda: (carom.Solution.load, dict(path=saved(folder), functions={})),
-        "Solution.simulate": lambda: (solution().simulate, dict(duration=0.1)),
+        "Solution.simulate": lambda: (solution().simulate, dict(duration=0.1, progress=None, throw=True)),
         "Solution.save": lambda: (solution().save, dict(path=folder / "again.nc")),
         "Solution.to_xarray": lambda: (solution().to_xarray, {}),
         "Solution.to_pandas": lambda: (solution().to_pandas, {}),

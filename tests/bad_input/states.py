@@ -79,12 +79,12 @@ def stated():
         "Scene.add_body": of_scene(
             "add_body", shape=carom.Sphere(0.1), mass=1.0, density=None, inertia=(1.0, 1.0, 1.0),
             position=three, orientation=(1.0, 0, 0, 0), velocity=three, angular_velocity=three,
-            material=carom.Material(0.5, 0.1), name="new",
+            material=carom.Material(0.5, 0.1), name="new", color="red",
         ),
         "Scene.add_body of a density": of_scene(
             "add_body", shape=carom.Sphere(0.1), mass=None, density=1.0, inertia=None,
             position=three, orientation=(1.0, 0, 0, 0), velocity=three, angular_velocity=three,
-            material=None, name=None,
+            material=None, name=None, color=None,
         ),
         "Scene.add_static": of_scene(
             "add_static", shape=carom.Sphere(0.1), position=three, orientation=(1.0, 0, 0, 0),
