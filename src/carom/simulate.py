@@ -208,5 +208,4 @@ def after(solution, settings: Settings) -> tuple[str, ...]:
         return ()  # not each step is saved
     if settings.method == "implicit" or not isinstance(solution, Solution) or not solution.success:
         return ()
-    flies = solution._run.bodies["ballistic"] == 1
-    return too_long(solution, flies, settings.step, settings.method)
+    return too_long(solution, solution._run.bodies, settings.step, settings.method)

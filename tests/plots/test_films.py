@@ -65,7 +65,8 @@ def ball():
     scene.add_body(
         carom.Sphere(0.1), mass=1.0, position=(0, 0, 0.8), velocity=(1.0, 0, 0), name="ball"
     )
-    return carom.simulate(scene, 0.3, step=0.05)
+    with pytest.warns(carom.MistakeWarning, match="Nothing can touch 'ball'"):
+        return carom.simulate(scene, 0.3, step=0.05)
 
 
 def test_a_point_is_seen_where_the_camera_says():

@@ -12,10 +12,11 @@ if TYPE_CHECKING:
 #: of the way at the greatest speed: a harmonic motion is so far off where it turns by 1.1 rad in a step, and
 #: by 2.2 rad, which the method of order 8 still follows
 COARSE, OF_ORDER_8 = 0.1, 0.4
+SEEN = 1e-3  # of the size of a body: what is less does not count
 GOOD = 1e-3  # the same for a step that is short enough to begin with
 
 
-def too_long(solution: Solution, flies: np.ndarray, step: float, method: str) -> tuple[str, ...]:
+def too_long(solution: Solution, bodies, step: float, method: str) -> tuple[str, ...]:
     """Return a sentence where a given step is far too long for the motion of joined or loaded bodies.
 
     The trapezoidal rule is compared with the way of such a body in a step: the two are (omega h)^2 / 12 of the
@@ -25,14 +26,14 @@ def too_long(solution: Solution, flies: np.ndarray, step: float, method: str) ->
     ----------
     solution
         Of which each step is saved.
-    flies : (N,)
-        Whether a body is neither joined nor loaded.
+    bodies : (N,) BODY
+        What kernels know of them: who is neither joined nor loaded, and sizes.
     step : float
         [s].
     method : str
         By which it was taken.
     """
-    t, bound = solution.t, np.flatnonzero(~flies)
+    t, bound, sizes = solution.t, np.flatnonzero(bodies["ballistic"] == 0), bodies["extent"]
     if len(t) < 3 or not len(bound):
         return ()
     x, v = solution.position[:, bound], solution.velocity[:, bound]
@@ -46,7 +47,8 @@ def too_long(solution: Solution, flies: np.ndarray, step: float, method: str) ->
     if not smooth.any():
         return ()
     # more than that in a quarter of all steps: what a stiff damper ends in its first steps does not count
-    part = np.quantile(off[smooth], 0.75, axis=0) / np.maximum(step * fastest, 1e-300)
+    most = np.quantile(off[smooth], 0.75, axis=0)
+    part = np.where(most > SEEN * sizes[bound], most, 0.0) / np.maximum(step * fastest, 1e-300)
     worst = int(np.argmax(part))
     if not part[worst] > (OF_ORDER_8 if method == "rk8" else COARSE):
         return ()
