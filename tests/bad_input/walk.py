@@ -18,7 +18,7 @@ from bad_input.kinds import NO_NUMBERS, WRONG
 from bad_input.reads import read
 from bad_input.runs import run
 from bad_input.states import stated
-from carom import SimulationError
+from carom import MistakeWarning, SimulationError
 
 LIMIT = 120.0  # seconds that a call may take: the first of its kind is compiled
 
@@ -126,6 +126,10 @@ def _of_error(name: str, parameter: str, error: BaseException) -> str | None:
     instead = INSTEAD.get((name, parameter))
     if re.search(rf"raised by .*{named}", notes):
         return None  # an error of the function that was given, which says so
+    if isinstance(error, MistakeWarning):
+        return (
+            None  # the value is allowed, and the warning, an error here, says what is likely wrong
+        )
     if not isinstance(error, (ValueError, TypeError, DOCUMENTED.get(name, ValueError))):
         return f"raises {type(error).__name__}: {words:.200}"
     if isinstance(error, SimulationError):

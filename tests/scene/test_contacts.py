@@ -130,7 +130,7 @@ def test_wrong_handles():
         ValueError, match="body must be a part of the scene, which has none called 'dye';"
     ):
         scene.add_contact("dye", contact.half_space)
-    with pytest.raises(TypeError, match=r"other must be a Body or HalfSpace, got <"):
+    with pytest.raises(TypeError, match=r"other must be a Body or HalfSpace or StaticBody, got <"):
         scene.add_contact(contact.body, scene)
     with pytest.raises(ValueError, match="body and other must not both be half-spaces, got"):
         scene.add_contact(contact.half_space, contact.half_space)
