@@ -13,6 +13,7 @@ from carom._compiled import notice
 def quick(monkeypatch):
     """A hundredth of all waits."""
     monkeypatch.setattr(notice._State, "silent", False)
+    monkeypatch.setattr(notice._State, "spoken", False)
     for name in ("AFTER", "EVERY", "REST", "_TICK"):
         monkeypatch.setattr(notice, name, getattr(notice, name) / 20)
 
@@ -39,6 +40,9 @@ def test_long_compiling_is_told(quick, capsys):
     assert all(line.startswith("carom: compiling: ") and " functions, " in line for line in middle)
     assert middle
     assert last.startswith("carom: compiled 3 functions in ")
+    compile_for(0.3)
+    wait()
+    assert capsys.readouterr().err.startswith("carom: compiling some more ...")
 
 
 def test_short_compiling_is_not(quick, capsys):

@@ -19,6 +19,7 @@ class _State:
     silent = False
     depth = 0  # functions that are being compiled
     parts = 0  # functions since it began
+    spoken = False  # of compiling, before
     watcher: threading.Thread | None = None
     lock = threading.Lock()
 
@@ -65,9 +66,9 @@ def _watch() -> None:
         parts = _State.parts - first
         if said is None and spent > AFTER:
             said = spent
-            _say(
-                "compiling, once for this installation; 'carom warmup' does all of it beforehand ..."
-            )
+            once = "once for this installation; 'carom warmup' does all of it beforehand"
+            _say("compiling some more ..." if _State.spoken else f"compiling, {once} ...")
+            _State.spoken = True
         elif said is not None and _State.depth > 0 and spent - said > EVERY:
             said = spent
             _say(f"compiling: {parts} functions, {spent:.0f} s ...")
