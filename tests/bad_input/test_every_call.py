@@ -74,7 +74,6 @@ def recipes(tmp_path_factory):
 NAMES = list(walk.recipes(Path()))
 
 
-@pytest.mark.filterwarnings("ignore::carom.MistakeWarning")  # a run of 5e-324 s has a long step
 @pytest.mark.parametrize("name", NAMES)
 def test_wrong_values_are_refused_by_name(recipes, name, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)  # where a word is taken as a path
