@@ -24,7 +24,9 @@ CALLED = {
 #: of classes with many members: topics in the order of the page
 TOPICS = {
     "Scene": {
-        "Bodies and half-spaces": ("add_body", "add_half_space", "bodies", "half_spaces", "gravity"),
+        "Bodies, static bodies and half-spaces": (
+            "add_body", "add_static", "add_half_space", "bodies", "statics", "half_spaces", "fixed", "gravity",
+        ),
         "Contacts": (
             "add_contact", "set_contact_default", "ignore_contact", "contacts", "contact_law",
             "contact_default", "pairs_by_default",
