@@ -224,7 +224,7 @@ def draw(found: dict[str, list[tuple[float, float]]]) -> None:
         ax.plot(asked, asked, color=look.GREY, lw=0.8, ls="--", zorder=1)
         for i, (title, errors) in enumerate(found.items()):
             parts = np.maximum([part for part, _ in errors], FLOOR / asked)
-            mark = "os"[i // len(colours)]
+            mark = "osv"[i // len(colours)]
             colour = colours[i % len(colours)]
             ax.plot(asked, parts * asked, f"{mark}-", color=colour, lw=0.8, ms=3, label=title)
         ax.set(xscale="log", yscale="log", xlabel="rtol", ylabel="error / size of the body")
