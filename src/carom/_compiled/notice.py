@@ -1,4 +1,4 @@
-"""A word on stderr where compiling takes long: what it is, and how far it has come."""
+"""Messages on stderr while code is compiled for more than two seconds: that it is, and how far it has come."""
 
 from __future__ import annotations
 
