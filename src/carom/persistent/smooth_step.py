@@ -50,7 +50,7 @@ def smooth_step(model, data, method, k, h):
     start, end, group, work = data.state, data.work.trial, data.group, data.work
     b, result, clock = group.member[0], data.work.result[0], data.clocks[0]
     u, p = group.v[U], group.v[P]
-    if not begin(model, data, k, h):
+    if not begin(model, data, k):
         return False
     stages, friction = method.b.size, 0.0
     for s in range(stages):
@@ -81,7 +81,7 @@ def smooth_step(model, data, method, k, h):
 
 
 @kernel
-def begin(model, data, k, h):
+def begin(model, data, k):
     """Note which points press, slip and stick; return whether that can last for the step."""
     system, controls, active = model.system, model.controls, data.active
     start, group = data.state, data.group
