@@ -290,10 +290,10 @@ class Solution(Portable, Drawn):
 
         The states are those of the motion. A body on which only gravity acts, and that touches nothing, is in
         closed form. For others the motion is stepped again from the saved state before, by the method of the
-        run, which costs what the run took there. Where this does not end at the next saved state (within ten
-        times the tolerances; as in a pile where impacts follow each other), and where functions of a file are
-        missing, a cubic through both states is used: an error of order 4 in their distance for positions and
-        orientations, of order 3 for velocities.
+        run, which costs what the run took there. Where this misses the next saved state (by more than ten times
+        the tolerances and a tenth of its difference from a cubic; as in a pile where impacts follow each
+        other), and where functions of a file are missing, a cubic through both states is used: an error of
+        order 4 in their distance for positions and orientations, of order 3 for velocities.
 
         Parameters
         ----------
