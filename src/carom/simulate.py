@@ -171,8 +171,6 @@ def simulate(
         atol=atol, options=options,
     )  # fmt: skip
     if isinstance(scene, GeneralizedSystem):
-        if settings.adapts:
-            raise ValueError('step of a system in coordinates must be a number [s], got "auto"')
         if save is not None:
             raise ValueError(
                 f"save must be left out with a system in coordinates, got {checks.shown(save)}"

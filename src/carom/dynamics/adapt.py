@@ -31,6 +31,7 @@ from carom.model.workspace import ONE
 SAFETY, LEAST, MOST = 0.9, 0.2, 10.0
 LOCAL = 0.1
 FIRST = 1e-3  # of a step of the run: the first of its bodies
+NEARLY = 0.99  # of what is left: the rest is no step of its own
 NOTHING_LEFT = 1e-14  # of the time that is left: no step is shorter
 
 
@@ -121,7 +122,13 @@ def allowed_step(left, work):
     ahead = math.inf
     for b in range(work.body.shape[0]):
         ahead = min(ahead, work.body[b].ahead)
-    return ahead if 2.0 * ahead <= left else 0.5 * left if ahead < left else left
+    return part_of(left, ahead)
+
+
+@kernel
+def part_of(left, ahead):
+    """Return the step to take of what is left: about `ahead`, in equal steps if less than two."""
+    return ahead if 2.0 * ahead <= left else 0.5 * left if ahead < NEARLY * left else left
 
 
 @kernel

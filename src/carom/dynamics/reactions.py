@@ -193,6 +193,15 @@ def row_errors(system, times, states, work, position, velocity):
 
 
 @entry
+def saved_turns(system, times, states, out):
+    """Write the angles (T, C) of joints at saved states, whole turns with them, that relations refer to."""
+    for k in range(states.shape[0]):
+        follow_turns(system, times, states, k)
+        for i in range(system.relations.coordinates.shape[0]):
+            out[k, i] = system.relations.coordinates[i].reference
+
+
+@entry
 def start_errors(system, state, work, position, velocity):
     """Write the errors of position and velocity of each row of each element, (J, 6) each."""
     for j in range(system.joints.shape[0]):

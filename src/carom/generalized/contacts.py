@@ -190,7 +190,9 @@ class Contacts:
             e = 0.0
         if not u >= -10.0 * self.still[c]:
             return False
-        return u <= self.still[c] or (e < 1.0 and 2.0 * u < draw * (1.0 - e) * self.run.plan.step)
+        return u <= self.still[c] or (
+            e < 1.0 and 2.0 * u < draw * (1.0 - e) * self.run.moment(draw)
+        )
 
     def set_active(self, chosen, closed, kind: int, marked: int, free: np.ndarray) -> int:
         """Hold `chosen`: find stick or slip of each from the accelerations; return a status."""
@@ -296,8 +298,8 @@ class Contacts:
                 if c == marked and kind == REVERSE:
                     # what friction takes away in a thousandth of a step
                     W_tt = np.einsum("in,nm,im->", self.seen.G[c, 1:], self.P, self.seen.G[c, 1:])
-                    force = abs(was[c][2][0])
-                    stop = max(stop, 1e-3 * run.plan.step * self.friction[c] * force * W_tt)
+                    brake = self.friction[c] * abs(was[c][2][0]) * float(W_tt)
+                    stop = max(stop, 1e-3 * run.moment(brake) * brake)
                 if slip <= stop:
                     rows.extend(self.seen.G[c, 1:])
         R = np.array(rows)

@@ -101,12 +101,16 @@ class Plan(NamedTuple):
     duration: float
     step: float  # the longest
     grid: Grid
+    order: int  # of the method, where tolerances choose the steps; else 0
+    rtol: float
+    atol: float
 
 
 #: one run: where it is
 CLOCK = [
     ("now", "f8"), ("step", "i8"), ("saved", "i8"), ("loads", "f8"), ("friction", "f8"),
     ("impacts", "f8"), ("bounces", "f8"), ("kind", "i8"), ("index", "i8"), ("trials", "i8"),
+    ("ahead", "f8"), ("rejected", "i8"),  # the next step by tolerances, and how many had too great an error
 ]  # fmt: skip
 
 #: one saved state, beside the state itself

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import math
+
 from carom._compiled.decorators import entry, kernel
 from carom._compiled.user_functions import call_function
+from carom.dynamics.adapt import LEAST, MOST, NOTHING_LEFT, SAFETY, part_of
+from carom.generalized.error_estimate import step_error
 from carom.generalized.events import locate, note_start, turned
 from carom.generalized.layout import DONE, EVENT, LOADS, NOTHING, PAUSE, TOUCHES, N
 from carom.generalized.motion import copy_row, find_metric
 from carom.generalized.step import take
 from carom.stepping.grid import end_of, is_saved
+from carom.stepping.trial_step import STEP_TOO_SMALL
 
 CUTS = 12  # most halvings of a step in which slip turns
 LONG = 20_000  # trial steps, times the square of the coordinates, after which the loop is left for a moment
@@ -30,7 +35,7 @@ def time_loop(motion, x, plan, until, record):
         left = target - c.now
         if left > 1e-13 * plan.step:
             note_start(system, c.now, x, work)
-            part, code = first_part(motion, x, left, c)
+            part, code = first_part(motion, x, left, plan, c)
             if code != 0:
                 return code
             s, kind, index, code = locate(motion, c.now, x, part)
@@ -54,20 +59,50 @@ def time_loop(motion, x, plan, until, record):
 
 
 @kernel
-def first_part(motion, x, left, c):
-    """Take a step, halved until slip does not turn in it; return (its length, status)."""
+def first_part(motion, x, left, plan, c):
+    """Take a step that is as exact as asked for, and halved until slip does not turn in it.
+
+    Returns its length and a status.
+    """
     part, work = left, motion.work
-    for cut in range(CUTS):
-        code = take(motion, c.now, x, part)
+    if plan.order > 0:
+        part, code = exact_part(motion, x, left, plan, c)
         if code != 0:
             return part, code
-        c.trials += 1
+    for cut in range(CUTS):
+        if cut > 0 or plan.order == 0:
+            code = take(motion, c.now, x, part)
+            c.trials += 1
+            if code != 0:
+                return part, code
         if cut + 1 == CUTS or not turned(
             motion.system, motion.active, c.now + part, work.end, work
         ):
             break
         part *= 0.5
     return part, 0
+
+
+@kernel
+def exact_part(motion, x, left, plan, c):
+    """Take a step whose estimated error is what the tolerances allow; return its length and a status."""
+    part, again = part_of(left, c.ahead), False
+    while True:
+        code = take(motion, c.now, x, part)
+        c.trials += 1
+        error = math.inf if code != 0 else step_error(motion, part, plan)
+        if error <= 1.0:
+            factor = MOST if error == 0.0 else min(MOST, SAFETY * error ** (-1.0 / plan.order))
+            if again:
+                factor = min(1.0, factor)
+            ahead = part * factor if factor < MOST else max(c.ahead, part * MOST)
+            c.ahead = min(ahead, plan.step)
+            return part, 0
+        if not part > NOTHING_LEFT * plan.duration:
+            return part, code if code != 0 else STEP_TOO_SMALL
+        again = True
+        c.rejected += 1
+        part *= max(LEAST, SAFETY * error ** (-1.0 / plan.order)) if math.isfinite(error) else LEAST
 
 
 @kernel

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom._compiled.record_arrays import table
-from carom.dynamics.methods import make_method
+from carom.dynamics.adapt import FIRST
+from carom.dynamics.methods import METHODS, make_method
 from carom.generalized.contacts import Contacts
 from carom.generalized.evaluate import Evaluation
 from carom.generalized.layout import (
@@ -25,7 +26,7 @@ from carom.generalized.layout import (
 from carom.generalized.loop import save_now, time_loop
 from carom.generalized.step import project_rates
 from carom.status import Status
-from carom.stepping.grid import make_grid
+from carom.stepping.grid import STATES, Grid, make_grid
 
 if TYPE_CHECKING:
     from carom.generalized.system import GeneralizedSystem
@@ -34,16 +35,36 @@ if TYPE_CHECKING:
 AT_ONCE = 200  # events at one instant
 
 
+def grid_of(settings: Settings, touches: bool) -> Grid:
+    """Return where steps end and states are saved, 200 of them by default.
+
+    Where something touches, no step by tolerances is longer than the time between these: a gap that closes and
+    opens within a step is told from its ends.
+    """
+    how, every = settings, settings.save_every
+    if how.step is not None:
+        return make_grid(how.duration, how.step, every, how.save_at)
+    between = how.duration / STATES
+    longest = how.options.max_step or (between if touches else how.duration)
+    if how.save_at is not None:
+        return make_grid(how.duration, longest, 1, how.save_at)
+    grid = make_grid(how.duration, longest, 1, between)
+    return grid._replace(save_every=grid.save_every * every)
+
+
 class GeneralizedRun:
     """State, records and workspace of a run."""
 
     def __init__(self, system: GeneralizedSystem, settings: Settings):
         options = settings.options
         self.user, self.options = system, options
-        assert settings.step is not None
-        grid = make_grid(settings.duration, settings.step, settings.save_every, settings.save_at)
-        self.plan = Plan(settings.duration, grid.interval, grid)
+        grid = grid_of(settings, len(system.contacts) > 0)
+        order = METHODS[settings.method].order if settings.adapts else 0
+        atol = settings.rtol if settings.atol is None else settings.atol
+        self.plan = Plan(settings.duration, grid.interval, grid, order, settings.rtol, atol)
         self.settings = {**settings.as_dict(), "options": options.as_dict()}
+        if settings.adapts:
+            self.settings["atol"] = atol
         made = system.evaluation()
         same = made.system.drop == options.drop_tolerance
         self.made: Evaluation = made if same else Evaluation(system, options.drop_tolerance)
@@ -51,11 +72,12 @@ class GeneralizedRun:
         self.system = self.made.system
         n, h, k, C = (int(one) for one in self.system.size)
         self.n = n
-        self.method = make_method(settings.method, options)
+        self.method = make_method(settings.method, options, settings.adapts)
         self.active, self.work = new_active_set(C), new_work(n, h, k, C, len(self.method.b))
         self.motion = Motion(self.system, self.method, self.active, self.work)
         self.x = np.concatenate([system.position, system.velocity])
         self.clock = table(CLOCK, 1)
+        self.clock["ahead"] = FIRST * grid.interval
         rows = grid.rows + 2
         self.series, self.states = table(SERIES, rows), np.zeros((rows, 2 * n))
         self.record = Record(self.clock, self.series, self.states)
@@ -111,6 +133,13 @@ class GeneralizedRun:
         """Time that the run has come to."""
         return float(self.clock[0].now)
 
+    def moment(self, acceleration: float) -> float:
+        """Return a time that counts as none: a step, or with tolerances that of a bounce as high as those."""
+        plan = self.plan
+        if plan.order == 0 or not acceleration > 0.0:
+            return plan.step
+        return min(plan.step, float(np.sqrt(8.0 * (plan.atol + plan.rtol) / acceleration)))
+
     def save_now(self) -> None:
         """Write the present state into the records."""
         save_now(self.x, self.record)
@@ -134,6 +163,15 @@ class GeneralizedRun:
         if self.failure is not None:
             return Status.FUNCTION_FAILED
         return Status.SUCCESS if code == DONE else Status(code)
+
+    def counted(self) -> dict[str, int]:
+        """Return how many steps there were, and trial steps of too great an error."""
+        clock = self.clock[0]
+        return {
+            "steps": int(clock.step),
+            "trial_steps": int(clock.trials),
+            "rejected": int(clock.rejected),
+        }
 
     def go_back(self) -> None:
         """Go back to where the run can be gone on from: it is interrupted there only."""

@@ -177,7 +177,7 @@ class GeneralizedSolution(Drawn):
             impacts=impacts,
             events=EventTable(*columns) if columns else EventTable(*(np.zeros(0) for _ in range(3))),
             ledger=ledger, status=status, warnings=warnings,
-            stats={"steps": run.steps_done, **run.counts}, system=run.user, settings=run.settings,
+            stats={**run.counted(), **run.counts}, system=run.user, settings=run.settings,
             _run=run,
         )  # fmt: skip
 

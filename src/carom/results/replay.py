@@ -1,9 +1,9 @@
 """The motion between two saved states, stepped again from the first of them by the method of the run.
 
 A state between two saved ones is then as exact as they are, however fast a body turns between them. A replay
-begins with what is saved: position, attitude and velocities. A run has more in its memory (guesses of forces,
-whole turns of joints), so each interval is tried first: its replay is used if it ends at the next saved state,
-or misses it by far less than the replay and a cubic through both states differ between them.
+begins with what is saved: position, attitude and velocities. A run remembers more, such as guesses of forces,
+so each interval is tried first. Its replay is used if it ends at the next saved state, or misses it by far less
+than the replay and a cubic through both states differ between them.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from carom.dynamics.reactions import saved_turns
 from carom.model.kept import Kept
 from carom.results.dense_output import curves
 from carom.status import Status
@@ -36,6 +37,10 @@ class Replay:
         self.solution, self.states = solution, known.records.state
         self.run = Run(solution.scene, settings_of(solution.settings, known.options))
         self.grid = self.run.grid
+        relations = self.run.compiled.system.relations
+        self.turns = np.zeros((len(solution.t), len(relations.coordinates)))
+        if self.turns.size:
+            saved_turns(self.run.compiled.system, solution.t, self.states, self.turns)
         self.kept = Kept(self.run.parts)
         self.size = self.run.bodies["extent"]
         rtol, atol = self.run.tolerances or (RTOL, RTOL * float(np.min(self.size)))
@@ -85,6 +90,8 @@ class Replay:
             self.kept = Kept(run.parts)
         run.now[:] = self.states[i]
         run.clock["now"] = begin
+        if self.turns.size:
+            run.compiled.system.relations.coordinates["reference"] = self.turns[i]
         ends = np.concatenate([[begin], ends_between(self.grid, begin, until), [until]])
         longest = float(np.max(np.diff(ends)))
         run.grid = Grid(longest, len(ends) - 1, 0, ends, np.zeros(len(ends), dtype=np.int64))
