@@ -1,7 +1,7 @@
-"""All pairs of a scene that may touch, but for those left out: as arrays, for they are many.
+"""All pairs of a scene that may touch, except the ignored ones, as arrays because they are many.
 
-Pairs of two bodies are N(N - 1)/2. What says which of them may touch, and by which law, is of the size of N:
-`Defaults`, from which a list of all, or of some, is made.
+N bodies have N(N - 1)/2 pairs. `Defaults` says in memory of order N which of them may touch and by which law;
+a list of all pairs, or of some, is made from it.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ MOST_AT_ONCE = 1 << 20  # balls whose distances are looked at in one go
 
 
 class PairTable(NamedTuple):
-    """C pairs that may touch: a body, and a half-space or another body."""
+    """Table of C pairs that may touch: each a body, and a half-space, static body or another body."""
 
     body: np.ndarray  #: (C,) its index
     other: np.ndarray  #: (C,) index of the other body, -1 for what never moves
@@ -31,7 +31,7 @@ class PairTable(NamedTuple):
 
 
 class Defaults(NamedTuple):
-    """The pairs that touch by default: with half-spaces one by one, of two bodies by what they have."""
+    """The pairs that touch by default, in memory of order N: a list only for half-spaces."""
 
     grounded: PairTable  # bodies and half-spaces, body by body
     solid: np.ndarray  # (N,) whether a body has a shape

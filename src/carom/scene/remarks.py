@@ -1,4 +1,4 @@
-"""What a scene says that is nearly always a mistake, in sentences."""
+"""Sentences about input of a scene that is nearly always a mistake."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ MOST = 6  # names in a sentence
 
 
 def remarks(scene: Scene) -> tuple[str, ...]:
-    """Return sentences about bodies that nothing can touch, and contacts of which nothing is stated."""
+    """Return sentences about bodies that cannot touch anything, and contacts without stated values."""
     return (*_of_untouched(scene), *_of_unsaid(scene))
 
 
 def _of_untouched(scene: Scene) -> list[str]:
-    """Return a sentence about free bodies that nothing can touch, where there is something to be touched by."""
+    """Return a sentence about free bodies that cannot touch anything, if others could touch them."""
     if not (scene.fixed or scene.contacts):
         return []
     touched = _touched(scene)
@@ -61,7 +61,7 @@ def _touched(scene: Scene) -> np.ndarray:
 
 
 def _of_unsaid(scene: Scene) -> list[str]:
-    """Return a sentence about contacts whose restitution and friction nobody has stated."""
+    """Return a sentence about contacts without a stated restitution and friction."""
     pairs = scene._pairs
     found = [contact for contact in scene.contacts if pairs.is_unsaid(contact.body, contact.other)]
     what = [_names(found)] if found else []
