@@ -136,7 +136,7 @@ def call(name: str, function: Callable, *arguments):
     try:
         return function(*arguments)
     except Exception as error:
-        error.add_note(f"This was raised by {name}, a function that carom was given.")
+        error.add_note(f"The error was raised by {name}, a function that was passed to carom.")
         raise
 
 
@@ -280,7 +280,7 @@ def instance(name: str, value, kinds: tuple[type, ...], hint: str = "") -> None:
         return
     allowed = " or ".join(kind.__name__ for kind in kinds)
     if isinstance(value, type) and issubclass(value, kinds):
-        hint = f"; that is the class, make one by {value.__name__}(...)"
+        hint = f"; this is the class, make an object with {value.__name__}(...)"
     raise TypeError(f"{name} must be a {allowed}, got {shown(value)}{hint}")
 
 

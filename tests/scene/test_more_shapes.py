@@ -212,9 +212,9 @@ VERTICES, FACES = cube()
         (
             VERTICES,
             [*FACES[:-1], FACES[-1][::-1]],
-            "faces must be oriented alike.* twice in one sense",
+            "faces must have one orientation.* twice in one direction",
         ),
-        (VERTICES, [*FACES, FACES[0]], "twice in one sense"),
+        (VERTICES, [*FACES, FACES[0]], "twice in one direction"),
         (VERTICES, [*FACES, (0, 0, 1)], r"faces must not be degenerate, got face 12 \[0, 0, 1\]"),
         (VERTICES, [*FACES, (0, 1, 8)], "faces must be numbers of vertices from 0 to 7, got 8"),
         (VERTICES, [*FACES, (0, 1, -1)], "faces must be numbers of vertices from 0 to 7, got -1"),

@@ -209,7 +209,9 @@ def _mass(shape: Shape | None, mass, density) -> float:
         )
     if density is None:
         if isinstance(mass, (float, np.floating)) and mass == np.inf:
-            raise ValueError("mass must be finite, got inf; what never moves is made by add_static")
+            raise ValueError(
+                "mass must be finite, got inf; for a body that never moves use add_static"
+            )
         return checks.mass("mass", mass)
     density = checks.number("density", density, above=0, unit="kg/m^3")
     if shape is None:

@@ -58,7 +58,7 @@ def make_contact(
     for part in (body, other):
         if isinstance(part, Body):
             if part.shape is None:
-                raise ValueError(f"body must have a shape to touch with, got {part!r}")
+                raise ValueError(f"body must have a shape for contact, got {part!r}")
             _ = part.shape.pieces  # refused by a shape that has nothing to touch with
     contact = Contact(index=index, name=name, body=body, other=other, **asdict(law))
     check_gap(contact)
@@ -83,8 +83,8 @@ def check_overlap(what: str, body: Body, other: HalfSpace | StaticBody | Body) -
     if not depth <= 0.0:
         raise ValueError(
             f"{what}: position {body.position} puts {body.name!r} "
-            f"{depth:.6g} m deep into {other.name!r}, allowed is a gap of at least 0; move the body "
-            f"by at least that along the normal {normal}"
+            f"{depth:.6g} m deep into {other.name!r}, but the gap must be at least 0; move the body by at "
+            f"least this depth along the normal {normal}"
         )
 
 

@@ -11,7 +11,7 @@ def check_location(scene, impact_location: str) -> None:
         return
     if scene.stops:
         raise ValueError(
-            f'impact_location must be "locate" where joints have stops, got {impact_location!r}'
+            f'impact_location must be "locate" if joints have stops, got {impact_location!r}'
         )
     between = any(not isinstance(c.other, HalfSpace) for c in scene.contacts)
     touching = [c.body for c in scene.contacts]
@@ -25,4 +25,4 @@ def check_location(scene, impact_location: str) -> None:
             if curved
             else "bodies may touch each other"
         )
-        raise ValueError(f'impact_location must be "locate" where {why}, got {impact_location!r}')
+        raise ValueError(f'impact_location must be "locate" if {why}, got {impact_location!r}')

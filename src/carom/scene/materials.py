@@ -149,8 +149,8 @@ def law_of(first, second, given: Mapping, default: ContactLaw | None, rules: Map
     elif (one is not None or two is not None) and not {"restitution", "friction"} <= set(given):
         has, lacks = (first, second) if one is not None else (second, first)
         raise ValueError(
-            f"material must be given for both of a pair or none: {has.name!r} has {has.material!r}, "
-            f"{lacks.name!r} has none; give it one, or restitution and friction of this pair to add_contact"
+            f"material must be given for both bodies of a pair or for none: {has.name!r} has {has.material!r}, "
+            f"{lacks.name!r} has none; give it a material, or pass restitution and friction to add_contact"
         )
     return ContactLaw(**{**base, **given})
 
@@ -165,8 +165,8 @@ def _combined(name: str, first, second, rules: Mapping) -> float:
     if values[0] == values[1]:
         return values[0]
     raise ValueError(
-        f"combine must say how two materials make one {name}: {first.name!r} has {values[0]:g}, "
-        f"{second.name!r} has {values[1]:g}; choose a rule, "
+        f"combine must be given, the rule for {name} of two materials: {first.name!r} has {values[0]:g}, "
+        f"{second.name!r} has {values[1]:g}; choose a rule with "
         f'set_contact_default(combine="average") or {", ".join(r for r in RULES if r != "average")}, '
-        f"or give {name} of this pair to add_contact"
+        f"or pass {name} of this pair to add_contact"
     )

@@ -34,7 +34,7 @@ class Registry:
         checks.text("name", name)
         if name in self._parts:
             raise ValueError(
-                f"name must be unique in the scene, got {checks.shown(name)} once more"
+                f"name must be unique in the scene, got {checks.shown(name)} a second time"
             )
         return name
 

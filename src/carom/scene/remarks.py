@@ -39,9 +39,9 @@ def _of_untouched(scene: Scene) -> list[str]:
     if not free:
         return []
     bare = [b for b in free if b.shape is None]
-    why = f", {_names(bare)} for want of a shape" if bare and scene.contact_default else ""
+    why = f" ({_names(bare)} without a shape)" if bare and scene.contact_default else ""
     return [
-        f"Nothing can touch {_names(free)}{why}: what is in the way is passed through. Add contacts with "
+        f"Nothing can touch {_names(free)}{why}: no contacts are computed for them. Add contacts with "
         "add_contact, or let all pairs touch with set_contact_default."
     ]
 
@@ -70,8 +70,8 @@ def _of_unsaid(scene: Scene) -> list[str]:
     if not what:
         return []
     return [
-        f"Of {' and '.join(what)} neither restitution nor friction is stated: taken are 0.5 and 0. State them, "
-        "as in restitution=0.5, friction=0.3."
+        f"Restitution and friction are not given for {' and '.join(what)}: the defaults 0.5 and 0 are used. "
+        "Give them, for example restitution=0.5, friction=0.3."
     ]
 
 

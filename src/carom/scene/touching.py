@@ -220,7 +220,7 @@ class TouchingPairs:
             first, second = second, first
         if isinstance(first, FIXED):
             raise ValueError(
-                f"one of body and other must be a body that moves, got {second.name!r} and {first.name!r}"
+                f"body or other must be a body that moves, got {second.name!r} and {first.name!r}"
             )
         return first, second
 

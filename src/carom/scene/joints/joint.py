@@ -39,7 +39,7 @@ class Joint:
     frames: tuple[tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]] | None = None
 
     def anchor(self) -> np.ndarray:
-        """Return the anchor (3,) of the definition; if it has none, the anchor in the child or the frame."""
+        """Return the anchor (3,): of the definition, or the child's mass centre, or the origin of the frame."""
         own = getattr(self.definition, "anchor", None)
         if own is not None:
             return own

@@ -74,7 +74,7 @@ class Compound(Shape):
         else:
             if masses is not None:
                 raise ValueError(
-                    f"masses must be left out where centroid is given, got {checks.shown(masses)}"
+                    f"masses must be left out if centroid is given, got {checks.shown(masses)}"
                 )
             middle, spread = point("centroid", centroid), None
         arms = positions - middle
@@ -106,7 +106,8 @@ class Compound(Shape):
         """
         if self._spread is None:
             raise ValueError(
-                f"inertia must be given with {self!r} whose centroid was given: how its mass lies is not known"
+                f"inertia must be given with {self!r}, whose centroid was given: its mass distribution is "
+                "unknown"
             )
         return checks.mass("mass", mass, zero=True) * self._spread
 

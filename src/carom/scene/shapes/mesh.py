@@ -141,19 +141,19 @@ def _checked_faces(faces, points: np.ndarray) -> np.ndarray:
 
 
 def _check_closed(triangles: np.ndarray) -> None:
-    """Refuse a surface in which an edge is not passed once in each sense."""
+    """Refuse a surface in which an edge is not used once in each direction."""
     edges = Counter((int(t[k]), int(t[(k + 1) % 3])) for t in triangles for k in range(3))
     twice = [edge for edge, count in edges.items() if count > 1]
     if twice:
         raise ValueError(
-            "faces must be oriented alike, each edge passed once in each sense, got edge "
-            f"{twice[0]} passed twice in one sense ({len(twice)} such edges)"
+            "faces must have one orientation, with each edge used once in each direction, got edge "
+            f"{twice[0]} used twice in one direction ({len(twice)} such edges)"
         )
     open_edges = [(i, j) for i, j in edges if (j, i) not in edges]
     if open_edges:
         raise ValueError(
             f"faces must form a closed surface, got edge {open_edges[0]} with a face on one side only "
-            f"({len(open_edges)} such edges); fill the holes, and merge vertices that have one place"
+            f"({len(open_edges)} such edges); fill the holes, and merge vertices at the same position"
         )
 
 
