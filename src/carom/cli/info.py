@@ -1,4 +1,4 @@
-"""``carom info``: what a result file holds."""
+"""``carom info``: print a summary of a result file."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ def run(
         Path,
         typer.Argument(
             metavar="FILE", exists=True, show_default=False,
-            help="A result of 'carom simulate' or Solution.save.",
+            help="Result file of 'carom simulate' or Solution.save.",
         ),
     ],
     scene: Annotated[
-        bool, typer.Option("--scene", help="Print the scene as JSON, which 'carom simulate' reads.")
+        bool, typer.Option("--scene", help="Print the scene as JSON; 'carom simulate' can read it.")
     ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print everything as JSON.")] = False,
 ) -> int:  # fmt: skip
-    """Say what a result file holds.
+    """Print a summary of a result file.
 
-    The scene and its bodies, how the run went and ended, impacts and contact that stays, where the
-    energy went, which carom wrote it, and what to cite.
+    The summary has the scene and its bodies, the settings and the end of the run, impacts and persistent
+    contacts, the energy balance, the version of carom that wrote the file, and the references to cite.
 
     For example:
       carom info die.h5

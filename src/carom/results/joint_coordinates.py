@@ -1,4 +1,4 @@
-"""Coordinates of joints, from a finished run: what a joint leaves free, measured from parent to child."""
+"""Coordinates of joints from a finished run: the motion of the child relative to the parent."""
 
 from __future__ import annotations
 

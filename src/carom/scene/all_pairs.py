@@ -21,13 +21,13 @@ MOST_AT_ONCE = 1 << 20  # balls whose distances are looked at in one go
 class PairTable(NamedTuple):
     """Table of C pairs that may touch: each a body, and a half-space, static body or another body."""
 
-    body: np.ndarray  #: (C,) its index
-    other: np.ndarray  #: (C,) index of the other body, -1 for what never moves
+    body: np.ndarray  #: (C,) index of the body
+    other: np.ndarray  #: (C,) index of the other body, -1 for a half-space or static body
     plane: (
         np.ndarray
-    )  #: (C,) place in `Scene.fixed` of the half-space or static body, -1 for a body
-    law: np.ndarray  #: (C,) place in `laws`
-    laws: list[ContactLaw]  #: each law once
+    )  #: (C,) index in `Scene.fixed` of the half-space or static body, -1 for a body
+    law: np.ndarray  #: (C,) index in `laws`
+    laws: list[ContactLaw]  #: the different laws
 
 
 class Defaults(NamedTuple):
