@@ -142,8 +142,8 @@ def _print(found: dict[str, Any]) -> None:
             ("time", f"0 to {found['reached']:g} s in {found['saved_steps']} saved steps"),
             ("settings", given), ("counts", counted), ("scene", found["summary"]),
             ("impacts", f"{impacts['count']}{span}"),
-            ("held contact", f"{held['intervals']} intervals, {held['points_at_end']} points at the end, "
-                             f"greatest residual {held['greatest_residual']:.1e} m/s"),
+            ("persistent contact", f"{held['intervals']} intervals, {held['points_at_end']} points at the end, "
+                                   f"greatest residual {held['greatest_residual']:.1e} m/s"),
             ("cite", f"{found['source']}, and its method: {found['citation']}"),
         ],
         left=2,
@@ -152,9 +152,9 @@ def _print(found: dict[str, Any]) -> None:
     show.table(
         ["energy / J", ""],
         [
-            ("at the start", f"{energy['start']:.6g}"), ("of loads", f"{energy['loads']:.6g}"),
-            ("of impacts", f"{energy['impacts']:.6g}"), ("of held friction", f"{energy['friction']:.6g}"),
-            ("of held bounces", f"{energy['bounces']:.6g}"),
+            ("at the start", f"{energy['start']:.6g}"), ("loads", f"{energy['loads']:.6g}"),
+            ("impacts", f"{energy['impacts']:.6g}"), ("friction", f"{energy['friction']:.6g}"),
+            ("dropped bounces", f"{energy['bounces']:.6g}"),
             ("at the end", f"{energy['kinetic'] + energy['potential']:.6g}"),
             ("greatest residual", f"{energy['greatest_residual']:.1e}"),
         ],

@@ -70,9 +70,7 @@ class CoordinateImpactTable:
 
     def __getitem__(self, k: int) -> CoordinateImpact:
         if not -len(self) <= k < len(self):
-            raise IndexError(
-                f"there is no impact {k}: the table has {len(self)}, and the first is impact 0"
-            )
+            raise IndexError(f"there is no impact {k}: the table has {len(self)}, numbered from 0")
         row = (getattr(self, name)[k] for name in CoordinateImpact._fields)
         return CoordinateImpact(
             *(one.item() if isinstance(one, np.generic) else one for one in row)

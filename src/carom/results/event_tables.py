@@ -104,9 +104,7 @@ class ImpactTable:
 
     def __getitem__(self, k: int) -> ImpactRecord:
         if not -len(self) <= k < len(self):
-            raise IndexError(
-                f"there is no impact {k}: the table has {len(self)}, and the first is impact 0"
-            )
+            raise IndexError(f"there is no impact {k}: the table has {len(self)}, numbered from 0")
         return ImpactRecord(*(_plain(getattr(self, name)[k]) for name in ImpactRecord._fields))
 
     def __iter__(self) -> Iterator[ImpactRecord]:

@@ -1,8 +1,8 @@
-"""A run that is made once and started many times, each time as if it were new.
+"""A run that is set up once and started many times, each time like a new run.
 
-Setting up a run costs as much as hundreds of its steps: the scene is compiled, arrays are made, compiled
-code is looked up. All that a run writes to is put back instead to what it was before the first step, so that
-no run can know what ran before it.
+To set up a run takes as long as hundreds of its steps: the scene is compiled, arrays are made, compiled code is
+looked up. Instead, all data that a run changes are reset to their values before the first step, so that no run
+depends on the runs before it.
 """
 
 from __future__ import annotations
@@ -35,12 +35,12 @@ class Again:
             self.remember()
 
     def start(self, values: dict[str, np.ndarray]) -> Run:
-        """Return a run that is to begin with these values, one of each name.
+        """Return the run, ready to start with these values, one for each name.
 
         Raises
         ------
         ValueError
-            If bodies start inside each other, or the start breaks a joint.
+            If bodies penetrate each other at the start, or the start violates a joint.
         """
         if not self.light:
             return Run(changed(self.scene, self.targets, values), self.settings)
@@ -93,16 +93,16 @@ class Again:
                     contacts.friction_held[rows] = value
 
     def remember(self) -> None:
-        """Keep what all arrays hold before the first step, as bytes: records are slow to copy by fields."""
+        """Store the contents of all arrays before the first step, as bytes, because these are copied fast."""
         flat = [array.reshape(-1).view(np.uint8) for array in arrays_of(self.parts())]
         self.kept = [(there, there.copy()) for there in flat]
         self.known = self.parts()
 
     def parts(self) -> tuple:
-        """Return all that a step of a run goes on from.
+        """Return all data on which the next step of a run depends.
 
-        Not its records, which are written anew from the top, nor the workspace of impacts, groups and crowds,
-        which a step writes before it reads it: where that has grown it stays so.
+        These are not the records, which are overwritten from the beginning, and not the workspace of impacts,
+        groups and crowds, which a step writes before it reads it; that keeps the size to which it has grown.
         """
         run = self.run
         return run.now, run.active, run.work, run.islands, run.clock, run.compiled.system, run.watch
