@@ -1,4 +1,4 @@
-"""Derivatives of a run piece by piece, by differences: for joints, forces and contacts that are held.
+"""Derivatives of a run piece by piece, by differences: for joints, forces and persistent contacts.
 
 From a step k to a later one the state goes by a map z_j = F(z_k, parameters). With the tangents X_k and the
 changes D that a unit of each parameter makes,
@@ -48,17 +48,19 @@ def differentiate(solution: Solution, parameters: Parameters) -> Sensitivities:
     if isinstance(given.get("save_at"), tuple):
         raise ValueError("solution must be of a run with steps of one length, got times in save_at")
     if solution.stats["whole_steps"]:
-        raise ValueError("solution must be without crowds, got a run that has taken steps whole")
+        raise ValueError(
+            "solution must be without crowds, got a run with time-stepping (Moreau) steps of crowds"
+        )
     if np.any(parameters.inertia):
         raise ValueError(
-            "with_respect_to must not name the inertia of a body where derivatives are found by differences"
+            "with_respect_to must not have the inertia of a body if derivatives are found by differences"
         )
     contacts = run.compiled.system.contacts
     for name in ("friction", "restitution"):
         touched = np.any(getattr(parameters, name)[contacts.number] != 0.0, axis=1)
         if np.any(touched & (contacts[name] == 0.0)):
             raise ValueError(
-                f"{name} must be above 0 to be differentiated by: at 0 there are no neighbours on both sides"
+                f"{name} must be above 0 to differentiate by it: differences need values on both sides"
             )
     return Pieces(solution, parameters).result()
 
@@ -164,7 +166,7 @@ class Pieces:
                     p,
                     first,
                     last,
-                    "differences do not settle: an impact or a mode is about to change",
+                    "differences do not converge: an impact or a contact mode is about to change",
                 )
                 continue
             self.X[first + 1 : last + 1, :, :, p] = (4.0 * X2 - X1) / 3.0
@@ -209,8 +211,8 @@ class Pieces:
         run = self.near
         if len(run.pairs.body) != len(self.base.pairs.body):
             raise ValueError(
-                "solution must be of a run whose neighbours have no contacts that it has not, got one where "
-                "further bodies come near each other"
+                "solution must be of a run whose contacts are also those of neighbouring runs, got one where "
+                "other bodies come near each other there"
             )
         restore(run, start, self.base.records)
         for array, kept in self.fresh:  # what it remembers of poses holds for other numbers
@@ -259,7 +261,7 @@ class Pieces:
         self.alive[p] = False
         t = self.base.records.series.t
         self.notes.append(
-            f"by {self.labels[p]} there is none from t = {t[first]:.6g} .. {t[last]:.6g} s on: {why}"
+            f"the derivative by {self.labels[p]} ends at t = {t[first]:.6g} .. {t[last]:.6g} s: {why}"
         )
 
 

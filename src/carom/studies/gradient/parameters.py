@@ -1,4 +1,4 @@
-"""The parameters of a derivative: their names, and what each of them changes at the start."""
+"""The parameters of a derivative: their names, and the changes of the start that each of them makes."""
 
 from __future__ import annotations
 
@@ -60,13 +60,13 @@ def make_parameters(scene, names, contacts: int, to_principal: np.ndarray) -> Pa
         names = (names,)
     names = tuple(checks.listed("with_respect_to", names, "names"))
     if not names:
-        raise ValueError("with_respect_to must name at least one parameter, got none")
+        raise ValueError("with_respect_to must have at least one parameter, got none")
     parts = [_parts(scene, name) for name in names]
     labels, columns = [], {}
     for name, (_, _, components) in zip(names, parts):
         if name in columns:
             raise ValueError(
-                f"with_respect_to must name each parameter once, got {checks.shown(name)} twice"
+                f"with_respect_to must have each parameter once, got {checks.shown(name)} twice"
             )
         at = len(labels)
         labels += [f"{name}.{c}" for c in components] or [name]
@@ -100,7 +100,7 @@ def _parts(scene, name: str):
         checks.choice(f"what follows {part!r} in with_respect_to", field, OF_CONTACT)
         return found, field, ()
     raise ValueError(
-        "with_respect_to must name fields of bodies or contacts, as in 'die.velocity', "
+        "with_respect_to must have fields of bodies or contacts, as in 'die.velocity', "
         f"'die-ground.friction', or one of {', '.join(OF_SCENE)}, got {checks.shown(name)}"
     )
 

@@ -89,7 +89,7 @@ class Steps:
         if not np.all(off <= 1e-6 * np.max(np.diff(self.t))):
             worst = int(np.argmax(off))
             raise ValueError(
-                "t must be the end of a step where derivatives are found by differences, got "
+                "t must be the end of a step if derivatives are found by differences, got "
                 f"{times[worst]:.9g}; the nearest is {self.t[k[worst]]:.9g} s"
             )
         return self.X[k]

@@ -22,10 +22,10 @@ SAME = 1e-8  # how far the impact of the record may be from the one that is diff
 TIED = 1e-9  # changes by which tied points part that are round-off, relative
 SURE = 1e-5  # error up to which the derivative of an impact counts
 WHY = {
-    "held": "is held from then on",
-    "slips": "goes from stick to slip in a held contact",
-    "sticks": "goes from slip to stick in a held contact",
-    "opens": "leaves a held contact",
+    "held": "begins a persistent contact",
+    "slips": "changes from stick to slip in a persistent contact",
+    "sticks": "changes from slip to stick in a persistent contact",
+    "opens": "ends a persistent contact",
     "jams": "jams",
 }
 
@@ -49,7 +49,7 @@ class Walk:
         self.vectors = [np.full((K, 3, P), np.nan) for _ in range(4)]
         if solution.stats["whole_steps"]:
             for b in range(len(self.bodies)):
-                self.lose(b, 0.0, "has taken steps as a part of a crowd", stays_free=False)
+                self.lose(b, 0.0, "took time-stepping (Moreau) steps in a crowd", stays_free=False)
         for step in steps_of(solution):
             self.pass_event(step)
         end = float(solution.t[-1])
@@ -116,7 +116,7 @@ class Walk:
         for shot in step.shots:
             b = int(shot.body)
             if not struck:
-                why = WHY.get(step.kind, "takes part in an impact that is not of one point")
+                why = WHY.get(step.kind, "takes part in an impact with several points")
                 self.lose(b, time, why, stays_free=step.kind == "impact")
             self.bodies[b] = replace(self.bodies[b], v=shot.v1.copy(), w=shot.w1.copy())
             self.knots[b].append(self.bodies[b])
@@ -151,12 +151,12 @@ class Walk:
         hit = blow(W, u, float(row.friction), float(row.restitution), int(row.law))
         if hit is None or not _same(hit.impulse, step.row.impulse):
             for b in which:
-                self.lose(b, time, "was struck otherwise than the law of the contact says")
+                self.lose(b, time, "has an impact that does not follow the law of the contact")
             return True
         if hit.kink or not hit.error <= SURE:
-            why = hit.kink or f"its derivative was found to {hit.error:.1g} only"
+            why = hit.kink or f"the error of the derivative is {hit.error:.1g}"
             for b in which:
-                self.lose(b, time, f"strikes where there is no derivative ({why})")
+                self.lose(b, time, f"has an impact without a derivative ({why})")
             return True
         p, number = self.parameters, int(row.number)
         done = strike(place, bodies, hit, p.friction[number], p.restitution[number])
@@ -168,7 +168,7 @@ class Walk:
         for b, body in zip(which, done.bodies):
             self.bodies[b] = body
         for b in which:
-            self.lose(b, time, "strikes with several points, which part", parted)
+            self.lose(b, time, "strikes with several points, which do not stay together", parted)
         for a in (self.times, *self.vectors):
             a[step.impact][..., parted] = np.nan
         return True

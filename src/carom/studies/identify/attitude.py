@@ -52,8 +52,9 @@ def fit_attitude(t, q, inertia=None) -> Turn:
         before = length
     else:
         raise RuntimeError(
-            f"orientation is not that of a free body: the fit of the attitude did not converge in {ITERATIONS} "
-            f"iterations, the last one turned it by {length:.3g} rad; give samples of free flight only"
+            "orientation is not that of a free body: the fit of the attitude did not converge in "
+            f"{ITERATIONS} iterations (change in the last one: {length:.3g} rad); give only samples of free "
+            "flight"
         )
     here = residuals()[0].reshape(-1, 3)
     noise = float(np.sqrt(np.sum(here**2) / (here.size - 6)))
