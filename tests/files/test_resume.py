@@ -183,7 +183,7 @@ def test_no_checkpoint(tmp_path):
     path = tmp_path / "run.nc"
     part = carom.simulate(die(), 0.2, step=5e-3, progress=stopped_at(0.5), throw=False)
     part.save(path)
-    with pytest.raises(ValueError, match=r"run\.nc': it holds no checkpoint"):
+    with pytest.raises(ValueError, match=r"run\.nc': it has no checkpoint"):
         carom.resume(path)
 
 

@@ -54,7 +54,7 @@ def test_sources(tmp_path):
             ValueError,
             "mass and inertia",
         ),
-        ("<mujoco/>", ValueError, "something that moves"),
+        ("<mujoco/>", ValueError, "a body that moves"),
         (3, TypeError, "source must be a path"),
     ],
 )
@@ -88,7 +88,7 @@ def test_urdf():
     assert model.scene["virtual"].mass == pytest.approx(4e-9)
     said = str(model.report)
     assert "'package://r/arm.stl' was not found; left out" in said
-    assert "link 'arm': its inertia is that of no body" in said
+    assert "link 'arm': its inertia is impossible for a rigid body" in said
     assert "link 'virtual': moves and has no mass" in said
     assert model.scene["elbow:upper"].upper == 1.0
     floats = carom.load_model(URDF, free_root=True)

@@ -1,4 +1,4 @@
-"""Taking a run to its end: in parts, to report and to save; Ctrl-C stops it."""
+"""Running a simulation to its end, in parts between which progress is shown and files are saved."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ LOOKS = 4  # parts in the time between two savings, about
 
 
 def finish(run, progress, keeper: Keeper | None, throw: bool):
-    """Take a run to its end and return its solution; `throw` raises that of a run that failed."""
+    """Run to the end and return the solution; with `throw` a run that failed raises `SimulationError`."""
     total = run.steps
     report = reporter(progress, total, "step")
     status = Status.SUCCESS
@@ -45,7 +45,7 @@ def finish(run, progress, keeper: Keeper | None, throw: bool):
     solution = run.solution(status)
     lost = None if keeper is None else keeper.finish(solution)
     if lost is not None:
-        what = f"The run ended and could not be saved: {lost}"
+        what = f"The run ended, but its result could not be saved: {lost}"
         if throw and solution.success:
             raise SimulationError(what, solution) from lost
         warnings.warn(what, RuntimeWarning, stacklevel=CALLER)

@@ -13,7 +13,7 @@ JSON stands for itself, a list for an array of floats; all else is an object wit
 ``tuple``       a tuple
 ``number``      nan, inf or -inf
 ``polynomial``  a `scipy.interpolate.PPoly`
-``function``    a function of the user's: only its name
+``function``    a user-defined function: only its name
 =============== ==================================================================
 """
 
@@ -49,7 +49,7 @@ ARRAYS = ("<f8", "<i8", ">f8", ">i8", "|b1")
 
 
 class MissingFunction:
-    """Stands for a function of the user's that a file could not hold; calling it is an error."""
+    """Placeholder of a user-defined function, which a file cannot contain; calling it is an error."""
 
     def __init__(self, name: str, was: str):
         self.name, self.was = name, was
@@ -57,7 +57,7 @@ class MissingFunction:
     def __call__(self, *arguments):
         """Say that it is missing."""
         raise RuntimeError(
-            f"the function {self.name!r} ({self.was}) is not in the file, which holds data alone; give it: "
+            f"the function {self.name!r} ({self.was}) is not in the file, which has only data; give it: "
             f"functions={{{self.name!r}: ...}}"
         )
 

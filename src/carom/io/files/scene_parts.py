@@ -14,8 +14,8 @@ from carom.scene.scene import Scene
 
 #: what a missing function means, in the words of the file
 NOTE = (
-    "functions of the user's are not in the file: a scene read from it has placeholders there, which raise "
-    "an error when they are called"
+    "user-defined functions are not in the file: a scene read from it has placeholders, which raise an error "
+    "when they are called"
 )
 
 

@@ -97,7 +97,7 @@ def _motion(solution) -> list[Variable]:
         *ledger,
         Variable(
             "held_residual", series, solution.held_residual, "m s-1",
-            "how far held contacts are from their law, greatest since the saved time before",
+            "largest residual of the contact law in persistent contacts since the previous saved time",
         ),
     ]  # fmt: skip
 
@@ -130,7 +130,7 @@ def _contacts(solution) -> list[Variable]:
         ),
         Variable(
             "contact_force", ("time", "contact", "contact_axis"), solution.contact_force, "N",
-            "force of held contacts on the body",
+            "force of persistent contacts on the body",
         ),
     ]  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""Writing a run to its file: all of it, or nothing.
+"""Writing a run to its file: completely, or not at all.
 
 The HDF5 library makes its part in memory; the bytes are written without it. (It does not survive a full disk:
 version 2.0 ends the process.)
@@ -48,7 +48,7 @@ def write(path: Path, solution, checkpoint: Checkpoint | None = None, whole: boo
         parts = file_of(solution, checkpoint, whole)
     except (OSError, MemoryError) as error:
         why = str(error) or "no memory is left"
-        raise OSError(f"{str(path)!r} could not be written, and is as it was: {why}") from error
+        raise OSError(f"{str(path)!r} could not be written and is unchanged: {why}") from error
     put(path, parts)
 
 

@@ -94,7 +94,7 @@ def without_overlaps(build: Build, pairs: dict[Pair, Friction], strict: bool) ->
         text = f"{body.name!r} starts {depth:.3g} m inside {other.name!r}"
         if strict:
             raise ValueError(
-                f'{text}; start elsewhere (keyframe, qpos), or let overlaps="repair" take such contacts out'
+                f'{text}; start elsewhere (keyframe, qpos), or use overlaps="repair" to leave it out'
             )
         build.report.add(f"pair {body.name!r}, {other.name!r}", text, "the two do not touch")
     return kept
