@@ -1,4 +1,4 @@
-"""What is drawn on bodies beside their surfaces: colours, pips of dice, pins of joints."""
+"""Details of drawn bodies: colours, pips of dice, pins of joints."""
 
 from __future__ import annotations
 

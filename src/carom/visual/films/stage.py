@@ -219,21 +219,25 @@ def still(
     zoom=1.0,
     clock=True,
 ) -> np.ndarray:
-    """Draw one picture of a motion, as a film would show it; with impulses of the last hundredth of the run.
+    """Draw one picture of a motion, as in a film.
+
+    Impulses of impacts are shown for a hundredth of the duration of the run.
 
     Parameters
     ----------
     solution : Solution
+        The run.
     t : float, optional
         Time within the run [s]. Default: its end.
     size, view, follow, zoom
         As for `carom.film`.
     clock : bool
-        Whether to write the time into a corner. Default True.
+        True (default): write the time in a corner.
 
     Returns
     -------
     ndarray, shape (height, width, 3), uint8
+        Red, green and blue of each pixel.
     """
     need_bodies(solution, "still")
     last = float(solution.t[-1])

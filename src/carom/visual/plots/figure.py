@@ -1,4 +1,4 @@
-"""What the plots share: new figures, the axes that are given, bodies and contacts by name, their colours."""
+"""Common functions of the plots: figures, given axes, bodies and contacts by name, colours."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ def drawing_mosaic(rows, size, heights) -> Iterator[Any]:
 
 
 def pyplot() -> Any:
-    """Return matplotlib.pyplot, or say how to get it."""
+    """Return matplotlib.pyplot, or raise an error with the command that installs it."""
     try:
         import matplotlib.pyplot as plt
     except ImportError:

@@ -79,9 +79,9 @@ class LivePanel:
         ]
         inside = inside_of(self.show.solution, int(self.show.strikes.number[k]))
         if inside is None:
-            said.append(f"Resolved with others, {record.together} points: no course of its own.")
+            said.append(f"Part of a multiple impact with {record.together} points.")
             if not record.located:
-                said.append("Its time is the end of a step in which a crowd was taken whole.")
+                said.append("Its time is the end of a time-stepping (Moreau) step.")
         else:
             said.append(", ".join((*inside.phases, f"{inside.time[-1]:.3g} s in its layer")))
             friction = np.linalg.norm(inside.force[:, 1:], axis=1)

@@ -1,4 +1,4 @@
-"""All that a viewer shows of a run, whichever viewer it is."""
+"""The contents of a viewer, common to the live view and the page."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class Show(NamedTuple):
             words.append(f"the {len(self.strikes.number)} strongest of {impacts} impacts")
         if len(self.held.point) < len(solution.forces.point):
             words.append(
-                f"{len(self.held.point)} of {len(solution.forces.point)} forces of held contacts"
+                f"{len(self.held.point)} of {len(solution.forces.point)} forces of persistent contacts"
             )
         return words
 
@@ -81,12 +81,12 @@ def solution_of(what) -> Solution:
     """Return the solution that is to be shown, loaded if it is in a file."""
     if isinstance(what, GeneralizedSolution):
         raise TypeError(
-            "solution must be of a Scene to be shown, got one of a GeneralizedSystem: its coordinates do "
-            "not say where bodies are; plot them, or state the system as a Scene"
+            "solution must be of a Scene, got one of a GeneralizedSystem: its coordinates do not give the "
+            "positions of bodies; use carom.plots, or describe the system as a Scene"
         )
     if isinstance(what, (str, os.PathLike)):
         return Solution.load(checks.path("solution", what))
-    checks.instance("solution", what, (Solution,), "; a path to the file of one is allowed too")
+    checks.instance("solution", what, (Solution,), "; the path of its file is also allowed")
     return what
 
 
