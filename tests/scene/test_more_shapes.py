@@ -195,9 +195,7 @@ def test_mesh_without_parts_cannot_touch_and_says_how():
     scene = Scene()
     body = scene.add_body(Mesh(vertices, faces), density=1, position=(0, 0, 5))
     ground = scene.add_half_space((0, 0, 0), (0, 0, 1))
-    with pytest.raises(
-        ValueError, match=r"is not convex and has no parts to touch with; give them"
-    ):
+    with pytest.raises(ValueError, match=r"is not convex and has no parts for contact; give them"):
         scene.add_contact(body, ground)
 
 
