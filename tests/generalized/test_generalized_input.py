@@ -20,7 +20,7 @@ def build(**changes):
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [
-        (dict(kinetic_energy=DX**2), "kinetic_energy or metric, and not both"),
+        (dict(kinetic_energy=DX**2), "kinetic_energy or metric must be given, and not both"),
         (dict(metric=None, kinetic_energy=DX**2 + DY), "quadratic form"),
         (dict(metric=None, kinetic_energy=DX**2 + 1), "quadratic form"),
         (dict(metric=sp.eye(3)), r"shape \(2, 2\)"),

@@ -121,11 +121,11 @@ def test_margins_are_differentiated():
 
 def test_what_sticks_says_how_much_friction_is_left():
     found = carom.sensitivities(throw(mu=1.2), NAMES)
-    left = [m for m in found.margins if "friction beyond" in m.what or "impulse after" in m.what]
+    left = [m for m in found.margins if "friction above" in m.what or "impulse after" in m.what]
     k = found.columns["die-ground.friction"]
     assert left
     for m in left:
-        if "friction beyond" in m.what and m.impact == 0:
+        if "friction above" in m.what and m.impact == 0:
             assert m.gradient[k] == pytest.approx(1.0, abs=1e-9)
         assert m.value > 0.0
 

@@ -46,7 +46,7 @@ def test_sources(tmp_path):
     ("source", "error", "message"),
     [
         ("no/such.xml", FileNotFoundError, "no model file 'no/such.xml'"),
-        ("<mujoco><worldbody>", ValueError, "no XML that can be read"),
+        ("<mujoco><worldbody>", ValueError, "not valid XML"),
         ("<sdf/>", ValueError, "root <sdf>"),
         ("<mujoco colour='red'/>", ValueError, "unrecognized attribute: 'colour'"),
         (
@@ -174,4 +174,4 @@ def test_flags_of_the_model():
     assert not np.any(model.scene.gravity)
     assert model.scene.contact_default is None
     assert not model.scene.half_spaces
-    assert "switches off limits of joints; they are there" in str(model.report)
+    assert "switches off limits of joints; the scene has them" in str(model.report)

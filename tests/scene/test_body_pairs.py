@@ -154,7 +154,7 @@ def test_all_pairs_with_materials_that_no_rule_combines():
     for k, e in enumerate((0.1, 0.2)):
         place = (9 + 3 * k, 0, 5)
         scene.add_body(Sphere(1), mass=1, position=place, material=Material(e, 0), name=f"m{k}")
-    with pytest.raises(ValueError, match=r"material must be given for both|combine must say"):
+    with pytest.raises(ValueError, match=r"material must be given for both|combine must be given"):
         scene.validate()
 
 

@@ -72,12 +72,12 @@ def touching_pairs(build: Build, solids: list[Solid], rules: Filter) -> dict[Pai
         pair = _ordered(first.part, second.part)
         called = f"pair {pair[0].name!r}, {pair[1].name!r}"
         if touch.some:
-            build.report.add(called, "only some of their geoms touch", "all of them do")
+            build.report.add(called, "only some of their geoms touch", "all of them touch")
         if touch.differ:
             build.report.add(
                 called,
                 "friction differs from geom to geom",
-                f"the greatest is that of all, {touch.friction.sliding:g}",
+                f"the greatest is used for all, {touch.friction.sliding:g}",
             )
         pairs[pair] = touch.friction
     return pairs

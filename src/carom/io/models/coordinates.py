@@ -61,7 +61,7 @@ def _stops(build: Build, j: int, c: Coordinate, restitution: float, law: str) ->
             build.report.add(
                 called,
                 f"starts beyond its {word} limit, by {side * end:.3g}",
-                "the limit is where it starts",
+                "the limit is moved to the start",
             )
             end = 0.0
         which = "lower" if side * c.sign > 0.0 else "upper"
@@ -82,7 +82,7 @@ def _armature(build: Build, j: int, c: Coordinate, represent: bool) -> None:
         return
     name, called = _called(build, j)
     if not represent:
-        build.report.add(called, f"armature {inertia:g}", "left out, as armature=False asks for")
+        build.report.add(called, f"armature {inertia:g}", "left out because of armature=False")
         return
     rotor = forces.JointInertia(c.joint, inertia, c.index)
     build.scene.add_force(rotor, name=build.names.new(f"{name}:armature", "force"))

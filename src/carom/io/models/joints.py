@@ -124,7 +124,7 @@ def _light_link(build: Build, link: Link, last: int, later: list[int]) -> Body:
     motion = point_velocity(model, data, link.body, centre, without=dofs)
     build.report.add(
         f"joint {joint!r}",
-        "is followed by another one in the same body, and there are no massless bodies",
+        "is followed by another joint in the same body, and a scene has no massless bodies",
         f"a link of {build.light:g} of the body's mass and inertia is between the two",
     )
     return build.scene.add_body(

@@ -38,7 +38,7 @@ def lift_out(build: Build, links: list[Link], covers: Covers, standing: list[Sol
             data.qpos[first : first + 3] += depth * (1.0 + 1e-9) * normal
             place(model, data)
         if np.any(way):
-            text = f"starts {np.linalg.norm(way):.3g} m inside what stands"
+            text = f"starts {np.linalg.norm(way):.3g} m inside fixed parts"
             build.report.add(f"body {root.name!r}", text, f"moved by {way.round(9).tolist()} m")
 
 
