@@ -317,7 +317,7 @@ def test_a_body_in_what_it_touches_is_said():
     scene.add_contact(low, floor, friction=0)
     scene.add_contact(high, low, friction=0)
     size = 0.1 * np.sqrt(3.0)
-    for body, words in ((0, "Body 'low' is in 'floor'"), (1, "Body 'high' is in 'low'")):
+    for body, words in ((0, "Body 'low' penetrates 'floor'"), (1, "Body 'high' penetrates 'low'")):
         run = carom.simulate(scene, 0.1, step=0.01)._run
         assert sentences(run.watch[0], scene) == ()
         for depth, status in ((1e-6, Status.SUCCESS), (3e-2, Status.INACCURATE)):

@@ -20,7 +20,8 @@ class Ledger:
     loads
         Work of forces and torques without potential, of dampers (negative), and of motors.
     impacts
-        Change of energy by impacts: at most 0, except that Newton's law with friction may add energy.
+        Change of energy by impacts: at most 0, except that Newton's law with friction may add energy. If small
+        bounces are dropped, corrections of their friction are included here.
     friction
         Work of friction in persistent contacts, at most 0.
     bounces

@@ -1,4 +1,4 @@
-"""The settings of a run: checked, and completed."""
+"""The settings of a run, checked and completed."""
 
 from __future__ import annotations
 
