@@ -1,4 +1,4 @@
-"""Can a body have touched the half-space between two states? No impact is missed, however large the step.
+"""Continuous detection for a half-space: may a body have touched it between two states? Misses no impact.
 
 Of each vertex the gap z and its rate are known at both ends, and |d2z/dt2| <= a in between. Then
 

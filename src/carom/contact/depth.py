@@ -1,4 +1,4 @@
-"""How deep bodies overlap each other or a half-space, and how far joints are beyond their stops."""
+"""Penetration of bodies into each other or a half-space, and of joints beyond their stops."""
 
 from __future__ import annotations
 

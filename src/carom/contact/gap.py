@@ -1,4 +1,4 @@
-"""Gap of a contact: the least over the vertices of a body, and the point that strikes."""
+"""Gap of a contact: the least gap of the vertices of a body, and the point that strikes."""
 
 from __future__ import annotations
 

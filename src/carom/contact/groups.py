@@ -1,4 +1,4 @@
-"""Which bodies an impulse moves together: joined, or held to each other by contacts."""
+"""Groups of bodies that an impulse moves together, because of joints or closed contacts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The active set: adding a point, removing it, and which of its points share their bodies."""
+"""The active set: adding a point, removing a point, and points with common bodies."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What can end the present mode of a persistent contact: its force would pull, it slips, or slip stops.
+"""Events that end a mode of a persistent contact: its normal force vanishes, it slips, or slip stops.
 
 Each event is a function that is positive before and negative after, evaluated at the end of a step:
 

@@ -1,4 +1,4 @@
-"""When a contact becomes persistent, whether it slips or sticks, and when it is at rest.
+"""Conditions under which a contact becomes persistent, slips, sticks or comes to rest.
 
 After an impact with exit speed u_n, a contact whose free acceleration of approach is g_i bounces on for
 

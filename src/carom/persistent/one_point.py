@@ -1,4 +1,4 @@
-"""A body that is in contact at one point: from its last bounce to slip, stick or rest."""
+"""Persistent contact of one body at one point: from its last bounce to slip, stick or rest."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Several closed points of one group: which of them persist from now on, which open."""
+"""Several closed points of one group: the points that become persistent, and the points that open."""
 
 from __future__ import annotations
 

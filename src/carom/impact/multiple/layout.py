@@ -1,4 +1,4 @@
-"""What is given of a multiple impact, settings, workspace and result."""
+"""Input, settings, workspace and result of a multiple impact."""
 
 from __future__ import annotations
 

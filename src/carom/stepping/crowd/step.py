@@ -1,4 +1,4 @@
-"""A step of a crowd, taken whole: free flight, one contact problem, back to the surfaces (Moreau 1988).
+"""A time-stepping step of a crowd (Moreau 1988): free flight, one contact problem, return to the surfaces.
 
 With rows G of the middle of the free flight from (q_0, v_0) to (q_f, v_f), and the inverse mass P at its end,
 
