@@ -45,7 +45,7 @@ def checked_contact(
         )
     name = f"contact {len(others)}" if name is None else checks.text("name", name)
     if any(name == other.name for other in others):
-        raise ValueError(f"name must be new, got {checks.shown(name)} twice")
+        raise ValueError(f"name must be unique, got {checks.shown(name)} twice")
     return CoordinateContact(name, e, mu, impact_law, len(others))
 
 

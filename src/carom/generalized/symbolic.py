@@ -1,4 +1,4 @@
-"""A system in coordinates from SymPy expressions: derivatives taken exactly, code written for Numba.
+"""A `GeneralizedSystem` from SymPy expressions, with exact derivatives and generated code for Numba.
 
 SymPy is imported here and nowhere else.
 """
@@ -15,7 +15,7 @@ from carom import checks
 
 
 def sympy() -> Any:
-    """Return the module, or say how to get it."""
+    """Return the module, or raise an error with the command that installs it."""
     try:
         import sympy
     except ImportError:
