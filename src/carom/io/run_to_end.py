@@ -57,10 +57,10 @@ def finish(run, progress, keeper: Keeper | None, throw: bool):
 
 
 def goals(done, total: int, reports: bool, keeper: Keeper | None):
-    """Go through the numbers of steps at which a run stops on its way, up to `total`.
+    """Yield the numbers of steps at which a run pauses, up to `total`.
 
-    All at once if nobody waits for it; in `CHUNKS` parts to report; to save, in parts that take a small part of
-    the time between two savings, found by doubling and halving.
+    Without progress and saving there is only one part. With progress there are `CHUNKS` parts. With saving, the
+    length of parts is doubled and halved so that each takes a small fraction of the time between two savings.
     """
     most = max(1, -(-total // CHUNKS)) if reports else total
     part = 1 if keeper is not None else most

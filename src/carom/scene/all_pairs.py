@@ -181,8 +181,8 @@ def near_fixed(
 def near_each_other(of: Defaults, bodies: Sequence[Body]) -> tuple[np.ndarray, np.ndarray]:
     """Return the pairs i < j of bodies that may touch whose balls overlap, in their order.
 
-    Balls are sorted by where they begin along the axis on which they lie furthest apart; those that
-    begin before another one ends are looked at.
+    Balls are sorted by their lower ends along the axis with the largest spread; a ball is compared with those
+    that begin before it ends.
     """
     solid = np.flatnonzero(of.solid)
     if len(solid) < 2:
@@ -212,7 +212,7 @@ def near_each_other(of: Defaults, bodies: Sequence[Body]) -> tuple[np.ndarray, n
 
 
 def balls(bodies: Sequence[Body]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the centres (N, 3) and radii (N,) of the balls around bodies, radius 0 where there is no shape."""
+    """Return the centres (N, 3) and radii (N,) of the bounding balls of bodies; radius 0 without a shape."""
     places = np.array([body.position for body in bodies]).reshape(-1, 3)
     sizes = np.array([0.0 if body.shape is None else body.shape.size for body in bodies])
     return places, sizes

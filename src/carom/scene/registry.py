@@ -53,7 +53,7 @@ class Registry:
         return iter(self._parts.values())
 
     def count(self, kind: type) -> int:
-        """Return how many parts there are of a `kind`."""
+        """Return the number of parts of a `kind`."""
         return len(self._kinds.get(kind, ()))
 
     def __getitem__(self, name: str):

@@ -30,7 +30,7 @@ def colour_of(body: Body, palette) -> str:
 
 
 def moving(position: np.ndarray, orientation: np.ndarray) -> np.ndarray:
-    """Return which bodies (N,) move, by more than a small part of what the one that moves most does.
+    """Return which bodies (N,) move by more than a small fraction of the largest motion of a body.
 
     `position` (T, N, 3), `orientation` (T, N, 4).
     """

@@ -83,7 +83,7 @@ def _of_piece(piece: Piece, n: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _swollen_box(half: np.ndarray, radius: float, n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return a box of half edges `half`, from 0, swollen by a ball of `radius`, from 0.
+    """Return a box of half edges `half` rounded by a ball of `radius`; both may be 0.
 
     A ball as an octahedron with n^2 triangles on each side, whose octants are moved apart; strips join
     them, and vertices that have come to one place become one.
@@ -195,7 +195,7 @@ def _fans(shape: Piece) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _swollen_hull(shape: Piece, n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return a hull swollen by a ball: faces moved out, parts of cylinders at edges, of balls at corners.
+    """Return a hull rounded by a ball: faces moved out, parts of cylinders at edges, of balls at corners.
 
     The part of a ball at a corner is bounded by arcs from the normal of one face to that of the next; it is
     filled by rings that shrink to its middle.

@@ -26,7 +26,7 @@ FIXED = {
 
 
 class Packed(NamedTuple):
-    """An array as it is in a file: unpacked when it is known to be one of the run."""
+    """A packed array in a file; it is unpacked after the check that it belongs to the run."""
 
     dtype: np.dtype
     shape: tuple[int, ...]
@@ -104,7 +104,7 @@ def restore(run, checkpoint: Checkpoint, records: r.Records) -> None:
 
 
 def packed(checkpoint: Checkpoint, add: Callable[[bytes], int]) -> dict:
-    """Return what an index has of a checkpoint; `add` takes bytes of a file, and returns where they stand."""
+    """Return the index entry of a checkpoint; `add` stores bytes in a file and returns their position."""
     arrays = {}
     for name, array in checkpoint.arrays.items():
         data = array.data if isinstance(array, Packed) else _deflated(array)
@@ -169,7 +169,7 @@ def _walk(name: str, value) -> Iterator[tuple[str, np.ndarray]]:
 
 
 def _put_records(run, records: r.Records) -> None:
-    """Copy what was written before the checkpoint into the records of a run, which grow as they do in one."""
+    """Copy the records before the checkpoint into the records of a run, which are lengthened as in a run."""
     clock = run.clock[0]
     ends = {
         "series": clock.saved, "state": clock.saved, "touch": clock.touched,

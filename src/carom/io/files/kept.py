@@ -40,9 +40,9 @@ class KeptRun:
         clock.snapped = len(records.snapshot)
 
     def revived(self, duration: float | None = None, stand: bool = True):
-        """Return a run that stands where the checkpoint says, or (not `stand`) at the start.
+        """Return a run at its checkpoint, or (if not `stand`) at its start.
 
-        With a duration it is to go on to that time.
+        With a duration, the run continues to that time.
         """
         settings = self.settings
         if duration is not None:
@@ -65,7 +65,7 @@ class KeptRun:
 
     @cached_property
     def compiled(self):
-        """The compiled scene; with functions missing it cannot stand where the run did."""
+        """The compiled scene; if functions are missing, the run cannot continue."""
         if self.missing:
             return self._as_at_start
         made = self._run.compiled

@@ -92,7 +92,7 @@ LEDGER = {
 
 
 class Variable(NamedTuple):
-    """An array with its dimensions and what it means."""
+    """An array with its dimensions, unit and description."""
 
     name: str
     dims: tuple[str, ...]

@@ -1,7 +1,7 @@
 """Reading a run from its file.
 
-The file has not changed since it was written (`carom.io.files.sealed`), but anybody may have written it: all
-that is taken from it is looked at, sizes before anything is made of them, numbers of rows before they are used.
+The file has not changed since it was written (`carom.io.files.sealed`), but anybody may have written it.
+Therefore all data from it are checked: sizes before arrays are made, and row numbers before they are used.
 """
 
 from __future__ import annotations

@@ -79,7 +79,7 @@ def check_pair(pair: frozenset) -> frozenset:
 
 
 def _made(parts, part: Any) -> Any:
-    """Return a part made once more from its fields."""
+    """Return a part made again from its fields."""
     index, name = part.index, part.name
     if isinstance(part, bodies.Body):
         motion = part.position, part.orientation, part.velocity, part.angular_velocity
@@ -150,7 +150,7 @@ def _arguments(kind: type) -> tuple[str, ...]:
 
 
 def _same(record: Any, made: Any) -> None:
-    """Refuse a record whose fields are not those of the one made once more, up to rounding."""
+    """Refuse a record whose fields differ from those of the record made again, beyond rounding."""
     for one in fields(made):
         here, there = getattr(record, one.name), getattr(made, one.name)
         if not _near(here, there):

@@ -1,11 +1,12 @@
-"""The end of a file: what carom reads, and the digest by which damage is seen.
+"""The end of a file: the part that carom reads, and the digest that shows damage.
 
-A file is netCDF-4 (HDF5) from its first byte on, for all other programs. Behind it, where HDF5 does not look,
-stand carom's own arrays, an index of all arrays (JSON) and a line with the SHA-256 of all that is before. (In
-HDF5's user block, at the beginning, the digest would hide the signature by which xarray knows the file.)
+For other programs a file is netCDF-4 (HDF5) from its first byte on. After the HDF5 data, where HDF5 does not
+read, are the arrays of carom, an index of all arrays (JSON), and a line with the SHA-256 of all bytes before.
+(In the user block of HDF5, at the beginning, the digest would hide the signature by which xarray recognises a
+file.)
 
-`Solution.load` takes its numbers from where the index says. So HDF5, whose library follows links to other
-files and does not survive every damaged file, never opens what carom reads.
+`Solution.load` reads the numbers at the positions in the index. It does not use the HDF5 library, which follows
+links to other files and crashes on some damaged files.
 """
 
 from __future__ import annotations
@@ -48,7 +49,7 @@ def unsealed(path: Path) -> Sealed:
     Raises
     ------
     FileNotFoundError
-        If there is none.
+        If the file does not exist.
     ValueError
         If it is of another kind, damaged, or newer than this version of carom.
     """

@@ -64,7 +64,7 @@ def parsed(data: bytes | str, what: str) -> ET.Element:
     Raises
     ------
     ValueError
-        If it cannot be read, or has entities of its own.
+        If it cannot be read, or defines entities.
     """
     plain = data.encode("utf-8", "replace") if isinstance(data, str) else data.replace(b"\0", b"")
     if b"<!ENTITY" in plain:

@@ -177,7 +177,7 @@ def _restitution(model, given: float | None, report: Report) -> float:
 
 
 def _add_body(build: Build, link: Link, shape) -> None:
-    """Add the body of a link where it stands and as it moves."""
+    """Add the body of a link, with its position and motion."""
     centre, orientation = pose(build, link)
     motion = point_velocity(build.model, build.data, link.body, centre)
     inertia, change = possible_inertia(link.inertia)
@@ -198,7 +198,7 @@ def _add_body(build: Build, link: Link, shape) -> None:
 
 
 def _add_gravcomp(build: Build) -> None:
-    """Add the forces that bear a part of the weight of bodies."""
+    """Add the forces that compensate a part of the weight of bodies."""
     model = build.model
     for b in np.flatnonzero(model.body_gravcomp):
         lift = -model.body_gravcomp[b] * model.body_mass[b] * build.scene.gravity

@@ -26,9 +26,9 @@ def prepared(root: ET.Element, folder: Path | None, package_dirs: Iterable, repo
     folder
         Where the file lies; None for a text.
     package_dirs
-        Folders that hold packages, or are ones.
+        Folders that contain packages, or are packages.
     report
-        Gets what had to be left out or changed.
+        The report, for parts that are left out or changed.
     """
     for link in root.iter("link"):
         for visual in link.findall("visual"):

@@ -155,7 +155,7 @@ class Ellipsoid(Shape):
 
 
 def _rounded_box(half: np.ndarray, r: float) -> tuple[float, float]:
-    """Return volume, and integral of x^2 over it, of a box of half edges a, b, c swollen by a ball.
+    """Return the volume of a box of half edges a, b, c rounded by a ball, and the integral of x^2 over it.
 
     The parts: core, six slabs on its faces, twelve quarters of cylinders on its edges, eight octants
     of a ball on its corners.

@@ -74,7 +74,7 @@ def of_impact(system, row, place, tied, bodies, done: Strike, hit: Blow, u, W, k
 
 
 def _course(done: Strike, hit: Blow, u, W, k, t, speed, mu, d_mu):
-    """Return how far slip is from stopping, from not stopping, and from starting again."""
+    """Return the margins of slip: to stopping, to not stopping, and to starting again."""
     found = []
     after = u + W @ hit.impulse
     slip = float(np.hypot(after[1], after[2]))
@@ -102,7 +102,7 @@ def _course(done: Strike, hit: Blow, u, W, k, t, speed, mu, d_mu):
 
 
 def _stick_ratio(W, inputs):
-    """Return the tangential impulse that holds the point, per normal one, and its derivative."""
+    """Return the tangential impulse of stick divided by the normal impulse, and its derivative."""
     a, B = W[1:, 0], W[1:, 1:]
     ratio = -np.linalg.solve(B, a)
     dB = np.array([[inputs[3], inputs[4]], [inputs[4], inputs[5]]])
@@ -110,7 +110,7 @@ def _stick_ratio(W, inputs):
 
 
 def of_end(k: int, d_time: np.ndarray, time: float, end: float) -> list[Margin]:
-    """Return how near the last impact is to the end of the run, beyond which it would not happen."""
+    """Return the margin of the last impact: its time before the end of the run."""
     left = end - time
     what = "time from the last impact to the end of the run"
     return [Margin(time, k, what, left, "s", left / end, -d_time)]

@@ -1,4 +1,4 @@
-"""Going through a run from event to event, with the tangents of all bodies."""
+"""Derivatives of a run from event to event, with the tangents of all bodies."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ class Walk:
         ]  # fmt: skip
 
     def result(self) -> Sensitivities:
-        """Return all that was found."""
+        """Return the derivatives."""
         margins = sorted(self.margins, key=lambda m: m.relative)
         point, before, after, impulse = self.vectors
         return Sensitivities(
@@ -89,7 +89,7 @@ class Walk:
     def lose(
         self, b: int, time: float, why: str, columns: np.ndarray | bool = True, stays_free=True
     ) -> None:
-        """Note that the motion of a body has no derivative from now on, by those parameters that it knows."""
+        """Record that the motion of a body has no derivative from now on, by the parameters that change it."""
         body, rows = self.bodies[b], self.system.contacts
         own = np.unique(rows.number[(rows.body == b) | (rows.other == b)])
         p = self.parameters
@@ -123,7 +123,7 @@ class Walk:
             self.flies[b].append(self.free[b])
 
     def meet(self, b: int, shot, time: float) -> None:
-        """Let a body fly to an event; go on from the state that was written there."""
+        """Let a body fly to an event, and continue from the recorded state there."""
         body = self.bodies[b]
         if self.free[b]:
             self.look_between(b, body, time)
@@ -138,7 +138,7 @@ class Walk:
         )  # fmt: skip
 
     def pass_impact(self, step: Step, time: float) -> bool:
-        """Pass an impact of one point; return False if it is none, or there is no derivative for anything."""
+        """Pass an impact of one point; return False for other events, or if there is no derivative at all."""
         if step.row is None or step.row.together != 1:
             return False
         found = self.place_of(step)
@@ -203,7 +203,7 @@ class Walk:
         return candidates[0] if len(candidates) == 1 else None
 
     def parted(self, row, tied: np.ndarray, body: Moving, done: Strike) -> np.ndarray:
-        """Return which parameters (P,) part points that strike as one, by gap or velocity before or after."""
+        """Return which parameters (P,) separate points that strike as one, by gaps or velocities."""
         P = done.time.size
         apart = np.zeros(P, dtype=bool)
         turn, after = done.poses[3:6], done.bodies[0]
@@ -224,7 +224,7 @@ class Walk:
         return apart
 
     def look_between(self, b: int, body: Moving, until: float) -> None:
-        """Find out how near a body comes to half-spaces without striking."""
+        """Find the least gaps of a body above half-spaces between impacts."""
         self.margins += near.of_flight(
             self.system, b, body, until, until == float(self.solution.t[-1])
         )

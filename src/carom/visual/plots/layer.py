@@ -78,7 +78,7 @@ def impact_inside(solution, k: int = 0, *, steps: int = KNOTS, ax=None):
 def _jump(force, history, last: int) -> np.ndarray:
     """Return forces at the knots, and twice where compression ends, at which they jump.
 
-    A knot has the force right of it; what is left of it is carried on from the two knots before.
+    A knot has the force just after it; the force just before it is extrapolated from the two knots before.
     """
     if last < 2:
         return np.insert(force, last, force[last - 1])

@@ -126,7 +126,7 @@ def _times(outlines, solution) -> np.ndarray:
 
 
 def _outlines(axes, solution, body, times, seen, colour) -> None:
-    """Draw the edges between what is turned to the eye and what is not."""
+    """Draw the edges between faces that are turned to the viewer and faces that are not."""
     from matplotlib.collections import LineCollection
 
     from carom.visual.surfaces import surface

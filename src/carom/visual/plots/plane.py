@@ -76,7 +76,7 @@ def _of_scene(solution, of, axis: str, number: int):
 
 
 def _course(solution, pick):
-    """Return times (M,) and what is picked of the states there: at impacts before and after them."""
+    """Return times (M,) and the chosen quantity there; at impacts before and after them."""
     t = figure.with_impacts(solution)
     struck = np.isin(t, solution.impacts.time)
     twice = np.repeat(t, 1 + struck)

@@ -74,12 +74,12 @@ def contacts(solution, *, contacts=None, most: int = 40, ax=None):
 
 
 def touching(solution) -> int:
-    """Return how many contacts ever touch."""
+    """Return the number of contacts that touch during the run."""
     return len({*solution.impacts.contact.tolist(), *(row[0] for row in intervals(solution))})
 
 
 def intervals(solution) -> list[tuple[int, float, float, str]]:
-    """Return (contact, start, end, mode) of all intervals in which a contact is held."""
+    """Return (contact, start, end, mode) of all intervals of persistent contact."""
     if figure.is_bodies(solution):
         table = solution.contacts
         rows = zip(table.contact, table.start, table.end, table.mode)

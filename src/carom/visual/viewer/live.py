@@ -201,7 +201,7 @@ class LiveView:
 
 
 def free_port(host: str) -> int:
-    """Return a port that nobody uses."""
+    """Return a free port."""
     with socket.socket() as probe:
         probe.bind((host, 0))
         return probe.getsockname()[1]

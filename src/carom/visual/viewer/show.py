@@ -19,7 +19,7 @@ IMPULSE, FORCE = "#D55E00", "#0072B2"
 
 
 class Show(NamedTuple):
-    """What is shown of a run."""
+    """The parts of a run that a viewer shows."""
 
     title: str
     solution: Solution
@@ -34,13 +34,13 @@ class Show(NamedTuple):
 
     @property
     def longest(self) -> float:
-        """Length of the longest arrow [m]: some bodies long, and not lost in the place."""
+        """Length of the longest arrow [m]: a few times the size of a body, and visible in the whole region."""
         radius = self.place.radius
         return min(0.45 * radius, max(0.1 * radius, 8.0 * float(np.median(self.sizes))))
 
     @property
     def left_out(self) -> list[str]:
-        """What is not shown, in words."""
+        """Descriptions of data that are not shown completely."""
         solution, words = self.solution, []
         saved, impacts = len(solution.t), len(solution.impacts)
         shown = int(np.sum(np.isin(solution.t, self.frames.time)))
