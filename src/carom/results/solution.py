@@ -381,7 +381,7 @@ class Solution(Portable, Drawn):
 
         count, k = len(self.impacts), checks.integer("k", k)
         if not -count <= k < count:
-            raise IndexError(f"k must be the index of an impact, got {k} with {count} impacts")
+            raise IndexError(f"k must be the index of an impact, got impact {k} of {count}")
         record = self.impacts[k]
         if record.together > 1:
             raise ValueError(
