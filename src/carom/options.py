@@ -146,5 +146,5 @@ class Options:
                 object.__setattr__(self, f.name, kind(value))
 
     def as_dict(self) -> dict:
-        """All settings by name."""
+        """Return all settings by name."""
         return {f.name: getattr(self, f.name) for f in fields(self)}

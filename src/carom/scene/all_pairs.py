@@ -58,7 +58,7 @@ def defaults(
     left_out: Iterable[frozenset],
     law: Callable[[Body, Body | HalfSpace | StaticBody], ContactLaw],
 ) -> Defaults:
-    """Return what pairs of bodies with shapes may touch that are not `left_out`.
+    """Return the pairs of bodies with shapes that may touch and are not `left_out`, as `Defaults`.
 
     `law` is asked once for each pair of materials, with the first pair that has them: first those of bodies and
     half-spaces, body by body, then those of two bodies.

@@ -60,7 +60,7 @@ class Body:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class HalfSpace:
-    """A fixed half-space, for example a floor. `Scene.add_half_space` makes it.
+    """A fixed solid half-space behind a plane, such as a floor. `Scene.add_half_space` makes it.
 
     Attributes
     ----------

@@ -70,7 +70,7 @@ class Scene(TouchingPairs):
         material: Material | None = None,
         name: str | None = None,
     ) -> HalfSpace:
-        """Add a fixed half-space, for example a floor.
+        """Add a fixed solid half-space behind a plane, for example a floor.
 
         Parameters
         ----------

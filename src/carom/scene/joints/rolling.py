@@ -16,7 +16,7 @@ PARALLEL = 1e-9  # sine of the angle between two directions below which they cou
 
 @dataclass(frozen=True, init=False, eq=False)
 class KnifeEdge(JointDefinition):
-    """A blade (nonholonomic): a point of the child may not move sideways over the ground.
+    """A blade (nonholonomic): a point of the child cannot move sideways over the ground.
 
     Parameters
     ----------
@@ -81,11 +81,11 @@ class RollingSphere(JointDefinition):
         keep(self, radius=radius, normal=unit_vector("normal", normal))
 
     def contact(self, centre: ArrayLike) -> np.ndarray:
-        """Return the point (3,) where it touches, with the centre at `centre`."""
+        """Return the contact point (3,) for a centre at `centre`."""
         return point("centre", centre) - self.radius * self.normal
 
     def anchors(self, anchor, child) -> tuple[np.ndarray, np.ndarray]:
-        """Return the point of the plane where it touches, and the centre."""
+        """Return the contact point on the plane, and the centre."""
         return self.contact(child), child
 
     def scale(self) -> float:
@@ -129,7 +129,7 @@ class RollingDisc(JointDefinition):
         keep(self, radius=radius, axis=along, normal=up)
 
     def contact(self, centre: ArrayLike) -> np.ndarray:
-        """Return the point (3,) where it touches, with the centre at `centre`."""
+        """Return the contact point (3,) for a centre at `centre`."""
         down = self.normal - (self.normal @ self.axis) * self.axis
         return point("centre", centre) - self.radius * down / np.linalg.norm(down)
 
@@ -138,7 +138,7 @@ class RollingDisc(JointDefinition):
         return np.stack([self.normal, self.axis, np.cross(self.normal, self.axis)], axis=1)
 
     def anchors(self, anchor, child) -> tuple[np.ndarray, np.ndarray]:
-        """Return the point of the plane where it touches, and the centre."""
+        """Return the contact point on the plane, and the centre."""
         return self.contact(child), child
 
     def scale(self) -> float:

@@ -33,7 +33,7 @@ def fit_attitude(t, q, inertia=None) -> Turn:
     changes = np.concatenate([np.zeros((1, 6)), DIFFERENCE * np.eye(6), -DIFFERENCE * np.eye(6)])
 
     def residuals():
-        """Residuals (13, 3 n): as it stands, and with each unknown a little larger and smaller."""
+        """Return residuals (13, 3 n): at the present unknowns, and with each slightly larger and smaller."""
         starts = quaternion.multiply(quaternion.exp(changes[:, :3]), R0)
         model = spin(t, starts, (turn + changes[:, 3:]) / t[-1])
         off = quaternion.log(quaternion.multiply(q, quaternion.conjugate(model)))
