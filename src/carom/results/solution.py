@@ -11,7 +11,7 @@ import numpy as np
 from carom import checks
 from carom.geometry import quaternion
 from carom.results.constraint_rows import ConstraintRows, constraint_rows
-from carom.results.dense_output import between, flights
+from carom.results.dense_output import curves, flights
 from carom.results.drawn import Drawn
 from carom.results.event_tables import (
     ContactTable,
@@ -294,9 +294,13 @@ class Solution(Portable, Drawn):
     def evaluate(self, t, side: str = "right"):
         """Return (position, orientation, velocity, angular_velocity) at times between saved ones.
 
-        The result is exact for bodies on which only gravity acts, while they touch nothing. Otherwise it is a
-        cubic in each interval between saved steps and events, so it is continuous except at impacts. The error
-        is of order 4 in the saved interval for positions and orientations, and of order 3 for velocities.
+        The states are those of the motion. For a body on which only gravity acts, while it touches nothing, they
+        are in closed form. For other bodies the run is repeated from the saved state before, with the method of
+        the run; this takes as long as the run took there. A cubic through both saved states replaces it if the
+        repeated motion does not end at the next saved state (within ten times the tolerances; for example in a
+        pile where impacts follow each other), or if user-defined functions of a file are missing. The error of
+        the cubic is of order 4 in the saved interval for positions and orientations, and of order 3 for
+        velocities.
 
         Parameters
         ----------
@@ -315,14 +319,28 @@ class Solution(Portable, Drawn):
         ValueError
             If a time is outside the run, or `side` is invalid.
         """
+        from carom.results.replay import evaluate
+
         checks.choice("side", side, SIDES)
         times = checks.times("t", t, self.t[0], self.t[-1])
-        known = zip(self._nodes, self._flights)
-        bodies = [between(node, flies, times, side) for node, flies in known]
-        x, Q, v, w = (np.stack(column, axis=1) for column in zip(*bodies))
+        *states, cubic = curves(self, times, side)
+        evaluate(self, times, cubic, *states)
+        return self._seen(t, *states)
+
+    def _curve(self, t, side: str = "right"):
+        """Return the same as `evaluate`, but with cubics where there is no closed form: for pictures."""
+        return self._seen(t, *curves(self, np.atleast_1d(np.asarray(t, dtype=float)), side)[:4])
+
+    def _seen(self, t, x, Q, v, w):
+        """Return states with attitudes of the scene's axes; for a single time without the first axis."""
         Q = quaternion.multiply(Q, quaternion.conjugate(self._run.to_principal))
-        result = (x, Q, v, w)
-        return tuple(a[0] for a in result) if np.ndim(t) == 0 else result
+        return tuple(a[0] for a in (x, Q, v, w)) if np.ndim(t) == 0 else (x, Q, v, w)
+
+    @cached_property
+    def _replay(self):
+        from carom.results.replay import Replay
+
+        return Replay(self)
 
     @property
     def contact_mode(self) -> np.ndarray:
