@@ -3,7 +3,7 @@
 States between two saved states are then as accurate as the saved ones, however fast a body rotates. A replay
 starts from the saved position, attitude and velocities. Other data of the run (first guesses of forces, whole
 turns of joints) are not saved, so each interval is checked first: its replay is used if it ends at the next
-saved state.
+saved state, or misses it by far less than the difference between the replay and a cubic through both states.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.model.kept import Kept
+from carom.results.dense_output import curves
 from carom.status import Status
 from carom.stepping.grid import Grid, ends_between
 
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
 FACTOR = 10.0  # a replay may miss the next saved state by so many times the tolerances of the run
 RTOL = 1e-8  # tolerance where the run has given steps
+BETTER = 0.1  # a greater miss may be such a part of the difference from the cubic halfway
 
 
 class Replay:
@@ -52,10 +54,26 @@ class Replay:
                 )  # fmt: skip
 
     def is_good(self, i: int) -> bool:
-        """Return whether the replay from saved state i ends at the next one, within the tolerances."""
+        """Return whether the replay from saved state i ends at the next one, or is better than the cubic."""
         if i not in self.arrives:
-            self.arrives[i] = self.go(i, self.solution.t[i + 1]) and self.misses(i) <= 1.0
+            self.arrives[i] = self.arrives_from(i)
         return self.arrives[i]
+
+    def arrives_from(self, i: int) -> bool:
+        """Compute `is_good`."""
+        if not self.go(i, self.solution.t[i + 1]):
+            return False
+        miss, middle = (
+            self.misses(i, self.states[i + 1]),
+            0.5 * float(sum(self.solution.t[i : i + 2])),
+        )
+        if miss <= 1.0:
+            return True
+        cubic = self.states[i].copy()
+        cubic["x"], cubic["Q"], cubic["v"], cubic["w"], _ = (
+            part[0] for part in curves(self.solution, np.array([middle]), "right")
+        )
+        return self.go(i, middle) and miss <= BETTER * self.misses(i, cubic)
 
     def go(self, i: int, until: float) -> bool:
         """Continue from saved state i to a time; return whether it was reached."""
@@ -73,9 +91,9 @@ class Replay:
         run.note_modes()
         return run.go_on(run.steps) is Status.SUCCESS
 
-    def misses(self, i: int) -> float:
-        """Return the distance of the run from saved state i + 1, relative to the allowed one."""
-        now, there, size = self.run.now, self.states[i + 1], self.size[:, None]
+    def misses(self, i: int, there: np.ndarray) -> float:
+        """Return the distance of the run from a state within interval i, relative to the allowed one."""
+        now, size = self.run.now, self.size[:, None]
         turn = now.Q - there["Q"] * np.sign(np.sum(now.Q * there["Q"], axis=1))[:, None]
         speed = np.abs(now.v - there["v"]) + size * np.abs(now.w - there["w"])
         step = self.solution.t[i + 1] - self.solution.t[i]

@@ -297,10 +297,10 @@ class Solution(Portable, Drawn):
         The states are those of the motion. For a body on which only gravity acts, while it touches nothing,
         they are in closed form. For other bodies the run is repeated from the saved state before, with the
         method of the run; this takes as long as the run took there. A cubic through both saved states replaces
-        it if the repeated motion does not end at the next saved state (within ten times the tolerances; for
-        example in a pile where impacts follow each other), or if user-defined functions of a file are missing.
-        The error of the cubic is of order 4 in the saved interval for positions and orientations, and of order
-        3 for velocities.
+        it if the repeated motion misses the next saved state by more than ten times the tolerances and by more
+        than a tenth of its difference from the cubic (for example in a pile where impacts follow each other),
+        or if user-defined functions of a file are missing. The error of the cubic is of order 4 in the saved
+        interval for positions and orientations, and of order 3 for velocities.
 
         Parameters
         ----------
