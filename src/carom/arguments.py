@@ -1,4 +1,4 @@
-"""Arguments that a function does not have, or lacks: refused with their names, or the name that is meant."""
+"""Messages about unknown and missing arguments, with the name that is probably meant."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 F = TypeVar("F", bound=Callable)
 
-#: what arguments are called elsewhere: in formulas, and by other engines
+#: other names of arguments: in formulas, and in other engines
 ELSEWHERE = {
     "friction": "mu mu_s mus friction_coefficient coefficient_of_friction lateralFriction",
     "friction_held": "mu_held",
@@ -56,7 +56,7 @@ for _ours, _others in ELSEWHERE.items():
 
 
 def known(function: F) -> F:
-    """Decorate a function, or a class and its ``__init__``: it says what an unknown or missing argument is."""
+    """Decorate a function or a class so that its errors name an unknown or missing argument."""
     made: Any = function
     if not isinstance(function, type):
         return _guarded(function, function.__name__)
@@ -82,8 +82,8 @@ def _guarded(function: Any, shown: str) -> Any:
             raise TypeError(f"{shown} needs {' and '.join(missing)}: {call}")
         if len(args) > most:
             firsts = ", ".join(name for name in by_place if name != "self")
-            rest = f", and all else by name, like {by_name[0]}=" if by_name else ""
-            raise TypeError(f"{shown} takes {firsts or 'nothing'} by place{rest}")
+            rest = f"; give the others by name, for example {by_name[0]}=" if by_name else ""
+            raise TypeError(f"{shown} takes only {firsts or 'nothing'} without a name{rest}")
         return function(*args, **kwargs)
 
     return guarded

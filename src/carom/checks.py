@@ -1,8 +1,8 @@
-"""Checks of input: each raises at once; the error names the argument, its value and what is allowed.
+"""Checks of input: each raises an error that has the argument, its value and the allowed values.
 
-A number is what Python takes for one, but for what only looks like it: truth values, texts, dates, and what
-is masked. Where a value has the wrong type or is out of range the error is a `ValueError`; where an object of
-a class of carom or a function is expected it is a `TypeError`.
+Numbers are all values that Python accepts as numbers, except truth values, strings, dates and masked values.
+A value of a wrong type or out of range raises a `ValueError`; if an object of a class of carom or a function is
+expected, other objects raise a `TypeError`.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from pathlib import Path
 
 import numpy as np
 
-#: [m] a length from the first to the second has powers up to the fifth (inertia of a solid) that are numbers
+#: [m] least and greatest length whose powers up to the fifth (inertia of a solid) are finite and not 0
 LENGTHS = (1e-60, 1e60)
-#: [kg] a mass from the first to the second has with such lengths an inertia that is a number
+#: [kg] least and greatest mass that has, with such lengths, a finite inertia
 MASSES = (1e-180, 1e180)
 LONGEST = 300  # characters of a value in a message
 _NO_NUMBERS = (bool, np.bool_, str, bytes, bytearray, np.datetime64, np.timedelta64)
@@ -102,17 +102,17 @@ def number(
 
 
 def length(name: str, value, *, zero: bool = False) -> float:
-    """Return a length [m] whose powers are numbers (see `LENGTHS`), above 0; with `zero` from 0 on."""
+    """Return a length [m] within `LENGTHS`; with `zero`, 0 is also allowed."""
     return _within(name, value, LENGTHS, "m", zero)
 
 
 def mass(name: str, value, *, zero: bool = False) -> float:
-    """Return a mass [kg] whose moments are numbers (see `MASSES`), above 0; with `zero` from 0 on."""
+    """Return a mass [kg] within `MASSES`; with `zero`, 0 is also allowed."""
     return _within(name, value, MASSES, "kg", zero)
 
 
 def scale(name: str, value, unit: str = "") -> float:
-    """Return a number above 0 whose square and quotient by another such are numbers (see `LENGTHS`)."""
+    """Return a number within `LENGTHS`, so that its square and quotients of such numbers are finite."""
     result = number(name, value, above=0.0, unit=unit)
     if not LENGTHS[0] <= result <= LENGTHS[1]:
         raise ValueError(
@@ -122,7 +122,7 @@ def scale(name: str, value, unit: str = "") -> float:
 
 
 def steps(duration: float, step: float, most: float) -> int:
-    """Return how many steps a duration takes, at least one; refuse a step that makes more than `most`."""
+    """Return the number of steps of a duration, at least one; refuse a step that gives more than `most`."""
     if not duration <= most * step:
         raise ValueError(
             f"step must be at least duration / {most:g} = {duration / most:g} s, got step {step!r} and "
@@ -132,11 +132,11 @@ def steps(duration: float, step: float, most: float) -> int:
 
 
 def call(name: str, function: Callable, *arguments):
-    """Call a function of the user's; add its name to an error that it raises."""
+    """Call a user-defined function; add its name to an error that it raises."""
     try:
         return function(*arguments)
     except Exception as error:
-        error.add_note(f"This was raised by {name}, a function that carom was given.")
+        error.add_note(f"The error was raised by {name}, a function that was passed to carom.")
         raise
 
 
@@ -144,8 +144,8 @@ def _within(name: str, value, bounds: tuple[float, float], unit: str, zero: bool
     result = number(name, value, **{"least" if zero else "above": 0.0}, unit=unit)
     if not (zero or bounds[0] <= result) or not result <= bounds[1]:
         raise ValueError(
-            f"{name} must be from {bounds[0]:g} to {bounds[1]:g} [{unit}], where volume and inertia are "
-            f"numbers, got {shown(value)}"
+            f"{name} must be from {bounds[0]:g} to {bounds[1]:g} [{unit}], so that volume and inertia are "
+            f"finite, got {shown(value)}"
         )
     return result
 
@@ -205,13 +205,13 @@ def text(name: str, value) -> str:
 
 
 def function(name: str, value, *, optional: bool = False) -> None:
-    """Refuse, by a `TypeError`, what cannot be called; None is allowed where it is `optional`."""
+    """Refuse, by a `TypeError`, a value that cannot be called; None is allowed if it is `optional`."""
     if not (callable(value) or (optional and value is None)):
         raise TypeError(f"{name} must be a function, got {shown(value)}")
 
 
 def path(name: str, value) -> Path:
-    """Return the path of a file or folder, which need not be there."""
+    """Return the path of a file or folder, which need not exist."""
     try:
         if not isinstance(value, (str, os.PathLike)) or not os.fspath(value):
             raise TypeError
@@ -235,7 +235,7 @@ def file_to_write(name: str, value) -> Path:
 
 
 def listed(name: str, value, what: str) -> list:
-    """Return the members of a sequence; refuse what is none, and texts."""
+    """Return the members of a sequence; refuse other values, and strings."""
     if isinstance(value, Sequence) and not isinstance(value, (str, bytes, bytearray)):
         return list(value)
     if isinstance(value, np.ndarray) and value.ndim > 0:
@@ -280,12 +280,12 @@ def instance(name: str, value, kinds: tuple[type, ...], hint: str = "") -> None:
         return
     allowed = " or ".join(kind.__name__ for kind in kinds)
     if isinstance(value, type) and issubclass(value, kinds):
-        hint = f"; that is the class, make one by {value.__name__}(...)"
+        hint = f"; this is the class, make an object with {value.__name__}(...)"
     raise TypeError(f"{name} must be a {allowed}, got {shown(value)}{hint}")
 
 
 def shown(value) -> str:
-    """Return how a value reads in a message, cut where it is long."""
+    """Return the text of a value in a message, cut if it is long."""
     try:
         words = repr(value)
     except Exception:  # a whole number of more digits than Python writes, or a __repr__ that fails
@@ -294,7 +294,7 @@ def shown(value) -> str:
 
 
 def _no_number(value) -> bool:
-    """Return whether a value, or one in nested lists, only looks like a number."""
+    """Return whether a value, or a member of nested lists, only looks like a number."""
     if isinstance(value, (list, tuple)):
         return any(map(_no_number, value))
     if hasattr(value, "__array__") and not isinstance(value, np.generic):

@@ -1,4 +1,4 @@
-"""Everything about a run that can be set, with default, unit and meaning."""
+"""`Options`: all settings of a run, with default, unit and meaning."""
 
 from __future__ import annotations
 
@@ -10,63 +10,67 @@ from carom import arguments, checks
 @arguments.known
 @dataclass(frozen=True, kw_only=True)
 class Options:
-    """Settings of `simulate`. Tolerances are relative to the scene's own lengths and speeds.
+    """Settings of `simulate`. Tolerances are relative to the lengths and speeds of the scene.
 
     Parameters
     ----------
     layer_width : float or None
-        Width b of the boundary layer [m]. The motion after an impact does not depend on it; it sets
-        the duration of an impact. Default None: 1e-5 of the size of the body.
+        Width b of the boundary layer [m]. It sets the duration of an impact; the motion after the impact does
+        not depend on it. Default None: 1e-5 of the size of the body.
     penetration : float
-        Greatest penetration of the layer delta, as a part of its width, in (0, 1). Default 0.2, the
-        paper's for the die. (Paper, section on the boundary layer.)
+        Maximum penetration delta of the layer, as a fraction of its width, in (0, 1). Default 0.2, the value
+        of the paper for the die. (Paper, section on the boundary layer.)
     layer_steps : int
-        Cubic-spline steps through the layer for ``method="paper"``, shared by compression and
-        restitution. Default 2, the paper's.
+        Number of cubic-spline steps through the layer for ``method="paper"``, compression and restitution
+        together. Default 2, as in the paper.
     add_layer_time : bool
         Add the duration of each impact to the clock. Default False: the impact takes no time.
     gap_tolerance : float
-        An impact is located when the gap is within gap_tolerance * size of the body of zero, or within
-        the round-off of the coordinates where that is larger. Default 1e-15.
+        An impact is located when the gap differs from zero by at most `gap_tolerance` times the size of the
+        body, or by the round-off of the coordinates if that is larger. Default 1e-15.
     tie_tolerance : float
-        Points of a body whose gaps differ by less than this part of its size strike together: as their mean
-        if they move alike, else each for itself. Default 1e-9.
+        Points of a body strike simultaneously if their gaps differ by less than this fraction of its size.
+        They are replaced by their mean point if they move alike; otherwise each is a contact of its own.
+        Default 1e-9.
     multiple : {"simultaneous", "sequential", "newton"}
-        Impacts while several points of the bodies are closed: their boundary layers are passed together
-        (default, but for pairs of which `Scene.add_contact` says otherwise), or one blow after the other, the
-        pair that approaches fastest first, or all by Newton's law in one contact problem (Moreau 1988), which
-        is the quickest. (Mathematics page, part 2.)
+        Law of multiple impact: of impacts while several contact points are closed. ``"simultaneous"``
+        (default): their boundary layers are passed together; `Scene.add_contact` can choose otherwise for a
+        pair. ``"sequential"``: one impact after another, starting with the pair that approaches fastest.
+        ``"newton"``: all by Newton's law in one contact problem (Moreau 1988), the fastest to compute.
+        (Mathematics page, part 2.)
     corner_tolerance : float
-        Relative error of the velocities after a simultaneous impact. Default 1e-8.
+        Relative tolerance of the velocities after a simultaneous impact. Default 1e-8.
     corner_exponent : float or None
-        p of the normal force kappa d^p in a simultaneous impact. Default None: 1.5, Hertz's, where each of
-        the points is one of a ball or an ellipsoid, whatever that touches; 1 where other points take part.
+        Exponent p of the normal force kappa d^p in a simultaneous impact. Default None: 1.5 (Hertz) if a ball
+        or an ellipsoid takes part in each of the contacts; 1 otherwise.
     hold : bool
-        Hold a contact when all its remaining bounces would end within the present step. Default True.
-        With False, a bouncing body that comes to rest stops the run with a status.
+        Make a contact persistent when all its remaining bounces would end within the present step. Default
+        True. If False, a bouncing body that comes to rest ends the run with `Status.TOO_MANY_IMPACTS`.
     rest_tolerance : float
-        Bodies held at several points come to rest, exactly, when their speed is below this part of the speed
-        that applied forces would give them in one step, or below what their contacts are solved to where that
-        is more (up to ten times, in a crowd a thousand times); slip below it has stopped. Default 1e-9.
+        Bodies with persistent contact at several points are set exactly to rest when their speed is below this
+        fraction of the speed that the applied forces would give them in one step. If the accuracy of their
+        contact problem is worse, that accuracy is the bound (at most ten times as large, in a crowd a thousand
+        times). Slip below the bound becomes stick. Default 1e-9.
     energy_tolerance : float
-        Energy that may come or go without a name in the ledger, as a part of the largest energy exchanged in
-        the run: the greatest of kinetic energy, change of the potential, and each of the sums of loads,
-        impacts, friction and bounces. What is beyond it is in `Solution.warnings`, and an `AccuracyWarning`;
-        beyond a hundred times that a run ends as `Status.INACCURATE`. Watched after each step. A step of joined
-        or loaded bodies by an explicit method that has more than 1e-3 of it by itself is taken in shorter
-        ones. Default 1e-4. (Mathematics page, §1.12.)
+        Allowed residual of the energy balance, i.e. energy that no entry of the ledger explains, as a fraction
+        of the largest energy exchanged in the run: the greatest of kinetic energy, change of potential energy,
+        and each of the sums over loads, impacts, friction and bounces. A larger residual gives an
+        `AccuracyWarning` and a sentence in `Solution.warnings`; a residual more than a hundred times as large
+        ends the run with `Status.INACCURATE`. The balance is checked after each step. With an explicit method,
+        a step of joined or loaded bodies that alone uses more than 1e-3 of the allowed residual is repeated
+        with shorter steps. Default 1e-4. (Mathematics page, §1.12.)
     constraint_tolerance : float
-        Greatest error of position (relative to the size of the bodies) and of velocity (relative
-        to their speeds) that joints may have at the start. Default 1e-8.
+        Largest error of the joints at the start: of position relative to the size of the bodies, of velocity
+        relative to their speeds. Default 1e-8.
     project_start : bool
-        Take from the initial velocities what joints forbid: the least change in the kinetic metric. Default
-        False: velocities that break a joint are refused.
+        Project the start onto the joints: positions by Newton's method, velocities by the least change in the
+        kinetic metric. Default False: a start that violates a joint is refused.
     drop_tolerance : float
-        A constraint row is redundant when its pivot is below this part of its own diagonal (of bodies of equal
-        mass, where masses differ by more than 1e5). Default 1e-8.
+        A constraint row is redundant if its pivot is below this fraction of its own diagonal entry (computed
+        with equal masses if the masses differ by a factor of more than 1e5). Default 1e-8.
     augmentation : float
-        Augmented-Lagrangian parameter of the paper's methods and of reported reactions, as a part of
-        each row's diagonal of A M^-1 A^T. Default 1e-3.
+        Augmented-Lagrangian parameter of the paper's methods and of the reported reactions, as a fraction of
+        the diagonal entry of A M^-1 A^T of each row. Default 1e-3.
     natural_frequency : float
         beta of the paper's ODE form: the multipliers' equation has c_s = 2 zeta w m_RR and
         k_s = w^2 m_RR with w = beta / step. Only for ``method="paper-ode"``. Default 1.0.
@@ -75,16 +79,19 @@ class Options:
     residual_tolerance : float
         Relative residual at which the block iteration of the paper's methods stops. Default 1e-15.
     max_iterations : int
-        Most block iterations in one step of the paper's methods. Default 100.
+        Maximum number of block iterations in one step of the paper's methods. Default 100.
     max_impacts_per_step : int
-        Most impacts in one step; with more the step is taken whole (mathematics page, §3.9), and without
-        `hold`, or with impacts that are not located, the run stops with a status. Default 1000. (More than
-        1000 events at one instant count as too many, too.)
+        Maximum number of impacts in one step. If there are more, the step is repeated as one time-stepping
+        (Moreau) step without event detection (mathematics page, §3.9); with ``hold=False``, or with impacts
+        that are not located, the run ends with `Status.TOO_MANY_IMPACTS` instead. More than 1000 events at one
+        instant count as too many as well. Default 1000.
     max_cuts : int
-        Most halvings of one step while an impact cannot be excluded; then the same. Default 40.
+        Maximum number of times that one step is halved while an impact cannot be excluded; after that the same
+        happens as for `max_impacts_per_step`, with `Status.STEP_CUT_TO_NOTHING`. Default 40.
     max_step : float or None
-        Longest step where tolerances choose [s]. Default None: where bodies may touch, a quarter of the time in
-        which one falls by its size, .015 of it where there are several; else what the tolerances allow.
+        Longest step for ``step="auto"`` [s]. Default None: if bodies may touch, a quarter of the time in which
+        a body falls by its size, or 0.015 of that time if there are several bodies; otherwise no bound except
+        the tolerances.
     """
 
     layer_width: float | None = None
@@ -139,5 +146,5 @@ class Options:
                 object.__setattr__(self, f.name, kind(value))
 
     def as_dict(self) -> dict:
-        """All settings by name."""
+        """Return all settings by name."""
         return {f.name: getattr(self, f.name) for f in fields(self)}

@@ -1,4 +1,4 @@
-"""One run: the compiled scene, its workspace and records, and the way in and out of the compiled loop."""
+"""One run: the compiled scene, its workspace and records, and the calls of the compiled loop."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ class Run:
         self.begin()
 
     def make_grid(self) -> Grid:
-        """Return the steps of the run; one that goes on has those that it had, and then more of them."""
+        """Return the steps of the run; a resumed run has the steps that it had, and then more."""
         first, *later = *self.how.earlier, self.how.duration
         grid = self.first_grid(first)
         for begin, end in zip((first, *later), later):
@@ -96,7 +96,7 @@ class Run:
         return grid
 
     def first_grid(self, duration: float) -> Grid:
-        """Return the steps of a run of this duration."""
+        """Return the steps of a run with this duration, without the parts that were run before."""
         how, later = self.how, self.compiled.later is not None
         save_at, save_every = how.save_at, how.save_every
         if how.step is not None:
@@ -110,7 +110,7 @@ class Run:
         return grid._replace(save_every=grid.save_every * save_every)
 
     def begin(self) -> None:
-        """Make all that a run writes to, and check the start."""
+        """Make all arrays that the run changes, and check the initial state."""
         self.compiled = self.at_start
         scene, options, system = self.scene, self.options, self.compiled.system
         later = self.compiled.later
@@ -137,8 +137,8 @@ class Run:
             error = project_start(system, self.now, self.work)
             if not error <= options.constraint_tolerance:
                 raise ValueError(
-                    "the start must be one that the joints can be brought to, got one from which Newton's "
-                    f"method leaves an error of {error:.3g}; begin nearer to it"
+                    "the initial positions must be near positions that satisfy the joints, got positions from "
+                    f"which Newton's method leaves an error of {error:.3g}; start nearer"
                 )
         check_answers(scene)
         check_start(scene, self.compiled, self.now, self.work, options)
@@ -154,13 +154,13 @@ class Run:
             first_modes(self.compiled.system, self.active, self.now, self.work)
 
     def renew(self) -> None:
-        """Make anew all that a run writes to; nothing is saved."""
+        """Make all arrays that the run changes once again; nothing is saved."""
         self.begin()
         self.clock[:] = r.new_clock()
 
     @property
     def settings(self) -> dict:
-        """What the run was asked for, by name."""
+        """The arguments of the run, by name."""
         known = self.how.as_dict()
         if self.tolerances is not None:
             known["rtol"], known["atol"] = self.tolerances
@@ -173,12 +173,12 @@ class Run:
 
     @property
     def model(self) -> Model:
-        """What the kernels read: the compiled scene, and the settings of the run."""
+        """The data that kernels only read: the compiled scene, and the settings of the run."""
         return Model(self.compiled.system, self.controls)
 
     @property
     def data(self) -> Data:
-        """What the kernels change."""
+        """The data that kernels change."""
         return Data(
             self.now, self.active, self.work, self.group, self.multiple, self.crowd, self.clock, self.records,
             self.watch,
@@ -203,7 +203,7 @@ class Run:
         self.call(record.save_now, *state)
 
     def grow(self, what: int) -> None:
-        """Make arrays longer that are full."""
+        """Lengthen arrays that are full; `what` says which."""
         if what == r.FULL_EVENTS:
             self.records = r.longer(self.records, self.clock)
         elif what == r.FULL_PAIRS:
@@ -231,7 +231,7 @@ class Run:
 
     @property
     def pairs(self) -> PairTable:
-        """What touches what, by the number of the contact; stops in joints come after."""
+        """The pairs of the contacts, by number of the contact; stops of joints come after them."""
         return self.compiled.pairs
 
     @property
@@ -244,7 +244,7 @@ class Run:
 
     @property
     def has_crowd(self) -> bool:
-        """Whether a crowd has taken a step whole."""
+        """Whether a crowd has taken a time-stepping (Moreau) step."""
         return len(self.crowd.spots) >= SPOTS
 
     @property
@@ -254,7 +254,7 @@ class Run:
 
     @property
     def bodies(self):
-        """What kernels know about the bodies, (N,) BODY."""
+        """The records of the bodies in the kernels, (N,) BODY."""
         return self.compiled.system.bodies
 
     @property
@@ -264,16 +264,16 @@ class Run:
 
     @property
     def failure(self) -> BaseException | None:
-        """What a function of the user's has raised."""
+        """The error that a user-defined function has raised, or None."""
         return self.compiled.functions.failed
 
     @property
     def reached(self) -> float:
-        """Time that the run has come to."""
+        """Time that the run has reached [s]."""
         return float(self.clock["now"][0])
 
     def go_on(self, until: int) -> Status:
-        """Go on to step number `until`, or to a failure."""
+        """Continue to step number `until`, or to a failure."""
         while True:
             state = (self.model, self.data, self.method, self.islands, self.grid, int(until))
             code = self.call(time_loop.run, *state)
@@ -290,11 +290,11 @@ class Run:
                 return Status(code)
 
     def judged(self, status: Status) -> Status:
-        """Return how the run ended, with its balance of energy and its gaps."""
+        """Return the status at the end of the run, after the check of energy, gaps and contact problems."""
         return judge(self.watch[0]) if status is Status.SUCCESS else status
 
     def go_back(self) -> None:
-        """Go back to the start of a step in the middle of which the run was interrupted."""
+        """Return to the start of the step in which the run was interrupted."""
         islands, active, search = self.islands, self.active, self.work.search
         start = islands.single
         if islands.apart:
@@ -331,7 +331,7 @@ class Run:
 
 
 def check_stops(scene: Scene, compiled, start, work, options: Options) -> None:
-    """Refuse a joint that is beyond its stop at the start."""
+    """Refuse a joint that exceeds its stop at the start."""
     if not scene.stops:
         return
     system = compiled.system
@@ -342,13 +342,13 @@ def check_stops(scene: Scene, compiled, start, work, options: Options) -> None:
         extent = system.contacts.extent[first + stop.index]
         if not gap >= -options.constraint_tolerance * extent:
             raise ValueError(
-                f"stop {stop.name!r} of {stop.joint.name!r} must not be passed at the start, got a gap of "
+                f"stop {stop.name!r} of {stop.joint.name!r} must not be exceeded at the start, got a gap of "
                 f"{gap:.6g}"
             )
 
 
 def check_start(scene: Scene, compiled, start, work, options: Options) -> None:
-    """Refuse an initial state that breaks a joint or a constraint, naming it and by how much."""
+    """Refuse an initial state that violates a joint or a constraint; the message has its name and error."""
     system, elements = compiled.system, (*scene.joints, *scene.constraints)
     if not elements:
         return
@@ -365,18 +365,19 @@ def check_start(scene: Scene, compiled, start, work, options: Options) -> None:
         weight = max(1.0, size[system.joints.child[j]])
         off, rate = (float(np.max(np.abs(e[j]))) for e in errors)
         what = f"{element.name!r} ({element.kind})"
-        fits = "give a start that fits, or Options(project_start=True)"
+        fits = "give an initial state that satisfies it, or use Options(project_start=True)"
         if not off <= options.constraint_tolerance * weight:
-            raise ValueError(f"position breaks {what}: its error must be 0, got {off:.6g}; {fits}")
+            raise ValueError(
+                f"position violates {what}: its error must be 0, got {off:.6g}; {fits}"
+            )
         if rate * weight <= options.constraint_tolerance * speed + 1e-300:
             continue
         if isinstance(element, Joint):
             raise ValueError(
-                f"velocity of {element.child.name!r} breaks joint {what}: the "
-                f"joint's own velocity must be 0, got {rate:.6g}; give velocity "
-                "and angular_velocity of all joined bodies that fit their joints, or "
-                "Options(project_start=True)"
+                f"velocity of {element.child.name!r} violates joint {what}: the velocity that the joint "
+                f"forbids must be 0, got {rate:.6g}; give velocity and angular_velocity of all joined "
+                "bodies that satisfy their joints, or use Options(project_start=True)"
             )
         raise ValueError(
-            f"velocity breaks {what}: what it prescribes is missed by {rate:.6g}; {fits}"
+            f"velocity violates {what}: it differs from the prescribed value by {rate:.6g}; {fits}"
         )

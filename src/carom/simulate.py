@@ -1,4 +1,4 @@
-"""The main job: from a scene to its motion."""
+"""`simulate`: compute the motion of a scene."""
 
 from __future__ import annotations
 
@@ -72,86 +72,94 @@ def simulate(
     Parameters
     ----------
     scene : Scene or GeneralizedSystem
-        What moves. It is not changed. A system in coordinates takes the explicit methods, and "locate".
+        The system to simulate. It is not changed. A `GeneralizedSystem` works only with the explicit methods
+        and ``impact_location="locate"``.
     duration : float
         Time to simulate [s].
     step : float or "auto"
-        ``"auto"`` (default): steps as long as `rtol` and `atol` allow. A number h [s]: steps of this length,
-        the last one shorter where `duration` is not a multiple of it. A system in coordinates needs a number.
+        ``"auto"`` (default): each step is as long as `rtol` and `atol` allow. A number h [s]: every step has
+        this length, except that the last one is shorter if `duration` is not a multiple of it. A
+        `GeneralizedSystem` needs a number.
     method : {"rk4", "rk5", "rk8", "rattle", "rattle4", "rattle6", "implicit", "paper", "paper-ode"}
-        How free motion is stepped. Default: with tolerances ``"rk5"``, or ``"rk8"`` from ``rtol=1e-9`` on; with
-        a given step ``"rk4"``. The methods other than ``"rk5"`` and ``"rk8"`` need a given step. ``"rk4"``:
-        explicit, order 4, constraints exact, free flight in closed form, impacts solved to round-off.
-        ``"rk5"``, ``"rk8"``: the same with order 5 (6 stages) and 8 (12 stages), for joints, loads and contact
-        held at one point. ``"rattle"``, ``"rattle4"``, ``"rattle6"``: symplectic, of order 2, 4 and 6, for
-        joints and loads over long times: no trend in energy, momenta of floating systems kept; persistent
-        contacts go by ``"rk4"`` (``"rattle6"``:
-        ``"rk8"``), and so do steps across a singular position. ``"implicit"``: of order 2 and L-stable for
-        springs and dampers of any stiffness, which are rows of the solve. ``"paper"``: the paper's chain,
-        three fields of order 2 with exact constraints, impacts through the boundary layer by
-        cubic splines. ``"paper-ode"``: the same with the paper's second-order equations of the multipliers
+        Time integrator of the smooth motion. Default: ``"rk4"`` if `step` is a number; otherwise ``"rk5"``, or
+        ``"rk8"`` if `rtol` is 1e-9 or smaller. All methods except ``"rk5"`` and ``"rk8"`` need a number as
+        `step`. ``"rk4"``: explicit, order 4; constraints are exact, free flight is in closed form, impacts are
+        solved to round-off. ``"rk5"``, ``"rk8"``: the same with order 5 (6 stages) and order 8 (12 stages), for
+        joints, loads and persistent contact at one point. ``"rattle"``, ``"rattle4"``, ``"rattle6"``:
+        symplectic, order 2, 4 and 6, for joints and loads over long times: the energy has no trend, and the
+        momenta of floating systems are conserved. Steps with persistent contacts or across a singular position
+        then use ``"rk4"`` (with ``"rattle6"``: ``"rk8"``). ``"implicit"``: order 2 and L-stable, for springs
+        and dampers of any stiffness, which are rows of the linear system. ``"paper"``: the method of the paper,
+        with three fields of order 2, exact constraints, and impacts integrated through the boundary layer by
+        cubic splines. ``"paper-ode"``: the same, with the paper's second-order equations for the multipliers
         instead of exact constraints.
     rtol, atol : float, optional
-        How exact the motion is to be, for steps that are not given: in the end no body should miss its place by
-        more than about ``atol + rtol * size`` [m]. `size` is the body's; errors of angles count at that
-        distance. Defaults: 1e-8, and `rtol` times the size of the smallest body. What flies freely, and times
-        of impacts, are exact to round-off. Errors grow in chaotic motion; contact of several or of joined
-        bodies at several points is of order 2. (Mathematics page, §1.3; page "Choose an accuracy".)
+        Relative and absolute tolerance, for ``step="auto"``: at the end of the run the position error of each
+        body should be at most about ``atol + rtol * size`` [m], where `size` is the size of the body; an error
+        of an angle is multiplied by `size`. Defaults: 1e-8, and `rtol` times the size of the smallest body.
+        Free flight and times of impacts are exact to round-off. Errors grow in chaotic motion. Persistent
+        contact at several points between bodies, or of joined bodies, has order 2. (Mathematics page, §1.3;
+        page "Choose an accuracy".)
     impact_location : {"locate", "project", "work"}
-        ``"locate"`` (default): the time of an impact is found inside the step, the return map is its last
-        polish. ``"project"``: the paper literally, the step is kept and the return map brings the system back
-        to the boundary. ``"work"``: as ``"project"``, with the energy of the return made good.
+        ``"locate"`` (default): the time of an impact is located inside the step (event detection); the return
+        map only refines the position. ``"project"``: as in the paper, the step keeps its length and the return
+        map brings the system back to the boundary. ``"work"``: as ``"project"``, and the energy that the
+        return adds or removes is corrected.
     save_every : int
-        Save each `save_every`-th state only, of those that are saved without it: of all steps where the step is
-        given, else of 200. The first and the last are always saved. Default 1.
+        Save only every `save_every`-th state: of all steps if `step` is a number, otherwise of 200 states at
+        equal times. The first and the last state are always saved. Default 1.
     save_at : float or (n,), optional
-        Which states are saved: a spacing [s], or rising times [s] within the run. Steps end there, so that the
-        states are those of the motion, not of a curve through others. The first and the last are saved too.
-        Default: 200 states at equal times; each step where the step is given.
+        Times at which states are saved: a spacing [s], or increasing times [s] within the run. Steps end at
+        these times, so the states are computed, not interpolated. The first and the last state are saved too.
+        Default: every step if `step` is a number, otherwise 200 states at equal times.
     progress : bool or callable, optional
-        True shows a progress bar (of tqdm, or plain text without it); a function is called with (steps done,
-        steps in all).
+        True shows a progress bar (from tqdm if it is installed, otherwise plain text). A function is called
+        with (number of steps done, total number of steps).
     options : Options, optional
-        Tolerances, boundary layer, limits.
+        Tolerances, boundary layer, and limits of the run.
     throw : bool
-        True (default): a run that fails raises `SimulationError`, whose `solution` holds all up to
-        there. False: the solution is returned, with its `status` and `message`.
+        True (default): a run that fails raises `SimulationError`, whose `solution` has all results up to the
+        failure. False: this solution is returned, with its `status` and `message`.
     save : str or path, optional
-        File that the run is saved to at its end and as it goes (needs ``carom[files]``): whoever kills the run
-        finds in it what was computed until then, and where `resume` goes on. Where that fails on the way, as on
-        a full disk, a `RuntimeWarning` says so and the run goes on. Not for a system in coordinates.
+        File to which the run is saved, repeatedly and at its end (needs ``carom[files]``). If the process is
+        killed, the file has the results up to the last saving, and `resume` continues the run from there. If a
+        saving before the end fails, for example on a full disk, a `RuntimeWarning` says so and the run
+        continues. Not available for a `GeneralizedSystem`.
     save_seconds : float
-        How often it is saved [s of real time]. Default 60; at least ten times what one saving takes.
+        Interval between two savings [s of real time]; at least ten times as long as one saving takes.
+        Default 60.
 
     Returns
     -------
     Solution
-        Of a `GeneralizedSystem` a `generalized.solution.GeneralizedSolution`.
+        The motion, the impacts, and the energy balance; for a `GeneralizedSystem` a
+        `generalized.solution.GeneralizedSolution`.
 
     Raises
     ------
     TypeError
         If `scene`, `options` or `progress` is of another type.
     ValueError
-        For an argument outside its range, a body inside a half-space at the start, or an initial
-        velocity that breaks a joint. Nothing has run then.
+        If an argument is outside its range, a body is inside a half-space at the start, or an initial
+        velocity violates a joint. The run has not started then.
     ImportError
-        For `save` without its packages.
+        If `save` is given and a package that it needs is missing.
     SimulationError
         If the run fails part-way, or cannot be saved at its end, and `throw` is True.
 
     Warns
     -----
     MistakeWarning
-        Of what is nearly always a mistake: a free body that nothing can touch where others touch something, a
-        contact of which neither restitution nor friction is stated, a step longer than the run or far too long
-        for the motion.
+        For an input that is nearly always a mistake: a free body that cannot touch anything although other
+        bodies can, a contact without a stated restitution and friction, a step that is longer than the run or
+        far too long for the motion.
     AccuracyWarning
-        Where energy comes or goes without a name, or a body gets into what it touches.
+        If the energy changes without an explanation in the ledger, or a body penetrates another body or a
+        half-space.
 
     Examples
     --------
-    A ball that falls 0.4 m strikes after sqrt(2 h / g), to the last digit:
+    A ball that falls from h = 0.4 m strikes the floor at t = sqrt(2 h / g), to the last digit:
 
     >>> scene = carom.Scene(gravity=(0, 0, -9.81))
     >>> floor = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1))

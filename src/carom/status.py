@@ -1,4 +1,4 @@
-"""How a run ended, in sentences."""
+"""`Status`: how a run ended, with a message for each status; warnings and errors of a run."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from enum import IntEnum
 
 
 class Status(IntEnum):
-    """Why a run stopped. Each member has a `message`: the cause, and what to change."""
+    """How a run ended. Each member has a `message` with the cause and a remedy."""
 
     SUCCESS = 0
     NO_CONVERGENCE = 1
@@ -27,12 +27,12 @@ class Status(IntEnum):
 
     @property
     def ended(self) -> bool:
-        """Whether the run reached its end, with or without the balance of energy."""
+        """Whether the run reached its end, whatever its energy balance."""
         return self in (Status.SUCCESS, Status.INACCURATE)
 
     @property
     def message(self) -> str:
-        """The sentence for this status."""
+        """The cause of this status and a remedy, in sentences."""
         return _MESSAGES[self]
 
 
@@ -43,77 +43,79 @@ _MESSAGES = {
         "Options.max_iterations."
     ),
     Status.STEP_CUT_TO_NOTHING: (
-        "The step was cut to nothing while looking for an impact; the motion has an event that "
-        "cannot be located. Take a smaller step, or raise Options.gap_tolerance."
+        "The step was halved Options.max_cuts times, but an impact in it could not be located. Take a smaller "
+        "step, or raise Options.gap_tolerance."
     ),
     Status.TOO_MANY_IMPACTS: (
-        "More impacts in one step than Options.max_impacts_per_step: impacts accumulate and no "
-        "contact can be held. Take a smaller step, or a restitution below 1."
+        "One step has more impacts than Options.max_impacts_per_step: impacts accumulate, and no contact "
+        "becomes persistent. Take a smaller step, or a restitution below 1."
     ),
     Status.NOT_FINITE: (
-        "A position or velocity is no longer finite: the motion diverged. Take a smaller step, or "
-        "look at forces and stiffnesses."
+        "A position or velocity is not finite: the motion diverged. Take a smaller step, or check the forces "
+        "and stiffnesses."
     ),
     Status.RETURN_MAP_FAILED: (
-        "The return map to the surface of contact did not converge; the penetration of one step is "
-        "too deep. Take a smaller step."
+        "The return map to the contact surface did not converge: a body penetrates too deeply in one step. "
+        "Take a smaller step."
     ),
     Status.IMPACT_FAILED: (
-        "Something drives a pair that friction holds wedged, so that no impulse stops it, or the equations of "
-        "the boundary layer were not solved; look at W, the friction and the velocity of the last impact."
+        "An impact has no solution: a driver moves a pair that is wedged by friction, so that no impulse stops "
+        "it, or the equations of the boundary layer could not be solved. Check W (the Delassus operator), the "
+        "friction and the velocity of the last impact."
     ),
     Status.CONSTRAINTS_LOST: (
-        "The bilateral constraints could not be met at the end of a step: the mechanism is in a "
-        "position that it cannot leave, or the step is too large. Take a smaller step."
+        "The bilateral constraints could not be satisfied at the end of a step: the mechanism is locked, or "
+        "the step is too large. Take a smaller step."
     ),
     Status.FUNCTION_FAILED: (
-        "A function given by the user raised an error, which is the cause of this one; the solution holds what "
-        "was computed until then."
+        "A function given by the user raised an error (the cause of this one). The solution has all results up "
+        "to then."
     ),
     Status.TOO_MANY_POINTS: (
-        "More than 192 points of a group of bodies are closed at once. Give the shapes fewer vertices."
+        "A group of bodies has more than 192 closed contact points at once. Give the shapes fewer vertices."
     ),
     Status.SINGULAR_METRIC: (
-        "The metric is not positive definite at a position on the way: the coordinates are singular there. "
-        "Take others, or a smaller step."
+        "The metric is not positive definite at a position of the motion: the coordinates are singular there. "
+        "Use other coordinates, or take a smaller step."
     ),
     Status.STEP_TOO_SMALL: (
-        "The step that the tolerances ask for has become too small: a force jumps or grows without "
-        "bound, or rtol and atol are below round-off. Raise them, or give a step."
+        "The tolerances need a step that is too small: a force jumps or grows without bound, or rtol and atol "
+        "are below round-off. Raise rtol and atol, or give a step."
     ),
     Status.INACCURATE: (
-        "The run reached its end, but its energy is off by more than a hundred times "
-        "Options.energy_tolerance, or a body is in what it touches by more than 1e-2 of its size, or contacts "
-        "were solved to no better than a tenth of the greatest speed. The solution is whole; do not trust it "
-        "before a smaller step agrees."
+        "The run reached its end, but it is inaccurate: its energy error is more than a hundred times "
+        "Options.energy_tolerance, or a body penetrates another one or a half-space by more than 1e-2 of its "
+        "size, or a contact problem was solved with an error of more than a tenth of the greatest speed. The "
+        "solution is complete; do not trust it before you have compared it with a smaller step."
     ),
     Status.UNSTABLE: (
-        "Each step, however short it was cut, gained as much energy as it exchanged: springs, dampers or loads "
-        'are too stiff for the step. Take a smaller step, or method="implicit".'
+        "The steps gained as much energy as they exchanged, even after they were shortened: springs, dampers "
+        'or loads are too stiff for the step. Take a smaller step, or method="implicit".'
     ),
     Status.BLOCKED: (
-        "A driver moves a body into what it touches and leaves it no way to yield: no motion meets both. "
-        "Change the motion that is prescribed, or join the body by a spring or a joint that lets it yield."
+        "A driver presses a body against another one or a half-space, and the body cannot move away: no motion "
+        "satisfies both the driver and the contact. Change the prescribed motion, or attach the body by a "
+        "spring, or by a joint that lets it move away."
     ),
-    Status.INTERRUPTED: "The run was interrupted; the solution holds what was computed until then.",
+    Status.INTERRUPTED: "The run was interrupted. The solution has all results up to then.",
 }
 
 
 class AccuracyWarning(UserWarning):
-    """A run has energy without a name, or a body in a surface; `Solution.warnings` says how much."""
+    """A run changes energy without an explanation, or a body penetrates a surface; see `Solution.warnings`."""
 
 
 class MistakeWarning(UserWarning):
-    """Something that is nearly always a mistake: a body that nothing can touch, a step that is far too long."""
+    """The input is nearly always a mistake, for example a body that cannot touch anything, or a huge step."""
 
 
 class SimulationError(RuntimeError):
-    """A run that failed.
+    """A run failed.
 
     Attributes
     ----------
     solution : Solution or None
-        Everything up to the failure; all of the run if it was inaccurate.
+        The results up to the failure; those of the whole run if its status is `Status.INACCURATE`.
     """
 
     def __init__(self, message: str, solution=None):

@@ -221,7 +221,7 @@ def test_workspace_is_no_state():
         ({"vary": {"die.orientation": [[1, 0, 0, 1]]}}, "unit quaternions"),
         ({"vary": {"die.mass": [-1.0]}}, "above 0"),
         ({"vary": {"die.mass": uniform(1, 2)}}, "runs must be given"),
-        ({"vary": {"die.mass": [1.0, 2.0]}, "runs": 3}, "3 values, one a run, got 2"),
+        ({"vary": {"die.mass": [1.0, 2.0]}, "runs": 3}, "3 values, one for each run, got 2"),
         ({"vary": {"die.mass": 1.0}}, "axis over the runs"),
         ({"vary": {"die.mass": "heavy"}}, "a SciPy distribution"),
         ({"sampling": "sobl"}, "did you mean 'sobol'"),

@@ -61,7 +61,7 @@ def test_killed_while_it_is_made(tmp_path):
     (tmp_path / "e.zarr" / ".making").touch()
     (tmp_path / "e.zarr" / "zarr.json").write_text('{"zarr_fo')
     (tmp_path / "e.zarr" / "mine.txt").write_text("keep me")
-    with pytest.raises(FileNotFoundError, match=r"e\.zarr is not there"):
+    with pytest.raises(FileNotFoundError, match=r"e\.zarr does not exist"):
         carom.Ensemble.load(tmp_path / "e.zarr")
     assert same(throw(tmp_path / "e.zarr"), throw())
     assert (tmp_path / "e.zarr" / "mine.txt").read_text() == "keep me"
@@ -70,7 +70,7 @@ def test_killed_while_it_is_made(tmp_path):
 def test_full_disk(tmp_path):
     place = tmp_path / "e.zarr"
     told = python("-c", FULL, str(place))
-    assert "File too large; what was written is kept: call again to go on" in told
+    assert "File too large; the parts written so far are valid: call again to continue" in told
     assert str(place) in told
     assert carom.Ensemble.load(place).counts() == {"pending": 15, "success": 5}
     assert same(throw(place), throw())

@@ -85,7 +85,7 @@ def test_failures_are_kept(tmp_path):
 def test_what_is_no_such_ensemble_is_refused(tmp_path):
     throw(tmp_path / "e.zarr")
     for change in ({"seed": 1}, {"step": 1e-3}, {"runs": 12}):
-        with pytest.raises(ValueError, match="holds another ensemble"):
+        with pytest.raises(ValueError, match="has another ensemble"):
             throw(tmp_path / "e.zarr", **change)
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "notes.txt").write_text("keep me")

@@ -29,7 +29,7 @@ def path(thrown, tmp_path):
 
 @pytest.mark.parametrize("load", LOADERS)
 def test_no_file(load, tmp_path):
-    with pytest.raises(FileNotFoundError, match=r"got '.*none\.nc': there is none"):
+    with pytest.raises(FileNotFoundError, match=r"got '.*none\.nc': it does not exist"):
         load(tmp_path / "none.nc")
 
 
@@ -37,7 +37,7 @@ def test_no_file(load, tmp_path):
 def test_another_kind_of_file(load, tmp_path):
     (tmp_path / "a.nc").write_text("time,x\n0,1\n")
     with pytest.raises(
-        ValueError, match=r"a\.nc': it is not HDF5.*allowed is a file that Solution\.save"
+        ValueError, match=r"a\.nc': it is not HDF5.*give a file that Solution\.save"
     ):
         load(tmp_path / "a.nc")
     with pytest.raises(ValueError, match="it is a folder"):
@@ -113,7 +113,7 @@ def test_hdf5_that_fails(thrown, path, monkeypatch):
         raise RuntimeError("Unable to flush file's cached information")
 
     monkeypatch.setattr(writing, "_create", fails)
-    with pytest.raises(OSError, match=r"run\.nc' could not be written, and is as it was: HDF5"):
+    with pytest.raises(OSError, match=r"run\.nc' could not be written and is unchanged: HDF5"):
         thrown.save(path)
     monkeypatch.setattr(writing, "_create", writes_nothing)
     with pytest.raises(OSError, match="HDF5 has not written 'time' as it was given"):
@@ -145,12 +145,16 @@ def test_a_copy_is_the_same(thrown, path, tmp_path):
 def test_a_full_disk_does_not_end_a_run(thrown, path, monkeypatch):
     monkeypatch.setattr(disk.os, "fsync", full)
     with (
-        pytest.warns(RuntimeWarning, match="could not be saved to .* and goes on: .*No space left"),
-        pytest.raises(carom.SimulationError, match="ended and could not be saved") as lost,
+        pytest.warns(
+            RuntimeWarning, match="could not be saved to .* and continues: .*No space left"
+        ),
+        pytest.raises(
+            carom.SimulationError, match="ended, but its result could not be saved"
+        ) as lost,
     ):
         carom.simulate(die(), 0.25, step=5e-3, save=path, save_seconds=0.0)
     assert differences(lost.value.solution, thrown) == []
-    with pytest.warns(RuntimeWarning, match="ended and could not be saved"):
+    with pytest.warns(RuntimeWarning, match="ended, but its result could not be saved"):
         kept = carom.simulate(die(), 0.25, step=5e-3, save=path, throw=False)
     assert kept.success
     assert differences(carom.Solution.load(path), thrown) == []  # what was there before

@@ -85,7 +85,7 @@ def test_a_run_in_memory_that_has_gone_on_has_no_state_to_save(tmp_path):
     assert capture(short._run) is not None
     short._run.clock["now"] = 0.2  # as if somebody had gone on with it
     short.save(tmp_path / "run.nc")
-    with pytest.raises(ValueError, match="it holds no checkpoint"):
+    with pytest.raises(ValueError, match="it has no checkpoint"):
         carom.resume(tmp_path / "run.nc", duration=0.3)
 
 
@@ -127,5 +127,7 @@ def test_a_run_that_was_stopped_does_not_go_on():
 
     s = carom.simulate(die(), 0.5, step=5e-3, progress=stop, throw=False)
     assert s.status is carom.Status.INTERRUPTED
-    with pytest.raises(ValueError, match="the run must have come to its end to go on from there"):
+    with pytest.raises(
+        ValueError, match="the run must have reached its end to continue from there"
+    ):
         s.simulate(0.1)

@@ -64,7 +64,7 @@ def test_changed_by_another_program(path):
 
 def test_no_file_to_read_from(tmp_path):
     os.mkfifo(tmp_path / "run.nc")
-    with pytest.raises(ValueError, match=REFUSED + "it is no file with contents"):
+    with pytest.raises(ValueError, match=REFUSED + "it is not a regular file"):
         carom.Solution.load(tmp_path / "run.nc")
 
 

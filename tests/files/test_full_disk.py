@@ -53,9 +53,9 @@ def test_full_disk(full, thrown, tmp_path):
         env=environment, capture_output=True, text=True, check=True, timeout=300,
     )  # fmt: skip
     told = dict(line.split(": ", 1) for line in done.stdout.splitlines())
-    assert "File too large; nothing was written, what was there is as it was" in told["save"]
+    assert "File too large; nothing was written, an old file is unchanged" in told["save"]
     assert "run.nc" in told["save"]
-    assert told["simulate"].startswith("The run ended and could not be saved: [Errno ")
+    assert told["simulate"].startswith("The run ended, but its result could not be saved: [Errno ")
     assert told["simulate"].endswith("[]")  # the solution that it holds is the run
     assert "the run could not be saved to" in told["said"]
     assert told["then"] == "[]"

@@ -184,7 +184,7 @@ def test_no_checkpoint(tmp_path):
     path = tmp_path / "run.nc"
     part = carom.simulate(die(), 0.2, step=5e-3, progress=stopped_at(0.5), throw=False)
     part.save(path)
-    with pytest.raises(ValueError, match=r"run\.nc': it holds no checkpoint"):
+    with pytest.raises(ValueError, match=r"run\.nc': it has no checkpoint"):
         carom.resume(path)
 
 
@@ -195,7 +195,7 @@ def test_a_run_that_failed_does_not_go_on(tmp_path):
     with pytest.raises(carom.SimulationError):
         carom.simulate(ball(), 4.0, step=0.05, options=options, save=path)
     assert carom.Solution.load(path).status is carom.Status.TOO_MANY_IMPACTS
-    with pytest.raises(ValueError, match="it ended by itself: More impacts"):
+    with pytest.raises(ValueError, match="it ended by itself: One step has more impacts"):
         carom.resume(path)
 
 

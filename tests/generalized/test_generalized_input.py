@@ -20,7 +20,7 @@ def build(**changes):
 @pytest.mark.parametrize(
     ("changes", "sentence"),
     [
-        (dict(kinetic_energy=DX**2), "kinetic_energy or metric, and not both"),
+        (dict(kinetic_energy=DX**2), "kinetic_energy or metric must be given, and not both"),
         (dict(metric=None, kinetic_energy=DX**2 + DY), "quadratic form"),
         (dict(metric=None, kinetic_energy=DX**2 + 1), "quadratic form"),
         (dict(metric=sp.eye(3)), r"shape \(2, 2\)"),
@@ -31,7 +31,7 @@ def build(**changes):
         (dict(forces=[1]), "forces must be 2"),
         (dict(rates=[DX**2]), "linear in the velocities"),
         (dict(rates=[DX + 1]), "linear in the velocities"),
-        (dict(constraints=[X - 1]), "must meet the constraints"),
+        (dict(constraints=[X - 1]), "must satisfy the constraints"),
         (dict(position=[0, np.nan]), "position must be finite"),
         (dict(velocity=[0]), "velocity must have shape"),
         (dict(parameters={sp.Symbol("k"): "no"}), "parameters"),
@@ -66,7 +66,7 @@ def test_a_start_inside_a_contact_or_against_a_constraint():
     with pytest.raises(ValueError, match="inside a contact, got the gap -1 of 'floor'"):
         carom.simulate(system, 1.0, step=0.1)
     system = build(constraints=[X], velocity=[1, 0])
-    with pytest.raises(ValueError, match="velocity must meet the constraints"):
+    with pytest.raises(ValueError, match="velocity must satisfy the constraints"):
         carom.simulate(system, 1.0, step=0.1)
     run = carom.simulate(system, 1.0, step=0.1, options=carom.Options(project_start=True))
     np.testing.assert_array_equal(run.v[:, 0], 0.0)

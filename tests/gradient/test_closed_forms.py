@@ -67,7 +67,7 @@ def test_a_ball_that_slides_through_its_impact():
     # what pushes sideways turns slip: P_y = -mu P_n v_y / v_x
     np.testing.assert_allclose(velocity[1, 1], 1 - mu * (1 + e) * v / 3.0, rtol=1e-10)
     np.testing.assert_allclose(found.impulse[0, 0, F], 0.0, atol=1e-10)
-    left = [q for q in found.margins if "slip left" in q.what]
+    left = [q for q in found.margins if "slip at the end" in q.what]
     np.testing.assert_allclose(left[0].value, 3 - 3.5 * mu * (1 + e) * v, rtol=1e-11)
     np.testing.assert_allclose(left[0].reach[F], left[0].value / (3.5 * (1 + e) * v), rtol=1e-9)
 

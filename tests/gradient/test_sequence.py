@@ -24,7 +24,9 @@ def planar(duration=0.42, mu=0.2, **more):
 
 def test_points_that_strike_as_one_have_derivatives_in_their_plane():
     run = planar(0.26)
-    with pytest.raises(ValueError, match=r"strikes with several points, which part.*velocity\.y"):
+    with pytest.raises(
+        ValueError, match=r"several points, which do not stay together.*velocity\.y"
+    ):
         carom.sensitivities(run, FLAT)
     found = carom.sensitivities(run, FLAT, throw=False)
     good = [
@@ -49,21 +51,21 @@ def test_a_contact_that_is_held_ends_the_derivatives_and_those_before_stay():
     ball = scene.add_body(carom.Sphere(0.1), mass=1.0, position=(0, 0, 0.15), name="ball")
     scene.add_contact(ball, floor, restitution=0.3, friction=0.1)
     run = carom.simulate(scene, 0.5, step=1e-3)
-    with pytest.raises(ValueError, match=r"'ball' is held from then on at t = 0\.1"):
+    with pytest.raises(ValueError, match=r"'ball' begins a persistent contact at t = 0\.1"):
         carom.sensitivities(run, "ball.position")
     found = carom.sensitivities(run, ("ball.position", "restitution"), throw=False)
     assert np.all(np.isnan(found.final.position[0, :, 2:]))
     assert np.all(np.isfinite(found.impact_time[:3]))
     np.testing.assert_allclose(found.impact_time[0, 2], 1 / np.sqrt(2 * 9.81 * 0.05), rtol=1e-10)
     assert np.all(np.isfinite(found.evaluate(0.11).position))
-    assert "no derivative: 'ball' is held" in repr(found)
+    assert "no derivative: 'ball' begins a persistent contact" in repr(found)
 
 
 def test_several_points_at_once_have_none():
     run = planar(0.3, velocity=(0.5, 0, -0.5), angular_velocity=(0, 0, 3))  # flat on its face
     assert run.impacts.together[0] == 4
     found = carom.sensitivities(run, ("die.position", "friction"), throw=False)
-    assert "not of one point" in found.notes[0]
+    assert "with several points" in found.notes[0]
     assert np.all(np.isnan(found.final.velocity))
 
 
@@ -119,11 +121,11 @@ def test_margins_are_differentiated():
 
 def test_what_sticks_says_how_much_friction_is_left():
     found = carom.sensitivities(throw(mu=1.2), NAMES)
-    left = [m for m in found.margins if "friction beyond" in m.what or "impulse after" in m.what]
+    left = [m for m in found.margins if "friction above" in m.what or "impulse after" in m.what]
     k = found.columns["die-ground.friction"]
     assert left
     for m in left:
-        if "friction beyond" in m.what and m.impact == 0:
+        if "friction above" in m.what and m.impact == 0:
             assert m.gradient[k] == pytest.approx(1.0, abs=1e-9)
         assert m.value > 0.0
 

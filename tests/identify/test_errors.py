@@ -63,7 +63,7 @@ def test_bad_scales(make):
     ("change", "error", "message"),
     [
         ({"t": T[:4]}, ValueError, r"position must have shape \(4, 3\)"),
-        ({"orientation": np.stack([Q, Q], axis=1)}, ValueError, "of as many bodies as position"),
+        ({"orientation": np.stack([Q, Q], axis=1)}, ValueError, "have as many bodies as position"),
         ({"orientation": 2 * Q}, ValueError, "of length 2 at sample 0"),
         ({"start": (1, 2)}, TypeError, "start must be a State"),
         (

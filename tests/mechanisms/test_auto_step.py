@@ -213,7 +213,7 @@ def test_a_step_too_small_ends_the_run():
     """A damper that stops the bob within 1e-17 s: no explicit step is short enough."""
     s = carom.simulate(stiff(1e17), 1.0, step="auto", throw=False)
     assert s.status is carom.Status.STEP_TOO_SMALL
-    assert "raise them" in s.message.lower()
+    assert "Raise rtol and atol" in s.message
     assert np.all(np.isfinite(s.position))
 
 
@@ -229,9 +229,9 @@ def test_a_few_steps():
     ("arguments", "message"),
     [
         ({"step": "fast"}, r"""step must be a number \[s\] or "auto", got 'fast'"""),
-        ({"method": "rk4"}, r"""step must be given for method='rk4': only "rk5" or "rk8" estimate their"""),
-        ({"method": "rattle"}, r"step must be given for method='rattle'"),
-        ({"impact_location": "project"}, r"step must be given for impact_location='project'"),
+        ({"method": "rk4"}, r"""step must be a number for method='rk4': only "rk5" or "rk8" estimate their"""),
+        ({"method": "rattle"}, r"step must be a number for method='rattle'"),
+        ({"impact_location": "project"}, r"step must be a number for impact_location='project'"),
         ({"rtol": 0.0}, r"rtol must be finite and at least 1e-13 and at most 0.1, got 0.0"),
         ({"rtol": 1.0}, r"rtol must be .* got 1.0"),
         ({"rtol": math.nan}, r"rtol must be .* got nan"),

@@ -120,11 +120,11 @@ def test_a_motor_of_constant_speed_turns_a_crank():
 def test_a_motor_that_does_not_fit_the_start_is_refused():
     scene, first, _ = two_wheels()
     scene.add_constraint(constraints.Driver(first, rate=2.0), name="motor")
-    with pytest.raises(ValueError, match=r"velocity breaks 'motor' \(Driver\).* missed by 2"):
+    with pytest.raises(ValueError, match=r"velocity violates 'motor' \(Driver\).* value by 2"):
         carom.simulate(scene, 1.0, step=0.1)
     scene, first, _ = two_wheels()
     scene.add_constraint(constraints.Driver(first, motion=lambda t: (0.3, 0.0, 0.0)), name="motor")
-    with pytest.raises(ValueError, match=r"position breaks 'motor' \(Driver\)"):
+    with pytest.raises(ValueError, match=r"position violates 'motor' \(Driver\)"):
         carom.simulate(scene, 1.0, step=0.1)
 
 

@@ -87,7 +87,7 @@ def arm():
 
 def test_a_start_that_does_not_fit_is_refused_or_brought_there():
     with pytest.raises(
-        ValueError, match=r"position breaks 'hinge' \(Revolute\): its error must be 0"
+        ValueError, match=r"position violates 'hinge' \(Revolute\): its error must be 0"
     ):
         carom.simulate(arm(), 0.1, step=0.01)
     solution = carom.simulate(arm(), 0.1, step=0.01, options=carom.Options(project_start=True))

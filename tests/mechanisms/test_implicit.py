@@ -120,5 +120,5 @@ def test_what_it_does_not_do_is_refused():
     scene.add_force(forces.JointFriction(joint, 1.0))
     with pytest.raises(ValueError, match="dry friction"):
         carom.simulate(scene, 0.1, step=0.01, method="implicit")
-    with pytest.raises(ValueError, match="step must be given for method='implicit'"):
+    with pytest.raises(ValueError, match="step must be a number for method='implicit'"):
         carom.simulate(scene, 0.1, method="implicit")

@@ -190,7 +190,7 @@ def test_it_is_no_constraint():
 def test_methods_of_momenta_refuse_it(method):
     scene, joint = linked("Revolute", floats=False, turned=False)
     scene.add_force(forces.JointInertia(joint, 1.0))
-    with pytest.raises(ValueError, match=r"method must be .* where joints have inertia, got"):
+    with pytest.raises(ValueError, match=r"method must be .* if joints have inertia, got"):
         carom.simulate(scene, 0.1, step=1e-3, method=method)
 
 

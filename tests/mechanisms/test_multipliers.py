@@ -154,5 +154,5 @@ def test_refuses_what_it_cannot_say():
         second_order_multipliers(carom.simulate(scene, 0.01, step=0.01))
     other = scene.add_body(mass=1, inertia=[1, 1, 1], position=(5, 0, 0))
     scene.add_joint(joints.Distance((5, 0, 1), (5, 0, 0)), GROUND, other)
-    with pytest.raises(ValueError, match="without held contacts"):
+    with pytest.raises(ValueError, match="without persistent contacts"):
         second_order_multipliers(carom.simulate(scene, 0.02, step=0.01))

@@ -120,7 +120,5 @@ def test_steps_of_varying_length(make):
 def test_dry_friction_is_refused(method):
     scene, first, _ = two_rods(True)
     scene.add_force(forces.JointFriction(first, 1.0))
-    with pytest.raises(
-        ValueError, match=r"method must be .* where joints have dry friction, got '"
-    ):
+    with pytest.raises(ValueError, match=r"method must be .* if joints have dry friction, got '"):
         carom.simulate(scene, 1.0, step=0.01, method=method)

@@ -248,8 +248,8 @@ def test_bad_stops_are_refused():
         scene.add_stop(joint, lower=0.0, restitution=1.5)
     with pytest.raises(ValueError, match="coordinate must be below 1"):
         scene.add_stop(joint, lower=0.0, coordinate=1)
-    with pytest.raises(ValueError, match='must be "locate" where joints have stops'):
+    with pytest.raises(ValueError, match='must be "locate" if joints have stops'):
         carom.simulate(scene, 1.0, step=0.1, impact_location="project")
     scene.add_stop(joint, lower=0.5, name="passed")
-    with pytest.raises(ValueError, match=r"stop 'passed' .* must not be passed at the start"):
+    with pytest.raises(ValueError, match=r"stop 'passed' .* must not be exceeded at the start"):
         carom.simulate(scene, 1.0, step=0.1)

@@ -46,7 +46,7 @@ def test_sources(tmp_path):
     ("source", "error", "message"),
     [
         ("no/such.xml", FileNotFoundError, "no model file 'no/such.xml'"),
-        ("<mujoco><worldbody>", ValueError, "no XML that can be read"),
+        ("<mujoco><worldbody>", ValueError, "not valid XML"),
         ("<sdf/>", ValueError, "root <sdf>"),
         ("<mujoco colour='red'/>", ValueError, "unrecognized attribute: 'colour'"),
         (
@@ -54,7 +54,7 @@ def test_sources(tmp_path):
             ValueError,
             "mass and inertia",
         ),
-        ("<mujoco/>", ValueError, "something that moves"),
+        ("<mujoco/>", ValueError, "a body that moves"),
         (3, TypeError, "source must be a path"),
     ],
 )
@@ -88,7 +88,7 @@ def test_urdf():
     assert model.scene["virtual"].mass == pytest.approx(4e-9)
     said = str(model.report)
     assert "'package://r/arm.stl' was not found; left out" in said
-    assert "link 'arm': its inertia is that of no body" in said
+    assert "link 'arm': its inertia is impossible for a rigid body" in said
     assert "link 'virtual': moves and has no mass" in said
     assert model.scene["elbow:upper"].upper == 1.0
     floats = carom.load_model(URDF, free_root=True)
@@ -174,4 +174,4 @@ def test_flags_of_the_model():
     assert not np.any(model.scene.gravity)
     assert model.scene.contact_default is None
     assert not model.scene.half_spaces
-    assert "switches off limits of joints; they are there" in str(model.report)
+    assert "switches off limits of joints; the scene has them" in str(model.report)

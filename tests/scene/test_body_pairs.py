@@ -95,7 +95,7 @@ def test_body_without_shape():
     ball = scene.add_body(Sphere(1), mass=1)
     for pair in ((bare, ball), (ball, bare)):
         with pytest.raises(
-            ValueError, match=r"body must have a shape to touch with, got Body\('bare'"
+            ValueError, match=r"body must have a shape for contact, got Body\('bare'"
         ):
             scene.add_contact(*pair)
 
@@ -154,7 +154,7 @@ def test_all_pairs_with_materials_that_no_rule_combines():
     for k, e in enumerate((0.1, 0.2)):
         place = (9 + 3 * k, 0, 5)
         scene.add_body(Sphere(1), mass=1, position=place, material=Material(e, 0), name=f"m{k}")
-    with pytest.raises(ValueError, match=r"material must be given for both|combine must say"):
+    with pytest.raises(ValueError, match=r"material must be given for both|combine must be given"):
         scene.validate()
 
 
@@ -166,7 +166,7 @@ def test_simulate_says_what_it_does_not_do_yet():
         scene = Scene()
         ground = scene.add_half_space((0, 0, 0), (0, 0, 1))
         scene.add_contact(scene.add_body(shape, mass=1, position=(0, 0, 3)), ground)
-        with pytest.raises(ValueError, match=r'must be "locate" where shapes are curved'):
+        with pytest.raises(ValueError, match=r'must be "locate" if shapes are curved'):
             carom.simulate(scene, 1.0, step=0.1, impact_location="work")
 
 

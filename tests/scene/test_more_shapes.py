@@ -195,9 +195,7 @@ def test_mesh_without_parts_cannot_touch_and_says_how():
     scene = Scene()
     body = scene.add_body(Mesh(vertices, faces), density=1, position=(0, 0, 5))
     ground = scene.add_half_space((0, 0, 0), (0, 0, 1))
-    with pytest.raises(
-        ValueError, match=r"is not convex and has no parts to touch with; give them"
-    ):
+    with pytest.raises(ValueError, match=r"is not convex and has no parts for contact; give them"):
         scene.add_contact(body, ground)
 
 
@@ -212,9 +210,9 @@ VERTICES, FACES = cube()
         (
             VERTICES,
             [*FACES[:-1], FACES[-1][::-1]],
-            "faces must be oriented alike.* twice in one sense",
+            "faces must have one orientation.* twice in one direction",
         ),
-        (VERTICES, [*FACES, FACES[0]], "twice in one sense"),
+        (VERTICES, [*FACES, FACES[0]], "twice in one direction"),
         (VERTICES, [*FACES, (0, 0, 1)], r"faces must not be degenerate, got face 12 \[0, 0, 1\]"),
         (VERTICES, [*FACES, (0, 1, 8)], "faces must be numbers of vertices from 0 to 7, got 8"),
         (VERTICES, [*FACES, (0, 1, -1)], "faces must be numbers of vertices from 0 to 7, got -1"),

@@ -31,7 +31,7 @@ def test_bodies_that_nothing_can_touch():
     scene = floor_and("ball", "egg", "nut")
     scene.add_contact("ball", "floor", restitution=0.5)
     (said,) = warned(scene)
-    assert said.startswith("Nothing can touch 'egg', 'nut': what is in the way is passed through.")
+    assert said.startswith("Nothing can touch 'egg', 'nut': no contacts are computed for them.")
     assert scene.check().remarks == (said,)
     assert str(scene.check()) == f"3 bodies, 0 constraint rows: 18 degrees of freedom\n{said}"
     scene.add_contact("egg", "floor", restitution=0.5)
@@ -45,7 +45,7 @@ def test_a_body_without_a_shape_among_pairs_that_touch_by_default():
     scene.set_contact_default(restitution=0.5, friction=0.1)
     scene.add_body(mass=1, inertia=(1, 1, 1), position=(5, 0, 1), name="point")
     (said,) = warned(scene)
-    assert said.startswith("Nothing can touch 'point', 'point' for want of a shape:")
+    assert said.startswith("Nothing can touch 'point' ('point' without a shape):")
 
 
 @pytest.mark.parametrize(
@@ -77,8 +77,8 @@ def test_contacts_of_which_nothing_is_stated():
     scene.add_contact("ball", "floor")
     scene.add_contact("egg", "floor", friction=0.1)
     said = (
-        "Of 'ball-floor' neither restitution nor friction is stated: taken are 0.5 and 0. State them, as in "
-        "restitution=0.5, friction=0.3."
+        "Restitution and friction are not given for 'ball-floor': the defaults 0.5 and 0 are used. "
+        "Give them, for example restitution=0.5, friction=0.3."
     )
     assert warned(scene) == [said]
     scene = floor_and("ball")
@@ -105,7 +105,7 @@ def test_a_step_that_is_longer_than_the_run():
     scene = floor_and("ball")
     scene.add_contact("ball", "floor", restitution=0.5)
     (said,) = warned(scene, 0.05, step=0.1)
-    assert said.startswith("step=0.1 s is longer than the run of 0.05 s, which takes one step.")
+    assert said.startswith("step=0.1 s is longer than the run of 0.05 s, so the run is one step.")
     assert warned(scene, 0.05, step=0.05) == []
 
 
@@ -121,7 +121,7 @@ def test_a_step_that_is_far_too_long_for_the_motion():
     # A pendulum of 1 m swings with 3.13 rad/s: it turns by 1.57 of its phase in half a second, by .16 in .05 s.
     (said,) = warned(pendulum(0.2), 10.0, step=0.5)
     assert said.startswith(
-        "step=0.5 s is far too long for the motion of 'bob', whose velocity turns too much"
+        "step=0.5 s is far too long for the motion of 'bob': its velocity changes too much"
     )
     assert said.endswith("Take step=0.04 or less, or leave step out.")
     assert warned(pendulum(0.2), 2.0, step=0.05) == []

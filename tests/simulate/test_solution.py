@@ -159,7 +159,7 @@ def test_table_of_impacts(bounce):
     assert isinstance(records[0].time, float)
     assert records[0].law == "newton"
     assert hits[-1].time == hits.time[-1]
-    with pytest.raises(IndexError, match=f"impact {n} of {n}"):
+    with pytest.raises(IndexError, match=f"impact {n}: the table has {n}"):
         hits[n]
     assert f"{n} impacts" in repr(hits)
 

@@ -48,7 +48,7 @@ def test_a_system_in_coordinates_is_not_shown(tmp_path):
     from carom.generalized.solution import GeneralizedSolution
 
     run = object.__new__(GeneralizedSolution)
-    with pytest.raises(TypeError, match="of a GeneralizedSystem: its coordinates do not say"):
+    with pytest.raises(TypeError, match="of a GeneralizedSystem: its coordinates do not give"):
         carom.view(run, export=tmp_path / "run.html")
 
 

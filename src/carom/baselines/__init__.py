@@ -1,6 +1,6 @@
-"""Classical integrators that the method is compared with.
+"""Classical integrators for comparison with the methods of carom.
 
-They are written to be read and to be compared with, in plain NumPy; they make no claim of speed.
+They are written in plain NumPy, for readers and for comparisons; they are not optimised for speed.
 """
 
 from carom.baselines.hht import HHTRun, hht_alpha

@@ -1,4 +1,4 @@
-"""What Moreau-Jean needs of a scene: one body, one half-space, and the gap between them."""
+"""The data of a scene for Moreau-Jean: one body, one half-space, and the gap between them."""
 
 from __future__ import annotations
 

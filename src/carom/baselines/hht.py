@@ -33,10 +33,10 @@ class HHTRun:
     t : (T,) array
         Times [s].
     position, velocity, acceleration : (T, n) arrays
-        Coordinates q, their rates, and the method's accelerations (those belong to the time
-        ``t - alpha h``, and are of first order if read at t).
+        Coordinates q, their rates, and the accelerations of the method (these belong to the time
+        ``t - alpha h``; at t they are accurate to first order).
     success : bool
-        Whether the end was reached.
+        Whether the run reached its end.
     message : str
         How the run ended, in a sentence.
     iterations : (T - 1,) array
@@ -73,19 +73,20 @@ def hht_alpha(
     position, velocity : array_like, shape (n,)
         State at t = 0.
     duration, step : float
-        Time to cover and time step [s], at most a million steps; the last is shortened to end at `duration`.
+        Duration of the run and time step [s], at most a million steps; the last step is shortened to end at
+        `duration`.
     alpha : float
-        Parameter in [0, 1/3]; default 0 (trapezoidal rule, no numerical damping).
+        Parameter in [0, 1/3]. Default 0 (trapezoidal rule, no numerical damping).
     jacobian : callable, optional
-        ``jacobian(t, q, v)`` returns ``(df/dq, df/dv)``, each (n, n); default central differences.
+        ``jacobian(t, q, v)`` returns ``(df/dq, df/dv)``, each (n, n). Default: central differences.
     tolerance, max_iterations : float, int
-        In (0, 1), and at most 10 000. Newton stops when the last change of every velocity is below
-        `tolerance` of the fastest.
+        Tolerance in (0, 1), and at most 10 000 iterations. Newton's iteration stops when the last change of
+        every velocity is below `tolerance` times the greatest velocity.
 
     Returns
     -------
     HHTRun
-        Up to the failing step, with ``success`` False, if Newton's iteration does not converge.
+        The motion. If Newton's iteration does not converge, the motion up to that step, with ``success`` False.
 
     Raises
     ------

@@ -5,12 +5,12 @@ The layer equation ``(g_11 v)' - L^1_11 g_11 v v - f_1 = 0`` with ``g_11 = m (b/
 
     xddot = phi(x, v) = v^2/x + a x/b ,     a = v0^2/(2 b l)  (compression),  e^2 a  (restitution)
 
-Every term of the undivided equation is O(1/x), which is why a classical integrator has a hard time.
+Every term of the undivided equation is O(1/x), which makes it difficult for a classical integrator.
 
-How many steps it takes before a run completes depends on the residual that Newton's iteration sees,
-though not the solution that it finds. On the divided equation, used here, alpha = 0, e = 1 and
-delta = 0.8 give seven, the paper's count. On the undivided one the steps 5 to 7 jump over the whole
-layer in one step, to a root without meaning, and proper runs start at 8.
+The smallest number of steps for a complete run depends on the residual of Newton's iteration, although the
+solution does not. With the divided equation, which is used here, alpha = 0, e = 1 and delta = 0.8 need seven
+steps, as in the paper. With the undivided equation, runs of 5 to 7 steps jump over the whole layer in one step,
+to a meaningless root, and proper runs start at 8 steps.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _MOST_INTERVALS = 3  # a run that has not left after three times the exact durat
 
 @dataclass(frozen=True)
 class LayerRun:
-    """What an integrator made of the layer; it may have failed half-way.
+    """A passage through the layer by an integrator; the run may have failed.
 
     Parameters
     ----------
@@ -64,11 +64,11 @@ def hht_alpha_layer(
 ) -> LayerRun:  # fmt: skip
     """Integrate one frictionless passage through the layer by HHT-alpha.
 
-    A step from n to n+1 solves ``a_{n+1} = (1 - alpha) phi_{n+1} + alpha phi_n`` with Newmark's
-    formulas, by plain Newton iterations that start from the previous acceleration. A step that
-    leads to x <= 0, where the equation has no meaning, fails the run. The run goes on until x >= b.
-    The phase (compression or restitution) is that of the beginning of the step: inside a step the
-    force is smooth, and the turning point errs by less than one step if e < 1.
+    A step from n to n+1 solves ``a_{n+1} = (1 - alpha) phi_{n+1} + alpha phi_n`` with Newmark's formulas, by
+    plain Newton iterations that start from the previous acceleration. The run fails at a step to x <= 0, where
+    the equation is not defined. It ends when x >= b. The phase (compression or restitution) is that at the
+    beginning of the step, so the force is smooth inside a step; for e < 1 the error of the turning point is
+    less than one step.
 
     Parameters
     ----------
@@ -77,7 +77,7 @@ def hht_alpha_layer(
     restitution : float
         Kinematic coefficient e in (0, 1].
     mass : float
-        Effective mass ``1 / W_nn`` [kg]. It scales the force only.
+        Effective mass ``1 / W_nn`` [kg]. It only scales the force.
     width, penetration : float
         Width b [m] and greatest penetration delta in (0, 1) of the layer.
     steps : int
@@ -85,12 +85,13 @@ def hht_alpha_layer(
     alpha : float
         Parameter of the method in [0, 1/3]; default 0, average acceleration.
     tolerance, max_iterations : float, int
-        In (0, 1), and at most 10 000. Newton stops at ``|change of a| <= tolerance (|a| + v0^2/b)``.
+        Tolerance in (0, 1), and at most 10 000 iterations. Newton's iteration stops at
+        ``|change of a| <= tolerance (|a| + v0^2/b)``.
 
     Returns
     -------
     LayerRun
-        With ``completed`` False and the reason in ``message`` if the method cannot run.
+        The passage. If the method fails, ``completed`` is False and ``message`` has the reason.
     """
     v0, e, b, reach, compression = layer_constants(speed, restitution, width, penetration)
     m = checks.scale("mass", mass, "kg")
@@ -142,10 +143,10 @@ def hht_alpha_layer(
 
 
 def completing_steps(speed, restitution, *, penetration, alpha=0.0, most=20) -> tuple[int, ...]:
-    """Return every number of steps up to `most` (1 to 1000) with which HHT-alpha gets through the layer.
+    """Return all numbers of steps up to `most` (1 to 1000) with which HHT-alpha passes the layer.
 
-    Mass and width only scale the equation. The set may have holes: a step so large that it jumps
-    over the whole layer (a root of no meaning) also counts as getting through.
+    Mass and width only scale the equation. The numbers may have gaps, because a step that jumps over the whole
+    layer (to a meaningless root) also counts as a passage.
     """
     return tuple(
         n
@@ -157,10 +158,10 @@ def completing_steps(speed, restitution, *, penetration, alpha=0.0, most=20) -> 
 
 
 def first_completing_steps(speed, restitution, *, penetration, alpha=0.0, most=20) -> int | None:
-    """Return the least number of steps that completes, None if it is above `most`.
+    """Return the smallest number of steps with which HHT-alpha passes the layer; None if it is above `most`.
 
-    Seven for e = 1, delta = 0.8, alpha = 0, as the paper says. For alpha from 0.1 on it is five,
-    by a jump over the layer in one step (errors above 100 %); `completing_steps` shows the gap.
+    It is seven for e = 1, delta = 0.8, alpha = 0, as in the paper. For alpha of 0.1 or more it is five, by a
+    jump over the layer in one step (with errors above 100 %); `completing_steps` shows the gap.
     """
     found = completing_steps(speed, restitution, penetration=penetration, alpha=alpha, most=most)
     return found[0] if found else None

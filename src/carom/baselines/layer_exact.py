@@ -1,4 +1,4 @@
-"""The exact motion through the boundary layer under law A, to measure errors against."""
+"""The exact motion through the boundary layer under law A, a reference for errors."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def layer_motion(time, speed, restitution, *, width, penetration):
     width : float
         Width b of the layer [m].
     penetration : float
-        Greatest penetration delta, as a part of the width, in (0, 1).
+        Greatest penetration delta, as a fraction of the width, in (0, 1).
 
     Returns
     -------

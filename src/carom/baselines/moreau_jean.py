@@ -1,13 +1,13 @@
 """Moreau-Jean time stepping for one body and one contact (Moreau 1988, Jean 1999).
 
-Events are not located: a step of length h holds the impact. With v = (xdot world, W body axes)::
+Events are not located: an impact is part of a step of length h. With v = (xdot world, W body axes)::
 
     M (v+ - v) = h (theta f+ + (1 - theta) f) + G^T P
     active if gap(q + h/2 v) <= 0:   0 <= u_n+ + e min(u_n, 0)  _|_  P_n >= 0 ,  Coulomb on u_t+
-    q+ = Exp_q(h (theta v+ + (1 - theta) v)) ,       u = G v ,  G at the predicted place q + h/2 v
+    q+ = Exp_q(h (theta v+ + (1 - theta) v)) ,       u = G v ,  G at the predicted position q + h/2 v
 
-First order in time once there is an impact: the impact belongs to the whole step. Penetrations of
-order h are part of the method.
+With impacts the method has order 1 in time, because an impact belongs to the whole step. It allows penetrations
+of order h.
 """
 
 from __future__ import annotations
@@ -60,16 +60,18 @@ def moreau_jean(scene, duration, *, step, theta=0.5) -> MoreauJeanRun:
     Parameters
     ----------
     scene : Scene
-        One body, one half-space, one contact; no joints, no forces but gravity. The contact's
-        coefficient of restitution is taken as Newton's, whatever its impact law.
+        One body, one half-space and one contact; no joints, and no forces except gravity. The coefficient of
+        restitution of the contact is used in Newton's law, whatever its impact law is.
     duration, step : float
-        Time to cover and time step [s], at most a million steps; the last is shortened to end at `duration`.
+        Duration of the run and time step [s], at most a million steps; the last step is shortened to end at
+        `duration`.
     theta : float
-        Weight of the end of the step, in [0.5, 1]; default 0.5, second order in free motion.
+        Weight of the end of the step, in [0.5, 1]. Default 0.5, which has order 2 in free motion.
 
     Returns
     -------
     MoreauJeanRun
+        The motion.
 
     Raises
     ------

@@ -14,13 +14,13 @@ from carom import checks
 
 
 def solve_one_contact(inverse_mass, velocity, friction) -> np.ndarray:
-    """Return the impulse p (3,) [N s] that meets the conditions of Signorini and Coulomb.
+    """Return the impulse p (3,) [N s] that satisfies the conditions of Signorini and Coulomb.
 
     If ``c_n >= 0`` the contact opens, p = 0. Otherwise the normal row is eliminated by w_n = 0::
 
         A = W_tt - W_tn W_nt / W_nn ,   b = c_t - W_tn c_n / W_nn ,   w_t = A p_t + b
 
-    Stick, ``p_t = -A^-1 b``, if that is inside the cone. Else sliding, ``w_t = -alpha p_t`` with
+    It sticks, ``p_t = -A^-1 b``, if that is inside the cone. Otherwise it slides, ``w_t = -alpha p_t`` with
     alpha > 0, hence ``p_t = -(A + alpha I)^-1 b``; alpha is a root of ``|p_t| - mu p_n``, which is
     positive at 0 and negative for large alpha: there is one (several only if mu is large).
 
@@ -28,7 +28,7 @@ def solve_one_contact(inverse_mass, velocity, friction) -> np.ndarray:
     ----------
     inverse_mass : array_like, shape (3, 3)
         Delassus matrix W, symmetric, positive semi-definite with W_nn > 0 [1/kg]. Tangential
-        directions that cannot move (an empty row) take no impulse.
+        directions that cannot move (zero rows) get no impulse.
     velocity : array_like, shape (3,)
         c: the velocity without impulse, with the restitution term in its normal entry [m/s].
     friction : float
@@ -74,10 +74,10 @@ def solve_one_contact(inverse_mass, velocity, friction) -> np.ndarray:
 
 
 def cone_residual(inverse_mass, velocity, friction, impulse) -> float:
-    """Return how far an impulse is from solving the contact, in m/s, whatever solver it came from.
+    """Return the residual [m/s] of an impulse in the contact problem, independent of the solver.
 
-    The natural map ``|p - P_K(p - rho (w + mu |w_t| e_n))| / rho`` with ``rho = 3 / trace W``; P_K
-    is the projection onto the friction cone, ``w + mu |w_t| e_n`` the velocity in De Saxce's form.
+    It is the natural map ``|p - P_K(p - rho (w + mu |w_t| e_n))| / rho`` with ``rho = 3 / trace W``, where P_K
+    is the projection onto the friction cone and ``w + mu |w_t| e_n`` the velocity in De Saxce's form.
     """
     W = checks.finite_array("inverse_mass", inverse_mass, (3, 3), "1/kg")
     c = checks.finite_array("velocity", velocity, (3,), "m/s")

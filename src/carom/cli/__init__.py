@@ -1,6 +1,7 @@
-"""The command ``carom``: `main` runs it and turns whatever happens into an exit code and one line.
+"""The command ``carom``: `main` runs it and reports each error as an exit code and one line.
 
-Each command is a file here, a function with its options as arguments; `app.py` puts them together.
+Each subcommand is a file of this package, with a function whose arguments are the options; `app.py` collects
+them.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""All commands as one."""
+"""The command ``carom`` with all its subcommands."""
 
 from __future__ import annotations
 
@@ -15,14 +15,15 @@ _ABOUT = """\
 Motion of multibody systems with frictional impacts.
 
 For example:
-  carom simulate die.py -o die.h5 --duration 2    run a scene, keep the result
-  carom info die.h5                               what is in it
-  carom plot die.h5 energy -o energy.png          draw it
+  carom simulate die.py -o die.h5 --duration 2    run a scene, save the result
+  carom info die.h5                               print a summary of the result
+  carom plot die.h5 energy -o energy.png          plot the result
   carom paper                                     reproduce the paper
 """
 _END = """\
 'carom COMMAND --help' explains a command, with examples. Exit codes: 0 done, 1 failed, 2 wrong arguments
-(nothing was run), 130 interrupted. Results go to stdout, progress and errors (one line each) to stderr.
+(nothing was run), 130 interrupted. Results are written to stdout, progress and errors (one line each) to
+stderr.
 """
 
 #: name, function, and the extra that it needs, in the order of the help
@@ -49,7 +50,7 @@ def _version(wanted: bool) -> None:
 
 
 def _laid_out(text: str | None) -> str:
-    """Return a help text whose paragraphs keep their lines where some are indented (Click's mark for that)."""
+    """Return a help text that keeps the lines of paragraphs with indented lines (by Click's mark)."""
     parts = inspect.cleandoc(text or "").split("\n\n")
     return "\n\n".join(f"\b\n{part}" if "\n  " in f"\n{part}" else part for part in parts)
 
@@ -57,7 +58,7 @@ def _laid_out(text: str | None) -> str:
 def _top(
     context: typer.Context,
     version: Annotated[
-        bool, typer.Option("--version", callback=_version, is_eager=True, help="Say which version.")
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
     ] = False,
 ) -> None:
     if context.invoked_subcommand is None:
@@ -66,9 +67,9 @@ def _top(
 
 
 def command():
-    """Return the command, ready to be called.
+    """Return the command.
 
-    Its help is plain text, wrapped to the terminal: it reads the same in a narrow window, a pipe and a log.
+    Its help is plain text, wrapped to the width of the terminal, also in a pipe or a log.
     """
     app = typer.Typer(
         rich_markup_mode=None, pretty_exceptions_enable=False, help=_laid_out(_ABOUT), epilog=_END,

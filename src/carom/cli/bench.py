@@ -1,4 +1,4 @@
-"""``carom bench``: how fast this machine is."""
+"""``carom bench``: measure the speed of this machine."""
 
 from __future__ import annotations
 
@@ -13,19 +13,21 @@ from carom.cli.outcome import Refused, warn
 def run(
     problems: Annotated[
         list[str] | None,
-        typer.Argument(metavar="PROBLEM", show_default="all", help="Only these, by their names in the table."),
+        typer.Argument(
+            metavar="PROBLEM", show_default="all", help="Problems to measure, by their names in the table."
+        ),
     ] = None,
-    rounds: Annotated[int, typer.Option(min=1, metavar="N", help="Measurements of each.")] = 5,
+    rounds: Annotated[int, typer.Option(min=1, metavar="N", help="Measurements of each problem.")] = 5,
     peers: Annotated[
-        bool, typer.Option("--peers", help="Measure MuJoCo too (if installed), in the same run.")
+        bool, typer.Option("--peers", help="Also measure MuJoCo in the same run, if installed.")
     ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print everything as JSON.")] = False,
 ) -> int:  # fmt: skip
     """Measure standard problems on this machine.
 
-    Processor time of one thread, medians and quartiles, with the error against the exact answer: a
-    time says nothing without it. Both tools take the same step. Takes about a minute, and some minutes the
-    first time, while everything is compiled.
+    Prints the processor time of one thread (median and quartiles) and the error against the exact answer,
+    because a time without an error means little. All tools use the same time step. This takes about a minute,
+    and some minutes at the first time, because everything has to be compiled.
 
     For example:
       carom bench

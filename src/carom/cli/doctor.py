@@ -18,15 +18,15 @@ from carom.cli.outcome import warn
 
 def run(
     warm: Annotated[
-        bool, typer.Option("--warm", help="Compile everything first, as 'carom warmup' does.")
+        bool, typer.Option("--warm", help="Compile everything first, like 'carom warmup'.")
     ] = False,
-    json: Annotated[bool, typer.Option("--json", help="Print what was found as JSON.")] = False,
+    json: Annotated[bool, typer.Option("--json", help="Print the report as JSON.")] = False,
 ) -> int:
     """Check this installation.
 
-    Says which versions are there, which extras are missing and how to get them, and where compiled code
-    is kept, and runs a bouncing sphere against its closed form. Exit code 1 if something is wrong; an
-    extra that is not installed is nothing wrong.
+    Prints the versions of all packages, the missing extras with the commands that install them, and the folder
+    of the compiled code. Compares a bouncing sphere with its closed-form solution. The exit code is 1 if
+    something is wrong; a missing extra is not an error.
 
     For example:
       carom doctor
@@ -48,7 +48,7 @@ def run(
 
 
 def examine() -> dict[str, Any]:
-    """Return versions, extras, the cache, a run, and what is wrong."""
+    """Return versions, extras, the cache, the result of a run, and a list of errors."""
     import carom
 
     wrong: list[str] = []
@@ -78,14 +78,14 @@ def _cache() -> tuple[dict[str, Any], list[str]]:
     from carom._compiled.decorators import COMPILES
 
     if not COMPILES:
-        reason = "NUMBA_DISABLE_JIT is set, or Numba is one that carom does not know"
+        reason = "NUMBA_DISABLE_JIT is set, or carom does not know this version of Numba"
         why = f"{reason}: everything runs uncompiled, hundreds of times slower"
         return {"folder": None, "megabytes": 0.0}, [why]
     from carom.stepping import time_loop
 
     folder = getattr(getattr(time_loop.run, "_cache", None), "cache_path", None)
     if not folder:
-        why = "no place for compiled code: set NUMBA_CACHE_DIR to a folder that can be written"
+        why = "no folder for compiled code: set NUMBA_CACHE_DIR to a writable folder"
         return {"folder": None, "megabytes": 0.0}, [why]
     top = Path(folder)
     package = Path(time_loop.__file__).parents[1]
@@ -94,7 +94,7 @@ def _cache() -> tuple[dict[str, Any], list[str]]:
     size = sum(file.stat().st_size for file in top.rglob("*.nb[ic]"))
     found = {"folder": str(folder), "megabytes": size / 1e6}
     if not os.access(folder, os.W_OK):
-        return found, [f"{folder} cannot be written: set NUMBA_CACHE_DIR to a folder that can"]
+        return found, [f"{folder} is not writable: set NUMBA_CACHE_DIR to a writable folder"]
     return found, []
 
 
@@ -118,7 +118,7 @@ def _smoke() -> tuple[dict[str, float], list[str]]:
     found = {"error": float(error), "first_run_seconds": spent[0], "next_run_seconds": spent[1]}
     if not error < 1e-10:
         return found, [
-            f"the bouncing sphere is wrong by {error:.1e}: please report this installation"
+            f"the bouncing sphere has an error of {error:.1e}: please report this installation"
         ]
     return found, []
 
@@ -146,4 +146,4 @@ def _print(found: dict[str, Any]) -> None:
         f"bouncing sphere: error {sphere['error']:.1e}, first run {sphere['first_run_seconds']:.2f} s, "
         f"next {sphere['next_run_seconds']:.4f} s"
     )
-    print("all well" if not found["wrong"] else f"{len(found['wrong'])} found wrong")
+    print("no errors" if not found["wrong"] else f"errors: {len(found['wrong'])}")

@@ -1,4 +1,4 @@
-"""Which optional packages belong to which extra: ``pip install "carom[files]"``."""
+"""The optional packages of each extra: ``pip install "carom[files]"``."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import tomllib
 from importlib import metadata
 from pathlib import Path
 
-#: extras that are made of others, and those for who works on carom itself
+#: extras that combine others, and extras for developers of carom
 OWN = ("all", "test", "docs", "bench")
 
 
@@ -44,7 +44,7 @@ def version(package: str) -> str | None:
 
 
 def pip_line(module: str, likely: str = "") -> str:
-    """Return how to install what a module is missing from; `likely` is the extra of the command."""
+    """Return the pip command that installs a missing module; `likely` is the extra of the command."""
     wanted = _plain(module.split(".")[0])
     owners = [e for e, names in requirements().items() if wanted in map(_plain, names)]
     if likely and (likely in owners or not owners):

@@ -1,4 +1,4 @@
-"""``carom info``: what a result file holds."""
+"""``carom info``: print a summary of a result file."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ def run(
         Path,
         typer.Argument(
             metavar="FILE", exists=True, show_default=False,
-            help="A result of 'carom simulate' or Solution.save.",
+            help="Result file of 'carom simulate' or Solution.save.",
         ),
     ],
     scene: Annotated[
-        bool, typer.Option("--scene", help="Print the scene as JSON, which 'carom simulate' reads.")
+        bool, typer.Option("--scene", help="Print the scene as JSON; 'carom simulate' can read it.")
     ] = False,
     json: Annotated[bool, typer.Option("--json", help="Print everything as JSON.")] = False,
 ) -> int:  # fmt: skip
-    """Say what a result file holds.
+    """Print a summary of a result file.
 
-    The scene and its bodies, how the run went and ended, impacts and contact that stays, where the
-    energy went, which carom wrote it, and what to cite.
+    The summary has the scene and its bodies, the settings and the end of the run, impacts and persistent
+    contacts, the energy balance, the version of carom that wrote the file, and the references to cite.
 
     For example:
       carom info die.h5
@@ -142,8 +142,8 @@ def _print(found: dict[str, Any]) -> None:
             ("time", f"0 to {found['reached']:g} s in {found['saved_steps']} saved steps"),
             ("settings", given), ("counts", counted), ("scene", found["summary"]),
             ("impacts", f"{impacts['count']}{span}"),
-            ("held contact", f"{held['intervals']} intervals, {held['points_at_end']} points at the end, "
-                             f"greatest residual {held['greatest_residual']:.1e} m/s"),
+            ("persistent contact", f"{held['intervals']} intervals, {held['points_at_end']} points at the end, "
+                                   f"greatest residual {held['greatest_residual']:.1e} m/s"),
             ("cite", f"{found['source']}, and its method: {found['citation']}"),
         ],
         left=2,
@@ -152,9 +152,9 @@ def _print(found: dict[str, Any]) -> None:
     show.table(
         ["energy / J", ""],
         [
-            ("at the start", f"{energy['start']:.6g}"), ("of loads", f"{energy['loads']:.6g}"),
-            ("of impacts", f"{energy['impacts']:.6g}"), ("of held friction", f"{energy['friction']:.6g}"),
-            ("of held bounces", f"{energy['bounces']:.6g}"),
+            ("at the start", f"{energy['start']:.6g}"), ("loads", f"{energy['loads']:.6g}"),
+            ("impacts", f"{energy['impacts']:.6g}"), ("friction", f"{energy['friction']:.6g}"),
+            ("dropped bounces", f"{energy['bounces']:.6g}"),
             ("at the end", f"{energy['kinetic'] + energy['potential']:.6g}"),
             ("greatest residual", f"{energy['greatest_residual']:.1e}"),
         ],

@@ -1,4 +1,4 @@
-"""How a command ends: its exit code, and one line on stderr for whatever went wrong."""
+"""The end of a command: its exit code, and one line on stderr for each error."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from carom.cli import FAILED, INTERRUPTED, USAGE
 
 
 class Refused(Exception):
-    """Wrong arguments that are only seen while the command works; its message is one line."""
+    """Wrong arguments that are found while the command runs; the message is one line."""
 
 
 class Failed(Exception):
-    """Something that went wrong, in one line."""
+    """A failure of the command; the message is one line."""
 
 
 def told(name: str, extra: str = "") -> Callable:
-    """Wrap a command: errors become one line on stderr and an exit code; `extra` is what it needs of pip."""
+    """Wrap a command: errors become one line on stderr and an exit code; `extra` has its packages."""
 
     def wrap(function: Callable[..., int | None]) -> Callable[..., int]:
         @wraps(function)
@@ -50,7 +50,7 @@ def told(name: str, extra: str = "") -> Callable:
 
 
 def missing(error: ImportError, extra: str = "") -> str:
-    """Return what an import error is about, with the line that installs it."""
+    """Return a message about an import error, with the command that installs the package."""
     from carom.cli.extras import pip_line
 
     if "pip install" in str(error) or not error.name:
@@ -61,7 +61,7 @@ def missing(error: ImportError, extra: str = "") -> str:
 
 
 def warn(name: str, message: str) -> None:
-    """Print a line on stderr that is no failure."""
+    """Print a warning line on stderr."""
     _say(name, message, 0)
 
 
@@ -87,7 +87,7 @@ def _plain_warnings(name: str):
 
 @contextmanager
 def _terminated_as_interrupted():
-    """Take a request to end (SIGTERM, as batch systems send it) like Ctrl-C, so that work is kept."""
+    """Handle SIGTERM, which batch systems send, like Ctrl-C, so that results are saved."""
 
     def interrupt(*_):
         raise KeyboardInterrupt

@@ -28,28 +28,28 @@ def run(
         list[str] | None,
         typer.Argument(
             metavar="FIGURE", callback=_chosen, show_default=False,
-            help=f"Only these figures, without tables and pages. {_WHICH}",
+            help=f"Make only these figures, without tables and pages. {_WHICH}",
         ),
     ] = None,
     figure: Annotated[
         list[str] | None,
         typer.Option(
             "--figure", metavar="NAME", callback=_chosen, show_default=False,
-            help="The same as an option: may be repeated, or hold several names with commas.",
+            help="The same as an option: may be repeated, or have several names separated by commas.",
         ),
     ] = None,
     out: Annotated[
-        Path, typer.Option(metavar="DIR", help="Where to write; made if it is not there.")
+        Path, typer.Option(metavar="DIR", help="Output folder; it is created if it does not exist.")
     ] = Path("out/paper"),
 ) -> int:  # fmt: skip
     """Reproduce the paper: figures and tables.
 
-    Figs. 2a to 6b as PDF and PNG, the table of numbers (Markdown and CSV), impacts of a real cube,
-    and index.md, a page that shows and explains them all. Half a minute, and some minutes the first
-    time, while everything is compiled.
+    Writes Figs. 2a to 6b as PDF and PNG, the table of numbers (Markdown and CSV), impacts of a real cube, and
+    index.md, a page that shows and explains everything. This takes half a minute, and some minutes at the first
+    time, because everything has to be compiled.
 
     For example:
-      carom paper                            everything, under out/paper
+      carom paper                            everything, in out/paper
       carom paper fig3a fig6b                these figures only
       carom paper --figure fig3a,fig6b --out pictures
     """
@@ -67,6 +67,6 @@ def run(
 
         written = make(out, chosen, tell)
     spent = time.perf_counter() - start
-    more = "" if chosen else f"; begin with {out / 'index.md'}"
+    more = "" if chosen else f"; start with {out / 'index.md'}"
     print(f"carom paper: {len(written)} files under {out} in {spent:.1f} s{more}")
     return 0

@@ -1,4 +1,4 @@
-"""``carom plot`` and ``carom film``: pictures of a result."""
+"""``carom plot`` and ``carom film``: plots and films of a result."""
 
 from __future__ import annotations
 
@@ -24,20 +24,21 @@ def plot(
         str | None,
         typer.Argument(
             metavar="KIND", show_default="overview",
-            help=f"What to draw: {', '.join(KINDS)} (as Solution.plot).",
+            help=f"Kind of plot: {', '.join(KINDS)} (see Solution.plot).",
         ),
     ] = None,
     out: Annotated[
-        Path, typer.Option("--out", "-o", metavar="PICTURE", help="PNG, PDF or SVG, by its ending.")
+        Path,
+        typer.Option("--out", "-o", metavar="PICTURE", help="Output file with the suffix .png, .pdf or .svg."),
     ] = Path("plot.png"),
-    dpi: Annotated[int, typer.Option(min=20, max=2000, help="Of a PNG.")] = 150,
+    dpi: Annotated[int, typer.Option(min=20, max=2000, help="Resolution of a PNG.")] = 150,
 ) -> int:  # fmt: skip
-    """Draw a result.
+    """Plot a result.
 
     For example:
       carom plot die.h5 -o die.png
       carom plot die.h5 energy -o energy.pdf
-      carom plot die.h5 impact_inside     the first impact
+      carom plot die.h5 impact_inside     the first impact, inside its boundary layer
     """
     import matplotlib
 
@@ -60,12 +61,14 @@ def _figure(drawn):
 def film(
     file: _File,
     out: Annotated[
-        Path, typer.Option("--out", "-o", metavar="FILM", help="MP4 or GIF, by its ending.")
+        Path, typer.Option("--out", "-o", metavar="FILM", help="Output file with the suffix .mp4 or .gif.")
     ] = Path("film.mp4"),
-    fps: Annotated[float, typer.Option(min=1, help="Pictures a second.")] = 30.0,
-    speed: Annotated[float, typer.Option(metavar="X", help="Of the film: 0.1 is ten times slower.")] = 1.0,
+    fps: Annotated[float, typer.Option(min=1, help="Frames per second.")] = 30.0,
+    speed: Annotated[
+        float, typer.Option(metavar="X", help="Speed of the film: 0.1 is ten times slower.")
+    ] = 1.0,
     follow: Annotated[
-        str | None, typer.Option(metavar="BODY", show_default=False, help="Keep this body in the middle.")
+        str | None, typer.Option(metavar="BODY", show_default=False, help="Keep this body in the centre.")
     ] = None,
 ) -> int:  # fmt: skip
     """Make a film of a result.

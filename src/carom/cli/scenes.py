@@ -16,21 +16,21 @@ RESULTS = (".nc", ".h5", ".hdf5", ".nc4")
 
 
 class Found(NamedTuple):
-    """A scene, and the settings that its file has for it."""
+    """A scene, and the settings in its file."""
 
     scene: Any
     settings: dict[str, Any]
 
 
 def load(path: Path, **model: Any) -> Found:
-    """Return the scene of a file; `model` is what a model needs besides (None: as the model has it).
+    """Return the scene of a file; `model` has values that replace those of a model (None: not replaced).
 
     Raises
     ------
     Refused
-        If the file is of no kind that holds a scene, or holds none.
+        If the file has no scene, or its kind cannot have one.
     Failed
-        If the Python in it failed.
+        If the Python code in it failed.
     """
     suffix = path.suffix.lower()
     given = {name: value for name, value in model.items() if value is not None}
@@ -38,7 +38,7 @@ def load(path: Path, **model: Any) -> Found:
         return Found(_model(path, given), {})
     if given:
         names = " and ".join(f"--{name.replace('_', '-')}" for name in given)
-        raise Refused(f"{names} only for a model ({', '.join(MODELS)}), got {str(path)!r}")
+        raise Refused(f"{names} only with a model ({', '.join(MODELS)}), got {str(path)!r}")
     if suffix == ".py":
         return _python(path)
     if suffix == ".json":
@@ -49,11 +49,11 @@ def load(path: Path, **model: Any) -> Found:
         solution = Solution.load(path)
         return Found(solution.scene, dict(solution.settings))
     kinds = ", ".join((".py", ".json", *RESULTS[:2], *MODELS))
-    raise Refused(f"SCENE must be a file that ends in one of {kinds}, got {str(path)!r}")
+    raise Refused(f"SCENE must be a file with a suffix of {kinds}, got {str(path)!r}")
 
 
 def functions(scene) -> dict[str, Callable]:
-    """Return the functions of the user's in a scene, by the names that a result file has for them."""
+    """Return the user-defined functions of a scene, by their names in a result file."""
     from carom.io.files.scene_data import Encoder
 
     class Collector(Encoder):
@@ -72,7 +72,7 @@ def functions(scene) -> dict[str, Callable]:
 
 
 def _model(path: Path, given: dict[str, Any]):
-    """Read MJCF or URDF; what is not represented, or otherwise, goes to stderr."""
+    """Read MJCF or URDF; a line on stderr tells about each part that is left out or changed."""
     from carom import load_model
 
     key = given.get("keyframe")
@@ -90,7 +90,7 @@ def _json(path: Path):
     try:
         scene, _ = scene_from_text(path.read_text(encoding="utf-8"))
     except ValueError as error:
-        what = "'carom info RUN --scene' writes such a file"
+        what = "'carom info FILE --scene' prints a scene in this form"
         raise Refused(
             f"SCENE must be a scene as JSON, got {str(path)!r} ({error}); {what}"
         ) from None
@@ -120,7 +120,7 @@ def _python(path: Path) -> Found:
 
 
 def _where(path: Path, error: BaseException) -> str:
-    """Return the last line of the user's file that an error went through."""
+    """Return the last line of the user's file in the traceback of an error."""
     if isinstance(error, SyntaxError):
         return f"{error.filename}, line {error.lineno}"
     here = [

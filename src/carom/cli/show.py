@@ -1,4 +1,4 @@
-"""What commands print: tables, JSON, and progress with the time that remains."""
+"""Output of commands: tables, JSON, and progress with the remaining time."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from typing import Any
 
-#: width where nobody looks (a pipe, a file): rows are not cut
+#: width in a pipe or a file: rows are not cut
 WIDE = 200
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[object]], left: int = 1) -> None:
-    """Print a table; the first `left` columns to the left, the others to the right.
+    """Print a table with the first `left` columns left-aligned and the others right-aligned.
 
-    In a terminal its head is bold (not with NO_COLOR) and long cells wrap; into a pipe rows stay whole.
+    In a terminal the header is bold (not with NO_COLOR) and long cells wrap; in a pipe rows stay on one line.
     """
     from rich.console import Console
     from rich.table import Table
@@ -37,12 +37,12 @@ def table(head: Sequence[str], rows: Sequence[Sequence[object]], left: int = 1) 
 
 
 def as_json(value: Any) -> None:
-    """Print a value as JSON on stdout; numbers that are not finite as null."""
+    """Print a value as JSON on stdout, with null for numbers that are not finite."""
     print(json.dumps(plain(value), indent=2, ensure_ascii=False, allow_nan=False))
 
 
 def plain(value: Any) -> Any:
-    """Return a value made of what JSON has."""
+    """Return a value made only of types that JSON has."""
     if isinstance(value, dict):
         return {str(key): plain(one) for key, one in value.items()}
     if isinstance(value, (list, tuple)):
@@ -55,25 +55,25 @@ def plain(value: Any) -> Any:
 
 
 class Progress:
-    """A bar on stderr as a function of (done, total); `tell` names what is being done."""
+    """A progress bar on stderr, as a function of (done, total); `tell` prints the present task."""
 
     def __init__(self, bar=None, task=None):
         self.bar, self.task = bar, task
 
     def __call__(self, done: float, total: float) -> None:
-        """Say how much is done."""
+        """Update the bar."""
         if self.bar is not None:
             self.bar.update(self.task, completed=done, total=total)
 
     def tell(self, what: str) -> None:
-        """Print a line about the work at hand."""
+        """Print a line about the present task."""
         if self.bar is not None:
             self.bar.update(self.task, description=what)
 
 
 @contextmanager
 def progress(what: str, total: float | None = None) -> Iterator[Progress]:
-    """Show a bar with the share done, the time spent and the time left; nothing where stderr is no terminal."""
+    """Show a bar with the fraction done, elapsed and remaining time; nothing if stderr is not a terminal."""
     if not sys.stderr.isatty():
         yield Progress()
         return

@@ -1,4 +1,4 @@
-"""``carom simulate``: run a scene and keep the result."""
+"""``carom simulate``: run a scene and save the result."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ def run(
         typer.Argument(
             metavar="SCENE", exists=True, dir_okay=False, show_default=False,
             help="A Python file that defines 'scene' (a carom.Scene, or a function that returns one), a scene"
-            " as JSON, a result file (its scene and settings), or a model (MJCF, URDF).",
+            " as JSON, a result file (for its scene and settings), or a model (MJCF, URDF).",
         ),
     ] = None,
     out: Annotated[
         Path | None,
         typer.Option(
             "--out", "-o", metavar="FILE", show_default=False,
-            help="File for the result: .nc or .h5 (all of it, written as the run goes), .csv or .parquet (its"
-            " tables, written at the end). Without it nothing is kept.",
+            help="Result file: .nc or .h5 (the whole result, written repeatedly during the run), .csv or"
+            " .parquet (its tables, written at the end). Without it nothing is saved.",
         ),
     ] = None,
     duration: Annotated[
@@ -36,20 +36,20 @@ def run(
     step: Annotated[
         str | None,
         typer.Option(
-            metavar="S|auto", show_default="auto", help="Time step [s]; 'auto': as the tolerances ask for."
+            metavar="S|auto", show_default="auto", help="Time step [s]; 'auto': chosen by the tolerances."
         ),
     ] = None,
     method: Annotated[
         str | None,
         typer.Option(
             show_default="rk5 or rk8 by the tolerance; rk4 with a given step",
-            help="How free motion is stepped: rk4, rk5, rk8, rattle, rattle4, rattle6, implicit, paper,"
-            " paper-ode.",
+            help="Time integrator of the smooth motion: rk4, rk5, rk8, rattle, rattle4, rattle6, implicit,"
+            " paper, paper-ode.",
         ),
     ] = None,
     impact_location: Annotated[
         str | None,
-        typer.Option(show_default="locate", help="How impacts are found: locate, project (the paper's), work."),
+        typer.Option(show_default="locate", help="Impacts: locate, project (as in the paper) or work."),
     ] = None,
     rtol: Annotated[float | None, typer.Option(show_default="1e-8", help="Relative tolerance.")] = None,
     atol: Annotated[
@@ -57,49 +57,51 @@ def run(
     ] = None,
     save_at: Annotated[
         float | None,
-        typer.Option(metavar="S", show_default="duration / 200", help="Keep a state so often [s]."),
+        typer.Option(metavar="S", show_default="duration / 200", help="Interval between saved states [s]."),
     ] = None,
     save_every: Annotated[
-        int | None, typer.Option(metavar="N", show_default="1", help="Keep each N-th of them, or of the steps.")
+        int | None,
+        typer.Option(metavar="N", show_default="1", help="Save every N-th of these states, or of the steps."),
     ] = None,
     save_seconds: Annotated[
-        float, typer.Option(metavar="S", help="Write the file so often while the run goes [s of real time].")
+        float, typer.Option(metavar="S", help="Interval between two savings of the file [s of real time].")
     ] = 60.0,
     resume: Annotated[
         Path | None,
         typer.Option(
             exists=True, dir_okay=False, metavar="FILE", show_default=False,
-            help="Go on with the interrupted run in this file, or with --duration beyond the end of a finished"
-            " one. SCENE is only needed where the scene has functions of yours, which files do not hold.",
+            help="Continue the interrupted run in this file; with --duration also a finished run, beyond its"
+            " end. SCENE is needed only if the scene has user-defined functions, which files cannot contain.",
         ),
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Write over a FILE that is there.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Overwrite an existing FILE.")] = False,
     restitution: Annotated[
-        float | None, typer.Option(show_default=False, help="Model: of all its contacts.")
+        float | None, typer.Option(show_default=False, help="For a model: restitution of all contacts.")
     ] = None,
     friction: Annotated[
-        float | None, typer.Option(show_default=False, help="Model: of all its contacts.")
+        float | None, typer.Option(show_default=False, help="For a model: friction of all contacts.")
     ] = None,
     impact_law: Annotated[
-        str | None, typer.Option(show_default=False, help="Model: newton, poisson or stronge.")
+        str | None, typer.Option(show_default=False, help="For a model: newton, poisson or stronge.")
     ] = None,
     keyframe: Annotated[
-        str | None, typer.Option(show_default=False, help="Model: start there, by name or number.")
+        str | None,
+        typer.Option(show_default=False, help="For a model: keyframe to start from, by name or number."),
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print the summary as JSON.")] = False,
 ) -> int:  # fmt: skip
-    """Run a scene and keep the result.
+    """Run a scene and save the result.
 
-    The file is written as the run goes: whoever stops it, with Ctrl-C, kill or a power cut, finds in
-    it what was computed until then, and --resume goes on from there, bit for bit as without interruption.
-    A run that fails is kept up to its failure, too.
+    The file is written repeatedly during the run. If the run is stopped (by Ctrl-C, kill or a power cut), the
+    file has the results up to then, and --resume continues from there, bit for bit as without interruption. The
+    result of a run that fails is saved up to the failure.
 
     For example:
       carom simulate die.py -o die.h5 --duration 2
       carom simulate die.py -o die.h5 --duration 2 --rtol 1e-10 --save-at 0.001
       carom simulate --resume die.h5
-      carom simulate --resume die.h5 --duration 4        on to 4 s
-      carom simulate die.h5 -o finer.h5 --rtol 1e-10     the same scene again
+      carom simulate --resume die.h5 --duration 4        continue to 4 s
+      carom simulate die.h5 -o finer.h5 --rtol 1e-10     run the same scene again
       carom simulate robot.xml -o robot.h5 -d 5 --restitution 0.3 --friction 0.5
 
     die.py:
@@ -145,8 +147,8 @@ def _start(scene, out, given: dict[str, Any], model, save_seconds: float, force:
         )
     if out is not None and out.exists() and not force:
         raise Refused(
-            f"--out must be a new file, got {str(out)!r}; --force writes over it, and "
-            f"'carom simulate --resume {out}' goes on with an interrupted run"
+            f"--out must be a new file, got {str(out)!r}; --force overwrites it, and "
+            f"'carom simulate --resume {out}' continues an interrupted run"
         )
     try:
         tables = out is not None and is_table(out)
@@ -171,11 +173,11 @@ def _start(scene, out, given: dict[str, Any], model, save_seconds: float, force:
     return solution
 
 
-#: what a result file knows of how it was made, and a new run takes over
+#: settings in a result file that a new run takes over
 _SETTINGS = (
     "duration", "step", "method", "impact_location", "rtol", "atol", "save_every", "save_at",
 )  # fmt: skip
-#: what it does not take over where another setting is given in its place
+#: settings that a new run does not take over if another setting replaces them
 _INSTEAD = {
     "step": ("rtol", "atol", "method"), "rtol": ("step", "method", "atol"), "atol": ("step", "method"),
     "save_at": ("save_every",), "save_every": ("save_at",),
@@ -188,7 +190,9 @@ def _go_on(path: Path, scene, duration: float | None, given: dict[str, Any], sav
     names = [k for k, v in given.items() if v is not None and k != "duration"]
     if names:
         name = names[0].replace("_", "-")
-        raise Refused(f"--{name} must be left out with --resume: the run goes on as it was begun")
+        raise Refused(
+            f"--{name} must be left out with --resume: the settings of the run stay the same"
+        )
     mine = scenes.functions(scenes.load(scene).scene) if scene is not None else None
     with show.progress("resume") as bar:
         return carom.resume(
@@ -198,7 +202,7 @@ def _go_on(path: Path, scene, duration: float | None, given: dict[str, Any], sav
 
 
 def _end(solution, out: Path | None, scene: Path | None, seconds: float, json: bool) -> int:
-    """Say what came of it; return the exit code."""
+    """Print the outcome of the run; return the exit code."""
     from carom.io.files.tables import TABLES
     from carom.status import Status
 
@@ -221,10 +225,10 @@ def _end(solution, out: Path | None, scene: Path | None, seconds: float, json: b
     if solution.status is not Status.INTERRUPTED:
         warn("simulate", solution.message)
         return FAILED
-    more = "nothing was kept to go on with, which needs -o FILE.nc"
+    more = "the run cannot be continued, because it has no file: use -o FILE.nc"
     if out is not None and out.suffix.lower() not in TABLES:
         also = f" {scene}" if scene is not None and _has_functions(solution) else ""
-        more = f"go on with: carom simulate --resume {out}{also}"
+        more = f"continue with: carom simulate --resume {out}{also}"
     warn("simulate", f"interrupted at t = {facts['reached']:g} s; {more}")
     return INTERRUPTED
 

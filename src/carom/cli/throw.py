@@ -13,38 +13,40 @@ from carom.cli import INTERRUPTED, show
 
 def run(
     count: Annotated[int, typer.Option(metavar="N", help="Throws.")] = 1000,
-    edge: Annotated[float, typer.Option(metavar="M", help="Of the die [m].")] = 0.02,
-    height: Annotated[float, typer.Option(metavar="M", help="Of its centre at the start [m].")] = 0.3,
-    speed: Annotated[float, typer.Option(metavar="X", help="Horizontal [m/s].")] = 0.5,
+    edge: Annotated[float, typer.Option(metavar="M", help="Edge of the die [m].")] = 0.02,
+    height: Annotated[float, typer.Option(metavar="M", help="Height of its centre at the start [m].")] = 0.3,
+    speed: Annotated[float, typer.Option(metavar="X", help="Horizontal speed [m/s].")] = 0.5,
     drop: Annotated[float, typer.Option(metavar="X", help="Downward speed [m/s].")] = 0.5,
-    spin: Annotated[float, typer.Option(metavar="X", help="About the horizontal [rad/s].")] = 10.0,
+    spin: Annotated[
+        float, typer.Option(metavar="X", help="Angular speed about a horizontal axis [rad/s].")
+    ] = 10.0,
     restitution: Annotated[float, typer.Option(metavar="E", help="0 to 1.")] = 0.5,
     friction: Annotated[float, typer.Option(metavar="MU", help="Coefficient.")] = 0.2,
     load: Annotated[
-        float, typer.Option(metavar="X", help="Part of the mass under face 1, 0 to below 1.")
+        float, typer.Option(metavar="X", help="Fraction of the mass under face 1, at least 0 and below 1.")
     ] = 0.0,
     step: Annotated[float, typer.Option(metavar="S", help="Time step [s].")] = 2e-3,
-    seconds: Annotated[float, typer.Option(metavar="S", help="Longest throw [s].")] = 4.0,
-    seed: Annotated[int, typer.Option(metavar="N", help="Of the orientations.")] = 0,
+    seconds: Annotated[float, typer.Option(metavar="S", help="Maximum time of a throw [s].")] = 4.0,
+    seed: Annotated[int, typer.Option(metavar="N", help="Seed of the random orientations.")] = 0,
     workers: Annotated[
-        int | None, typer.Option(metavar="N", help="Threads.", show_default="all processors")
+        int | None, typer.Option(metavar="N", help="Number of threads.", show_default="all processors")
     ] = None,
     save: Annotated[
         str | None,
         typer.Option(
-            metavar="DIR", show_default=False, help="Folder that results are written to, and gone on with."
+            metavar="DIR", show_default=False, help="Folder for the results; an interrupted run continues."
         ),
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print the results as JSON.")] = False,
 ) -> int:  # fmt: skip
-    """Throw a die many times: how often each face, is it fair.
+    """Throw a die many times and test whether it is fair.
 
-    Orientations at the start are random; each throw goes to rest, with every impact located and
-    resolved. Says how often each face came up, and whether that is fair. With --save a run that is
-    interrupted goes on with the same arguments. Results depend on --seed, not on --workers.
+    The initial orientations are random. Each throw is simulated until the die is at rest, and every impact is
+    located. Prints the frequency of each face and a test of fairness. With --save, an interrupted run continues
+    when the command is repeated with the same arguments. Results depend on --seed, not on --workers.
 
     For example:
-      carom throw --count 10000                             is it fair?
+      carom throw --count 10000
       carom throw --count 100000 --load 0.3 --save loaded.zarr
     """
     import carom
@@ -92,7 +94,7 @@ def scene(given):
 
 
 def summary(thrown, seconds: float) -> dict:
-    """Return what came of the throws, as plain numbers."""
+    """Return the results of the throws as plain numbers."""
     import numpy as np
 
     from carom.studies.ensembles.dice import face_up, fairness
@@ -121,14 +123,16 @@ def summary(thrown, seconds: float) -> dict:
 
 
 def text(found: dict) -> str:
-    """Return the results for people."""
+    """Return the results as text."""
     ended = ", ".join(f"{n} {word}" for word, n in found["ended"].items())
     lines = [
         f"{found['throws']} throws ({ended}) in {found['seconds']:.1f} s, "
-        f"{found['throws_per_second']:.0f} a second"
+        f"{found['throws_per_second']:.0f} per second"
     ]
     if "faces" not in found:
-        return "\n".join([*lines, "no die came to rest on a face: take more --seconds"])
+        return "\n".join(
+            [*lines, "no die came to rest on a face: give a larger value of --seconds"]
+        )
     lines.append(f"{found['at_rest_on_a_face']} came to rest on a face")
     lines.append("face   count     share   95 % interval")
     for face, row in found["faces"].items():
@@ -136,8 +140,8 @@ def text(found: dict) -> str:
             f"   {face} {row['count']:7d}   {row['share']:7.4f}   {row['low']:.4f} to {row['high']:.4f}"
         )
     lines.append(
-        f"chi-square {found['chi_square']:.2f} of 5 degrees: a fair die does so, or worse, in "
-        f"{100 * found['p_value']:.2g} % of such samples"
+        f"chi-square {found['chi_square']:.2f} with 5 degrees of freedom: a fair die has this value or a "
+        f"larger one in {100 * found['p_value']:.2g} % of such samples"
     )
     lines.append(
         f"impacts {found['impacts_mean']:.1f} on average; at rest after {found['rest_time_mean']:.3f} s on "

@@ -1,4 +1,4 @@
-"""``carom view``: look at a result in the browser."""
+"""``carom view``: show a result in the browser."""
 
 from __future__ import annotations
 
@@ -12,25 +12,24 @@ def run(
     file: Annotated[
         Path,
         typer.Argument(
-            metavar="FILE", exists=True, dir_okay=False, help="A result file.", show_default=False
+            metavar="FILE", exists=True, dir_okay=False, help="Result file.", show_default=False
         ),
     ],
     export: Annotated[
         Path | None,
         typer.Option(
             metavar="PAGE.html", show_default=False,
-            help="Write one page that shows the motion without a server, and end.",
+            help="Write one page that shows the motion without a server, and stop.",
         ),
     ] = None,
     port: Annotated[
-        int | None, typer.Option(min=1, max=65535, show_default="a free one", help="Of the server.")
+        int | None, typer.Option(min=1, max=65535, show_default="a free one", help="Port of the server.")
     ] = None,
-    open: Annotated[bool, typer.Option(help="Open a window of the browser.")] = True,
+    open: Annotated[bool, typer.Option(help="Open a browser window.")] = True,
 ) -> int:  # fmt: skip
-    """Look at a result in the browser, in three dimensions.
+    """Show a result in the browser, in three dimensions.
 
-    Runs until Ctrl-C. On a machine without a screen take --export, or --no-open and a port that is
-    forwarded.
+    Runs until Ctrl-C. On a machine without a screen use --export, or --no-open with a forwarded port.
 
     For example:
       carom view die.h5

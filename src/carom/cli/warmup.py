@@ -10,14 +10,14 @@ import typer
 
 from carom.cli import show
 
-#: kinds of work that share compiled code: done by one process
+#: kinds of work that share compiled code: one process does them
 TOGETHER = (
     ("free", "rest", "layer", "impact", "many contacts"),
     ("stack", "heap"),
     ("loops",),
     ("tree",),
 )
-#: folders with units
+#: folders of the modules with compiled units
 ROOMS = (
     "geometry", "collision", "kinematics", "contact", "friction", "dynamics", "impact", "persistent",
     "stepping",
@@ -26,20 +26,20 @@ ROOMS = (
 
 def run(
     workers: Annotated[
-        int | None, typer.Option(min=1, metavar="N", show_default="all processors", help="Processes.")
+        int | None, typer.Option(min=1, metavar="N", show_default="all processors", help="Number of processes.")
     ] = None,
     json: Annotated[bool, typer.Option("--json", help="Print times as JSON.")] = False,
 ) -> int:  # fmt: skip
-    """Compile everything once, so that later runs start at once.
+    """Compile everything once, so that later runs start immediately.
 
-    The library is compiled for every kind of system (free bodies, trees of joints, loops of joints)
-    and every method, and for what the default method does with bodies that come to rest or lie
-    on each other. Compiled code is kept on disk: later processes load it in a fraction of a
-    second. Takes some minutes the first time, seconds after that.
+    Compiles the library for every kind of system (free bodies, trees of joints, loops of joints) and every
+    method, and the persistent contact of bodies that come to rest or lie on each other for the default method.
+    The compiled code is saved on disk, and later processes load it in a fraction of a second. This takes some
+    minutes at the first time, and seconds after that.
 
     For example:
       carom warmup
-      NUMBA_CACHE_DIR=/scratch/numba carom warmup      keep compiled code there
+      NUMBA_CACHE_DIR=/scratch/numba carom warmup      save compiled code in this folder
     """
     rows = compile_all(workers)
     if json:
@@ -53,7 +53,7 @@ def run(
 
 
 def compile_all(workers: int | None = None) -> list[dict]:
-    """Compile everything in some processes; return kind, method and seconds of each part."""
+    """Compile everything in several processes; return kind, method and seconds of each part."""
     import multiprocessing
     import os
     from concurrent.futures import ProcessPoolExecutor, as_completed
@@ -81,7 +81,7 @@ def compile_all(workers: int | None = None) -> list[dict]:
 
 
 def asked_by_disk() -> set:
-    """Return all units that code on disk may call: what was compiled before does not ask for them again."""
+    """Return all units that code on disk may call, because code compiled before does not request them."""
     import importlib
     import pkgutil
 
@@ -116,7 +116,7 @@ def compile_kinds(kinds: tuple[str, ...]) -> tuple[list[dict], set]:
 
 
 def work() -> list[tuple[str, str, Callable[[], object]]]:
-    """Return all that is to be compiled: kind of scene, method, and what compiles it."""
+    """Return all parts to compile: kind of scene, method, and a function that compiles it."""
     import carom
     from carom.dynamics.methods import METHODS
 
@@ -139,7 +139,7 @@ def scenes() -> dict:
 
 
 def contact_scenes() -> dict:
-    """Return scenes of contact that stays, and how long each is to run [s]."""
+    """Return scenes with persistent contact, and the duration of each [s]."""
     return {"rest": (_free(), 0.4), "stack": (_pile(2), 0.2), "heap": (_pile(9), 0.2)}
 
 
@@ -157,7 +157,7 @@ def _free():
 
 
 def _pile(count: int):
-    """Return boxes above a floor, a little apart."""
+    """Return boxes above a floor with small gaps between them."""
     import carom
 
     scene = carom.Scene()
@@ -170,7 +170,7 @@ def _pile(count: int):
 
 
 def _linked(loop: bool):
-    """Two balls on rods from the ground, one of which strikes it; as a loop, joined by a rod."""
+    """Return two balls on rods from the ground, one of which strikes it; joined by a rod for a loop."""
     import carom
 
     scene = carom.Scene()

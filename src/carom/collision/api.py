@@ -20,11 +20,12 @@ class PairPoint:
     Attributes
     ----------
     gap : float
-        Distance [m]; negative where they overlap: by so much one has to be moved along `normal`.
+        Distance [m]. If the shapes overlap it is negative: its magnitude is the smallest displacement of one
+        shape, along `normal`, that separates them.
     normal : (3,)
-        Unit, from B to A, in the world.
+        Unit normal from B to A, in the world.
     on_a, on_b : (3,)
-        The points on the surfaces, in the world [m].
+        The nearest points on the surfaces, in the world [m].
     """
 
     gap: float
@@ -39,9 +40,9 @@ def nearest_points(shape_a, pose_a, shape_b, pose_b) -> PairPoint:
     Parameters
     ----------
     shape_a, shape_b
-        Of one or several convex pieces.
+        Shapes of one or several convex pieces.
     pose_a, pose_b : ((3,), (4,))
-        Position [m] and orientation in the world, as of `Scene.add_body`.
+        Position [m] and orientation in the world, as for `Scene.add_body`.
     """
     best = None
     for points in _touches(shape_a, pose_a, shape_b, pose_b, 0.0):
@@ -55,9 +56,9 @@ def nearest_points(shape_a, pose_a, shape_b, pose_b) -> PairPoint:
 
 
 def contact_points(shape_a, pose_a, shape_b, pose_b, reach: float) -> np.recarray:
-    """Return the points (k,) TOUCH_POINT that carry a contact of two shapes, of all their pieces.
+    """Return the contact points (k,) TOUCH_POINT of two shapes, of all their pieces.
 
-    Arguments as of `nearest_points`; points with gaps up to the least gap of their pieces plus `reach` [m].
+    Arguments as for `nearest_points`. Points have gaps up to the least gap of their pieces plus `reach` [m].
     """
     reach = checks.number("reach", reach, least=0, unit="m")
     return np.concatenate(list(_touches(shape_a, pose_a, shape_b, pose_b, reach))).view(Columns)

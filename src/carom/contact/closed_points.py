@@ -20,7 +20,7 @@ from carom.contact.stop import is_active_stop, place_stop
 from carom.kinematics.contact_point import place
 from carom.model.arrays import STOP
 
-#: part of the step in which a rim that turns flat is flat, as far as the step can tell
+#: fraction of the step within which a rim that turns flat counts as flat
 RIM_TIME = 1.0 / 64.0
 
 
@@ -51,7 +51,7 @@ def concerns(contact, label, work):
 
 @kernel
 def apart(contact, state, near):
-    """Return whether the balls around the two are further apart than `near`."""
+    """Return whether the distance of the balls around the two is larger than `near`."""
     x = state[contact.body].x
     if on_half_space(contact):
         return along_normal(contact, x) - contact.offset - contact.radius - contact.extent > near
@@ -62,11 +62,11 @@ def apart(contact, state, near):
 
 @kernel
 def gather_closed(system, controls, active, c, state, group, work, strikes):
-    """List the points that are closed in `state` together with contact c; return how many, -1 for too many.
+    """List the points that are closed in `state` together with contact c; return their number, -1 for too many.
 
-    Closed: within the tolerance of ties or of a located gap, or held; where it `strikes`, a rim that is as good
-    as flat, too. Writes the closed points and where they are. Bodies that closed points link become one group,
-    in which all closed points count.
+    A point is closed if its gap is within the tolerance of ties or of a located gap, or if it is active; if it
+    `strikes`, points of a nearly flat rim are closed too. Closed points and their positions are written. Bodies
+    connected by closed points form one group, and all closed points of the group are listed.
     """
     first, k, more = system.contacts[c].body, 0, True
     rim_time = RIM_TIME * controls.step if strikes else 0.0
@@ -178,7 +178,7 @@ def is_same_point(system, active_point, point, state, work):
 
 @kernel
 def note_active(system, active, k, state, group, work):
-    """Note the place of each closed point among the active ones."""
+    """Store the index of each closed point among the active ones."""
     for i in range(active.count[0]):
         active_point = active.points[i]
         for j in range(k):
@@ -195,7 +195,7 @@ def note_active(system, active, k, state, group, work):
 
 @kernel
 def gather_active(system, active, label, state, group, work):
-    """List the active points of a group, then their rolling and pivoting; return how many."""
+    """List the active points of a group, then their rolling and pivoting; return their number."""
     k = 0
     for i in range(active.count[0]):
         active_point = active.points[i]
@@ -222,7 +222,7 @@ def gather_active(system, active, label, state, group, work):
 
 @kernel
 def place_closed(system, k, state, group, points, work):
-    """Write the points of all closed points, as they are in a state."""
+    """Write the positions of all closed points in a state."""
     for i in range(k):
         closed_point = group.closed[i]
         place_any(

@@ -1,14 +1,14 @@
-"""Can a body have touched the half-space between two states? No impact is missed, however large the step.
+"""Continuous detection for a half-space: may a body have touched it between two states? Misses no impact.
 
-Of each vertex the gap z and its rate are known at both ends, and |d2z/dt2| <= a in between. Then
+For each vertex the gap z and its rate are known at both ends, and |d2z/dt2| <= a in between. Then
 
     z(t) >= z0 + z0' t - a t^2/2,      z(t) >= z1 - z1' s - a s^2/2,   s = h - t,
 
-and the path is clear if the times for which either bound is positive, (z0' + sqrt(z0'^2 + 2 a z0))/a
-and the same from the end, together reach h. If not, the caller cuts the step in half. In free flight a is
-exact: |n.g| + (|W|^2 + |W'|) r with the greatest of both on the flight; otherwise it is taken as twice what
-the stages of the step have seen. A held body moves as the cubic does that has the gaps and rates at both ends,
-which is never less than its control points (Bezier): z0, z0 + h z0'/3, z1 - h z1'/3, z1.
+and the path is clear if the times for which these bounds are positive, (z0' + sqrt(z0'^2 + 2 a z0))/a and the
+same from the end, add up to at least h. If not, the caller halves the step. In free flight a is exact: |n.g| +
+(|W|^2 + |W'|) r with the maxima on the flight; otherwise it is twice the largest value in the stages of the
+step. A body in persistent contact is assumed to move on the cubic with the gaps and rates at both ends, which
+is never below its control points (Bezier): z0, z0 + h z0'/3, z1 - h z1'/3, z1.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from carom.contact.gap import along_normal, gap_and_rate, plane_in_body, round_o
 from carom.kinematics.flight import point_bound
 from carom.model.workspace import FREE, RESTS
 
-#: verdicts on a step: nothing was touched; something is inside at the end; too long to say; a rim that was held
-#: on one side goes through flat; the same once more, by the implicit method
+#: verdicts on a step: no touch; a point is inside at the end; undecided because the step is too long; a rim in
+#: persistent contact on one side passes the flat position; the same with the implicit method
 CLEAR, BELOW, UNSURE, FLAT_RIM, AGAIN = range(5)
 MISSED = 1e-9  # of the body: where no more can be missed, the cubic decides in free flight too
 
@@ -41,7 +41,7 @@ def greatest_acceleration(system, contact, state, work):
 
 @inlined
 def reach(z, rate, a):
-    """Return for how long z + rate t - a t^2/2 stays positive."""
+    """Return the time during which z + rate t - a t^2/2 is positive."""
     z = max(z, 0.0)
     if a <= 0.0:
         return math.inf if rate >= 0.0 else -z / rate
@@ -56,7 +56,7 @@ def cubic_clears(z0, rate0, z1, rate1, h, tiny):
 
 @inlined
 def ball_clears(system, contact, start, end, h, centre, work):
-    """Return whether the ball around the body keeps clear: the first look, and mostly the last."""
+    """Return whether the bounding ball of the body does not touch: the first check, usually sufficient."""
     b, margin = contact.body, contact.extent + contact.radius + contact.offset
     z0, z1 = along_normal(contact, start[b].x) - margin, along_normal(contact, end[b].x) - margin
     if not (z0 > 0.0 and z1 > 0.0):

@@ -1,4 +1,4 @@
-"""Can two solids have touched between two states? The plane that parts them at either end decides.
+"""Continuous detection for a pair: may two solids have touched between two states? Uses separating planes.
 
 Along a fixed normal n the gap of any two core points is z(t) >= z0 + z0' t - a t^2/2, a the bound of their
 relative acceleration; the bodies are apart as long as all pairs of vertices are. With n of the nearest points

@@ -1,4 +1,4 @@
-"""How deep bodies overlap each other or a half-space, and how far joints are beyond their stops."""
+"""Penetration of bodies into each other or a half-space, and of joints beyond their stops."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from carom.model.arrays import STOP
 
 @kernel
 def watch_depth(system, state, t, work, watch):
-    """Note the greatest depth of a contact so far, by the size of the (smaller) body, and its time."""
+    """Store the largest penetration so far, relative to the size of the (smaller) body, and its time."""
     for c in range(system.contacts.shape[0]):
         contact = system.contacts[c]
         if contact.touches != STOP and apart(contact, state, 0.0):

@@ -1,4 +1,4 @@
-"""Gap of a contact: the least over the vertices of a body, and the point that strikes."""
+"""Gap of a contact: the least gap of the vertices of a body, and the point that strikes."""
 
 from __future__ import annotations
 
@@ -17,10 +17,10 @@ def along_normal(contact, a):
 
 @kernel
 def plane_in_body(contact, state):
-    """Return the plane as a body sees it: n and n x w in body axes, height and speed of the mass centre.
+    """Return the plane in body axes: n and n x w, and the height and speed of the mass centre.
 
-    A core point p then has the gap height + n.p and the rate speed + (n x w).p, for (w x R p).n = R p.(n x w):
-    two products a vertex instead of two rotations.
+    A core point p then has the gap height + n.p and the rate speed + (n x w).p, because (w x R p).n =
+    R p.(n x w). This needs two products for each vertex instead of two rotations.
     """
     body, n = state[contact.body], contact.axes
     q, w = body.Q, body.w
@@ -54,7 +54,7 @@ def lowest(contact, vertices, state):
 
 @kernel
 def round_off(contact, state):
-    """Return the round-off of a gap: of the order of the unit of the coordinates it is made of [m]."""
+    """Return the round-off of a gap, from the size of the coordinates in it [m]."""
     x = state[contact.body].x
     return 1e-15 * (abs(contact.offset) + abs(x[0]) + abs(x[1]) + abs(x[2]) + contact.extent)
 
@@ -71,8 +71,8 @@ def speed_of(b, extent, state):
 def slow(contact, state):
     """Return the speed [m/s] that counts as zero: the round-off of the speeds of the body, or of both.
 
-    At least that of the speed that gravity gives over the size of the body: what all but rests in a crowd has
-    no speeds of its own to compare with.
+    It is at least the round-off of the speed of a fall by the size of the body, because a body nearly at rest
+    in a crowd has no larger speeds for comparison.
     """
     s = speed_of(contact.body, contact.extent, state)
     if contact.other >= 0:
@@ -82,10 +82,10 @@ def slow(contact, state):
 
 @kernel
 def strike_point(contact, vertices, state, tie, out):
-    """Write the core point (3,) that is lowest, in body axes; return its gap and its rate.
+    """Write the lowest core point (3,), in body axes; return its gap and its rate.
 
-    Vertices within `tie` of the lowest are one contact, their mean: an edge or a face strikes at its
-    centre, so that planar motion stays planar. If only some of them approach, they alone count.
+    Vertices within `tie` of the lowest form one contact at their mean point: an edge or a face strikes at its
+    centre, so that planar motion stays planar. If only some of them approach, only these count.
     """
     plane = plane_in_body(contact, state)
     still = slow(contact, state)

@@ -1,4 +1,4 @@
-"""Which bodies an impulse moves together: joined, or held to each other by contacts."""
+"""Groups of bodies that an impulse moves together, because of joints or closed contacts."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from carom._compiled.decorators import kernel
 
 @kernel
 def label_components(system, work):
-    """Give each body the number of its joints' component."""
+    """Give each body the number of its component in the graph of joints."""
     for b in range(work.body.shape[0]):
         work.body[b].label = system.bodies[b].component
 
 
 @kernel
 def unite(work, a, b):
-    """Make the groups of two bodies one."""
+    """Join the groups of two bodies."""
     g, h = work.body[a].label, work.body[b].label
     if g != h:
         for i in range(work.body.shape[0]):
@@ -24,7 +24,7 @@ def unite(work, a, b):
 
 @kernel
 def label_groups(system, active, work):
-    """Give each body the number of its group, as persistent contacts make them."""
+    """Give each body the number of its group, where joints and persistent contacts connect bodies."""
     label_components(system, work)
     for i in range(active.count[0]):
         active_point = active.points[i]
@@ -34,7 +34,7 @@ def label_groups(system, active, work):
 
 @kernel
 def members(work, label, member):
-    """List the bodies of a group; return how many."""
+    """List the bodies of a group; return their number."""
     count = 0
     for b in range(work.body.shape[0]):
         if work.body[b].label == label:

@@ -1,4 +1,4 @@
-"""The points of contact that the kernels of pairs find, as the rest of the library sees them: arms, axes, gap.
+"""Contact points of two bodies in the form for the rest of the library: arms, axes, gap.
 
 Of two bodies, or of a curved body and a half-space (the other is -1 then).
 """

@@ -1,4 +1,4 @@
-"""How long two convex cores stay apart along a fixed direction, whatever they are.
+"""Bound of the time during which two convex cores stay separated along a fixed direction.
 
 A core point p of a body that moves is, after a time t, at least at
 

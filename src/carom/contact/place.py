@@ -1,4 +1,4 @@
-"""The point of any contact in a state: a vertex, what the kernels of pairs find, a stop."""
+"""The contact point of any contact in a state: of a vertex, of two bodies, or of a stop."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a body touches: another body, a static one, or a half-space."""
+"""The partner of a body in a contact: another body, a static body, or a half-space."""
 
 from __future__ import annotations
 

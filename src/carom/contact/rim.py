@@ -1,4 +1,4 @@
-"""Rims of cylinders and discs that are nearly flat on what they touch: the lowest point runs round.
+"""Rims of cylinders and discs that lie nearly flat on a surface: their lowest point moves fast around the rim.
 
 The lowest point of a rim of radius r has the same feature wherever it is. At a small tilt it runs round the rim
 much faster than the body turns; as the rim passes through flat it is on the other side at once. There a

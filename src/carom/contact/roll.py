@@ -1,4 +1,4 @@
-"""How the lowest point of a curved solid goes round its body as the body turns on a half-space.
+"""The motion of the lowest point of a curved solid on its body while the body rotates on a half-space.
 
 With the normal u in axes of the solid, u' = -W x u, and the point p that is lowest,
 

@@ -1,1 +1,1 @@
-"""Forces, joints, the constrained solve with its back ends, and the methods, one a file."""
+"""Forces, joints, the constrained solve with its back ends, and the methods, one file for each."""

@@ -1,4 +1,4 @@
-"""Steps of varying length: the error of a step in metres, and the length of the next.
+"""Adaptive steps: the error of a step in metres, and the length of the next step.
 
 With e_x, e_theta, e_v, e_w = h sum of E_s times the derivatives of the stages (an embedded pair), a body misses
 by

@@ -1,4 +1,4 @@
-"""A point of contact: its velocity, its effective inverse mass W = G P G^T, and what an impulse does.
+"""A contact point: its velocity, its Delassus operator W = G P G^T, and the effect of an impulse.
 
 G maps the velocities of all bodies to u = (u_n, u_t1, u_t2), the velocity of body a relative to body b at
 the point; P is the inverse mass with the joints active. (Paper, change of coordinates at contact.)

@@ -1,4 +1,4 @@
-"""Piecewise polynomials: what is prescribed over time, and springs with a curve."""
+"""Piecewise polynomials: prescribed motions over time, and springs with a characteristic curve."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""All that constrains: joints, then relations of their coordinates and rows of the user's own.
+"""All constraints: joints, then relations between their coordinates and user-defined rows.
 
 Of each element three errors and their rows are asked. A joint speaks of the relative motion of its two sides,
 six numbers (`carom.kinematics.joints`); the others write one number a row.

@@ -1,4 +1,4 @@
-"""Half kicks of a symplectic step: momenta of its middle from the start, velocities of its end from them.
+"""Half kicks of a symplectic step: to the momenta at its middle, and to the velocities at its end.
 
 Momenta (m v, l) of the middle are in `push`, l spatial and about each centre.
 """

@@ -17,27 +17,28 @@ TAKES_PART = 1e-6  # of a vector of length 1
 
 @dataclass(frozen=True)
 class Mobility:
-    """How a scene can move at its start. Print it for a summary.
+    """Degrees of freedom and constraints of a scene in its initial position. Print it for a summary.
 
     Attributes
     ----------
     bodies : int
+        Number of bodies.
     rows : int
-        Constraint rows of all joints.
+        Number of constraint rows of all joints and constraints.
     redundant : int
-        How many of them follow from the others: their reactions are not unique.
+        Number of redundant rows, which follow from the others; their reactions are not unique.
     degrees_of_freedom : int
-        6 bodies - rows + redundant: independent velocities.
+        Number of independent velocities: 6 bodies - rows + redundant.
     nonholonomic : int
-        Of the independent rows, those that restrict velocities only (blades, rolling): with them there are
+        Number of independent rows that restrict only velocities (blades, rolling). There are
         `degrees_of_freedom` + `nonholonomic` independent displacements.
     redundant_joints : tuple of str
-        Names of the joints that have a part in a redundancy: any one of it could be given up.
+        Names of the joints that take part in a redundancy; one of them could be left out.
     velocity_errors : dict of str to float
-        How much the initial velocities break each joint [m/s; angular ones times the size of the body].
-        `Options(project_start=True)` takes that out.
+        Error of the initial velocities in each joint [m/s; angular ones times the size of the body].
+        `Options(project_start=True)` removes it.
     remarks : tuple of str
-        What is nearly always a mistake, in sentences: `simulate` warns of it.
+        Sentences about input that is nearly always a mistake; `simulate` warns about it.
     """
 
     bodies: int
@@ -54,7 +55,7 @@ class Mobility:
             f"{self.bodies} bodies, {self.rows} constraint rows: {self.degrees_of_freedom} degrees of freedom"
         ]
         if self.nonholonomic:
-            lines.append(f"{self.nonholonomic} rows restrict velocities only")
+            lines.append(f"{self.nonholonomic} rows restrict only velocities")
         if self.redundant:
             lines.append(
                 f"{self.redundant} redundant rows, among {', '.join(self.redundant_joints)}"
@@ -62,7 +63,7 @@ class Mobility:
         worst = max(self.velocity_errors, key=self.velocity_errors.__getitem__, default=None)
         if worst is not None and self.velocity_errors[worst] > 0.0:
             lines.append(
-                f"initial velocities break {worst} most, by {self.velocity_errors[worst]:.3g} m/s"
+                f"initial velocities violate {worst} most, by {self.velocity_errors[worst]:.3g} m/s"
             )
         return "\n".join([*lines, *self.remarks])
 

@@ -1,4 +1,4 @@
-"""Forces along coordinates of joints, by curves, and by functions of the user's.
+"""Forces along joint coordinates, by characteristic curves, and by user-defined functions.
 
 along a coordinate    Q = -k (q - rest) - c q' + F,       U = k (q - rest)^2 / 2
 a spring with a curve tension F(length),                  U = integral of F from its first point

@@ -1,4 +1,4 @@
-"""By how much a move from q_0 to q_1 breaks the constraints, as a bias of the solve in q_0.
+"""The error of the constraints after a displacement from q_0 to q_1, as a bias of the solve in q_0.
 
 Of holonomic rows that is phi(q_1, t_1). Most directions turn with the parent, so errors are turned back with
 it. Rows without phi, a(q, t) v = b, are asked of the displacement xi from q_0 to q_1, in the mean of both ends:

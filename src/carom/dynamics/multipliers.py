@@ -92,7 +92,7 @@ def second_order_multipliers(solution) -> Multipliers:
             "curves or functions, got some"
         )
     if np.any(solution.contact_mode != 0):
-        raise ValueError("solution must be without held contacts, got some")
+        raise ValueError("solution must be without persistent contacts, got some")
     run = solution._run
     system = compile_scene(solution.scene, run.options, loops=True).system  # no joint is flipped
     state = r.trimmed(run.records, run.clock).state

@@ -1,4 +1,4 @@
-"""Return a body that is in contact at one point to its surface at the end of a step, as joints are returned to.
+"""Return of a body in contact at one point to the surface at the end of a step, similar to joints.
 
 The rows of a persistent contact hold at the level of accelerations and drift at the order of the method; the
 shortest displacement and the smallest change of velocity in the kinetic metric take that out:

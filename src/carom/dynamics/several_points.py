@@ -1,4 +1,4 @@
-"""Several points of contact together: velocities, the full W = G P G^T, and what their impulses do."""
+"""Several contact points together: velocities, the full W = G P G^T, and the effect of their impulses."""
 
 from __future__ import annotations
 

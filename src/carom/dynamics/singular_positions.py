@@ -1,4 +1,4 @@
-"""Stages of a step in singular positions, where rows depend on each other that do not elsewhere.
+"""Stages of a step in singular positions, where constraint rows are dependent that are independent elsewhere.
 
 Such rows are left out there, and the acceleration is not the limit of its neighbours: what the rows would say
 is 0/0, and nearby (at an angle e between them) round-off of the joints over e^3. On a path q(t) in the

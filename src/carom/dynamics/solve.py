@@ -1,4 +1,4 @@
-"""The one constrained solve, whatever the back end: forces, impulses and displacements alike."""
+"""The constrained solve with any back end, for forces, impulses and displacements."""
 
 from __future__ import annotations
 

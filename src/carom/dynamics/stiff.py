@@ -1,4 +1,4 @@
-"""Springs and dampers that the implicit step takes as rows: their stretch s, its rate, and forces.
+"""Springs and dampers that are rows of the implicit step: their stretch s, its rate, and forces.
 
 A spring on a line between two points, or along a coordinate of a joint, answers with mu = -(k s + c s') along
 its row J, s' = J v. The implicit step asks for the mu that it will have within the step

@@ -1,4 +1,4 @@
-"""Rows of the user's own, a(q, t) v = b(q, t): up to six, on any number of bodies.
+"""User-defined rows a(q, t) v = b(q, t): up to six, on any number of bodies.
 
 The function reads the poses (x, Q) of its bodies, in the axes of the scene, and writes rows (6 numbers a body,
 linear then angular, world axes) with b last. What the rows change by as bodies go on,

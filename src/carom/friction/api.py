@@ -1,4 +1,4 @@
-"""Many frictional contacts at once, as a problem of its own: `solve_contacts`."""
+"""`solve_contacts`: solve the contact problem of many frictional contacts."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ KINDS = {"coulomb": 0, "sliding": 1, "sticking": 2}
 
 @dataclass(frozen=True)
 class ContactSolution:
-    """Impulses of k contacts and how well they solve the problem. Contact axes: normal, tangents 1, 2.
+    """Impulses of k contacts, and their errors. Vectors are in contact axes: normal, tangent 1, tangent 2.
 
     Parameters
     ----------
     impulse : ndarray, shape (k, 3)
-        p [N s].
+        Impulses p [N s].
     velocity : ndarray, shape (k, 3)
-        w = W p + velocity without impulses [m/s].
+        Velocities w = W p + (velocity without impulses) [m/s].
     residual : float
-        Greatest distance of a contact from a solution, in units of velocity [m/s]: the natural map
+        Greatest residual of a contact [m/s]: the natural map
         ``|p - P_K(p - rho (w + mu |w_t| e_n))| / rho``, ``rho = 3 / trace W_ii``.
     penetration_speed : float
         Greatest ``-w_n``, at least 0 [m/s].
@@ -32,12 +32,12 @@ class ContactSolution:
     complementarity : float
         Greatest ``|p_n w_n|`` [J].
     iterations : int
-        Steps of Newton, sweeps and alternations. 0 for one contact, which is solved in closed form.
+        Number of Newton steps, sweeps and alternating steps; 0 for one contact, which is solved in closed form.
     converged : bool
-        Whether the residual is below 1e-10 of the greatest entry of the given velocity, plus
-        50 roundings of the greatest ``(|W| |p|)_i``. Mostly it is at round-off.
+        Whether the residual is below 1e-10 of the greatest entry of the given velocity, plus 50 times the
+        round-off of the greatest ``(|W| |p|)_i``. In most problems it is at round-off.
     message : str
-        A sentence that says so, or what is wrong.
+        A sentence about the convergence.
     """
 
     impulse: np.ndarray
@@ -54,44 +54,44 @@ class ContactSolution:
 def solve_contacts(
     inverse_mass, velocity, friction, *, kind="coulomb", heading=None, start=None
 ) -> ContactSolution:
-    r"""Solve for the impulses of k contacts with Coulomb friction: plastic, ``0 <= p_n _|_ w_n >= 0``.
+    r"""Solve for the impulses of k plastic contacts with Coulomb friction, ``0 <= p_n _|_ w_n >= 0``.
 
     Parameters
     ----------
     inverse_mass : array_like, shape (3k, 3k) or (k, 3, k, 3)
-        W between the contacts [1/kg], symmetric, positive semidefinite, rows (normal, tangent 1,
+        Delassus operator W of the contacts [1/kg], symmetric, positive semidefinite, rows (normal, tangent 1,
         tangent 2) of each contact. It may be singular: four corners of a box have rank 6 of 12.
     velocity : array_like, shape (3k,) or (k, 3)
         Relative velocities without the impulses [m/s]; approach is negative.
     friction : float or array_like, shape (k,)
         Coulomb's coefficient mu of each contact, at least 0.
     kind : str or sequence of k str, default "coulomb"
-        "coulomb": ``|p_t| <= mu p_n``, against w_t where the contact slips. "sliding": the direction
-        of slip is known, ``p_t = -mu p_n heading``. "sticking": w_t = 0 whatever impulse that takes.
+        "coulomb": ``|p_t| <= mu p_n``, opposite to w_t if the contact slips. "sliding": the direction of slip
+        is known, ``p_t = -mu p_n heading``. "sticking": w_t = 0, with any tangential impulse.
     heading : array_like, shape (k, 2), optional
         Directions for "sliding", unit vectors or zero (no friction). Default: zero.
     start : array_like, shape (3k,) or (k, 3), optional
-        Impulses of a similar problem to start from [N s]. Default: none, zero.
+        Initial impulses of the iteration [N s], for example those of a similar problem. Default: zero.
 
     Returns
     -------
     ContactSolution
-        Where no solution is reached, the best impulses found, with ``converged`` False.
+        The impulses. If the iteration does not converge, the best impulses found, with ``converged`` False.
 
     Raises
     ------
     ValueError
-        If an argument is not as above.
+        If an argument is invalid.
 
     Notes
     -----
-    Mathematics page, §3.2. Semi-smooth Newton on the equations of Alart and Curnier [1]_ with a proximal
-    term, started from sweeps of Gauss-Seidel or from alternating directions on the form of de Saxce
-    [2]_ where it does not converge; one contact is solved exactly. Impulses are not unique in
-    general. Where Newton converges at once, those of least norm (in units that make contacts equally
-    heavy) are returned: four equal ones for a box at rest on a face. Velocities can also differ between
-    solutions, for large friction; one contact takes the solution that is nearest to stick. With large
-    friction there may be none.
+    Mathematics page, §3.2. One contact is solved exactly. Several contacts are solved by a semi-smooth Newton
+    method on the equations of Alart and Curnier [1]_ with a proximal term. If it does not converge, it starts
+    again from Gauss-Seidel sweeps, or from an alternating direction method on the form of de Saxce [2]_.
+    Impulses are in general not unique. If Newton's method converges at once, the impulses of least norm (in
+    units in which all contacts have the same effective mass) are returned: four equal ones for a box at rest on
+    a face. For large friction, velocities can also differ between solutions; for one contact the solution
+    nearest to stick is returned. For large friction there may be no solution.
 
     References
     ----------
@@ -100,7 +100,7 @@ def solve_contacts(
 
     Examples
     --------
-    A block of 1 kg that slides at 1 m/s and is pressed down by 0.1 N s:
+    A block of 1 kg slides at 1 m/s, and an impulse of 0.1 N s presses it down:
 
     >>> solution = carom.solve_contacts(np.eye(3), (-0.1, 1.0, 0.0), 0.5)
     >>> solution.impulse

@@ -17,8 +17,8 @@ SOLVED, NOT_SOLVED, BAD_INPUT = 0, 1, 2
 MESSAGES = {
     SOLVED: "The contact problem was solved to its tolerance.",
     NOT_SOLVED: (
-        "The contact problem was not solved to its tolerance; the residual says how far it is off. "
-        "With large friction and redundant contacts it may have no solution."
+        "The contact problem was not solved to its tolerance; `residual` is the remaining error. "
+        "With large friction and redundant contacts the problem may have no solution."
     ),
     BAD_INPUT: "The inverse mass, the velocity or the friction is not finite, or friction is negative.",
 }

@@ -1,7 +1,7 @@
-"""Events of contacts: impacts, contacts that are active from then on, stick, slip and opening.
+"""Events of contacts: impacts, new active contacts, stick, slip and opening.
 
-At one state, in the arrays of NumPy; the impact and the contact problem are solved by the kernels that the
-scenes of bodies use.
+They are handled at one state, in NumPy arrays; the kernels for scenes of bodies solve the impact and the
+contact problem.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ ROUNDS = 50
 
 
 class Contacts:
-    """The contacts of a run: which are active, and what has happened to them."""
+    """The contacts of a run, with their active set and their events."""
 
     def __init__(self, run: GeneralizedRun):
         contacts = run.user.contacts
@@ -45,7 +45,7 @@ class Contacts:
     # --- what the state says -------------------------------------------------------------------
 
     def look(self) -> None:
-        """Work out the state: P, the relative velocities u (C, 3), and what counts as still (C,)."""
+        """Evaluate the state: P, the relative velocities u (C, 3), and the speeds that count as 0 (C,)."""
         run, n = self.run, self.run.n
         self.seen = run.made.look(run.x[:n], run.x[n:], float(run.clock[0].now), run.active)
         M, A = self.seen.M, self.seen.A
@@ -70,7 +70,7 @@ class Contacts:
         return [int(c) for c in active.contact[: active.count[0]]]
 
     def closed(self, struck: int) -> list[int]:
-        """Return the contacts that are closed: held, just located, or with a gap that counts as zero."""
+        """Return the closed contacts: active, just located, or with a gap that counts as zero."""
         scale = self.run.options.tie_tolerance * self.run.work.gap_scale
         gap = self.seen.gap
         active = self.active()
@@ -79,7 +79,7 @@ class Contacts:
     # --- one event --------------------------------------------------------------------------------
 
     def resolve(self, kind: int, index: int) -> int:
-        """Resolve the located event (kind 0: the start of the run); return a status."""
+        """Handle the located event (kind 0: the start of the run); return a status."""
         run = self.run
         if run.system.size[3] == 0:
             return 0
@@ -144,7 +144,7 @@ class Contacts:
     # --- contacts that stay -----------------------------------------------------------------------
 
     def bilateral(self, rows: np.ndarray, rates: np.ndarray, free: np.ndarray) -> np.ndarray:
-        """Return the acceleration with further rows kept at ``rows a = -rates``."""
+        """Return the acceleration with additional rows ``rows a = -rates``."""
         if not len(rows):
             return free
         Y = self.P @ rows.T
@@ -163,7 +163,7 @@ class Contacts:
         return Minv_f + Y @ lam
 
     def choose_active(self, closed: list[int], kind: int, marked: int, struck: int) -> int:
-        """Decide which closed contacts stay closed, and how; return a status."""
+        """Choose the closed contacts that become active, and their modes; return a status."""
         skip = marked if kind == SEPARATE else -1
         self.look()
         for c in self.active():
@@ -184,7 +184,7 @@ class Contacts:
         return self.set_active(chosen, closed, kind, marked, free)
 
     def stays(self, c: int, draw: float) -> bool:
-        """Return whether the bounces of a contact, drawn back by `draw`, end within a step."""
+        """Return whether the bounces of a contact with the acceleration `draw` end within a step."""
         u, e = float(self.u[c, 0]), self.restitution[c]
         if self.blows[c] > 0 and e < 1.0 and e ** float(self.blows[c]) <= 1e-6:
             e = 0.0
@@ -195,7 +195,7 @@ class Contacts:
         )
 
     def set_active(self, chosen, closed, kind: int, marked: int, free: np.ndarray) -> int:
-        """Hold `chosen`: find stick or slip of each from the accelerations; return a status."""
+        """Make `chosen` active: find stick or slip of each from the accelerations; return a status."""
         from carom.friction.layout import SOLVED, new_contact_work
         from carom.friction.solve import solve_cones
 
@@ -271,7 +271,7 @@ class Contacts:
         return -1
 
     def write_held(self, chosen, p: np.ndarray, heading: np.ndarray, was: dict) -> None:
-        """Write the contacts that are active from now on, with forces p (k, 3), and whether each sticks."""
+        """Write the new active contacts, with forces p (k, 3), and whether each sticks."""
         active = self.run.active
         for i, c in enumerate(chosen):
             active.contact[i], active.mode[i], active.force[i] = c, SLIP, p[i]
@@ -287,7 +287,7 @@ class Contacts:
                 active.heading[i] = was[c][1]
 
     def take_out(self, chosen, kind: int, marked: int, was: dict) -> None:
-        """Remove the normal velocities of contacts to be held, and slip that has stopped."""
+        """Remove the normal velocities of contacts that become active, and slip that has stopped."""
         run, n = self.run, self.run.n
         rows = []
         for c in chosen:

@@ -1,13 +1,13 @@
-"""Derivatives of functions by central differences, and functions made of functions.
+"""Derivatives of functions by central differences, as compiled functions.
 
     f' = [8 (f(+h) - f(-h)) - (f(+2h) - f(-2h))] / 12 h,   h = eps^(1/5) max(1, |q|) = 7.4e-4 max(1, |q|)
 
-of order 4: its error is about 1e-12 of f's own scale, round-off and truncation alike, where f changes over
-lengths of 1. Second derivatives, of constraints and held gaps along the velocity, take h = eps^(1/6): 1e-10.
-(Mathematics page, §4.1.)
+of order 4: the errors by round-off and by truncation are about 1e-12 of the scale of f, if f varies on a scale
+of 1. Second derivatives, of constraints and gaps of persistent contacts along the velocity, use h = eps^(1/6),
+with an error of 1e-10. (Mathematics page, §4.1.)
 
-What is made of compiled functions is compiled too. So all is in loops over numbers: array expressions would
-take Numba seconds to compile.
+Functions of compiled functions are compiled too. Therefore the code has loops over numbers: Numba would need
+seconds to compile array expressions.
 """
 
 from __future__ import annotations

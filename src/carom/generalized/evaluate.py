@@ -1,4 +1,4 @@
-"""The functions of a system, compiled, and what they say at single states."""
+"""The compiled functions of a system, and their evaluation at single states."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ STAGES = 12
 
 @dataclass(frozen=True)
 class Look:
-    """A system at one state: everything that an event needs."""
+    """The quantities of a system at one state that an event needs."""
 
     M: np.ndarray  # (n, n)
     c: np.ndarray  # (n,) Gamma(v, v), first kind
@@ -100,7 +100,7 @@ class Evaluation:
         code = run_along(self.system, 0.0, x, parts, self.work)
         self.failed()
         if code != 0:
-            raise ValueError(f"the autoparallel was not followed: {Status(code).message}")
+            raise ValueError(f"the autoparallel could not be integrated: {Status(code).message}")
         return x[: self.n], x[self.n :]
 
     def return_map(self, q, contact: int):
@@ -114,7 +114,9 @@ class Evaluation:
             )
             self.failed()
             if steps < 0 or code != 0:
-                raise ValueError(f"position must be nearer to the contact, got {q!r}: no return")
+                raise ValueError(
+                    f"position must be nearer to the contact, got {q!r}: the return map did not converge"
+                )
             if self.system.size[1] == 0 or steps == 0:
                 break
             code = project_rates(self.system, self.none_active, 0.0, x, self.work)

@@ -1,4 +1,4 @@
-"""What ends a mode of motion within a step, and where: functions that are positive before, negative after.
+"""Events that end a mode of motion within a step: functions that are positive before and negative after.
 
 GAP        gap                  of a contact that is open
 RATE       d gap/dt, turned     where a gap dips below zero and returns within a step

@@ -1,4 +1,4 @@
-"""A system in coordinates from functions of the user's, their derivatives given or by central differences."""
+"""A `GeneralizedSystem` from user-defined functions, with given derivatives or central differences."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""The arrays of a system in the user's own coordinates: the system, its active set, and workspace.
+"""The arrays of a `GeneralizedSystem` for the kernels: the system, its active set, and workspace.
 
-A state is one array ``x = (q, v)`` of 2n numbers. Everything that the user states reaches the kernels as four
-functions ``f(t, x, out)`` (`carom._compiled.user_functions`), whose answers are laid out here.
+A state is one array ``x = (q, v)`` of 2n numbers. The kernels call the functions of the user as four functions
+``f(t, x, out)`` (`carom._compiled.user_functions`); the layout of their results is defined here.
 """
 
 from __future__ import annotations
@@ -87,7 +87,7 @@ class Work(NamedTuple):
 
 
 class Motion(NamedTuple):
-    """All that a step needs beside the state: the system, the method, the persistent contacts, workspace."""
+    """The data of a step other than the state: the system, the method, the persistent contacts, workspace."""
 
     system: Coordinates
     method: Method

@@ -1,4 +1,4 @@
-"""The compiled loop: step after step, until one has an event that Python resolves."""
+"""The compiled loop: steps until one has an event, which Python code handles."""
 
 from __future__ import annotations
 
@@ -21,9 +21,9 @@ LONG = 20_000  # trial steps, times the square of the coordinates, after which t
 
 @entry
 def time_loop(motion, x, plan, until, record):
-    """Go on to step number `until`; return DONE, EVENT (the clock says which) or a status of failure.
+    """Continue to step number `until`; return DONE, EVENT (the clock has its kind) or a status of failure.
 
-    PAUSE after much work: so that Ctrl-C is seen.
+    Return PAUSE after much work, so that Ctrl-C is noticed.
     """
     system, work = motion.system, motion.work
     c = record.clock[0]

@@ -1,6 +1,6 @@
 """Accelerations in coordinates: ``M v' = Q - dV - Gamma(v, v) + D^T lam`` with ``R v' = -R' v``.
 
-R are the constraint rows and those of persistent contacts; D = R, but for a contact that slips, whose reaction
+R are the rows of constraints and of persistent contacts; D = R, except for a contact that slips, whose reaction
 is N (G_n - mu e G_t). (Mathematics page, §4.1 and §4.4.)
 """
 
@@ -29,7 +29,7 @@ SINGULAR_METRIC, NOT_FINITE = 11, 4  # as in `carom.status.Status`
 
 @kernel
 def find_metric(system, t, x, work):
-    """Work out M, its factor and Gamma(v, v) at the state `x`; return a status."""
+    """Compute M, its factor and Gamma(v, v) at the state `x`; return a status."""
     call_function(system.address[INERTIA], t, x, work.inertia)
     n = system.size[N]
     if cholesky(work.M, work.L, n):
@@ -42,7 +42,7 @@ def find_metric(system, t, x, work):
 
 @kernel
 def find_rows(system, active, t, x, work):
-    """Work out constraint rows, and contacts where any is active."""
+    """Compute constraint rows, and contacts if any is active."""
     if system.size[ALL_ROWS] > 0:
         call_function(system.address[ROWS], t, x, work.rows)
     if active.count[0] > 0:
@@ -51,7 +51,7 @@ def find_rows(system, active, t, x, work):
 
 @kernel
 def find_contacts(system, t, x, work):
-    """Work out gaps and contact rows, and how large a gap is by its own terms."""
+    """Compute gaps and contact rows, and the size of the terms of each gap."""
     if system.size[TOUCHES] == 0:
         return
     call_function(system.address[CONTACTS], t, x, work.contacts)
@@ -78,7 +78,7 @@ def slip_of(system, active, i, x, work):
 
 @kernel
 def direction(active, i, u1, u2):
-    """Return the direction of slip; where it would turn about within a stage, the one before."""
+    """Return the direction of slip; if it would reverse within a stage, the direction before."""
     h1, h2 = active.heading[i, 0], active.heading[i, 1]
     size = math.sqrt(u1 * u1 + u2 * u2)
     if size > 0.0 and u1 * h1 + u2 * h2 > 0.0:
@@ -95,7 +95,7 @@ def copy_row(row, out, n):
 
 @kernel
 def gather(system, active, x, work):
-    """Write R, D and the targets -R' v into `rhs`; return how many rows."""
+    """Write R and D, and the targets -R' v into `rhs`; return the number of rows."""
     n, m = system.size[N], system.size[ALL_ROWS]
     for r in range(m):
         copy_row(work.A[r], work.R[r], n)
@@ -124,7 +124,7 @@ def gather(system, active, x, work):
 
 @kernel
 def factor_rows(system, m, work):
-    """Work out Z = M^-1 D and factor K = R M^-1 D."""
+    """Compute Z = M^-1 D, and factor K = R M^-1 D."""
     n = system.size[N]
     for r in range(m):
         copy_row(work.D[r], work.Z[r], n)
@@ -200,7 +200,7 @@ def note_forces(system, active, x, work):
 
 @entry
 def look(system, active, t, x, work):
-    """Work out everything at a state, for Python; return a status. The acceleration goes to `work.a`."""
+    """Compute all quantities at a state, for Python; return a status. The acceleration is in `work.a`."""
     find_contacts(system, t, x, work)
     if system.size[HOLONOMIC] > 0 or system.size[ALL_ROWS] > 0:
         call_function(system.address[ROWS], t, x, work.rows)

@@ -1,4 +1,4 @@
-"""One run of a system in coordinates: the compiled loop, and Python where it stops at an event."""
+"""One run of a `GeneralizedSystem`: the compiled loop, and Python code for events, at which the loop stops."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def grid_of(settings: Settings, touches: bool) -> Grid:
 
 
 class GeneralizedRun:
-    """State, records and workspace of a run."""
+    """A run of a `GeneralizedSystem`: state, records and workspace."""
 
     def __init__(self, system: GeneralizedSystem, settings: Settings):
         options = settings.options
@@ -91,21 +91,21 @@ class GeneralizedRun:
         self.save_now()
 
     def check_start(self) -> None:
-        """Refuse a start that breaks constraints or contacts; project velocities if that is asked for."""
+        """Refuse a start that violates constraints or contacts; project velocities with `project_start`."""
         options, x, n = self.options, self.x, self.n
         seen = self.made.look(x[:n], x[n:])
         tolerance = options.constraint_tolerance
         scale = np.abs(seen.A[: len(seen.phi)]) @ np.abs(x[:n]) + 1.0
         if np.any(~(np.abs(seen.phi) <= tolerance * scale)):
             raise ValueError(
-                f"position must meet the constraints, got phi(q) = {seen.phi.tolist()} at the start"
+                f"position must satisfy the constraints, got phi(q) = {seen.phi.tolist()} at the start"
             )
         speed = np.abs(seen.A) @ np.abs(x[n:])
         if np.any(~(np.abs(seen.A @ x[n:]) <= tolerance * np.maximum(speed, 1e-300))):
             if not options.project_start:
                 raise ValueError(
-                    "velocity must meet the constraints, got A v = "
-                    f"{(seen.A @ x[n:]).tolist()} at the start; Options(project_start=True) makes it"
+                    f"velocity must satisfy the constraints, got A v = {(seen.A @ x[n:]).tolist()} at the "
+                    "start; use Options(project_start=True)"
                 )
         sizes = np.abs(seen.G[:, 0]) @ np.abs(x[:n]) if len(seen.gap) else np.zeros(0)
         inside = seen.gap < -1e-9 * np.maximum(sizes, np.abs(seen.gap))
@@ -130,7 +130,7 @@ class GeneralizedRun:
 
     @property
     def reached(self) -> float:
-        """Time that the run has come to."""
+        """Time that the run has reached."""
         return float(self.clock[0].now)
 
     def moment(self, acceleration: float) -> float:
@@ -145,7 +145,7 @@ class GeneralizedRun:
         save_now(self.x, self.record)
 
     def go_on(self, until: float) -> Status:
-        """Go on to step number `until`, or to a failure."""
+        """Continue to step number `until`, or to a failure."""
         code = self.start_code
         while code == 0:
             code = time_loop(self.motion, self.x, self.plan, int(until), self.record)
@@ -174,10 +174,10 @@ class GeneralizedRun:
         }
 
     def go_back(self) -> None:
-        """Go back to where the run can be gone on from: it is interrupted there only."""
+        """Do nothing: a run is only interrupted where it can be continued."""
 
     def event(self) -> int:
-        """Resolve the event that the loop has stopped at; return a status."""
+        """Handle the event at which the loop has stopped; return a status."""
         clock = self.clock[0]
         self.counts["located events"] += 1
         if clock.step != self.in_step:

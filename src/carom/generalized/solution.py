@@ -1,4 +1,4 @@
-"""What a run in coordinates hands back."""
+"""`GeneralizedSolution`: the results of a run of a `GeneralizedSystem`."""
 
 from __future__ import annotations
 
@@ -22,28 +22,30 @@ if TYPE_CHECKING:
 
 
 class CoordinateImpact(NamedTuple):
-    """One impact of a system in coordinates. Vectors (3,) in contact axes (normal, tangents 1, 2)."""
+    """One impact of a `GeneralizedSystem`. Vectors (3,) are in contact axes (normal, tangents 1, 2)."""
 
-    time: float  #: [s]
+    time: float  #: time of the impact [s]
     contact: int  #: index of the contact in `GeneralizedSystem.contacts`
-    position: np.ndarray  #: (n,) coordinates
-    relative_velocity_before: np.ndarray  #: (3,) approach negative
-    relative_velocity_after: np.ndarray  #: (3,)
-    impulse: np.ndarray  #: (3,)
-    energy_change: float  #: of the whole system [J]
+    position: np.ndarray  #: (n,) coordinates at the impact
+    relative_velocity_before: np.ndarray  #: (3,) velocity before; approach is negative
+    relative_velocity_after: np.ndarray  #: (3,) velocity after
+    impulse: np.ndarray  #: (3,) impulse
+    energy_change: (
+        float  #: change of energy of the system [J]; in a multiple impact the share of the contact
+    )
     law: str  #: law of restitution
-    inverse_mass: np.ndarray  #: (3, 3) W of the contact
+    inverse_mass: np.ndarray  #: (3, 3) Delassus operator W of the contact
     restitution: float  #: e of the contact
     friction: float  #: mu of the contact
-    compression_work: float  #: of the normal force [J]
-    restitution_work: float  #: of the normal force [J]
-    friction_loss: float  #: [J]
-    together: int  #: contacts that were resolved together, each with a row of its own
-    wedged: int  #: 1 where friction held the pair, and its law of restitution could not be met; 0 for most
+    compression_work: float  #: work of the normal force in compression [J]
+    restitution_work: float  #: work of the normal force in restitution [J]
+    friction_loss: float  #: energy that friction dissipates [J]
+    together: int  #: number of contacts in this multiple impact, each with a record; 1 for a single impact
+    wedged: int  #: 1 if friction wedges the pair, so that the law of restitution cannot hold; otherwise 0
 
 
 class CoordinateImpactTable:
-    """All impacts of a run in the order of time; fields of `CoordinateImpact` as columns (K, ...)."""
+    """All K impacts of a run in the order of time; columns (K, ...) are the fields of `CoordinateImpact`."""
 
     def __init__(self, records: list[dict], n: int):
         shapes = {"position": (n,), "inverse_mass": (3, 3)}
@@ -70,7 +72,7 @@ class CoordinateImpactTable:
 
     def __getitem__(self, k: int) -> CoordinateImpact:
         if not -len(self) <= k < len(self):
-            raise IndexError(f"there is no impact {k} of {len(self)}; the first has the number 0")
+            raise IndexError(f"there is no impact {k}: the table has {len(self)}, numbered from 0")
         row = (getattr(self, name)[k] for name in CoordinateImpact._fields)
         return CoordinateImpact(
             *(one.item() if isinstance(one, np.generic) else one for one in row)
@@ -84,7 +86,7 @@ class CoordinateImpactTable:
 
 
 def given_by_law(t: np.ndarray, impacts: CoordinateImpactTable) -> np.ndarray:
-    """Return what impacts have given until each time (T,) where their law with friction may (V8)."""
+    """Return the energy that impacts have added until each time (T,), where their law allows it (V8)."""
     from carom.impact.laws import GAINING
 
     named = np.array(IMPACT_LAWS)[list(GAINING)]
@@ -103,26 +105,26 @@ class GeneralizedSolution(Drawn):
     t : (T,)
         Saved times [s].
     q, v : (T, n)
-        Coordinates and their rates; at a time where an impact happened, after it.
+        Coordinates and their rates; at the time of an impact the rates after it.
     kinetic_energy, potential_energy, total_energy : (T,)
-        [J].
+        Energies [J].
     impacts : CoordinateImpactTable
         One record for each impact.
     events : EventTable
-        Impacts and changes of persistent contacts, in their order.
+        Impacts and changes of persistent contacts, in the order of time.
     constraint_errors : tuple of (T,), (T,)
         Greatest entries of phi(q) and of A v, the rates of the constraints.
     ledger : Ledger
-        Where the energy went.
+        Energy balance of the run.
     status : Status
-        How the run ended; `success` and `message` say it shorter and longer.
+        How the run ended; see also `success` and `message`.
     warnings : tuple of str
-        What has gone beyond `Options.energy_tolerance` at saved times. (Not looked at where energies depend on
-        time themselves.)
+        Sentences about energy errors above `Options.energy_tolerance` at saved times. (They are not checked if
+        the energies depend on time explicitly.)
     stats : dict
-        Counts: steps, located events, impacts, holds.
+        Counts: steps, located events, impacts, contacts that became persistent.
     system : GeneralizedSystem
-        What was run.
+        The system of the run.
     settings : dict
         The arguments of the run.
     """
@@ -144,7 +146,7 @@ class GeneralizedSolution(Drawn):
 
     @classmethod
     def _from_run(cls, run: GeneralizedRun, status: Status) -> GeneralizedSolution:
-        """Collect what a run has written down."""
+        """Make the solution from the records of a run."""
         from carom.generalized.loop import energies
         from carom.results.accuracy import judge, sentences, watched
 
@@ -183,12 +185,12 @@ class GeneralizedSolution(Drawn):
 
     @property
     def success(self) -> bool:
-        """Whether the run reached its end, and kept the balance of energy."""
+        """Whether the status is ``SUCCESS``: the run reached its end with the required accuracy."""
         return self.status is Status.SUCCESS
 
     @property
     def message(self) -> str:
-        """How the run ended, in a sentence; if it failed, with the time it reached."""
+        """How the run ended, in sentences; if it failed, with the time that it reached."""
         if self.status.ended:
             why = self.warnings if self.status is Status.INACCURATE else ()
             return " ".join((self.status.message, *why))
@@ -213,24 +215,24 @@ class GeneralizedSolution(Drawn):
     def evaluate(self, t, side: str = "right") -> tuple[np.ndarray, np.ndarray]:
         """Return (q, v) at times between saved ones: cubic between saved steps and events.
 
-        Error of order 4 in the saved interval for q, of order 3 for v.
+        The error is of order 4 in the saved interval for q, and of order 3 for v.
 
         Parameters
         ----------
         t : float or (m,)
             Times within the run [s].
         side : {"right", "left"}
-            Which velocity at the time of an event: after it (default) or before it.
+            Velocity at the time of an event: after it (``"right"``, default) or before it (``"left"``).
 
         Returns
         -------
         tuple of arrays
-            (m, n), (m, n); without the first axis for a single time.
+            Arrays (m, n), (m, n); for a single time without the first axis.
 
         Raises
         ------
         ValueError
-            If a time is outside the run, or `side` is another word.
+            If a time is outside the run, or `side` is invalid.
         """
         checks.choice("side", side, ("right", "left"))
         times = checks.times("t", t, self.t[0], self.t[-1])

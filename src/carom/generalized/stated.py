@@ -1,4 +1,4 @@
-"""What the user says of a contact, and checks of the user's functions."""
+"""`CoordinateContact`, and checks of user-defined functions."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from carom.scene.materials import IMPACT_LAWS
 
 @dataclass(frozen=True)
 class CoordinateContact:
-    """A contact of a system in coordinates: its law; its gap function says what touches.
+    """A contact of a `GeneralizedSystem`.
 
     Attributes
     ----------
     name : str
     restitution, friction : float
-        e and mu.
+        Coefficient of restitution e and friction coefficient mu.
     impact_law : {"newton", "poisson", "stronge"}
     index : int
-        Place in `GeneralizedSystem.contacts`.
+        Its index in `GeneralizedSystem.contacts`.
     """
 
     name: str
@@ -35,7 +35,7 @@ class CoordinateContact:
 def checked_contact(
     others: Sequence[CoordinateContact], tangent, restitution, friction, impact_law, name
 ) -> CoordinateContact:
-    """Return a contact; refuse numbers out of range and a name that `others` have."""
+    """Return a contact; refuse numbers out of range and a name that one of `others` has."""
     e = checks.number("restitution", restitution, least=0.0, most=1.0)
     mu = checks.number("friction", friction, least=0.0)
     checks.choice("impact_law", impact_law, IMPACT_LAWS)
@@ -45,12 +45,12 @@ def checked_contact(
         )
     name = f"contact {len(others)}" if name is None else checks.text("name", name)
     if any(name == other.name for other in others):
-        raise ValueError(f"name must be new, got {checks.shown(name)} twice")
+        raise ValueError(f"name must be unique, got {checks.shown(name)} twice")
     return CoordinateContact(name, e, mu, impact_law, len(others))
 
 
 def checked_functions(q: np.ndarray, gap, gradient, tangent) -> int:
-    """Refuse functions of a contact that are none or give another shape; return how many tangents."""
+    """Refuse functions of a contact that are not callable or return a wrong shape; return their tangents."""
     n = len(q)
     for what, one in (("gap", gap), ("gap_gradient", gradient), ("tangent", tangent)):
         checks.function(what, one, optional=what != "gap")
@@ -69,7 +69,7 @@ def checked_functions(q: np.ndarray, gap, gradient, tangent) -> int:
 
 
 def answer(name: str, function: Callable, shape: tuple, *arguments) -> np.ndarray:
-    """Return what a function gives at the start; refuse another shape than `shape`."""
+    """Return the result of a function at the start; refuse a shape other than `shape`."""
     given = [np.copy(a) if np.ndim(a) else a for a in arguments]
     result = checks.real_array(
         name, checks.call(name, function, *given), "(" + ", ".join(map(str, shape)) + ")"

@@ -78,9 +78,9 @@ def note_slip_directions(system, active, t, x, work):
 
 @kernel
 def place_rows(system, active, x, work):
-    """Write into R = D what must be zero of positions, -phi and -gap into `rhs`; return (rows, error).
+    """Write the rows for positions into R = D, and -phi and -gap into `rhs`; return (rows, error).
 
-    The error is the greatest, each as a part of the terms that make up its row.
+    The error is the greatest of all rows, each relative to the terms of its row.
     """
     n, m, worst = system.size[N], 0, 0.0
     for r in range(system.size[HOLONOMIC] + active.count[0]):
@@ -105,7 +105,7 @@ def place_rows(system, active, x, work):
 
 @kernel
 def rate_rows(system, active, work):
-    """Write into R = D what must be zero of velocities, `rhs` 0; return how many rows."""
+    """Write the rows for velocities into R = D, and 0 into `rhs`; return the number of rows."""
     n, m = system.size[N], 0
     for r in range(system.size[ALL_ROWS]):
         copy_row(work.A[r], work.R[m], n)
@@ -122,7 +122,7 @@ def rate_rows(system, active, work):
 
 @kernel
 def project(system, active, t, x, work):
-    """Return `x` to constraints and persistent contacts: coordinates along autoparallels, then velocities."""
+    """Project `x` to constraints and persistent contacts: coordinates along autoparallels, then velocities."""
     n, last = system.size[N], 0.0
     for iteration in range(20):
         code = find_metric(system, t, x, work)

@@ -1,4 +1,4 @@
-"""Impacts at one state: of one contact, or of all that are closed together."""
+"""Impacts at one state: of one contact, or of all closed contacts together."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ SPENT = 1e-6
 
 
 class Strike:
-    """Resolves the impacts of a run and keeps their records."""
+    """Solver of the impacts of a run, with their records."""
 
     def __init__(self, contacts: Contacts):
         self.contacts = contacts
@@ -46,14 +46,14 @@ class Strike:
         return Status.TOO_MANY_IMPACTS
 
     def restitution(self, c: int) -> float:
-        """Return e of the next blow: 0 where so many in one step have left nothing."""
+        """Return e of the next impact; 0 after so many impacts in one step that no speed is left."""
         here = self.contacts
         e, blows = float(here.restitution[c]), float(here.blows[c])
         here.blows[c] += 1
         return 0.0 if e < 1.0 and e**blows <= SPENT else e
 
     def one(self, c: int, now: float, jams: bool) -> int:
-        """Resolve the impact of one contact."""
+        """Solve the impact of one contact."""
         here = self.contacts
         G = here.seen.G[c]
         W, u, out = G @ here.P @ G.T, here.u[c].copy(), np.zeros(o.SIZE)
@@ -77,7 +77,7 @@ class Strike:
         return 0
 
     def several(self, closed: list[int], now: float, jams: int) -> int:
-        """Resolve the impact of all closed contacts together (mathematics page, part 2)."""
+        """Solve the multiple impact of all closed contacts (mathematics page, part 2)."""
         from carom.impact.multiple.layout import (
             MULTIPLE,
             OK,
@@ -140,7 +140,7 @@ class Strike:
         run.clock[0].impacts += 0.5 * (run.x[n:] - v) @ M @ (run.x[n:] + v)
 
     def write(self, c: int, now: float, blow: dict[str, Any]) -> None:
-        """Keep the record of an impact: what the blow did, and where."""
+        """Store the record of an impact."""
         here = self.contacts
         here.run.counts["impacts"] += 1
         here.events.append((now, "impact", c))

@@ -1,4 +1,4 @@
-"""A system in coordinates from SymPy expressions: derivatives taken exactly, code written for Numba.
+"""A `GeneralizedSystem` from SymPy expressions, with exact derivatives and generated code for Numba.
 
 SymPy is imported here and nowhere else.
 """
@@ -15,7 +15,7 @@ from carom import checks
 
 
 def sympy() -> Any:
-    """Return the module, or say how to get it."""
+    """Return the module, or raise an error with the command that installs it."""
     try:
         import sympy
     except ImportError:
@@ -34,14 +34,14 @@ class SymbolicModel:
         self.coordinates = self.symbols("coordinates", coordinates)
         n = self.n = len(self.coordinates)
         if n == 0:
-            raise ValueError("coordinates must name at least one coordinate, got none")
+            raise ValueError("coordinates must have at least one coordinate, got none")
         functions = all(isinstance(q, sp.core.function.AppliedUndef) for q in self.coordinates)
         if velocities is None and functions:
             velocities = [q.diff(q.args[0]) for q in self.coordinates]
         self.velocities = [] if velocities is None else self.symbols("velocities", velocities)
         if velocities is not None and len(self.velocities) != n:
             raise ValueError(
-                f"velocities must be {n}, one a coordinate, got {checks.shown(velocities)}"
+                f"velocities must be {n}, one for each coordinate, got {checks.shown(velocities)}"
             )
         if not (parameters is None or isinstance(parameters, Mapping)):
             raise ValueError(
@@ -63,15 +63,15 @@ class SymbolicModel:
         q, v = list(self.q), list(self.v)
 
         if (kinetic_energy is None) == (metric is None):
-            raise ValueError("give kinetic_energy or metric, and not both")
+            raise ValueError("kinetic_energy or metric must be given, and not both")
         if metric is None:
             T = self.take("kinetic_energy", kinetic_energy, "qv")
             self.M = sp.hessian(T, v)
             rest = T - sum(self.M[i, j] * v[i] * v[j] for i in range(n) for j in range(n)) / 2
             if self.M.has(*v) or not self.is_zero(rest):
                 raise ValueError(
-                    "kinetic_energy must be a quadratic form of the velocities (no term without "
-                    f"velocities, none linear in them), got {checks.shown(kinetic_energy)}"
+                    "kinetic_energy must be a quadratic form of the velocities (without terms of degree 0 "
+                    f"or 1), got {checks.shown(kinetic_energy)}"
                 )
         else:
             entries = self.table("metric", metric, n)
@@ -81,7 +81,9 @@ class SymbolicModel:
         self.V = self.take("potential", potential, "q")
         given = [0] * n if forces is None else checks.listed("forces", forces, "expressions")
         if len(given) != n:
-            raise ValueError(f"forces must be {n}, one a coordinate, got {checks.shown(forces)}")
+            raise ValueError(
+                f"forces must be {n}, one for each coordinate, got {checks.shown(forces)}"
+            )
         self.forces = [self.take("forces", one, "tqv") for one in given]
         constraints = checks.listed("constraints", constraints, "expressions")
         self.phi = [self.take("constraints", one, "q") for one in constraints]
@@ -157,7 +159,7 @@ class SymbolicModel:
         rest = taken - sum(a * v for a, v in zip(row, self.v))
         if any(a.has(*self.v) for a in row) or not self.is_zero(rest):
             raise ValueError(
-                f"{name} must be linear in the velocities, without a term that has none, got "
+                f"{name} must be linear in the velocities, without a term of degree 0, got "
                 f"{checks.shown(expression)}"
             )
         return row

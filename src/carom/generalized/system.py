@@ -1,4 +1,4 @@
-"""What the user states: a system in coordinates of their own."""
+"""`GeneralizedSystem`: a system in user-defined coordinates."""
 
 from __future__ import annotations
 
@@ -20,44 +20,45 @@ class GeneralizedSystem:
     .. math:: M_{kj} (\dot v^j + \Gamma^j_{il} v^i v^l) = Q_k - \partial_k V + \lambda_R a^R_k,
        \qquad T = \tfrac12 M_{ij} v^i v^j, \quad v = \dot q
 
-    with the Christoffel affinities of the metric M, constraints phi(q) = 0 and a(q) v = 0. Give it to
-    `carom.simulate` as a scene is given. This constructor takes functions; `from_sympy` takes expressions.
+    with the Christoffel affinities of the metric M, constraints phi(q) = 0 and a(q) v = 0. Pass it to
+    `carom.simulate` like a scene. The arguments of this constructor are functions; those of `from_sympy` are
+    expressions.
 
     Parameters
     ----------
     metric : callable
         ``metric(q) -> (n, n)``, symmetric, positive definite. Kinetic energy is ``v M v / 2``.
     position, velocity : array_like, shape (n,)
-        Coordinates and their rates at the start.
+        Initial coordinates and their initial rates.
     potential : callable, optional
         ``potential(q) -> float`` [J].
     force : callable, optional
-        ``force(t, q, v) -> (n,)``: generalised forces that have no potential.
+        ``force(t, q, v) -> (n,)``: generalised forces without a potential.
     constraint : callable, optional
-        ``constraint(q) -> (h,)``, kept zero.
+        ``constraint(q) -> (h,)``: functions phi that the constraints keep zero.
     rows : callable, optional
         ``rows(q) -> (k, n)``: nonholonomic constraints ``rows(q) v = 0``.
     metric_derivative, potential_gradient, constraint_jacobian : callable, optional
-        ``(n, n, n)`` with the coordinate of the derivative first, ``(n,)``, ``(h, n)``. Default: central
-        differences of order 4, good to about 1e-12 where functions change over lengths of 1 of a coordinate
-        (second derivatives of constraints: 1e-10); see the notes.
+        Functions that return the derivatives: ``(n, n, n)`` with the index of the derivative first, ``(n,)``,
+        and ``(h, n)``. Default: central differences of order 4. Their error is about 1e-12 for functions that
+        vary on a scale of 1 of each coordinate (1e-10 for second derivatives of constraints); see the notes.
 
     Raises
     ------
     ValueError
-        If a shape does not fit, a number is not finite, or the metric at the start is not symmetric and
-        positive definite.
+        If a shape is wrong, a number is not finite, or the metric at the start is not symmetric and positive
+        definite.
     TypeError
-        If a function is none.
+        If a function is not callable.
 
     Notes
     -----
-    Functions compiled by ``numba.njit`` are called from the compiled loop, plain ones through Python (some
-    10 microseconds a call). Steps of the differences are ``7.4e-4 max(1, |q|)``: choose units
-    in which coordinates of order 1 matter, or give the derivatives.
+    Functions compiled by ``numba.njit`` are called directly from the compiled loop; plain functions are called
+    through Python, which takes about 10 microseconds per call. The steps of the differences are
+    ``7.4e-4 max(1, |q|)``: choose units in which the functions vary on a scale of 1, or give the derivatives.
 
-    Coordinates must be good for the whole run: a chart that is singular on the way (the pole of a sphere) ends
-    it with a status.
+    The coordinates must be regular during the whole run. If they become singular (as at the pole of a sphere),
+    the run ends with `Status.SINGULAR_METRIC`.
     """
 
     def __init__(
@@ -125,35 +126,39 @@ class GeneralizedSystem:
         position,
         velocity,
     ) -> GeneralizedSystem:
-        """State a system by SymPy expressions; all derivatives are taken exactly, and compiled.
+        """Make a system from SymPy expressions; all derivatives are exact, and the expressions are compiled.
 
         Parameters
         ----------
         coordinates : sequence of n symbols, or functions of time such as ``dynamicsymbols("q")``
+            The coordinates.
         velocities : sequence of n symbols, optional
-            Their rates. Default for functions of time: their derivatives.
+            Rates of the coordinates. Default for functions of time: their derivatives.
         kinetic_energy : expression
-            A quadratic form of the velocities. Or
+            Kinetic energy [J], a quadratic form in the velocities. Give it or `metric`.
         metric : (n, n) matrix of expressions
+            Metric M. Give it or `kinetic_energy`.
         potential : expression in the coordinates
-            Default 0 [J].
+            Potential energy [J]. Default 0.
         forces : sequence of n expressions, optional
-            Generalised forces without potential, in time, coordinates and velocities.
+            Generalised forces without a potential, in time, coordinates and velocities.
         constraints : sequence of expressions in the coordinates
-            Kept zero.
+            Expressions that the holonomic constraints keep zero.
         rates : sequence of expressions, linear in the velocities
-            Nonholonomic constraints, kept zero.
+            Expressions that the nonholonomic constraints keep zero.
         parameters : mapping of symbol to number, optional
+            Values of the other symbols.
         time : symbol, optional
+            Symbol of the time.
         position, velocity : array_like, shape (n,)
-            The start.
+            Initial coordinates and velocities.
 
         Raises
         ------
         ImportError
-            Without SymPy (``pip install "carom[sympy]"``).
+            If SymPy is missing (``pip install "carom[sympy]"``).
         ValueError
-            If an expression has a symbol without a value, or not the form that it must have.
+            If an expression has a symbol without a value, or does not have the required form.
         """
         from carom.generalized.symbolic import SymbolicModel
 
@@ -179,7 +184,7 @@ class GeneralizedSystem:
             raise ValueError(f"metric must be positive definite, got {M.tolist()} at the start")
 
     def set_state(self, position, velocity) -> None:
-        """Start from other coordinates and velocities, each (n,)."""
+        """Set the initial coordinates and velocities, each (n,)."""
         q = checks.finite_array("position", position, (self.coordinates,))
         self.position, self.velocity = q, _rates(velocity, self.coordinates)
 
@@ -204,31 +209,32 @@ class GeneralizedSystem:
         impact_law: str = "newton",
         name: str | None = None,
     ) -> CoordinateContact:
-        """Keep a gap from becoming negative, by impacts and contact forces.
+        """Add a contact: a gap that impacts and contact forces keep from becoming negative.
 
         Parameters
         ----------
         gap : expression or callable ``gap(q) -> float``
-            A distance [m], positive while the contact is open: friction compares forces along its
-            gradient and along `tangent`, so both must be speeds of the same point.
+            Gap of the contact [m], positive while the contact is open. Its rate and `tangent` must be speeds of
+            the same point, because friction relates the forces along both.
         tangent : expression, or two; or callable ``tangent(q) -> (n,)`` or ``(2, n)``, optional
-            Tangential speeds of the point, linear in the velocities; of a function the rows that
-            multiply them. Two must be perpendicular directions. Default: none, without friction.
+            One or two tangential speeds of the point, linear in the velocities; a function returns the rows
+            that multiply the velocities. Two speeds must have perpendicular directions. Default: none, without
+            friction.
         gap_gradient : callable, optional
-            ``gap_gradient(q) -> (n,)``, with functions only. Default: central differences.
+            ``gap_gradient(q) -> (n,)``, only for a system of functions. Default: central differences.
         restitution : float
-            In [0, 1].
+            Coefficient of restitution e, in [0, 1].
         friction : float
-            Coulomb's coefficient, at least 0. Default 0.
+            Coulomb's friction coefficient, at least 0. Default 0.
         impact_law : {"newton", "poisson", "stronge"}
-            As in `carom.resolve_impact`.
+            As for `carom.resolve_impact`.
         name : str, optional
-            Default ``"contact k"``.
+            Name of the contact. Default ``"contact k"``.
 
         Raises
         ------
         ValueError
-            If an argument is not as above, or `friction` is given without `tangent`.
+            If an argument is invalid, or `friction` is given without `tangent`.
         """
         contact = checked_contact(self._contacts, tangent, restitution, friction, impact_law, name)
         if hasattr(self._model, "sp"):
@@ -243,7 +249,7 @@ class GeneralizedSystem:
         return contact
 
     def evaluation(self) -> Evaluation:
-        """Return the system's functions, compiled, for use at single states."""
+        """Return the compiled functions of the system, for evaluation at single states."""
         if self._made is None:
             from carom.generalized.evaluate import Evaluation
 
@@ -265,27 +271,28 @@ class GeneralizedSystem:
     def autoparallel(self, position, velocity, parts: int = 100) -> tuple[np.ndarray, np.ndarray]:
         """Return the end (q, v) of the autoparallel from `position` with `velocity`, after a time of 1.
 
-        A geodesic of the metric: ``q'' + Gamma(q', q') = 0``. In `parts` (1 to 100 000) Runge-Kutta steps of
-        order 4.
+        The autoparallel is a geodesic of the metric, ``q'' + Gamma(q', q') = 0``. It is integrated by `parts`
+        (1 to 100 000) Runge-Kutta steps of order 4.
 
         Raises
         ------
         ValueError
-            If an argument is not as above, or the metric is singular on the way.
+            If an argument is invalid, or the metric becomes singular.
         """
         v = checks.finite_array("velocity", velocity, (self.coordinates,))
         parts = checks.integer("parts", parts, least=1, most=100_000)
         return self.evaluation().autoparallel(self._at(position), v, parts)
 
     def return_map(self, position, contact: CoordinateContact | str) -> np.ndarray:
-        """Return coordinates where the gap of a contact is zero, along an autoparallel normal to it there.
+        """Return the coordinates that the return map gives: there the gap of a contact is zero.
 
-        Normal in the metric (paper, contact detection; mathematics page, §4.2), and within the constraints.
+        The return map follows an autoparallel that ends normal (in the metric) to the surface of zero gap and
+        satisfies the constraints (paper, contact detection; mathematics page, §4.2).
 
         Raises
         ------
         KeyError
-            If no contact is called so.
+            If there is no contact with this name.
         ValueError
             If `position` is not finite, or the map does not converge.
         """
@@ -297,7 +304,7 @@ class GeneralizedSystem:
             for one in self._contacts:
                 if one.name == contact:
                     return one
-            raise KeyError(f"no contact is called {checks.shown(contact)}")
+            raise KeyError(f"there is no contact with the name {checks.shown(contact)}")
         checks.instance("contact", contact, (CoordinateContact, str))
         if not any(one is contact for one in self._contacts):
             raise ValueError(f"contact must belong to this system, got {contact!r} of another one")

@@ -1,4 +1,4 @@
-"""Orientations as users have them: quaternions, SciPy rotations, matrices, Euler angles, axis and angle."""
+"""Orientations in the forms of users: quaternions, SciPy rotations, matrices, Euler angles, axis and angle."""
 
 from __future__ import annotations
 
@@ -16,26 +16,27 @@ if TYPE_CHECKING:
 
     Orientation = ArrayLike | Rotation
 
-#: largest error of lengths, of a quaternion or of what a matrix makes of a unit vector, that is rounding
+#: largest error of the length of a quaternion, or of a unit vector times a matrix, that counts as rounding
 ROUNDED = 1e-3
 KINDS = "a unit quaternion (w, x, y, z), a (3, 3) rotation matrix or a SciPy Rotation"
 
 
 def euler(axes: str, angles: ArrayLike) -> np.ndarray:
-    """Return the unit quaternion of turns about coordinate axes, one after the other.
+    """Return the unit quaternion of successive rotations about coordinate axes (Euler angles).
 
     Parameters
     ----------
     axes : str
-        One to three letters, in the order of the turns. Lower case ("xyz"): about axes of the world. Upper case
-        ("ZYX"): about axes of the body, which go with it. As SciPy's ``Rotation.from_euler`` has it.
+        One to three letters, in the order of the rotations. Lower case ("xyz"): about axes of the world. Upper
+        case ("ZYX"): about axes of the body, which turn with it. The same as in SciPy's
+        ``Rotation.from_euler``.
     angles : float, (k,) or (..., k)
-        One for each letter, in degrees.
+        An angle for each letter, in degrees.
 
     Returns
     -------
     ndarray (4,) or (..., 4)
-        (w, x, y, z), body to world: an `orientation` of `Scene.add_body`.
+        Quaternion (w, x, y, z), body to world, for `orientation` of `Scene.add_body`.
 
     Examples
     --------
@@ -62,19 +63,19 @@ def euler(axes: str, angles: ArrayLike) -> np.ndarray:
 
 
 def axis_angle(axis: ArrayLike, angle: ArrayLike) -> np.ndarray:
-    """Return the unit quaternion of a turn about an axis.
+    """Return the unit quaternion of a rotation about an axis.
 
     Parameters
     ----------
     axis : (3,)
-        Of any length but zero. The turn is counter-clockwise where the axis points to the eye.
+        Axis, of any length above 0. The rotation follows the right-hand rule.
     angle : float or (...)
-        In degrees.
+        Angle in degrees.
 
     Returns
     -------
     ndarray (4,) or (..., 4)
-        (w, x, y, z), body to world: an `orientation` of `Scene.add_body`.
+        Quaternion (w, x, y, z), body to world, for `orientation` of `Scene.add_body`.
 
     Examples
     --------
@@ -90,7 +91,7 @@ def axis_angle(axis: ArrayLike, angle: ArrayLike) -> np.ndarray:
 
 
 def attitude(name: str, value) -> np.ndarray:
-    """Return an orientation as a unit quaternion (4,); refuse what is none, or several."""
+    """Return an orientation as a unit quaternion (4,); refuse other values, and several orientations."""
     if not _is_rotation(value):
         array = checks.real_array(name, value, f"(4,) or (3, 3): {KINDS}")
         if array.shape not in ((4,), (3, 3)):
@@ -109,7 +110,7 @@ def attitude(name: str, value) -> np.ndarray:
 
 
 def quaternions(name: str, value) -> Any:
-    """Return the quaternions (..., 4) of a SciPy Rotation or of matrices (..., 3, 3); all else as it is."""
+    """Return the quaternions (..., 4) of a SciPy Rotation or matrices (..., 3, 3); other values unchanged."""
     if _is_rotation(value):
         q = np.asarray(value.as_quat(), dtype=float)
         return q[..., [3, 0, 1, 2]]
@@ -122,7 +123,7 @@ def _is_rotation(value) -> bool:
 
 
 def _shape(value) -> tuple[int, ...]:
-    """Return the shape of a value, () of what is no array of numbers."""
+    """Return the shape of a value, () if it is not an array of numbers."""
     try:
         return checks.real_array("value", value, "").shape
     except ValueError:
@@ -130,7 +131,7 @@ def _shape(value) -> tuple[int, ...]:
 
 
 def _from_matrices(name: str, value) -> np.ndarray:
-    """Return the quaternions of matrices (..., 3, 3): of the nearest rotations, which rounded ones are near."""
+    """Return the quaternions of matrices (..., 3, 3): of the nearest rotations if the matrices are rounded."""
     matrices = checks.real_array(name, value, "(..., 3, 3)")
     if not np.all(np.isfinite(matrices)):
         raise ValueError(f"{name} must be finite, got {checks.shown(value)}")

@@ -1,4 +1,4 @@
-r"""The connection on (R^3 x SO(3))^N with which Newton's law holds: for the mathematics, dense.
+r"""The connection on (R^3 x SO(3))^N with which Newton's law holds, as dense arrays, for the mathematics.
 
 In the left-invariant frame ``e_I`` (three translations along world axes, three rotations about body
 axes, for each body) the metric ``M = blockdiag(m 1, J)``, the structure constants
@@ -50,8 +50,8 @@ def affinities(bodies: int = 1, c: float = 1.0) -> Array:
     bodies : int
         Number N of bodies.
     c : float
-        Member of the bi-invariant family [1]: 1 gives Newton's law (the default), 1/2 is without
-        torsion, 0 keeps the components in the body frame.
+        Member of the bi-invariant family [1]: 1 (default) gives Newton's law, 1/2 has no torsion, 0 keeps the
+        components in the body frame constant.
     """
     return number("c", c) * structure_constants(bodies)
 
@@ -59,8 +59,8 @@ def affinities(bodies: int = 1, c: float = 1.0) -> Array:
 def levi_civita(metric: ArrayLike) -> Array:
     """Return the affinities, shape (6N, 6N, 6N), of the connection that is metric and torsion-free.
 
-    It gives Euler's equations as well, but its autoparallels are the free motions themselves, not
-    one-parameter subgroups. By Koszul's formula with constant ``metric`` (6N, 6N).
+    It also gives Euler's equations, but its autoparallels are the free motions, not one-parameter subgroups.
+    Computed by Koszul's formula with constant ``metric`` (6N, 6N).
     """
     g = _metric(metric)
     lowered = np.einsum("kp,pij->kij", g, structure_constants(len(g) // 6))  # <e_K, [e_I, e_J]>
@@ -88,7 +88,7 @@ def vector_derivative(L: ArrayLike, rate: ArrayLike, w: ArrayLike, v: ArrayLike)
 def covector_derivative(L: ArrayLike, rate: ArrayLike, p: ArrayLike, v: ArrayLike) -> Array:
     """Return ``(nabla_v p)_I = pdot_I - L^K_JI p_K v^J`` (6N,), the left side of Eq. (1).
 
-    For momenta p = M v this is what applied forces [N] and torques [N m] are equal to.
+    For momenta p = M v it is equal to the applied forces [N] and torques [N m].
     Parameters as in `vector_derivative`, with a covector p.
     """
     L = _affinities(L)
@@ -114,7 +114,7 @@ def curvature(L: ArrayLike) -> Array:
 
 
 def nonmetricity(L: ArrayLike, metric: ArrayLike) -> Array:
-    """Return ``(nabla_I g)[J, K]`` as an array [I, J, K]; zero if transport keeps lengths."""
+    """Return ``(nabla_I g)[J, K]`` as an array [I, J, K]; zero if parallel transport preserves lengths."""
     L, g = _affinities(L), _metric(metric)
     half = np.einsum("pij,pk->ijk", L, g)
     return -half - np.swapaxes(half, 1, 2)

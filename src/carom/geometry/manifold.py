@@ -70,7 +70,7 @@ class Manifold:
         return Point(x, Q / length)
 
     def exp(self, q: Point, xi: ArrayLike) -> Point:
-        """Return the end point (x + xi_x, R exp(hat xi_theta)) of the autoparallel xi from q."""
+        """Return the end (x + xi_x, R exp(hat xi_theta)) of the autoparallel that starts at q along xi."""
         from carom.geometry import autoparallel
 
         q, result = self.point(*q), self._empty()
@@ -80,7 +80,7 @@ class Manifold:
     def log(self, q0: Point, q1: Point) -> Array:
         """Return the arc xi (N, 6) from q0 to q1 that turns each body by an angle in [0, pi].
 
-        At the angle pi itself two arcs lead to q1, and one of them is returned.
+        At the angle pi two arcs lead to q1, and one of them is returned.
         """
         from carom.geometry import autoparallel
 
@@ -89,19 +89,19 @@ class Manifold:
         return out
 
     def transport_vector(self, xi: ArrayLike, vector: ArrayLike) -> Array:
-        """Return `vector` (N, 6), parallel along the arc xi, at its end: exp(-hat xi_theta)."""
+        """Return `vector` (N, 6) after parallel transport to the end of the arc xi: exp(-hat xi_theta)."""
         return self._map("transport_vector", xi, vector)
 
     def transport_covector(self, xi: ArrayLike, covector: ArrayLike) -> Array:
-        """Return `covector` (N, 6), parallel along the arc xi, at its end; <p, w> is kept."""
+        """Return `covector` (N, 6) after parallel transport to the end of the arc xi; <p, w> is preserved."""
         return self._map("transport_covector", xi, covector)
 
     def differential(self, xi: ArrayLike, rate: ArrayLike) -> Array:
-        """Return the velocity (N, 6) of the arc's end point when xi changes at `rate`: T(xi)."""
+        """Return the velocity (N, 6) of the end of the arc when xi changes at `rate`: T(xi) rate."""
         return self._map("differential", xi, rate)
 
     def differential_inverse(self, xi: ArrayLike, velocity: ArrayLike) -> Array:
-        """Return the rate (N, 6) of xi for a `velocity` of the end point; angles below 2 pi."""
+        """Return the rate (N, 6) of xi for a `velocity` of the end of the arc; angles must be below 2 pi."""
         return self._map("differential_inverse", xi, velocity)
 
     def lower(self, vector: ArrayLike) -> Array:

@@ -1,7 +1,7 @@
 """Arrays of rotations as unit quaternions (w, x, y, z), shape (..., 4): plain NumPy, no kernels.
 
-For scenes and for saved results, (T, N, 4). All functions broadcast over the leading axes, take
-body components to world components as `rotation` does, and hand a NaN on to its own entry only.
+For scenes and for saved results, (T, N, 4). All functions broadcast over the leading axes. A quaternion
+transforms body components to world components, as in `rotation`. A NaN only affects its own entry.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ def normalize(q: ArrayLike) -> Array:
 
 
 def rotate(q: ArrayLike, a: ArrayLike) -> Array:
-    """Return R a, shape (..., 3): body components a (..., 3) to world components."""
+    """Return R a, shape (..., 3): transform body components a (..., 3) to world components."""
     q, a = shaped("q", q, 4), shaped("a", a, 3)
     t = 2.0 * _cross(q[..., 1:], a)
     return a + q[..., :1] * t + _cross(q[..., 1:], t)
@@ -75,7 +75,7 @@ def _cross(a: Array, b: Array) -> Array:
 
 
 def rotate_back(q: ArrayLike, a: ArrayLike) -> Array:
-    """Return R^T a, shape (..., 3): world components a (..., 3) to body components."""
+    """Return R^T a, shape (..., 3): transform world components a (..., 3) to body components."""
     return rotate(conjugate(q), a)
 
 
@@ -168,7 +168,7 @@ def between(q0: ArrayLike, q1: ArrayLike) -> Array:
 
 
 def interpolate(q0: ArrayLike, q1: ArrayLike, s: ArrayLike) -> Array:
-    """Return the rotations (..., 4) a part s (...) of the way along the shortest arc q0 to q1.
+    """Return the rotations (..., 4) at the fraction s (...) of the shortest arc from q0 to q1.
 
     The arc is the autoparallel ``R0 exp(s log(R0^T R1))``: constant angular velocity ("slerp").
     """

@@ -6,9 +6,9 @@ eta(0) = 0, eta(h) = log(R0^T R1) and rates ``T(eta)^-1 W`` that give the angula
 ends; inside, ``W = T(eta) etadot``. Both are C^1 over a chain of states; the error is O(h^4) in
 position and rotation, O(h^3) in the velocities.
 
-If the body turns far between the ends, the chart is carried along the autoparallel of the mean
-angular velocity, ``R(t) = R0 exp(t hat Wbar) exp(hat eta(t))``: log sees only what is left of the
-turn, so that steady rotation is exact through any number of turns.
+If the body turns far between the ends, the chart moves along the autoparallel of the mean angular velocity,
+``R(t) = R0 exp(t hat Wbar) exp(hat eta(t))``. Then log only has to represent the rest of the rotation, so
+steady rotation is exact for any number of turns.
 """
 
 from __future__ import annotations
@@ -38,13 +38,13 @@ CARRIED_ABOVE = 2.0
 def interpolate(
     t: ArrayLike, t0: ArrayLike, t1: ArrayLike, state0: State, state1: State
 ) -> tuple[Array, Array, Array, Array]:
-    """Return the states at the times t, each between its own two neighbouring states.
+    """Return the states at the times t, each interpolated between two states of its own.
 
     Parameters
     ----------
     t, t0, t1 : array_like (K,) or scalar
-        Times [s], ``t0 <= t <= t1``. Where ``t0 == t1`` the result is the first state. Other t are
-        extrapolated, without warning.
+        Times [s], ``t0 <= t <= t1``. If ``t0 == t1`` the result is the first state. Other t are extrapolated
+        without a warning.
     state0, state1 : tuple of arrays
         States at t0 and t1: positions x (K, N, 3) [m], orientations Q (K, N, 4), velocities v
         (K, N, 3) [m/s] and angular velocities w (K, N, 3) [rad/s], in world axes. The axis N may be
@@ -53,7 +53,7 @@ def interpolate(
     Returns
     -------
     x, Q, v, w : ndarray
-        The states at t, of the same shapes; Q has unit length and starts at the sign of ``state0``.
+        The states at t, with the same shapes; Q has unit length and, at t0, the sign of ``state0``.
 
     Notes
     -----

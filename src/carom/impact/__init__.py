@@ -1,4 +1,4 @@
-"""One frictional impact: the boundary layer, slip and stick, restitution laws, the resolver."""
+"""One frictional impact: the boundary layer, slip and stick, laws of restitution, the impact solver."""
 
 from carom.impact.api import Impact, resolve_impact
 from carom.impact.geometry import NormalMotion, diagonal_form

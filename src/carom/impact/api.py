@@ -1,4 +1,4 @@
-"""One frictional impact on its own: `resolve_impact`."""
+"""`resolve_impact`: solve one frictional impact."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from carom import arguments, checks
 
 @dataclass(frozen=True)
 class Impact:
-    """What an impact did. Vectors in contact axes: normal, tangent 1, tangent 2.
+    """The result of an impact. Vectors are in contact axes: normal, tangent 1, tangent 2.
 
     Parameters
     ----------
@@ -20,22 +20,22 @@ class Impact:
     impulse : ndarray, shape (3,)
         Impulse of the whole impact [N s].
     compression_impulse : ndarray, shape (3,)
-        Impulse up to the end of compression, where the normal velocity is zero [N s]; for the last
-        time, if strong coupling (a jam) drives the bodies together again.
+        Impulse up to the end of compression, where the normal velocity is zero [N s]. If strong coupling (a
+        jam) makes the bodies approach again, the last such end counts.
     compression_work, restitution_work : float
-        Work of the normal force in compression (negative if it is not resumed) and in restitution
+        Work of the normal force in compression (negative, unless the bodies approach again) and in restitution
         [J].
     friction_loss : float
-        Energy dissipated by friction, not negative [J].
+        Energy dissipated by friction, at least 0 [J].
     energy_change : float
         Change of kinetic energy: compression_work + restitution_work - friction_loss [J].
     phases : tuple of str
-        What the contact did, in order: "slip", "jam" (the normal force drove the bodies together
-        while slipping), then "stick" or "reversal" (slip stopped and began again at once), "wedged".
+        Phases of the contact, in order: "slip", "jam" (the normal force makes the bodies approach while they
+        slip), then "stick" or "reversal" (slip stops and starts again at once), "wedged".
     wedged : bool
-        Whether friction held the pair in restitution however large the impulse is (W singular along the way):
-        the impact ended with the velocity that was reached, and not as its law says. With Poisson's law
-        the impulse of restitution is there, and changes nothing.
+        Whether friction wedges the pair in restitution, so that no impulse separates it (W becomes singular).
+        The impact then ends with the velocity reached so far, and its law of restitution does not hold. With
+        Poisson's law the impulse of restitution is included, but does not change the velocity.
     """
 
     velocity_after: np.ndarray
@@ -53,44 +53,44 @@ class Impact:
 def resolve_impact(
     inverse_mass, velocity, friction: float, restitution: float, law: str = "newton"
 ) -> Impact:
-    """Resolve one impact with Coulomb friction to round-off (Darboux-Keller equation).
+    """Solve one impact with Coulomb friction to round-off (Darboux-Keller equation).
 
     Parameters
     ----------
     inverse_mass : array_like, shape (3, 3)
-        W of the contact [1/kg], symmetric, positive semidefinite, normal first. A tangential
-        direction in which nothing can move has zeros.
+        Delassus operator W of the contact [1/kg], symmetric, positive semidefinite, normal first. It is zero
+        for a tangential direction in which nothing can move.
     velocity : array_like, shape (3,)
-        Relative velocity before [m/s], normal first and negative (approach).
+        Relative velocity before the impact [m/s]; the normal component is first, and negative (approach).
     friction : float
         Coulomb coefficient mu, at least 0.
     restitution : float
-        Coefficient e in [0, 1]. 0 ends the impact with compression, for every law.
+        Coefficient e in [0, 1]. For 0 the impact ends with compression, with every law.
     law : {"newton", "poisson", "stronge"}
-        What e compares: normal velocities (kinematic, default), normal impulses (kinetic), works of
-        the normal force (energetic). Equal if the direction of slip is constant. Newton's law can
-        raise the energy where slip stops or reverses; Stronge's never does.
+        Definition of e: the ratio of normal velocities (kinematic, default), of normal impulses (kinetic), or
+        the square root of the ratio of works of the normal force (energetic). The three agree if the direction
+        of slip is constant. Newton's law can increase the energy if slip stops or reverses; Stronge's never
+        does.
 
     Returns
     -------
     Impact
+        Velocity after the impact, impulse, energies and phases.
 
     Raises
     ------
     ValueError
-        If an argument is not as above, or nothing stops the approach: W is singular, friction holds the pair
-        wedged, and `velocity` has a part that no impulse changes (something drives it).
+        If an argument is invalid, or no impulse stops the approach: W is singular, friction wedges the pair,
+        and `velocity` has a component that no impulse changes (for example that of a driver).
 
     Notes
     -----
-    Mathematics page, §1.9 and §1.10. Slip follows its Taylor series and ends where the contact
-    sticks, if the friction suffices to hold it, or else starts anew along the one direction that
-    leads away from rest.
+    Mathematics page, §1.9 and §1.10. Slip is integrated by its Taylor series. When it stops, the contact sticks
+    if friction suffices; otherwise slip starts again in the only direction that leads away from rest.
 
     Examples
     --------
-    A sphere of 1 kg strikes the ground at 1 m/s while it slips at 1 m/s; its tangential W is 7/2 of the normal
-    one:
+    A sphere of 1 kg strikes the ground at 1 m/s and slips at 1 m/s; its tangential W is 7/2 of the normal one:
 
     >>> impact = carom.resolve_impact(np.diag([1.0, 3.5, 3.5]), (-1.0, 1.0, 0.0), friction=0.1, restitution=0.5)
     >>> print(impact.velocity_after, impact.impulse, impact.phases)
@@ -116,7 +116,7 @@ def resolve_impact(
 
 
 def checked_impact(inverse_mass, velocity, friction, restitution, law):
-    """Return the arguments of an impact as the kernels take them; raise ValueError if unsound."""
+    """Return the arguments of an impact in the form of the kernels; raise ValueError if they are invalid."""
     from carom.impact.laws import NUMBERS
 
     W = checked_inverse_mass(inverse_mass)
@@ -145,11 +145,11 @@ def checked_inverse_mass(inverse_mass) -> np.ndarray:
 
 
 def raise_for(code: int) -> None:
-    """Raise ValueError with the sentence of a kernel's code, unless it is 0."""
+    """Raise ValueError with the message for the code of a kernel, unless the code is 0."""
     from carom.impact.layout import MESSAGES, OK
 
     if code != OK:
-        raise ValueError(f"the impact was not resolved: {MESSAGES[code]}")
+        raise ValueError(f"the impact could not be solved: {MESSAGES[code]}")
 
 
 def phase_names(mask: int) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""Closed points that move alike are one contact: an edge or a face that strikes evenly, at its mean point.
+"""Closed points that move alike become one contact at their mean point: an edge or a face that strikes evenly.
 
 If all points of a contact have the same velocity u, and an impulse at their mean gives all of them the same
 change as their mean, they stay together all through the boundary layer and share the impulse. In planar

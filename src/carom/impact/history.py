@@ -1,4 +1,4 @@
-"""One impact resolved in time inside the boundary layer: `impact_layer`."""
+"""`impact_layer`: one impact, resolved in time inside the boundary layer."""
 
 from __future__ import annotations
 
@@ -14,23 +14,23 @@ MOST_STEPS = 100_000  # of one passage: more would only add round-off
 
 @dataclass(frozen=True)
 class LayerHistory:
-    """An impact in the time of the layer. Vectors in contact axes: normal, tangent 1, tangent 2.
+    """An impact inside its boundary layer, over time. Vectors in contact axes: normal, tangent 1, tangent 2.
 
     Parameters
     ----------
     t : ndarray, shape (K,)
-        Times of the knots of the spline, from entry [s].
+        Times of the knots of the spline since entry [s].
     x : ndarray, shape (K,)
-        Normal coordinate in the layer, from its width b at entry and back [m].
+        Normal coordinate in the layer [m]; it is the width b at entry and at exit.
     velocity : ndarray, shape (K, 3)
         Velocity in the flat coordinates [m/s]; the normal one is u_n = b xdot/x, which is xdot at
         entry and exit.
     normal_force : ndarray, shape (K,)
-        Normal force right of each knot, at the last one left of it [N].
+        Normal force just after each knot, and just before the last one [N].
     friction_force : ndarray, shape (K, 2)
-        Friction force, likewise [N].
+        Friction force at the same times [N].
     x_min : float
-        Least x, (1 - penetration) b [m].
+        Smallest x, (1 - penetration) b [m].
     duration : float
         Time spent in the layer [s].
     velocity_after, impulse : ndarray, shape (3,)
@@ -101,29 +101,30 @@ def impact_layer(
     law: str = "newton",
     steps: int = 2,
 ) -> LayerHistory:
-    """Pass one impact through the boundary layer, in time, by geometric cubic splines.
+    """Integrate one impact through the boundary layer, in time, by geometric cubic splines.
 
     Parameters
     ----------
     inverse_mass, velocity, friction, restitution, law
         As for `resolve_impact`. A restitution below 1e-6 ends the impact with compression.
     penetration : float
-        Greatest penetration delta as a part of the width, in (0, 1).
+        Greatest penetration delta as a fraction of the width, in (0, 1).
     width : float
-        Width b of the layer [m]. Neither it nor delta changes the velocity after the impact.
+        Width b of the layer [m]. The velocity after the impact does not depend on it, nor on delta.
     steps : int
-        Steps of the spline, shared equally by compression and restitution; from 2 to 100 000. A step is
-        split where slip ends, and halved where slip turns sharply. Default 2, the paper's: exact
-        where the direction of slip is constant, of order 4 otherwise.
+        Number of steps of the spline, half of them in compression and half in restitution; from 2 to 100 000. A
+        step is divided where slip ends, and halved where slip turns sharply. Default 2, as in the paper: exact
+        if the direction of slip is constant, otherwise of order 4.
 
     Returns
     -------
     LayerHistory
+        The impact over time.
 
     Raises
     ------
     ValueError
-        If an argument is not as above, or the impact cannot be resolved.
+        If an argument is invalid, or the impact cannot be solved.
 
     Notes
     -----

@@ -1,15 +1,14 @@
 """The paper's phase inside the boundary layer, in time, by geometric cubic splines.
 
-Flat coordinates (s, x^2, x^3), s = b ln(x/b). Two ways of giving the normal force:
+Flat coordinates (s, x^2, x^3), s = b ln(x/b). There are two forms of the normal force:
 
 - Newton's law: law A (mathematics page, §1.8), the normal acceleration is prescribed, constant in
   compression, v_0^2/(2 b l), and e^2 of it in restitution; N = a/k(tau).
-- Poisson and Stronge, and Newton when k(tau) <= 0 on the way (jam): the steps are taken in the
+- Poisson and Stronge, and Newton if k(tau) <= 0 at some point (jam): the steps are taken in the
   normal impulse and replayed in time with constant N_c = |A_c|/(b l), N_r = A_r/(b l) (§1.10).
 
-Either way s returns to 0 from exactly -b l; where the pair is wedged it stays there, compressed. The
-instant at which slip ends, where a step must be split, is taken from the resolver; every velocity is the
-spline's own.
+With both, s returns to 0 from exactly -b l; a wedged pair stays there, compressed. The time at which slip ends,
+where a step must be divided, comes from the impact solver; all velocities are those of the spline.
 """
 
 from __future__ import annotations
@@ -32,7 +31,7 @@ E_MIN = 1e-6  # below this restitution the impact ends with compression: T_r = T
 
 
 class Passage(NamedTuple):
-    """One passage through the layer: what is given, and what the resolver says of it."""
+    """One passage through the layer: its input, and the result of the impact solver."""
 
     m: tuple  # W, as in `slip_step`
     mu: float
@@ -47,12 +46,12 @@ class Passage(NamedTuple):
 
 @entry
 def traverse(W, u, mu, e, law, layer, history, out):
-    """Pass one impact through the layer (width b, penetration delta, steps of the spline).
+    """Integrate one impact through the layer (width b, penetration delta, steps of the spline).
 
-    As `resolve`, with the same `out`. The steps are shared equally by compression and restitution
-    (one each at least). Knots go to the rows of `history` (t, s, u_n, u_1, u_2, x^2, x^3, N, T_1,
-    T_2), as many as there is room for; their number to ``out[KNOTS]``. Forces are those right of
-    the knot, at the last one those left of it.
+    The arguments are those of `resolve`, with the same `out`. Compression and restitution have half of the
+    steps each (at least one). Knots are written to the rows of `history` (t, s, u_n, u_1, u_2, x^2, x^3, N,
+    T_1, T_2), as many as it has, and their number to ``out[KNOTS]``. Forces are those just after the knot, and
+    just before the last knot.
     """
     code = resolve_one(W, u, mu, e, law, out)
     if code != o.OK:
@@ -79,7 +78,7 @@ def traverse(W, u, mu, e, law, layer, history, out):
 
 @kernel
 def _friction(given):
-    """Return the friction from the start on, and whether its constant ratio, once u_t = 0, is that of stick."""
+    """Return the friction from the start on, and whether its constant ratio is that of stick after u_t = 0."""
     m, mu, (u0, u1, u2) = given.m, given.mu, given.u
     if not mu > 0.0:
         return Friction(True, 0.0, 0.0), False
@@ -93,7 +92,7 @@ def _friction(given):
 
 @kernel
 def _pass(given, history, out):
-    """Run both phases; `out` holds what `resolve` says, and then the results."""
+    """Run both phases; `out` has the result of `resolve`, and at the end the results of the layer."""
     u, e, v0, depth, timed = given.u, given.e, -given.u[0], given.depth, given.timed
     friction, sticks = _friction(given)
 

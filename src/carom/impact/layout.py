@@ -1,4 +1,4 @@
-"""Where the kernels of an impact write their results, and the codes they return.
+"""The layout of the results of the kernels of an impact, and the codes that they return.
 
 Velocities and impulses in contact axes: normal, tangent 1, tangent 2.
 """

@@ -1,4 +1,4 @@
-"""The row of an impact in the records."""
+"""Writing the record of an impact."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
 """One frictional impact by the Darboux-Keller equation, solved to round-off.
 
-The normal impulse p is the time (mathematics page, §1.9): du/dp = W (1, tau), tau = -mu u_t/|u_t|
-in slip, tau = -W_tt^-1 W_tn in stick. Where the direction of slip is constant u is linear in p and
-the piece is closed; else it is stepped (`taylor`). A jam needs no care here: p always grows. Where no
-impulse moves anything any more (`wedge`) the velocity that was reached stays.
+The normal impulse p is the independent variable (mathematics page, §1.9): du/dp = W (1, tau), with tau = -mu
+u_t/|u_t| in slip and tau = -W_tt^-1 W_tn in stick. If the direction of slip is constant, u is linear in p and
+the piece is in closed form; otherwise it is integrated (`taylor`). A jam needs no special treatment, because p
+always grows. If no impulse changes the velocity (`wedge`), the velocity reached so far is the result.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ _WITHIN, _AT_STOP, _AT_GOAL, _CAUGHT, _ENDLESS = range(5)
 
 
 class Contact(NamedTuple):
-    """The contact of an impact, in units of W and u of its own."""
+    """The contact of an impact, in scaled units of W and u."""
 
     m: tuple  # W, as in `slip_step`
     mu: float
@@ -45,7 +45,7 @@ class Contact(NamedTuple):
 
 
 class Phase(NamedTuple):
-    """Compression, which ends at u_n = 0, or restitution, which ends as its law says."""
+    """A phase: compression, which ends at u_n = 0, or restitution, which ends by its law."""
 
     law: int
     goal: float  # value of the law's measure at the end
@@ -68,17 +68,17 @@ _CURVE = Line(_CURVED, 0.0, 0.0, 0.0)
 
 @entry
 def resolve(W, u, mu, e, law, out):
-    """Resolve one impact as `resolve_one`, for calls from Python."""
+    """Solve one impact like `resolve_one`, for calls from Python."""
     return resolve_one(W, u, mu, e, law, out)
 
 
 @kernel
 def resolve_one(W, u, mu, e, law, out):
-    """Resolve one impact of inverse mass `W` (3, 3), approach velocity `u` (3,), friction `mu`.
+    """Solve one impact with inverse mass `W` (3, 3), approach velocity `u` (3,), friction `mu`.
 
-    Normal first, ``u[0] < 0``; `e` and `law` (as in `laws`) give the restitution; results go to
-    `out` as `layout` says, where STILL is given. Returns 0, or the code of what went wrong (`out` then
-    holds no result).
+    The normal is first, ``u[0] < 0``; `e` and `law` (as in `laws`) give the restitution. Results are written to
+    `out` in the order of `layout`; its entry STILL is an input. Return 0, or the code of a failure (`out` then
+    has no result).
     """
     total = W[0, 0] + W[0, 1] + W[0, 2] + W[1, 1] + W[1, 2] + W[2, 2] + u[0] + u[1] + u[2] + mu + e
     if not (math.isfinite(total) and W[0, 0] > 0.0):
@@ -111,8 +111,9 @@ def resolve_one(W, u, mu, e, law, out):
 def _follow(contact, u, e, law):
     """Follow the velocity from `u` to the end of restitution, piece by piece.
 
-    Returns a code, the number of pieces, the mask of the phases passed, the state at the end, what compression
-    gave (p, P_1, P_2, loss, work; the state counts from there), and p and u_n where slip first stopped.
+    Return a code, the number of pieces, the mask of the phases passed, the state at the end, the results of
+    compression (p, P_1, P_2, loss, work; the state is relative to them), and p and u_n where slip first
+    stopped.
     """
     mu, at_rest = contact.mu, _AT_REST * contact.size
     s, before = (u[1], u[2], u[0], 0.0, 0.0, 0.0, 0.0, 0.0), (0.0, 0.0, 0.0, 0.0, 0.0)
@@ -171,7 +172,7 @@ def _follow(contact, u, e, law):
 
 @inlined
 def _from_rest(contact):
-    """Return the line along which the contact goes on from u_t = 0 (§1.9, 2 and 3).
+    """Return the line along which the contact continues from u_t = 0 (§1.9, 2 and 3).
 
     It sticks to the end, or slip starts again along the outgoing ray.
     """
@@ -185,10 +186,10 @@ def _from_rest(contact):
 
 @inlined
 def _straightened(contact, s):
-    """Return the line of slip if it keeps its direction from here on to round-off, else the curve.
+    """Return the line of slip if its direction stays constant to round-off from here on, otherwise the curve.
 
-    A ray that attracts (df/dtheta < 0) is taken as soon as the distance of u_t from it is round-off: waiting
-    longer would cost many steps where slip grows or fades slowly.
+    An attracting ray (df/dtheta < 0) is used as soon as the distance of u_t from it is round-off, because later
+    it would take many steps if slip grows or decreases slowly.
     """
     m, mu, x, y = contact.m, contact.mu, s[0], s[1]
     r = math.sqrt(x * x + y * y)
@@ -219,7 +220,7 @@ def _turning(m, mu, c, n):
 
 @kernel
 def _along_curve(contact, phase, s):
-    """Take one step of slip that turns: return the new state, how the step ended, and marks of the phases."""
+    """Take one step of turning slip: return the new state, the kind of end, and marks of the phases."""
     m, mu, size, law, goal = contact.m, contact.mu, contact.size, phase.law, phase.goal
     r, k = normal_rate(m, mu, s)
     marks = o.JAM if k <= 0.0 else 0
@@ -241,7 +242,7 @@ def _along_curve(contact, phase, s):
 
 @inlined
 def _along_line(contact, phase, line, s):
-    """Go to the end of the phase or of slip: return the new state, how that ended, and marks of the phases."""
+    """Move to the end of the phase or of slip: return the new state, kind of end, and marks of the phases."""
     m, mu, law, t1, t2, growth = contact.m, contact.mu, phase.law, line.t1, line.t2, line.growth
     k = m[0] + m[1] * t1 + m[2] * t2
     f1, f2 = m[1] + m[3] * t1 + m[4] * t2, m[2] + m[4] * t1 + m[5] * t2
@@ -287,9 +288,9 @@ def _along_line(contact, phase, line, s):
 
 @kernel
 def _without_slip(m, s, size):
-    """Return the state with u_t = 0: what is left of it at the end of slip goes into the impulse.
+    """Return the state with u_t = 0: the rest of u_t at the end of slip is removed by an impulse.
 
-    It is round-off, and so is the impulse, unless hardly anything moves in the tangent plane: there it stays.
+    The rest is round-off, and so is the impulse, unless W_tt is nearly singular: then the rest stays.
     """
     d1, d2 = solve_tangential(m[3], m[4], m[5], s[0], s[1])
     if not abs(d1) + abs(d2) <= _LEFT * size:

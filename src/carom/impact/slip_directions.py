@@ -1,4 +1,4 @@
-"""Directions that slip keeps during an impact, and the friction that stops it for good."""
+"""Invariant directions of slip during an impact, and the friction from which slip does not start again."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from carom.impact.api import checked_inverse_mass
 
 @dataclass(frozen=True)
 class InvariantDirections:
-    """Directions e of slip that do not turn: e x (W_tn - mu W_tt e) = 0.
+    """Directions e of slip that stay constant: e x (W_tn - mu W_tt e) = 0.
 
     Parameters
     ----------
@@ -21,7 +21,7 @@ class InvariantDirections:
     rate : ndarray, shape (K,)
         d|u_t|/dp along e, (W_tn - mu W_tt e).e [1/kg].
     outgoing : ndarray of bool, shape (K,)
-        Whether slip grows along e. At most one does so from rest.
+        Whether slip grows along e. From rest, slip can grow along at most one direction.
     """
 
     angle: np.ndarray
@@ -30,7 +30,7 @@ class InvariantDirections:
 
 
 def invariant_directions(inverse_mass, friction: float) -> InvariantDirections:
-    """Return all directions of slip that are constant through an impact (mathematics page, §1.9).
+    """Return all directions of slip that stay constant during an impact (mathematics page, §1.9).
 
     Parameters
     ----------
@@ -76,12 +76,12 @@ def invariant_directions(inverse_mass, friction: float) -> InvariantDirections:
 
 
 def critical_friction(inverse_mass) -> float:
-    """Return ``mu_crit = |W_tt^-1 W_tn|``: from this friction on, slip that stops stays stopped.
+    """Return ``mu_crit = |W_tt^-1 W_tn|``: with this friction or more, slip that stops does not start again.
 
     Parameters
     ----------
     inverse_mass : array_like, shape (3, 3)
-        W of the contact [1/kg], normal first. If W_tt is singular the least-norm solution counts.
+        W of the contact [1/kg], normal first. If W_tt is singular, the solution of least norm is used.
     """
     from carom.friction.rays import stick_ratio
 

@@ -1,4 +1,4 @@
-"""Stepping the state of slip, and landing on the end of a phase.
+"""Steps of the slip velocity, and the last step to the end of a phase.
 
 State: ``(u_1, u_2, u_n, p, P_1, P_2, loss, work)``, the last five counted from the start of the
 phase. Mass: ``(W_nn, W_n1, W_n2, W_11, W_12, W_22)``.

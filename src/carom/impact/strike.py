@@ -34,10 +34,10 @@ SEED = 1e-10  # approach given to a point that jams, as a part of its slip; the 
 
 @kernel
 def onto_surface(system, controls, c, state, work):
-    """Put the body on the surface and its striking point into work.hit. Returns 0 or a status.
+    """Move the body to the surface and write its striking point to work.hit. Return 0 or a status.
 
-    After a located impact this is the last polish; after a whole step it is the paper's return map, and the
-    velocity block is solved again with the position now fixed.
+    After a located impact this is the last correction. After a complete step it is the return map of the paper,
+    and the velocity block is solved again with the new position.
     """
     contact, point = system.contacts[c], work.hit[0].point
     if contact.touches != 0:
@@ -61,10 +61,10 @@ def onto_surface(system, controls, c, state, work):
 
 @unit
 def strike(model, data, method, c):
-    """Resolve the impact of contact c, together with all that is closed in its group.
+    """Solve the impact of contact c, together with all closed points of its group.
 
-    0 or the number of a `Status` goes to work.hit, and how many points were closed, if one was struck.
-    Velocities of `state` change; its position only by the return map.
+    0 or the number of a `Status` is written to work.hit, and the number of closed points if there was an
+    impact. The velocities of `state` change; its position changes only by the return map.
     """
     system, controls = model.system, model.controls
     active, state, group, work, records = (
@@ -120,7 +120,7 @@ def strike(model, data, method, c):
 
 @kernel
 def forget_jams(active, k, group):
-    """Clear the mark of the active points whose jam this impact has resolved."""
+    """Clear the mark of active points whose jam this impact has ended."""
     for i in range(k):
         if group.closed[i].active >= 0:
             active.points[group.closed[i].active].jams = 0
@@ -128,7 +128,7 @@ def forget_jams(active, k, group):
 
 @kernel
 def strike_one(model, data, method, c):
-    """Resolve the impact of the one point in work.point, with W and u in work.hit."""
+    """Solve the impact of the one point in work.point, with W and u in work.hit."""
     system, controls = model.system, model.controls
     active, state, work, clock = data.active, data.state, data.work, data.clocks[0]
     contact, hit, point = system.contacts[c], work.hit[0], work.point[0]
@@ -149,7 +149,7 @@ def strike_one(model, data, method, c):
 
 @inlined
 def collide(method, controls, contact, hit, history):
-    """Resolve the impact in work.hit the way the method does it: to round-off, or as the paper does."""
+    """Solve the impact in work.hit as the method requires: to round-off, or as in the paper."""
     if method.kind == THREE_FIELD:
         return by_layer(controls, contact, hit, history)
     return resolve_one(hit.W, hit.u, hit.friction, hit.restitution, contact.law, hit.out)

@@ -20,15 +20,15 @@ from carom.model.allowance import affordable
 IMPACT_FAILED = 6
 SEED = 1e-7  # of the slip
 ROUND_OFF = 1e-14  # of the speeds of a multiple impact
-#: exponents of the normal force: of points that are all round, and of others
+#: exponents of the normal force: if all points are on round bodies, and otherwise
 HERTZ, LINEAR = 1.5, 1.0
-#: cost of a step through the layers, of a point [us]: by series, and by the many short ones of other exponents
+#: cost per point of a step through the layers [us]: by series, and with the many short steps of other exponents
 STEP, STAGES = 30.0, 5.0
 
 
 @unit
 def resolve_group(k, W, u, mu, multiple):
-    """Resolve the impact of k points; its code goes to the clock of the workspace."""
+    """Solve the impact of k points; its code is written to the clock of the workspace."""
     contacts = by_reference(
         CornerContacts(k, 0, W, u, mu, multiple.e, multiple.law, multiple.kappa, multiple.pair)
     )
@@ -43,7 +43,7 @@ def resolve_group(k, W, u, mu, multiple):
 
 @kernel
 def exponent_of(k, multiple):
-    """Return p of the normal forces: as set, else Hertz's if each of k points is of a ball or an ellipsoid."""
+    """Return the exponent p of the normal forces: as set, or Hertz's if all k points are on round bodies."""
     if multiple.settings.exponent > 0.0:
         return multiple.settings.exponent
     for i in range(k):
@@ -54,7 +54,7 @@ def exponent_of(k, multiple):
 
 @kernel
 def pair_of(i, contacts, closed, all_by_pairs):
-    """Return the pair that point `i` strikes with: 0 for all points together, else a number of its pair.
+    """Return the number of the pair of point `i`; 0 if all points strike together.
 
     A body and all half-spaces that it touches are one pair.
     """
@@ -71,9 +71,9 @@ def pair_of(i, contacts, closed, all_by_pairs):
 
 @kernel
 def strike_several(model, data, c, k):
-    """Resolve the impact of all k closed points; add their impulses, write a row for each that has one.
+    """Solve the impact of all k closed points; apply their impulses, and write a record for each impulse.
 
-    A point that jams begins with a little approach (mathematics page, §3.6).
+    A point that jams starts with a small speed of approach (mathematics page, §3.6).
     """
     system = model.system
     active, state, group, multiple = data.active, data.state, data.group, data.multiple
@@ -133,9 +133,9 @@ def greatest(n, u):
 
 @kernel
 def stop_round_off(system, b, most, state):
-    """Stop a free body whose speed is at most round-off, `most`: what it had has gone on to others.
+    """Stop a free body whose speed is at most round-off, `most`, because it has passed its momentum on.
 
-    It would approach the next body that it touches, and where e = 1 such impacts would have no end.
+    Otherwise it would approach the next body that it touches, and for e = 1 such impacts would never end.
     """
     if b < 0 or system.bodies[b].ballistic == 0:
         return
@@ -146,7 +146,7 @@ def stop_round_off(system, b, most, state):
 
 @kernel
 def count_blows(active, k, group):
-    """Count the blow for each contact of which a point strikes."""
+    """Count the impact for each contact that has a striking point."""
     last = -1
     for i in range(k):
         c = group.closed[i].contact
@@ -157,7 +157,7 @@ def count_blows(active, k, group):
 
 @kernel
 def write_share(system, i, k, state, group, multiple, clock, records):
-    """Write the part of point i in an impact of k points."""
+    """Write the share of point i in an impact of k points."""
     row, point, result = records.impact[clock.struck], group.points[0][i], multiple.result
     x, u = state[point.a].x, group.v[U]
     row.time, row.together = clock.now, k

@@ -1,4 +1,4 @@
-"""Where the normal impulse moves nothing: W is singular along the way (mathematics page, §1.9).
+"""Wedging: W is singular during the impact, so the normal impulse changes no velocity (mathematics page, §1.9).
 
 A body that joints leave few freedoms has a W of rank 1 or 2. With z = (1, tau), z.W z = k - mu g for slip
 that grows at the rate g, and k for stick: so k <= 0 without slip that fades means W z = 0, friction holds

@@ -1,4 +1,4 @@
-"""Taking a run to its end: in parts, to report and to save; Ctrl-C stops it."""
+"""Running a simulation to its end, in parts between which progress is shown and files are saved."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ LOOKS = 4  # parts in the time between two savings, about
 
 
 def finish(run, progress, keeper: Keeper | None, throw: bool):
-    """Take a run to its end and return its solution; `throw` raises that of a run that failed."""
+    """Run to the end and return the solution; with `throw` a run that failed raises `SimulationError`."""
     total = run.steps
     report = reporter(progress, total, "step")
     status = Status.SUCCESS
@@ -45,7 +45,7 @@ def finish(run, progress, keeper: Keeper | None, throw: bool):
     solution = run.solution(status)
     lost = None if keeper is None else keeper.finish(solution)
     if lost is not None:
-        what = f"The run ended and could not be saved: {lost}"
+        what = f"The run ended, but its result could not be saved: {lost}"
         if throw and solution.success:
             raise SimulationError(what, solution) from lost
         warnings.warn(what, RuntimeWarning, stacklevel=CALLER)
@@ -57,10 +57,10 @@ def finish(run, progress, keeper: Keeper | None, throw: bool):
 
 
 def goals(done, total: int, reports: bool, keeper: Keeper | None):
-    """Go through the numbers of steps at which a run stops on its way, up to `total`.
+    """Yield the numbers of steps at which a run pauses, up to `total`.
 
-    All at once if nobody waits for it; in `CHUNKS` parts to report; to save, in parts that take a small part of
-    the time between two savings, found by doubling and halving.
+    Without progress and saving there is only one part. With progress there are `CHUNKS` parts. With saving, the
+    length of parts is doubled and halved so that each takes a small fraction of the time between two savings.
     """
     most = max(1, -(-total // CHUNKS)) if reports else total
     part = 1 if keeper is not None else most

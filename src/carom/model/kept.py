@@ -1,4 +1,4 @@
-"""What arrays held at one time, kept so that they can be put back to it."""
+"""A copy of the contents of arrays, from which they can be restored."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 
 class Kept:
-    """The content of all arrays in nested tuples, as bytes: records are slow to copy by fields."""
+    """The contents of all arrays in nested tuples, as bytes, because records are slow to copy by fields."""
 
     def __init__(self, parts: tuple):
         self.parts = parts
@@ -16,12 +16,12 @@ class Kept:
         self.content = [(there, there.copy()) for there in flat]
 
     def restore(self) -> None:
-        """Write the content back."""
+        """Write the contents back."""
         for there, kept in self.content:
             there[:] = kept
 
     def is_of(self, parts: tuple) -> bool:
-        """Return whether these are still the same tuples: they are others where an array has grown."""
+        """Return whether these are still the same tuples; they are others after an array was lengthened."""
         return all(a is b for a, b in zip(parts, self.parts))
 
 

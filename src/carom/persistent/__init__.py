@@ -1,1 +1,1 @@
-"""Contact that persists: the active set, the contact step, slip, stick and rest."""
+"""Persistent contact: the active set, the contact step, slip, stick and rest."""

@@ -1,4 +1,4 @@
-"""The active set: adding a point, removing it, and which of its points share their bodies."""
+"""The active set: adding a point, removing a point, and points with common bodies."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from carom.contact.rim import same_point
 
 @kernel
 def begin_point(active_point, contact, c, feature, mode):
-    """Write a point of contact c that is active from now on, as one of several and without a force."""
+    """Write a new active point of contact c, as one of several and without a force."""
     active_point.contact, active_point.feature = c, feature
     active_point.body, active_point.other, active_point.touches = (
         contact.body,
@@ -43,7 +43,7 @@ def begin_point(active_point, contact, c, feature, mode):
 
 @kernel
 def activate(system, active, closed_point, mode, state, work):
-    """Add a closed point to the active set; return its place."""
+    """Add a closed point to the active set; return its index."""
     i = active.count[0]
     active.count[0] = i + 1
     active_point, contact = active.points[i], system.contacts[closed_point.contact]
@@ -60,7 +60,7 @@ def activate(system, active, closed_point, mode, state, work):
 
 @kernel
 def set_anchor(system, active_point, state, work):
-    """Note where a point is now: it stays there while it sticks."""
+    """Store the present position of a point, where it stays while it sticks."""
     point, x = work.point[0], state[active_point.body].x
     place_any(
         system,
@@ -112,7 +112,7 @@ def always_several(contact):
 
 @kernel
 def regroup(system, active, work):
-    """Label the groups that active points make, and note which points share their bodies with others."""
+    """Label the groups of active points, and mark points whose bodies have other active points."""
     label_groups(system, active, work)
     joined, n = 0, work.body.shape[0]  # the number N is of all that have joints
     for b in range(n):
@@ -134,7 +134,7 @@ def regroup(system, active, work):
 
 @kernel
 def is_active(system, active, c, touch, state):
-    """Return whether a point of contact c that was found is active."""
+    """Return whether a given point of contact c is active."""
     contact = system.contacts[c]
     for i in range(active.count[0]):
         active_point = active.points[i]
@@ -147,10 +147,10 @@ def is_active(system, active, c, touch, state):
 
 @unit
 def _refresh_pairs(system, controls, active, state, work) -> bool:
-    """Let points whose features are no more give way to those that took their place.
+    """Replace points whose features no longer exist by the points of the new features.
 
-    As faces slide on each other the corners of their overlap change; the set stays that of the closed
-    points. Others are noted where they are now. Returns whether anything changed.
+    When faces slide on each other, the corners of their overlap change, and the active set must follow. The
+    present positions of the other points are stored. Return whether the set has changed.
     """
     changed, i = False, 0
     while i < active.count[0]:
@@ -186,7 +186,7 @@ def _refresh_pairs(system, controls, active, state, work) -> bool:
 
 @kernel
 def activate_touch(contact, c, touch, mode, state, active):
-    """Add a point that was found to the active set, without an event."""
+    """Add a given point to the active set, without an event."""
     active_point = active.points[active.count[0]]
     active.count[0] += 1
     begin_point(active_point, contact, c, touch.feature, mode)
@@ -195,7 +195,7 @@ def activate_touch(contact, c, touch, mode, state, active):
 
 @inlined
 def refresh_pairs(system, controls, active, state, work):
-    """Let points whose features are no more give way to those that took their place."""
+    """Replace points whose features no longer exist by the points of the new features."""
     if system.solids.shape[0] > 0:
         return _refresh_pairs(system, controls, active, state, work)
     return False

@@ -5,13 +5,14 @@ The step without the contacts is known (any method). With the impulses p of all 
     pi_1 = pi_free + G_0^T p,    v_1 = M(q_1)^-1 pi_1,    q_1 = Exp_q_free(h/2 P G_0^T p), then gap_i = 0,
     w = G_1 v_1,    0 <= p_n _|_ w_n >= 0,    p_t in -mu p_n d|w_t|,
 
-G_0 at the middle of the step, G_1 at its end, momenta pi about each centre in world axes. A point that slips
-throughout takes the direction of friction from the velocity at the middle of the step; where slip has stopped,
-the cone holds with the velocity at the end. Each round solves with the symmetric W = G_0 P G_0^T for
+with G_0 at the middle of the step, G_1 at its end, and momenta pi about each centre in world axes. For a point
+that slips during the whole step, the direction of friction is that of the velocity at the middle of the step;
+if slip has stopped, Coulomb's law holds with the velocity at the end. Each iteration uses the symmetric W = G_0
+P G_0^T to solve for
 
     w = w(p_old) + W (p - p_old),
 
-so that the fixed point is exact. Order 2. (Mathematics page, §3.1.)
+so the fixed point is exact. Order 2. (Mathematics page, §3.1.)
 """
 
 from __future__ import annotations
@@ -68,7 +69,8 @@ ROUND = 1.0  # of a round of joined bodies, by a step without contacts
 def contact_step(model, data, method, h):
     """Correct the step from `start` to `end` of all bodies that are in contact at several points.
 
-    Forces at the end go to the active points; work of friction, of loads and a status to `work.result`.
+    The forces at the end are written to the active points; the work of friction and of loads, and a status, to
+    `work.result`.
     """
     active, work = data.active, data.work
     result = work.result[0]
@@ -86,7 +88,7 @@ def contact_step(model, data, method, h):
 
 @kernel
 def step_group(model, data, method, label, h):
-    """Correct the step of one group: of a body alone whose modes stay by the method of the run."""
+    """Correct the step of one group; for a single body with constant modes by the method of the run."""
     system, controls, active = model.system, model.controls, data.active
     start, end, group, work = data.state, data.work.trial, data.group, data.work
     result = work.result[0]
@@ -117,7 +119,7 @@ def step_group(model, data, method, label, h):
 
 @kernel
 def seen(active, i, label, work):
-    """Return whether an earlier active point is of the same group."""
+    """Return whether an earlier active point belongs to the same group."""
     for j in range(i):
         if work.body[active.points[j].body].label == label:
             return True
@@ -175,7 +177,7 @@ def step_once(model, data, k, count, loaded, h):
 
 @kernel
 def find_impulses(model, data, k, enough):
-    """Solve for the impulses of a round, to `enough` (0: to round-off); return what that moves, relative."""
+    """Solve for the impulses of an iteration, to `enough` (0: to round-off); return their relative change."""
     controls = model.controls
     group, clock = data.group, data.clocks[0]
     group.cone.mismatch[ENOUGH] = enough
@@ -191,9 +193,9 @@ def find_impulses(model, data, k, enough):
 
 @kernel
 def check(model, data, k, count):
-    """Measure how well impulses and velocities fit each other, whoever found them.
+    """Compute the residual of the contact law for the impulses and velocities, independent of the solver.
 
-    The velocities are those of the bodies: w(p) = W p + c with the c of one more round.
+    The velocities are those of the bodies: w(p) = W p + c with the c of one more iteration.
     """
     system = model.system
     start, end, group, work = data.state, data.work.trial, data.group, data.work
@@ -209,9 +211,9 @@ def check(model, data, k, count):
 
 @kernel
 def moved(n, group):
-    """Return what the last change of p does to the velocities, relative to what all of p does.
+    """Return the effect of the last change of p on the velocities, relative to the effect of p.
 
-    Forces themselves may go on changing where they are not unique.
+    The forces themselves may continue to change if they are not unique.
     """
     change, largest = 0.0, 0.0
     for i in range(n):
@@ -225,7 +227,7 @@ def moved(n, group):
 
 @kernel
 def begin(model, data, k, h, count, loaded):
-    """Note the directions of slip, and the last forces as a first guess."""
+    """Store the directions of slip, and the last forces as a first guess."""
     system, controls = model.system, model.controls
     active, start, end, group, work = (
         data.active,
@@ -272,9 +274,9 @@ def any_joined(system, count, member):
 
 @kernel
 def impose(model, data, k, h, count, loaded):
-    """Put `end` where the impulses p of the middle rows bring it; write u = G_1 v_1.
+    """Move `end` by the impulses p of the rows at the middle of the step; write u = G_1 v_1.
 
-    Returns the work of what is prescribed: in answer to p, and in the return to the joints.
+    Return the work of drivers: in response to p, and in the return to the joints.
     """
     system = model.system
     active, end, group, work = data.active, data.work.trial, data.group, data.work
@@ -319,10 +321,10 @@ def impose(model, data, k, h, count, loaded):
 
 @kernel
 def add_difference(system, h, count, joined, group, work):
-    """Add to the push what applied forces do on the path that is taken, less on the one without contacts.
+    """Add to the push the effect of applied forces on the actual path minus that on the path without contacts.
 
-    With the joints between the bodies: what a torque does to a light one by itself has no digits left when it
-    is projected.
+    It is computed with the joints, because the effect of a torque on a single light body would lose all its
+    digits in the projection.
     """
     difference_of_loads(system, h, work.stage, work.middle, work)
     if joined:
@@ -339,10 +341,11 @@ def add_difference(system, h, count, joined, group, work):
 
 @kernel
 def pose(k, start, group, work):
-    """Write c of the contact problem: w(p_old) - W p_old, with the slip that rules the friction of each point.
+    """Write c = w(p_old) - W p_old of the contact problem, with the slip for the friction of each point.
 
-    Where slip goes on that is twice the velocity at the middle of the step, G_0 (v_0 + v_1), else the one at
-    the end. (Friction along the slip of the last round would not converge at speeds below mu N h W_tt.)
+    If a point continues to slip, this slip is twice the velocity at the middle of the step, G_0 (v_0 + v_1);
+    otherwise it is that at the end. (With friction along the slip of the last iteration, the iteration would
+    not converge at speeds below mu N h W_tt.)
     """
     for i in range(k):
         w, point, q = group.v[U], group.points[0][i], 3 * i
@@ -365,7 +368,7 @@ def pose(k, start, group, work):
 
 @kernel
 def extra_work(system, h, start, end, group, work):
-    """Return the work of loads on the path that was taken, less that on the one without contacts."""
+    """Return the work of loads on the actual path minus that on the path without contacts."""
     for b in range(start.shape[0]):
         halfway(start[b], end[b], work.stage[b])
     taken = applied_wrenches(system, work.stage, False, work)

@@ -1,4 +1,4 @@
-"""What can end the present mode of a persistent contact: its force would pull, it slips, or slip stops.
+"""Events that end a mode of a persistent contact: its normal force vanishes, it slips, or slip stops.
 
 Each event is a function that is positive before and negative after, evaluated at the end of a step:
 
@@ -43,7 +43,7 @@ def contact_event_value(system, active_point, kind, d1, d2, state, work):
 
 @inlined
 def end_forces(system, active, state, work):
-    """Put the forces of points that are active one to a body, at `state`, in place if any moves."""
+    """Write the forces at `state` of points that are the only active ones of their bodies, if any moves."""
     for i in range(active.count[0]):
         active_point = active.points[i]
         if active_point.mode != OPEN and active_point.rest == 0 and active_point.several == 0:
@@ -53,9 +53,9 @@ def end_forces(system, active, state, work):
 
 @inlined
 def find_contact_event(system, active, end, h, work):
-    """Return (event, place in the list, d1, d2) of the first active point whose mode ends; place -1 if none.
+    """Return (event, index, d1, d2) of the first active point whose mode ends; index -1 if there is none.
 
-    Slip that the step h has turned astray says nothing of k: it is for `turned` to judge.
+    Slip that was turned by an error of the step h does not show a jam; `turned` handles it.
     """
     for i in range(active.count[0]):
         active_point = active.points[i]
@@ -92,7 +92,7 @@ def find_contact_event(system, active, end, h, work):
 
 @inlined
 def grips(system, active_point):
-    """Return whether a point sticks by more friction than round-off: it slips before it lifts off."""
+    """Return whether a point sticks with more friction than round-off, so that it slips before it opens."""
     f, mu = active_point.force, system.contacts[active_point.contact].friction_held
     return active_point.mode == STICK and math.sqrt(
         f[1] * f[1] + f[2] * f[2]
@@ -101,7 +101,7 @@ def grips(system, active_point):
 
 @inlined
 def reverses(system, active_point, end, work):
-    """Return whether slip has come to a stop and turned about: not if it has turned off to a side."""
+    """Return whether slip has stopped and reversed; not if it has turned to a side."""
     point = work.point[0]
     place_active(system, active_point, end, point, work)
     _, u1, u2 = contact_velocity(point, end)
@@ -114,11 +114,12 @@ def reverses(system, active_point, end, work):
 
 @inlined
 def turned(system, active, end, h, work):
-    """Look for slip that has turned within the step h: 0 none, 1 the step is too long, 2 not by this method.
+    """Check for slip that turns within the step h: 0 none, 1 the step is too long, 2 use another method.
 
-    Too long: by more than 60 degrees. Where friction can turn it over within the step, mu N h W_tt > |u_t|, an
-    explicit step is of no use: its stages swing about a slip that does not end, and that gives energy. Such
-    a point is handed to the implicit step, as one of several (`carom.persistent.contact_step`).
+    The step is too long if slip turns by more than 60 degrees. If friction can reverse slip within the step, mu
+    N h W_tt > |u_t|, an explicit step does not work: its stages oscillate about a slip that does not end, and
+    this adds energy. The implicit step for several points then takes the point
+    (`carom.persistent.contact_step`).
     """
     found = 0
     for i in range(active.count[0]):
@@ -133,7 +134,7 @@ def turned(system, active, end, h, work):
 
 @kernel
 def strays(system, active_point, end, h, work):
-    """Return the same of one point."""
+    """Return the same as `turned`, for one point."""
     d1, d2 = active_point.heading[0], active_point.heading[1]
     point, contact = work.point[0], system.contacts[active_point.contact]
     place_active(system, active_point, end, point, work)
@@ -146,7 +147,7 @@ def strays(system, active_point, end, h, work):
 
 @inlined
 def braked(contact, active_point, h):
-    """Return the slip that friction can take away in the time h."""
+    """Return the slip that friction can remove in the time h."""
     return (
         h
         * contact.friction_held
@@ -168,7 +169,7 @@ def slides_on(system, active_point, now, h, work):
 
 @kernel
 def residual(system, active, state, work):
-    """Return the greatest velocity that a point held alone must not have: normal, and all where it sticks."""
+    """Return the largest forbidden velocity of a single contact point: normal, and tangential if it sticks."""
     worst, point = 0.0, work.point[0]
     for i in range(active.count[0]):
         active_point = active.points[i]

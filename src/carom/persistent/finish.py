@@ -1,4 +1,4 @@
-"""The end of a step of bodies in contact at several points: rest, modes, forces, and when slip stops."""
+"""The end of a step of bodies in contact at several points: rest, modes, forces, and the end of slip."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What ends a mode of dry friction in a joint: slip comes to a stop, or a force exceeds its bound.
+"""Events that end a mode of dry friction in a joint: slip stops, or a force exceeds its bound.
 
 Where some have no speed, all of them are tried as sticking, and the one whose force is most above its bound is
 let go, until none is.

@@ -1,13 +1,13 @@
-"""When a contact becomes persistent, whether it slips or sticks, and when it is at rest.
+"""Conditions under which a contact becomes persistent, slips, sticks or comes to rest.
 
-After an impact with exit speed u_n, a contact whose free acceleration of approach is g_i bounces on for
+After an impact with exit speed u_n, a contact whose free acceleration of approach is g_i bounces for the time
 
     t_i = 2 u_n / (g_i (1 - e)),
 
-exactly, as long as g_i is constant. If that ends within the present step the contact is persistent from now
-on: u_n is taken out in the kinetic metric and the energy this takes goes to the ledger. There is no threshold
-of speed: with a smaller step it becomes so later. Of several closed points each is judged by the acceleration
-that it has while those that do not leave are kept.
+exactly, as long as g_i is constant. If the bounces end within the present step, the contact becomes persistent:
+u_n is removed in the kinetic metric, and its energy is added to the ledger. There is no threshold of speed:
+with a smaller step the contact becomes persistent later. For several closed points, each is judged by the
+acceleration that it has while the points that do not leave stay closed.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ TOO_MANY_POINTS = 10
 
 @unit
 def activate_contact(model, data, c, horizon):
-    """Let the closed points in the group of contact c persist that do not approach and fulfil the rule."""
+    """Make closed points in the group of contact c persistent if they do not approach and satisfy the rule."""
     system, controls = model.system, model.controls
     active, state, group, work = data.active, data.state, data.group, data.work
     contact, hit = system.contacts[c], work.hit[0]
@@ -47,6 +47,6 @@ def activate_contact(model, data, c, horizon):
 
 @unit
 def renew_mode(model, data, i):
-    """Find anew how point i, the only one of its body, goes on: its slip has come to a stop or has turned."""
+    """Find the new mode of point i, the only one of its body, whose slip has stopped or turned."""
     active = data.active
     renew_mode_of_one(model, data, active.points[i])

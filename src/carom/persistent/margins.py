@@ -1,4 +1,4 @@
-"""How far one of several active points is from opening and from slip, at the end of a step.
+"""Margins of active points at the end of a step: their distances from opening and from slip.
 
 Forces of several points need not be unique, accelerations are. So the point opens where its normal
 acceleration is above nothing, and slips where its tangential one is; before that its force tells how far it is:

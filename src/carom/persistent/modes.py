@@ -1,4 +1,4 @@
-"""Events of persistent contacts carried out: a point opens, slips, sticks, turns or jams."""
+"""Actions of events of persistent contacts: a point opens, slips, sticks, turns or jams."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from carom.persistent.jam import JAMMED, note_jam, presses
 
 @kernel
 def change_mode(model, data, i, kind):
-    """Carry out the event of an active point; return what is left to do."""
+    """Handle the event of an active point; return the remaining action."""
     system = model.system
     active, now, work, clock, records = (
         data.active,
@@ -56,7 +56,7 @@ def change_mode(model, data, i, kind):
 
 @kernel
 def only_free(system, body, work):
-    """Return whether nothing but gravity and contacts acts on any body of a group: it rests as a whole."""
+    """Return whether only gravity and contacts act on the bodies of a group, so that it rests as a whole."""
     label = work.body[body].label
     for b in range(work.body.shape[0]):
         if work.body[b].label == label and system.bodies[b].ballistic == 0:
@@ -66,7 +66,7 @@ def only_free(system, body, work):
 
 @kernel
 def turn_modes(model, data):
-    """Take over the modes that a step of several active points has ended with, and the residual of the step."""
+    """Take over the modes at the end of a step of several active points, and the residual of the step."""
     system, controls = model.system, model.controls
     active, now, work, clock, records = (
         data.active,

@@ -1,4 +1,4 @@
-"""A body that is in contact at one point: from its last bounce to slip, stick or rest."""
+"""Persistent contact of one body at one point: from its last bounce to slip, stick or rest."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from carom.persistent.jam import JAMMED, note_jam, presses, yields
 
 @kernel
 def activate_one(model, data, horizon):
-    """Let the only closed point persist if it does not approach and fulfils the rule."""
+    """Make the only closed point persistent if it does not approach and satisfies the rule."""
     system = model.system
     active, state, group, work, clock, records = (
         data.active,
@@ -62,7 +62,7 @@ def activate_one(model, data, horizon):
 
 @kernel
 def renew_mode_of_one(model, data, active_point):
-    """Find anew how a point goes on, whose slip has stopped or turned."""
+    """Find the new mode of a point whose slip has stopped or turned."""
     system, controls = model.system, model.controls
     active, state, work, clock, records = (
         data.active,
@@ -83,7 +83,7 @@ def renew_mode_of_one(model, data, active_point):
 
 @kernel
 def bounces_end(contact, rate, g, still, horizon):
-    """Return whether a contact leaving at `rate` and drawn back by g is closed for good by `horizon`."""
+    """Return whether the bounces of a contact with exit speed `rate` and acceleration g end by `horizon`."""
     if not (g > 0.0 and rate >= -still):
         return False
     e = contact.restitution
@@ -92,12 +92,12 @@ def bounces_end(contact, rate, g, still, horizon):
 
 @kernel
 def begin_contact(model, data, contact, active_point, stop, a, horizon):
-    """Take out the normal velocity, and slip that has stopped; set the mode to try first.
+    """Remove the normal velocity, and slip that has stopped; set the mode to try first.
 
-    Slip has stopped when all of it is below `stop` (or round-off). Returns False if a contact that was
-    to settle goes on slipping. Else, where slip lasts under the acceleration `a` as long as the bounces that
-    are dropped, t = 2 u_n/(g (1 - e)), friction goes with what pulls u_n out: over them the normal impulse is
-    (g t - u_n)/k, over as long a hold g t/k.
+    Slip has stopped if it is below `stop` (or round-off). Return False if a contact that should stick continues
+    to slip. If slip lasts, under the acceleration `a`, as long as the dropped bounces, t = 2 u_n/(g (1 - e)),
+    friction acts with the impulse that removes u_n: the normal impulse of the bounces is (g t - u_n)/k, that of
+    persistent contact for the same time g t/k.
     """
     system = model.system
     state, work, clock = data.state, data.work, data.clocks[0]
@@ -137,16 +137,16 @@ def begin_contact(model, data, contact, active_point, stop, a, horizon):
 
 @kernel
 def spare(clock):
-    """Return what dropped bounces may give: what the impacts of the step have taken, less what is owed."""
+    """Return the energy that dropped bounces may add: the loss by impacts of the step, minus what is owed."""
     return max(0.0, clock.before - clock.impacts - clock.owed)
 
 
 @kernel
 def name_work(normal, tangential, clock):
-    """Put the work of what takes bounces out into the ledger.
+    """Add the work of the impulse that removes bounces to the ledger.
 
-    Where that is a gain it is friction's: less than what the hold takes until the bounces would have ended, and
-    owed until then (`carom.stepping.time_loop.charge_impacts`).
+    If it is a gain, it belongs to friction. It is less than the loss by friction in persistent contact until
+    the bounces would have ended, and is owed until then (`carom.stepping.time_loop.charge_impacts`).
     """
     if normal + tangential <= 0.0:
         clock.bounces += normal + tangential
@@ -158,16 +158,16 @@ def name_work(normal, tangential, clock):
 
 @kernel
 def sticks(W, a, mu):
-    """Return whether friction holds a point without slip under the free acceleration a."""
+    """Return whether a point sticks under the free acceleration a."""
     n, t1, t2 = stick_force(W, a[0], a[1], a[2])
     return math.sqrt(t1 * t1 + t2 * t2) <= mu * n
 
 
 @kernel
 def lasts(W, a, u, v1, v2, mu, horizon):
-    """Return whether a contact with the velocity u and the free acceleration a slips along u_t until then.
+    """Return whether a contact with velocity u and free acceleration a slips along u_t until the given time.
 
-    From the slip u_t, and from (v1, v2), what the pull with friction makes of it.
+    It starts from the slip u_t, and from (v1, v2), the slip after the impulse with friction.
     """
     speed = math.sqrt(u[1] * u[1] + u[2] * u[2])
     if not (speed > 0.0 and horizon < math.inf):
@@ -181,13 +181,13 @@ def lasts(W, a, u, v1, v2, mu, horizon):
 
 @kernel
 def moved(W, r, n, t1, t2):
-    """Return what an impulse (n, t1, t2) does to the velocity r."""
+    """Return the velocity r after an impulse (n, t1, t2)."""
     return W[r, 0] * n + W[r, 1] * t1 + W[r, 2] * t2
 
 
 @kernel
 def find_mode(model, data, contact, active_point):
-    """Let a contact slip whose friction cannot hold it; put its body to rest where nothing is left."""
+    """Let a contact slip if its friction does not suffice; set its body to rest if no motion is left."""
     system = model.system
     active, state, work = data.active, data.state, data.work
     acceleration(system, state, active, work, work.stages[0])
@@ -212,10 +212,10 @@ def find_mode(model, data, contact, active_point):
 
 @kernel
 def rest_if_still(contact, active_point, body, rate, push):
-    """Put a body to rest, exactly, if neither speed nor acceleration is left.
+    """Set a body exactly to rest if neither speed nor acceleration is left.
 
-    No speed: round-off of the speeds that gravity gives it over its own size. No acceleration: round-off
-    of `push`, what the contact force does to it.
+    The bound for the speed is round-off of the speed of a fall over its own size. The bound for the
+    acceleration is round-off of `push`, the acceleration by the contact force.
     """
     size = contact.extent
     speed, change = 0.0, 0.0

@@ -1,4 +1,4 @@
-"""Return a group of bodies to the surfaces of its active points, and sticking vertices to where they stick.
+"""Return of a group of bodies to the surfaces of its active points, and of sticking vertices to their points.
 
     xi = -P G^T lam,   W lam = phi,    phi: the gap of each point that presses, and for a vertex that sticks the
                                        tangential way from its anchor too,

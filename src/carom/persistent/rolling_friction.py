@@ -1,4 +1,4 @@
-"""Rolling and pivoting friction: torques against the relative rotation of two that stay on each other.
+"""Rolling and pivoting friction: torques against the relative rotation of two bodies in persistent contact.
 
     |M_t| <= d_r N    against the tangential part of the relative angular velocity (rolling),
     |M_n| <= d_p N    against its normal part (pivoting).

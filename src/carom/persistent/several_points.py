@@ -1,4 +1,4 @@
-"""Several closed points of one group: which of them persist from now on, which open."""
+"""Several closed points of one group: the points that become persistent, and the points that open."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ ROUNDS = 60  # of friction with what it does to the normal impulses
 
 @kernel
 def activate_several(model, data, k, label, horizon):
-    """Judge all k closed points of a group; take the new ones in, deactivate those that open."""
+    """Judge all k closed points of a group; activate the new ones, deactivate those that open."""
     system, controls = model.system, model.controls
     active, state, group, work, clock, records = (
         data.active,
@@ -69,11 +69,11 @@ def activate_several(model, data, k, label, horizon):
 
 @kernel
 def judge(model, data, k, horizon):
-    """Mark the points that stay.
+    """Mark the points that become or stay active.
 
-    First those that do not leave, as far as they press; then those whose bounces end within `horizon` under the
-    acceleration that these leave them; then those for which that is so under the new ones, and so on: what lies
-    on a body that falls comes to rest only with it.
+    First the points that do not leave and have a normal force; then the points whose bounces end within
+    `horizon` under the acceleration with the first ones active; then those for which this holds with the new
+    ones active, and so on. So a body on a falling body comes to rest only together with it.
     """
     system, state, group = model.system, data.state, data.group
     for i in range(k):
@@ -99,14 +99,14 @@ def judge(model, data, k, horizon):
 
 @kernel
 def stops(group, i):
-    """Return whether row i drops out, if it can: the normal of a point that stays, its slip if it has none."""
+    """Return whether row i is removed: the normal of a point that stays, and its tangents if it sticks."""
     drops = group.closed[i // 3].stays == 1 and (i % 3 == 0 or group.kind[i // 3] == CONE)
     return drops and yields(group.m[0], i)
 
 
 @kernel
 def speed_of(system, state, count, member):
-    """Return the greatest speed of the bodies, that of their turning at their size."""
+    """Return the greatest speed of the bodies, including that of their rotation at their size."""
     speed = 0.0
     for m in range(count):
         b = member[m]
@@ -118,12 +118,13 @@ def speed_of(system, state, count, member):
 
 @kernel
 def end_bounces(model, data, k, label, horizon):
-    """Take out the normal velocities of the points that stay, in the kinetic metric.
+    """Remove the normal velocities of the points that stay, in the kinetic metric.
 
-    A point without slip keeps none: else it would stick with the slip that this gives it. With slip that lasts
-    friction goes with the impulse (`carom.persistent.one_point.begin_contact`). Where that leaves nothing but
-    round-off it leaves nothing: a small part of the speed before, whatever forces are at hand (the point of a
-    rim that is nearly flat runs along it with 1e13 m/s^2).
+    The slip of a point without slip is removed too; otherwise the point would stick with the slip that the
+    impulse gives it. If slip lasts, friction acts with the impulse
+    (`carom.persistent.one_point.begin_contact`). Velocities of round-off size, a small fraction of the speed
+    before, become 0, however large the forces are (the point of a rim that is nearly flat moves along the rim
+    with 1e13 m/s^2).
     """
     system, controls = model.system, model.controls
     state, group, work, clock = data.state, data.group, data.work, data.clocks[0]
@@ -180,7 +181,7 @@ def work_of_pull(k, group):
 
 @kernel
 def find_pull(k, friction, group):
-    """Write the impulses that take the velocities out into `old`: with friction (1), if rounds find that."""
+    """Write the impulses that remove the velocities into `old`: with friction (1) if iterations converge."""
     n, L, x, last = 3 * k, group.m[1], group.v[OLD], group.v[P]
     for i in range(n):
         for j in range(n):
@@ -206,7 +207,7 @@ def find_pull(k, friction, group):
 
 @kernel
 def pull_once(k, with_friction, group):
-    """Solve for the impulses with the friction of those of the last round; return their change and size."""
+    """Solve for the impulses with the friction of the last iteration; return their change and size."""
     n, W, x, last = 3 * k, group.m[0], group.v[OLD], group.v[P]
     for i in range(k):  # friction of the points that slip
         slides = with_friction == 1 and group.closed[i].stays == 1 and group.closed[i].stopped == 0
@@ -233,7 +234,7 @@ def pull_once(k, with_friction, group):
 
 @kernel
 def mode_of(system, i, state, group):
-    """Return whether point i slips or sticks, now that its bounces are out."""
+    """Return whether point i slips or sticks after its bounces were removed."""
     _, u1, u2 = contact_velocity(group.points[0][i], state)
     # as `pose_forces` has found with the velocities before
     still = 10.0 * slow(system.contacts[group.closed[i].contact], state)
@@ -243,7 +244,7 @@ def mode_of(system, i, state, group):
 
 @kernel
 def set_modes(model, data, k):
-    """Take the new points in, with an event each, the first is begun already; note what others do now."""
+    """Activate the new points, with an event for each (the first is begun already); set modes of the others."""
     system = model.system
     active, state, group, work, clock, records = (
         data.active,
@@ -281,7 +282,7 @@ def set_modes(model, data, k):
 
 @kernel
 def first_forces(model, data, label):
-    """Note the forces of all active points of the group, and the times at which their slip stops."""
+    """Store the forces of all active points of the group, and the times at which their slip stops."""
     system, controls = model.system, model.controls
     active, state, group, work = data.active, data.state, data.group, data.work
     k = gather_active(system, active, label, state, group, work)
@@ -299,7 +300,7 @@ def first_forces(model, data, label):
 
 @kernel
 def mark_approaching(system, active, k, state, group):
-    """Mark contacts to be checked where a closed point still approaches; the others were judged just now."""
+    """Mark contacts for a check if a closed point still approaches; the others were just judged."""
     for i in range(k):
         active.contact_states[group.closed[i].contact].near = 0
     for i in range(k):

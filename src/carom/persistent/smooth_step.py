@@ -1,4 +1,4 @@
-"""A step of one body on several points by the Runge-Kutta method of the run, as long as their modes stay.
+"""A step of one body on several points by the Runge-Kutta method of the run, while their modes do not change.
 
 While the same points press, slip and stick the motion is smooth:
 

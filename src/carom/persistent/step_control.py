@@ -1,4 +1,4 @@
-"""What a step of a group loses or gains without a name: where that is too much the step is too long.
+"""Step control of a group by its energy error: if the error is too large, the step is too long.
 
 Edges that are nearly parallel turn their normal in some 1e-5 s, with forces of 1e4 times the weight: a step of
 order 2 over all of such a push takes energy that no friction has. Where only gravity acts the balance is known.

@@ -1,4 +1,4 @@
-"""What a run gives: the solution, its tables, its ledger, and its states between saved times."""
+"""Results of a run: the solution, its tables, its energy ledger, and its states between saved times."""
 
 from carom.results.event_tables import (
     ContactTable,

@@ -1,4 +1,4 @@
-"""The warnings of a run whose balance of energy is off, or in which a body gets into what it touches."""
+"""Warnings of a run about errors of energy, penetration, and contact problems that were not solved."""
 
 from __future__ import annotations
 
@@ -31,33 +31,33 @@ POOR, TOO_POOR = 1e-2, 0.1
 
 _WHAT = {
     RESIDUAL: (
-        "Energy that no entry of the ledger explains:",
-        "Take a smaller step, or allow for it",
+        "Energy error that no entry of the ledger explains:",
+        "Take a smaller step, or raise the tolerance",
     ),
-    IMPACTS: ("Impacts gave energy, which they never should:", 'Take impact_law="stronge"'),
+    IMPACTS: ("Energy that impacts added, which is not physical:", 'Use impact_law="stronge"'),
     FRICTION: (
-        "Friction gave energy, which it never should:",
-        "Take a smaller step, or allow for it",
+        "Energy that friction added, which is not physical:",
+        "Take a smaller step, or raise the tolerance",
     ),
     BOUNCES: (
-        "Bounces that were dropped gave energy, which they never should:",
+        "Energy that was added where small bounces were dropped, which is not physical:",
         "Take a smaller step",
     ),
     ALL: (
-        "Energy without a name, of several kinds together:",
-        "Take a smaller step, or allow for it",
+        "Sum of several energy errors:",
+        "Take a smaller step, or raise the tolerance",
     ),
 }
 
 
 def beyond(i: int, watch: np.record, times: float = 1.0) -> bool:
-    """Return whether the unnamed energy of a kind is beyond so many times the tolerance."""
+    """Return whether the energy error of a kind exceeds `times` the tolerance."""
     allowed = watch.tolerance * watch.exchanged * times + ROUND_OFF * watch.size
     return not abs(watch.amount[i]) <= allowed
 
 
 def judge(watch: np.record) -> Status:
-    """Return whether a run at its end has kept its balance of energy, its gaps and Coulomb's law."""
+    """Return SUCCESS or INACCURATE for a run at its end, by its energy, its gaps and its contact problems."""
     off = beyond(ALL, watch, INACCURATE) or not watch.depth <= TOO_DEEP
     off = off or not watch.unsolved <= TOO_POOR * watch.speed
     return Status.INACCURATE if off else Status.SUCCESS
@@ -66,10 +66,10 @@ def judge(watch: np.record) -> Status:
 def sentences(
     watch: np.record, scene: Scene | None = None, pairs: PairTable | None = None
 ) -> tuple[str, ...]:
-    """Return a sentence for each error that is too large: of energy, depth, or contacts that are not solved.
+    """Return a sentence for each error that is too large: of energy, penetration, or contact problems.
 
-    Each says when the error arose, and what to change. `pairs` are those of the contacts of the
-    run, None for all of the scene.
+    Each sentence has the time of the error and a remedy. `pairs` are the pairs of the contacts of the run, None
+    for all pairs of the scene.
     """
     kinds = [i for i in (RESIDUAL, IMPACTS, FRICTION, BOUNCES) if beyond(i, watch)]
     if not kinds and beyond(ALL, watch):
@@ -80,25 +80,25 @@ def sentences(
 
 
 def _of_contacts(watch: np.record) -> str:
-    """Return the sentence about contacts whose impulses were not found."""
+    """Return the sentence about contact problems that were not solved."""
     return (
-        f"Contacts were solved to {watch.unsolved:.2g} m/s only at t = {watch.unsolved_at:.6g} s (greatest "
-        f"speed: {watch.speed:.2g} m/s): so fast may points approach, or slip against their friction. Take a "
-        "smaller step."
+        f"A contact problem was solved with an error of {watch.unsolved:.2g} m/s at t = "
+        f"{watch.unsolved_at:.6g} s (greatest speed: {watch.speed:.2g} m/s): closed points may approach or "
+        "slip at this speed although they should not. Take a smaller step."
     )
 
 
 def _of_depth(watch: np.record, scene: Scene, pairs: PairTable | None) -> str:
-    """Return the sentence about a body that is in what it touches."""
+    """Return the sentence about a body that penetrates another one, or a joint beyond its stop."""
     number, pairs = int(watch.deep_contact), pairs or touching_pairs(scene)
     if number < len(pairs.body):
         other, plane = pairs.other[number], pairs.plane[number]
         what = scene.bodies[pairs.body[number]]
         where = scene.bodies[other] if other >= 0 else scene.fixed[plane]
-        said = f"Body {what.name!r} is in {where.name!r} by {watch.depth:.2g} of its size"
+        said = f"Body {what.name!r} penetrates {where.name!r} by {watch.depth:.2g} of its size"
     else:
         stop = scene.stops[number - len(pairs.body)]
-        said = f"Joint {stop.joint.name!r} is beyond its stop by {watch.depth:.2g} of the size of its body"
+        said = f"Joint {stop.joint.name!r} exceeds its stop by {watch.depth:.2g} of the size of its body"
     return (
         f"{said} at t = {watch.deep_at:.6g} s: events follow each other too fast to be located. Take a "
         "smaller step."
@@ -111,14 +111,14 @@ def _sentence(i: int, watch: np.record) -> str:
     part = abs(amount) / of if of > 0.0 else np.inf
     return (
         f"{what} {amount:.3g} J at t = {watch.time[i]:.6g} s, {part:.2g} of the largest energy exchanged "
-        f"({of:.3g} J); allowed is Options.energy_tolerance = {float(watch.tolerance):g}. {cure}."
+        f"({of:.3g} J); the tolerance is Options.energy_tolerance = {float(watch.tolerance):g}. {cure}."
     )
 
 
 def watched(t, ledger: Ledger, given, tolerance: float) -> np.record:
-    """Return that record from a ledger at saved times t, for runs that are not watched in their loop.
+    """Return the record of energy errors from a ledger at saved times t, for runs without it in their loop.
 
-    `given` is what impacts gave until then where Newton's law with friction may.
+    `given` is the energy that impacts had added by then where Newton's law with friction allows it.
     """
     watch = new_watch(tolerance)[0]
     rises = {IMPACTS: ledger.impacts - given, FRICTION: ledger.friction, BOUNCES: ledger.bounces}
@@ -136,7 +136,7 @@ def watched(t, ledger: Ledger, given, tolerance: float) -> np.record:
 
 
 def energy_error(watch: np.record) -> float:
-    """Return the greatest unnamed energy as a part of the largest exchanged; round-off counts as zero."""
+    """Return the largest energy error as a fraction of the largest energy exchanged; round-off counts as 0."""
     amount, of = abs(float(watch.amount[ALL])), float(watch.exchanged)
     if amount <= ROUND_OFF * float(watch.size):
         return 0.0
@@ -144,11 +144,11 @@ def energy_error(watch: np.record) -> float:
 
 
 def taken_whole(stats: dict) -> tuple[str, ...]:
-    """Return a sentence about steps in which bodies that touch were taken whole, if there were any."""
+    """Return a sentence about time-stepping (Moreau) steps without event detection, if there were any."""
     whole, steps = stats["whole_steps"], stats["steps"]
     if whole == 0:
         return ()
     return (
-        f"In {whole} of {steps} steps bodies that touch were taken whole: their impacts are at the "
-        "ends of these steps, or of parts of them.",
+        f"In {whole} of {steps} steps touching bodies took a time-stepping (Moreau) step without event "
+        "detection: their impacts are at the ends of these steps, or of parts of them.",
     )

@@ -1,4 +1,4 @@
-"""From the records of a run to the arrays of a solution."""
+"""The arrays of a solution, made from the records of a run."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from carom.scene.forces import AppliedForce
 from carom.scene.materials import IMPACT_LAWS
 from carom.status import Status
 
-#: what tables say of contacts (an ensemble changes them from run to run)
+#: attributes of contacts that tables show (an ensemble changes them from run to run)
 OF_CONTACTS = (
     "number", "other", "first", "law", "restitution", "friction", "penetration", "width", "touches", "side",
 )  # fmt: skip
 
 
 class Written(NamedTuple):
-    """Copies of the records of a run, from which a solution works out its columns on demand."""
+    """Copies of the records of a run; a solution computes its columns from them on demand."""
 
     attitude: np.ndarray  # (T, N, 4) of the principal axes
     series: np.recarray  # (T,) SERIES
@@ -86,7 +86,7 @@ def energy(solution, name: str) -> np.ndarray:
 
 
 def ledger(solution) -> Ledger:
-    """Return where the energy went."""
+    """Return the energy balance."""
     series = solution._written.series
     entries = (np.array(series[name]) for name, _ in r.LEDGER)
     return Ledger(solution.kinetic_energy, solution.potential_energy, *entries)
@@ -100,7 +100,7 @@ def event_table(solution) -> EventTable:
 
 
 def intervals(solution) -> ContactTable:
-    """Return the intervals of contact that stays."""
+    """Return the intervals of persistent contact."""
     written = solution._written
     end = float(solution.t[-1])
     return contact_table(written.event, r.EVENTS, first_vertices(written.contacts), end)
@@ -120,7 +120,7 @@ def first_vertices(contacts) -> np.ndarray:
 
 
 def impact_table(solution) -> ImpactTable:
-    """Return the impacts with all that the scene knows of their contacts."""
+    """Return the table of impacts, with names and laws of their contacts from the scene."""
     rows, contacts = solution._written.impact, solution._written.contacts
     number, first = np.unique(contacts["number"], return_index=True)
     c = first[np.searchsorted(number, rows.contact)]
@@ -153,7 +153,7 @@ def named(contact: np.ndarray, scene, pairs) -> dict[str, np.ndarray]:
 
 
 class Nodes(NamedTuple):
-    """What one body's motion is interpolated between: saved steps, and events that concern it."""
+    """Nodes of the interpolation of one body: saved states, and states at its events."""
 
     time: np.ndarray  # (M,)
     pose: np.ndarray  # (M, 7)
@@ -187,7 +187,7 @@ def nodes(run) -> list[Nodes]:
 
 
 def arms(contacts) -> np.ndarray:
-    """Return the lengths (C,) at which stops that end turns have their forces and ways; 1 for all others."""
+    """Return the lever arms (C,) that convert forces and gaps of stops of angles; 1 for all others."""
     return np.where(contacts["touches"] == STOP, np.abs(contacts["side"]), 1.0)
 
 
@@ -202,7 +202,7 @@ def contact_sums(touch: np.recarray, saved: int, contacts: int) -> tuple[np.ndar
 
 @contextmanager
 def _kept_turns(system):
-    """Put back the whole turns of angles, which reports count along the saved states."""
+    """Restore the whole turns of angles, which the reports count along the saved states."""
     reference = system.relations.coordinates["reference"]
     kept = reference.copy()
     yield
@@ -210,7 +210,7 @@ def _kept_turns(system):
 
 
 def element_reactions(solution) -> np.ndarray:
-    """Return what each joint, then each constraint answers with (T, E, 6), as the solver has it."""
+    """Return the multipliers of each joint, then of each constraint (T, E, 6), as in the solver."""
     from carom.dynamics.reactions import reactions
 
     run = solution._run

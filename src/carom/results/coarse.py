@@ -1,4 +1,4 @@
-"""Steps that are far too long for the motion: seen from the states at their ends."""
+"""Detection of steps that are far too long for the motion, from the states at their ends."""
 
 from __future__ import annotations
 
@@ -9,29 +9,30 @@ import numpy as np
 if TYPE_CHECKING:
     from carom.results.solution import Solution
 
-#: of the way at the greatest speed: a harmonic motion is so far off where it turns by 1.1 rad in a step, and
-#: by 2.2 rad, which the method of order 8 still follows
+#: allowed difference, as a fraction of the path at the greatest speed: that of a harmonic motion with a phase
+#: of 1.1 rad in a step, and of 2.2 rad for the method of order 8, which still follows it
 COARSE, OF_ORDER_8 = 0.1, 0.4
 SEEN = 1e-3  # of the size of a body: what is less does not count
 GOOD = 1e-3  # the same for a step that is short enough to begin with
 
 
 def too_long(solution: Solution, bodies, step: float, method: str) -> tuple[str, ...]:
-    """Return a sentence where a given step is far too long for the motion of joined or loaded bodies.
+    """Return a sentence if a given step is far too long for the motion of joined or loaded bodies.
 
-    The trapezoidal rule is compared with the way of such a body in a step: the two are (omega h)^2 / 12 of the
-    way apart for an angular frequency omega. Flight is exact at any step, and steps with impacts have kinks.
+    The displacement of such a body in a step is compared with the trapezoidal rule: for an angular frequency
+    omega the two differ by (omega h)^2 / 12 of the displacement. Free flight is exact with any step, and steps
+    with impacts are left out because the velocity jumps.
 
     Parameters
     ----------
     solution
-        Of which each step is saved.
+        A solution in which each step is saved.
     bodies : (N,) BODY
-        What kernels know of them: who is neither joined nor loaded, and sizes.
+        The records of the bodies in the kernels: sizes, and which bodies are neither joined nor loaded.
     step : float
-        [s].
+        Length of a step [s].
     method : str
-        By which it was taken.
+        Method of the run.
     """
     t, bound, sizes = solution.t, np.flatnonzero(bodies["ballistic"] == 0), bodies["extent"]
     if len(t) < 3 or not len(bound):
@@ -54,6 +55,6 @@ def too_long(solution: Solution, bodies, step: float, method: str) -> tuple[str,
         return ()
     name, good = solution.scene.bodies[bound[worst]].name, step * np.sqrt(GOOD / part[worst])
     return (
-        f"step={step:g} s is far too long for the motion of {name!r}, whose velocity turns too much within "
-        f"one. Take step={good:.1g} or less, or leave step out.",
+        f"step={step:g} s is far too long for the motion of {name!r}: its velocity changes too much in one "
+        f"step. Take step={good:.1g} or less, or leave step out.",
     )

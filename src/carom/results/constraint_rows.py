@@ -1,4 +1,4 @@
-"""The rows by which joints and constraints are kept: their names, and the units of their errors."""
+"""Names of the constraint rows of joints and constraints, and units of their errors."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ class ConstraintRows(NamedTuple):
 
     name: (
         np.ndarray
-    )  #: (R,) of the joint or constraint, with a number where it has several rows: ``hinge[2]``
+    )  #: (R,) name of the joint or constraint, with an index if it has several rows: ``hinge[2]``
     unit: (
         np.ndarray
-    )  #: (R,) of an error of position: "m", "rad", or "" where factors of your own make it
+    )  #: (R,) unit of the position error: "m", "rad", or "" if user-defined factors determine it
 
 
 def constrained(scene) -> list[Joint | Constraint]:
-    """Return what has rows: joints, then constraints."""
+    """Return all parts with constraint rows: joints, then constraints."""
     return [*scene.joints, *scene.constraints]
 
 

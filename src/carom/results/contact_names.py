@@ -1,4 +1,4 @@
-"""What touches what, in words: names of contacts and stops, and of the two that each is between."""
+"""Names of contacts and stops, and of the two parts of each."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import numpy as np
 
 
 class ContactNames(NamedTuple):
-    """All contacts of a run in the order of their numbers, and then the stops of joints."""
+    """Names of all contacts of a run in the order of their numbers, then of the stops of joints."""
 
     name: np.ndarray  #: (C,) of the contact; ``body-other`` of one by default
     body: np.ndarray  #: (C,) of a stop the child of its joint

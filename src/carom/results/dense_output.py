@@ -1,4 +1,4 @@
-"""The motion of a body between the states that a run has kept of it: in closed form in flight, else a cubic."""
+"""The motion of a body between saved states: in closed form in free flight, otherwise a cubic."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ NEAR = 1e-6  # of an interval: so near to its ends the cubic is as good as the s
 
 
 class Flights(NamedTuple):
-    """When a body on which only gravity acts flies: always, except in its intervals of persistent contact."""
+    """Times of free flight of a body on which only gravity acts: all except intervals of persistent contact."""
 
     moments: np.ndarray | None  # (3,); None if they are equal: it turns steadily, as the cubic does
     starts: np.ndarray  # (M,) of the intervals, sorted
     ends: np.ndarray  # (M,) the same
 
     def cover(self, t0: np.ndarray, t1: np.ndarray) -> np.ndarray:
-        """Return whether nothing is held between the times t0 and t1 (K,)."""
+        """Return whether there is no persistent contact between the times t0 and t1 (K,)."""
         begun = np.searchsorted(self.starts, t1, side="left")
         return begun == np.searchsorted(self.ends, t0, side="right")
 
 
 def flights(solution) -> list[Flights | None]:
-    """Return the flights of each body; None where more than gravity acts on it."""
+    """Return the flights of each body; None if other forces than gravity act on it."""
     bodies, contacts = solution._run.bodies, solution.contacts
     pairs = solution.pairs
     of_pair = contacts.contact < len(pairs.body)  # the rest are stops in joints
@@ -84,9 +84,8 @@ def between(node: Nodes, flies: Flights | None, times: np.ndarray, side: str):
 def _along_flight(moments, t, h, Q0, w0, Q1, w1):
     """Return attitude and angular velocity at times t of steps h, of a body without torque.
 
-    What the flight from the start misses of the end is added as the cubic is in `carom.geometry.spline`, in
-    the chart that the flight carries: round-off, or where bodies that press on each other were moved as a
-    whole their impulses.
+    The flight from the start may miss the state at the end, by round-off or by impulses of a time-stepping
+    step. The difference is added as a cubic, as in `carom.geometry.spline`, in the chart of the flight.
     """
     from carom.kinematics.flight_arrays import torque_free
 

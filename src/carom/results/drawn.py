@@ -1,4 +1,4 @@
-"""The method of a solution that draws it."""
+"""`Solution.plot`."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ KINDS = (
     "constraint_errors",
 )  # fmt: skip
 
-#: which argument of a plot says of what it is
+#: argument of each plot function that `what` is passed to
 WHAT = {
     "trajectory": "bodies", "phase": "of", "impacts": "contacts", "contacts": "contacts", "impact_inside": "k",
     "hodograph": "k",
@@ -15,7 +15,7 @@ WHAT = {
 
 
 class Drawn:
-    """Drawing a solution; needs ``carom[plot]``."""
+    """The method of a solution that draws plots; needs ``carom[plot]``."""
 
     def plot(self, kind: str = "overview", what=None, **options):
         """Draw one of the plots of `carom.plots` and return its axes.
@@ -26,17 +26,18 @@ class Drawn:
             "overview" (default), "trajectory", "phase", "energy", "impacts", "impact_inside", "hodograph",
             "contacts" or "constraint_errors": the function of `carom.plots` of this name.
         what : optional
-            Of what: bodies by name for "trajectory", a body, coordinate or joint for "phase", contacts by name
-            for "impacts" and "contacts", the number of an impact for "impact_inside" and "hodograph".
+            The parts to draw: names of bodies for "trajectory"; a body, coordinate or joint for "phase"; names
+            of contacts for "impacts" and "contacts"; the index of an impact for "impact_inside" and
+            "hodograph". The other kinds do not use it.
         **options
-            Other arguments of that function, among them ``ax`` to draw into axes that there are.
+            Other arguments of that function, for example ``ax`` to draw into existing axes.
 
         Raises
         ------
         ImportError
-            Without matplotlib.
+            If matplotlib is missing.
         ValueError
-            If `kind` is another word, or there is nothing of the kind to draw; for `what` of other kinds.
+            If `kind` is invalid, there is nothing to draw, or `what` is given for a kind that does not use it.
         """
         from carom import checks
         from carom.visual import plots

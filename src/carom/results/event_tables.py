@@ -14,44 +14,50 @@ CURVED = 1 << 40  # features of curved pieces are above, numbers of vertices bel
 
 
 class ImpactRecord(NamedTuple):
-    """One point of an impact. Vectors are in contact axes (normal, tangent 1, tangent 2) unless said otherwise.
+    """One contact point of an impact.
 
-    Where several points strike together, as both ends of an edge between two bodies, each has a record of its
-    own, for each has its own velocity, effective mass and impulse: records of the same time with `together`
-    above 1. What their impulses do adds up, and so do their energies. (Points of one body on a half-space that
-    move alike are one point, their mean, and one record. A point that gets no impulse has none.)
+    Vectors are in contact axes (normal, tangent 1, tangent 2) unless the field says otherwise.
+
+    In a multiple impact, for example when both ends of an edge strike, each contact point has a record of its
+    own, with its own velocity, effective mass and impulse. These records have the same time and `together`
+    above 1; the effects of their impulses and their energies add up. Points of one body on a half-space that
+    move alike are replaced by their mean point, with one record. A point without an impulse has no record.
     """
 
-    time: float  #: [s]
-    contact: int  #: number of the contact: its place in `Solution.pairs`
-    point: np.ndarray  #: (3,) where, world [m]
-    normal: np.ndarray  #: (3,) from the half-space into free space, world
-    relative_velocity_before: np.ndarray  #: (3,) [m/s], approach negative
-    relative_velocity_after: np.ndarray  #: (3,) [m/s]
-    impulse: np.ndarray  #: (3,) on the body [N s]
+    time: float  #: time of the impact [s]
+    contact: int  #: number of the contact: its index in `Solution.pairs`
+    point: np.ndarray  #: (3,) contact point, world [m]
+    normal: np.ndarray  #: (3,) normal from `other` to `body`, world
+    relative_velocity_before: np.ndarray  #: (3,) velocity before [m/s]; approach is negative
+    relative_velocity_after: np.ndarray  #: (3,) velocity after [m/s]
+    impulse: np.ndarray  #: (3,) impulse on the body [N s]
     energy_change: (
-        float  #: of the whole system [J]; of several points that strike together its share
+        float  #: change of energy of the system [J]; in a multiple impact the share of the point
     )
     penetration: float  #: greatest penetration of the boundary layer, delta b [m]
-    duration: float  #: in the boundary layer [s]
+    duration: float  #: duration in the boundary layer [s]
     law: str  #: law of restitution
-    inverse_mass: np.ndarray  #: (3, 3) W of the contact [1/kg]
+    inverse_mass: np.ndarray  #: (3, 3) Delassus operator W of the contact [1/kg]
     restitution: float  #: e of the contact
     friction: float  #: mu of the contact
-    compression_work: float  #: of the normal force [J]
-    restitution_work: float  #: of the normal force [J]
-    friction_loss: float  #: [J]
-    together: int  #: points that were resolved together, each with a record of its own; 1 for most
-    wedged: int  #: 1 where friction held the pair, and its law of restitution could not be met; 0 for most
-    located: int  #: 1 for most; 0 where bodies of a crowd met within a step, whose end is the time
-    name: str  #: of the contact, or of the stop; ``body-other`` of a pair that touches by default
-    body: str  #: name of the body that the impulse acts on; of a stop the child of its joint
-    other: str  #: name of the half-space or body that it strikes; of a stop the parent of its joint
+    compression_work: float  #: work of the normal force in compression [J]
+    restitution_work: float  #: work of the normal force in restitution [J]
+    friction_loss: float  #: energy that friction dissipates [J]
+    together: int  #: number of points in this multiple impact; 1 for a single impact
+    wedged: int  #: 1 if friction wedges the pair, so that the law of restitution cannot hold; otherwise 0
+    located: (
+        int  #: 1 if the time was located; 0 in a time-stepping (Moreau) step: its end is the time
+    )
+    name: str  #: name of the contact or stop; ``body-other`` for a default pair
+    body: str  #: name of the body on which the impulse acts; for a stop the child of its joint
+    other: (
+        str  #: name of the half-space or body that it strikes; for a stop the parent of its joint
+    )
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ImpactTable:
-    """All impacts of a run in the order of time; fields of `ImpactRecord` as columns (K, ...).
+    """All K impacts of a run in the order of time; the columns (K, ...) are the fields of `ImpactRecord`.
 
     Examples
     --------
@@ -62,10 +68,10 @@ class ImpactTable:
     >>> impacts = carom.simulate(scene, duration=0.8, step=0.01).impacts
     >>> print(impacts.time.round(6))
     [0.285569 0.571137 0.713922 0.785314]
-    >>> blow = impacts[0]
-    >>> print(blow.relative_velocity_before[0].round(6), blow.relative_velocity_after[0].round(6))
+    >>> first = impacts[0]
+    >>> print(first.relative_velocity_before[0].round(6), first.relative_velocity_after[0].round(6))
     -2.801428 1.400714
-    >>> print(blow.body, "on", blow.other)
+    >>> print(first.body, "on", first.other)
     body1 on half_space1
     """
 
@@ -98,7 +104,7 @@ class ImpactTable:
 
     def __getitem__(self, k: int) -> ImpactRecord:
         if not -len(self) <= k < len(self):
-            raise IndexError(f"there is no impact {k} of {len(self)}; the first has the number 0")
+            raise IndexError(f"there is no impact {k}: the table has {len(self)}, numbered from 0")
         return ImpactRecord(*(_plain(getattr(self, name)[k]) for name in ImpactRecord._fields))
 
     def __iter__(self) -> Iterator[ImpactRecord]:
@@ -116,38 +122,44 @@ class ImpactTable:
 
 
 class EventTable(NamedTuple):
-    """Events of contacts in the order of time."""
+    """Events of contacts in the order of time: impacts, and changes of persistent contacts.
 
-    time: np.ndarray  #: (E,) [s]
+    The kind "held" means that a contact becomes persistent, "jams" that it reaches Painleve's paradox.
+    """
+
+    time: np.ndarray  #: (E,) time of the event [s]
     kind: np.ndarray  #: (E,) "impact", "held", "slips", "sticks", "opens" or "jams"
     contact: np.ndarray  #: (E,) index of the contact
 
 
 class ContactTable(NamedTuple):
-    """Intervals of contact that stays: each as long as a point keeps slipping, or keeps sticking.
+    """Intervals of persistent contact, in the order of their starts.
 
-    In the order of their starts. Where faces of two bodies slide on each other the corners of their overlap
-    change; a new corner goes on with the interval of the one whose place it took.
+    An interval lasts as long as a contact point keeps slipping, or keeps sticking. When faces of two bodies
+    slide on each other, the corners of their overlap change; a new corner continues the interval of the corner
+    that it replaces.
     """
 
     contact: np.ndarray  #: (M,) index of the contact
-    feature: np.ndarray  #: (M,) what touches: of a half-space the number of the vertex in the shape
-    start: np.ndarray  #: (M,) [s]
-    end: np.ndarray  #: (M,) [s]; where it lasted to the end of the run, that
+    feature: (
+        np.ndarray
+    )  #: (M,) number of the contact point; on a half-space the vertex of the shape
+    start: np.ndarray  #: (M,) start of the interval [s]
+    end: np.ndarray  #: (M,) end of the interval, at latest the end of the run [s]
     mode: np.ndarray  #: (M,) "slipping" or "sticking" (or rolling, or at rest)
 
 
 class ForceTable(NamedTuple):
-    """Forces of contacts that stay, one row an active point and saved time, in the order of time."""
+    """Forces of persistent contacts, in the order of time: one row for each active point and saved time."""
 
-    saved: np.ndarray  #: (M,) number of the saved time
+    saved: np.ndarray  #: (M,) index of the saved time
     contact: np.ndarray  #: (M,) index of the contact
     body: np.ndarray  #: (M,) index of its body
     other: np.ndarray  #: (M,) index of the other body, -1 for a half-space
     mode: np.ndarray  #: (M,) "slipping" or "sticking" (or rolling, or at rest)
-    point: np.ndarray  #: (M, 3) where, world [m]
-    force: np.ndarray  #: (M, 3) on the body, contact axes [N]
-    vector: np.ndarray  #: (M, 3) the same in world axes [N]
+    point: np.ndarray  #: (M, 3) contact point, world [m]
+    force: np.ndarray  #: (M, 3) force on the body, contact axes [N]
+    vector: np.ndarray  #: (M, 3) force on the body, world axes [N]
 
 
 def force_table(touch) -> ForceTable:
@@ -162,7 +174,7 @@ _MODES = {"slips": 1, "sticks": 2, "opens": 0}
 
 
 def contact_table(event, kinds, first, end: float) -> ContactTable:
-    """Return the intervals that events make.
+    """Return the intervals of persistent contact between events.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Coordinates of joints, from a finished run: what a joint leaves free, measured from parent to child."""
+"""Coordinates of joints from a finished run: the motion of the child relative to the parent."""
 
 from __future__ import annotations
 
@@ -119,7 +119,7 @@ class _Sides:
         self.spin = self.child.spin - self.parent.spin
 
     def across(self, start, end):
-        """From a point of the parent to one of the child, as defined: (T, 3) and its velocity."""
+        """Return the vector from a point of the parent to one of the child (T, 3), and its velocity."""
         p, c = self.parent, self.child
         rp, rc = p.arm(start), c.arm(end)
         gap = c.position + rc - p.position - rp
@@ -143,7 +143,7 @@ class _Sides:
         return unwrapped(2.0 * np.arctan2(q[:, 1:] @ axis, q[:, 0]), rate, self.t), rate
 
     def cross(self, first, second):
-        """Angles of Rot(first, q1) Rot(second, q2), the child's turn as seen from the parent."""
+        """Return the angles of Rot(first, q1) Rot(second, q2), the relative rotation of the child."""
         frame = np.stack([first, second, np.cross(first, second)], axis=1)
         C = frame.T @ quaternion.matrix(self.relative) @ frame
         angles = np.arctan2(C[:, 2, 1], C[:, 1, 1]), np.arctan2(C[:, 0, 2], C[:, 0, 0])
@@ -160,7 +160,7 @@ class _Sides:
 
 
 def unwrapped(angle: np.ndarray, rate: np.ndarray, t: np.ndarray) -> np.ndarray:
-    """Return angles (T,) with the whole turns that the mean rates between saved times ask for."""
+    """Return angles (T,) with whole turns, counted with the mean rates between saved times."""
     ahead = 0.5 * (rate[1:] + rate[:-1]) * np.diff(t) - np.diff(angle)
     turns = np.cumsum(np.round(ahead / (2.0 * np.pi)))
     return angle + 2.0 * np.pi * np.concatenate([[0.0], turns])

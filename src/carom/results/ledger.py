@@ -9,25 +9,25 @@ import numpy as np
 
 @dataclass(frozen=True, eq=False)
 class Ledger:
-    """Where the energy went, at each saved time; all [J], all (T,), sums since the start.
+    """Energy balance at each saved time; all arrays are (T,) [J], all but the first two sums since the start.
 
     ``kinetic + potential = start + loads + impacts + friction + bounces + residual``
 
     Attributes
     ----------
     kinetic, potential
-        What there is. Potential: gravity and springs.
+        Present energies. The potential energy is that of gravity, springs and forces with a potential.
     loads
         Work of forces and torques without potential, of dampers (negative), and of motors.
     impacts
-        Change by impacts: not above zero, but where Newton's law with friction gives energy. Friction takes
-        less in impacts and bounces together than in the impacts alone where these bounces are not resolved.
+        Change of energy by impacts: at most 0, except that Newton's law with friction may add energy. If small
+        bounces are dropped, corrections of their friction are included here.
     friction
-        Work of friction in persistent contacts, not above zero.
+        Work of friction in persistent contacts, at most 0.
     bounces
-        Energy of bounces that were not resolved when a contact was held, not above zero.
+        Energy of small bounces that were dropped when a contact became persistent, at most 0.
     residual
-        What is left: the error of the time integration.
+        Rest that no entry explains: the error of the time integration.
     """
 
     kinetic: np.ndarray

@@ -1,4 +1,4 @@
-"""The methods of a solution that hand it to files and to other libraries."""
+"""Methods of a solution that save, load, continue and convert it."""
 
 from __future__ import annotations
 
@@ -13,34 +13,34 @@ if TYPE_CHECKING:
 
 
 class Portable:
-    """Saving, loading and converting a `Solution`; needs ``carom[files]``."""
+    """Methods that save, load, continue and convert a `Solution`; they need ``carom[files]``."""
 
     def save(self, path: str | os.PathLike) -> None:
-        """Write the run to a file, whose suffix says what: all of it, or tables.
+        """Write the run to a file: the whole run or its tables, depending on the suffix.
 
-        ``.nc`` and ``.h5``: all of the run in one netCDF-4 (HDF5) file, which needs no carom to be read, with
-        labelled dimensions, units, the tables of impacts, events and persistent contacts, the ledger,
-        reactions and coordinates of joints, the scene as JSON, settings, options, version and citation. The
-        file appears when it is complete, in the place of what was there, and has a digest of all its bytes.
+        ``.nc`` and ``.h5``: the whole run in one netCDF-4 (HDF5) file, which can be read without carom. It has
+        labelled dimensions, units, the tables of impacts, events and persistent contacts, the energy ledger,
+        reactions and coordinates of joints, the scene as JSON, settings, options, version, citation, and a
+        digest of all its bytes. The complete file replaces an old file of the same name in one operation.
         (How to: keep results in files.)
 
-        ``.csv`` and ``.parquet``: the tables of `to_pandas`. The motion of the bodies goes to this file
-        (columns ``time``, ``die.x``, ...), the others beside it, as ``run.impacts.csv``. `load` does not read
-        them.
+        ``.csv`` and ``.parquet``: the tables of `to_pandas`. The motion of the bodies is in this file (columns
+        ``time``, ``die.x``, ...), the other tables are in files beside it, such as ``run.impacts.csv``. `load`
+        cannot read these files.
 
         Parameters
         ----------
         path : str or path
-            In a folder that exists, with one of these suffixes (or ``.hdf5``).
+            Path with one of these suffixes (or ``.hdf5``), in a folder that exists.
 
         Raises
         ------
         ImportError
-            Without h5netcdf (``.nc``), pandas (tables), pyarrow (``.parquet``).
+            If a package is missing: h5netcdf (``.nc``), pandas (tables), pyarrow (``.parquet``).
         OSError
-            If it cannot be written, as on a full disk; what was there is as it was.
+            If the file cannot be written, for example on a full disk; an old file then stays unchanged.
         ValueError
-            If the folder is not there, or the suffix is another one.
+            If the folder does not exist, or the suffix is not one of these.
         """
         from carom.io.files.writing import save
 
@@ -50,29 +50,31 @@ class Portable:
     def load(
         cls, path: str | os.PathLike, *, functions: Mapping[str, Callable] | None = None
     ) -> Self:
-        """Return the solution that a file holds, bit for bit the one that was saved.
+        """Return the solution in a file, bit for bit equal to the one that was saved.
 
-        No damaged file is read: a digest of all its bytes is checked first. No other file is read, whatever it
-        says, and no code is run.
+        The digest of all bytes is checked first, and a damaged file is refused. Loading runs no code from the
+        file and opens no other file.
 
-        Also of a run that was killed or stopped, up to the last saving; `status` is ``INTERRUPTED`` then (see
-        `resume`). What a solution works out on demand, as between saved times, is worked out alike.
+        The file of a run that was killed or interrupted can be loaded too: the solution ends at the last
+        saving, and its `status` is ``INTERRUPTED`` (see `resume`). Results that are computed on demand, such as
+        states between saved times, are also equal.
 
         Parameters
         ----------
         path : str or path
+            Path of the file.
         functions : mapping, optional
-            Functions of the user's that the scene has, which no file can hold: ``"part.field"`` (as in
-            ``"motor.force"``) to function. Where they are left out `scene` has placeholders that raise an
-            error when they are called; all that was saved is there without them.
+            User-defined functions of the scene, which a file cannot contain: ``"part.field"`` (for example
+            ``"motor.force"``) to function. If they are left out, the `scene` has placeholders that raise an
+            error when they are called; all saved results are available without them.
 
         Raises
         ------
         FileNotFoundError
-            If there is no such file.
+            If the file does not exist.
         ValueError
-            If the file is foreign, damaged, changed, or of another version of the format; if a function is none
-            of the scene's.
+            If the file is not a file of a run, is damaged or changed, or has another version of the format; or
+            if the scene has no such function.
         """
         from carom import checks
         from carom.io.files.reading import read
@@ -95,59 +97,61 @@ class Portable:
         progress: bool | Callable[[float, float], None] | None = None,
         throw: bool = True,
     ) -> Self:
-        """Go on from the end of the run, as if it had been longer from the start, bit for bit.
+        """Continue the run from its end; the result is bit for bit that of one longer run.
 
-        This solution stays as it is. States are saved as often as before, with the settings of the run.
+        This solution is not changed. The settings of the run stay the same, and states are saved as often as
+        before.
 
         Parameters
         ----------
         duration : float
-            Time to simulate from here on [s].
+            Additional time to simulate [s].
         progress, throw
-            As of `simulate`.
+            As for `simulate`.
 
         Returns
         -------
         Solution
-            Of the whole time, from the start.
+            Solution for the whole time, from the start.
 
         Raises
         ------
         ValueError
-            If the run failed, or functions of its scene are missing (those of a file).
+            If the run failed, or a run from a file lacks user-defined functions of its scene.
         SimulationError
-            If it fails later on and `throw` is True.
+            If the continued run fails and `throw` is True.
         """
         from carom.io.files.resume import go_on
 
         return go_on(self, duration, progress, throw)
 
     def to_xarray(self) -> xr.Dataset:
-        """Return all of the run as an `xarray.Dataset`: what `save` writes, and `xarray.open_dataset` reads.
+        """Return the whole run as an `xarray.Dataset`, as `save` writes it and `xarray.open_dataset` reads it.
 
-        Dimensions time, body, axis, quaternion; impact, event, interval and held (tables), contact,
-        contact_axis; joint, coordinate and row where there are some. Each variable has ``units`` and a
-        ``long_name``.
+        Its dimensions are time, body, axis, quaternion, contact, contact_axis; impact, event, interval and held
+        (for the tables); and joint, coordinate and row if there are any. Each variable has the attributes
+        ``units`` and ``long_name``.
 
         Raises
         ------
         ImportError
-            Without xarray.
+            If xarray is missing.
         """
         from carom.io.files.convert import to_xarray
 
         return to_xarray(self)
 
     def to_pandas(self) -> Frames:
-        """Return the run as six tables (`pandas.DataFrame`), a named tuple.
+        """Return the run as a named tuple of six tables (`pandas.DataFrame`).
 
-        ``bodies`` (saved times down, columns body and quantity), ``energy``, ``impacts``, ``events``,
-        ``contacts`` and ``forces``; bodies and contacts by name, vectors as one column a component.
+        The tables are ``bodies`` (one row for each saved time, columns for body and quantity), ``energy``,
+        ``impacts``, ``events``, ``contacts`` and ``forces``. Bodies and contacts are given by name, and vectors
+        have one column for each component.
 
         Raises
         ------
         ImportError
-            Without pandas.
+            If pandas is missing.
         """
         from carom.io.files.convert import to_pandas
 

@@ -1,9 +1,9 @@
-"""The motion between two saved states, stepped again from the first of them by the method of the run.
+"""Replay: the motion between two saved states, stepped again from the first one by the method of the run.
 
-A state between two saved ones is then as exact as they are, however fast a body turns between them. A replay
-begins with what is saved: position, attitude and velocities. A run remembers more, such as guesses of forces,
-so each interval is tried first. Its replay is used if it ends at the next saved state, or misses it by far less
-than the replay and a cubic through both states differ between them.
+States between two saved states are then as accurate as the saved ones, however fast a body rotates. A replay
+starts from the saved position, attitude and velocities. Other data of the run, such as first guesses of forces,
+are not saved, so each interval is checked first: its replay is used if it ends at the next
+saved state, or misses it by far less than the difference between the replay and a cubic through both states.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ BETTER = 0.1  # a greater miss may be such a part of the difference from the cub
 
 
 class Replay:
-    """A run of the scene of a solution that starts at any of its saved states."""
+    """A run of the scene of a solution that can start at any saved state."""
 
     def __init__(self, solution: Solution):
         from carom.run import Run
@@ -48,7 +48,7 @@ class Replay:
         self.arrives = {}
 
     def improve(self, times: np.ndarray, cubic: np.ndarray, x, Q, v, w) -> None:
-        """Write states at times (K,) over those (K, N) that are of a cubic."""
+        """Replace the states (K, N) of a cubic at times (K,) by states of the replay."""
         t = self.solution.t
         for k in np.flatnonzero(cubic.any(axis=1)):
             i = min(int(np.searchsorted(t, times[k], side="right")) - 1, len(t) - 2)
@@ -65,7 +65,7 @@ class Replay:
         return self.arrives[i]
 
     def arrives_from(self, i: int) -> bool:
-        """Return the same, worked out."""
+        """Compute `is_good`."""
         if not self.go(i, self.solution.t[i + 1]):
             return False
         miss, middle = (
@@ -81,7 +81,7 @@ class Replay:
         return self.go(i, middle) and miss <= BETTER * self.misses(i, cubic)
 
     def go(self, i: int, until: float) -> bool:
-        """Go on from saved state i to a time; return whether it was reached."""
+        """Continue from saved state i to a time; return whether it was reached."""
         run, begin = self.run, self.solution.t[i]
         if self.kept.is_of(run.parts):
             self.kept.restore()
@@ -99,7 +99,7 @@ class Replay:
         return run.go_on(run.steps) is Status.SUCCESS
 
     def misses(self, i: int, there: np.ndarray) -> float:
-        """Return by how much the run misses a state within interval i, where 1 is allowed."""
+        """Return the distance of the run from a state within interval i, relative to the allowed one."""
         now, size = self.run.now, self.size[:, None]
         turn = now.Q - there["Q"] * np.sign(np.sum(now.Q * there["Q"], axis=1))[:, None]
         speed = np.abs(now.v - there["v"]) + size * np.abs(now.w - there["w"])
@@ -109,7 +109,7 @@ class Replay:
 
 
 def evaluate(solution: Solution, times: np.ndarray, cubic: np.ndarray, x, Q, v, w) -> None:
-    """Write the motion at times (K,) over states (K, N) that are of a cubic, where it can be stepped again."""
+    """Replace the states (K, N) of a cubic at times (K,) by the motion, where it can be stepped again."""
     if len(solution.t) < 2 or getattr(
         solution._run, "missing", ()
     ):  # functions that a file could not hold

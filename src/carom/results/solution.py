@@ -1,4 +1,4 @@
-"""What a run hands back: the motion, the impacts, the energy ledger, and how it ended."""
+"""`Solution`: the motion, the impacts and the energy ledger of a run, and how it ended."""
 
 from __future__ import annotations
 
@@ -42,47 +42,48 @@ class Solution(Portable, Drawn):
     t : (T,)
         Saved times [s].
     position : (T, N, 3)
-        Mass centres, world [m].
+        Positions of the mass centres, world [m].
     orientation : (T, N, 4)
         Unit quaternions (w, x, y, z), body to world.
     velocity, angular_velocity : (T, N, 3)
-        World axes [m/s], [rad/s]. At a time where an impact happened: after it.
+        Velocities of the mass centres [m/s] and angular velocities [rad/s], world axes. At the time of an
+        impact: the values after it.
     kinetic_energy, potential_energy, total_energy : (T,)
-        Of all bodies, gravity and springs [J].
+        Energies of the whole system [J].
     impacts : ImpactTable
         One record for each impact.
     events : EventTable
-        Impacts and changes of persistent contacts, in their order.
+        Impacts and changes of persistent contacts, in the order of time.
     contacts : ContactTable
-        Intervals of contact that stays: which point, from when to when, slipping or sticking.
+        Intervals of persistent contact: contact point, start, end, and slip or stick.
     held_residual : (T,)
-        How far velocities and impulses of persistent contacts are from their law [m/s]: the greatest of all
-        steps since the saved time before. Worked out from the velocities of the bodies and the impulses that
-        were applied, whoever found them: ``|p - P_K(p - rho (w + mu |w_t| n))| / rho`` of each point, with P_K
-        the projection on the friction cone and rho its mass; of a point held alone, the velocity that it must
-        not have. 0 where nothing is held.
+        Largest residual of the contact law in persistent contacts [m/s], over all steps since the previous
+        saved time; 0 without persistent contact. It is computed from the velocities of the bodies and the
+        applied impulses, independent of the solver: for each point ``|p - P_K(p - rho (w + mu |w_t| n))| /
+        rho``, where P_K is the projection onto the friction cone and rho the effective mass of the point. For a
+        single contact point it is the velocity that the contact forbids.
     pairs : PairTable
-        What touches what, by the number that tables call `contact`: columns `body`, `other` (-1 for a
-        half-space), `plane` (-1 for a body), `law` (a place in `laws`). First the contacts of `Scene.contacts`,
-        then those of `set_contact_default`: with half-spaces, body by body, then of two bodies (of more than 64
-        bodies on which only gravity acts: of those that came near each other, in the order in which they did).
-        Stops in joints have the numbers after these.
+        The pairs that may touch; tables refer to them by their number `contact`. Columns: `body`, `other` (-1
+        for a half-space), `plane` (-1 for a body), `law` (an index in `laws`). First come the contacts of
+        `Scene.contacts`, then those of `set_contact_default`: pairs with half-spaces, body by body, then pairs
+        of two bodies (with more than 64 bodies on which only gravity acts: only the pairs that came near each
+        other, in the order in which they did). Stops of joints have the numbers after these.
     ledger : Ledger
-        Where the energy went.
+        Energy balance of the run.
     status : Status
-        How the run ended; `success` and `message` say it shorter and longer.
+        How the run ended; see also `success` and `message`.
     warnings : tuple of str
-        What has gone beyond `Options.energy_tolerance`, and bodies that are in a surface: when, how much, what
-        to change. Empty if all is well.
+        Sentences about energy errors above `Options.energy_tolerance`, penetrations, and contact problems that
+        were not solved, with the time, the amount and a remedy. Empty if there are none.
     stats : dict
-        Counts: steps, trial steps, rejected ones (by their error), cuts, located events, impacts, holds;
-        steps of active points and their rounds (or sweeps); `explicit_steps`, those that a symplectic
-        method left to the explicit one in singular positions; `parts`, by how many those outnumber the (trial)
-        steps that were made in parts, as a body turned far; and `whole_steps`, in how many steps bodies that
-        touch were taken whole, as a crowd: impacts of these are at the ends of steps (`impacts.located`).
+        Counts: steps, trial steps, steps rejected by their error, cuts, located events, impacts, contacts that
+        became persistent; steps with active contacts and their iterations; `explicit_steps`: steps in singular
+        positions that a symplectic method replaced by explicit ones; `parts`: additional steps because steps
+        were divided for a large rotation of a body; `whole_steps`: steps that touching bodies, such as a crowd,
+        took as time-stepping (Moreau) steps, with impacts at the end of the step (`impacts.located` is 0).
 
     scene : Scene
-        What was run.
+        The scene of the run.
     settings : dict
         Duration, step, method and tolerances of the run.
 
@@ -116,13 +117,13 @@ class Solution(Portable, Drawn):
     settings: dict[str, Any]
     _run: Run = field(repr=False)
     _touch: np.recarray = field(repr=False)
-    #: what the rest is worked out from; None: from a file, which has had it all
+    #: records from which the other fields are computed; None: loaded from a file, which has all fields
     _written: Written | None = field(repr=False, default=None)
     warnings: tuple[str, ...] = ()
 
     @classmethod
     def _from_run(cls, run: Run, status: Status) -> Solution:
-        """Collect what a run has written down."""
+        """Make the solution from the records of a run."""
         from carom.results.assemble import assemble
 
         return cls(**assemble(run, status))
@@ -136,14 +137,14 @@ class Solution(Portable, Drawn):
 
     @cached_property
     def kinetic_energy(self) -> np.ndarray:
-        """Of all bodies (T,) [J]."""
+        """Kinetic energy of all bodies (T,) [J]."""
         from carom.results.assemble import energy
 
         return energy(self, "kinetic")
 
     @cached_property
     def potential_energy(self) -> np.ndarray:
-        """Of gravity, springs and forces of your own that have one (T,) [J]."""
+        """Potential energy of gravity, springs and user-defined forces with a potential (T,) [J]."""
         from carom.results.assemble import energy
 
         return energy(self, "potential")
@@ -157,33 +158,33 @@ class Solution(Portable, Drawn):
 
     @cached_property
     def events(self) -> EventTable:
-        """Impacts and changes of persistent contacts, in their order."""
+        """Impacts and changes of persistent contacts, in the order of time."""
         from carom.results.assemble import event_table
 
         return event_table(self)
 
     @cached_property
     def contacts(self) -> ContactTable:
-        """Intervals of contact that stays."""
+        """Intervals of persistent contact."""
         from carom.results.assemble import intervals
 
         return intervals(self)
 
     @cached_property
     def ledger(self) -> Ledger:
-        """Where the energy went."""
+        """Energy balance of the run."""
         from carom.results.assemble import ledger
 
         return ledger(self)
 
     @property
     def success(self) -> bool:
-        """Whether the run reached its end, and kept the balance of energy."""
+        """Whether the status is ``SUCCESS``: the run reached its end with the required accuracy."""
         return self.status is Status.SUCCESS
 
     @property
     def message(self) -> str:
-        """How the run ended, in a sentence; if it failed, with the time it reached."""
+        """How the run ended, in sentences; if it failed, with the time that it reached."""
         if self.status.ended:
             from carom.results.accuracy import taken_whole
 
@@ -206,8 +207,8 @@ class Solution(Portable, Drawn):
     def joint_reactions(self) -> np.ndarray:
         """Force and torque (T, J, 6) of each joint on its child at its anchor, world axes [N], [N m].
 
-        In the order of `Scene.joints`. Where redundant joints leave it open, the one of least norm, each row
-        weighed by its own stiffness against motion (the diagonal of A M^-1 A^T).
+        In the order of `Scene.joints`. If joints are redundant, reactions are not unique: these are the
+        reactions of least norm, where each row is weighted by its diagonal entry of A M^-1 A^T.
         """
         from carom.results.assemble import joint_reactions
 
@@ -217,29 +218,32 @@ class Solution(Portable, Drawn):
     def constraint_forces(self) -> np.ndarray:
         """Multipliers (T, K) of the rows of `Scene.constraints`, in their order.
 
-        Of a `Driver` the force [N] or torque [N m] of its motor along the coordinate; of a `Coupling` that
-        which acts on each joint, divided by its factor; of `Rows` the factor of each row in the force.
+        For a `Driver`, the force [N] or torque [N m] of its motor along the coordinate. For a `Coupling`, the
+        force or torque on each joint divided by the factor of the joint. For `Rows`, the factor of each row in
+        the constraint force.
         """
         from carom.results.assemble import constraint_forces
 
         return constraint_forces(self)
 
     def joint_coordinates(self, joint) -> tuple[np.ndarray, np.ndarray]:
-        """Return (coordinates, rates), each (T, n), of a joint at saved times, worked out from the states.
+        """Return (coordinates, rates), each (T, n), of a joint at saved times, computed from the states.
 
-        Of the child against the parent, positive along the directions of the definition (turns by
-        the right-hand rule), 0 at the start. Directions turn with the parent; only `axis_child` with the child.
+        Coordinates are those of the child relative to the parent: 0 at the start, positive along the directions
+        of the definition (angles by the right-hand rule). Directions turn with the parent, except `axis_child`,
+        which turns with the child.
 
         ==================  ========================================================================
-        Revolute            turn [rad]
-        Prismatic           slide of the child's anchor [m]
-        Cylindrical, Screw  turn, slide
-        Universal           q1 about `axis_parent`, q2 about `axis_child`: in axes of the parent the child is
+        Revolute            angle [rad]
+        Prismatic           displacement of the child's anchor [m]
+        Cylindrical, Screw  angle, displacement
+        Universal           q1 about `axis_parent`, q2 about `axis_child`: in axes of the parent the child has
                             turned by R1(q1) R2(q2) since the start
-        Planar              two slides, turn about the normal; slides along t1, the world axis least along
-                            the normal (x before y before z) at the start made tangent, and normal x t1
-        PointOnLine         slide
-        PointOnPlane        two slides, as for Planar
+        Planar              two displacements, along t1 and normal x t1, and the angle about the normal; t1 is
+                            the world axis with the smallest component along the normal at the start (the
+                            first of x, y, z), projected onto the plane
+        PointOnLine         displacement
+        PointOnPlane        two displacements, as for Planar
         Distance            length [m] (not 0 at the start)
         Spherical           rotation vector [rad], angle in [0, pi], in the world axes of the start, fixed in
                             the parent; its rates are the relative angular velocity in the same axes
@@ -247,8 +251,9 @@ class Solution(Portable, Drawn):
         rolling
         ==================  ========================================================================
 
-        Turns are counted over the run by the mean of the rates between two saved times, which must
-        not be wrong by half a turn: save often enough (`save_at`). At an impact the rate is that after it.
+        Angles include whole turns. These are counted with the mean of the rates between two saved times, whose
+        error must be less than half a turn: save often enough (`save_at`). At the time of an impact the rate is
+        the value after it.
 
         Parameters
         ----------
@@ -258,9 +263,9 @@ class Solution(Portable, Drawn):
         Raises
         ------
         KeyError
-            If nothing in the scene is called so.
+            If the scene has no part with this name.
         TypeError, ValueError
-            If it is no joint, or one of another scene.
+            If `joint` is not a joint, or belongs to another scene.
         """
         from carom.results.joint_coordinates import joint_coordinates
 
@@ -268,10 +273,10 @@ class Solution(Portable, Drawn):
 
     @cached_property
     def constraint_errors(self) -> tuple[np.ndarray, np.ndarray]:
-        """How well joints and constraints are kept at saved times: position and velocity, (T, R) each.
+        """Errors of joints and constraints at saved times: of position and of velocity, (T, R) each.
 
-        Absolute errors of the R rows of `constraint_rows`, which names them and their units (velocities: a
-        second). The error of an angle does not count whole turns.
+        They are absolute errors of the R rows in `constraint_rows`, which has the names and units of the rows
+        (units of velocity errors: the same per second). Errors of angles do not include whole turns.
         """
         from carom.results.assemble import constraint_errors
 
@@ -279,38 +284,40 @@ class Solution(Portable, Drawn):
 
     @cached_property
     def constraint_rows(self) -> ConstraintRows:
-        """The R rows of joints and constraints that `constraint_errors` is of: columns `name` and `unit`.
+        """The R rows of joints and constraints in `constraint_errors`: columns `name` and `unit`.
 
-        Units are "m" or "rad"; "" where factors of your own make it (`Rows`, a `Coupling` of turns and slides).
+        Units are "m" or "rad", or "" if user-defined factors determine the unit (`Rows`, a `Coupling` of angles
+        and displacements).
         """
         return constraint_rows(self.scene)
 
     def evaluate(self, t, side: str = "right"):
         """Return (position, orientation, velocity, angular_velocity) at times between saved ones.
 
-        The states are those of the motion. A body on which only gravity acts, and that touches nothing, is in
-        closed form. For others the motion is stepped again from the saved state before, by the method of the
-        run, which costs what the run took there. Where this misses the next saved state (by more than ten times
-        the tolerances and a tenth of its difference from a cubic; as in a pile where impacts follow each
-        other), and where functions of a file are missing, a cubic through both states is used: an error of
-        order 4 in their distance for positions and orientations, of order 3 for velocities.
+        The states are those of the motion. For a body on which only gravity acts, while it touches nothing,
+        they are in closed form. For other bodies the run is repeated from the saved state before, with the
+        method of the run; this takes as long as the run took there. A cubic through both saved states replaces
+        it if the repeated motion misses the next saved state by more than ten times the tolerances and by more
+        than a tenth of its difference from the cubic (for example in a pile where impacts follow each other),
+        or if user-defined functions of a file are missing. The error of the cubic is of order 4 in the saved
+        interval for positions and orientations, and of order 3 for velocities.
 
         Parameters
         ----------
         t : float or (n,)
             Times within the run [s].
         side : {"right", "left"}
-            Which velocity at the time of an event: after it (default) or before it.
+            Velocity at the time of an event: after it (``"right"``, default) or before it (``"left"``).
 
         Returns
         -------
         tuple of arrays
-            (n, N, 3), (n, N, 4), (n, N, 3), (n, N, 3); without the first axis for a single time.
+            Arrays (n, N, 3), (n, N, 4), (n, N, 3), (n, N, 3); for a single time without the first axis.
 
         Raises
         ------
         ValueError
-            If a time is outside the run, or `side` is another word.
+            If a time is outside the run, or `side` is invalid.
         """
         from carom.results.replay import evaluate
 
@@ -321,11 +328,11 @@ class Solution(Portable, Drawn):
         return self._seen(t, *states)
 
     def _curve(self, t, side: str = "right"):
-        """Return what `evaluate` does, by cubics where it is not in closed form: for pictures."""
+        """Return the same as `evaluate`, but with cubics where there is no closed form: for pictures."""
         return self._seen(t, *curves(self, np.atleast_1d(np.asarray(t, dtype=float)), side)[:4])
 
     def _seen(self, t, x, Q, v, w):
-        """Return states with attitudes of the scene's axes; without the first axis for a single time."""
+        """Return states with attitudes of the scene's axes; for a single time without the first axis."""
         Q = quaternion.multiply(Q, quaternion.conjugate(self._run.to_principal))
         return tuple(a[0] for a in (x, Q, v, w)) if np.ndim(t) == 0 else (x, Q, v, w)
 
@@ -347,9 +354,10 @@ class Solution(Portable, Drawn):
 
     @cached_property
     def forces(self) -> ForceTable:
-        """Forces of all points of contact that stay, as a table: for scenes with many contacts.
+        """Forces at all points of persistent contact, as a table.
 
-        `contact_mode` and `contact_force` have a place for each contact of `pairs` at each saved time.
+        It is smaller than `contact_mode` and `contact_force` in scenes with many contacts, because these have
+        an entry for each contact of `pairs` at each saved time.
         """
         return force_table(self._touch)
 
@@ -376,27 +384,27 @@ class Solution(Portable, Drawn):
         Parameters
         ----------
         k : int
-            Number of the impact.
+            Index of the impact.
         steps : int, optional
-            Spline steps through the layer. Default: `Options.layer_steps`.
+            Number of spline steps through the layer. Default: `Options.layer_steps`.
 
         Raises
         ------
         IndexError
             If there is no impact k.
         ValueError
-            If impact k is a part of one of several points.
+            If impact k is part of a multiple impact.
         """
         from carom.impact.history import impact_layer
 
         count, k = len(self.impacts), checks.integer("k", k)
         if not -count <= k < count:
-            raise IndexError(f"k must be the number of an impact, got impact {k} of {count}")
+            raise IndexError(f"k must be the index of an impact, got impact {k} of {count}")
         record = self.impacts[k]
         if record.together > 1:
             raise ValueError(
-                f"impact {k} was resolved together with others ({record.together} closed points), and has "
-                "no boundary layer of its own; look at one with impacts.together == 1"
+                f"impact {k} is part of a multiple impact ({record.together} closed points) and has no "
+                "boundary layer of its own; choose an impact with impacts.together == 1"
             )
         contacts = self._run.compiled.system.contacts
         row = contacts[int(np.searchsorted(contacts.number, record.contact))]

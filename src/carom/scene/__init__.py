@@ -1,4 +1,4 @@
-"""What the user states: shapes, bodies, contacts, joints, forces. NumPy only, no motion."""
+"""The description of a system: shapes, bodies, contacts, joints, forces. NumPy only, no motion."""
 
 from carom.scene import constraints, forces, joints, shapes
 from carom.scene.bodies import GROUND, Body, Ground, HalfSpace

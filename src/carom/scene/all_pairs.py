@@ -1,7 +1,7 @@
-"""All pairs of a scene that may touch, but for those left out: as arrays, for they are many.
+"""All pairs of a scene that may touch, except the ignored ones, as arrays because they are many.
 
-Pairs of two bodies are N(N - 1)/2. What says which of them may touch, and by which law, is of the size of N:
-`Defaults`, from which a list of all, or of some, is made.
+N bodies have N(N - 1)/2 pairs. `Defaults` says in memory of order N which of them may touch and by which law;
+a list of all pairs, or of some, is made from it.
 """
 
 from __future__ import annotations
@@ -19,19 +19,19 @@ MOST_AT_ONCE = 1 << 20  # balls whose distances are looked at in one go
 
 
 class PairTable(NamedTuple):
-    """C pairs that may touch: a body, and a half-space or another body."""
+    """Table of C pairs that may touch: each a body, and a half-space, static body or another body."""
 
-    body: np.ndarray  #: (C,) its index
-    other: np.ndarray  #: (C,) index of the other body, -1 for what never moves
+    body: np.ndarray  #: (C,) index of the body
+    other: np.ndarray  #: (C,) index of the other body, -1 for a half-space or static body
     plane: (
         np.ndarray
-    )  #: (C,) place in `Scene.fixed` of the half-space or static body, -1 for a body
-    law: np.ndarray  #: (C,) place in `laws`
-    laws: list[ContactLaw]  #: each law once
+    )  #: (C,) index in `Scene.fixed` of the half-space or static body, -1 for a body
+    law: np.ndarray  #: (C,) index in `laws`
+    laws: list[ContactLaw]  #: the different laws
 
 
 class Defaults(NamedTuple):
-    """The pairs that touch by default: with half-spaces one by one, of two bodies by what they have."""
+    """The pairs that touch by default, in memory of order N: a list only for half-spaces."""
 
     grounded: PairTable  # bodies and half-spaces, body by body
     solid: np.ndarray  # (N,) whether a body has a shape
@@ -58,7 +58,7 @@ def defaults(
     left_out: Iterable[frozenset],
     law: Callable[[Body, Body | HalfSpace | StaticBody], ContactLaw],
 ) -> Defaults:
-    """Return what pairs of bodies with shapes may touch that are not `left_out`.
+    """Return the pairs of bodies with shapes that may touch and are not `left_out`, as `Defaults`.
 
     `law` is asked once for each pair of materials, with the first pair that has them: first those of bodies and
     half-spaces, body by body, then those of two bodies.
@@ -181,8 +181,8 @@ def near_fixed(
 def near_each_other(of: Defaults, bodies: Sequence[Body]) -> tuple[np.ndarray, np.ndarray]:
     """Return the pairs i < j of bodies that may touch whose balls overlap, in their order.
 
-    Balls are sorted by where they begin along the axis on which they lie furthest apart; those that
-    begin before another one ends are looked at.
+    Balls are sorted by their lower ends along the axis with the largest spread; a ball is compared with those
+    that begin before it ends.
     """
     solid = np.flatnonzero(of.solid)
     if len(solid) < 2:
@@ -212,7 +212,7 @@ def near_each_other(of: Defaults, bodies: Sequence[Body]) -> tuple[np.ndarray, n
 
 
 def balls(bodies: Sequence[Body]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the centres (N, 3) and radii (N,) of the balls around bodies, radius 0 where there is no shape."""
+    """Return the centres (N, 3) and radii (N,) of the bounding balls of bodies; radius 0 without a shape."""
     places = np.array([body.position for body in bodies]).reshape(-1, 3)
     sizes = np.array([0.0 if body.shape is None else body.shape.size for body in bodies])
     return places, sizes

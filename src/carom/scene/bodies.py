@@ -18,28 +18,28 @@ from carom.scene.values import keep, point
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Body:
-    """A rigid body as it starts. Made by `Scene.add_body`; arrays are read-only.
+    """A rigid body with its initial state. `Scene.add_body` makes it; arrays are read-only.
 
     Attributes
     ----------
     index : int
-        Place in `Scene.bodies`.
+        Its index in `Scene.bodies`.
     name : str
     shape : Sphere, Box, Capsule, Cylinder, Disc, Ellipsoid, Convex, Mesh, Compound or None
     mass : float
         [kg]
     inertia : (3, 3)
-        About the mass centre, in body axes [kg m^2].
+        Inertia about the mass centre, in body axes [kg m^2].
     position : (3,)
-        Of the mass centre, in the world [m].
+        Initial position of the mass centre, in the world [m].
     orientation : (4,)
-        Unit quaternion (w, x, y, z), body to world.
+        Initial orientation: unit quaternion (w, x, y, z), body to world.
     velocity, angular_velocity : (3,)
-        In world axes [m/s], [rad/s].
+        Initial velocity of the mass centre [m/s] and angular velocity [rad/s], in world axes.
     material : Material or None
-        Of its surface.
+        Material of its surface.
     color : str or None
-        ``#rrggbb`` of pages, pictures and films; None: one of their own.
+        Colour ``#rrggbb`` in pages, pictures and films; None: a colour of the palette.
     """
 
     index: int
@@ -60,19 +60,19 @@ class Body:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class HalfSpace:
-    """A fixed plane with all matter behind it. Made by `Scene.add_half_space`.
+    """A fixed solid half-space behind a plane, such as a floor. `Scene.add_half_space` makes it.
 
     Attributes
     ----------
     index : int
-        Place in `Scene.half_spaces`.
+        Its index in `Scene.half_spaces`.
     name : str
     point : (3,)
-        Any point of the plane [m].
+        A point of its surface, which is a plane [m].
     normal : (3,)
-        Unit vector from the matter into free space.
+        Unit normal of the surface, out of the half-space into free space.
     material : Material or None
-        Of its surface.
+        Material of its surface.
     """
 
     index: int
@@ -87,20 +87,20 @@ class HalfSpace:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class StaticBody:
-    """A solid that never moves: a wall, a peg, a ramp, a mesh. Made by `Scene.add_static`.
+    """A solid that never moves: a wall, a peg, a ramp, a mesh. `Scene.add_static` makes it.
 
     Attributes
     ----------
     index : int
-        Place in `Scene.statics`.
+        Its index in `Scene.statics`.
     name : str
     shape : Sphere, Box, Capsule, Cylinder, Disc, Ellipsoid, Convex, Mesh or Compound
     position : (3,)
-        Of the origin of the shape, in the world [m].
+        Position of the origin of the shape, in the world [m].
     orientation : (4,)
         Unit quaternion (w, x, y, z), shape to world.
     material : Material or None
-        Of its surface.
+        Material of its surface.
     """
 
     index: int
@@ -114,18 +114,18 @@ class StaticBody:
         return f"StaticBody({self.name!r}, {self.shape!r}, position={self.position})"
 
 
-#: what a body may touch beside other bodies
+#: classes that a body may touch besides other bodies
 FIXED = (HalfSpace, StaticBody)
 
 
 class Ground:
-    """The world, as a partner of joints and forces: there is one, `carom.GROUND`."""
+    """The world as the parent of joints and forces. There is one object of this class, `carom.GROUND`."""
 
     index: ClassVar[int] = -1  #: in the place of that of a body
     name: ClassVar[str] = "GROUND"  #: in messages
 
     def __new__(cls) -> Ground:
-        """Return the one ground."""
+        """Return `carom.GROUND`, the only object of the class."""
         return globals().get("GROUND") or super().__new__(cls)
 
     def __repr__(self) -> str:
@@ -209,7 +209,9 @@ def _mass(shape: Shape | None, mass, density) -> float:
         )
     if density is None:
         if isinstance(mass, (float, np.floating)) and mass == np.inf:
-            raise ValueError("mass must be finite, got inf; what never moves is made by add_static")
+            raise ValueError(
+                "mass must be finite, got inf; for a body that never moves use add_static"
+            )
         return checks.mass("mass", mass)
     density = checks.number("density", density, above=0, unit="kg/m^3")
     if shape is None:

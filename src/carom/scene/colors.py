@@ -1,4 +1,4 @@
-"""Colours by the names that matplotlib has, without matplotlib."""
+"""Colours by their names in matplotlib, without matplotlib."""
 
 from __future__ import annotations
 
@@ -52,15 +52,15 @@ def hex_color(name: str, value) -> str:
     Parameters
     ----------
     name : str
-        Of the argument, for the message.
+        Name of the argument, for the message.
     value : str or (3,)
-        A name of matplotlib's (``"red"``, ``"tab:blue"``, ``"k"``, ``"C0"``), ``"#rrggbb"``, ``"#rgb"``; or
-        red, green and blue, from 0 to 1.
+        A colour name of matplotlib (``"red"``, ``"tab:blue"``, ``"k"``, ``"C0"``), ``"#rrggbb"``, ``"#rgb"``;
+        or red, green and blue, from 0 to 1.
 
     Raises
     ------
     ValueError
-        If it is none of these.
+        If the value is none of these.
     """
     if not isinstance(value, str):
         array = checks.finite_array(name, value, (3,))

@@ -1,6 +1,6 @@
-"""Constraints beyond joints: relations of joint coordinates, motors, and rows of the user's own.
+"""Constraints beyond joints: relations between joint coordinates, motors, and user-defined rows.
 
-Give a definition to `Scene.add_constraint`.
+Pass a definition to `Scene.add_constraint`.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from carom.scene.values import keep
 
 
 def coordinate_kind(joint: Joint, coordinate: int, name: str = "joint") -> str:
-    """Return "turn" or "slide"; refuse a coordinate that the joint does not have."""
+    """Return "turn" or "slide", the kind of a joint coordinate; refuse one that the joint does not have."""
     checks.instance(name, joint, (Joint,))
     own = joint.definition.coordinates
     if not own:
@@ -31,7 +31,7 @@ def coordinate_kind(joint: Joint, coordinate: int, name: str = "joint") -> str:
 
 
 def distinct_bodies(bodies: Body | Sequence[Body]) -> tuple[Body, ...]:
-    """Return at least one body, each once."""
+    """Return the bodies as a tuple; refuse an empty sequence and a body that is in it twice."""
     listed = tuple(
         [bodies] if isinstance(bodies, Body) else checks.listed("bodies", bodies, "Body")
     )
@@ -43,7 +43,7 @@ def distinct_bodies(bodies: Body | Sequence[Body]) -> tuple[Body, ...]:
 
 
 def check_functions(function, **optional) -> None:
-    """Refuse what cannot be called; None is allowed for those that are `optional`."""
+    """Refuse values that cannot be called; None is allowed for those that are `optional`."""
     checks.function("function", function)
     for name, given in optional.items():
         checks.function(name, given, optional=True)
@@ -51,14 +51,15 @@ def check_functions(function, **optional) -> None:
 
 @dataclass(frozen=True, init=False, eq=False)
 class Coupling:
-    """A linear relation of joint coordinates that stays as it is at the start: gears, racks, differentials.
+    """A linear relation between joint coordinates: gears, racks, differentials.
 
-    ``sum of factor_k (q_k - q_k(0)) = 0``, q in radians or metres.
+    ``sum of factor_k (q_k - q_k(0)) = 0``, with q in radians or metres.
 
     Parameters
     ----------
     factors : mapping
-        From joints, or pairs (joint, number of the coordinate), to factors other than 0.
+        Factors of the coordinates, none of them 0. A key is a joint, for its first coordinate, or a pair
+        (joint, index of the coordinate).
     """
 
     terms: tuple[tuple[Joint, int, float], ...]  #: joint, number of its coordinate, factor
@@ -81,15 +82,15 @@ class Coupling:
 
 
 class Gear(Coupling):
-    """Two joints that turn (or slide) together: ``q_second - q_second(0) = ratio (q_first - q_first(0))``.
+    """A gear between two joints: ``q_second - q_second(0) = ratio (q_first - q_first(0))``.
 
     Parameters
     ----------
     first, second : Joint
-        With one coordinate, or the first of several.
+        Two joints with coordinates; the gear acts on the first coordinate of each.
     ratio : float
-        Of the rates, second by first, other than 0; negative for spur gears about parallel axes. With a joint
-        that turns and one that slides: metres a radian (a rack).
+        Rate of the second coordinate divided by that of the first, not 0; negative for spur gears about
+        parallel axes. For a joint that turns and a joint that slides (a rack) in metres per radian.
     """
 
     def __init__(self, first: Joint, second: Joint, ratio: float):
@@ -105,22 +106,23 @@ class Gear(Coupling):
 
 @dataclass(frozen=True, init=False, eq=False)
 class Driver:
-    """A motor without slip: a joint coordinate is a given function of time (rheonomic).
+    """A motor that prescribes a joint coordinate as a function of time (a rheonomic constraint).
 
-    Give one of `rate` and `motion`. What it takes from the motor is in the energy ledger
-    (`Solution.ledger.loads`), the motor's force or torque in `Solution.constraint_forces`.
+    Give one of `rate` and `motion`. The work of the motor is in the energy ledger (`Solution.ledger.loads`),
+    its force or torque in `Solution.constraint_forces`.
 
     Parameters
     ----------
     joint : Joint
+        The driven joint.
     rate : float, optional
-        ``q = q(0) + rate t`` [rad/s or m/s].
+        Constant rate: ``q = q(0) + rate t`` [rad/s or m/s].
     motion : callable or scipy.interpolate.PPoly, optional
-        A function ``t -> (q, q', q'')`` of the coordinate and its first two derivatives, plain or compiled with
-        Numba; or a polynomial in pieces of degree 5 at most (`CubicSpline`, `PchipInterpolator`, ...). q is
-        measured from where the joint stands at the start, so that q(0) must be 0.
+        A function ``t -> (q, q', q'')`` that returns the coordinate and its first two derivatives, plain Python
+        or compiled with Numba; or a piecewise polynomial of degree 5 at most (`CubicSpline`,
+        `PchipInterpolator`, ...). q is measured from the initial position of the joint, so q(0) must be 0.
     coordinate : int, default 0
-        Which coordinate of the joint.
+        Index of the driven coordinate of the joint.
     """
 
     joint: Joint
@@ -150,23 +152,23 @@ class Driver:
 
 @dataclass(frozen=True, init=False, eq=False)
 class Rows:
-    """Constraint rows of your own, ``a(q, t) v = b(q, t)``, up to 6, nonholonomic or holonomic.
+    """User-defined constraint rows ``a(q, t) v = b(q, t)``, up to 6, nonholonomic or holonomic.
 
     Parameters
     ----------
     bodies : sequence of Body
-        The bodies that they speak of, n of them, each once.
+        The n bodies that the rows constrain, each once.
     function : callable
         ``function(t, poses) -> (rows, 6 n + 1)``: `poses` (n, 7) has position and orientation (quaternion,
-        scalar first, body to world) of each body, world axes. A row of the result has six numbers a body, the
-        factors of its velocity and then of its angular velocity (world axes), and b last. Plain Python, or
-        compiled with Numba, which is some 200 times faster. It must be smooth in t and the poses: its change
-        along the motion is taken by central differences.
+        scalar first, body to world) of each body, world axes. A row of the result has six numbers for each
+        body (the factors of its velocity, then those of its angular velocity, in world axes) and then b. Plain
+        Python, or compiled with Numba, which is about 200 times faster. It must be smooth in t and the poses:
+        central differences give its change along the motion.
     rows : int
-        How many, 1 to 6.
+        Number of rows, 1 to 6.
     position : callable, optional
-        ``position(t, poses) -> (rows,)``, of which the rows are the derivative: what is to be 0. Where it is
-        given the rows are holonomic, and positions are returned to it.
+        ``position(t, poses) -> (rows,)``: the constraint functions, which must be 0; the rows are their time
+        derivative. If it is given, the rows are holonomic, and positions are projected back onto it.
     """
 
     bodies: tuple[Body, ...]
@@ -193,12 +195,12 @@ CONSTRAINTS = (Coupling, Driver, Rows)
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Constraint:
-    """A constraint of a scene. Made by `Scene.add_constraint`.
+    """A constraint of a scene. `Scene.add_constraint` makes it.
 
     Attributes
     ----------
     index : int
-        Place in `Scene.constraints`.
+        Its index in `Scene.constraints`.
     name : str
     definition : Coupling, Gear, Driver or Rows (of `carom.constraints`)
     """
@@ -214,12 +216,12 @@ class Constraint:
 
     @property
     def rows(self) -> int:
-        """How many rows it has."""
+        """Number of its constraint rows."""
         return self.definition.rows if isinstance(self.definition, Rows) else 1
 
     @property
     def parts(self) -> tuple[Joint | Body, ...]:
-        """The joints or bodies that it speaks of."""
+        """The joints or bodies that it constrains."""
         d = self.definition
         if isinstance(d, Coupling):
             return tuple(joint for joint, _, _ in d.terms)

@@ -1,4 +1,4 @@
-"""A body that may touch a half-space or another body, and the gap between the two at the start."""
+"""Contacts: a body that may touch a half-space or another body, and their gap at the start."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ TOUCH = 1e-12  # relative to the lengths at hand: rounding of a body placed on a
 
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Contact(ContactLaw):
-    """A pair that may touch. Made by `Scene.add_contact`; it has the attributes of its `ContactLaw` too.
+    """A pair that may touch. `Scene.add_contact` makes it; it also has the attributes of its `ContactLaw`.
 
     Attributes
     ----------
     index : int
-        Place in `Scene.contacts`.
+        Its index in `Scene.contacts`.
     name : str
     body : Body
     other : HalfSpace, StaticBody or Body
-        What the body may touch. The normal of the contact points from it to `body`.
+        The partner of `body`. The normal of the contact points from `other` to `body`.
     """
 
     index: int
@@ -36,7 +36,7 @@ class Contact(ContactLaw):
 
     @property
     def half_space(self) -> HalfSpace | None:
-        """The half-space, or None where the other is a body, static or not."""
+        """The half-space, or None if `other` is a body or a static body."""
         return self.other if isinstance(self.other, HalfSpace) else None
 
     def __repr__(self) -> str:
@@ -58,7 +58,7 @@ def make_contact(
     for part in (body, other):
         if isinstance(part, Body):
             if part.shape is None:
-                raise ValueError(f"body must have a shape to touch with, got {part!r}")
+                raise ValueError(f"body must have a shape for contact, got {part!r}")
             _ = part.shape.pieces  # refused by a shape that has nothing to touch with
     contact = Contact(index=index, name=name, body=body, other=other, **asdict(law))
     check_gap(contact)
@@ -66,30 +66,30 @@ def make_contact(
 
 
 def initial_gap(contact: Contact) -> float:
-    """Return the distance [m] of the two at the start; negative inside."""
+    """Return the gap [m] between the two at the start, negative if they overlap."""
     return _gap(contact.body, contact.other)[0]
 
 
 def check_gap(contact: Contact) -> None:
-    """Refuse a contact whose two start inside each other by more than rounding."""
+    """Refuse a contact whose partners overlap at the start by more than rounding."""
     check_overlap(f"contact {contact.name!r}", contact.body, contact.other)
 
 
 def check_overlap(what: str, body: Body, other: HalfSpace | StaticBody | Body) -> None:
-    """Refuse two that start inside each other by more than rounding; `what` names the pair."""
+    """Refuse a pair that overlaps at the start by more than rounding; `what` is its name."""
     if _far(body, other):
         return
     depth, normal = overlap(body, other)
     if not depth <= 0.0:
         raise ValueError(
             f"{what}: position {body.position} puts {body.name!r} "
-            f"{depth:.6g} m deep into {other.name!r}, allowed is a gap of at least 0; move the body "
-            f"by at least that along the normal {normal}"
+            f"{depth:.6g} m deep into {other.name!r}, but the gap must be at least 0; move the body by at "
+            f"least this depth along the normal {normal}"
         )
 
 
 def _far(body: Body, other: HalfSpace | StaticBody | Body) -> bool:
-    """Return whether the ball around a body does not reach the other: nothing else is to be worked out."""
+    """Return whether the bounding ball of a body does not reach the other: then no gap is computed."""
     assert body.shape is not None
     if isinstance(other, HalfSpace):
         return float((body.position - other.point) @ other.normal) > body.shape.size
@@ -99,7 +99,7 @@ def _far(body: Body, other: HalfSpace | StaticBody | Body) -> bool:
 
 
 def overlap(body: Body, other: HalfSpace | StaticBody | Body) -> tuple[float, np.ndarray]:
-    """Return how deep [m] a body starts inside the other, 0 where it is rounding, and the way out (3,)."""
+    """Return the depth [m] of a body in the other at the start, 0 if it is rounding, and the way out (3,)."""
     assert body.shape is not None
     gap, normal = _gap(body, other)
     if isinstance(other, HalfSpace):

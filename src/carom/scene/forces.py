@@ -1,7 +1,7 @@
-"""Forces on bodies, beyond gravity: springs with dampers, elastic mounts, forces and torques.
+"""Forces on bodies other than gravity: springs with dampers, elastic mounts, forces and torques.
 
-Give a definition to `Scene.add_force`. Points are in the world as the system stands at the start,
-and then fixed in their body; vectors are in world axes and stay as they are, or follow the body.
+Pass a definition to `Scene.add_force`. Points are given in world coordinates at the start, and are then
+fixed in their body. Vectors are given in world axes; they stay constant, or turn with the body.
 """
 
 from __future__ import annotations
@@ -26,22 +26,22 @@ from carom.scene.values import apart, keep, optional_point
 
 @dataclass(frozen=True, init=False, eq=False)
 class Spring:
-    """A spring and damper on the line between a point of the parent and one of the child.
+    """A spring and damper between a point of the parent and a point of the child.
 
-    At distance d, which grows at d', it pulls the two points together with the force
-    ``stiffness (d - rest_length) + damping d'``.
+    It pulls the two points together with the force ``stiffness (d - rest_length) + damping d'``, where d is
+    their distance and d' its rate.
 
     Parameters
     ----------
     stiffness
-        [N/m], at least 0.
+        Stiffness [N/m], at least 0.
     anchor_parent, anchor_child : (3,)
-        The two points, in the world at the start [m]. They must differ: where they coincide the
-        line has no direction.
+        The two points, in the world at the start [m]. They must differ, because a line between equal points
+        has no direction.
     rest_length
-        [m], at least 0. Default: the distance of the anchors at the start.
+        Length without spring force [m], at least 0. Default: the distance of the anchors at the start.
     damping
-        [N s/m], at least 0. Default 0.
+        Damping coefficient [N s/m], at least 0. Default 0.
     """
 
     stiffness: float
@@ -78,8 +78,8 @@ class Spring:
 class Torque:
     """A constant torque `vector` (3,) [N m] on the child, in world axes.
 
-    Its opposite acts on the parent; the ground takes it without moving. With `follow` the vector, as it is at
-    the start, turns with the child.
+    The opposite torque acts on the parent; the ground does not move. If `follow` is True, the vector is given
+    at the start and turns with the child.
     """
 
     vector: np.ndarray
@@ -94,8 +94,8 @@ class Torque:
 class Force:
     """A constant force `vector` (3,) [N], world axes, on a point of the child.
 
-    `anchor` (3,) is the point, in the world at the start [m]; None is the mass centre. With `follow` the
-    vector, as it is at the start, turns with the child (a thruster).
+    `anchor` (3,) is the point, in the world at the start [m]; None is the mass centre. If `follow` is True,
+    the vector is given at the start and turns with the child (a thruster).
     """
 
     vector: np.ndarray
@@ -110,29 +110,29 @@ class Force:
 
 @dataclass(frozen=True, init=False, eq=False)
 class Bushing:
-    """An elastic mount of the child on the parent, relaxed as the system stands at the start.
+    """An elastic mount between the child and the parent, without force or torque at the start.
 
-    It resists displacement along and across an axis of the parent, and turning about and across it: with the
-    displacement d and the rotation vector theta of the child seen from the parent, U = (d.K d + theta.K_t
-    theta)/2, for turns below half a turn.
+    It resists displacement along and across an axis of the parent, and rotation about the axis and across it.
+    Its potential is U = (d.K d + theta.K_t theta)/2, where d and theta are the displacement and the rotation
+    vector of the child relative to the parent. Rotations must stay below half a turn.
 
     Parameters
     ----------
     stiffness
-        [N/m], one number or (along the axis, across it), at least 0.
+        Stiffness [N/m], at least 0: one number, or (along the axis, across it).
     turn_stiffness
-        [N m/rad], the same about the axis and across it. Default 0.
+        Rotational stiffness [N m/rad], at least 0: one number, or (about the axis, across it). Default 0.
     damping, turn_damping
-        [N s/m], [N m s/rad], the same. Default 0.
+        Damping coefficients [N s/m] and [N m s/rad], given in the same way. Default 0.
     axis : (3,), default (0, 0, 1)
-        In the world at the start; turns with the parent.
+        Axis, in the world at the start; it turns with the parent.
     anchor : (3,), optional
-        Where it acts, in the world at the start [m]. Default: the mass centre of the child.
+        Point of action, in the world at the start [m]. Default: the mass centre of the child.
 
     Attributes
     ----------
     stiffness, turn_stiffness, damping, turn_damping : (3,)
-        Along, or about, the axis and two directions across it.
+        Values along, or about, the axis and two directions perpendicular to it.
     """
 
     stiffness: np.ndarray
@@ -193,12 +193,12 @@ FORCES = (
 
 @dataclass(frozen=True, eq=False, repr=False)
 class AppliedForce:
-    """A force of a scene, from `parent` on `child`. Made by `Scene.add_force`.
+    """A force of a scene, from `parent` on `child`. `Scene.add_force` makes it.
 
     Attributes
     ----------
     index : int
-        Place in `Scene.forces`.
+        Its index in `Scene.forces`.
     name : str
     definition : Spring, Torque, Force, ... (one of `carom.forces`)
     parent : Body or carom.GROUND
@@ -222,7 +222,7 @@ class AppliedForce:
 
 
 def force_on(definition) -> tuple | None:
-    """Return the joint or the bodies that a definition names itself; None if it names none."""
+    """Return the joint or the bodies that a definition contains; None if it contains none."""
     if isinstance(definition, (JointSpring, JointForce, JointFriction, JointInertia)):
         return (definition.joint,)
     return definition.bodies if isinstance(definition, UserForce) else None

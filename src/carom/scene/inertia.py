@@ -15,8 +15,8 @@ def inertia_matrix(value) -> np.ndarray:
     Raises
     ------
     ValueError
-        If it is not symmetric, not positive definite, or one principal moment exceeds the sum of
-        the other two: no distribution of mass has such an inertia.
+        If the inertia is not symmetric, not positive definite, or one principal moment exceeds the sum of
+        the other two: no mass distribution has such an inertia.
     """
     shape = checks.real_array("inertia", value, "(3,) or (3, 3)").shape
     if len(shape) == 2:

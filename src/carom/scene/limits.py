@@ -1,4 +1,4 @@
-"""What a scene may state and a way to locate impacts does not do: refused before a run, never left out."""
+"""Parts of a scene that an `impact_location` does not support: they are refused before the run."""
 
 from __future__ import annotations
 
@@ -6,12 +6,12 @@ from carom.scene.bodies import HalfSpace
 
 
 def check_location(scene, impact_location: str) -> None:
-    """Refuse contacts between bodies, of curved ones, and stops, where impacts are not located."""
+    """Refuse stops, contacts between bodies and curved shapes if impacts are not located."""
     if impact_location == "locate":
         return
     if scene.stops:
         raise ValueError(
-            f'impact_location must be "locate" where joints have stops, got {impact_location!r}'
+            f'impact_location must be "locate" if joints have stops, got {impact_location!r}'
         )
     between = any(not isinstance(c.other, HalfSpace) for c in scene.contacts)
     touching = [c.body for c in scene.contacts]
@@ -25,4 +25,4 @@ def check_location(scene, impact_location: str) -> None:
             if curved
             else "bodies may touch each other"
         )
-        raise ValueError(f'impact_location must be "locate" where {why}, got {impact_location!r}')
+        raise ValueError(f'impact_location must be "locate" if {why}, got {impact_location!r}')

@@ -1,9 +1,9 @@
-"""Laws of contact, materials, and how two materials make the law of a pair.
+"""Contact laws, materials, and the rules that combine two materials to the law of a pair.
 
-Restitution and friction belong to a pair of surfaces, not to one: they are measured pair by pair, and no
-rule that makes them from two numbers is right. So a rule has to be chosen by name; two equal materials
-need none. In use elsewhere: average, min, max and product (PhysX, Unity, Unreal), product (Bullet), max
-(MuJoCo), geometric mean for friction with max for restitution (Box2D).
+Restitution and friction are properties of a pair of surfaces, not of one surface: they are measured for each
+pair, and no rule computes them correctly from one number of each surface. So the user has to choose a rule by
+name; two equal materials need no rule. Other engines use: average, min, max and product (PhysX, Unity,
+Unreal), product (Bullet), max (MuJoCo), geometric mean for friction with max for restitution (Box2D).
 """
 
 from __future__ import annotations
@@ -29,27 +29,28 @@ COMBINED = ("restitution", "friction", "friction_held", "rolling_friction", "piv
 
 @dataclass(frozen=True, kw_only=True)
 class ContactLaw:
-    """How a pair touches.
+    """The law of restitution and friction of a pair.
 
     Attributes
     ----------
     restitution : float
-        e, 0 to 1. Default 0.5.
+        Coefficient of restitution e, from 0 to 1. Default 0.5.
     friction : float
-        Coulomb's mu in impacts, at least 0. Default 0.
+        Coulomb's friction coefficient mu in impacts, at least 0. Default 0.
     friction_held : float
-        mu of contact that stays, at least 0. Default: `friction`.
+        mu in persistent contact, at least 0. Default: `friction`.
     impact_law : {"newton", "poisson", "stronge"}
-        What e compares: speeds, impulses or works.
+        Definition of e: the ratio of normal speeds ("newton") or of normal impulses ("poisson"), or the square
+        root of the ratio of works ("stronge").
     stiffness : float
-        Of the boundary layer of the contact in proportion to others that strike at the same time,
-        above 0. Default 1.
+        Stiffness of the boundary layer of the contact relative to those of simultaneous contacts, above 0.
+        Default 1.
     rolling_friction, pivoting_friction : float
-        Greatest moment against rolling, and about the normal, of contact that stays, divided by the normal
-        force [m], at least 0. Default 0. Impacts know neither.
+        Greatest moment against rolling, and about the normal, in persistent contact, divided by the normal
+        force [m], at least 0. Default 0. Impacts do not use them.
     multiple : {"simultaneous", "sequential"}
-        Whether an impact at the pair, while other contacts are closed, goes on together with theirs (default),
-        or is a blow of its own.
+        Impact of the pair while other contacts are closed: simultaneous with theirs (default), or an impact of
+        its own, one after another.
     """
 
     restitution: float = 0.5
@@ -72,18 +73,18 @@ class ContactLaw:
 @arguments.known
 @dataclass(frozen=True)
 class Material:
-    """What a surface gives to the contacts of a body or half-space; see `Scene.set_contact_default`.
+    """The contact properties of a surface; `Scene.set_contact_default` says how two materials combine.
 
     Parameters
     ----------
     restitution, friction
-        As of `Scene.add_contact`: e from 0 to 1, mu at least 0.
+        e from 0 to 1 and mu at least 0, as for `Scene.add_contact`.
     friction_held
-        mu of contact that stays, at least 0. Default: `friction`.
+        mu in persistent contact, at least 0. Default: `friction`.
     stiffness
-        Above 0, default 1. Two in series: ``2 / (1 / s1 + 1 / s2)``.
+        Relative stiffness, above 0. Default 1. Two materials act in series: ``2 / (1 / s1 + 1 / s2)``.
     rolling_friction, pivoting_friction
-        [m], at least 0, default 0.
+        Greatest moment divided by the normal force [m], at least 0. Default 0.
     """
 
     restitution: float
@@ -98,7 +99,7 @@ class Material:
 
 
 def check_surface(record) -> None:
-    """Check the numbers that a law and a material share, and keep them as floats."""
+    """Check the numbers that a law and a material have in common, and store them as floats."""
     keep(record, restitution=checks.number("restitution", record.restitution, least=0, most=1))
     for name in ("friction", "rolling_friction", "pivoting_friction"):
         keep(record, **{name: checks.number(name, getattr(record, name), least=0)})
@@ -111,7 +112,7 @@ Rule = str | Mapping[str, str] | None
 
 
 def checked_rule(combine) -> dict[str, str]:
-    """Return the rule of each property that has one, from ``combine``: a name, names by property, or None."""
+    """Return the rule of each property that has one; ``combine`` is a name, names by property, or None."""
     if combine is None:
         return {}
     if isinstance(combine, str):
@@ -132,7 +133,7 @@ def checked_rule(combine) -> dict[str, str]:
 def law_of(first, second, given: Mapping, default: ContactLaw | None, rules: Mapping) -> ContactLaw:
     """Return the law of a pair of a body and another body or a half-space.
 
-    What is `given` for the pair counts before the materials of the two, and these before the default.
+    Values `given` for the pair override those of the materials, and these override the default.
     """
     given = {name: value for name, value in given.items() if value is not None}
     if "friction" in given:
@@ -148,8 +149,8 @@ def law_of(first, second, given: Mapping, default: ContactLaw | None, rules: Map
     elif (one is not None or two is not None) and not {"restitution", "friction"} <= set(given):
         has, lacks = (first, second) if one is not None else (second, first)
         raise ValueError(
-            f"material must be given for both of a pair or none: {has.name!r} has {has.material!r}, "
-            f"{lacks.name!r} has none; give it one, or restitution and friction of this pair to add_contact"
+            f"material must be given for both bodies of a pair or for none: {has.name!r} has {has.material!r}, "
+            f"{lacks.name!r} has none; give it a material, or pass restitution and friction to add_contact"
         )
     return ContactLaw(**{**base, **given})
 
@@ -164,8 +165,8 @@ def _combined(name: str, first, second, rules: Mapping) -> float:
     if values[0] == values[1]:
         return values[0]
     raise ValueError(
-        f"combine must say how two materials make one {name}: {first.name!r} has {values[0]:g}, "
-        f"{second.name!r} has {values[1]:g}; choose a rule, "
+        f"combine must be given, the rule for {name} of two materials: {first.name!r} has {values[0]:g}, "
+        f"{second.name!r} has {values[1]:g}; choose a rule with "
         f'set_contact_default(combine="average") or {", ".join(r for r in RULES if r != "average")}, '
-        f"or give {name} of this pair to add_contact"
+        f"or pass {name} of this pair to add_contact"
     )

@@ -1,4 +1,4 @@
-"""Volume, first and second moments of solids that triangles bound, and of such solids swollen by a ball.
+"""Volume, first and second moments of solids bounded by triangles, and of such solids rounded by a ball.
 
 A moment is the tuple of the integrals of 1, x and x x^T over the solid. All are exact.
 """
@@ -26,8 +26,8 @@ def of_triangles(triangles: np.ndarray) -> Moments:
 def about_centroid(integrals, corners: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
     """Return volume, centroid (3,) and second moment (3,3) about it, of a solid near `corners` (n,3).
 
-    `integrals` gives the moments about a point. They are taken once more about the centroid: no
-    cancellation of a parallel-axis term.
+    `integrals` returns the moments about a point. They are computed again about the centroid, to avoid
+    cancellation in a parallel-axis term.
     """
     apex = corners.mean(axis=0)
     volume, first, _ = integrals(apex)
@@ -37,7 +37,7 @@ def about_centroid(integrals, corners: np.ndarray) -> tuple[float, np.ndarray, n
 
 
 def of_swollen(corners: np.ndarray, simplices: np.ndarray, r: float) -> Moments:
-    """Return the moments of a convex hull swollen by a ball of radius `r`.
+    """Return the moments of a convex hull rounded by a ball of radius `r`.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Forces along coordinates of joints, springs with a curve, and forces by functions of the user's."""
+"""Forces along joint coordinates, springs with a characteristic curve, and user-defined forces."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ from carom.scene.values import apart, keep
 class JointSpring:
     """A spring and damper along a coordinate of a joint: ``-stiffness (q - rest) - damping q'``.
 
-    An angle counts whole turns (a clock spring). On one coordinate there may be several.
+    An angle includes whole turns (a clock spring). One coordinate may have several springs.
 
     Parameters
     ----------
     joint : Joint
     stiffness, damping : float
-        [N m/rad] and [N m s/rad] of a turn, [N/m] and [N s/m] of a slide, at least 0. Default 0.
+        For an angle [N m/rad] and [N m s/rad], for a displacement [N/m] and [N s/m]; at least 0. Default 0.
     rest : float
-        Where it is relaxed [rad or m]; the coordinate is 0 as the joint stands at the start. Default 0.
+        Coordinate without spring force [rad or m]; at the start the coordinate is 0. Default 0.
     coordinate : int
-        Which coordinate of the joint. Default 0.
+        Index of the coordinate of the joint. Default 0.
     """
 
     joint: Joint
@@ -59,16 +59,18 @@ class JointSpring:
 
 @dataclass(frozen=True, init=False, eq=False)
 class JointForce:
-    """A force or torque along a coordinate of a joint, on the child, its opposite on the parent.
+    """A force or torque along a joint coordinate: it acts on the child, its opposite on the parent.
+
+    Its work is in `ledger.loads`.
 
     Parameters
     ----------
     joint : Joint
     force : float or callable
-        [N] of a slide, [N m] of a turn: a number, or a function ``force(t, q, rate)`` of the time, the
-        coordinate and its rate, plain Python or compiled with Numba. Its work goes to `ledger.loads`.
+        Force [N] along a displacement or torque [N m] about an angle: a number, or a function
+        ``force(t, q, rate)`` of the time, the coordinate and its rate, plain Python or compiled with Numba.
     coordinate : int
-        Which coordinate of the joint. Default 0.
+        Index of the coordinate of the joint. Default 0.
     """
 
     joint: Joint
@@ -83,19 +85,18 @@ class JointForce:
 
 @dataclass(frozen=True, init=False, eq=False)
 class JointFriction:
-    """Dry (Coulomb) friction along a coordinate of a joint: up to `bound`, against the motion.
+    """Dry (Coulomb) friction along a joint coordinate: a force `bound` against the motion.
 
-    Where there is no motion it is what keeps it so, as long as that is within the bound: the joint sticks,
-    exactly. Slip that stops and stick that breaks are located within the step. Its work goes to
-    `ledger.friction`.
+    A joint without motion sticks exactly while the force that keeps it at rest is at most `bound`. Changes
+    between slip and stick are located within the step. The work of the friction is in `ledger.friction`.
 
     Parameters
     ----------
     joint : Joint
     bound : float
-        [N] of a slide, [N m] of a turn, at least 0.
+        Friction force [N] along a displacement or torque [N m] about an angle, at least 0.
     coordinate : int
-        Which coordinate of the joint. Default 0.
+        Index of the coordinate of the joint. Default 0.
     """
 
     joint: Joint
@@ -110,19 +111,19 @@ class JointFriction:
 
 @dataclass(frozen=True, init=False, eq=False)
 class JointInertia:
-    """Inertia along a coordinate of a joint: a part ``inertia q'^2/2`` of the kinetic energy.
+    """Inertia along a joint coordinate, with the kinetic energy ``inertia q'^2/2``.
 
-    The rotor of a motor that turns fast behind a gear, as the joint feels it: its moment of inertia times the
-    square of the ratio (robotics: reflected inertia, armature). It has no mass and no weight, and no gyroscopic
-    torque on the bodies. On one coordinate there may be several.
+    It models the rotor of a motor behind a gear: the moment of inertia of the rotor times the square of the
+    gear ratio (in robotics: reflected inertia, armature). It has no mass and no weight, and exerts no
+    gyroscopic torque on the bodies. One coordinate may have several.
 
     Parameters
     ----------
     joint : Joint
     inertia : float
-        [kg m^2] of a turn, [kg] of a slide, at least 0.
+        [kg m^2] for an angle, [kg] for a displacement; at least 0.
     coordinate : int
-        Which coordinate of the joint. Default 0.
+        Index of the coordinate of the joint. Default 0.
     """
 
     joint: Joint
@@ -137,18 +138,18 @@ class JointInertia:
 
 @dataclass(frozen=True, init=False, eq=False)
 class CurveSpring:
-    """A spring on the line between a point of the parent and one of the child, with a curve of your own.
+    """A spring between a point of the parent and a point of the child, with a given characteristic curve.
 
     Parameters
     ----------
     anchor_parent, anchor_child : (3,)
         The two points, in the world at the start [m]; they must differ.
     tension : (2, n) array-like or scipy.interpolate.PPoly
-        With which it pulls the points together [N], over their distance [m]: rows (distances, tensions) of
-        points of a curve, joined by a monotone cubic (`scipy.interpolate.PchipInterpolator`); or a polynomial
-        in pieces of degree 5 at most. Beyond the ends the last piece goes on.
+        Force [N] that pulls the points together, as a function of their distance [m]: two rows (distances,
+        tensions), interpolated by a monotone cubic (`scipy.interpolate.PchipInterpolator`); or a piecewise
+        polynomial of degree 5 at most. The first and the last piece are extrapolated.
     damping : float
-        [N s/m], at least 0. Default 0.
+        Damping coefficient [N s/m], at least 0. Default 0.
     """
 
     anchor_parent: np.ndarray
@@ -192,20 +193,20 @@ def _curve(given):
 
 @dataclass(frozen=True, init=False, eq=False)
 class UserForce:
-    """Forces and torques by a function of your own, on any bodies.
+    """User-defined forces and torques on any bodies.
 
     Parameters
     ----------
     bodies : sequence of Body
-        The bodies, n of them, each once.
+        The n bodies on which the forces act, each once.
     function : callable
         ``function(t, states) -> (n, 6)``: `states` (n, 13) has position, orientation (quaternion, scalar first,
-        body to world), velocity and angular velocity of each body, world axes; the result a force [N] and a
-        torque about the mass centre [N m] for each, world axes. Plain Python, or compiled with Numba, which is
-        some 200 times faster.
+        body to world), velocity and angular velocity of each body, world axes. The result has a force [N] and a
+        torque about the mass centre [N m] for each body, world axes. Plain Python, or compiled with Numba,
+        which is about 200 times faster.
     potential : callable, optional
-        ``potential(t, states) -> float`` [J], of which the forces are the negative gradient. Where it is given
-        the energy of the forces is part of `potential_energy`; else their work goes to `ledger.loads`.
+        ``potential(t, states) -> float`` [J]; the forces are its negative gradient. If it is given, the energy
+        of the forces is part of `potential_energy`; otherwise their work is in `ledger.loads`.
     """
 
     bodies: tuple[Body, ...]

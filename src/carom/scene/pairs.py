@@ -1,4 +1,4 @@
-"""Which pairs of a scene touch, and by which law: their own contacts, or the default of all pairs."""
+"""The pairs of a scene that may touch, and their laws: contacts of their own, or the default of all pairs."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Pairs:
         self._unsaid: set = set()  # pairs with a contact of which neither was
 
     def check_new(self, body: Body, other: HalfSpace | StaticBody | Body) -> None:
-        """Refuse a body with itself, and a pair that has a contact already."""
+        """Refuse a pair of a body with itself, and a pair that already has a contact."""
         if body is other:
             raise ValueError(f"body and other must be two, got {body!r} for both")
         if _key(body, other) in self._own:
@@ -44,14 +44,14 @@ class Pairs:
             )
 
     def add(self, body, other, given) -> None:
-        """Keep a pair as one with a contact of its own, for which some values were given."""
+        """Store a pair that has a contact of its own, and the values that were given for it."""
         self._own.add(_key(body, other))
         stated = given["restitution"] is not None or given["friction"] is not None
         if not stated and self.unsaid_default and body.material is None:
             self._unsaid.add(_key(body, other))
 
     def is_unsaid(self, body, other) -> bool:
-        """Return whether neither restitution nor friction of a contact was stated, there or as a default."""
+        """Return whether restitution and friction of a contact are both unstated, there and as a default."""
         return _key(body, other) in self._unsaid
 
     def ignore(self, body, other) -> None:
@@ -59,11 +59,11 @@ class Pairs:
         self._ignored.add(_key(body, other))
 
     def join(self, parent, child) -> None:
-        """Two bodies with a joint do not touch by default."""
+        """Note that a joint joins two bodies: they do not touch by default."""
         self._ignored.add(_key(parent, child))
 
     def set_default(self, law: ContactLaw, combine, all_pairs: bool, stated: bool) -> None:
-        """Keep the values of pairs that have none of their own; `stated`: restitution or friction was given."""
+        """Store the default values of pairs; `stated`: restitution or friction was given."""
         all_pairs = checks.flag("all_pairs", all_pairs)
         self._rules = checked_rule(combine)
         self._values = law
@@ -71,11 +71,11 @@ class Pairs:
         self.unsaid_default = not stated
 
     def law(self, body, other, given) -> ContactLaw:
-        """Return the law of a pair with some values given."""
+        """Return the law of a pair for which some values are given."""
         return law_of(body, other, given, self._values, self._rules)
 
     def default_law(self, body: Body, other) -> ContactLaw | None:
-        """Return the law by which a pair touches without a contact of its own; None if it does not."""
+        """Return the default law of a pair; None if the pair does not touch by default."""
         no_shape = any(isinstance(part, Body) and part.shape is None for part in (body, other))
         key = _key(body, other)
         left_out = key in self._own or key in self._ignored
@@ -84,19 +84,19 @@ class Pairs:
         return self.law(body, other, {})
 
     def defaults(self, bodies, fixed) -> Defaults | None:
-        """Return what pairs touch without a contact of their own, without a list of them; None if none do."""
+        """Return the default pairs as `Defaults`, without a list of them; None if there are none."""
         if self.default is None:
             return None
         left_out = self._own | self._ignored
         return defaults(bodies, fixed, left_out, lambda a, b: self.law(a, b, {}))
 
     def by_default(self, bodies, fixed) -> PairTable:
-        """Return all pairs that touch without a contact of their own, with their laws."""
+        """Return all pairs without a contact of their own that may touch, with their laws."""
         found = self.defaults(bodies, fixed)
         return no_pairs() if found is None else every_pair(found)
 
     def check_all(self, bodies, fixed) -> None:
-        """Refuse pairs that touch by default and start inside each other, or have no law."""
+        """Refuse default pairs that overlap at the start or have no law."""
         found = self.defaults(bodies, fixed)
         if found is None:
             return

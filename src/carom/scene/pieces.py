@@ -1,4 +1,4 @@
-"""What a shape touches with: convex pieces, each a core swollen by a ball, placed in body axes."""
+"""The convex pieces of a shape for contact: each a core rounded by a ball, placed in body axes."""
 
 from __future__ import annotations
 
@@ -22,26 +22,26 @@ VERTEX_KINDS = ("point", "segment", "box", "hull")
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """A convex core swollen by a ball.
+    """A convex piece: all points within a distance `radius` of a convex core.
 
     Attributes
     ----------
     kind : {"point", "segment", "box", "hull", "cylinder", "ellipsoid"}
-        Of the core. Segments and cylinders lie along z of the piece.
+        Kind of the core. Segments and cylinders lie along z of the piece.
     half : (3,)
         Half sizes of the core along its axes [m].
     radius : float
-        Of the ball [m].
+        Radius of the ball that rounds the core [m].
     inner : float
-        An ellipsoid is also a smaller convex core swollen by this much [m].
+        For an ellipsoid: it is also a smaller convex core, rounded by a ball of this radius [m].
     extent : float
         Largest distance of a point of the piece from its own origin [m].
     vertices : (n, 3)
-        Of a hull, in axes of the piece [m].
+        Vertices of a hull, in axes of the piece [m].
     faces : tuple of (normal, ring)
-        Of a hull: outward unit normal and the numbers of its vertices, counter-clockwise from outside.
+        Faces of a hull: outward unit normal and the indices of its vertices, counter-clockwise from outside.
     position, orientation : (3,), (4,)
-        Of the piece in the axes of the body.
+        Position and orientation of the piece in the axes of the body.
     """
 
     kind: str
@@ -98,10 +98,10 @@ class Piece:
 
 
 class Shape(ABC):
-    """What all shapes have in common: pieces to touch with, and what follows from them.
+    """Base class of all shapes: their pieces, and the quantities that follow from the pieces.
 
-    A shape has besides, as fields or properties, `volume` [m^3] and `size` [m], the largest distance of a point
-    from the mass centre.
+    Each shape also has, as fields or properties, its `volume` [m^3] and its `size` [m], the largest distance of
+    a point from the mass centre.
     """
 
     if TYPE_CHECKING:
@@ -125,12 +125,12 @@ class Shape(ABC):
 
     @property
     def vertices(self) -> np.ndarray:
-        """The vertices (n,3) [m] of a shape that is a hull of them, swollen by a ball of `radius`."""
+        """Vertices (n,3) [m] of a shape that is the hull of these points, rounded by a ball of `radius`."""
         pieces = self.pieces
         corners = [piece.corners for piece in pieces]
         if any(c is None for c in corners) or len({piece.radius for piece in pieces}) > 1:
             raise ValueError(
-                f"{self!r} is not the hull of a few vertices swollen by one ball, as Sphere, Box, "
-                "Capsule and Convex are"
+                f"{self!r} has no vertices: only Sphere, Box, Capsule and Convex are hulls of a few vertices, "
+                "rounded by one ball"
             )
         return np.concatenate([c for c in corners if c is not None])

@@ -1,4 +1,4 @@
-"""The parts of a scene: names that are unique among all of them, handles that belong to it."""
+"""The parts of a scene, each with a name that is unique in the scene."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ from carom.scene.bodies import Body, Ground
 
 
 class Registry:
-    """Every named part of one scene, in the order in which it was added."""
+    """All named parts of one scene, in the order in which they were added."""
 
     def __init__(self):
         self._parts = {}
         self._kinds = {}
 
     def new(self, kind: type, name: str | None, default: str) -> tuple[int, str]:
-        """Return index and name of the next part of a `kind`.
+        """Return the index and the name of the next part of a `kind`.
 
-        For None the name is `default` with its number, from 1 on, or the next one that is free.
+        If the name is None, it becomes `default` with a number: that of the part, or the next free one.
         """
         index = self.count(kind)
         return index, self._numbered(default, index + 1) if name is None else self._free(name)
@@ -34,12 +34,12 @@ class Registry:
         checks.text("name", name)
         if name in self._parts:
             raise ValueError(
-                f"name must be unique in the scene, got {checks.shown(name)} once more"
+                f"name must be unique in the scene, got {checks.shown(name)} a second time"
             )
         return name
 
     def add(self, part):
-        """Keep `part` under its name, and return it."""
+        """Store `part` under its name, and return it."""
         self._parts[part.name] = part
         self._kinds.setdefault(type(part), []).append(part)
         return part
@@ -53,7 +53,7 @@ class Registry:
         return iter(self._parts.values())
 
     def count(self, kind: type) -> int:
-        """Return how many parts there are of a `kind`."""
+        """Return the number of parts of a `kind`."""
         return len(self._kinds.get(kind, ()))
 
     def __getitem__(self, name: str):
@@ -62,7 +62,7 @@ class Registry:
         raise KeyError(f"the scene has no part {self._called(name)}")
 
     def member(self, argument: str, part, kinds: tuple[type, ...], hint: str = "") -> Any:
-        """Return a `part`, given itself or by its name; refuse one of none of `kinds`, or of another scene."""
+        """Return a `part`, given as an object or by name; refuse other `kinds` and parts of other scenes."""
         if isinstance(part, str):
             if part not in self._parts:
                 raise ValueError(
@@ -77,13 +77,13 @@ class Registry:
         return part
 
     def _called(self, name) -> str:
-        """Return a name that no part has, and which one is near."""
+        """Return the end of a message about a name that no part has, with the nearest name."""
         near = get_close_matches(checks.shown(name).strip("'"), self._parts, n=1)
         hint = f"did you mean {near[0]!r}?" if near else f"it has {len(self._parts)} named parts"
         return f"called {checks.shown(name)}; {hint}"
 
     def pair(self, parent, child) -> tuple[Any, Any]:
-        """Return a `parent` and a `child`, given themselves or by name; refuse what cannot be joined."""
+        """Return `parent` and `child`, given as objects or by name; refuse a pair that cannot be joined."""
         hint = "; the world itself is carom.GROUND"
         parent = self.member("parent", parent, (Body, Ground), hint)
         hint = "; the world is the parent: add_joint(definition, carom.GROUND, body)"

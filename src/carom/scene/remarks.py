@@ -1,4 +1,4 @@
-"""What a scene says that is nearly always a mistake, in sentences."""
+"""Sentences about input of a scene that is nearly always a mistake."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ MOST = 6  # names in a sentence
 
 
 def remarks(scene: Scene) -> tuple[str, ...]:
-    """Return sentences about bodies that nothing can touch, and contacts of which nothing is stated."""
+    """Return sentences about bodies that cannot touch anything, and contacts without stated values."""
     return (*_of_untouched(scene), *_of_unsaid(scene))
 
 
 def _of_untouched(scene: Scene) -> list[str]:
-    """Return a sentence about free bodies that nothing can touch, where there is something to be touched by."""
+    """Return a sentence about free bodies that cannot touch anything, if others could touch them."""
     if not (scene.fixed or scene.contacts):
         return []
     touched = _touched(scene)
@@ -39,9 +39,9 @@ def _of_untouched(scene: Scene) -> list[str]:
     if not free:
         return []
     bare = [b for b in free if b.shape is None]
-    why = f", {_names(bare)} for want of a shape" if bare and scene.contact_default else ""
+    why = f" ({_names(bare)} without a shape)" if bare and scene.contact_default else ""
     return [
-        f"Nothing can touch {_names(free)}{why}: what is in the way is passed through. Add contacts with "
+        f"Nothing can touch {_names(free)}{why}: no contacts are computed for them. Add contacts with "
         "add_contact, or let all pairs touch with set_contact_default."
     ]
 
@@ -61,7 +61,7 @@ def _touched(scene: Scene) -> np.ndarray:
 
 
 def _of_unsaid(scene: Scene) -> list[str]:
-    """Return a sentence about contacts whose restitution and friction nobody has stated."""
+    """Return a sentence about contacts without a stated restitution and friction."""
     pairs = scene._pairs
     found = [contact for contact in scene.contacts if pairs.is_unsaid(contact.body, contact.other)]
     what = [_names(found)] if found else []
@@ -70,8 +70,8 @@ def _of_unsaid(scene: Scene) -> list[str]:
     if not what:
         return []
     return [
-        f"Of {' and '.join(what)} neither restitution nor friction is stated: taken are 0.5 and 0. State them, "
-        "as in restitution=0.5, friction=0.3."
+        f"Restitution and friction are not given for {' and '.join(what)}: the defaults 0.5 and 0 are used. "
+        "Give them, for example restitution=0.5, friction=0.3."
     ]
 
 

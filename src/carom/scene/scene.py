@@ -1,4 +1,4 @@
-"""The scene: what the user states."""
+"""`Scene`: the description of a system."""
 
 from __future__ import annotations
 
@@ -35,10 +35,10 @@ if TYPE_CHECKING:
 
 @arguments.known
 class Scene(TouchingPairs):
-    """Bodies, half-spaces, contacts, joints and forces, as they stand at the start.
+    """A system of bodies, half-spaces, contacts, joints and forces, with its initial state.
 
-    The ``add_*`` methods check what they are given at once and return a frozen handle. Names are
-    unique among all parts; ``scene["die"]`` is the part of that name.
+    The ``add_*`` methods check their arguments at once and return the new part, a read-only object. Each part
+    has a name that is unique in the scene: ``scene["die"]`` is the part with the name "die".
 
     Parameters
     ----------
@@ -70,18 +70,18 @@ class Scene(TouchingPairs):
         material: Material | None = None,
         name: str | None = None,
     ) -> HalfSpace:
-        """Add a fixed half-space that bodies may strike.
+        """Add a fixed solid half-space behind a plane, for example a floor.
 
         Parameters
         ----------
         point : (3,)
-            Any point of its plane [m].
+            A point of its surface, which is a plane [m].
         normal : (3,)
-            From the half-space into free space; made a unit vector.
+            Normal of the surface, out of the half-space into free space; it is normalised.
         material
-            Of its surface, see `set_contact_default`.
+            Material of its surface, see `set_contact_default`.
         name
-            Default ``"half_space1"``, ``"half_space2"``, ...
+            Name in the scene. Default ``"half_space1"``, ``"half_space2"``, ...
         """
         index, name = self._parts.new(HalfSpace, name, "half_space")
         return self._parts.add(make_half_space(index, name, point, normal, material))
@@ -108,34 +108,36 @@ class Scene(TouchingPairs):
         ----------
         shape
             `Sphere`, `Box`, `Capsule`, `Cylinder`, `Disc`, `Ellipsoid`, `Convex`, `Mesh` or
-            `Compound`; may be left out where nothing touches the body.
+            `Compound`. A body without a shape cannot touch anything.
         mass, density
-            Exactly one of the two: [kg], or [kg/m^3] of the shape; above 0.
+            Exactly one of the two, above 0: the mass [kg], or the density of the shape [kg/m^3].
         inertia : (3,) or (3, 3)
-            Principal moments along the body axes, or the symmetric matrix in body axes, about the
-            mass centre [kg m^2]. Default: that of the solid shape; needed where there is none.
+            Inertia about the mass centre [kg m^2]: principal moments along the body axes, or the symmetric
+            matrix in body axes. Default: the inertia of the solid shape. A body without a shape needs it.
         position : (3,)
-            Of the mass centre, in the world [m].
+            Initial position of the mass centre, in the world [m].
         orientation : (4,), (3, 3) or scipy.spatial.transform.Rotation
-            Body to world: a unit quaternion (w, x, y, z) with the scalar first, a rotation matrix, or a SciPy
-            Rotation. `carom.euler` and `carom.axis_angle` make one from angles in degrees. What is off by less
-            than 1e-3, like (0.7071, 0, 0, 0.7071), is taken for rounding and normalised.
+            Initial orientation, body to world: a unit quaternion (w, x, y, z) with the scalar first, a rotation
+            matrix, or a SciPy Rotation. `carom.euler` and `carom.axis_angle` compute quaternions from angles in
+            degrees. A small error of normalisation (below 1e-3), as in (0.7071, 0, 0, 0.7071), is corrected.
         velocity : (3,)
-            Of the mass centre, in world axes [m/s].
+            Initial velocity of the mass centre, in world axes [m/s].
         angular_velocity : (3,)
-            In world axes [rad/s].
+            Initial angular velocity, in world axes [rad/s].
         material
-            Of its surface, see `set_contact_default`.
+            Material of its surface, see `set_contact_default`.
         color : str or (3,)
-            Of pages, pictures and films: a name that matplotlib has (``"tab:red"``, ``"gold"``), ``"#rrggbb"``,
-            or red, green and blue from 0 to 1. Default: one of a palette.
+            Colour in pages, pictures and films: a colour name of matplotlib (``"tab:red"``, ``"gold"``),
+            ``"#rrggbb"``, or red, green and blue from 0 to 1. Default: a colour of the palette.
         name
-            A cube with "die" in its name is drawn with pips. Default ``"body1"``, ``"body2"``, ...
+            Name in the scene. A cube with "die" in its name is drawn with pips. Default ``"body1"``,
+            ``"body2"``, ...
 
         Raises
         ------
         ValueError
-            If an argument is outside its range, the inertia is that of no body, or the name is taken.
+            If an argument is outside its range, no rigid body can have the inertia, or another part has the
+            name.
 
         Examples
         --------
@@ -165,25 +167,25 @@ class Scene(TouchingPairs):
     ) -> StaticBody:
         """Add a solid that never moves: a wall, a peg, a ramp, a mesh.
 
-        Bodies touch it as they touch each other. It has no mass and no degrees of freedom, and what touches it
-        is not joined to one island.
+        Bodies touch it as they touch each other. It has no mass and no degrees of freedom, and it does not
+        connect the bodies that touch it to one island.
 
         Parameters
         ----------
         shape
-            As of `add_body`.
+            As for `add_body`.
         position : (3,)
-            Of the origin of the shape (its mass centre), in the world [m].
+            Position of the origin of the shape (its mass centre), in the world [m].
         orientation
-            As of `add_body`.
+            As for `add_body`.
         material
-            Of its surface, see `set_contact_default`.
+            Material of its surface, see `set_contact_default`.
         name
-            Default ``"static1"``, ``"static2"``, ...
+            Name in the scene. Default ``"static1"``, ``"static2"``, ...
 
         Examples
         --------
-        A ball that falls on a step:
+        A ball falls on a step:
 
         >>> scene = carom.Scene()
         >>> step = scene.add_static(carom.Box(1, 1, 0.2), position=(0, 0, 0.1), name="step")
@@ -210,20 +212,20 @@ class Scene(TouchingPairs):
         Parameters
         ----------
         definition
-            Of `carom.joints`: what is held, placed in the world at the start; or, with frames, in a frame that
-            both bodies carry.
+            A joint of `carom.joints`. Its points and axes are in the world at the start; with frames, they are
+            in a frame that is fixed in both bodies.
         parent
-            A body, or its name; or `carom.GROUND`.
+            A body or its name, or `carom.GROUND`.
         child
             Another body, or its name.
         parent_frame, child_frame
-            Where that frame is in the parent (in the world, of the ground) and in the child: a pair (position
-            (3,), orientation as of `add_body`) in body axes, from the mass centre. Coordinates of the joint are
-            0 where the two agree. The bodies need not be placed so that they fit:
-            `Options(project_start=True)` brings them together, else a start that does not fit is refused.
-            Default None: the definition is in the world.
+            Position and orientation of this frame in the parent and in the child: a pair (position (3,),
+            orientation as for `add_body`), relative to the mass centre, in body axes; for the ground, in the
+            world. The coordinates of the joint are 0 where the two frames agree. If the initial positions
+            do not fit the joint, `Options(project_start=True)` moves the bodies so that they do; otherwise
+            `simulate` refuses them. Default None: the definition is in the world.
         name
-            Default ``"joint1"``, ``"joint2"``, ...
+            Name in the scene. Default ``"joint1"``, ``"joint2"``, ...
 
         Examples
         --------
@@ -259,20 +261,20 @@ class Scene(TouchingPairs):
     ) -> AppliedForce:
         """Add a force on `child`, or between `parent` and `child`.
 
-        Both ``add_force(definition, child)``, where the ground is the parent, and
-        ``add_force(definition, parent, child)`` are allowed; and ``add_force(definition)`` of one that names
-        its joint or its bodies itself (`JointSpring`, `JointForce`, `UserForce`).
+        There are three forms: ``add_force(definition, child)``, where the ground is the parent;
+        ``add_force(definition, parent, child)``; and ``add_force(definition)`` for a definition that contains
+        its joint or its bodies (`JointSpring`, `JointForce`, `UserForce`).
 
         Parameters
         ----------
         definition
-            Of `carom.forces`.
+            A force of `carom.forces`.
         parent
-            A body, or its name; or `carom.GROUND`. A body given alone is the child.
+            A body or its name, or `carom.GROUND`. If only one body is given, it is the child.
         child
             Another body, or its name.
         name
-            Default ``"force1"``, ``"force2"``, ...
+            Name in the scene. Default ``"force1"``, ``"force2"``, ...
         """
         checks.instance("definition", definition, FORCES)
         named = force_on(definition)
@@ -298,14 +300,14 @@ class Scene(TouchingPairs):
     def add_constraint(
         self, definition: ConstraintDefinition, *, name: str | None = None
     ) -> Constraint:
-        """Add a constraint beyond joints: a gear, a motor, rows of your own.
+        """Add a constraint beyond joints: a gear, a motor, or user-defined rows.
 
         Parameters
         ----------
         definition
-            Of `carom.constraints`. Joints and bodies that it speaks of must belong to this scene.
+            A constraint of `carom.constraints`. Its joints and bodies must belong to this scene.
         name
-            Default ``"constraint1"``, ``"constraint2"``, ...
+            Name in the scene. Default ``"constraint1"``, ``"constraint2"``, ...
         """
         checks.instance("definition", definition, CONSTRAINTS)
         index, name = self._parts.new(Constraint, name, "constraint")
@@ -326,29 +328,29 @@ class Scene(TouchingPairs):
         coordinate: int = 0,
         name: str | None = None,
     ) -> Stop:
-        """Add an end to the way of a joint, where it strikes with restitution.
+        """Add a stop: a limit of a joint coordinate, with impacts and restitution.
 
-        A unilateral constraint on a coordinate of the joint, through the same boundary layer as the contacts
-        of bodies; impulses reach every joint of the mechanism. In `Solution.impacts` its `contact` is the
-        number of contacts of bodies plus its own index; the impulse has a normal component alone, of an angle
-        in [N m s], speeds in [rad/s].
+        A stop is a unilateral constraint on a coordinate of the joint. Its impacts pass the same boundary layer
+        as those of contacts, and their impulses act on the whole mechanism. In `Solution.impacts` the `contact`
+        of a stop is the number of contacts of bodies plus the index of the stop. Its impulse has only a normal
+        component; for an angle, impulses are in [N m s] and speeds in [rad/s].
 
         Parameters
         ----------
         joint
-            A joint of the scene with coordinates of its own, or its name.
+            A joint of the scene that has coordinates, or its name.
         lower, upper
-            One of the two: the least or the greatest value of the coordinate [rad or m], which is 0 as the
-            joint stands at the start. For two ends add two stops.
+            Exactly one of the two: the lower or the upper limit of the coordinate [rad or m]. The coordinate is
+            0 at the start. For two limits add two stops.
         restitution
-            From 0 (default) to 1.
+            Coefficient of restitution, from 0 (default) to 1.
         impact_law
-            ``"newton"`` (default), ``"poisson"`` or ``"stronge"``: without friction they agree where it strikes
-            alone.
+            ``"newton"`` (default), ``"poisson"`` or ``"stronge"``. A stop has no friction, so the laws differ
+            only in multiple impacts.
         coordinate
-            Which coordinate of the joint. Default 0.
+            Index of the coordinate of the joint. Default 0.
         name
-            Default ``"stop1"``, ``"stop2"``, ...
+            Name in the scene. Default ``"stop1"``, ``"stop2"``, ...
         """
         joint = self._parts.member("joint", joint, (Joint,))
         index, name = self._parts.new(Stop, name, "stop")
@@ -363,55 +365,55 @@ class Scene(TouchingPairs):
 
     @property
     def bodies(self) -> tuple[Body, ...]:
-        """The bodies, in the order added."""
+        """Bodies, in the order in which they were added."""
         return self._parts.parts(Body)
 
     @property
     def half_spaces(self) -> tuple[HalfSpace, ...]:
-        """The half-spaces, in the order added."""
+        """Half-spaces, in the order in which they were added."""
         return self._parts.parts(HalfSpace)
 
     @property
     def statics(self) -> tuple[StaticBody, ...]:
-        """The static bodies, in the order added."""
+        """Static bodies, in the order in which they were added."""
         return self._parts.parts(StaticBody)
 
     @property
     def fixed(self) -> tuple[HalfSpace | StaticBody, ...]:
-        """What bodies may touch that never moves: the half-spaces, then the static bodies."""
+        """Half-spaces, then static bodies: the parts that never move and that bodies may touch."""
         return (*self.half_spaces, *self.statics)
 
     @property
     def joints(self) -> tuple[Joint, ...]:
-        """The joints, in the order added."""
+        """Joints, in the order in which they were added."""
         return self._parts.parts(Joint)
 
     @property
     def forces(self) -> tuple[AppliedForce, ...]:
-        """The forces, in the order added."""
+        """Forces, in the order in which they were added."""
         return self._parts.parts(AppliedForce)
 
     @property
     def constraints(self) -> tuple[Constraint, ...]:
-        """The constraints beyond joints, in the order added."""
+        """Constraints beyond joints, in the order in which they were added."""
         return self._parts.parts(Constraint)
 
     @property
     def stops(self) -> tuple[Stop, ...]:
-        """The stops of joints, in the order added."""
+        """Stops of joints, in the order in which they were added."""
         return self._parts.parts(Stop)
 
     def __getitem__(self, name: str):
-        """Return the part called `name`; a `KeyError` suggests the nearest one."""
+        """Return the part with this name; the message of a `KeyError` suggests the nearest name."""
         return self._parts[name]
 
     def validate(self) -> None:
-        """Refuse a scene that cannot start: no bodies, or one inside another or a half-space.
+        """Check that the scene can start: it has bodies, and no body penetrates another one or a half-space.
 
         Raises
         ------
         ValueError
-            Naming the pair, how deep one is in the other, and what to do.
+            If it cannot; the message gives the pair, the penetration, and the remedy.
         """
         if not self.bodies:
             raise ValueError("scene must have at least one body, got none; add it with add_body")
@@ -420,17 +422,18 @@ class Scene(TouchingPairs):
         self._pairs.check_all(self.bodies, self.fixed)
 
     def check(self):
-        """Return the degrees of freedom of the scene, redundant constraints, and what is likely a mistake.
+        """Return the degrees of freedom of the scene, its redundant constraints, and likely mistakes.
 
         Returns
         -------
         carom.dynamics.mobility.Mobility
-            At the start: a mechanism may have more freedom in singular positions. Print it for a summary.
+            The values for the initial position; in singular positions a mechanism may have more degrees of
+            freedom. Print it for a summary.
 
         Raises
         ------
         ValueError
-            As of `validate`.
+            As for `validate`.
 
         Examples
         --------
@@ -458,5 +461,5 @@ class Scene(TouchingPairs):
 
 
 def _is_side(part) -> bool:
-    """Return whether a part is a side of a joint, not its definition."""
+    """Return whether an object is a parent or child of a joint, not its definition."""
     return isinstance(part, (Body, Ground, str))

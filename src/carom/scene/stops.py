@@ -1,4 +1,4 @@
-"""Stops: ends of the way of a joint, which strike with restitution."""
+"""Stops: limits of joint coordinates, with impacts and restitution."""
 
 from __future__ import annotations
 
@@ -12,18 +12,18 @@ from carom.scene.materials import IMPACT_LAWS
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Stop:
-    """An end of the way of a joint: a unilateral constraint on its coordinate. Made by `Scene.add_stop`.
+    """A limit of a joint coordinate: a unilateral constraint. `Scene.add_stop` makes it.
 
     Attributes
     ----------
     index : int
-        Place in `Scene.stops`.
+        Its index in `Scene.stops`.
     name : str
     joint : Joint
     coordinate : int
-        Which coordinate of the joint.
+        Index of the coordinate of the joint.
     lower, upper : float or None
-        Where it ends [rad or m], one of the two; the coordinate is 0 as the joint stands at the start.
+        Limit of the coordinate [rad or m], one of the two; the coordinate is 0 at the start.
     restitution : float
     impact_law : str
     """
@@ -39,12 +39,12 @@ class Stop:
 
     @property
     def side(self) -> float:
-        """1 for a lower end, -1 for an upper one: gap = side (q - end)."""
+        """1 for a lower limit, -1 for an upper limit: gap = side (q - end)."""
         return 1.0 if self.upper is None else -1.0
 
     @property
     def end(self) -> float:
-        """Where the way ends [rad or m]."""
+        """The limit of the coordinate [rad or m]: `lower` or `upper`."""
         return self.lower if self.upper is None else self.upper  # pyright: ignore[reportReturnType]
 
     def __repr__(self) -> str:

@@ -1,4 +1,4 @@
-"""A scene in words."""
+"""The text that `print(scene)` shows."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ MANY = {"statics": "static bodies"}
 
 
 def counts(scene) -> str:
-    """Return how many there are of each kind, in a line."""
+    """Return the number of parts of each kind, in one line."""
     rare = ("statics", "constraints", "stops")
     shown = [kind for kind in KINDS if kind not in rare or getattr(scene, kind)]
     return ", ".join(_count(kind, len(getattr(scene, kind))) for kind in shown)
 
 
 def summary(scene) -> str:
-    """Return a line for each part, under its kind."""
+    """Return one line for each part, grouped by kind."""
     lines = [f"Scene with gravity {scene.gravity} m/s^2"]
     for kind in KINDS:
         parts = getattr(scene, kind)

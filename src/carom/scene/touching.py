@@ -1,4 +1,4 @@
-"""The contacts of a scene: what touches what, and how."""
+"""The contacts of a scene: which pairs may touch, and by which law."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Some = One | Sequence[One]
 
 
 class TouchingPairs:
-    """The part of `Scene` that concerns contacts."""
+    """The methods of `Scene` for contacts."""
 
     _parts: Registry
     _pairs: Pairs
@@ -39,44 +39,44 @@ class TouchingPairs:
         multiple: str | None = None,
         name: str | None = None,
     ) -> Contact:
-        """Let a body and a half-space, a static body or another body touch.
+        """Add a contact: let a body touch a half-space, a static body or another body.
 
-        A value that is not given is that of the two materials, else that of `set_contact_default`, else the
-        default named here.
+        A value that is not given comes from the two materials; if there are none, from `set_contact_default`;
+        otherwise it is the default stated here.
 
         Parameters
         ----------
         body, other
-            The two, themselves or by their names: a body with a shape, and a half-space, a static body or
-            another body that it is not inside of. The order matters for two bodies alone: the normal points
-            from `other` to `body`.
+            The pair, as objects or by name: a body with a shape, and a half-space, a static body or another
+            body, without penetration at the start. For two bodies the order matters: the normal points from
+            `other` to `body`.
         restitution
-            e, from 0 (plastic) to 1 (elastic). Default 0.5.
+            Coefficient of restitution e, from 0 (plastic) to 1 (elastic). Default 0.5.
         friction
-            Coulomb's mu, at least 0. Default 0.
+            Coulomb's friction coefficient mu, at least 0. Default 0.
         friction_held
-            mu of contact that stays, at least 0. Default: `friction`.
+            mu in persistent contact, at least 0. Default: `friction`.
         impact_law : {"newton", "poisson", "stronge"}
-            What e compares: speeds, impulses or works. Default ``"newton"``.
+            Definition of e: the ratio of normal speeds (``"newton"``, default) or of normal impulses
+            (``"poisson"``), or the square root of the ratio of works (``"stronge"``).
         stiffness
-            Of the boundary layer in proportion to those of contacts that strike at the same time, above
-            0. Default 1.
+            Stiffness of the boundary layer relative to those of simultaneous contacts, above 0. Default 1.
         rolling_friction, pivoting_friction
-            Greatest moment against rolling, and about the normal, of contact that stays, divided by the
-            normal force [m]. Default 0. They act against relative rotation until that stops; each point of
-            a face by its own force. Impacts know neither.
+            Greatest moment against rolling, and about the normal, in persistent contact, divided by the
+            normal force [m]. Default 0. The moments act against relative rotation until it stops; each contact
+            point of a face has its own. Impacts do not use them.
         multiple : {"simultaneous", "sequential"}
-            How an impact goes on while other contacts of these bodies are closed, too: all together (default),
-            or this pair in a blow of its own, and one blow after the other, as in a row of balls that do not
-            quite touch. See `Options.multiple`.
+            Multiple impact, if other contacts of these bodies are closed too: all contacts simultaneously
+            (default), or this pair in an impact of its own, one impact after another, as in a row of balls with
+            small gaps. See `Options.multiple`.
         name
-            Default: the names of both, such as ``"die-ground"``.
+            Name in the scene. Default: the names of both, such as ``"die-ground"``.
 
         Raises
         ------
         ValueError
-            If the two are inside each other at the start, are one body, have a contact already, or have
-            materials that no rule combines.
+            If the two penetrate each other at the start, are the same body, already have a contact, or have
+            different materials without a rule that combines them.
 
         Examples
         --------
@@ -120,23 +120,23 @@ class TouchingPairs:
         combine: Rule = None,
         all_pairs: bool = True,
     ) -> None:
-        """Let all pairs touch, and state the values of pairs that have no materials and none of their own.
+        """Let all pairs touch, and set the values of pairs without materials and without own values.
 
         Parameters
         ----------
         restitution, friction, friction_held, impact_law, stiffness, rolling_friction, pivoting_friction
-            As of `add_contact`.
+            As for `add_contact`.
         multiple
-            As of `add_contact`.
+            As for `add_contact`.
         combine : {"average", "min", "max", "product", "geometric"} or dict, optional
-            How two materials make one number: for all of restitution, friction, friction_held,
-            rolling_friction and pivoting_friction, or by property, as in ``{"friction": "geometric",
-            "restitution": "max"}``. No rule is the right one (these numbers belong to pairs), so there is
-            no default: materials that differ need a rule. Stiffness is combined as of two springs in
-            series, ``2 / (1 / s1 + 1 / s2)``.
+            Rule that computes the value of a pair from its two materials: one rule for restitution, friction,
+            friction_held, rolling_friction and pivoting_friction, or a rule for each property, as in
+            ``{"friction": "geometric", "restitution": "max"}``. No rule is physically right, because these
+            values are properties of pairs; so there is no default, and different materials need a rule. Two
+            values of stiffness act in series: ``2 / (1 / s1 + 1 / s2)``.
         all_pairs
-            True (default): every body touches every half-space, static body and other body, but for those that
-            a joint joins and those of `ignore_contact`. False: only pairs of `add_contact` touch.
+            True (default): every body may touch every half-space, static body and other body, except pairs
+            with a joint and pairs of `ignore_contact`. False: only pairs of `add_contact` may touch.
 
         Notes
         -----
@@ -156,17 +156,17 @@ class TouchingPairs:
         self._pairs.set_default(default, combine, all_pairs, stated)
 
     def ignore_contact(self, body: Some, other: Some | None = None) -> None:
-        """Let bodies pass through each other where `set_contact_default` lets all pairs touch.
+        """Exclude pairs from the contacts of `set_contact_default`: they pass through each other.
 
         Parameters
         ----------
         body, other
-            Each a body, half-space or static body, its name, or a sequence of these: no one of the first
-            touches one of the second. Without `other` no two of the first touch each other.
+            Each is a body, half-space or static body, its name, or a sequence of these. No part of `body`
+            touches a part of `other`. Without `other`, no two parts of `body` touch each other.
 
         Examples
         --------
-        A chain whose links pass through each other, and a second one that passes through it:
+        The links of a chain pass through each other and through a second chain:
 
         >>> scene = carom.Scene()
         >>> scene.set_contact_default(restitution=0, friction=0.3)
@@ -186,31 +186,31 @@ class TouchingPairs:
             self._pairs.ignore(a, b)
 
     def contact_law(self, body: One, other: One) -> ContactLaw | None:
-        """Return how a pair without a contact of its own touches by `set_contact_default`; None if not.
+        """Return the default law of a pair without a contact of its own; None if the pair does not touch.
 
         Raises
         ------
         ValueError
-            If materials are given that no rule combines.
+            If the pair has different materials without a rule that combines them.
         """
         body, other = self._two(body, other)
         return self._pairs.default_law(body, other)
 
     def pairs_by_default(self) -> PairTable:
-        """Return all pairs that touch by `set_contact_default`, with their laws, as arrays.
+        """Return all pairs that may touch by `set_contact_default`, with their laws, as arrays.
 
-        N bodies have N(N - 1)/2 pairs; a run makes rows for those that come near each other (`Solution.pairs`).
+        N bodies have N(N - 1)/2 pairs; a run only keeps those that come near each other (`Solution.pairs`).
 
         Raises
         ------
         ValueError
-            If materials are given that no rule combines.
+            If a pair has different materials without a rule that combines them.
         """
         fixed = (*self._parts.parts(HalfSpace), *self._parts.parts(StaticBody))
         return self._pairs.by_default(self._parts.parts(Body), fixed)
 
     def _two(self, body, other) -> tuple[Body, HalfSpace | StaticBody | Body]:
-        """Return two that may touch, given themselves or by name, what does not move as the second."""
+        """Return a pair that may touch, given as objects or by name; a part that never moves is second."""
         kinds, hint = (Body, *FIXED), "; a floor is made by scene.add_half_space(point, normal)"
         first = self._parts.member("body", body, kinds, hint if isinstance(body, Ground) else "")
         second = self._parts.member(
@@ -220,12 +220,12 @@ class TouchingPairs:
             first, second = second, first
         if isinstance(first, FIXED):
             raise ValueError(
-                f"body and other must not both be what never moves, got {second.name!r} and {first.name!r}"
+                f"body or other must be a body that moves, got {second.name!r} and {first.name!r}"
             )
         return first, second
 
     def _some(self, argument: str, given) -> list:
-        """Return bodies and half-spaces, of one or several given themselves or by name."""
+        """Return bodies and half-spaces; one or several are given, as objects or by name."""
         single = isinstance(given, (str, Body, *FIXED))
         what = "bodies, half-spaces and static bodies"
         several = [given] if single else checks.listed(argument, given, what)
@@ -233,10 +233,10 @@ class TouchingPairs:
 
     @property
     def contacts(self) -> tuple[Contact, ...]:
-        """The contacts, in the order added."""
+        """Contacts, in the order in which they were added."""
         return self._parts.parts(Contact)
 
     @property
     def contact_default(self) -> ContactLaw | None:
-        """Values of all pairs that may touch without a contact of their own; None where these do not."""
+        """Default law of pairs without a contact of their own; None if these do not touch."""
         return self._pairs.default

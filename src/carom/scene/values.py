@@ -1,4 +1,4 @@
-"""Values of frozen records: read-only arrays."""
+"""Values of frozen records, with read-only arrays."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def point(name: str, value) -> np.ndarray:
 
 
 def apart(anchor_parent, anchor_child) -> tuple[np.ndarray, np.ndarray, float]:
-    """Return two points (3,), and their distance [m], 0 where they are one."""
+    """Return two points (3,) and their distance [m], 0 if they are equal."""
     start, end = point("anchor_parent", anchor_parent), point("anchor_child", anchor_child)
     distance = math.dist(start, end)
     return start, end, checks.number("the distance of anchor_parent and anchor_child", distance)
@@ -38,6 +38,6 @@ def optional_point(name: str, value) -> np.ndarray | None:
 
 
 def subclasses_in(names: dict, base: type[T]) -> tuple[type[T], ...]:
-    """Return the subclasses of `base` among the names of a module, in the order in which they came there."""
+    """Return the subclasses of `base` among the names of a module, in the order of their definition."""
     found = (one for one in names.values() if isinstance(one, type) and issubclass(one, base))
     return tuple(one for one in found if one is not base)

@@ -1,1 +1,1 @@
-"""Time stepping: the event step, islands in time, the step of a crowd, and the run to its end."""
+"""Time stepping: the time loop, the step of an island from event to event, and the step of a crowd."""

@@ -1,4 +1,4 @@
-"""The balance of energy, step by step: what has no name, beside the largest energy exchanged so far.
+"""The energy balance, step by step: the energy error compared with the largest energy exchanged so far.
 
 After each step, with sums since the start,
 
@@ -6,9 +6,10 @@ After each step, with sums since the start,
     unnamed  = |residual| + sum over lines that never rise of (line - its lowest so far),
     exchanged = greatest so far of T, |V - V_0|, |loads|, |impacts|, |friction|, |bounces|.
 
-No zero of the potential is in it. Impacts may rise where Newton's law with friction says so. The greatest
-unnamed energy of a run is judged by all that was exchanged in it; 1e-13 of what energies are made of is
-round-off. (Mathematics page, §1.12.)
+"unnamed" is the energy error, which no entry of the ledger explains. The balance does not depend on the zero of
+the potential. The sum over impacts may rise where Newton's law with friction adds energy. The largest error of
+a run is compared with the largest energy exchanged in it; 1e-13 of the terms of the energies is round-off.
+(Mathematics page, §1.12.)
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from carom.impact import laws
 from carom.persistent.events import JAM
 from carom.persistent.step_control import CAREFUL
 
-#: what can be wrong: places in the columns of `WATCH`
+#: kinds of energy errors: indices in the columns of `WATCH`
 RESIDUAL, IMPACTS, FRICTION, BOUNCES, ALL = range(5)
 ROUND_OFF = 1e-13
 # a step that gains this part of all that it exchanges is cut, down to this part of a whole step; so many of
@@ -59,7 +60,7 @@ WATCH = [
 
 
 def new_watch(tolerance: float, share: float = np.inf) -> np.recarray:
-    """Return the record of a run that has not begun, (1,); with no limit for a step by itself."""
+    """Return the record of errors for a new run, (1,); without a limit for a single step."""
     watch = table(WATCH, 1)
     watch["tolerance"], watch["share"] = tolerance, share
     return watch
@@ -67,7 +68,7 @@ def new_watch(tolerance: float, share: float = np.inf) -> np.recarray:
 
 @kernel
 def begin_watch(system, now, t, watch):
-    """Note the energies of the start."""
+    """Store the energies at the start."""
     kinetic, potential, size = energies(system, now, t)
     watch.total, watch.potential = kinetic + potential, potential
     watch.exchanged, watch.struck, watch.named, watch.gains = kinetic, 0, 0.0, 0
@@ -80,14 +81,14 @@ def begin_watch(system, now, t, watch):
 
 @kernel
 def note_energies(system, now, clock):
-    """Note the energies of the present; return the size of what they are made of."""
+    """Store the present energies; return the size of their terms."""
     clock.kinetic, clock.potential, size = energies(system, now, clock.now)
     return size
 
 
 @kernel
 def watch_step(system, now, clock, records, watch):
-    """Look at the balance at the end of a step."""
+    """Check the balance at the end of a step."""
     size = note_energies(system, now, clock)
     kinetic, potential = clock.kinetic, clock.potential
     residual = kinetic + potential - watch.total
@@ -116,7 +117,7 @@ def watch_step(system, now, clock, records, watch):
 
 @kernel
 def greatest_speed(system, now):
-    """Return the greatest speed of a body, with that of its turning at its size [m/s]."""
+    """Return the greatest speed of a body, including that of its rotation at its size [m/s]."""
     most = 0.0
     for b in range(now.shape[0]):
         most = max(most, norm(now[b].v) + system.bodies[b].extent * norm(now[b].w))
@@ -125,7 +126,7 @@ def greatest_speed(system, now):
 
 @inlined
 def compare(i, amount, t, watch):
-    """Note an amount without a name if it is the greatest of its kind so far; a NaN stays noted."""
+    """Store an energy error if it is the largest of its kind so far; a NaN is never replaced."""
     greatest = watch.amount[i]
     if not (abs(amount) <= abs(greatest)) and greatest == greatest:
         watch.amount[i], watch.time[i] = amount, t
@@ -133,7 +134,7 @@ def compare(i, amount, t, watch):
 
 @kernel
 def given_by_law(system, clock, records, watch):
-    """Return the energy that the new impacts have added, where their law with friction may add some (V8)."""
+    """Return the energy that the new impacts have added, if their law with friction allows it (V8)."""
     total = 0.0
     for k in range(watch.struck, clock.struck):
         row = records.impact[k]
@@ -162,10 +163,10 @@ def may_give(system, number):
 
 @inlined
 def imbalance(system, active, start, end, named, t, h, watch):
-    """Return the unnamed energy of a step, as a part of what is allowed, and whether the step multiplies it.
+    """Return the energy error of a step as a fraction of the allowed one, and whether the step multiplies it.
 
-    Bodies that only gravity acts on are exact in flight, and watched where they are held
-    (`carom.persistent.step_control`).
+    Bodies on which only gravity acts are exact in flight; in persistent contact `carom.persistent.step_control`
+    checks them.
     """
     loaded = False
     for b in range(start.shape[0]):
@@ -175,7 +176,7 @@ def imbalance(system, active, start, end, named, t, h, watch):
 
 @kernel
 def speeds_known(system, state, h):
-    """Return the energy [J] of speeds that round-off of places makes in a step."""
+    """Return the energy [J] of the speeds that correspond to round-off of positions in a step."""
     total = 0.0
     for b in range(state.shape[0]):
         body = system.bodies[b]
@@ -186,10 +187,10 @@ def speeds_known(system, state, h):
 
 @kernel
 def unbalanced(system, active, start, end, named, t, h, watch):
-    """Return what `imbalance` does, for joined or loaded bodies; `named` is the work of loads and friction.
+    """Return the same as `imbalance`, for joined or loaded bodies; `named` is the work of loads and friction.
 
-    A step multiplies energy if it gains as much as it exchanges, and more than is tolerated, from nobody: what
-    explicit methods do with springs and dampers that are too stiff for them.
+    A step multiplies energy if its unexplained gain is as large as the energy that it exchanges, and above the
+    tolerance. Explicit methods do so with springs and dampers that are too stiff for the step.
     """
     before, low, _ = energies(system, start, t)
     after, high, size = energies(system, end, t + h)
@@ -207,11 +208,11 @@ def unbalanced(system, active, start, end, named, t, h, watch):
 
 @kernel
 def off_balance(model, data):
-    """Return whether a step is to be cut for energy without a name, and how many gained energy in a row.
+    """Return whether a step must be cut for its energy error, and the number of steps in a row that gained.
 
-    The shortest are taken as they are, and the limit is made wider for those that come: round-off, or a force
-    that jumps, is not to cut all steps of a run. On the way to a jam forces have no bound: it is come to by
-    halves, however short.
+    The shortest steps are accepted with any error, and the limit is then raised for the following steps, so
+    that round-off or a force that jumps does not cut all steps of a run. Forces grow without bound before a
+    jam, so steps towards a jam are halved without a shortest length.
     """
     system, controls, active, work = model.system, model.controls, data.active, data.work
     result, search, clock, watch = work.result[0], work.search[0], data.clocks[0], data.watch[0]

@@ -1,9 +1,9 @@
 """Search for the first event inside a step: examination of a trial step, and the root of an event function.
 
-For a gap the rate is known: a root of the cubic through the last two values and rates, kept inside the bracket
-(exact of a ball that falls); else Newton's method. For persistent contacts: regula falsi with the Illinois
-rule. Every trial is a step of the method itself from the start of the step, so that an event is as exact as the
-method.
+For a gap the rate is known: the next trial is the root of the cubic through the last two values and rates, if
+it is inside the bracket (this is exact for a falling ball), otherwise Newton's method. For persistent contacts:
+regula falsi with the Illinois rule. Every trial is a step of the method from the start of the step, so an event
+is as accurate as the method.
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ def event_value(system, controls, active, search, state, work):
 
 @kernel
 def begin_search(search, kind, contact, low, high, d1, d2):
-    """Start to look for an event between `low` and `high`, where its function is negative."""
+    """Start the search for an event between `low` and `high`; its function is negative at `high`."""
     search.active, search.kind, search.contact = 1, kind, contact
     search.low, search.high, search.width = low, high, high
     search.d1, search.d2 = d1, d2

@@ -1,7 +1,7 @@
 """One step of an island, event by event: propose a step, find its first event, accept, act.
 
-Each large part (trial step, strike, persistent contact) is called from one place: what is linked in is compiled
-once for each call.
+Each large part (trial step, strike, persistent contact) is called from only one place, because a linked
+function is compiled once for each call.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ NO_CONVERGENCE, TOO_MANY, NOT_FINITE = 1, 3, 4
 
 @unit
 def advance(model, data, method) -> int:
-    """Move the bodies of an island to the end of the step. Returns 0, or what `run` is to return.
+    """Move the bodies of an island to the end of the step. Return 0, or the code that `run` must return.
 
     Propose a step, find the first event in it, accept the motion up to there, and act on the event.
     """
@@ -80,7 +80,7 @@ def advance(model, data, method) -> int:
 
 @inlined
 def may_go_on(model, data):
-    """Return 0, or why the loop is left: for a moment, for more room, or as the step costs too much."""
+    """Return 0, or the code with which the loop is left: pause, longer arrays, or too expensive a step."""
     controls, clock = model.controls, data.clocks[0]
     if clock.since > r.LONG and clock.paused == 0:
         return r.PAUSE
@@ -95,7 +95,7 @@ def may_go_on(model, data):
 
 @inlined
 def due_action(model, data):
-    """Return the action that is due before time goes on: one put off, or one that closed points ask for."""
+    """Return the action that is due before time advances: a postponed one, or one that closed points need."""
     controls, clock, search = model.controls, data.clocks[0], data.work.search[0]
     search.left = clock.length - clock.spent
     action = search.pending
@@ -113,13 +113,13 @@ def due_action(model, data):
 
 @inlined
 def exact(controls):
-    """Return whether events are located, and the end of the step is that of the horizon."""
+    """Return whether events are located, and the step ends at the horizon."""
     return controls.location == LOCATE and controls.order == 0
 
 
 @inlined
 def accept_step(model, data):
-    """Make the trial state the present one; return a code, and what its event asks for."""
+    """Make the trial state the present one; return a code, and the action that its event needs."""
     system, controls, work = model.system, model.controls, data.work
     active, now, clock, search = data.active, data.state, data.clocks[0], data.work.search[0]
 
@@ -167,7 +167,7 @@ def accept_step(model, data):
 
 @inlined
 def accept(data, search):
-    """Make the trial state the present one, and add up the work that was done on the way."""
+    """Make the trial state the present one, and add the work done in the step."""
     now, trial, clock = data.state, data.work.trial, data.clocks[0]
     for b in range(now.shape[0]):
         copy_state(trial[b], now[b])
@@ -183,7 +183,7 @@ def accept(data, search):
 
 @inlined
 def act(model, data, method, action):
-    """Resolve the impact that an event asks for, and let contacts persist whose bounces are over."""
+    """Solve the impact of an event, and make contacts persistent whose bounces have ended."""
     system, controls, work = model.system, model.controls, data.work
     clock, search = data.clocks[0], data.work.search[0]
     clock.at_once += 1
@@ -206,7 +206,7 @@ def act(model, data, method, action):
 
 @inlined
 def persist(model, data, action):
-    """Let what is closed with the contact persist from now on, or go on in another mode. Returns a code."""
+    """Make the closed points of the contact persistent, or change their modes. Return a code."""
     work, clock, search = data.work, data.clocks[0], data.work.search[0]
     if action == RENEW_MODE:
         renew_mode(model, data, search.contact)
@@ -222,7 +222,7 @@ def persist(model, data, action):
 
 @inlined
 def is_whole(step, work):
-    """Return whether the bodies are to take this step without looking for the times of its events."""
+    """Return whether the bodies take this step as a time-stepping (Moreau) step, without event detection."""
     return work.body[0].whole_until > step
 
 
@@ -238,9 +238,9 @@ def full(system, active, clock, records):
 
 @inlined
 def left_ball(system, now, dt, work):
-    """Return whether a body may have left the ball that was given to it for this step.
+    """Return whether a body may have left its ball of this step.
 
-    Both ends of a piece of its path are within it by what a fall of that time can bulge between them.
+    It has not if both ends of a piece of its path are inside by the distance that a fall of this time can add.
     """
     fall = norm(system.gravity)
     for b in range(now.shape[0]):
@@ -302,7 +302,7 @@ def look_at_vertices(system, controls, active, contact, now):
 
 @inlined
 def find_due_contact(system, controls, active, now, work):
-    """Find a closed point that is not active, at the start or after an event, and the action it asks for."""
+    """Find a closed point that is not active, at the start or after an event, and the action that it needs."""
     for c in range(active.contact_states.shape[0]):
         contact_state, contact = active.contact_states[c], system.contacts[c]
         if contact_state.near == 0:
@@ -327,7 +327,7 @@ def find_due_contact(system, controls, active, now, work):
 def may_end(contact, system, state, horizon, work):
     """Return whether the bounces of a contact that was just struck, alone, could end within the horizon.
 
-    A first look, with a bound of the acceleration where there is one, before the forces are worked out.
+    This is a first check, with a bound of the acceleration if there is one, before the forces are computed.
     """
     if contact.touches != 0:
         return True

@@ -1,6 +1,6 @@
-"""The steps of a run: where each of them ends, and which of the states there are saved.
+"""The steps of a run: their ends, and the ends at which states are saved.
 
-A step of a run is the time for which islands are found once. Within it each island moves from event to event,
+A step of a run is the time between two searches for islands. Within it each island moves from event to event,
 and with tolerances in steps of its own (`carom.dynamics.adapt`).
 """
 
@@ -23,7 +23,7 @@ FEW = 1e4  # steps at most of a scene without weight, by its speed
 
 
 class Grid(NamedTuple):
-    """The ends of steps: all `interval` apart, but the last; or `ends`, where times to save at were given."""
+    """The ends of steps: all `interval` apart, except the last; or `ends`, if times to save at were given."""
 
     interval: float  # the length of a step, or of the longest
     last: int  # number of steps
@@ -33,7 +33,7 @@ class Grid(NamedTuple):
 
     @property
     def rows(self) -> int:
-        """Number of states that are saved, the first among them."""
+        """Number of states that are saved, including the first."""
         if len(self.saves):
             return int(np.sum(self.saves))
         return -(-self.last // self.save_every) + 1
@@ -45,9 +45,9 @@ _NONE = np.zeros(0), np.zeros(0, dtype=np.int64)
 def make_grid(
     duration: float, longest: float, save_every: int, save_at: float | tuple[float, ...] | None
 ) -> Grid:
-    """Return the steps of a run: no longer than `longest`, and as long where no times to save at are given.
+    """Return the steps of a run: `longest` long, or at most that long if times to save at are given.
 
-    Between two times that are saved are equal steps.
+    Steps between two saved times are equal.
     """
     if isinstance(save_at, tuple):
         return _grid_of_times(np.array(save_at), duration, longest)
@@ -59,7 +59,7 @@ def make_grid(
 
 
 def count(whole: float, part: float) -> int:
-    """Return how many parts make the whole, if the last may be shorter."""
+    """Return the number of parts of a whole, if the last part may be shorter."""
     return max(1, math.ceil(whole / part * (1.0 - ALIKE)))
 
 
@@ -75,9 +75,9 @@ def _grid_of_times(times: np.ndarray, duration: float, longest: float) -> Grid:
 
 
 def longer_grid(grid: Grid, duration: float, end: float) -> Grid:
-    """Return the steps of a run that goes on from `duration` to `end`: those that it had, and more like them.
+    """Return the steps of a run that continues from `duration` to `end`: its old steps, and similar new ones.
 
-    Where the last one was whole, and its end is saved in any case, they are those of a run of this length.
+    If the last old step had full length and its end is saved anyway, these are the steps of one longer run.
     """
     whole = grid.last * grid.interval == duration and grid.last % max(1, grid.save_every) == 0
     if whole and not len(grid.ends):
@@ -98,9 +98,9 @@ def longer_grid(grid: Grid, duration: float, end: float) -> Grid:
 def longest_step(
     system: System, start: np.recarray, duration: float, most: float | None, more: bool
 ) -> float:
-    """Return how long a step of a run with tolerances may be: `most`, or by how soon bodies meet others.
+    """Return the longest step of a run with tolerances: `most`, or a bound by the time until bodies may meet.
 
-    With `more` contacts may come, of any of the bodies.
+    `more` means that contacts of any of the bodies may appear later.
     """
     if most is not None or not (system.contacts.size or more):
         return min(duration, most or duration)
@@ -130,7 +130,7 @@ def ends_between(grid: Grid, begin: float, end: float) -> np.ndarray:
 
 @inlined
 def begin_and_length(grid, duration, step):
-    """Return where a step begins, and its length."""
+    """Return the time at the beginning of a step, and its length."""
     if grid.ends.shape[0] > 0:
         return grid.ends[step], grid.ends[step + 1] - grid.ends[step]
     begin = step * grid.interval
@@ -139,7 +139,7 @@ def begin_and_length(grid, duration, step):
 
 @inlined
 def end_of(grid, duration, step):
-    """Return the time after so many steps, to the last digit."""
+    """Return the time after this number of steps, to the last digit."""
     if grid.ends.shape[0] > 0:
         return grid.ends[step]
     return duration if step == grid.last else step * grid.interval
@@ -147,7 +147,7 @@ def end_of(grid, duration, step):
 
 @inlined
 def is_saved(grid, step):
-    """Return whether the state after so many steps is saved."""
+    """Return whether the state after this number of steps is saved."""
     if grid.ends.shape[0] > 0:
         return grid.saves[step] == 1
     return step == grid.last or step % grid.save_every == 0

@@ -25,7 +25,7 @@ def finite(state):
 
 @inlined
 def still(state):
-    """Return whether nothing moves at all."""
+    """Return whether no body moves."""
     for b in range(state.shape[0]):
         for k in range(3):
             if state[b].v[k] != 0.0 or state[b].w[k] != 0.0:
@@ -35,7 +35,7 @@ def still(state):
 
 @inlined
 def grow(clock, what):
-    """Ask for longer arrays: return the code with which the loop is left."""
+    """Request longer arrays: return the code with which the loop is left."""
     clock.grow = what
     return GROW
 

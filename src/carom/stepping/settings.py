@@ -1,4 +1,4 @@
-"""The settings of a run: checked, and completed."""
+"""The settings of a run, checked and completed."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ _DEFAULT = Options()
 
 
 def check_handling(progress, throw, save_seconds) -> None:
-    """Raise for invalid settings of how a run is watched, saved and ended."""
+    """Refuse invalid values of `progress`, `throw` and `save_seconds`."""
     if not (progress is None or isinstance(progress, bool) or callable(progress)):
         raise TypeError(f"progress must be True, False or a function, got {checks.shown(progress)}")
     if not isinstance(throw, bool):
@@ -31,7 +31,7 @@ def check_handling(progress, throw, save_seconds) -> None:
 
 
 class Settings(NamedTuple):
-    """What `simulate` was asked for, checked and completed."""
+    """The arguments of `simulate`, checked and completed."""
 
     duration: float
     step: float | None  # None: tolerances choose
@@ -52,7 +52,7 @@ class Settings(NamedTuple):
         return self.step is None
 
     def as_dict(self) -> dict:
-        """All but the options, by name, and no tolerances where the step was given."""
+        """Return all settings except the options, by name; without tolerances if the step was given."""
         known = self._asdict()
         del known["options"]
         if not self.earlier:
@@ -79,7 +79,7 @@ def checked_settings(
     duration, step: Any = "auto", method=None, impact_location="locate", *, save_every=1, save_at=None,
     rtol=None, atol=None, options=None,
 ) -> Settings:  # fmt: skip
-    """Return the settings of a run, checked: those of `simulate`."""
+    """Return the settings of a run from the arguments of `simulate`, checked."""
     duration = checks.number("duration", duration, above=0.0, unit="s")
     if isinstance(step, str):
         if step != "auto":
@@ -116,7 +116,7 @@ def check_save_at(save_at, duration: float) -> float | tuple[float, ...] | None:
     Raises
     ------
     TypeError, ValueError
-        If it is no spacing above 0, and no times that rise within the run.
+        If it is neither a spacing above 0 nor increasing times within the run.
     """
     if save_at is None:
         return None
@@ -130,38 +130,38 @@ def check_save_at(save_at, duration: float) -> float | tuple[float, ...] | None:
         return spacing
     times = checks.times("save_at", save_at, 0.0, duration)
     if not (len(times) and np.all(np.diff(times) > 0.0)):
-        raise ValueError(f"save_at must be times that rise, got {checks.shown(save_at)}")
+        raise ValueError(f"save_at must be increasing times, got {checks.shown(save_at)}")
     return tuple(times.tolist())
 
 
 def check_scene(scene: Scene, settings: Settings) -> None:
-    """Raise for a scene that cannot start, or cannot start with this method."""
+    """Refuse a scene that cannot start, or that this method does not support."""
     scene.validate()
     check_location(scene, settings.impact_location)
     check_method(scene, settings.method)
 
 
 def mistakes(scene, settings: Settings) -> tuple[str, ...]:
-    """Return sentences about what is nearly always a mistake, from what is stated."""
+    """Return sentences about settings and parts of the scene that are nearly always a mistake."""
     found = remarks(scene) if isinstance(scene, Scene) else ()
     if settings.step is not None and settings.step > settings.duration:
         said = f"step={settings.step:g} s is longer than the run of {settings.duration:g} s"
-        return (*found, f"{said}, which takes one step. Give a shorter one, or leave step out.")
+        return (*found, f"{said}, so the run is one step. Give a shorter step, or leave step out.")
     return found
 
 
 def check_method(scene: Scene, method: str) -> None:
-    """Refuse dry friction and inertia in joints for methods that do not know them."""
+    """Refuse dry friction and inertia in joints for methods that do not support them."""
     if method not in EXPLICIT and any(
         isinstance(f.definition, JointFriction) for f in scene.forces
     ):
         raise ValueError(
-            f"method must be {either(EXPLICIT)} where joints have dry friction, got {method!r}"
+            f"method must be {either(EXPLICIT)} if joints have dry friction, got {method!r}"
         )
     if method not in CARRIES and any(isinstance(f.definition, JointInertia) for f in scene.forces):
         raise ValueError(
-            f"method must be {either(CARRIES)} where joints have inertia, got {method!r}; or use a body on a "
-            "bearing, geared to the joint"
+            f"method must be {either(CARRIES)} if joints have inertia, got {method!r}; or use a body on a "
+            "bearing and a gear to the joint"
         )
 
 
@@ -172,7 +172,7 @@ def either(names) -> str:
 
 
 def check_tolerances(adapts: bool, rtol, atol) -> tuple[float, float | None]:
-    """Return the tolerances; refuse them with a given step."""
+    """Return the tolerances; refuse them if the step is given."""
     if adapts:
         rtol = checks.number("rtol", RTOL if rtol is None else rtol, least=1e-13, most=0.1)
         return rtol, None if atol is None else checks.number("atol", atol, least=0.0, unit="m")
@@ -185,11 +185,11 @@ def check_tolerances(adapts: bool, rtol, atol) -> tuple[float, float | None]:
 
 
 def check_adaptive(method: str, location: str) -> None:
-    """Refuse, with tolerances, a method that does not estimate its error, and impacts that are not located."""
+    """Refuse tolerances with a method that does not estimate its error, or without located impacts."""
     if method not in ADAPTIVE:
         raise ValueError(
-            f"step must be given for method={method!r}: only {either(ADAPTIVE)} estimate their error, and "
+            f"step must be a number for method={method!r}: only {either(ADAPTIVE)} estimate their error and "
             "choose their steps"
         )
     if location != "locate":
-        raise ValueError(f"step must be given for impact_location={location!r}")
+        raise ValueError(f"step must be a number for impact_location={location!r}")

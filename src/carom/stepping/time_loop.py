@@ -1,4 +1,4 @@
-"""The loop of a run, compiled as a whole: steps, each island by island, and their records."""
+"""The time loop of a run, compiled as one unit: its steps, the islands of each step, and the records."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ AGAIN = -1  # the step is to be done again
 
 @entry
 def run(model, data, method, islands, grid, until):
-    """Go on to step number `until`.
+    """Continue to step number `until`.
 
-    Returns 0, what the caller is to do, or a `Status`.
+    Return 0, a code for the caller, or a `Status`.
     """
     controls, clock = model.controls, data.clocks[0]
     clock.since = 0.0
@@ -117,7 +117,7 @@ def pay(clock):
 
 @inlined
 def finish_step(model, data, grid):
-    """Set the clock to the end of the step, look at its balance, and save its row if it is one of those."""
+    """Set the clock to the end of the step, check the energy balance, and save the state if it is due."""
     system, controls, clock, state = model.system, model.controls, data.clocks[0], data.state
     clock.spent = 0.0
     charge_impacts(clock)
@@ -138,10 +138,10 @@ def finish_step(model, data, grid):
 
 @kernel
 def charge_impacts(clock):
-    """Book as energy of impacts what friction gave in the step as bounces were dropped, and has not taken back.
+    """Assign to impacts the energy that friction gained by dropped bounces in the step and did not lose again.
 
-    Impacts, bounces and persistent contact together have mu times their normal impulse of friction: where the
-    contact ends early it is the impacts that took less.
+    Impacts, bounces and persistent contact together have mu times their normal impulse of friction. If the
+    contact ends early, the impacts have lost less.
     """
     part = min(clock.owed, max(0.0, clock.before - clock.impacts))
     clock.impacts += part
@@ -151,7 +151,7 @@ def charge_impacts(clock):
 
 @kernel
 def earn(now, clock, work):
-    """Add the credit of one step, unless a body takes the step whole."""
+    """Add the credit of one step, unless a body takes it as a time-stepping (Moreau) step."""
     for b in range(now.shape[0]):
         if work.body[b].whole_until >= clock.step:
             return
@@ -160,7 +160,7 @@ def earn(now, clock, work):
 
 @inlined
 def move_single(model, data, method, start):
-    """Move all bodies to the end of the step: event by event, or at once where that made no progress."""
+    """Move all bodies to the end of the step: event by event, or in one time-stepping step if that failed."""
     system, work = model.system, data.work
     step = data.clocks[0].step
     whole = model.controls.retry == 1 and parts.is_crowd(system, data.active, step, work)
@@ -174,7 +174,7 @@ def move_single(model, data, method, start):
 
 @inlined
 def move_island(model, data, method):
-    """Move an island to the end of the step: event by event, or whole if it is large."""
+    """Move an island to the end of the step: event by event, or in one time-stepping step if it is a crowd."""
     system, work = model.system, data.work
     step = data.clocks[0].step
     if not parts.is_crowd(system, data.active, step, work):
@@ -189,13 +189,13 @@ def move_island(model, data, method):
 
 @inlined
 def may_be_whole(code):
-    """Return whether a step that ended with this code may succeed as that of a crowd."""
+    """Return whether a step that ended with this code may succeed as a time-stepping step of a crowd."""
     return code not in (BLOCKED, STEP_TOO_SMALL)
 
 
 @inlined
 def retry_single(model, data, start, code):
-    """Go back to the start of a step that could not be taken from event to event; return whether so."""
+    """Return to the start of a step that failed event by event; return whether this is done."""
     clock = data.clocks[0]
     if code >= r.GROW or model.controls.retry == 0 or not may_be_whole(code):
         return False
@@ -209,10 +209,10 @@ def retry_single(model, data, start, code):
 
 @inlined
 def retry_apart(model, data, islands, code):
-    """Go back to the start of the step; return whether it is to be done again.
+    """Return to the start of the step; return whether it is to be repeated.
 
-    With more room for bodies that have left theirs; with islands as crowds where one could not go from event
-    to event.
+    It is repeated with larger balls for bodies that have left theirs, and with an island as a crowd if the
+    island failed event by event.
     """
     if code >= r.GROW and code != r.LEFT_BALL:
         return False  # the caller sees to it, and comes back

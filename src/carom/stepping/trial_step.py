@@ -1,4 +1,4 @@
-"""A trial step: proposed, then cut or shortened until nothing lies inside it but its first event at its end."""
+"""A trial step: proposed, then shortened until it has no event, except the first event at its end."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ ONCE_MORE = -1  # another trial step is to be made
 
 @inlined
 def propose_step(model, data):
-    """Note the length of the first trial step, unless the loop was left in the middle of one."""
+    """Store the length of the first trial step, unless the loop was left in the middle of one."""
     clock, search = data.clocks[0], data.work.search[0]
     if clock.paused == 1:
         clock.paused = 0
@@ -56,7 +56,7 @@ def propose_step(model, data):
 
 @inlined
 def until_stop(controls, active, dt, clock):
-    """Return dt, or the time in which slip of one of several active points is going to stop."""
+    """Return dt, or the time until slip of one of several active points stops."""
     first = dt
     for i in range(active.count[0]):
         active_point = active.points[i]
@@ -70,7 +70,7 @@ def until_stop(controls, active, dt, clock):
 
 @inlined
 def first_event(model, data, method):
-    """Make trial steps until nothing can lie inside one, or the first event is at its end. Returns a code."""
+    """Make trial steps until one has no event, or only the first event at its end. Return a code."""
     clock, search = data.clocks[0], data.work.search[0]
     search.found = 0
     while True:
@@ -90,9 +90,9 @@ def first_event(model, data, method):
 
 @inlined
 def trial_step(model, data, method):
-    """Make a step of length `search.dt` from the present to `work.trial`, with its impulses of contacts.
+    """Make a step of length `search.dt` from the present to `work.trial`, with its contact impulses.
 
-    The code of the step without them goes to the search: a shorter one may do.
+    The code of the step without contact impulses is stored in the search, because a shorter step may succeed.
     """
     system, controls, active, now = model.system, model.controls, data.active, data.state
     work, clock, search = data.work, data.clocks[0], data.work.search[0]
@@ -122,7 +122,7 @@ def trial_step(model, data, method):
 
 @kernel
 def charge_searches(clock, work):
-    """Add to the work of the step what was spent since the last trial step on nearest points of solids."""
+    """Add the cost of nearest points of solids since the last trial step to the work of the step."""
     pair = work.pair.state[0]
     clock.effort += SEARCH * pair.searches
     pair.searches = 0
@@ -170,7 +170,7 @@ def is_root(model, data):
 
 @inlined
 def event_within(model, data):
-    """Return 0 if the trial step may be taken: nothing lies inside, or the event is at its end (`found`)."""
+    """Return 0 if the trial step is accepted: it has no event, or only one at its end (`found`)."""
     system, controls, active, now = model.system, model.controls, data.active, data.state
     work, search = data.work, data.work.search[0]
 
@@ -205,7 +205,7 @@ def event_within(model, data):
 
 @inlined
 def halve(model, data, loses):
-    """Cut the trial step to half; if it `loses`, later ones too. Returns 0 if it is nothing, else as above."""
+    """Halve the trial step; if it `loses` energy, later steps too. Return 0 if it is too short to halve."""
     clock, search = data.clocks[0], data.work.search[0]
     if search.active == 1 and search.dt <= 1e-9 * search.horizon:
         search.found = 1
@@ -223,7 +223,7 @@ def halve(model, data, loses):
 
 @inlined
 def bracket(model, data):
-    """Begin to narrow the time of an event; where impacts are not located they are at the end of the step."""
+    """Start to bracket the time of an event; if impacts are not located, they are at the end of the step."""
     system, controls, work, search = model.system, model.controls, data.work, data.work.search[0]
     if search.kind != GAP and search.kind < STOPS:
         note_due(data.active, search, work)

@@ -1,1 +1,1 @@
-"""Pictures: plots, films, the page of a run and the live view."""
+"""Pictures of a run: plots, films, the HTML page and the live view."""

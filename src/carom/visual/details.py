@@ -1,4 +1,4 @@
-"""What is drawn on bodies beside their surfaces: colours, pips of dice, pins of joints."""
+"""Details of drawn bodies: colours, pips of dice, pins of joints."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def colour_of(body: Body, palette) -> str:
 
 
 def moving(position: np.ndarray, orientation: np.ndarray) -> np.ndarray:
-    """Return which bodies (N,) move, by more than a small part of what the one that moves most does.
+    """Return which bodies (N,) move by more than a small fraction of the largest motion of a body.
 
     `position` (T, N, 3), `orientation` (T, N, 4).
     """

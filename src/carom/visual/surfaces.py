@@ -1,4 +1,4 @@
-"""Surfaces of shapes as triangles, to draw them."""
+"""Surfaces of shapes as triangles, for drawing."""
 
 from __future__ import annotations
 
@@ -24,26 +24,26 @@ HOOP = (
 def surface(shape, fineness: int = 32) -> tuple[np.ndarray, np.ndarray]:
     """Return the surface of a shape as triangles, in body axes.
 
-    Closed: each edge is in two triangles, passed once in each sense. Sharp shapes (`Box` and `Convex` without
-    a radius, `Mesh`) are exact; the vertices of round ones lie on the shape, so that the enclosed
-    volume of a convex shape is smaller than its own, relatively by at most ``24 / fineness**2``. The
-    surface of a `Compound` is that of all its parts, also where they overlap. A `Disc` has its two
-    sides in one plane; a hoop (`inner_radius` equal to `radius`) gets a width of 6 % of its radius.
+    The surface is closed: each edge belongs to two triangles, once in each direction. Sharp shapes (`Box` and
+    `Convex` without a radius, `Mesh`) are exact. The vertices of round shapes lie on the shape, so the enclosed
+    volume of a convex shape is too small, relatively by at most ``24 / fineness**2``. The surface of a
+    `Compound` is that of all its parts, also where they overlap. A `Disc` has both sides in one plane; a hoop
+    (`inner_radius` equal to `radius`) is drawn with a width of 6 % of its radius.
 
     Parameters
     ----------
     shape : Shape
-        Any shape of the scene.
+        Any shape of `carom`.
     fineness : int
-        Sides of the polygon that stands for a circle, at least 4, rounded up to a multiple of 4.
+        Number of sides of the polygon that represents a circle, at least 4, rounded up to a multiple of 4.
         Default 32.
 
     Returns
     -------
     vertices : (V, 3) float64
-        [m], from the mass centre.
+        Vertices relative to the mass centre [m].
     triangles : (F, 3) int64
-        Numbers of vertices, counter-clockwise from outside.
+        Indices of vertices, counter-clockwise from outside.
     """
     checks.instance("shape", shape, SHAPES, "; a shape is needed")
     n = math.ceil(
@@ -65,7 +65,7 @@ def surface(shape, fineness: int = 32) -> tuple[np.ndarray, np.ndarray]:
 
 
 def is_round(shape) -> bool:
-    """Return whether nothing but a pattern would show that a body of this shape turns."""
+    """Return whether the rotation of a body with this shape is visible only by a pattern on it."""
     return shape.pieces[0].kind in ROUND and not isinstance(shape, (Box, Compound))
 
 
@@ -83,7 +83,7 @@ def _of_piece(piece: Piece, n: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _swollen_box(half: np.ndarray, radius: float, n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return a box of half edges `half`, from 0, swollen by a ball of `radius`, from 0.
+    """Return a box of half edges `half` rounded by a ball of `radius`; both may be 0.
 
     A ball as an octahedron with n^2 triangles on each side, whose octants are moved apart; strips join
     them, and vertices that have come to one place become one.
@@ -195,7 +195,7 @@ def _fans(shape: Piece) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _swollen_hull(shape: Piece, n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return a hull swollen by a ball: faces moved out, parts of cylinders at edges, of balls at corners.
+    """Return a hull rounded by a ball: faces moved out, parts of cylinders at edges, of balls at corners.
 
     The part of a ball at a corner is bounded by arcs from the normal of one face to that of the next; it is
     filled by rings that shrink to its middle.

@@ -1,6 +1,6 @@
-"""The methods of free motion: their coefficients, in the files named in `FILES`. NumPy only.
+"""The methods of smooth motion: their coefficients, in the files named in `FILES`. NumPy only.
 
-A file holds a dictionary `METHODS` from names, which `carom.simulate` takes, to a `Definition` each.
+Each file has a dictionary `METHODS` from names, as in `carom.simulate`, to a `Definition`.
 """
 
 from __future__ import annotations

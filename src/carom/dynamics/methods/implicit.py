@@ -1,4 +1,4 @@
-"""The method for stiff springs (`carom.dynamics.implicit`); what else it needs goes by the classical one."""
+"""The method for stiff springs (`carom.dynamics.implicit`), with coefficients of the classical method."""
 
 from __future__ import annotations
 

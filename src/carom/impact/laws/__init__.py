@@ -1,4 +1,4 @@
-"""The restitution laws by number: a file each, found by the names in `carom.scene.materials.IMPACT_LAWS`.
+"""The laws of restitution by number, one file for each, with the names of `carom.scene.materials.IMPACT_LAWS`.
 
 A law says what is measured during restitution, and the value of it at which restitution ends:
 

@@ -1,1 +1,1 @@
-"""Impacts at a corner of the manifold: several contacts closed while one or more of them strike."""
+"""Multiple impact (at a corner of the manifold): several contacts are closed, and one or more strike."""

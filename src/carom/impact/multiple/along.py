@@ -1,4 +1,4 @@
-"""A step along the series: how far they reach, where they lead, where slip turns round."""
+"""A step along the series: its length, the state at its end, and the reversal of slip."""
 
 from __future__ import annotations
 

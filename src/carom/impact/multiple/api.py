@@ -1,4 +1,4 @@
-"""Several impacts at once: `resolve_impacts`."""
+"""`resolve_impacts`: solve a multiple impact."""
 
 from __future__ import annotations
 
@@ -12,37 +12,38 @@ from carom.friction.checks import checked_inverse_masses, per_contact
 
 @dataclass(frozen=True)
 class CornerImpact:
-    """What a multiple impact did. Contacts in the first index, then normal, tangent 1, tangent 2.
+    """The result of a multiple impact. The first index is the contact, the next normal, tangent 1, tangent 2.
 
     Parameters
     ----------
     velocity_after : ndarray, shape (k, 3)
         Relative velocities after the impact [m/s].
     impulse : ndarray, shape (k, 3)
-        Impulses [N s]. ``velocity_after = velocity + W impulse``. Where contacts are redundant (four corners
-        of a box) their sum and moment are determined, not their shares.
+        Impulses [N s]: ``velocity_after = velocity + W impulse``. If contacts are redundant (four corners of a
+        box), the sum and the moment of their impulses are determined, but not the single impulses.
     compression_work, restitution_work : ndarray, shape (k,)
-        Work of each normal force while the contact loads (not positive) and unloads (not negative) [J].
+        Work of each normal force during loading (at most 0) and unloading (at least 0) [J].
     friction_loss : ndarray, shape (k,)
-        Energy dissipated by friction at each contact, not negative [J].
+        Energy dissipated by friction at each contact, at least 0 [J].
     energy_change : float
-        Change of kinetic energy: the sum of the three above, never positive but for a single contact with
-        Newton's law [J].
+        Change of kinetic energy: compression_work + restitution_work - friction_loss, summed over the contacts
+        [J]. It is at most 0, except for a single contact with Newton's law.
     plastic_change : float
-        Part of it that a plastic event took: all of it where every restitution is 0, or the rest of a
-        body that is trapped (0 if there was none) [J].
+        Part of the change in a plastic event [J]: all of it if every restitution is 0, or the remaining energy
+        of a trapped body; 0 if there was no plastic event.
     law_missed : float
-        Greatest difference of e reached from e asked for, as ln(target/reached), where Newton's or Poisson's
-        law could not be met; 0 where all are met.
+        Greatest error of e, as ln(target/reached), if Newton's or Poisson's law cannot hold at some contact; 0
+        if all laws hold.
     capped : bool
-        Whether somewhere the law asks for more energy than the contact took: it gives back all, not more.
+        Whether the law of a contact requires more energy than the contact has absorbed; the contact then
+        returns all that it has absorbed.
     wedged : ndarray of bool, shape (k,)
-        Where friction holds a contact at rest at the end: its law of restitution could not be met.
+        Whether friction wedges the contact at the end, so that its law of restitution cannot hold.
     at_once : bool
-        Whether the boundary layer could not be passed, and the impact was solved as one contact problem instead
-        (Newton's law at each contact; Moreau 1988).
+        Whether the integration through the boundary layer failed, so that the impact was solved as one contact
+        problem instead (Newton's law at each contact; Moreau 1988).
     steps, events : int
-        Steps of integration, and changes between open, loading and unloading.
+        Numbers of integration steps, and of changes between open, loading and unloading.
     """
 
     velocity_after: np.ndarray
@@ -72,56 +73,60 @@ def resolve_impacts(
     exponent: float = 1.0,
     rtol: float = 1e-8,
 ) -> CornerImpact:
-    """Resolve the impact of k contacts that are closed together, while one or more of them strike.
+    """Solve the multiple impact of k closed contacts, one or more of which strike.
 
     Parameters
     ----------
     inverse_mass : array_like, shape (3 k, 3 k) or (k, 3, k, 3)
-        W = G M^-1 G^T of the contacts [1/kg], symmetric, positive semidefinite, often singular; rows (n, t1,
-        t2) of each contact.
+        Delassus operator W = G M^-1 G^T of the contacts [1/kg], symmetric, positive semidefinite, often
+        singular; rows (n, t1, t2) of each contact.
     velocity : array_like, shape (k, 3)
-        Relative velocities before [m/s], normal first. Negative normal: the contact strikes; 0: it touches
-        (bodies at rest on each other); positive: it opens, and may be closed again by the others.
+        Relative velocities before the impact [m/s], normal first. A contact with a negative normal velocity
+        strikes; with 0 it touches (bodies at rest on each other); with a positive one it opens, and the other
+        contacts may close it again.
     friction, restitution : float or array_like, shape (k,)
-        Coulomb coefficient mu, at least 0, and coefficient e in [0, 1]. Where all e are 0 the
-        impact is one plastic event. Otherwise an e below 0.01 is taken as 0.01.
+        Coulomb's coefficient mu, at least 0, and coefficient of restitution e in [0, 1]. If all e are 0, the
+        impact is one plastic event. Otherwise an e below 0.01 is replaced by 0.01.
     law : {"newton", "poisson", "stronge"} or a sequence of k of them
-        What e compares: normal velocities of each contact that strikes (default), impulses, or works of
-        the normal force. For more than one contact no law gives back more energy than it took.
+        Definition of e: the ratio of normal velocities of each striking contact (default) or of impulses, or
+        the square root of the ratio of works of the normal force. With more than one contact, no contact
+        returns more energy than it has absorbed.
     multiple : {"simultaneous", "sequential", "newton"}
-        All contacts together through their boundary layers (default), or blow by blow, each time the contact
-        that approaches fastest, with those that approach equally fast: quick, exact for a row of balls with
-        e = 1, but else dependent on the order.
-        "newton": one contact problem for all, Newton's law at each (Moreau 1988), or e = 0 where that would
-        raise the energy: quickest, for crowds; `law` and `stiffness` play no part.
+        ``"simultaneous"`` (default): all contacts together through their boundary layers. ``"sequential"``: one
+        impact after another, each time the contact that approaches fastest, together with those that approach
+        equally fast. This is fast, and exact for a row of balls with e = 1, but in other cases it depends on
+        the order. ``"newton"``: one contact problem with Newton's law at each contact (Moreau 1988), or e = 0
+        if that would increase the energy. This is the fastest, for crowds; `law` and `stiffness` are not used.
     stiffness : array_like, shape (k,), optional
         Stiffness kappa of the contacts; with ``exponent=1`` only ratios matter. Default: all equal.
     exponent : float
-        p of the normal law N = kappa depth^p, at least 1. Default 1; 1.5 is Hertz's.
+        Exponent p of the normal law N = kappa depth^p, at least 1. Default 1; Hertz's law has 1.5.
     rtol : float
-        Relative error of velocities, within [1e-12, 1e-2]. Default 1e-8.
+        Relative tolerance of velocities, within [1e-12, 1e-2]. Default 1e-8.
 
     Returns
     -------
     CornerImpact
+        Velocities after the impact, impulses and energies.
 
     Raises
     ------
     ValueError
-        If an argument is not as above.
+        If an argument is invalid.
 
     Notes
     -----
-    Mathematics page, part 2. The normals of rigid bodies do not say how an impact divides among contacts: the
-    stiffness does. **It is physics, not a numerical parameter.** A row of three equal balls struck at one end
-    (Newton's cradle, e = 1, v = 1) ends with (-.130, .150, .980) for equal linear contacts, with (-.071, .076,
-    .995) for Hertz's (``exponent=1.5``), and tends to the (0, 0, 1) of the textbook as stiffness falls
-    along the row (.999999 for a hundredth), or by ``multiple="sequential"``. For a stiff second contact it
-    tends to (-1/3, 2/3, 2/3). A real cradle's balls do not quite touch, which is the sequential case.
+    Mathematics page, part 2. Rigid bodies do not determine how an impact is divided among contacts; the
+    stiffness does. **It is physics, not a numerical parameter.** A row of three equal balls that is struck at
+    one end (Newton's cradle, e = 1, v = 1) ends with the velocities (-.130, .150, .980) for equal linear
+    contacts, and (-.071, .076, .995) for Hertz's law (``exponent=1.5``). The result tends to (0, 0, 1) of the
+    textbook if the stiffness decreases along the row (.999999 for a hundredth), or with
+    ``multiple="sequential"``. For a stiff second contact it tends to (-1/3, 2/3, 2/3). The balls of a real
+    cradle have small gaps, which is the sequential case.
 
-    Contacts that move alike are solved as one: a box that falls flat on its face costs and gives
-    exactly what one contact does. A surface that is carried by m points gives the same for any m if its
-    stiffness is divided among them.
+    Contacts that move alike are solved as one: a box that falls flat on its face has the same cost and the same
+    result as one contact. A face with m contact points gives the same result for any m if its stiffness is
+    divided among them.
     """
     from carom.impact.laws import NUMBERS
     from carom.impact.multiple.layout import (
@@ -161,7 +166,7 @@ def resolve_impacts(
     contacts = CornerContacts(k, 0, W, velocities, mu, e, numbers, kappa, pair)
     code = resolve_multiple(contacts, settings, workspace, out)
     if code != OK:
-        raise ValueError(f"the impact was not resolved: {MESSAGES[code]}")
+        raise ValueError(f"the impact could not be solved: {MESSAGES[code]}")
     summary = out.summary[0]
     return CornerImpact(
         velocity_after=out.velocity.reshape(k, 3).copy(),

@@ -1,4 +1,4 @@
-"""Series of four contacts at a time: coefficients of an order lie side by side, added four at once.
+"""Series of four contacts at a time: coefficients of one order are adjacent and are added together (SIMD).
 
 Contact i is lane i % 4 of block i // 4. Lanes without a contact hold zeros. An array of a series is
 (ORDERS, B, 4); `line` is the distance of one order from the next, and `p` where a block begins in its order.

@@ -1,4 +1,4 @@
-"""What is given of a multiple impact, settings, workspace and result."""
+"""Input, settings, workspace and result of a multiple impact."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ NOT_RESOLVED = 2  #: no method ended with contacts that do not approach
 
 MESSAGES = {
     BAD_INPUT: "a number is not finite or out of its range",
-    NOT_RESOLVED: "no method ended with contacts that do not approach",
+    NOT_RESOLVED: "with every method some contacts still approach at the end",
 }
 
 # Bits of `marks`.

@@ -1,4 +1,4 @@
-"""One contact, exactly: the resolver of `carom.impact.resolve`, compiled on its own."""
+"""One contact, exactly: the solver of `carom.impact.resolve`, compiled separately."""
 
 from __future__ import annotations
 

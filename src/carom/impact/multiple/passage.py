@@ -1,4 +1,4 @@
-"""One group of contacts, in scaled variables: through the layer, plastically, or blow by blow."""
+"""One group of contacts in scaled variables: through the layer, plastic, or one impact after another."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A sequence of blows: the pair that approaches fastest strikes alone, until none approaches (§2.6).
+"""A sequence of impacts: the pair that approaches fastest strikes alone, until none approaches (§2.6).
 
 Points of one pair of bodies strike together, and so do pairs that approach equally fast, so that symmetric
 motions stay symmetric. Exact for Newton's cradle with e = 1. In general the result depends on the order of the

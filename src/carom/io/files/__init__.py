@@ -1,6 +1,6 @@
-"""Results in standard files: one netCDF-4 (HDF5) file a run, and conversion to xarray and pandas.
+"""Results in standard files: one netCDF-4 (HDF5) file for each run, and conversion to xarray and pandas.
 
-`layout` says what there is in a file and what it is called, `variables` makes it from a solution, `scene_data`
-and `scene_parts` turn a scene into JSON and back, `raw` keeps what the loop has written, `checkpoint` where it
-stands; `writing` and `reading` are the way to the disk and back.
+`layout` has the names and units of all variables in a file, `variables` makes them from a solution,
+`scene_data` and `scene_parts` convert a scene to JSON and back, `raw` has the records of the loop, `checkpoint`
+the state of the run; `writing` and `reading` write files and read them.
 """

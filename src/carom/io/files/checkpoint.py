@@ -1,7 +1,7 @@
-"""Where a run stands between two steps: all arrays that the loop goes on from.
+"""The checkpoint of a run between two steps: all arrays on which the next step depends.
 
-What a step writes before it reads it (the workspace of impacts, of groups and of crowds) is not kept, only how
-large it was.
+Arrays that a step writes before it reads them (the workspace of impacts, groups and crowds) are not stored,
+only their sizes.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ FIXED = {
 
 
 class Packed(NamedTuple):
-    """An array as it is in a file: unpacked when it is known to be one of the run."""
+    """A packed array in a file; it is unpacked after the check that it belongs to the run."""
 
     dtype: np.dtype
     shape: tuple[int, ...]
@@ -53,7 +53,7 @@ class Checkpoint(NamedTuple):
 
 
 def capture(run) -> Checkpoint | None:
-    """Return where a run stands; None in the middle of a step."""
+    """Return the checkpoint of a run; None in the middle of a step."""
     clock, search = run.clock[0], run.work.search[0]
     islands = run.islands
     inside = clock.spent != 0.0 or search.pending != 0
@@ -69,7 +69,7 @@ def capture(run) -> Checkpoint | None:
 
 
 def state_at_end(solution) -> Checkpoint | None:
-    """Return where the run of a finished solution stands; None if it has gone on since."""
+    """Return the checkpoint of the run of a finished solution; None if the run has continued since."""
     run = solution._run
     if hasattr(run, "checkpoint"):  # from a file
         return run.checkpoint
@@ -78,7 +78,7 @@ def state_at_end(solution) -> Checkpoint | None:
 
 
 def restore(run, checkpoint: Checkpoint, records: r.Records) -> None:
-    """Put a new run of the same scene where another one stood; `records` are what that had written.
+    """Set a new run of the same scene to the checkpoint of another one; `records` are those of that run.
 
     It has the contacts that the other one had (`Run.add_pairs`).
 
@@ -104,7 +104,7 @@ def restore(run, checkpoint: Checkpoint, records: r.Records) -> None:
 
 
 def packed(checkpoint: Checkpoint, add: Callable[[bytes], int]) -> dict:
-    """Return what an index has of a checkpoint; `add` takes bytes of a file, and returns where they stand."""
+    """Return the index entry of a checkpoint; `add` stores bytes in a file and returns their position."""
     arrays = {}
     for name, array in checkpoint.arrays.items():
         data = array.data if isinstance(array, Packed) else _deflated(array)
@@ -169,7 +169,7 @@ def _walk(name: str, value) -> Iterator[tuple[str, np.ndarray]]:
 
 
 def _put_records(run, records: r.Records) -> None:
-    """Copy what was written before the checkpoint into the records of a run, which grow as they do in one."""
+    """Copy the records before the checkpoint into the records of a run, which are lengthened as in a run."""
     clock = run.clock[0]
     ends = {
         "series": clock.saved, "state": clock.saved, "touch": clock.touched,

@@ -26,27 +26,27 @@ ENDS = {3: {"axis": ("x", "y", "z"), "contact_axis": ("n", "t1", "t2")}}
 
 
 class Frames(NamedTuple):
-    """The tables of a run, each a `pandas.DataFrame`; SI units. Made by `Solution.to_pandas`."""
+    """The tables of a run, each a `pandas.DataFrame`, in SI units. `Solution.to_pandas` makes them."""
 
     bodies: pd.DataFrame
-    """Saved times down, columns (body, quantity): ``bodies["die"].z`` is a height over time. Quantities
-    are x, y, z, the quaternion qw, qx, qy, qz, velocities vx, vy, vz and wx, wy, wz. In long form:
-    ``bodies.stack(0)``."""
+    """One row for each saved time, columns (body, quantity): ``bodies["die"].z`` is a height over time.
+    The quantities are x, y, z, the quaternion qw, qx, qy, qz, and the velocities vx, vy, vz and wx, wy, wz.
+    ``bodies.stack(0)`` is the long form."""
     energy: pd.DataFrame
-    """Saved times down: kinetic, potential and the entries of the ledger [J]."""
+    """One row for each saved time: kinetic and potential energy, and the entries of the ledger [J]."""
     impacts: pd.DataFrame
-    """A row for each point of each impact; vectors as columns ``impulse_n``, ``impulse_t1``, ...,
-    ``point_x``, ...; contact, body and other (the half-space or body that it strikes) by name."""
+    """One row for each point of each impact. Vectors are columns ``impulse_n``, ``impulse_t1``, ...,
+    ``point_x``, ...; contact, body and other (the half-space or body that it strikes) are names."""
     events: pd.DataFrame
-    """A row for each event: time, kind, contact."""
+    """One row for each event: time, kind, contact."""
     contacts: pd.DataFrame
-    """A row for each interval of contact that stays: contact, feature, start, end, mode."""
+    """One row for each interval of persistent contact: contact, feature, start, end, mode."""
     forces: pd.DataFrame
-    """A row for each active point and saved time: time, contact, body, other, mode, point, force."""
+    """One row for each active point and saved time: time, contact, body, other, mode, point, force."""
 
 
 def to_xarray(solution) -> xr.Dataset:
-    """Return all of a solution as a Dataset."""
+    """Return the whole solution as a Dataset."""
     xarray = need("xarray", "to_xarray")
     variables = {
         one.name: xarray.Variable(one.dims, one.data, one.attrs) for one in labelled(solution)

@@ -1,4 +1,4 @@
-"""Putting bytes on the disk: all of them in the place of what was there, or nothing."""
+"""Writing bytes to a file: completely, or not at all."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from pathlib import Path
 
 
 def put(path: Path, parts: Iterable[bytes | memoryview]) -> None:
-    """Write `parts`, one after the other, to `path`, replacing what is there in one go.
+    """Write `parts`, one after another, to `path`, and replace an old file in one operation.
 
-    They go to a file beside it, on the disk, and that takes the place of the old one. Whoever kills the
-    process, or cuts the power, finds the old file or the new one; what a killed process leaves beside it the
-    next one writes over.
+    They are written to a temporary file in the same folder, which then replaces the old file. If the process is
+    killed or the power fails, `path` is either the old or the new file. The next call overwrites a temporary
+    file that was left.
 
     Raises
     ------
     OSError
-        With the path and the reason, if they cannot be written: on a full disk above all.
+        If they cannot be written, for example on a full disk; with the path and the reason.
     """
     part = path.with_name(f".{path.name}.part")
     try:
@@ -31,7 +31,7 @@ def put(path: Path, parts: Iterable[bytes | memoryview]) -> None:
     except OSError as error:
         raise OSError(
             error.errno,
-            f"{error.strerror or error}; nothing was written, what was there is as it was",
+            f"{error.strerror or error}; nothing was written, an old file is unchanged",
             str(path),
         ) from error
     finally:

@@ -1,4 +1,4 @@
-"""Saving a run as it goes."""
+"""Saving a run repeatedly to its file."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SHARE = 10.0  # a run goes on at least this many times as long as it took to wri
 
 
 class Keeper:
-    """Writes a run to its file every `seconds` of time on the clock on the wall, and at its end."""
+    """Writer of a run to its file, every `seconds` of real time and at its end."""
 
     def __init__(self, run, path: str | os.PathLike, seconds: float):
         self.run, self.path = run, checked_path(path)
@@ -35,7 +35,7 @@ class Keeper:
         return max(self.seconds, SHARE * self.took)
 
     def look(self) -> None:
-        """Write the run between two steps, if it is time."""
+        """Write the run, if the interval since the last saving has passed; called between two steps."""
         begin = perf_counter()
         if begin - self.written < self.interval:
             return
@@ -45,7 +45,7 @@ class Keeper:
             write(self.path, so_far, self.checkpoint, whole=False)
         except Exception as error:  # a full disk, or whatever else, is no reason to lose the run
             warnings.warn(
-                f"the run could not be saved to {str(self.path)!r} and goes on: {error}",
+                f"the run could not be saved to {str(self.path)!r} and continues: {error}",
                 RuntimeWarning,
                 stacklevel=2,
             )
@@ -53,11 +53,11 @@ class Keeper:
         self.took = self.written - begin
 
     def stop(self) -> None:
-        """Keep where the run stands, before its end is written down, if that is between two steps."""
+        """Store the checkpoint of the run before its end is recorded, if it is between two steps."""
         self.checkpoint = capture(self.run) or self.checkpoint
 
     def finish(self, solution: Solution) -> Exception | None:
-        """Write the end, with where the run stands unless it failed; return what went wrong."""
+        """Write the end of the run, with its checkpoint unless it failed; return an error of writing."""
         going_on = solution.status is Status.INTERRUPTED or solution.status.ended
         try:
             write(self.path, solution, self.checkpoint if going_on else None)
@@ -67,7 +67,7 @@ class Keeper:
 
 
 def checked_path(path: str | os.PathLike) -> Path:
-    """Return the path of a file that a run is saved to as it goes; refuse another before anything runs."""
+    """Return the path of the file of a run; refuse an invalid one before the run starts."""
     need("h5netcdf", "saving a run")
     where = checks.file_to_write("save", path)
     if where.suffix.lower() not in RUN:

@@ -1,4 +1,4 @@
-"""The records of a run that a solution from a file holds in the place of the run itself."""
+"""The records of a run in a solution from a file, instead of the run itself."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from carom.scene.scene import Scene
 
 
 def run_again(scene: Scene, settings: dict, options: Options):
-    """Return a run that has not begun, from the settings of another one."""
+    """Return a new run with the settings of another one."""
     from carom.run import Run
     from carom.stepping.settings import settings_of
 
@@ -24,7 +24,7 @@ def run_again(scene: Scene, settings: dict, options: Options):
 
 
 class KeptRun:
-    """The records of a run that has ended; compiled again only where something is worked out from them."""
+    """The records of a run that has ended; its scene is compiled again only when it is needed."""
 
     def __init__(
         self, scene: Scene, settings: dict, options: Options, records: r.Records,
@@ -40,9 +40,9 @@ class KeptRun:
         clock.snapped = len(records.snapshot)
 
     def revived(self, duration: float | None = None, stand: bool = True):
-        """Return a run that stands where the checkpoint says, or (not `stand`) at the start.
+        """Return a run at its checkpoint, or (if not `stand`) at its start.
 
-        With a duration it is to go on to that time.
+        With a duration, the run continues to that time.
         """
         settings = self.settings
         if duration is not None:
@@ -65,7 +65,7 @@ class KeptRun:
 
     @cached_property
     def compiled(self):
-        """The compiled scene; with functions missing it cannot stand where the run did."""
+        """The compiled scene; if functions are missing, the run cannot continue."""
         if self.missing:
             return self._as_at_start
         made = self._run.compiled
@@ -85,7 +85,7 @@ class KeptRun:
 
     @property
     def bodies(self):
-        """What kernels know about the bodies, (N,) BODY."""
+        """The records of the bodies in the kernels, (N,) BODY."""
         return self._as_at_start.system.bodies
 
     @property
@@ -94,7 +94,7 @@ class KeptRun:
         if self.missing:
             names = ", ".join(map(repr, self.missing))
             raise ValueError(
-                f"functions must be given to Solution.load to work this out, got none for {names}"
+                f"functions must be given to Solution.load to compute this, got none for {names}"
             )
         return self._run.method
 
@@ -107,7 +107,7 @@ class KeptRun:
 
     @cached_property
     def pairs(self) -> PairTable:
-        """What touches what, by the number of the contact.
+        """The pairs of the contacts, by number of the contact.
 
         Raises
         ------

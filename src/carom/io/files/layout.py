@@ -1,6 +1,6 @@
-"""What a file of a run looks like: dimensions, labels, units, attributes, and its version.
+"""The layout of a file of a run: dimensions, labels, units, attributes, and the version of the layout.
 
-Units are written as UDUNITS has them (``m s-1``), as the CF conventions ask.
+Units are in UDUNITS form (``m s-1``), according to the CF conventions.
 """
 
 from __future__ import annotations
@@ -51,8 +51,8 @@ IMPACT = {
     "restitution_work": ((), "J", "work of the normal force in restitution"),
     "friction_loss": ((), "J", "energy lost to friction"),
     "together": ((), "1", "points that were resolved together, each with a row of its own"),
-    "wedged": ((), "1", "1 where friction held the pair and its law of restitution could not be met"),
-    "located": ((), "1", "1 where the time was located, 0 where it is the end of a step of a crowd"),
+    "wedged": ((), "1", "1 if friction wedges the pair, so that its law of restitution cannot hold"),
+    "located": ((), "1", "1 if the time was located, 0 if it is the end of a time-stepping step"),
 }  # fmt: skip
 
 EVENT = {
@@ -61,16 +61,16 @@ EVENT = {
     "contact": ((), "1", "place of the contact among all contacts, from 0"),
 }
 
-#: intervals of contact that stays
+#: intervals of persistent contact
 INTERVAL = {
     "contact": ((), "1", "place of the contact among all contacts, from 0"),
-    "feature": ((), "1", "what touches: of a half-space the number of the vertex in the shape"),
+    "feature": ((), "1", "number of the contact point; on a half-space the vertex of the shape"),
     "start": ((), "s", "start of the interval"),
     "end": ((), "s", "end of the interval"),
     "mode": ((), None, "slipping or sticking (or rolling, or at rest)"),
 }
 
-#: one row an active point and saved time
+#: one row for each active point and saved time
 HELD = {
     "saved": ((), "1", "place of the saved time along time, from 0"),
     "contact": ((), "1", "place of the contact among all contacts, from 0"),
@@ -85,14 +85,14 @@ HELD = {
 LEDGER = {
     "loads": "work of loads, dampers and motors since the start",
     "impacts": "change by impacts since the start",
-    "friction": "work of friction in held contacts since the start",
-    "bounces": "energy of bounces that were not resolved, since the start",
+    "friction": "work of friction in persistent contacts since the start",
+    "bounces": "energy of dropped bounces, since the start",
     "residual": "energy that no entry explains: the error of the integration",
 }
 
 
 class Variable(NamedTuple):
-    """An array with its dimensions and what it means."""
+    """An array with its dimensions, unit and description."""
 
     name: str
     dims: tuple[str, ...]

@@ -1,4 +1,4 @@
-"""Packages that only files need: imported where they are used."""
+"""Packages that only files need; they are imported where they are used."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from carom import checks
 
 
 def need(package: str, what: str) -> Any:
-    """Return an optional package, or say how to install it.
+    """Return an optional package; `what` needs it.
 
     Raises
     ------
     ImportError
-        If it is not installed; `what` is what needs it.
+        If it is not installed; the message has the command that installs it.
     """
     try:
         return importlib.import_module(package)

@@ -1,6 +1,6 @@
 """The records of a run as plain arrays: what derived properties of a solution are made from.
 
-Columns that a labelled variable holds bit for bit are not written a second time.
+Columns that are bit for bit equal to a labelled variable are not written a second time.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class Column(NamedTuple):
 
 
 def columns(records: r.Records, labelled: Mapping[str, np.ndarray]) -> list[Column]:
-    """Return the columns of `records` that `labelled` does not hold."""
+    """Return the columns of `records` that are not in `labelled`."""
     out = []
     for table, fields in FIELDS.items():
         for field in fields:

@@ -1,7 +1,7 @@
 """Reading a run from its file.
 
-The file has not changed since it was written (`carom.io.files.sealed`), but anybody may have written it: all
-that is taken from it is looked at, sizes before anything is made of them, numbers of rows before they are used.
+The file has not changed since it was written (`carom.io.files.sealed`), but anybody may have written it.
+Therefore all data from it are checked: sizes before arrays are made, and row numbers before they are used.
 """
 
 from __future__ import annotations
@@ -53,7 +53,8 @@ def read(path: Path, functions: Mapping[str, Callable] | None = None) -> dict[st
     FileNotFoundError
         If there is no file.
     ValueError
-        If it is foreign, damaged, or newer than this version of carom; if a function is none of the scene's.
+        If it is not a file of a run, damaged, or newer than this version of carom; if the scene does not have a
+        function.
     """
     file = unsealed(path)
     try:
@@ -136,7 +137,9 @@ def _settings(given: dict, options: Options) -> dict:
             checks.number("earlier", one, above=0.0) for one in given["earlier"]
         )
         if not np.all(np.diff((*known["earlier"], given["duration"])) > 0.0):
-            raise ValueError(f"durations must rise, got {known['earlier']}, {given['duration']}")
+            raise ValueError(
+                f"durations must increase, got {known['earlier']}, {given['duration']}"
+            )
     return known
 
 

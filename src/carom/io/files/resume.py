@@ -1,4 +1,4 @@
-"""Going on with a run from its file."""
+"""`resume`: continue a run from its file."""
 
 from __future__ import annotations
 
@@ -22,36 +22,37 @@ def resume(
     progress: bool | Callable[[float, float], None] | None = None,
     throw: bool = True,
 ) -> Solution:
-    """Go on with a run that `simulate` was saving when it was interrupted, or beyond its end.
+    """Continue a run from its file: an interrupted run to its end, or a finished run beyond its end.
 
-    With the same version of carom on the same machine the result is that of a run without interruption, bit
-    for bit. It is saved to the same file. The state that it goes on from is taken from the file as it is: go on
-    with files that are yours, or of somebody whom you trust.
+    With the same version of carom on the same machine, the result is bit for bit that of a run without
+    interruption. It is saved to the same file. The state of the run in the file is used without checks, so
+    continue only files that are your own or come from somebody whom you trust.
 
     Parameters
     ----------
     path : str or path
-        File of ``simulate(..., save=path)``, or of `Solution.save`.
+        File of ``simulate(..., save=path)`` or of `Solution.save`.
     duration : float, optional
-        Time from the start to go on to [s], beyond what the run was to reach. States are saved as often as
-        before. Default: what the run was to reach; if it has, it is returned as it is.
+        New duration of the run from its start [s], longer than before. States are saved as often as before.
+        Default: the duration of the run; a run that has reached it is returned unchanged.
     functions : mapping, optional
-        Functions of the user's that the scene has, which the file cannot hold: ``"part.field"`` (as in
-        ``"motor.force"``) to function. What they remember themselves between calls is not restored.
+        User-defined functions of the scene, which the file cannot contain: ``"part.field"`` (for example
+        ``"motor.force"``) to function. Data that a function itself stores between calls are not restored.
     save_seconds, progress, throw
-        As of `simulate`.
+        As for `simulate`.
 
     Returns
     -------
     Solution
+        Solution for the whole time, from the start.
 
     Raises
     ------
     ValueError
-        If the file is not that of a run, holds no checkpoint, or one of another version of carom; if
-        `duration` is not beyond that of the run; if functions of the scene are missing, or one is none of it.
+        If the file is not a file of a run, or has no checkpoint of this version of carom; if `duration` is not
+        longer than before; if functions of the scene are missing, or the scene does not have a given function.
     SimulationError
-        If the run fails later on and `throw` is True.
+        If the run fails and `throw` is True.
     """
     from carom.io.files.keeper import Keeper
     from carom.io.run_to_end import finish
@@ -71,23 +72,29 @@ def resume(
     going_on = solution.status is Status.INTERRUPTED or solution.status.ended
     if not going_on or kept.checkpoint is None:
         why = (
-            "it holds no checkpoint, which simulate(save=...) writes"
+            "it has no checkpoint, which simulate(save=...) writes"
             if going_on
             else f"it ended by itself: {solution.message}"
         )
-        raise ValueError(f"path must be a file of a run to go on with, got {str(path)!r}: {why}")
+        raise ValueError(
+            f"path must be a file of a run that can continue, got {str(path)!r}: {why}"
+        )
     if kept.missing:
         names = ", ".join(map(repr, kept.missing))
-        raise ValueError(f"functions must be given for {names}, which the file does not hold")
+        raise ValueError(
+            f"functions must be given for {names}, because the file does not have them"
+        )
     try:
         run = kept.revived(duration)
     except ValueError as error:
-        raise ValueError(f"path must be a run of this carom, got {str(path)!r}: {error}") from error
+        raise ValueError(
+            f"path must be a run of this version of carom, got {str(path)!r}: {error}"
+        ) from error
     return finish(run, progress, Keeper(run, Path(path), save_seconds), throw)
 
 
 def go_on(solution, duration: float, progress, throw: bool):
-    """Return the solution of a run that goes on for `duration` [s] from the end of another one."""
+    """Return the solution of a run that continues another one from its end for `duration` [s]."""
     from carom.io.files.checkpoint import state_at_end
     from carom.io.run_to_end import finish
     from carom.stepping.settings import check_handling
@@ -97,7 +104,7 @@ def go_on(solution, duration: float, progress, throw: bool):
     checkpoint, kept = state_at_end(solution), solution._run
     if not solution.status.ended or checkpoint is None:
         raise ValueError(
-            "the run must have come to its end to go on from there, got one of which this is said: "
+            "the run must have reached its end to continue from there, got a run with the message: "
             f"{solution.message}"
         )
     if not isinstance(kept, KeptRun):
@@ -113,5 +120,7 @@ def go_on(solution, duration: float, progress, throw: bool):
         )
     if kept.missing:
         names = ", ".join(map(repr, kept.missing))
-        raise ValueError(f"functions must be given to Solution.load to go on, got none for {names}")
+        raise ValueError(
+            f"functions must be given to Solution.load to continue, got none for {names}"
+        )
     return finish(kept.revived(solution.settings["duration"] + duration), progress, None, throw)

@@ -1,8 +1,8 @@
-"""Checks of a scene that comes from a file: the same as when its parts are added by hand.
+"""Checks of a scene from a file: the same as for parts that are added by the methods of `Scene`.
 
-Records in a file are made without their constructors, which would change last digits. Here they are made once
-more with them, and what they then hold must be what the file says, up to rounding. Of hulls, meshes and
-compounds, which take long to make, sizes and numbers are looked at.
+Records from a file are made without their constructors, which would change last digits. For the check they are
+made again with their constructors, and the fields must agree up to rounding. For hulls, meshes and compounds,
+which take long to make, only sizes and numbers are checked.
 """
 
 from __future__ import annotations
@@ -62,7 +62,7 @@ def check_part(scene: Scene, part: Any) -> None:
         raise ValueError(f"name must be a string, got {part.name!r}")
     index, _ = parts.new(type(part), part.name, "")
     if type(part.index) is not int or part.index != index:
-        raise ValueError(f"index must be {index}, its place among its kind, got {part.index!r}")
+        raise ValueError(f"index must be {index}, its number among its kind, got {part.index!r}")
     _same(part, _made(parts, part))
 
 
@@ -71,7 +71,7 @@ def check_pair(pair: frozenset) -> frozenset:
     allowed = (*KINDS, bodies.Ground)
     if len(pair) != 2 or not all(isinstance(one, allowed) for one in pair):
         raise ValueError(
-            f"a pair must be two bodies, or a body and what never moves, got {set(pair)}"
+            f"a pair must be two bodies, or a body and a half-space or static body, got {set(pair)}"
         )
     if not any(isinstance(one, bodies.Body) for one in pair):
         raise ValueError(f"one of a pair must be a body, got {set(pair)}")
@@ -79,7 +79,7 @@ def check_pair(pair: frozenset) -> frozenset:
 
 
 def _made(parts, part: Any) -> Any:
-    """Return a part made once more from its fields."""
+    """Return a part made again from its fields."""
     index, name = part.index, part.name
     if isinstance(part, bodies.Body):
         motion = part.position, part.orientation, part.velocity, part.angular_velocity
@@ -123,7 +123,7 @@ def _made_contact(parts, part: contacts.Contact) -> contacts.Contact:
         raise ValueError(f"body and other must be two, got {part.body!r} for both")
     for one in (part.body, part.other):
         if isinstance(one, bodies.Body) and one.shape is None:
-            raise ValueError(f"body must have a shape to touch with, got {one!r}")
+            raise ValueError(f"body must have a shape for contact, got {one!r}")
     law = {one.name: getattr(part, one.name) for one in fields(ContactLaw)}
     places = {"index": part.index, "name": part.name, "body": part.body, "other": part.other}
     return contacts.Contact(**places, **law)
@@ -150,7 +150,7 @@ def _arguments(kind: type) -> tuple[str, ...]:
 
 
 def _same(record: Any, made: Any) -> None:
-    """Refuse a record whose fields are not those of the one made once more, up to rounding."""
+    """Refuse a record whose fields differ from those of the record made again, beyond rounding."""
     for one in fields(made):
         here, there = getattr(record, one.name), getattr(made, one.name)
         if not _near(here, there):

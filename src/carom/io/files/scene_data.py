@@ -1,8 +1,9 @@
 """Values of a scene as JSON and back, bit for bit.
 
-Frozen records are written field by field, the derived ones too, and made again without their constructors:
-normalising a unit vector once more, or taking the hull of a hull, would change last digits. What is plain in
-JSON stands for itself, a list for an array of floats; all else is an object with one of the keys below.
+Frozen records are written field by field, including derived fields, and are made again without their
+constructors, because normalising a unit vector again, or taking the hull of a hull, would change last digits.
+Plain JSON values represent themselves, and a list is an array of floats; all other values are objects with one
+of the keys below.
 
 =============== ==================================================================
 ``type``        a record: its class and its fields
@@ -13,7 +14,7 @@ JSON stands for itself, a list for an array of floats; all else is an object wit
 ``tuple``       a tuple
 ``number``      nan, inf or -inf
 ``polynomial``  a `scipy.interpolate.PPoly`
-``function``    a function of the user's: only its name
+``function``    a user-defined function: only its name
 =============== ==================================================================
 """
 
@@ -49,7 +50,7 @@ ARRAYS = ("<f8", "<i8", ">f8", ">i8", "|b1")
 
 
 class MissingFunction:
-    """Stands for a function of the user's that a file could not hold; calling it is an error."""
+    """Placeholder of a user-defined function, which a file cannot contain; calling it is an error."""
 
     def __init__(self, name: str, was: str):
         self.name, self.was = name, was
@@ -57,7 +58,7 @@ class MissingFunction:
     def __call__(self, *arguments):
         """Say that it is missing."""
         raise RuntimeError(
-            f"the function {self.name!r} ({self.was}) is not in the file, which holds data alone; give it: "
+            f"the function {self.name!r} ({self.was}) is not in the file, which has only data; give it: "
             f"functions={{{self.name!r}: ...}}"
         )
 
@@ -78,7 +79,7 @@ class Encoder:
         return self._record(part, part.name)
 
     def value(self, value: Any, where: str = "") -> Any:
-        """Return a value; `where` is what a function there is called."""
+        """Return a value as JSON; `where` is the name of a function at this position."""
         if value is None or isinstance(value, (bool, str)):
             return value
         if isinstance(value, (int, float, np.generic)):
@@ -104,7 +105,7 @@ class Encoder:
         raise TypeError(f"{where or 'a value'} cannot be written to a file, got {value!r}")
 
     def function(self, value: Any, where: str) -> dict:
-        """Return what stands for a function of the user's."""
+        """Return the JSON of a user-defined function: its name."""
         if isinstance(value, MissingFunction):
             return {"function": where, "was": value.was}
         module, name = (getattr(value, k, "") for k in ("__module__", "__qualname__"))
@@ -136,7 +137,7 @@ class Decoder:
         self.missing: list[str] = []
 
     def value(self, data) -> Any:
-        """Return the value that `data` stands for."""
+        """Return the value of the JSON `data`."""
         if isinstance(data, list):
             return _frozen(np.array(data, dtype=np.float64))
         if not isinstance(data, dict):

@@ -12,10 +12,10 @@ from carom.io.files.scene_data import PARTS, Decoder, Encoder
 from carom.scene.materials import ContactLaw, checked_rule
 from carom.scene.scene import Scene
 
-#: what a missing function means, in the words of the file
+#: note in the file about missing functions
 NOTE = (
-    "functions of the user's are not in the file: a scene read from it has placeholders there, which raise "
-    "an error when they are called"
+    "user-defined functions are not in the file: a scene read from it has placeholders, which raise an error "
+    "when they are called"
 )
 
 
@@ -47,15 +47,15 @@ def scene_from_text(
     Parameters
     ----------
     text : str
-        What `scene_to_text` has written.
+        Output of `scene_to_text`.
     functions : mapping, optional
-        Functions of the user's by name, ``"part.field"``.
+        User-defined functions by name, ``"part.field"``.
 
     Raises
     ------
     ValueError
-        With the part that is wrong: if the text is no JSON, or a part is none that a scene would take; if a
-        name of `functions` is none that the scene knows.
+        If the text is not JSON, a scene would refuse a part, or the scene does not have a name in `functions`;
+        the message names the part.
     """
     with told("the text"):
         checks.instance("a scene", text, (str,))

@@ -1,11 +1,12 @@
-"""The end of a file: what carom reads, and the digest by which damage is seen.
+"""The end of a file: the part that carom reads, and the digest that shows damage.
 
-A file is netCDF-4 (HDF5) from its first byte on, for all other programs. Behind it, where HDF5 does not look,
-stand carom's own arrays, an index of all arrays (JSON) and a line with the SHA-256 of all that is before. (In
-HDF5's user block, at the beginning, the digest would hide the signature by which xarray knows the file.)
+For other programs a file is netCDF-4 (HDF5) from its first byte on. After the HDF5 data, where HDF5 does not
+read, are the arrays of carom, an index of all arrays (JSON), and a line with the SHA-256 of all bytes before.
+(In the user block of HDF5, at the beginning, the digest would hide the signature by which xarray recognises a
+file.)
 
-`Solution.load` takes its numbers from where the index says. So HDF5, whose library follows links to other
-files and does not survive every damaged file, never opens what carom reads.
+`Solution.load` reads the numbers at the positions in the index. It does not use the HDF5 library, which follows
+links to other files and crashes on some damaged files.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ BEFORE = "\ncarom run, format %3d, index of %15d bytes, sha256 "
 TAIL = re.compile(rb"\ncarom run, format +(\d+), index of +(\d+) bytes, sha256 ([0-9a-f]{64})\n")
 LENGTH = len(BEFORE % (0, 0)) + 64 + 1
 SIGNATURE = b"\x89HDF\r\n\x1a\n"
-ALLOWED = "allowed is a file that Solution.save or simulate(save=...) has written"
+ALLOWED = "give a file that Solution.save or simulate(save=...) has written"
 
 
 class Sealed(NamedTuple):
@@ -48,7 +49,7 @@ def unsealed(path: Path) -> Sealed:
     Raises
     ------
     FileNotFoundError
-        If there is none.
+        If the file does not exist.
     ValueError
         If it is of another kind, damaged, or newer than this version of carom.
     """
@@ -58,7 +59,7 @@ def unsealed(path: Path) -> Sealed:
         raise ValueError(refusal(path, _what_it_is(bytes(data[: len(SIGNATURE)]))))
     version, length, digest = int(tail[1]), int(tail[2]), tail[3].decode()
     if hashlib.sha256(data[:-65]).hexdigest() != digest:
-        raise ValueError(refusal(path, "it is damaged: its digest is not that of its bytes"))
+        raise ValueError(refusal(path, "it is damaged: its digest does not agree with its bytes"))
     if version != FORMAT:
         raise ValueError(
             f"path must be a file in format {FORMAT}, got {str(path)!r} in format {version}: update carom to "
@@ -81,9 +82,11 @@ def refusal(path: Path, why: str) -> str:
 
 def _bytes(path: Path) -> bytes:
     if not path.exists():
-        raise FileNotFoundError(f"path must be a file of a run, got {str(path)!r}: there is none")
+        raise FileNotFoundError(
+            f"path must be a file of a run, got {str(path)!r}: it does not exist"
+        )
     if not path.is_file():
-        what = "a folder" if path.is_dir() else "no file with contents of its own"
+        what = "a folder" if path.is_dir() else "not a regular file"
         raise ValueError(refusal(path, f"it is {what}"))
     try:
         return path.read_bytes()
@@ -93,10 +96,10 @@ def _bytes(path: Path) -> bytes:
 
 def _what_it_is(beginning: bytes) -> str:
     if beginning != SIGNATURE:
-        return "it is not HDF5, or its beginning is lost"
+        return "it is not HDF5, or its beginning is missing"
     return (
-        "it is HDF5 without the end that carom writes: of another program, cut short, changed since it was "
-        "written, or of an earlier carom (0.1 or before), which reads its own"
+        "it is HDF5 without the end that carom writes: a file of another program, or cut short, or changed, or "
+        "written by carom 0.1 or earlier, which can read it"
     )
 
 

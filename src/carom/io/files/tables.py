@@ -1,4 +1,4 @@
-"""Tables of a run as CSV or Parquet: a file a table."""
+"""Tables of a run as CSV or Parquet, one file for each table."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ RUN, TABLES = (".nc", ".h5", ".hdf5"), (".csv", ".parquet")
 
 
 def is_table(path: Path) -> bool:
-    """Return whether a file of this name is to be a table; refuse a name that says nothing of its format."""
+    """Return whether a file name is that of a table; refuse a name without a known suffix."""
     if path.suffix.lower() in TABLES:
         return True
     if path.suffix.lower() in RUN:
         return False
     raise ValueError(
-        f"path must end in {', '.join(RUN)} (all of the run), or in {' or '.join(TABLES)} (its tables), got "
+        f"path must end in {', '.join(RUN)} (the whole run) or in {' or '.join(TABLES)} (its tables), got "
         f"{str(path)!r}"
     )
 

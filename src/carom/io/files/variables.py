@@ -1,4 +1,4 @@
-"""A solution as labelled arrays: what a file and an xarray Dataset hold alike."""
+"""A solution as labelled arrays, for files and for xarray Datasets."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ from carom.scene.joints import Distance, Spherical
 
 
 def labelled(solution, reactions: bool = True) -> list[Variable]:
-    """Return all of a solution as variables.
+    """Return the whole solution as variables.
 
-    With `reactions` those of joints, and their coordinates, too: they are worked out from the states.
+    With `reactions`, also reactions and coordinates of joints, which are computed from the states.
     """
     scene = solution.scene
     out = [
@@ -97,7 +97,7 @@ def _motion(solution) -> list[Variable]:
         *ledger,
         Variable(
             "held_residual", series, solution.held_residual, "m s-1",
-            "how far held contacts are from their law, greatest since the saved time before",
+            "largest residual of the contact law in persistent contacts since the previous saved time",
         ),
     ]  # fmt: skip
 
@@ -130,7 +130,7 @@ def _contacts(solution) -> list[Variable]:
         ),
         Variable(
             "contact_force", ("time", "contact", "contact_axis"), solution.contact_force, "N",
-            "force of held contacts on the body",
+            "force of persistent contacts on the body",
         ),
     ]  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""Writing a run to its file: all of it, or nothing.
+"""Writing a run to its file: completely, or not at all.
 
 The HDF5 library makes its part in memory; the bytes are written without it. (It does not survive a full disk:
 version 2.0 ends the process.)
@@ -35,20 +35,20 @@ def save(path: str | os.PathLike, solution) -> None:
 
 
 def write(path: Path, solution, checkpoint: Checkpoint | None = None, whole: bool = True) -> None:
-    """Write a solution to `path`, replacing what is there in one go.
+    """Write a solution to `path`, and replace an old file in one operation.
 
     Without `whole` the reactions of joints are left out.
 
     Raises
     ------
     OSError
-        With the path and the reason, if it could not be written; what was there is as it was.
+        If it could not be written, with the path and the reason; an old file is unchanged.
     """
     try:
         parts = file_of(solution, checkpoint, whole)
     except (OSError, MemoryError) as error:
         why = str(error) or "no memory is left"
-        raise OSError(f"{str(path)!r} could not be written, and is as it was: {why}") from error
+        raise OSError(f"{str(path)!r} could not be written and is unchanged: {why}") from error
     put(path, parts)
 
 
@@ -90,7 +90,7 @@ def hdf5(variables: list[Variable], attrs: dict) -> tuple[memoryview, dict[str, 
     Raises
     ------
     OSError
-        If the HDF5 library fails, or has not written what it was given.
+        If the HDF5 library fails, or has written wrong data.
     """
     h5netcdf = need("h5netcdf", "saving a run")
     import h5py

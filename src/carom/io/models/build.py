@@ -36,9 +36,9 @@ class Coordinate(NamedTuple):
     Attributes
     ----------
     joint : Joint
-        Of the scene.
+        Joint of the scene.
     index : int
-        Which coordinate of it.
+        Index of the coordinate of this joint.
     sign : float
         1 or -1.
     start : float
@@ -51,7 +51,7 @@ class Coordinate(NamedTuple):
     start: float
 
     def of(self, solution) -> tuple[Any, Any]:
-        """Return q and its rate, each (T,), at the saved times of a solution: in the terms of the model."""
+        """Return q and its rate, each (T,), at the saved times of a solution, as the model defines them."""
         checks.instance("solution", solution, (Solution,))
         q, rate = solution.joint_coordinates(self.joint)
         return self.start + self.sign * q[:, self.index], self.sign * rate[:, self.index]

@@ -72,12 +72,12 @@ def touching_pairs(build: Build, solids: list[Solid], rules: Filter) -> dict[Pai
         pair = _ordered(first.part, second.part)
         called = f"pair {pair[0].name!r}, {pair[1].name!r}"
         if touch.some:
-            build.report.add(called, "only some of their geoms touch", "all of them do")
+            build.report.add(called, "only some of their geoms touch", "all of them touch")
         if touch.differ:
             build.report.add(
                 called,
                 "friction differs from geom to geom",
-                f"the greatest is that of all, {touch.friction.sliding:g}",
+                f"the greatest is used for all, {touch.friction.sliding:g}",
             )
         pairs[pair] = touch.friction
     return pairs
@@ -94,7 +94,7 @@ def without_overlaps(build: Build, pairs: dict[Pair, Friction], strict: bool) ->
         text = f"{body.name!r} starts {depth:.3g} m inside {other.name!r}"
         if strict:
             raise ValueError(
-                f'{text}; start elsewhere (keyframe, qpos), or let overlaps="repair" take such contacts out'
+                f'{text}; start elsewhere (keyframe, qpos), or use overlaps="repair" to leave it out'
             )
         build.report.add(f"pair {body.name!r}, {other.name!r}", text, "the two do not touch")
     return kept

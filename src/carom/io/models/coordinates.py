@@ -1,4 +1,4 @@
-"""What acts along the coordinates of joints: springs, dampers, dry friction, ends, the inertia of motors."""
+"""Parts that act along joint coordinates: springs, dampers, dry friction, limits, inertia of motors."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ RELAXED = 1e-9  # angle, or distance by the extent of the model, within which a 
 
 
 def add_coordinate_parts(build: Build, restitution: float, impact_law: str, armature: bool) -> None:
-    """Add what acts along each hinge and slide."""
+    """Add the parts that act along each hinge and slide."""
     for j, coordinate in build.coordinates.items():
         _spring(build, j, coordinate)
         _friction(build, j, coordinate)
@@ -24,7 +24,7 @@ def add_coordinate_parts(build: Build, restitution: float, impact_law: str, arma
 
 
 def _called(build: Build, j: int) -> tuple[str, str]:
-    """Return the name of a joint, and how it stands in the report."""
+    """Return the name of a joint, and its name in the report."""
     name = name_of(build.model.joint(j), "joint")
     return name, f"joint {name!r}"
 
@@ -51,7 +51,7 @@ def _friction(build: Build, j: int, c: Coordinate) -> None:
 
 
 def _stops(build: Build, j: int, c: Coordinate, restitution: float, law: str) -> None:
-    """Add both ends; one that the start is beyond is moved to where it starts."""
+    """Add both limits; a limit that the start exceeds is moved to the start."""
     if not build.model.jnt_limited[j]:
         return
     name, called = _called(build, j)
@@ -61,7 +61,7 @@ def _stops(build: Build, j: int, c: Coordinate, restitution: float, law: str) ->
             build.report.add(
                 called,
                 f"starts beyond its {word} limit, by {side * end:.3g}",
-                "the limit is where it starts",
+                "the limit is moved to the start",
             )
             end = 0.0
         which = "lower" if side * c.sign > 0.0 else "upper"
@@ -82,7 +82,7 @@ def _armature(build: Build, j: int, c: Coordinate, represent: bool) -> None:
         return
     name, called = _called(build, j)
     if not represent:
-        build.report.add(called, f"armature {inertia:g}", "left out, as armature=False asks for")
+        build.report.add(called, f"armature {inertia:g}", "left out because of armature=False")
         return
     rotor = forces.JointInertia(c.joint, inertia, c.index)
     build.scene.add_force(rotor, name=build.names.new(f"{name}:armature", "force"))

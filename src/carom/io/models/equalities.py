@@ -81,7 +81,7 @@ def _tie(build: Build, e: int, called: str, definition, first: int, second: int,
     """Add a joint between two bodies, with a frame in each."""
     parent, child = build.carrier(first), build.carrier(second)
     if parent is child:
-        build.report.add(called, "joins two parts of what is one body", "left out")
+        build.report.add(called, "joins two parts of the same body", "left out")
         return
     away = float(np.linalg.norm(two[0] - one[0])) / build.model.stat.extent
     turned = float(np.linalg.norm(quaternion.between(one[1], two[1])))
@@ -89,7 +89,7 @@ def _tie(build: Build, e: int, called: str, definition, first: int, second: int,
         build.report.add(
             called,
             f"does not hold at the start: {away * build.model.stat.extent:.3g} m, {turned:.3g} rad",
-            "run with Options(project_start=True), which brings the parts together",
+            "use Options(project_start=True), which moves the parts together",
         )
     if isinstance(child, Ground):
         parent, child, one, two = child, build.moving(int(build.model.body_weldid[first])), two, one
@@ -109,7 +109,7 @@ def _couple(build: Build, e: int, called: str) -> None:
         build.report.add(called, "is a polynomial of degree 2 or more", "left out")
         return
     if not {first, second} - {-1} <= build.coordinates.keys():
-        build.report.add(called, "is of a joint that is no hinge or slide", "left out")
+        build.report.add(called, "is for a joint that is not a hinge or slide", "left out")
         return
     missing, factors = -a[0], {}
     for j, factor in ((first, 1.0), (second, -a[1])):
@@ -119,7 +119,7 @@ def _couple(build: Build, e: int, called: str) -> None:
             factors[c.joint, c.index] = factor * c.sign
     if abs(missing) > FITS:
         build.report.add(
-            called, f"does not hold at the start, by {missing:.3g}", "keeps what it is at the start"
+            called, f"does not hold at the start, by {missing:.3g}", "keeps its value at the start"
         )
     name = build.names.new(name_of(model.equality(e), "equality"), "equality")
     build.scene.add_constraint(constraints.Coupling(factors), name=name)

@@ -25,7 +25,7 @@ EXACT = 1e-12  # sine or cosine of axes, and distance by the extent of the model
 
 
 class Group(NamedTuple):
-    """Joints of the model that one joint of the scene stands for."""
+    """Joints of the model that one joint of the scene represents."""
 
     definition: JointDefinition
     members: list[tuple[int, int, float]]  # joint of the model, which coordinate, sign
@@ -109,7 +109,7 @@ def _planar(build: Build, numbers: list[int]) -> Group | None:
 
 
 def _light_link(build: Build, link: Link, last: int, later: list[int]) -> Body:
-    """Add a link between two joints of a body, where it stands and moves after the joint `last`."""
+    """Add a link between two joints of a body, with the position and motion after the joint `last`."""
     model, data = build.model, build.data
     joint = name_of(model.joint(last), "joint")
     first, count = int(model.body_dofadr[link.body]), int(model.body_dofnum[link.body])
@@ -124,7 +124,7 @@ def _light_link(build: Build, link: Link, last: int, later: list[int]) -> Body:
     motion = point_velocity(model, data, link.body, centre, without=dofs)
     build.report.add(
         f"joint {joint!r}",
-        "is followed by another one in the same body, and there are no massless bodies",
+        "is followed by another joint in the same body, and a scene has no massless bodies",
         f"a link of {build.light:g} of the body's mass and inertia is between the two",
     )
     return build.scene.add_body(

@@ -1,7 +1,7 @@
-"""What is refused in a model before MuJoCo reads it: too much of it, and numbers that lead nowhere.
+"""Limits of the size of a model, which are checked before MuJoCo reads it.
 
-MuJoCo does what a model says: copies bodies two million times, makes fields of ten billion heights, until the
-memory of the machine is used up.
+MuJoCo follows a model without limits: it copies bodies two million times, or allocates height fields of ten
+billion values, until the memory of the machine is used up.
 """
 
 from __future__ import annotations
@@ -53,7 +53,9 @@ def check_model(root: ET.Element, what: str, folder: Path | None) -> None:
 
 
 def _too_many(what: str) -> ValueError:
-    return ValueError(f"{what} must have {ELEMENTS} elements at most, copies counted; it has more")
+    return ValueError(
+        f"{what} must have {ELEMENTS} elements at most, including copies; it has more"
+    )
 
 
 def parsed(data: bytes | str, what: str) -> ET.Element:
@@ -62,16 +64,16 @@ def parsed(data: bytes | str, what: str) -> ET.Element:
     Raises
     ------
     ValueError
-        If it cannot be read, or has entities of its own.
+        If it cannot be read, or defines entities.
     """
     plain = data.encode("utf-8", "replace") if isinstance(data, str) else data.replace(b"\0", b"")
     if b"<!ENTITY" in plain:
-        raise ValueError(f"{what} must have no entities of its own (<!ENTITY ...>)")
+        raise ValueError(f"{what} must not define entities (<!ENTITY ...>)")
     try:
         return ET.fromstring(data)
     except (ET.ParseError, ValueError, LookupError) as error:
         line = " ".join(str(error).split())
-        raise ValueError(f"{what} is no XML that can be read: {line}") from None
+        raise ValueError(f"{what} is not valid XML: {line}") from None
 
 
 def drop_sizes(spec) -> None:
@@ -88,13 +90,13 @@ def _check_element(element: ET.Element, what: str) -> None:
             continue
         for number in _numbers(value):
             if not abs(number) <= GREATEST:
-                raise ValueError(f"{where} {name} must be {GREATEST:g} at most, got {value[:60]!r}")
+                raise ValueError(f"{where} {name} must be at most {GREATEST:g}, got {value[:60]!r}")
     for names in COUNTS:
         if element.tag == "geom" or not all(name in element.attrib for name in names):
             continue
         cells = math.prod(max(1.0, n) for name in names for n in _numbers(element.attrib[name]))
         if cells > CELLS:
-            raise ValueError(f"{where} {' x '.join(names)} must be {CELLS} at most, got {cells:g}")
+            raise ValueError(f"{where} {' x '.join(names)} must be at most {CELLS}, got {cells:g}")
 
 
 def _numbers(text: str) -> list[float]:

@@ -1,4 +1,4 @@
-"""Which bodies of a model move as one: each with all that is welded to it, as one body of the scene."""
+"""The links of a model: each body with all bodies that are welded to it, as one body of the scene."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From a model to a scene."""
+"""`load_model`: make a scene from a model."""
 
 from __future__ import annotations
 
@@ -53,57 +53,57 @@ def load_model(
     overlaps: str = "repair",
     package_dirs: Sequence[str | os.PathLike] = (),
 ) -> Model:
-    """Read a model in MJCF or URDF, and make a scene of it. Needs ``carom[models]``.
+    """Read a model in MJCF or URDF and make a scene from it. Needs ``carom[models]``.
 
-    What a scene cannot say is in the report of the model; nothing is dropped in silence.
+    The report of the model has an entry for each part that is left out or changed in the scene.
 
     Parameters
     ----------
     source : path, str, mujoco.MjSpec or mujoco.MjModel
-        A file, or an XML text.
+        A file, an XML text, or a model of MuJoCo.
     restitution : float, optional
-        Of all contacts, 0 to 1. Default: ``<custom><numeric name="restitution" data="..."/>`` of the model,
-        else 0. (Neither format has a number for it.)
+        Restitution of all contacts, 0 to 1. Default: ``<custom><numeric name="restitution" data="..."/>`` of
+        the model, otherwise 0. (Neither format has an own element for it.)
     friction : float, optional
-        Sliding friction of all contacts. Default: by MuJoCo's rule from the geoms of a pair, the greater of the
-        two, or that of the higher priority.
+        Sliding friction of all contacts. Default: by MuJoCo's rule the larger value of the two geoms of a pair,
+        or that of the geom with the higher priority.
     impact_law : {"newton", "poisson", "stronge"}
-        Of contacts and of limits. Default ``"newton"``.
+        Law of restitution of contacts and of joint limits. Default ``"newton"``.
     limit_restitution : float
-        Of limits of joints. Default 0.
+        Restitution of joint limits. Default 0.
     keyframe : int or str, optional
-        Number or name of the keyframe to start from. Default: the default configuration, at rest.
+        Number or name of the keyframe with the initial state. Default: the default configuration, at rest.
     qpos : (nq,), optional
-        Coordinates to start from, as MuJoCo has them.
+        Initial coordinates, as in MuJoCo.
     qvel : (nv,), optional
-        Velocities to start with.
+        Initial velocities, as in MuJoCo.
     free_root : bool
-        Give the one body on the world a free joint: for the URDF of a robot that walks or flies. Default False.
+        True: give the one body that is attached to the world a free joint, for the URDF of a robot that walks
+        or flies. Default False.
     contacts : bool
-        False: nothing touches. Default True.
+        False: leave out all contacts. Default True.
     armature : bool
-        True (default): the inertia of motors in joints is that of flywheels, one a joint, which makes the scene
-        slower. False: leave it out.
+        True (default): add the inertia of motors to the joints (`forces.JointInertia`). False: leave it out.
     overlaps : {"repair", "refuse"}
-        What starts inside another. ``"repair"`` (default): parts with a free joint are moved out of what
-        stands; other pairs do not touch at all. ``"refuse"``: an error.
+        Treatment of parts that penetrate each other at the start. ``"repair"`` (default): parts with a free
+        joint are moved out of fixed parts, and other such pairs get no contact. ``"refuse"``: raise an error.
     package_dirs : sequence of path
-        Where ``package://`` of a URDF is looked for, besides the folders above the file.
+        Folders in which ``package://`` paths of a URDF are searched, besides the folders above the file.
 
     Returns
     -------
     Model
-        With `scene`, `report`, and the parts by name.
+        The model with its `scene`, its `report`, and its parts by name.
 
     Raises
     ------
     ModuleNotFoundError
-        Without the package mujoco.
+        If the package mujoco is missing.
     FileNotFoundError
-        If there is no such file.
+        If the file does not exist.
     TypeError, ValueError
-        If the model cannot be read (with MuJoCo's message), nothing in it moves, or an argument is outside its
-        range.
+        If the model cannot be read (with the message of MuJoCo), has no moving body, or an argument is outside
+        its range.
     """
     if restitution is not None:
         checks.number("restitution", restitution, least=0.0, most=1.0)
@@ -147,10 +147,10 @@ def load_model(
 
 
 def _new_build(model, data, report: Report, light: float) -> tuple[Build, list[Link]]:
-    """Return the bodies that stand, and those that move."""
+    """Return a new `Build`, with the fixed and the moving bodies of the model."""
     links = moving_links(model)
     if not links:
-        raise ValueError("the model must have something that moves, got no body with a joint")
+        raise ValueError("the model must have a body that moves, got no body with a joint")
     weightless = bool(int(model.opt.disableflags) & int(need_mujoco().mjtDisableBit.mjDSBL_GRAVITY))
     scene = Scene(gravity=np.zeros(3) if weightless else model.opt.gravity)
     names = Names(link.name for link in links)
@@ -177,13 +177,14 @@ def _restitution(model, given: float | None, report: Report) -> float:
 
 
 def _add_body(build: Build, link: Link, shape) -> None:
-    """Add the body of a link where it stands and as it moves."""
+    """Add the body of a link, with its position and motion."""
     centre, orientation = pose(build, link)
     motion = point_velocity(build.model, build.data, link.body, centre)
     inertia, change = possible_inertia(link.inertia)
     if change > 1e-11:
-        what = f"its inertia is that of no body, by {change:.1e} of it"
-        build.report.add(f"body {link.name!r}", what, "the nearest that is")
+        what = "its inertia is impossible for a rigid body"
+        instead = f"the nearest possible one, with a relative change of {change:.1e}"
+        build.report.add(f"body {link.name!r}", what, instead)
     build.bodies[link.body] = build.scene.add_body(
         shape,
         mass=link.mass,
@@ -197,7 +198,7 @@ def _add_body(build: Build, link: Link, shape) -> None:
 
 
 def _add_gravcomp(build: Build) -> None:
-    """Add the forces that bear a part of the weight of bodies."""
+    """Add the forces that compensate a part of the weight of bodies."""
     model = build.model
     for b in np.flatnonzero(model.body_gravcomp):
         lift = -model.body_gravcomp[b] * model.body_mass[b] * build.scene.gravity

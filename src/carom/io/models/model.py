@@ -1,4 +1,4 @@
-"""A model as a scene, with its parts by the names of the model."""
+"""`Model`: the scene made from a model, with its parts by the names of the model."""
 
 from __future__ import annotations
 
@@ -25,20 +25,20 @@ class Model:
     Attributes
     ----------
     scene : Scene
-        What to simulate. Bodies have the names of the model.
+        The scene to simulate. Its bodies have the names of the model.
     report : Report
-        What was not represented or was changed. Print it.
+        The parts that were left out or changed. Print it.
     bodies : dict of str to Body or carom.GROUND
-        By the name in the model. Bodies without joints are parts of what carries them.
+        Bodies by their names in the model. A body without joints is part of the body that carries it.
     joints : dict of str to Coordinate
-        Hinges and slides: ``model.joints["knee"].of(solution)`` are angle and rate as the model counts them,
-        ``.joint`` and ``.index`` what springs, motors and stops take.
+        Hinges and slides by name. ``model.joints["knee"].of(solution)`` returns the angle and its rate as the
+        model defines them; ``.joint`` and ``.index`` are the arguments for springs, motors and stops.
     geoms : dict of str to Body or HalfSpace
-        What stands for a geom that may touch.
+        The part of the scene for each geom that may touch.
     restitution : float
-        Of all contacts.
+        Restitution of all contacts.
     mujoco : mujoco.MjModel
-        The model itself.
+        The model in MuJoCo.
     """
 
     scene: Scene
@@ -54,15 +54,15 @@ class Model:
     _balls: dict[int, Joint] = field(repr=False)
 
     def qpos(self, solution) -> np.ndarray:
-        """Return the coordinates (T, nq) of the model at the saved times of a solution, as MuJoCo has them.
+        """Return the coordinates (T, nq) of the model at the saved times of a solution, as in MuJoCo.
 
-        Set ``data.qpos`` to a row and call ``mujoco.mj_forward`` to draw the motion, or to ask for sites and
+        Set ``data.qpos`` to a row and call ``mujoco.mj_forward`` to draw the motion, or to get sites and
         sensors.
         """
         checks.instance("solution", solution, (Solution,))
         names = [[body.name for body in scene.bodies] for scene in (solution.scene, self.scene)]
         if names[0] != names[1]:
-            raise ValueError(f"solution must be one of the scene of this model, got {solution!r}")
+            raise ValueError(f"solution must be of the scene of this model, got {solution!r}")
         m = self.mujoco
         q = np.tile(self._start, (len(solution.t), 1))
         for j, coordinate in self._coordinates.items():

@@ -1,4 +1,4 @@
-"""Models that start a little inside the floor: what is free to move is moved out."""
+"""Models that start slightly inside the floor: bodies with free joints are moved out."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Covers = dict[int, tuple[Shape | None, list[int]]]
 
 
 def lift_out(build: Build, links: list[Link], covers: Covers, standing: list[Solid], rules: Filter):
-    """Move what hangs on free joints out of what stands, each time by the deepest overlap.
+    """Move bodies with free joints out of fixed parts, each time by the deepest overlap.
 
     MuJoCo's contacts are soft: a body at rest is inside the floor. Here none may be.
     """
@@ -38,12 +38,12 @@ def lift_out(build: Build, links: list[Link], covers: Covers, standing: list[Sol
             data.qpos[first : first + 3] += depth * (1.0 + 1e-9) * normal
             place(model, data)
         if np.any(way):
-            text = f"starts {np.linalg.norm(way):.3g} m inside what stands"
+            text = f"starts {np.linalg.norm(way):.3g} m inside fixed parts"
             build.report.add(f"body {root.name!r}", text, f"moved by {way.round(9).tolist()} m")
 
 
 def _deepest(build: Build, tree, covers: Covers, standing, rules: Filter):
-    """Return depth and way out of the deepest overlap of a tree with what stands."""
+    """Return the depth of the deepest overlap of a tree with fixed parts, and the way out."""
     deepest, way = 0.0, np.zeros(3)
     for link in tree:
         shape, geoms = covers[link.body]

@@ -48,14 +48,14 @@ def compiled_model(source, free_root: bool, package_dirs, report: Report) -> Any
     except (ValueError, RuntimeError) as error:
         raise ValueError(f"{what} does not compile: {_line(error)}") from None
     for warning in said:
-        report.add("MuJoCo", f"says: {_line(warning.message)}", "this is how it compiled the model")
+        report.add(
+            "MuJoCo", f"warns: {_line(warning.message)}", "it compiled the model in this way"
+        )
     pairs = zip(model.eq_type, model.eq_obj1id)
     coupled = {model.joint(j).name for kind, j in pairs if kind == mujoco.mjtEq.mjEQ_JOINT}
     for name in mimics:
         if name not in coupled:
-            report.add(
-                f"joint {name!r}", "MuJoCo does not read how it follows another", "moves freely"
-            )
+            report.add(f"joint {name!r}", "MuJoCo does not read its <mimic>", "moves freely")
     return model
 
 
@@ -104,7 +104,7 @@ def _is_utf8(data: bytes) -> bool:
 def _other_encoding(mujoco, root: ET.Element, folder: Path | None):
     """Return the specification of a model whose file is not in UTF-8."""
     if root.find(".//include") is not None:
-        raise ValueError("it includes other files and is not in UTF-8, which it must be then")
+        raise ValueError("it includes other files, so it must be in UTF-8")
     spec = mujoco.MjSpec.from_string(ET.tostring(root, encoding="unicode"))
     spec.modelfiledir = str(folder)
     return spec

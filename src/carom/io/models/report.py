@@ -1,4 +1,4 @@
-"""What a scene does not say as its model did: a list of entries, printed with equal ones together."""
+"""`Report`: the differences between a model and its scene; equal entries are printed together."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ SHOWN = 4  # names of elements that are printed before "and 17 more"
 
 
 class Entry(NamedTuple):
-    """One thing of a model that is not in the scene as it was.
+    """One difference between a model and its scene.
 
     Attributes
     ----------
     element : str
-        Kind and name, such as ``"actuator 'elbow'"``.
+        Kind and name of the element, such as ``"actuator 'elbow'"``.
     what : str
-        What was not represented, or was changed.
+        The property that was left out or changed.
     instead : str
-        What was done in its place.
+        The replacement in the scene.
     """
 
     element: str
@@ -32,7 +32,7 @@ class Entry(NamedTuple):
 
 
 class Report(Sequence[Entry]):
-    """All entries of a model. Print it: elements with the same fate stand in one line."""
+    """All differences between a model and its scene. Print it: elements with equal entries share a line."""
 
     def __init__(self):
         self._entries: list[Entry] = []
@@ -53,7 +53,7 @@ class Report(Sequence[Entry]):
         return iter(self._entries)
 
     def of(self, element: str) -> list[Entry]:
-        """Return the entries whose element has this text in it: a name, or a kind such as ``"actuator"``."""
+        """Return the entries whose element contains this text: a name, or a kind such as ``"actuator"``."""
         checks.text("element", element)
         return [entry for entry in self._entries if element in entry.element]
 

@@ -26,7 +26,7 @@ class Placed(NamedTuple):
 
 
 def placed_shape(model, geom: int, report: Report) -> Placed | None:
-    """Return the shape of a geom on the link that carries it; None for a plane, and what has no equivalent."""
+    """Return the shape of a geom on its link; None for a plane, or if there is no equivalent."""
     kinds = need_mujoco().mjtGeom
     kind, (a, b, c) = model.geom_type[geom], model.geom_size[geom].tolist()
     offset = np.zeros(3)

@@ -1,4 +1,4 @@
-"""What can touch: moving bodies, and geoms that stand, as half-spaces and bodies fixed to the ground."""
+"""The parts that can touch: moving bodies, and fixed geoms as half-spaces and fixed bodies."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ class Solid(NamedTuple):
 
 
 def covering(build: Build, link: Link, rules: Filter) -> tuple[Shape | None, list[int]]:
-    """Return the shape of a link, and the geoms of it that may touch.
+    """Return the shape of a link, and those of its geoms that may touch.
 
-    Of a link that touches nothing it is that of the geoms that are only seen.
+    If no geom may touch, the shape is that of the visible geoms.
     """
     model = build.model
     geoms = [g for g in range(model.ngeom) if int(model.geom_bodyid[g]) in link.members]

@@ -1,4 +1,4 @@
-"""Where a model stands at the start: the default, a keyframe, or coordinates that are given."""
+"""The initial state of a model: the default, a keyframe, or given coordinates."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def starting_data(model, keyframe, qpos, qvel) -> Any:
 
 
 def place(model, data) -> None:
-    """Work out the poses of all bodies and joints from the coordinates."""
+    """Compute the poses of all bodies and joints from the coordinates."""
     mujoco = need_mujoco()
     mujoco.mj_normalizeQuat(model, data.qpos)
     mujoco.mj_kinematics(model, data)
@@ -60,7 +60,7 @@ def key_number(model, keyframe) -> int:
 
 
 def point_velocity(model, data, body: int, point: np.ndarray, without=()) -> np.ndarray:
-    """Return velocity and angular velocity (6,), world axes, of a point that goes with a body.
+    """Return velocity and angular velocity (6,), world axes, of a point that is fixed in a body.
 
     Parameters
     ----------

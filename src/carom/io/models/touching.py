@@ -1,4 +1,4 @@
-"""Which geoms of a model touch each other, and with what friction: MuJoCo's rules."""
+"""The geoms of a model that touch each other, and their friction, by MuJoCo's rules."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ class Friction(NamedTuple):
 
 
 class Touch(NamedTuple):
-    """What two groups of geoms do."""
+    """The contact of two groups of geoms."""
 
     friction: Friction | None  # the greatest of all pairs; None: nothing touches
     some: bool  # pairs that do not touch are among them
@@ -52,7 +52,7 @@ class Filter:
         return bool(m.geom_contype[geom] or m.geom_conaffinity[geom]) or geom in self._paired
 
     def between(self, some: list[int], others: list[int]) -> Touch:
-        """Return what two groups of geoms on two bodies do; it is worked out once for groups that are alike."""
+        """Return the contact of two groups of geoms on two bodies; equal groups are computed only once."""
         bodies = self.model.geom_bodyid
         special = self._paired.intersection(some) and self._paired.intersection(others)
         if special or self._left_out.intersection(int(bodies[g]) for g in some):

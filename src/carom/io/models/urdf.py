@@ -1,7 +1,7 @@
-"""URDF before MuJoCo reads it: where its meshes are, and no link lost.
+"""Preparation of a URDF for MuJoCo: paths of its meshes, and links without joints.
 
-MuJoCo knows no ``package://`` and reads STL, OBJ and MSH. Meshes of ``<visual>`` are not needed at all. Links
-without joints are kept, so that their names are (`carom.io.models.links` joins them to what carries them).
+MuJoCo does not know ``package://``, and reads only STL, OBJ and MSH. Meshes of ``<visual>`` are not needed.
+Links without joints are kept, so that their names exist (`carom.io.models.links` joins them to their parents).
 """
 
 from __future__ import annotations
@@ -26,9 +26,9 @@ def prepared(root: ET.Element, folder: Path | None, package_dirs: Iterable, repo
     folder
         Where the file lies; None for a text.
     package_dirs
-        Folders that hold packages, or are ones.
+        Folders that contain packages, or are packages.
     report
-        Gets what had to be left out or changed.
+        The report, for parts that are left out or changed.
     """
     for link in root.iter("link"):
         for visual in link.findall("visual"):
@@ -60,13 +60,13 @@ def prepared(root: ET.Element, folder: Path | None, package_dirs: Iterable, repo
 def unreadable(path: Path) -> str | None:
     """Return why MuJoCo cannot read a mesh; None if it can."""
     if path.suffix.lower() not in READ:
-        return f"is none of {', '.join(READ)}"
+        return f"is not one of {', '.join(READ)}"
     if path.suffix.lower() == ".stl":
         size = path.stat().st_size
         with path.open("rb") as file:
             head = file.read(84)
         if len(head) < 84 or size < 84 + 50 * int.from_bytes(head[80:84], "little"):
-            return "is no binary STL"
+            return "is not a binary STL"
     return None
 
 

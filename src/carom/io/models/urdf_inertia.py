@@ -1,4 +1,4 @@
-"""Inertias in URDF that no body has, and links that move without mass: mended before MuJoCo refuses them."""
+"""Correction of a URDF, which MuJoCo would refuse: impossible inertias, and moving links without mass."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ SIX: tuple[str, ...] = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
 
 
 def mend_inertias(root: ET.Element, report: Report) -> None:
-    """Change the elements ``<inertial>`` of a robot so that each is that of a body."""
+    """Change the elements ``<inertial>`` of a robot so that each inertia is possible for a rigid body."""
     links = {link.get("name"): link for link in root.iter("link")}
     for name, link in links.items():
         inertial = link.find("inertial")
@@ -66,5 +66,5 @@ def _mend(inertia: ET.Element | None, called: str, report: Report) -> None:
     values = (*np.diag(better), better[0, 1], better[0, 2], better[1, 2])
     inertia.attrib.update({key: repr(float(value)) for key, value in zip(SIX, values)})
     if change > 1e-9:
-        what = "its inertia is that of no body"
-        report.add(called, what, "the nearest that is, with small moments raised")
+        what = "its inertia is impossible for a rigid body"
+        report.add(called, what, "the nearest possible one, with small moments raised")

@@ -1,8 +1,8 @@
-"""Joints, placed in the world as the system stands at the start.
+"""Joints, defined in world coordinates for the initial position of the system.
 
-Give a definition to `Scene.add_joint` with the two bodies it joins. Anchors are points [m], axes
-directions (made unit vectors; the zero vector is refused), all in world axes. Where an anchor
-may be left out, it is the mass centre of the child.
+Pass a definition to `Scene.add_joint`, with the two bodies that it joins. Anchors are points [m], and axes are
+directions (they are normalised; the zero vector is refused), all in world axes. An anchor that may be left out
+is by default the mass centre of the child.
 """
 
 from __future__ import annotations

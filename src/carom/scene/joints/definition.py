@@ -1,4 +1,4 @@
-"""What a joint says of itself: from it follow its rows, its coordinates and its place among the kinds."""
+"""`JointDefinition`: the base class of all joints, which gives their constraint rows and coordinates."""
 
 from __future__ import annotations
 
@@ -9,31 +9,36 @@ import numpy as np
 
 from carom.geometry.frames import triad
 
-#: how many rows hold the child's anchor in place, and how many its turn
+#: number of rows that constrain the anchor of the child, and number of rows that constrain its rotation
 ACTIVE_POINT = {"point": 3, "line": 2, "plane": 1}
 TURNS = {"ball": 0, "cross": 1, "axis": 2, "rigid": 3}
 
 
 @dataclass(frozen=True, init=False, eq=False)
 class JointDefinition:
-    """A joint of a scene. Its own direction is its `axis`, `normal` or `direction`, fixed in the parent.
+    """Base class of all joints.
+
+    The direction of a joint is its `axis`, `normal` or `direction`, fixed in the parent.
 
     Attributes
     ----------
     guide : {"point", "line", "plane", "own"}
-        Where the anchor of the child may be in the parent: at its anchor, on the line through it along the own
-        direction, in the plane through it across that; or what equations of the joint's own say.
+        Allowed positions of the anchor of the child in the parent: the anchor of the parent ("point"), the line
+        through it along the direction of the joint ("line"), the plane through it perpendicular to the
+        direction ("plane"), or positions given by special equations of the joint ("own").
     turn : {"ball", "axis", "rigid", "cross", "own"}
-        How the child may turn against the parent: freely, about the own direction, not, about two crossed axes
-        (`Universal`); or what equations of the joint's own say.
+        Allowed rotations of the child relative to the parent: all ("ball"), about the direction of the joint
+        ("axis"), none ("rigid"), about two perpendicular axes (`Universal`, "cross"), or rotations given by
+        special equations of the joint ("own").
     coordinates : tuple of {"turn", "slide"}
-        What is measured: angles [rad] about and ways [m] along axes of `coordinate_frame`.
+        Coordinates of the joint: angles [rad] about ("turn") and displacements [m] along ("slide") the axes of
+        `coordinate_frame`.
     rows : int
-        Constraint rows; by default those of `guide` and `turn`.
+        Number of constraint rows; by default those of `guide` and `turn`.
     nonholonomic : int
-        How many of them restrict velocities only.
+        Number of rows that restrict only velocities.
     in_trees : bool
-        Whether the joint carries its child in a tree; else it is solved as a closed loop is.
+        Whether the joint can be a branch of a kinematic tree; if not, it is solved like a closed loop.
     """
 
     guide: ClassVar[str]
@@ -48,9 +53,9 @@ class JointDefinition:
             cls.rows = ACTIVE_POINT[cls.guide] + TURNS[cls.turn]
 
     def frame(self, flipped: bool = False) -> np.ndarray:
-        """Return the axes (3, 3) of the joint as columns, in the world at the start: first its own direction.
+        """Return the axes (3, 3) of the joint as columns, in the world at the start, its direction first.
 
-        Where it is `flipped` a tree is walked from the child to the parent.
+        `flipped` means that the kinematic tree goes from the child to the parent.
         """
         for name in ("axis", "normal", "direction"):
             if hasattr(self, name):
@@ -58,15 +63,15 @@ class JointDefinition:
         return np.eye(3)
 
     def anchors(self, anchor: np.ndarray, child: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the points (3,) of parent and child in the world; `child` is the place of its mass centre."""
+        """Return the anchors (3,) of parent and child in the world; `child` is the child's mass centre (3,)."""
         return anchor, anchor
 
     def scale(self) -> float:
-        """Return the length [m] that kernels know as `length`."""
+        """Return the length [m] of the joint, `length` in the kernels."""
         return 0.0
 
     def coordinate_frame(self, coordinate: int) -> np.ndarray:
-        """Return the axes (3, 3) of a coordinate as columns: first that along or about which it is."""
+        """Return the axes (3, 3) of a coordinate as columns; the coordinate is along or about the first."""
         frame = self.frame()
         if self.guide == "plane" and self.coordinates[coordinate] == "slide":
             return triad(frame[:, 1 + coordinate])

@@ -1,4 +1,4 @@
-"""A rod without mass."""
+"""The joint `Distance`: a rod without mass."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from carom.scene.values import apart, keep
 class Distance(JointDefinition):
     """A massless rod between a point of the parent and one of the child, each (3,).
 
-    Its `length` [m] is the distance of the two at the start; zero is refused.
+    Its `length` [m] is the distance of the two points at the start, which must not be 0.
     """
 
     guide, turn = "own", "own"

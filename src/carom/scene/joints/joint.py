@@ -1,4 +1,4 @@
-"""A joint of a scene: a definition between two bodies."""
+"""`Joint`: a definition of a joint together with its two bodies."""
 
 from __future__ import annotations
 
@@ -16,19 +16,19 @@ from carom.scene.values import point
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Joint:
-    """A joint of a scene, between `parent` and `child`. Made by `Scene.add_joint`.
+    """A joint of a scene, between `parent` and `child`. `Scene.add_joint` makes it.
 
     Attributes
     ----------
     index : int
-        Place in `Scene.joints`.
+        Its index in `Scene.joints`.
     name : str
     definition : Revolute, Spherical, ... (one of `carom.joints`)
     parent : Body or carom.GROUND
     child : Body
     frames : None, or two pairs of arrays ((3,), (4,))
-        Position and orientation of the joint's frame in the parent and in the child, in their body axes; None
-        where the definition is in the world as the system stands at the start.
+        Position and orientation of the frame of the joint in the parent and in the child, in their body axes;
+        None if the definition is in the world at the start.
     """
 
     index: int
@@ -39,7 +39,7 @@ class Joint:
     frames: tuple[tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]] | None = None
 
     def anchor(self) -> np.ndarray:
-        """Return the anchor (3,) of the definition; where it has none that of the child, or of the frame."""
+        """Return the anchor (3,): of the definition, or the child's mass centre, or the origin of the frame."""
         own = getattr(self.definition, "anchor", None)
         if own is not None:
             return own

@@ -1,4 +1,4 @@
-"""Joints that guide a point along a point, line or plane, and turns freely, about an axis or not at all."""
+"""Joints that keep a point on a point, line or plane, and allow all rotations, one axis, or none."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from carom.scene.values import keep, optional_point, point
 
 @dataclass(frozen=True, init=False, eq=False)
 class Revolute(JointDefinition):
-    """A hinge: the bodies share the point `anchor` (3,) and turn about `axis` (3,) alone."""
+    """A hinge: the bodies have the point `anchor` (3,) in common and rotate only about `axis` (3,)."""
 
     guide, turn = "point", "axis"
     coordinates = ("turn",)
@@ -28,7 +28,7 @@ class Revolute(JointDefinition):
 
 @dataclass(frozen=True, init=False, eq=False)
 class Spherical(JointDefinition):
-    """A ball joint: the bodies share the point `anchor` (3,) and turn freely about it."""
+    """A ball joint: the bodies have the point `anchor` (3,) in common and rotate freely about it."""
 
     guide, turn = "point", "ball"
 
@@ -52,7 +52,7 @@ class Fixed(JointDefinition):
 
 @dataclass(frozen=True, init=False, eq=False)
 class Prismatic(JointDefinition):
-    """A slider: the child moves along `axis` (3,), fixed in the parent, without turning."""
+    """A slider: the child moves along `axis` (3,), which is fixed in the parent, without rotation."""
 
     guide, turn = "line", "rigid"
     coordinates = ("slide",)
@@ -66,7 +66,7 @@ class Prismatic(JointDefinition):
 
 @dataclass(frozen=True, init=False, eq=False)
 class Cylindrical(JointDefinition):
-    """A sleeve: the child turns about and slides along the line through `anchor` (3,) along `axis` (3,)."""
+    """A sleeve: the child rotates about, and slides along, the line through `anchor` (3,) along `axis` (3,)."""
 
     guide, turn = "line", "axis"
     coordinates = ("turn", "slide")
@@ -80,7 +80,10 @@ class Cylindrical(JointDefinition):
 
 @dataclass(frozen=True, init=False, eq=False)
 class Planar(JointDefinition):
-    """A plate on a table: the child slides across `normal` (3,), a direction of both, and turns about it."""
+    """A plate on a table: the child slides perpendicular to `normal` (3,) and rotates about it.
+
+    The normal is fixed in both bodies.
+    """
 
     guide, turn = "plane", "axis"
     coordinates = ("slide", "slide", "turn")
@@ -96,7 +99,7 @@ class Planar(JointDefinition):
 class PointOnLine(JointDefinition):
     """A bead on a wire: the point `anchor` (3,) of the child stays on a line of the parent.
 
-    The line goes through `anchor` along `direction` (3,); the child turns freely.
+    The line passes through `anchor` along `direction` (3,); the child rotates freely.
     """
 
     guide, turn = "line", "ball"
@@ -113,7 +116,8 @@ class PointOnLine(JointDefinition):
 class PointOnPlane(JointDefinition):
     """A pin in a slot between two plates: the point `anchor` (3,) of the child stays in a plane of the parent.
 
-    The plane goes through `anchor` across `normal` (3,), on both sides; the child turns freely.
+    The plane passes through `anchor` perpendicular to `normal` (3,). The point cannot leave it on either side;
+    the child rotates freely.
     """
 
     guide, turn = "plane", "ball"

@@ -1,4 +1,4 @@
-"""Nonholonomic joints: a blade, and what rolls."""
+"""Nonholonomic joints: a blade, a rolling sphere and a rolling disc."""
 
 from __future__ import annotations
 
@@ -16,21 +16,21 @@ PARALLEL = 1e-9  # sine of the angle between two directions below which they cou
 
 @dataclass(frozen=True, init=False, eq=False)
 class KnifeEdge(JointDefinition):
-    """A blade (nonholonomic): a point of the child may not move sideways over the ground.
+    """A blade (nonholonomic): a point of the child cannot move sideways over the ground.
 
     Parameters
     ----------
     anchor : (3,)
         The point of the child, in the world at the start [m].
     direction : (3,)
-        Of the blade; turns with the child.
+        Direction of the blade, in the world at the start; it turns with the child.
     normal : (3,), default (0, 0, 1)
-        Of the surface; turns with the child. Not parallel to `direction`.
+        Normal of the surface, in the world at the start; it turns with the child. Not parallel to `direction`.
 
     Attributes
     ----------
     lateral : (3,)
-        Unit vector of ``normal x direction``, the direction without velocity.
+        Unit vector along ``normal x direction``: the point has no velocity in this direction.
     """
 
     guide, turn = "own", "own"
@@ -52,21 +52,22 @@ class KnifeEdge(JointDefinition):
         keep(self, lateral=unit_vector("lateral", across))
 
     def frame(self, flipped: bool = False) -> np.ndarray:
-        """Return columns: along the blade, across it, and the normal."""
+        """Return axes as columns: along the blade, lateral, and the normal."""
         along = np.cross(self.lateral, self.normal)
         return np.stack([along, self.lateral, self.normal], axis=1)
 
 
 @dataclass(frozen=True, init=False, eq=False)
 class RollingSphere(JointDefinition):
-    """A ball that rolls on a plane of the parent without slip, and does not leave it (nonholonomic).
+    """A ball that rolls without slip on a plane of the parent and cannot leave it (nonholonomic).
 
     Parameters
     ----------
     radius : float
-        [m], above 0. The centre of the ball is the mass centre of the child.
+        Radius [m], above 0. The centre of the ball is the mass centre of the child.
     normal : (3,), default (0, 0, 1)
-        Of the plane, towards the ball; turns with the parent. The plane touches the ball at the start.
+        Normal of the plane, towards the ball; it turns with the parent. The plane touches the ball at the
+        start.
     """
 
     guide, turn = "own", "ball"
@@ -80,11 +81,11 @@ class RollingSphere(JointDefinition):
         keep(self, radius=radius, normal=unit_vector("normal", normal))
 
     def contact(self, centre: ArrayLike) -> np.ndarray:
-        """Return the point (3,) where it touches, with the centre at `centre`."""
+        """Return the contact point (3,) for a centre at `centre`."""
         return point("centre", centre) - self.radius * self.normal
 
     def anchors(self, anchor, child) -> tuple[np.ndarray, np.ndarray]:
-        """Return the point of the plane where it touches, and the centre."""
+        """Return the contact point on the plane, and the centre."""
         return self.contact(child), child
 
     def scale(self) -> float:
@@ -96,17 +97,18 @@ class RollingSphere(JointDefinition):
 class RollingDisc(JointDefinition):
     """A thin disc or wheel that rolls on a plane of the parent without slip (nonholonomic).
 
-    Its lowest point has no velocity against the plane; it may lean, turn and roll. A wheel of a vehicle is
-    this, with a `Revolute` to the frame.
+    Its lowest point has no velocity relative to the plane; the disc may lean, steer and roll. To model the
+    wheel of a vehicle, add a `Revolute` between the wheel and the frame.
 
     Parameters
     ----------
     radius : float
-        [m], above 0. The centre of the disc is the mass centre of the child.
+        Radius [m], above 0. The centre of the disc is the mass centre of the child.
     axis : (3,)
-        Of the disc, in the world at the start; turns with the child. Not parallel to `normal`.
+        Axis of the disc, in the world at the start; it turns with the child. Not parallel to `normal`.
     normal : (3,), default (0, 0, 1)
-        Of the plane, towards the disc; turns with the parent. The plane touches the disc at the start.
+        Normal of the plane, towards the disc; it turns with the parent. The plane touches the disc at the
+        start.
     """
 
     guide, turn = "own", "ball"
@@ -127,16 +129,16 @@ class RollingDisc(JointDefinition):
         keep(self, radius=radius, axis=along, normal=up)
 
     def contact(self, centre: ArrayLike) -> np.ndarray:
-        """Return the point (3,) where it touches, with the centre at `centre`."""
+        """Return the contact point (3,) for a centre at `centre`."""
         down = self.normal - (self.normal @ self.axis) * self.axis
         return point("centre", centre) - self.radius * down / np.linalg.norm(down)
 
     def frame(self, flipped: bool = False) -> np.ndarray:
-        """Return columns: the normal of the plane, the axis of the disc, and what is across both."""
+        """Return axes as columns: the normal of the plane, the axis of the disc, and their cross product."""
         return np.stack([self.normal, self.axis, np.cross(self.normal, self.axis)], axis=1)
 
     def anchors(self, anchor, child) -> tuple[np.ndarray, np.ndarray]:
-        """Return the point of the plane where it touches, and the centre."""
+        """Return the contact point on the plane, and the centre."""
         return self.contact(child), child
 
     def scale(self) -> float:

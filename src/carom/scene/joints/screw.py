@@ -1,4 +1,4 @@
-"""A nut on a thread."""
+"""The joint `Screw`: a nut on a thread."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from carom.scene.values import keep, point
 
 @dataclass(frozen=True, init=False, eq=False)
 class Screw(JointDefinition):
-    """A nut on a thread: as it turns about the line through `anchor` along `axis`, the child slides along it.
+    """A nut on a thread: the child rotates about a line and slides along it, in proportion.
 
     Parameters
     ----------
     anchor, axis : (3,)
-        The line, in the world at the start.
+        A point of the line and its direction, in the world at the start.
     pitch : float
-        How far the child moves along `axis` in one turn about it by the right-hand rule [m]. Negative: a
-        left-hand thread. Zero is refused.
+        Displacement of the child along `axis` in one turn about it by the right-hand rule [m]. Negative for a
+        left-hand thread, not 0.
     """
 
     guide, turn = "line", "axis"
@@ -40,5 +40,5 @@ class Screw(JointDefinition):
         keep(self, anchor=point("anchor", anchor), axis=unit_vector("axis", axis), pitch=pitch)
 
     def scale(self) -> float:
-        """Return the way along the axis of a turn of 1 rad [m]."""
+        """Return the displacement along the axis for a rotation by 1 rad [m]."""
         return self.pitch / (2.0 * np.pi)

@@ -1,4 +1,4 @@
-"""A Cardan joint."""
+"""The joint `Universal`: a Cardan joint."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ ACROSS = 1e-9  # cosine of an angle below which directions count as perpendicula
 
 @dataclass(frozen=True, init=False, eq=False)
 class Universal(JointDefinition):
-    """A Cardan joint: a shared point, and two axes that stay perpendicular, one fixed in each body.
+    """A Cardan joint: a common point, and two axes that stay perpendicular, one fixed in each body.
 
     Parameters
     ----------
     anchor : (3,)
-        The shared point, in the world at the start [m].
+        The common point, in the world at the start [m].
     axis_parent, axis_child : (3,)
-        Axes of the cross: of its pin in the parent and of its pin in the child. Perpendicular at the start (the
-        cosine of their angle below 1e-9).
+        The two axes of the cross, fixed in the parent and in the child. They are perpendicular at the start
+        (the cosine of their angle is below 1e-9).
     """
 
     guide, turn = "point", "cross"
@@ -49,14 +49,14 @@ class Universal(JointDefinition):
         keep(self, anchor=point("anchor", anchor), axis_parent=first, axis_child=second)
 
     def frame(self, flipped: bool = False) -> np.ndarray:
-        """Return columns: the axis of the side that is walked first, that of the other, and their normal."""
+        """Return axes as columns: that of the body nearer to the root of the tree, the other, their normal."""
         first, second = self.axis_parent, self.axis_child
         if flipped:
             first, second = second, first
         return np.stack([first, second, np.cross(first, second)], axis=1)
 
     def coordinate_frame(self, coordinate: int) -> np.ndarray:
-        """Return the axes of a coordinate; the second is measured from the child."""
+        """Return the axes of a coordinate; the second coordinate is measured from the child."""
         a, b = self.axis_parent, self.axis_child
         columns = (a, b, np.cross(a, b)) if coordinate == 0 else (-b, a, np.cross(a, b))
         return np.stack(columns, axis=1)

@@ -1,7 +1,8 @@
-"""Shapes: volume, inertia, size, and the pieces with which they touch.
+"""Shapes: volume, inertia, size, and convex pieces for contact.
 
-A shape lies in body axes with its mass centre at the origin. It touches with its `pieces`: convex cores
-(a point, a segment, a box, a hull of vertices, a cylinder, an ellipsoid), each swollen by a ball.
+A shape is given in body axes, with its mass centre at the origin. For contact it consists of `pieces`: convex
+cores (a point, a segment, a box, a hull of vertices, a cylinder, an ellipsoid), each rounded by a ball: a piece
+is the set of all points within the radius of the ball from its core.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""One rigid shape of several convex parts."""
+"""`Compound`: one rigid shape of several parts."""
 
 from __future__ import annotations
 
@@ -17,35 +17,33 @@ from carom.scene.values import keep, point
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
 class Compound(Shape):
-    """Shapes fixed to each other, as one rigid body: a dumbbell, a table, a cup.
+    """Several shapes fixed to each other as one rigid body: a dumbbell, a table, a cup.
 
-    The shape is moved so that its mass centre becomes the origin of the body. A point given here as ``p``
-    is at ``p - centroid`` in body axes.
+    The shape is moved so that its mass centre becomes the origin of the body: a point with the coordinates
+    ``p`` here is at ``p - centroid`` in body axes.
 
     Parameters
     ----------
     parts : sequence of (shape, position) or (shape, position, orientation)
-        `position` (3,) of the mass centre of the part [m]; `orientation` as of `Scene.add_body`, part to
-        compound, default none. Parts may overlap; the common volume counts in
-        each of them.
+        `position` (3,) of the mass centre of the part [m]; `orientation` as for `Scene.add_body`, part to
+        compound, default no rotation. Parts may overlap; their common volume then counts in each of them.
     masses : sequence of float, optional
-        What the parts weigh in proportion to each other, each at least 0. Default: their volumes (one
-        density for all).
+        Masses of the parts relative to each other, each at least 0. Default: their volumes (equal densities).
     centroid : (3,), optional
-        The mass centre [m], where it is not that of the parts: a loaded die, a shape that only covers a body
-        known otherwise. Give the body its mass and inertia then.
+        The mass centre [m], if it is not that of the parts: for a loaded die, or for a shape that only covers a
+        body with known mass properties. The body then needs its mass and inertia.
 
     Attributes
     ----------
     parts : tuple of (shape, position, orientation)
-        As given.
+        The parts as given.
     centroid : (3,)
-        The mass centre, in the axes in which the parts were given [m].
+        The mass centre, in the axes of `parts` [m].
     volume
         Sum of the volumes of the parts [m^3].
     size
-        Bound of the distance of a point of the shape from its mass centre [m]: the greatest over the
-        parts of the distance of their mass centre and their own size.
+        Upper bound of the distance of a point of the shape from its mass centre [m]: the maximum over the parts
+        of the distance of their mass centre plus their own size.
     """
 
     parts: tuple
@@ -74,7 +72,7 @@ class Compound(Shape):
         else:
             if masses is not None:
                 raise ValueError(
-                    f"masses must be left out where centroid is given, got {checks.shown(masses)}"
+                    f"masses must be left out if centroid is given, got {checks.shown(masses)}"
                 )
             middle, spread = point("centroid", centroid), None
         arms = positions - middle
@@ -88,12 +86,12 @@ class Compound(Shape):
 
     @property
     def pieces(self) -> tuple[Piece, ...]:
-        """The pieces of all parts."""
+        """Convex pieces of all parts."""
         return self._pieces
 
     @property
     def radius(self) -> float:
-        """Radius of the ball by which all parts are swollen, where it is one [m]."""
+        """Radius of the ball that rounds all parts, if it is the same for all [m]."""
         return self.pieces[0].radius
 
     def inertia(self, mass: float) -> np.ndarray:
@@ -102,11 +100,12 @@ class Compound(Shape):
         Raises
         ------
         ValueError
-            If the compound was given its `centroid`: how its mass lies is not known.
+            If `centroid` was given, because then the mass distribution is unknown.
         """
         if self._spread is None:
             raise ValueError(
-                f"inertia must be given with {self!r} whose centroid was given: how its mass lies is not known"
+                f"inertia must be given with {self!r}, whose centroid was given: its mass distribution is "
+                "unknown"
             )
         return checks.mass("mass", mass, zero=True) * self._spread
 

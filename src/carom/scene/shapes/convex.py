@@ -1,4 +1,4 @@
-"""The solid convex hull of points: volume, centroid and inertia by tetrahedra."""
+"""`Convex`: the solid convex hull of points; volume, centroid and inertia by tetrahedra."""
 
 from __future__ import annotations
 
@@ -19,34 +19,33 @@ SAME_FACE = 1e-8  # sine of the angle between triangles that are one face: round
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
 class Convex(Shape):
-    """The solid convex hull of points, swollen by a ball if a radius is given.
+    """The solid convex hull of points, rounded by a ball if a radius is given.
 
-    The shape is moved so that its centroid becomes the origin of the body: the `position` of a body
-    is its mass centre. A point given here as ``p`` is at ``p - centroid`` in body axes.
+    The shape is moved so that its centroid becomes the origin of the body, because the `position` of a body is
+    its mass centre: a point with the coordinates ``p`` here is at ``p - centroid`` in body axes.
 
     Parameters
     ----------
     points : (n, 3)
-        At least four points that are not in one plane [m], in any order; the ones inside the hull
-        are dropped.
+        At least four points that are not in one plane [m], in any order. Points inside the hull are dropped.
     radius
-        Of the ball [m], at least 0 (default: a hull with sharp edges). The solid reaches so far beyond
-        the points on all sides.
+        Radius of the ball [m], at least 0. Default 0: a hull with sharp edges. The solid extends beyond the
+        hull of the points by this radius on all sides.
 
     Attributes
     ----------
     points : (m, 3)
-        The vertices of the hull, as they were given [m].
+        The vertices of the hull, as given [m].
     centroid : (3,)
-        Of the solid, in the axes in which the points were given [m].
+        Centroid of the solid, in the axes of `points` [m].
     vertices : (m, 3)
-        ``points - centroid``: in body axes [m].
+        The vertices in body axes, ``points - centroid`` [m].
     faces : tuple of (normal, ring)
-        Outward unit normals (3,) and the numbers of their vertices, counter-clockwise from outside.
+        Outward unit normals (3,) and the indices of their vertices, counter-clockwise from outside.
     radius
-        [m].
+        Radius of the ball [m].
     volume
-        [m^3].
+        Volume [m^3].
     size
         Largest distance of a point of the solid from the centroid [m].
 
@@ -86,12 +85,12 @@ class Convex(Shape):
 
     @property
     def vertices(self) -> np.ndarray:
-        """The points in body axes (m,3) [m]."""
+        """Vertices in body axes (m,3) [m]."""
         return self._vertices
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
-        """A hull, swollen."""
+        """One piece: a hull, rounded by the ball."""
         half = np.max(np.abs(self.vertices), axis=0)
         touching = {"vertices": self.vertices, "faces": self.faces}
         return (Piece("hull", half, self.radius, extent=self.size, **touching),)
@@ -111,8 +110,8 @@ def hull_of(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     extents = np.linalg.svd(points - middle, compute_uv=False)
     if not extents[2] > FLAT * extents[0]:
         raise ValueError(
-            f"points must not all lie in one plane, got {len(points)} points that have a spread of "
-            f"{extents[2]:.3g} across one, {extents[0]:.3g} along it [m]"
+            f"points must not all lie in one plane, got {len(points)} points with a thickness of "
+            f"{extents[2]:.3g} m and a length of {extents[0]:.3g} m"
         )
     from scipy.spatial import ConvexHull
 
@@ -128,7 +127,7 @@ def hull_of(points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _faces(vertices: np.ndarray, simplices: np.ndarray) -> tuple:
-    """Return the faces: triangles that share an edge and a plane are one, its corners in a ring."""
+    """Return the faces: triangles with a common edge and plane form one face, its corners in a ring."""
     triangles = vertices[simplices]
     cross = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     double = np.linalg.norm(cross, axis=1)

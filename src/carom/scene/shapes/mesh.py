@@ -1,4 +1,4 @@
-"""A solid bounded by triangles."""
+"""`Mesh`: a solid bounded by triangles."""
 
 from __future__ import annotations
 
@@ -23,40 +23,43 @@ BULGE = 1e-9  # height of a vertex above a face, relative to the size, that is r
 class Mesh(Shape):
     """A solid bounded by a closed surface of triangles.
 
-    Volume, mass centre and inertia are exact. It touches as convex parts: itself, where it is convex, else
-    those given. The shape is moved so that its centroid becomes the origin of the body, as `Convex`.
+    Volume, mass centre and inertia are exact. Contact uses convex parts: the mesh itself if it is convex,
+    otherwise the given parts. As for `Convex`, the shape is moved so that its centroid becomes the origin of
+    the body.
 
     Parameters
     ----------
     vertices : (n, 3)
-        [m].
+        Vertices [m].
     faces : (k, 3)
-        Triangles, as numbers of vertices from 0 on, counter-clockwise from outside.
+        Triangles, as indices of vertices, counter-clockwise from outside.
     parts : sequence of (m, 3), "coacd" or None
         For a surface that is not convex: the corners of each of its convex parts, in the same axes as
-        `vertices`. With ``"coacd"`` the optional package of that name finds parts that cover the
-        solid approximately. Default None: a convex mesh needs none, any other cannot touch.
+        `vertices`. ``"coacd"``: the optional package of this name computes parts that cover the solid
+        approximately. Default None: a convex mesh needs no parts; without parts, any other mesh cannot touch.
 
     Attributes
     ----------
     points : (n, 3)
         The vertices as given [m].
     faces : (k, 3)
+        The triangles.
     centroid : (3,)
-        Of the solid, in the axes in which the vertices were given [m].
+        Centroid of the solid, in the axes of `points` [m].
     volume
-        [m^3].
+        Volume [m^3].
     size
-        Largest distance of a vertex, or a corner of a part, from the centroid [m].
+        Largest distance of a vertex, or of a corner of a part, from the centroid [m].
     convex : bool
+        Whether the mesh is convex.
 
     Raises
     ------
     ValueError
-        If the surface is not closed, not oriented outwards throughout, has degenerate triangles, or
-        the parts are no solids.
+        If the surface is not closed, is not oriented outwards everywhere, or has degenerate triangles; or if a
+        part is not a solid.
     ImportError
-        For ``parts="coacd"`` without that package.
+        If ``parts="coacd"`` is given and the package is missing.
     """
 
     points: np.ndarray
@@ -96,10 +99,10 @@ class Mesh(Shape):
 
     @property
     def pieces(self) -> tuple[Piece, ...]:
-        """Hulls: of the mesh itself or of its parts."""
+        """Hulls of the mesh itself or of its parts."""
         if not self._pieces:
             raise ValueError(
-                f"{self!r} is not convex and has no parts to touch with; give them: Mesh(vertices, faces, "
+                f"{self!r} is not convex and has no parts for contact; give them: Mesh(vertices, faces, "
                 'parts=[corners of each convex part]), or parts="coacd" with that package installed'
             )
         return self._pieces
@@ -141,19 +144,19 @@ def _checked_faces(faces, points: np.ndarray) -> np.ndarray:
 
 
 def _check_closed(triangles: np.ndarray) -> None:
-    """Refuse a surface in which an edge is not passed once in each sense."""
+    """Refuse a surface in which an edge is not used once in each direction."""
     edges = Counter((int(t[k]), int(t[(k + 1) % 3])) for t in triangles for k in range(3))
     twice = [edge for edge, count in edges.items() if count > 1]
     if twice:
         raise ValueError(
-            "faces must be oriented alike, each edge passed once in each sense, got edge "
-            f"{twice[0]} passed twice in one sense ({len(twice)} such edges)"
+            "faces must have one orientation, with each edge used once in each direction, got edge "
+            f"{twice[0]} used twice in one direction ({len(twice)} such edges)"
         )
     open_edges = [(i, j) for i, j in edges if (j, i) not in edges]
     if open_edges:
         raise ValueError(
             f"faces must form a closed surface, got edge {open_edges[0]} with a face on one side only "
-            f"({len(open_edges)} such edges); fill the holes, and merge vertices that have one place"
+            f"({len(open_edges)} such edges); fill the holes, and merge vertices at the same position"
         )
 
 
@@ -170,7 +173,7 @@ def _is_convex(points, triangles) -> bool:
 
 
 def _pieces(points, triangles, centroid, convex, parts) -> tuple[Piece, ...]:
-    """Return the convex pieces in body axes; none where they are needed and not given."""
+    """Return the convex pieces in body axes; an empty tuple if parts are needed but not given."""
     if parts is None:
         corners = [hull_of(points[np.unique(triangles)])[0]] if convex else []
     elif isinstance(parts, str):

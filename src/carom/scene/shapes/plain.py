@@ -1,4 +1,4 @@
-"""A ball, a box, an ellipsoid."""
+"""Shapes `Sphere`, `Box` and `Ellipsoid`."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ class Sphere(Shape):
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
-        """A point, swollen."""
+        """One piece: a point, rounded by a ball."""
         return (Piece("point", radius=self.radius, extent=self.size),)
 
     def inertia(self, mass: float) -> np.ndarray:
@@ -47,15 +47,15 @@ class Sphere(Shape):
 @arguments.known
 @dataclass(frozen=True)
 class Box(Shape):
-    """A solid box, its edges and corners rounded if a radius is given.
+    """A solid box, with rounded edges and corners if a radius is given.
 
     Parameters
     ----------
     lx, ly, lz
-        Full outer edge lengths [m], each above 0.
+        Outer edge lengths [m], each above 0.
     radius
-        Of the rounding [m], from 0 (default, sharp) to half the least edge: the solid is a box smaller by
-        `radius` on all sides, swollen by a ball. Volume and inertia are those of the rounded solid.
+        Radius of the rounding [m], from 0 (default: sharp edges) to half of the shortest edge. Volume and
+        inertia are those of the rounded solid.
     """
 
     lx: float
@@ -81,7 +81,7 @@ class Box(Shape):
 
     @cached_property
     def half(self) -> np.ndarray:
-        """Half edges (3,) of the core, the box inside the rounding [m]."""
+        """Half edge lengths (3,) of the core, the box inside the rounding [m]."""
         half = 0.5 * np.array([self.lx, self.ly, self.lz]) - self.radius
         half.setflags(write=False)
         return half
@@ -100,7 +100,7 @@ class Box(Shape):
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
-        """A box, swollen; a point if it is all rounding."""
+        """One piece: a box, rounded by a ball; the box is a point if `radius` is half of all edges."""
         half = self.half
         kind = "box" if np.any(half > 0) else "point"
         return (Piece(kind, half, self.radius, extent=self.size),)
@@ -142,7 +142,7 @@ class Ellipsoid(Shape):
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
-        """An ellipsoid; `inner` is its least radius of curvature, min^2 / max of the semi-axes."""
+        """One piece: an ellipsoid; `inner` is its least radius of curvature, min^2 / max of the semi-axes."""
         axes = (self.a, self.b, self.c)
         inner = min(axes) ** 2 / max(axes)
         return (Piece("ellipsoid", np.array(axes), inner=inner, extent=self.size),)
@@ -155,7 +155,7 @@ class Ellipsoid(Shape):
 
 
 def _rounded_box(half: np.ndarray, r: float) -> tuple[float, float]:
-    """Return volume, and integral of x^2 over it, of a box of half edges a, b, c swollen by a ball.
+    """Return the volume of a box of half edges a, b, c rounded by a ball, and the integral of x^2 over it.
 
     The parts: core, six slabs on its faces, twelve quarters of cylinders on its edges, eight octants
     of a ball on its corners.

@@ -1,4 +1,4 @@
-"""Shapes of revolution about body z."""
+"""Shapes of revolution about body z: `Capsule`, `Cylinder` and `Disc`."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from carom.scene.values import keep
 @arguments.known
 @dataclass(frozen=True)
 class Capsule(Shape):
-    """A solid cylinder along body z with half balls as its ends.
+    """A solid cylinder along body z with hemispherical ends.
 
     Parameters
     ----------
     radius
-        Of the cylinder and of both ends [m], above 0.
+        Radius of the cylinder and of both ends [m], above 0.
     length
-        Of the straight part [m], above 0: the whole is ``length + 2 * radius`` long.
+        Length of the straight part [m], above 0; the total length is ``length + 2 * radius``.
     """
 
     radius: float
@@ -46,7 +46,7 @@ class Capsule(Shape):
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
-        """A segment, swollen."""
+        """One piece: a segment, rounded by a ball."""
         half = np.array([0.0, 0.0, 0.5 * self.length])
         return (Piece("segment", half, self.radius, extent=self.size),)
 
@@ -85,7 +85,7 @@ class Cylinder(Shape):
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
-        """A cylinder with sharp rims."""
+        """One piece: a cylinder with sharp rims."""
         half = np.array([self.radius, self.radius, 0.5 * self.length])
         return (Piece("cylinder", half, extent=self.size),)
 
@@ -100,17 +100,17 @@ class Cylinder(Shape):
 @arguments.known
 @dataclass(frozen=True)
 class Disc(Shape):
-    """A flat disc, or a ring, without thickness, about body z: a coin, a hoop.
+    """A flat disc or ring without thickness, with its axis along body z: a coin, a hoop.
 
-    It touches as a full disc, with its rim: nothing passes through the hole of a ring.
+    For contact it is a full disc with a sharp rim: bodies cannot pass through the hole of a ring.
 
     Parameters
     ----------
     radius
         Outer radius [m], above 0.
     inner_radius
-        Of the hole [m], from 0 (default: a full disc) to `radius` (a hoop). Only the inertia depends on it:
-        m (R^2 + r^2) / 2 about z, half of that about x and y.
+        Radius of the hole [m], from 0 (default: a full disc) to `radius` (a hoop). Only the inertia depends on
+        it: m (R^2 + r^2) / 2 about z, half of that about x and y.
     """
 
     radius: float
@@ -134,7 +134,7 @@ class Disc(Shape):
 
     @cached_property
     def pieces(self) -> tuple[Piece, ...]:
-        """A cylinder of length 0."""
+        """One piece: a cylinder of length 0."""
         return (Piece("cylinder", np.array([self.radius, self.radius, 0.0]), extent=self.size),)
 
     def inertia(self, mass: float) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""The balance of a piece of a step: what has no name is taken out, or put down to the lines of the ledger."""
+"""The energy balance of a piece of a step: its error is removed, or assigned to entries of the ledger."""
 
 from __future__ import annotations
 

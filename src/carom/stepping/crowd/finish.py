@@ -1,4 +1,4 @@
-"""The end of a step of a crowd: energies, impacts, what is held from now on, and what has come to rest."""
+"""The end of a step of a crowd: energies, impacts, new persistent contacts, and bodies at rest."""
 
 from __future__ import annotations
 

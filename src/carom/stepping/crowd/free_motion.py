@@ -1,4 +1,4 @@
-"""The motion of a crowd without contacts, and what loads do on it and on the path that is taken."""
+"""The motion of a crowd without contacts, and the work of loads on this motion and on the actual path."""
 
 from __future__ import annotations
 

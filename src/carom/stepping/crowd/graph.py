@@ -1,4 +1,4 @@
-"""The order in which the bodies of a crowd are eliminated, found anew when other bodies touch.
+"""The order in which the bodies of a crowd are eliminated; it is computed again when other bodies touch.
 
 Bodies are neighbours where they may touch, or joints pass an impulse on from one to the other. The one with
 fewest neighbours goes first, and makes those that it leaves neighbours of each other (least degree; rows of

@@ -1,4 +1,4 @@
-"""The impulses of a piece of a step, and where they bring the bodies."""
+"""The impulses of a piece of a step, and the positions of the bodies after them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Workspace of a step of a crowd: made for the first one, and longer where one has more points."""
+"""Workspace of a step of a crowd: made for the first one, and made larger for one with more points."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Anderson's mixing of sweeps: the next start is a combination of the last few, of least change.
+"""Anderson mixing of sweeps: the next start is the combination of the last few results with least change.
 
 Two sweeps map impulses p to g(p); a solution has f(p) = g(p) - p = 0. With the differences of the last f and g
 as columns of F and H, the next start is g - H theta, theta that of least |f - F theta| (Anderson 1965; Walker

@@ -1,4 +1,4 @@
-"""How bodies answer impulses at the points of a crowd: each by its own mass, or with the joints between them.
+"""The response of bodies to impulses at the points of a crowd: of single bodies, or of joined bodies.
 
 The Delassus operator W = G P G^T is never formed: rows G stand with each point, and the answers P G^T of the
 bodies that an impulse moves. Those are the two of the point and, where these have joints, what joints tie to

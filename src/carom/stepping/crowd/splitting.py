@@ -1,4 +1,4 @@
-"""The contact problem by alternating directions: impulses by one linear system, then back into the cones.
+"""The contact problem by alternating directions: one linear system, then projection onto the friction cones.
 
 Two copies of the impulses, p without the cones and z in them, are brought together by u (scaled):
 

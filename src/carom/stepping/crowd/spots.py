@@ -1,4 +1,4 @@
-"""The points of a crowd that may touch within a step, and where they are in a state."""
+"""The points of a crowd that may touch within a step, and their positions in a state."""
 
 from __future__ import annotations
 

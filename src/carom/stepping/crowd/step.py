@@ -1,13 +1,13 @@
-"""A step of a crowd, taken whole: free flight, one contact problem, back to the surfaces (Moreau 1988).
+"""A time-stepping step of a crowd (Moreau 1988): free flight, one contact problem, return to the surfaces.
 
 With rows G of the middle of the free flight from (q_0, v_0) to (q_f, v_f), and the inverse mass P at its end,
 
     w = G v_f + G P G^T p,    0 <= p_n _|_ w_n - b >= 0,    p_t in -mu p_n d|w_t|,
     pi_1 = pi_f + G^T p,      q_1 = Exp_q_f(h/2 P G^T p),
 
-b = e |u_n| where a contact strikes, 0 where it stays (`pose.set_bound`). So q_1 goes with the mean of the
-velocities, and the energy changes by p . (G v_0 + G v_1)/2, up to what the return to the surfaces moves.
-Order 1. (Mathematics page, §3.9.)
+with b = e |u_n| for a contact that strikes, and 0 for a persistent contact (`pose.set_bound`). So q_1 follows
+the mean of the velocities, and the energy changes by p . (G v_0 + G v_1)/2, except for the return to the
+surfaces. Order 1. (Mathematics page, §3.9.)
 """
 
 from __future__ import annotations
@@ -62,9 +62,10 @@ ALONE = 16  # pieces of a step of a body that is alone: they cost little
 
 @unit
 def step_crowd(model, data, method):
-    """Move all bodies of an island to the end of the step; a code for `run` goes to `work.result`.
+    """Move all bodies of an island to the end of the step; a code for `run` is written to `work.result`.
 
-    In pieces that are cut where one is too long, as far as the step can afford it.
+    The step is divided into pieces; a piece that is too long is divided again while the work allowance permits
+    it.
     """
     system, controls = model.system, model.controls
     now, work, clocks = data.state, data.work, data.clocks
@@ -102,7 +103,7 @@ def step_crowd(model, data, method):
 
 @kernel
 def piece(system, now, step, left):
-    """Return the time of the next piece: what is left in equal parts, so that no body goes too far in one."""
+    """Return the length of the next piece: equal parts of the rest, in which no body moves too far."""
     g, n = norm(system.gravity), now.shape[0]
     parts = math.ceil(ALONE * left / step) if n == 1 else 1.0
     for b in range(n):

@@ -1,4 +1,4 @@
-"""What has sunk in comes back to the surfaces: 0 <= lam _|_ phi + W_nn lam >= 0, xi = P G_n^T lam.
+"""Penetrating points return to the surfaces: 0 <= lam _|_ phi + W_nn lam >= 0, xi = P G_n^T lam.
 
 Sweeps over the normal rows, phi the gaps; repeated, as gaps are not linear.
 """

@@ -1,4 +1,4 @@
-"""The contact problem by sweeps: each contact in turn solved exactly, the others as they are (Gauss-Seidel).
+"""The contact problem by Gauss-Seidel sweeps: each contact is solved exactly with the others fixed.
 
 A sweep costs 60 ns a contact, and goes on from the last step's impulses; sweeps are mixed
 (`carom.stepping.crowd.mixing`).

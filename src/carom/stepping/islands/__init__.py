@@ -1,1 +1,1 @@
-"""Islands of a step: sets of bodies that cannot meet others in it, each moved on a clock of its own."""
+"""Islands of a step: sets of bodies that cannot meet other bodies in it; each moves with its own clock."""

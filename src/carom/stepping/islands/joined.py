@@ -1,4 +1,4 @@
-"""Bodies that joints and loads act on, numbered among themselves: they share an island, as the first in it.
+"""Bodies with joints and loads: they are all in one island, are its first bodies, and have own numbers.
 
 Springs, joints and functions of the user's speak of bodies by number, and the back ends have a row for each.
 So all this is kept a second time for the island of the joined and loaded bodies, whatever else is in it: these

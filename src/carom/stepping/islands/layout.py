@@ -1,4 +1,4 @@
-"""Arrays of the islands of a step: made before the loop, and longer where a step needs more room."""
+"""Arrays of the islands of a step: made before the loop, and made larger when a step needs more room."""
 
 from __future__ import annotations
 

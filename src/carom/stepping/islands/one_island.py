@@ -1,4 +1,4 @@
-"""A step of all bodies as one island: its start is kept, so that it can be done again another way."""
+"""A step of all bodies as one island: its start is stored, so that it can be repeated in another way."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The order of pairs and of contacts within an island: that of the scene, whenever their rows were made.
+"""The order of pairs and contacts in an island: that of the scene, however late their rows were made.
 
 Contacts that have rows from the start are in the order of these. Those that came later follow, by their bodies:
 as all pairs would be had they been made at the start. So a motion does not depend on when they came.

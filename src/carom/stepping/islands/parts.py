@@ -1,4 +1,4 @@
-"""An island as a system of its own: its bodies, contacts and active points, taken out and put back."""
+"""An island as a separate system: its bodies, contacts and active points are copied out and copied back."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which bodies may meet in a step: balls that hold their whole paths, and the sets that overlapping balls make.
+"""The bodies that may meet in a step: each has a ball around its path, and overlapping balls form an island.
 
 A body moves no further in a step h than v h + g h^2, v a bound of the speed of its points, as long as it meets
 nothing. In a set that meets, none moves further than at twice the greatest speed of it, unless light bodies

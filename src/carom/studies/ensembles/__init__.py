@@ -1,4 +1,4 @@
-"""Many runs of a scene with some of its values varied: `carom.ensemble`."""
+"""`carom.ensemble`: many runs of a scene with varied values."""
 
 from carom.studies.ensembles.api import ensemble
 from carom.studies.ensembles.result import Ensemble

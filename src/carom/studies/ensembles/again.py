@@ -1,8 +1,8 @@
-"""A run that is made once and started many times, each time as if it were new.
+"""A run that is set up once and started many times, each time like a new run.
 
-Setting up a run costs as much as hundreds of its steps: the scene is compiled, arrays are made, compiled
-code is looked up. All that a run writes to is put back instead to what it was before the first step, so that
-no run can know what ran before it.
+To set up a run takes as long as hundreds of its steps: the scene is compiled, arrays are made, compiled code is
+looked up. Instead, all data that a run changes are reset to their values before the first step, so that no run
+depends on the runs before it.
 """
 
 from __future__ import annotations
@@ -34,12 +34,12 @@ class Again:
             self.kept = Kept(self.run.parts)
 
     def start(self, values: dict[str, np.ndarray]) -> Run:
-        """Return a run that is to begin with these values, one of each name.
+        """Return the run, ready to start with these values, one for each name.
 
         Raises
         ------
         ValueError
-            If bodies start inside each other, or the start breaks a joint.
+            If bodies penetrate each other at the start, or the start violates a joint.
         """
         if not self.light:
             return Run(changed(self.scene, self.targets, values), self.settings)

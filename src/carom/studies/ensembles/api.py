@@ -1,4 +1,4 @@
-"""`carom.ensemble`: many runs of a scene with some of its values varied."""
+"""`carom.ensemble`: many runs of a scene with varied values."""
 
 from __future__ import annotations
 
@@ -49,66 +49,72 @@ def ensemble(
     chunk: int = CHUNK,
     progress=None,
 ) -> Ensemble:
-    """Run a scene many times, with some values varied, and keep how each run ended.
+    """Run a scene many times with varied values, and collect the state at the end of each run.
 
-    Results are the same, bit for bit, for any executor, number of workers and order, and those of `simulate`
-    for each run by itself. A run that fails is kept with its status and message, and stops nothing.
+    The results do not depend on the executor, the number of workers and the order of the runs: they are bit for
+    bit those of `simulate` for each run. A run that fails is stored with its status and message, and the other
+    runs continue.
 
     Parameters
     ----------
     scene : Scene, or function
-        Of which values are varied; or what makes the scene of a run from them: a function that takes the
-        names in `vary` as keywords and returns a `Scene`. All must have as many bodies.
+        A scene whose values are varied; or a function that takes the names in `vary` as keyword arguments and
+        returns the `Scene` of a run. All scenes must have the same number of bodies.
     duration : float
-        Of each run [s].
+        Duration of each run [s].
     step, method, rtol, atol, options
-        As of `simulate`.
+        As for `simulate`.
     vary : mapping
-        For each name the values: an array whose first axis is over the runs, a SciPy distribution, a list of
-        distributions and numbers (a vector), or `UniformOrientation()`. Names of a Scene: ``"gravity"``;
-        ``"die.position"``, ``orientation``, ``velocity``, ``angular_velocity``, ``mass``, ``inertia`` of a
-        body called die; ``"die-ground.restitution"``, ``friction``, ``friction_held``, ``rolling_friction``,
-        ``pivoting_friction`` of a contact. Inertia goes with the mass unless it is varied, and
-        `friction_held` with `friction` where the two were the same. Orientations may be a SciPy Rotation or
-        matrices, too.
+        The values for each name: an array whose first axis is over the runs, a SciPy distribution, a list of
+        distributions and numbers (for a vector), or `UniformOrientation()`. If `scene` is a Scene, the names
+        are: ``"gravity"``; ``"die.position"``, ``orientation``, ``velocity``, ``angular_velocity``, ``mass``,
+        ``inertia`` for a body with the name "die"; ``"die-ground.restitution"``, ``friction``,
+        ``friction_held``, ``rolling_friction``, ``pivoting_friction`` for a contact. Inertia is scaled with the
+        mass unless it is varied itself, and `friction_held` follows `friction` if the two were equal.
+        Orientations may also be a SciPy Rotation or matrices.
     runs : int, optional
-        How many; not needed where an array says so.
+        Number of runs; not needed if `vary` has an array.
     seed : int
-        Of what is drawn. Default 0.
+        Seed of the random numbers. Default 0.
     sampling : {"random", "sobol", "halton", "latin"}
-        How: independent, or evenly spread (quasi-Monte Carlo, Latin hypercube).
+        Independent random numbers (``"random"``, default), or evenly spread ones (quasi-Monte Carlo or Latin
+        hypercube).
     observe : function, optional
-        Of the `Solution` of a run; returns a dict of numbers or arrays that are kept as `Ensemble.observed`. It
-        sees every step, and costs the making of a Solution. Must be importable for processes and clusters.
+        Function that is called with the `Solution` of each run, which has every step, and returns a dict of
+        numbers or arrays; these are collected in `Ensemble.observed`. It makes each run slower, because a
+        Solution has to be made. For processes and clusters the function must be importable.
     executor : {"threads", "processes", "serial"}, Executor or Client
-        Who does it. Default threads of this process; or a `concurrent.futures.Executor`, or a client of
-        dask.distributed for many machines.
+        Executor of the runs: threads of this process (default), processes, or one run after another; or a
+        `concurrent.futures.Executor`, or a client of dask.distributed for many machines.
     workers : int, optional
-        How many. Default: all processors, or what the cluster has.
+        Number of workers. Default: all processors, or all workers of the cluster.
     save : path, optional
-        A folder (Zarr) that outcomes are written to as they come, so that memory stays bounded while runs go
-        on. If it holds part of the same ensemble, only the rest is run.
+        A folder (Zarr) to which outcomes are written during the run, so that the needed memory is bounded. If
+        it has a part of the same ensemble already, only the other runs are made.
     chunk : int
-        Runs that are handed out, and written, together. Default 64.
+        Number of runs that a worker makes, and that are written, together. Default 64.
     progress : True or function, optional
-        A bar with the remaining time; or called with (runs made, runs).
+        True shows a progress bar with the remaining time. A function is called with (number of runs made,
+        number of all runs).
 
     Returns
     -------
     Ensemble
+        The values and the outcome of each run.
 
     Raises
     ------
     OSError
-        If `save` cannot be written, as on a full disk. What was written is kept: the same call goes on with it.
+        If `save` cannot be written, for example on a full disk. All that was written stays valid: repeat the
+        same call to continue.
     TypeError, ValueError
-        For an argument of another type or outside its range, a name that is not known, a scene that cannot
-        start, or a `save` that holds another ensemble. Nothing has run then.
+        If an argument has a wrong type or is outside its range, a name is unknown, a scene cannot start, or
+        `save` has another ensemble. No run has started then.
 
     Warns
     -----
     RuntimeWarning
-        If it was interrupted (Ctrl-C): what was done is returned.
+        If the call is interrupted (Ctrl-C): the runs that were made are returned.
 
     Examples
     --------
@@ -121,7 +127,7 @@ def ensemble(
     ...     "die.orientation": carom.UniformOrientation(), "die-ground.friction": uniform(0.1, 0.3)})
     >>> thrown
     <Ensemble of 8 runs: 8 success>
-    >>> thrown.position.shape, bool(np.all(thrown.velocity == 0))  # where each came to rest
+    >>> thrown.position.shape, bool(np.all(thrown.velocity == 0))  # each die is at rest
     ((8, 1, 3), True)
     """
     if not isinstance(scene, Scene) and not callable(scene):
@@ -161,7 +167,7 @@ def ensemble(
     try:
         _go(plan, inputs, done, chunk, executor, workers, store, parts, report)
     except KeyboardInterrupt:
-        more = "; call again with the same arguments to go on" if store is not None else ""
+        more = "; call again with the same arguments to continue" if store is not None else ""
         warnings.warn(
             f"interrupted after {int(done.sum())} of {count} runs{more}",
             RuntimeWarning,
@@ -187,7 +193,7 @@ def _plan(scene, settings: Settings, inputs: dict[str, np.ndarray], observe):
     values = {name: array[0] for name, array in inputs.items()}
     plain = {name: float(v) if np.ndim(v) == 0 else v for name, v in values.items()}
     first = checks.call("scene", lambda: scene(**plain))
-    checks.instance("what scene returns", first, (Scene,))
+    checks.instance("the result of the function scene", first, (Scene,))
     return Plan(scene, settings, [], len(first.bodies), observe)
 
 
@@ -204,7 +210,7 @@ def _store(save, plan, inputs, chunk):
             raise ValueError(f"save: {error}") from None
         if store.about.get("digest") != mark:
             raise ValueError(
-                f"save: {save} holds another ensemble (other scene, settings or inputs); give another path, or "
+                f"save: {save} has another ensemble (other scene, settings or inputs); give another path, or "
                 "remove it"
             )
         return store
@@ -213,7 +219,7 @@ def _store(save, plan, inputs, chunk):
 
 
 def _go(plan, inputs, done, chunk, executor, workers, store, parts, report) -> None:
-    """Do what is left, part by part."""
+    """Make the remaining runs, part by part."""
     from carom.studies.ensembles.engines import each
     from carom.studies.ensembles.plan import do
 
@@ -235,7 +241,7 @@ def _go(plan, inputs, done, chunk, executor, workers, store, parts, report) -> N
 
 
 def _collect(plan, inputs, parts, count) -> Ensemble:
-    """Put the parts together, in the order of the runs."""
+    """Join the parts in the order of the runs."""
     from carom import __version__
     from carom.studies.ensembles.outcome import no_outcomes
 

@@ -1,4 +1,4 @@
-"""Dice: which face is up, how often, and whether that is fair."""
+"""Dice: the face that is up, its frequency, and a test of fairness."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ from carom.geometry.attitude import quaternions
 if TYPE_CHECKING:
     from carom.geometry.attitude import Orientation
 
-#: faces by the axis of the body that points up: +x, -x, +y, -y, +z, -z; opposite ones make seven
+#: faces by the axis of the body that points up: +x, -x, +y, -y, +z, -z; opposite faces add up to seven
 FACES = np.array([5, 2, 4, 3, 6, 1])
-#: a face is up if its normal is within this of the vertical, as 1 - cos
+#: a face is up if 1 - cos of the angle between its normal and the vertical is below this
 UP = 1e-6
 
 
 def face_up(orientation: Orientation) -> np.ndarray:
-    """Return the face, 1 to 6, that is up in each orientation (..., 4); 0 where none is level.
+    """Return the face, 1 to 6, that is up in each orientation (..., 4); 0 if no face is level.
 
-    Faces +x, -x, +y, -y, +z, -z of the body bear 5, 2, 4, 3, 6, 1.
+    The faces +x, -x, +y, -y, +z, -z of the body have the numbers 5, 2, 4, 3, 6, 1.
     """
     Q = checks.real_array("orientation", quaternions("orientation", orientation), "(..., 4)")
     if Q.shape[-1:] != (4,):
@@ -37,7 +37,7 @@ def face_up(orientation: Orientation) -> np.ndarray:
 
 
 class Fairness(NamedTuple):
-    """How often each face came up."""
+    """Frequencies of the faces, and a chi-square test of fairness."""
 
     counts: np.ndarray  # (6,) of faces 1 to 6
     share: np.ndarray  # (6,)
@@ -48,12 +48,12 @@ class Fairness(NamedTuple):
 
 
 def fairness(faces: ArrayLike) -> Fairness:
-    """Return the statistics of faces 1 to 6; others are left out.
+    """Return the statistics of faces 1 to 6; other values are left out.
 
     Raises
     ------
     ValueError
-        If there are none.
+        If there are no faces from 1 to 6.
     """
     from scipy.stats import binomtest, chisquare
 
@@ -61,7 +61,7 @@ def fairness(faces: ArrayLike) -> Fairness:
     counts = np.array([int(np.sum(faces == face)) for face in range(1, 7)])
     total = int(counts.sum())
     if total == 0:
-        raise ValueError("faces must have at least one of 1 to 6, got none")
+        raise ValueError("faces must have at least one value from 1 to 6, got none")
     bounds = [binomtest(int(n), total).proportion_ci(method="wilson") for n in counts]
     test = chisquare(counts)
     return Fairness(

@@ -1,7 +1,7 @@
-"""Who does the parts of an ensemble: this thread, threads, processes, or another's executor.
+"""Executors of the parts of an ensemble: this thread, threads, processes, or an executor of the user.
 
-Few parts are handed out at a time, so that memory does not grow with their number. A part that is lost with its
-worker is handed out again: it gives the same numbers wherever it is done.
+Only a few parts are submitted at a time, so that memory does not grow with their number. A part that is lost
+with its worker is submitted again; its results do not depend on the worker.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ TRIES = 5  # of a part whose worker is lost
 
 
 def check_engine(executor) -> None:
-    """Refuse what is neither the name of an engine nor another's executor."""
+    """Refuse a value that is neither the name of an engine nor an executor."""
     if isinstance(executor, str):
         checks.choice("executor", executor, NAMES)
     elif isinstance(executor, type) or not (
@@ -33,7 +33,7 @@ def check_engine(executor) -> None:
 
 @contextmanager
 def engine(executor, workers: int | None):
-    """Yield (submit, wait for the first, how many parts to hand out at once)."""
+    """Yield (submit, wait for the first result, number of parts to submit at once)."""
     if isinstance(executor, str):
         checks.choice("executor", executor, NAMES)
         count = workers or os.cpu_count() or 1
@@ -62,7 +62,7 @@ def engine(executor, workers: int | None):
 
 
 def _at_once(function, *arguments) -> futures.Future:
-    """Do it here and now."""
+    """Run a task in this thread, without delay."""
     done: futures.Future = futures.Future()
     try:
         done.set_result(function(*arguments))
@@ -72,7 +72,7 @@ def _at_once(function, *arguments) -> futures.Future:
 
 
 def each(tasks: Iterator[tuple], function: Callable, executor, workers: int | None) -> Iterator:
-    """Yield `function(*task)` of all tasks, in the order in which they get done."""
+    """Yield `function(*task)` for all tasks, in the order in which they are completed."""
     with engine(executor, workers) as (submit, most):
         running: dict[futures.Future, tuple[tuple, int]] = {}
 
@@ -98,7 +98,7 @@ def each(tasks: Iterator[tuple], function: Callable, executor, workers: int | No
 
 
 def _outcome(future: futures.Future) -> tuple[object, Exception | None]:
-    """Return the result of a task, or the error that it ended with."""
+    """Return the result of a task, or the error with which it ended."""
     try:
         return future.result(), None
     except Exception as error:
@@ -106,13 +106,13 @@ def _outcome(future: futures.Future) -> tuple[object, Exception | None]:
 
 
 def _cancel(running: Iterable[futures.Future]) -> None:
-    """Cancel all that has not begun."""
+    """Cancel all tasks that have not started."""
     for future in running:
         future.cancel()
 
 
 def _lost(error: Exception) -> bool:
-    """Return whether it was the worker that failed, not the work."""
+    """Return whether the worker failed, not the task."""
     names = {kind.__name__ for kind in type(error).__mro__}
     return bool(
         names & {"KilledWorker", "CancelledError", "FutureCancelledError", "CommClosedError"}

@@ -1,4 +1,4 @@
-"""The mark by which a saved ensemble is known again: of its scene, its functions, settings and inputs."""
+"""The digest that identifies a saved ensemble: of its scene, functions, settings and inputs."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from carom.studies.ensembles.plan import Plan
 
 
 def digest(plan: Plan, inputs: dict[str, np.ndarray]) -> str:
-    """Return a text that differs for ensembles that differ: inputs, settings, scene and its functions."""
+    """Return a digest of an ensemble: of its inputs, settings, scene and functions."""
     found = hashlib.sha256(repr(plan.settings).encode())
     for name, values in sorted(inputs.items()):
         found.update(name.encode() + np.ascontiguousarray(values).tobytes())
@@ -29,7 +29,7 @@ def digest(plan: Plan, inputs: dict[str, np.ndarray]) -> str:
 
 
 class _Marker(Encoder):
-    """Functions of the user's by what they do, where a file has their names alone."""
+    """User-defined functions by a mark of their code; a file has only their names."""
 
     def function(self, value: Any, where: str) -> dict:
         """Return the name of a function and its mark."""
@@ -37,9 +37,9 @@ class _Marker(Encoder):
 
 
 def mark_of(function: Callable) -> str:
-    """Return a text that changes with the code of a function and with the numbers that it refers to.
+    """Return a text that depends on the code of a function and on the numbers that it uses.
 
-    Not with functions in Python that it calls, nor with what is inside objects of other classes.
+    It does not depend on Python functions that it calls, nor on the contents of objects of other classes.
     """
     return "; ".join(_marks(function))
 

@@ -1,4 +1,4 @@
-"""What is kept of each run of an ensemble: a row of numbers, and what was observed."""
+"""The outcome of each run of an ensemble: a row of numbers, and the observed values."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ from carom.results.assemble import to_scene_axes
 from carom.run import Run
 from carom.status import Status
 
-#: of runs that have not been made; and of those that could not begin
+#: status of runs that have not been made, and of runs that could not start
 PENDING, REFUSED = -1, -2
 
 
 def outcome_type(bodies: int) -> np.dtype:
-    """Return the type of a row, for scenes of so many bodies."""
+    """Return the data type of a row, for scenes with this number of bodies."""
     return np.dtype(
         [
             ("status", "i8"),  # a `Status`, or PENDING, or REFUSED
@@ -37,7 +37,7 @@ def outcome_type(bodies: int) -> np.dtype:
 
 
 def no_outcomes(runs: int, bodies: int) -> np.ndarray:
-    """Return rows of runs that have not been made."""
+    """Return rows for runs that have not been made."""
     rows = np.zeros(runs, dtype=outcome_type(bodies))
     rows["status"] = PENDING
     for name in rows.dtype.names or ():
@@ -47,7 +47,7 @@ def no_outcomes(runs: int, bodies: int) -> np.ndarray:
 
 
 def write_outcome(run: Run, status: Status, row: np.void) -> None:
-    """Write what a run has come to."""
+    """Write the outcome of a run."""
     now = run.now
     clock = dict(
         zip(run.clock.dtype.names or (), run.clock[0].item())

@@ -1,4 +1,4 @@
-"""What an ensemble is to do, and the doing of a part of it: the same wherever and whenever it is done."""
+"""The plan of an ensemble, and the runs of a part of it: results do not depend on worker and order."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from carom.studies.ensembles.targets import Target
 
 @dataclass(frozen=True)
 class Plan:
-    """One ensemble: its scene, or what makes the scene of a run from its values, and how it is run."""
+    """The plan of an ensemble: its scene, or the function that makes the scene of a run, and its settings."""
 
     scene: Scene | Callable[..., Scene]
     settings: Settings
@@ -32,7 +32,7 @@ class Plan:
 
 
 class Part(NamedTuple):
-    """What has come of some runs that follow each other."""
+    """Outcomes of some consecutive runs."""
 
     first: int
     outcomes: np.ndarray
@@ -44,7 +44,7 @@ _here = threading.local()
 
 
 def do(plan: Plan, first: int, values: dict[str, np.ndarray]) -> Part:
-    """Make the runs whose values are given, the first of which has the number `first`."""
+    """Make the runs with the given values; the first of them has the number `first`."""
     runs = len(next(iter(values.values()))) if values else 1
     part = Part(first, no_outcomes(runs, plan.bodies), {}, {})
     for k in range(runs):
@@ -59,12 +59,10 @@ def do(plan: Plan, first: int, values: dict[str, np.ndarray]) -> Part:
 
 
 def one(plan: Plan, values: dict[str, np.ndarray], k: int, part: Part) -> None:
-    """Make one run, and write what has come of it."""
+    """Make one run, and write its outcome."""
     run = begin(plan, values)
     if len(run.now) != plan.bodies:
-        raise ValueError(
-            f"scene must have {plan.bodies} bodies as that of run 0, got {len(run.now)}"
-        )
+        raise ValueError(f"scene must have {plan.bodies} bodies, as in run 0, got {len(run.now)}")
     status = run.judged(run.go_on(run.steps))
     write_outcome(run, status, part.outcomes[k])
     if status != 0:
@@ -84,7 +82,7 @@ def one(plan: Plan, values: dict[str, np.ndarray], k: int, part: Part) -> None:
 
 
 def begin(plan: Plan, values: dict[str, np.ndarray]) -> Run:
-    """Return a run that is to begin with these values."""
+    """Return a run that is ready to start with these values."""
     if not isinstance(plan.scene, Scene):
         scene = plan.scene(**{name: _plain(value) for name, value in values.items()})
         if not isinstance(scene, Scene):

@@ -1,4 +1,4 @@
-"""What an ensemble hands back: a column for each outcome, a row a run."""
+"""`Ensemble`: the outcomes of all runs, with one row for each run."""
 
 from __future__ import annotations
 
@@ -17,29 +17,29 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Ensemble:
-    """Many runs of a scene, R in all, of N bodies. Each outcome is an attribute, a row a run.
+    """The results of R runs of a scene with N bodies. Each outcome is an attribute with one row for each run.
 
     Attributes
     ----------
     inputs : dict of (R, ...)
-        The values that differed.
+        The varied values.
     outcomes : (R,) structured array
-        A column for each name below.
+        A column for each outcome below.
     observed : dict of (R, ...)
-        What `observe` returned.
+        The results of `observe`.
     failures : dict of int to str
-        Why a run stopped before its end, or could not begin, by its number.
+        The messages of runs that stopped before their end, or could not start, by the number of the run.
     about : dict
         Version and settings of the runs.
 
     Notes
     -----
-    Outcomes: `status`, a `Status`, or -1 of runs that were not made and -2 of those that could not begin; `t`,
-    time reached [s]; `rest_time`, end of the first step after which nothing moves, else NaN; `impacts`, their
-    number; `first_impact` [s]; `kinetic_energy` at the end, `impact_loss`, `friction_loss`, `bounce_loss`,
-    `load_work` [J]; `energy_error`, the worst energy without a name as a part of the largest exchanged until
-    then (`Options.energy_tolerance`); and at the end `position` (R, N, 3), `orientation` (R, N, 4), `velocity`,
-    `angular_velocity` (R, N, 3).
+    The outcomes are: `status`, a `Status`, or -1 for a run that was not made and -2 for a run that could not
+    start; `t`, the time reached [s]; `rest_time`, the end of the first step after which nothing moves [s], or
+    NaN; `impacts`, the number of impacts; `first_impact`, the time of the first impact [s]; `kinetic_energy` at
+    the end, `impact_loss`, `friction_loss`, `bounce_loss`, `load_work` [J]; `energy_error`, the largest energy
+    error as a fraction of the largest energy exchanged until then (see `Options.energy_tolerance`); and the
+    state at the end: `position` (R, N, 3), `orientation` (R, N, 4), `velocity`, `angular_velocity` (R, N, 3).
     """
 
     inputs: dict[str, np.ndarray]
@@ -51,12 +51,12 @@ class Ensemble:
 
     @classmethod
     def load(cls, path) -> Ensemble:
-        """Return an ensemble that was saved, finished or not.
+        """Return a saved ensemble, complete or not.
 
         Raises
         ------
         FileNotFoundError, ValueError
-            If there is nothing, or something else, at the path.
+            If the path does not exist, or is not a saved ensemble.
         """
         from carom.studies.ensembles.store import Store
 
@@ -69,7 +69,7 @@ class Ensemble:
         return cls(inputs, whole.outcomes, whole.observed, whole.failures, store.about)
 
     def __getattr__(self, name: str) -> np.ndarray:
-        """Return a column of the outcomes."""
+        """Return an outcome of all runs."""
         outcomes = self.__dict__.get("outcomes")
         if outcomes is None or name not in (outcomes.dtype.names or ()):
             raise AttributeError(f"an Ensemble has no {name!r}")
@@ -84,27 +84,27 @@ class Ensemble:
 
     @property
     def done(self) -> np.ndarray:
-        """Which runs were made (R,)."""
+        """Whether each run was made (R,)."""
         return self.outcomes["status"] != PENDING
 
     @property
     def complete(self) -> bool:
-        """Whether all were."""
+        """Whether all runs were made."""
         return bool(np.all(self.done))
 
     def counts(self) -> dict[str, int]:
-        """Return how many runs ended in which way."""
+        """Return the number of runs with each status."""
         words = {PENDING: "pending", REFUSED: "refused", **{int(s): s.name.lower() for s in Status}}
         found, numbers = np.unique(self.outcomes["status"], return_counts=True)
         return {words[int(s)]: int(n) for s, n in zip(found, numbers)}
 
     def solution(self, run: int):
-        """Return the whole `Solution` of a run, by making it again.
+        """Return the complete `Solution` of a run; the run is made again.
 
         Raises
         ------
         ValueError
-            If the ensemble was loaded from disk, and so has no scene, or there is no such run.
+            If the ensemble was loaded from disk and so has no scene, or there is no run with this number.
         """
         from carom.scene.scene import Scene
         from carom.simulate import simulate
@@ -114,8 +114,8 @@ class Ensemble:
         plan = self._plan
         if plan is None:
             raise ValueError(
-                "solution needs the scene, which an ensemble from disk does not have; call carom.ensemble "
-                "with the same arguments and the same save"
+                "solution needs the scene, but an ensemble from disk has none; call carom.ensemble with the "
+                "same arguments and the same save"
             )
         values = {name: array[run] for name, array in self.inputs.items()}
         if isinstance(plan.scene, Scene):

@@ -1,4 +1,4 @@
-"""Values of the runs of an ensemble, drawn from distributions: at random, or spread evenly."""
+"""Values for the runs of an ensemble, drawn from distributions: at random, or evenly spread."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ SAMPLING = ("random", "sobol", "halton", "latin")
 
 
 class UniformOrientation:
-    """Orientations of which none is preferred: unit quaternions (w, x, y, z), uniform over all rotations.
+    """The uniform distribution over all orientations, as unit quaternions (w, x, y, z).
 
-    Shoemake, *Uniform random rotations*, Graphics Gems III (1992), from three uniform numbers.
+    Three uniform numbers give an orientation: Shoemake, *Uniform random rotations*, Graphics Gems III (1992).
     """
 
     columns = 3  #: numbers that it takes of each point
 
     def ppf(self, u: np.ndarray) -> np.ndarray:
-        """Return the quaternions (n, 4) of points `u` (n, 3) of the unit cube."""
+        """Return the quaternions (n, 4) for points `u` (n, 3) of the unit cube."""
         u = checks.finite_array("u", u, (None, self.columns))
         if not np.all((u >= 0.0) & (u <= 1.0)):
             raise ValueError(f"u must be points of the unit cube, got {checks.shown(u)}")
@@ -35,17 +35,18 @@ class UniformOrientation:
 
 
 def draw(vary: Mapping, runs: int | None, seed: int, sampling: str) -> dict[str, np.ndarray]:
-    """Return an array for each name in `vary`, its first axis over the runs.
+    """Return an array for each name in `vary`, with its first axis over the runs.
 
     Parameters
     ----------
     vary : mapping
-        For each name an array whose first axis is over the runs; a SciPy distribution (anything with `ppf`),
-        a value a run; a list of distributions and numbers, a vector a run; or `UniformOrientation()`.
+        For each name an array whose first axis is over the runs; a SciPy distribution (any object with `ppf`)
+        for a number in each run; a list of distributions and numbers for a vector in each run; or
+        `UniformOrientation()`.
     runs : int or None
-        How many; may be left out if an array says so.
+        Number of runs; None if `vary` has an array.
     seed : int
-        Of the generator.
+        Seed of the random number generator.
     sampling : {"random", "sobol", "halton", "latin"}
         Independent points, or points that fill the space of all drawn numbers evenly (scipy.stats.qmc).
     """
@@ -61,11 +62,11 @@ def draw(vary: Mapping, runs: int | None, seed: int, sampling: str) -> dict[str,
             )
         if runs is not None and len(values) != runs:
             raise ValueError(
-                f"vary[{name!r}] must have {runs} values, one a run, got {len(values)} with runs={runs}"
+                f"vary[{name!r}] must have {runs} values, one for each run, got {len(values)} with runs={runs}"
             )
         runs = len(values)
     if runs is None:
-        raise ValueError("runs must be given where nothing in vary is an array, got None")
+        raise ValueError("runs must be given if vary has no array, got None")
     if runs < 1:
         raise ValueError(f"vary must have at least one run, got arrays of length {runs}")
     total = sum(drawn.values())
@@ -79,7 +80,7 @@ def draw(vary: Mapping, runs: int | None, seed: int, sampling: str) -> dict[str,
 
 
 def _columns(name: str, spec) -> int:
-    """Return how many numbers of the unit cube a specification takes; 0 for an array."""
+    """Return the number of uniform random numbers that a specification needs; 0 for an array."""
     if hasattr(spec, "ppf"):
         return getattr(spec, "columns", 1)
     if isinstance(spec, (list, tuple)) and any(hasattr(part, "ppf") for part in spec):
@@ -91,7 +92,7 @@ def _columns(name: str, spec) -> int:
 
 
 def _given(name: str, spec) -> np.ndarray:
-    """Return the values of an array that was given."""
+    """Return the values of a given array, checked."""
     if name.endswith("orientation"):
         spec = quaternions(f"vary[{name!r}]", spec)
     try:

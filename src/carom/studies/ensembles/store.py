@@ -1,8 +1,8 @@
-"""An ensemble on disk: a Zarr group that grows by whole parts, and can be gone on with.
+"""An ensemble on disk: a Zarr group that grows by whole parts, and that a later call can continue.
 
-A part is there when its mark is, a small file that is written last and at once, with the digest of all numbers
-of the part. Whatever an interruption leaves behind, a part whose numbers are not those of its mark is done
-again. While a store is made a file says so; one that was never finished is made anew.
+A part is complete when it has a mark: a small file that is written last, in one operation, with the digest of
+all numbers of the part. After an interruption, parts whose numbers do not agree with their mark are computed
+again. While a store is being created a file says so; a store whose creation was interrupted is created again.
 """
 
 from __future__ import annotations
@@ -37,21 +37,21 @@ def _zarr():
 
 
 def is_begun(path: Path) -> bool:
-    """Return whether there is something at a path, but for what was killed while it was made."""
+    """Return whether a path has a store, except one whose creation was interrupted."""
     if not path.is_dir():
         return path.exists()
     return any(path.iterdir()) and not (path / MAKING).exists()
 
 
 class Store:
-    """The arrays of an ensemble under a path."""
+    """The arrays of an ensemble in a folder."""
 
     def __init__(self, path, group: Any):
         self.path, self.group = Path(path), group
 
     @classmethod
     def make(cls, path, inputs: dict[str, np.ndarray], bodies: int, chunk: int, about: dict):
-        """Return a new store, nothing of which has been done."""
+        """Return a new store without any runs."""
         zarr = _zarr()
         path = Path(path)
         path.mkdir(parents=True, exist_ok=True)
@@ -77,10 +77,12 @@ class Store:
 
     @classmethod
     def open(cls, path):
-        """Return a store that is there; refuse what is none."""
+        """Return an existing store; refuse a path that is not a store."""
         zarr = _zarr()
         if not is_begun(Path(path)):
-            raise FileNotFoundError(f"{path} is not there; an ensemble is saved with save=")
+            raise FileNotFoundError(
+                f"{path} does not exist; carom.ensemble(..., save=...) saves an ensemble"
+            )
         try:
             group = zarr.open_group(str(path), mode="r+")
             known = group.attrs.get("format")
@@ -96,12 +98,12 @@ class Store:
 
     @property
     def chunk(self) -> int:
-        """Runs in a part."""
+        """Number of runs in a part."""
         return int(self.group.attrs["chunk"])
 
     @property
     def about(self) -> dict:
-        """What was noted when the store was made."""
+        """The facts that were stored when the store was created."""
         return dict(self.group.attrs)
 
     @property
@@ -110,12 +112,13 @@ class Store:
         return self.group["outcomes/status"].shape[0]
 
     def write(self, part: Part) -> None:
-        """Write a part, its mark last.
+        """Write a part, and its mark last.
 
         Raises
         ------
         OSError
-            If it cannot be written: on a full disk above all. Parts that were written before are as they were.
+            If the part cannot be written, for example on a full disk. Parts that were written before stay
+            unchanged.
         """
         rows = slice(part.first, part.first + len(part.outcomes))
         failures = {str(k): message for k, message in part.failures.items()}
@@ -131,12 +134,12 @@ class Store:
         except OSError as error:
             raise OSError(
                 error.errno,
-                f"{error.strerror or error}; what was written is kept: call again to go on",
+                f"{error.strerror or error}; the parts written so far are valid: call again to continue",
                 str(self.path),
             ) from error
 
     def _observed(self, name: str, values: np.ndarray):
-        """Return the array of what was observed; a new one is put in its place as a whole."""
+        """Return the array of the observed values; a new array replaces it as a whole."""
         key = f"observed/{name}"
         if key not in self.group:
             _remove(self.path / NEW)
@@ -150,26 +153,28 @@ class Store:
         return self.group[key]
 
     def inputs(self) -> dict[str, np.ndarray]:
-        """Return the values that differed.
+        """Return the varied values.
 
         Raises
         ------
         ValueError
-            If they are not those that were written.
+            If they differ from those that were written.
         """
         try:
             values = {name: np.asarray(a[:]) for name, a in sorted(self.group["inputs"].arrays())}
             whole = _digest(values) == self.group.attrs["inputs"]
         except Exception as error:  # whatever a decoder makes of a damaged file
             raise ValueError(
-                f"{self.path} is damaged, its inputs cannot be read: {error}"
+                f"{self.path} is damaged: its inputs cannot be read ({error})"
             ) from error
         if not whole:
-            raise ValueError(f"{self.path} is damaged: its inputs are not those that were written")
+            raise ValueError(
+                f"{self.path} is damaged: its inputs have changed since they were written"
+            )
         return values
 
     def read(self) -> Part:
-        """Return all that has been done, as one part; rows of other runs are pending."""
+        """Return all completed runs as one part; rows of other runs are pending."""
         columns = {name: self._column(f"outcomes/{name}") for name in self.group["outcomes"]}
         observed = {name: self._column(f"observed/{name}") for name in self.group["observed"]}
         whole = Part(0, no_outcomes(self.runs, int(self.group.attrs["bodies"])), {}, {})
@@ -190,7 +195,7 @@ class Store:
         return whole._replace(failures=dict(sorted(whole.failures.items())))
 
     def _marks(self) -> Iterator[tuple[slice, dict]]:
-        """Go through the parts that have a mark: their rows, and what it says."""
+        """Yield the parts that have a mark: their rows, and the contents of the mark."""
         for first in range(0, self.runs, self.chunk):
             file = self.path / MARKS / f"{first}.json"
             if file.exists():
@@ -200,7 +205,7 @@ class Store:
                 )
 
     def _column(self, key: str) -> np.ndarray:
-        """Return an array; zeros where it cannot be read, for a part that was cut short has no mark."""
+        """Return an array, with zeros where it cannot be read: an incomplete part has no mark."""
         array = self.group[key]
         try:
             return np.asarray(array[:])

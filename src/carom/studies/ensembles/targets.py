@@ -1,4 +1,4 @@
-"""What may be varied, by name: `body.field`, `contact.field`, and `gravity`."""
+"""Names of the values that may be varied: `body.field`, `contact.field`, and `gravity`."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ BODY_FIELDS = ("mass", "inertia")
 
 @dataclass(frozen=True)
 class Target:
-    """Where the values of one name go."""
+    """The destination of the values of one name."""
 
     name: str
     part: str  # name of the body or contact; "" for the scene
@@ -32,7 +32,7 @@ class Target:
 
 
 def find_targets(scene: Scene, inputs: dict[str, np.ndarray]) -> list[Target]:
-    """Return where each input goes; refuse names and values that are not known or allowed."""
+    """Return the destination of each input; refuse unknown names and values that are not allowed."""
     return [_find(scene, name, values) for name, values in inputs.items()]
 
 
@@ -45,7 +45,7 @@ def _find(scene: Scene, name: str, values: np.ndarray) -> Target:
         near = get_close_matches(name, known, n=1)
         hint = f"; did you mean {near[0]!r}?" if near else ""
         raise ValueError(
-            "names in vary must be 'gravity', or a body or contact of the scene and one of its fields, like "
+            "names in vary must be 'gravity', or a body or contact of the scene with one of its fields, like "
             f"{next(iter(known), 'die.position')!r}, got {name!r}{hint}"
         )
     part, field = known[name]
@@ -71,9 +71,9 @@ def _find(scene: Scene, name: str, values: np.ndarray) -> Target:
 
 
 def _light(scene: Scene, field: str) -> bool:
-    """Return whether a field is but a number in the arrays of the compiled scene.
+    """Return whether a field is only a number in the arrays of the compiled scene.
 
-    Joints and forces are placed in the world at the start: where poses vary they are placed anew.
+    Joints and forces are placed in the world at the start: if poses vary, they have to be placed again.
     """
     if field in BODY_FIELDS:
         return False
@@ -105,8 +105,8 @@ def _all(name: str, good: np.ndarray, values: np.ndarray, allowed: str) -> None:
 def changed(scene: Scene, targets: list[Target], values: dict[str, np.ndarray]) -> Scene:
     """Return a copy of a scene with the values of one run.
 
-    Inertia goes with the mass, unless it is varied itself; `friction_held` with `friction`, where the two
-    were the same.
+    Inertia is scaled with the mass, unless it is varied itself; `friction_held` follows `friction` if the two
+    were equal.
     """
     scene = copy.deepcopy(scene)
     named = {target.name for target in targets}
@@ -136,7 +136,7 @@ def changed(scene: Scene, targets: list[Target], values: dict[str, np.ndarray]) 
 
 
 def check_places(scene: Scene, targets: list[Target], values: dict[str, np.ndarray]) -> None:
-    """Refuse bodies that start inside each other, where poses vary."""
+    """Refuse bodies that penetrate each other at the start, if poses vary."""
     if not any(target.field in POSES for target in targets):
         return
     if scene.contact_default is not None:

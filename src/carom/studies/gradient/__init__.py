@@ -1,4 +1,4 @@
-"""Derivatives of a motion with its impacts, with respect to its start and to the numbers of its scene."""
+"""Derivatives of a motion with impacts, with respect to its initial state and the parameters of its scene."""
 
 from carom.studies.gradient.api import sensitivities
 from carom.studies.gradient.impact import ByInputs, ImpactDerivative, impact_derivative

@@ -15,58 +15,61 @@ WAYS = ("auto", "saltation", "differences")
 def sensitivities(
     solution: Solution, with_respect_to, *, by: str = "auto", throw: bool = True
 ) -> Sensitivities:
-    """Differentiate a run: its final state and its impacts, by its start and by numbers of its scene.
+    """Differentiate the final state and the impacts of a run by its initial state and parameters of its scene.
 
-    Bodies that fly freely between impacts of one point each are differentiated along the exact motion, each
-    impact by its saltation matrix, with the time at which it happens. With joints, forces or contacts that are
-    held the run is taken again in pieces from event to event, each piece is differentiated by differences, and
-    tangents are handed on: errors do not grow with the length of the run.
+    There are two methods. "saltation": for bodies in free flight between impacts with one contact point; the
+    exact motion is differentiated, and each impact by its saltation matrix, including the change of its time.
+    "differences": for joints, forces or persistent contacts; the run is repeated in pieces from event to event,
+    each piece is differentiated by finite differences, and the tangents are passed from piece to piece, so that
+    errors do not grow with the length of the run.
 
     Parameters
     ----------
     solution : Solution
-        By any method but the paper's, with located impacts. By differences, with steps of one length.
+        A run with located impacts, by any method except those of the paper. For differences all steps must have
+        the same length.
     with_respect_to : str or sequence of str
-        With the names of bodies and contacts of the scene before the dot:
+        Names of parameters. The names of bodies and contacts of the scene stand before the dot:
 
         - ``"body.position"``, ``"body.velocity"``, ``"body.angular_velocity"``: three columns each, world axes;
-        - ``"body.orientation"``: three, a rotation vector in world axes by which the body is turned, with
-          velocities as they are. Where bodies are joined: what the joints let pass of it, nearest in the
-          kinetic metric, the joints being where they are;
-        - ``"body.mass"``, with the inertia as it is; ``"body.inertia"``: six, xx, yy, zz, xy, xz, yz in the
+        - ``"body.orientation"``: three columns, a rotation vector in world axes by which the body is turned
+          while velocities stay the same. For joined bodies, the rotation is projected onto the joints in the
+          kinetic metric, and the joints do not move;
+        - ``"body.mass"``, with constant inertia; ``"body.inertia"``: six columns xx, yy, zz, xy, xz, yz in the
           axes of the body (not by differences);
         - ``"contact.restitution"``, ``"contact.friction"`` (in impacts);
-        - ``"gravity"``: three; ``"restitution"`` and ``"friction"`` of all contacts together.
+        - ``"gravity"``: three columns; ``"restitution"`` and ``"friction"``: those of all contacts together.
     by : str
         ``"saltation"``, ``"differences"`` or ``"auto"`` (default): differences if the scene has joints,
-        constraints or forces.
+        constraints or forces, otherwise saltation.
     throw : bool
-        True (default): if a part of the run has no derivative by one of the parameters, a ValueError says
-        why. False: NaN there, and the reasons in `notes`.
+        True (default): if a part of the run has no derivative by one of the parameters, raise a ValueError with
+        the reason. False: return NaN for this part, and the reasons in `notes`.
 
     Returns
     -------
     Sensitivities
+        The derivatives, and the margins to other sequences of contact.
 
     Raises
     ------
     TypeError
-        If `solution` is no `Solution`.
+        If `solution` is not a `Solution`.
     ValueError
-        For names that the scene does not know; for scenes and methods that are not as above; and if `throw`
-        where there is no derivative: several points strike at once (except by parameters that keep them
-        together), a contact is held (by saltation), slip starts from rest, an impact is about to take another
-        course.
+        If the scene does not have a parameter, or if the scene or the method is not supported. If `throw` is
+        True, also if there is no derivative: in a multiple impact (except for parameters that keep its points
+        together), for a persistent contact (by saltation), if slip starts from rest, or if an impact is on the
+        boundary between two courses of slip and stick.
 
     Notes
     -----
-    Mathematics page, part 5. The derivative belongs to the sequence of contact of this run; `margins` and
-    `reach` say how far it is from another one.
+    Mathematics page, part 5. The derivative is valid for the sequence of contact of this run; `margins` and
+    `reach` give the distance to another sequence.
 
     Examples
     --------
-    By how much the second impact of a ball comes later for more restitution: it leaves the floor with e times
-    2.8014 m/s, and is in the air for 2 e 2.8014 / g.
+    Derivative of the time of the second impact of a ball by its restitution. The ball leaves the floor with e
+    times 2.8014 m/s and flies for 2 e 2.8014 / g:
 
     >>> scene = carom.Scene(gravity=(0, 0, -9.81))
     >>> floor = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1), name="floor")
@@ -84,7 +87,7 @@ def sensitivities(
     parts = (*scene.joints, *scene.constraints, *scene.forces)
     if parts and by == "saltation":
         raise ValueError(
-            f'solution must be of a scene of free bodies for by="saltation", got one with {parts[0]!r}; take '
+            f'solution must be of a scene of free bodies for by="saltation", got one with {parts[0]!r}; use '
             'by="differences"'
         )
     if scene.statics:
@@ -116,6 +119,6 @@ def sensitivities(
         raise ValueError(
             "solution must be differentiable, got a run where "
             + "; ".join(result.notes)
-            + "; give throw=False to have NaN there, or a shorter duration"
+            + "; use throw=False for NaN there, or a shorter duration"
         )
     return result

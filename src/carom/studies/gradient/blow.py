@@ -1,7 +1,8 @@
 """Derivatives of one frictional impact: of its impulse, with respect to W, u, mu and e.
 
-The resolver is exact to 1e-14, so differences of order 6 of it are to 1e-11 (mathematics page, §5.2).
-Steps are halved until all points of the stencil pass the same phases, and until halving no longer helps.
+The impact solver has an error of 1e-14, so its differences of order 6 have an error of 1e-11 (mathematics page,
+§5.2). Steps are halved until all points of the stencil have the same phases of slip and stick, and until the
+error no longer decreases.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ AT_REST = 1e-9  # slip below this part of the speed of impact is none
 
 
 class Blow(NamedTuple):
-    """What an impact gave, and the derivatives of it."""
+    """The result of an impact, and its derivatives."""
 
     impulse: np.ndarray  # (3,)
     slip_end: float  # normal impulse at which slip stops, -1 where it does not
@@ -46,14 +47,14 @@ def blow(W: np.ndarray, u: np.ndarray, mu: float, e: float, law: int) -> Blow | 
     slips = np.hypot(u[1], u[2]) > AT_REST * np.linalg.norm(u)
     kink = ""
     if not slips and phases & o.SLIP and mu > 0.0:
-        kink = "it starts without slip and slips: which way depends on the direction of any change"
+        kink = "slip starts from rest, so its direction depends on the change"
     unit = _units(W, u, slips)
     d, error = np.zeros((4, INPUTS)), 0.0
     size = float(np.linalg.norm(impulse))
     for k in range(INPUTS):
         column, miss = _column(z, k, unit[k], law, base, size)
         if column is None:
-            kink = kink or "its course (slip, stick, reversal) is about to change"
+            kink = kink or "its course of slip, stick and reversal is about to change"
             continue
         d[:, k], error = column, max(error, miss)
     return Blow(impulse, end, rate, phases, d, error, kink)

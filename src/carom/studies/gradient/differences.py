@@ -1,14 +1,14 @@
-"""Derivatives of a run piece by piece, by differences: for joints, forces and contacts that are held.
+"""Derivatives of a run piece by piece, by differences: for joints, forces and persistent contacts.
 
-From a step k to a later one the state goes by a map z_j = F(z_k, parameters). With the tangents X_k and the
-changes D that a unit of each parameter makes,
+From a step k to a later step j the state changes by a map z_j = F(z_k, parameters). With the tangents X_k and
+the changes D by a unit of each parameter,
 
     X_j = d/de F(z_k + e X_k, parameters + e D)  at e = 0,
 
 by central differences with e and e/2, extrapolated: (4 D(e/2) - D(e))/3. A piece ends with the step of an
-event, so that what impacts multiply is multiplied exactly, however long the run; differences of whole runs
-would lose it in round-off, or leave the sequence of contact. The derivative is that of the steps as they
-are taken, impacts located anew in each. (Mathematics page, §5.4.)
+event, so the growth of tangents by impacts is computed accurately for runs of any length; differences of whole
+runs would lose it in round-off, or have another sequence of contact. The derivative is that of the steps of the
+method, with impacts located in each run. (Mathematics page, §5.4.)
 """
 
 from __future__ import annotations
@@ -48,23 +48,25 @@ def differentiate(solution: Solution, parameters: Parameters) -> Sensitivities:
     if isinstance(given.get("save_at"), tuple):
         raise ValueError("solution must be of a run with steps of one length, got times in save_at")
     if solution.stats["whole_steps"]:
-        raise ValueError("solution must be without crowds, got a run that has taken steps whole")
+        raise ValueError(
+            "solution must be without crowds, got a run with time-stepping (Moreau) steps of crowds"
+        )
     if np.any(parameters.inertia):
         raise ValueError(
-            "with_respect_to must not name the inertia of a body where derivatives are found by differences"
+            "with_respect_to must not have the inertia of a body if derivatives are found by differences"
         )
     contacts = run.compiled.system.contacts
     for name in ("friction", "restitution"):
         touched = np.any(getattr(parameters, name)[contacts.number] != 0.0, axis=1)
         if np.any(touched & (contacts[name] == 0.0)):
             raise ValueError(
-                f"{name} must be above 0 to be differentiated by: at 0 there are no neighbours on both sides"
+                f"{name} must be above 0 to differentiate by it: differences need values on both sides"
             )
     return Pieces(solution, parameters).result()
 
 
 class Pieces:
-    """A run once more, piece by piece, and its neighbours on both sides by each parameter."""
+    """A repeated run, piece by piece, and neighbouring runs on both sides for each parameter."""
 
     def __init__(self, solution: Solution, parameters: Parameters):
         run = solution._run
@@ -105,7 +107,7 @@ class Pieces:
             self.pass_piece(first, last)
 
     def result(self) -> Sensitivities:
-        """Return all that was found."""
+        """Return the derivatives."""
         clock, records, P = self.base.clock[0], self.base.records, len(self.labels)
         order = np.argsort(records.impact.time[: clock.struck], kind="stable")
         point = {
@@ -124,7 +126,7 @@ class Pieces:
         )  # fmt: skip
 
     def bring_to_joints(self) -> None:
-        """Leave of the changes of the start what the joints let pass, nearest in the kinetic metric."""
+        """Project the changes of the start onto the joints, in the kinetic metric."""
         start = capture(self.base)
         assert start is not None
         for p in range(len(self.labels)):
@@ -164,7 +166,7 @@ class Pieces:
                     p,
                     first,
                     last,
-                    "differences do not settle: an impact or a mode is about to change",
+                    "differences do not converge: an impact or a contact mode is about to change",
                 )
                 continue
             self.X[first + 1 : last + 1, :, :, p] = (4.0 * X2 - X1) / 3.0
@@ -179,7 +181,7 @@ class Pieces:
         self.errors.extend(errors)
 
     def converged(self, X1: np.ndarray, X2: np.ndarray) -> bool:
-        """Return whether two differences agree; note the error of what is extrapolated from them."""
+        """Return whether two differences agree; store the error of their extrapolation."""
         unit = self.units()
         most = np.max(np.abs(X2) / unit, initial=0.0)
         worst = float(np.max(np.abs(X2 - X1) / unit, initial=0.0) / most) if most > 0.0 else 0.0
@@ -187,7 +189,7 @@ class Pieces:
         return worst <= CONVERGED
 
     def scale(self, direction: np.ndarray, p: int) -> float:
-        """Return how much of a parameter changes the state by its own size, or a number by itself."""
+        """Return the change of a parameter that changes the state by its size, or a number by its value."""
         parts = [direction / self.units()]
         for (_, D), given in zip(self.numbers, self.given):
             size = np.max(np.abs(given), initial=0.0) or 1.0
@@ -205,12 +207,12 @@ class Pieces:
         return np.concatenate([L * one, one, speed * one, speed / L * one], axis=1)
 
     def begin(self, start: Checkpoint, e: float, p: int) -> Run:
-        """Return the neighbour, about to go on from `start` with e more of parameter p."""
+        """Return the neighbouring run, ready to continue from `start` with parameter p increased by e."""
         run = self.near
         if len(run.pairs.body) != len(self.base.pairs.body):
             raise ValueError(
-                "solution must be of a run whose neighbours have no contacts that it has not, got one where "
-                "further bodies come near each other"
+                "solution must be of a run whose contacts are also those of neighbouring runs, got one where "
+                "other bodies come near each other there"
             )
         restore(run, start, self.base.records)
         for array, kept in self.fresh:  # what it remembers of poses holds for other numbers
@@ -231,7 +233,7 @@ class Pieces:
         return int(np.asarray(start.arrays["clock"])["step"][0])
 
     def pair(self, start: Checkpoint, e: float, p: int, last: int, what, struck: int, event: int):
-        """Return central differences of states and impacts of a piece; None if contacts do otherwise."""
+        """Return central differences of states and impacts of a piece; None if the contacts differ."""
         sides = []
         first = self.base_step(start)
         for sign in (1.0, -1.0):
@@ -245,7 +247,7 @@ class Pieces:
         return between(one, other) / (2.0 * e), {n: (rows[n] - others[n]) / (2.0 * e) for n in ROWS}
 
     def happened(self, run: Run, struck: int, event: int) -> list[tuple]:
-        """Return the records from those rows on, without their numbers."""
+        """Return the records from these rows on, without their numerical values."""
         rec, clock = run.records, run.clock[0]
         rows = rec.impact[struck : clock.struck]
         events = rec.event[event : clock.event]
@@ -255,16 +257,16 @@ class Pieces:
         ]
 
     def lose(self, p: int, first: int, last: int, why: str) -> None:
-        """Note that there is no derivative by a parameter from a piece on."""
+        """Record that there is no derivative by a parameter from a piece on."""
         self.alive[p] = False
         t = self.base.records.series.t
         self.notes.append(
-            f"by {self.labels[p]} there is none from t = {t[first]:.6g} .. {t[last]:.6g} s on: {why}"
+            f"the derivative by {self.labels[p]} ends at t = {t[first]:.6g} .. {t[last]:.6g} s: {why}"
         )
 
 
 def ends_of(solution: Solution, step: float, steps: int) -> list[int]:
-    """Return the steps with which pieces end: those of events, and so that none is too long."""
+    """Return the last steps of the pieces: steps of events, and more so that no piece is too long."""
     events = solution._run.records.event[: solution._run.clock[0].event]
     after = np.floor(events["time"] / step * (1.0 - 1e-12)).astype(int) + 1
     ends: list[int] = []

@@ -1,4 +1,4 @@
-"""Derivatives of one frictional impact on its own: `impact_derivative`."""
+"""`impact_derivative`: derivatives of one frictional impact."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from carom.impact.api import checked_impact
 
 
 class ByInputs(NamedTuple):
-    """Derivatives of a vector (3,) in contact axes by what an impact is given."""
+    """Derivatives of a vector (3,) in contact axes by the inputs of an impact."""
 
-    #: (3, 3, 3): a change dW, symmetric, changes it by einsum("ijk,jk", D, dW)
+    #: (3, 3, 3): a symmetric change dW changes the vector by einsum("ijk,jk", D, dW)
     inverse_mass: np.ndarray
     velocity: np.ndarray  #: (3, 3)
-    friction: np.ndarray  #: (3,); from above where friction is 0
-    restitution: np.ndarray  #: (3,); from above where restitution is 0
+    friction: np.ndarray  #: (3,); one-sided (from above) if friction is 0
+    restitution: np.ndarray  #: (3,); one-sided (from above) if restitution is 0
 
 
 class ImpactDerivative(NamedTuple):
@@ -35,17 +35,18 @@ def impact_derivative(
     Parameters
     ----------
     inverse_mass, velocity, friction, restitution, law
-        As of `carom.resolve_impact`.
+        As for `carom.resolve_impact`.
 
     Returns
     -------
     ImpactDerivative
+        The derivatives of the impulse and of the velocity after the impact.
 
     Raises
     ------
     ValueError
-        If an argument is not as there; or if the impact has no derivative: it starts without slip and slips,
-        or is about to take another course (slip to the end, stick, reversal).
+        If an argument is invalid as for `carom.resolve_impact`; or if the impact has no derivative: slip starts
+        from rest, or the impact is on the boundary between two courses (slip to the end, stick, reversal).
 
     Notes
     -----
@@ -56,7 +57,7 @@ def impact_derivative(
     W, u, mu, e, number = checked_impact(inverse_mass, velocity, friction, restitution, law)
     found = blow(W, u, mu, e, number)
     if found is None:
-        raise ValueError("the impact was not resolved: W is singular along the way")
+        raise ValueError("the impact could not be solved: W becomes singular during it")
     if found.kink:
         raise ValueError(f"the impact must have a derivative, got one where {found.kink}")
     by_mass = np.zeros((3, 3, 3))

@@ -1,6 +1,6 @@
-"""How far a run is from another sequence of contact: at each impact, and between impacts.
+"""Margins of a run: its distances from other sequences of contact, at each impact and between impacts.
 
-A margin is a number that is zero at the change, with its derivative (mathematics page, §5.3).
+A margin is a number that is zero where the sequence changes, with its derivative (mathematics page, §5.3).
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ def of_impact(system, row, place, tied, bodies, done: Strike, hit: Blow, u, W, k
     """Return the margins of an impact: approach, course of slip, other vertices, time since the last one."""
     t, speed = bodies[0].t, float(np.linalg.norm(u))
     found = [
-        Margin(t, k, "speed of approach, without which it would graze or miss", float(-u[0]), "m/s",
+        Margin(t, k, "speed of approach: at 0 the body grazes or misses", float(-u[0]), "m/s",
                float(-u[0]) / speed, -done.before[0])
     ]  # fmt: skip
     found += _course(done, hit, u, W, k, t, speed, float(row.friction), d_mu)
@@ -66,7 +66,7 @@ def of_impact(system, row, place, tied, bodies, done: Strike, hit: Blow, u, W, k
             i = int(np.argmin(gaps))
             if np.isfinite(gaps[i]):
                 gradient = gap_gradient(other.axes[0], body.R @ cores[i], pose)
-                what = f"gap of vertex {i}, which approaches as well"
+                what = f"gap of vertex {i}, which approaches too"
                 found.append(
                     Margin(t, k, what, float(gaps[i]), "m", float(gaps[i]) / size, gradient)
                 )
@@ -74,33 +74,35 @@ def of_impact(system, row, place, tied, bodies, done: Strike, hit: Blow, u, W, k
 
 
 def _course(done: Strike, hit: Blow, u, W, k, t, speed, mu, d_mu):
-    """Return how far slip is from stopping, from not stopping, and from starting again."""
+    """Return the margins of slip: to stopping, to not stopping, and to starting again."""
     found = []
     after = u + W @ hit.impulse
     slip = float(np.hypot(after[1], after[2]))
     if not hit.phases & (o.STICK | o.RESTART):
         if hit.phases & o.SLIP and slip > AT_REST * speed:
             gradient = (after[1:] / slip) @ done.after[1:]
-            what = "slip left at the end of the impact, which would stick"
+            what = "slip at the end of the impact: at 0 it sticks"
             found.append(Margin(t, k, what, slip, "m/s", slip / speed, gradient))
         return found
     if hit.slip_end >= 0.0:
         left = float(hit.impulse[0]) - hit.slip_end
         gradient = (hit.d[0] - hit.d[3]) @ done.inputs
-        what = "impulse after slip has stopped, without which it slips to the end"
+        what = "impulse after the end of slip: at 0 it slips to the end"
         found.append(Margin(t, k, what, left, "N s", left / float(hit.impulse[0]), gradient))
     ratio, d_ratio = _stick_ratio(W, done.inputs)
     need = float(np.hypot(*ratio))
     value = mu - need
     gradient = d_mu - (ratio / need) @ d_ratio if need > 0.0 else d_mu
-    what = "friction beyond what holds the point" if value > 0.0 else "friction short of stick"
+    what = (
+        "friction above the limit of stick" if value > 0.0 else "friction below the limit of stick"
+    )
     relative = abs(value) / max(mu, need)
     found.append(Margin(t, k, what, abs(value), "", relative, np.sign(value) * gradient))
     return found
 
 
 def _stick_ratio(W, inputs):
-    """Return the tangential impulse that holds the point, per normal one, and its derivative."""
+    """Return the tangential impulse of stick divided by the normal impulse, and its derivative."""
     a, B = W[1:, 0], W[1:, 1:]
     ratio = -np.linalg.solve(B, a)
     dB = np.array([[inputs[3], inputs[4]], [inputs[4], inputs[5]]])
@@ -108,7 +110,7 @@ def _stick_ratio(W, inputs):
 
 
 def of_end(k: int, d_time: np.ndarray, time: float, end: float) -> list[Margin]:
-    """Return how near the last impact is to the end of the run, beyond which it would not happen."""
+    """Return the margin of the last impact: its time before the end of the run."""
     left = end - time
     what = "time from the last impact to the end of the run"
     return [Margin(time, k, what, left, "s", left / end, -d_time)]

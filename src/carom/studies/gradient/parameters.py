@@ -1,4 +1,4 @@
-"""The parameters of a derivative: their names, and what each of them changes at the start."""
+"""The parameters of a derivative: their names, and the changes of the start that each of them makes."""
 
 from __future__ import annotations
 
@@ -22,22 +22,24 @@ OF_SCENE = ("gravity", *OF_CONTACT)
 
 @dataclass(frozen=True, eq=False)
 class Parameters:
-    """P numbers, and the changes that a unit of each makes.
+    """P parameters, and the changes of the scene by one unit of each.
 
     Attributes
     ----------
     labels : tuple of str
-        One a column: ``"die.velocity.x"``, ``"die-ground.friction"``, ...
+        Labels of the columns: ``"die.velocity.x"``, ``"die-ground.friction"``, ...
     columns : dict of str to slice or int
-        Where the columns of each name are: a slice of those with components, an index of the others.
+        Columns of each name: a slice for a name with components, otherwise an index.
     start : (N, 12, P)
-        Of the initial state: position, rotation vector, velocity, angular velocity, in world axes.
+        Changes of the initial state: position, rotation vector, velocity, angular velocity, in world axes.
     mass : (N, P)
+        Changes of masses.
     inertia : (N, 3, 3, P)
-        In principal axes.
+        Changes of inertias, in principal axes.
     restitution, friction : (C, P)
-        Of contacts, by their numbers.
+        Changes of the values of contacts, by their numbers.
     gravity : (3, P)
+        Changes of gravity.
     """
 
     labels: tuple[str, ...]
@@ -51,7 +53,7 @@ class Parameters:
 
 
 def make_parameters(scene, names, contacts: int, to_principal: np.ndarray) -> Parameters:
-    """Return the parameters called `names` of a scene.
+    """Return the parameters of a scene with these `names`.
 
     `contacts` is the number of its pairs, those by default included; `to_principal` (N, 4) turns principal
     axes to those of the scene's bodies.
@@ -60,13 +62,13 @@ def make_parameters(scene, names, contacts: int, to_principal: np.ndarray) -> Pa
         names = (names,)
     names = tuple(checks.listed("with_respect_to", names, "names"))
     if not names:
-        raise ValueError("with_respect_to must name at least one parameter, got none")
+        raise ValueError("with_respect_to must have at least one parameter, got none")
     parts = [_parts(scene, name) for name in names]
     labels, columns = [], {}
     for name, (_, _, components) in zip(names, parts):
         if name in columns:
             raise ValueError(
-                f"with_respect_to must name each parameter once, got {checks.shown(name)} twice"
+                f"with_respect_to must have each parameter once, got {checks.shown(name)} twice"
             )
         at = len(labels)
         labels += [f"{name}.{c}" for c in components] or [name]
@@ -100,13 +102,13 @@ def _parts(scene, name: str):
         checks.choice(f"what follows {part!r} in with_respect_to", field, OF_CONTACT)
         return found, field, ()
     raise ValueError(
-        "with_respect_to must name fields of bodies or contacts, as in 'die.velocity', "
+        "with_respect_to must have fields of bodies or contacts, as in 'die.velocity', "
         f"'die-ground.friction', or one of {', '.join(OF_SCENE)}, got {checks.shown(name)}"
     )
 
 
 def _write(made: Parameters, part, field, components, columns, to_principal) -> None:
-    """Write what the parameters of one name change."""
+    """Write the changes by the parameters of one name."""
     if field == "gravity":
         made.gravity[:, columns] = np.eye(3)
     elif field in OF_CONTACT:

@@ -1,4 +1,4 @@
-"""What `sensitivities` hands back."""
+"""Results of `sensitivities`."""
 
 from __future__ import annotations
 
@@ -14,31 +14,32 @@ NEAR = 0.05  # margins below this part of their scale are shown as near
 
 
 class Derivative(NamedTuple):
-    """Derivatives of the state of N bodies by P parameters, world axes; of several times with one axis more."""
+    """Derivatives of the state of N bodies by P parameters, world axes; for several times with a first axis."""
 
     position: np.ndarray  #: (N, 3, P)
-    rotation: np.ndarray  #: (N, 3, P) rotation vector: the attitude R goes to exp(d) R
+    rotation: np.ndarray  #: (N, 3, P) rotation vector d: the attitude R becomes exp(d) R
     velocity: np.ndarray  #: (N, 3, P)
     angular_velocity: np.ndarray  #: (N, 3, P)
 
 
 @dataclass(frozen=True, eq=False)
 class Margin:
-    """How far the run is from another sequence of contact at one place.
+    """Distance of the run from one change of the sequence of contact.
 
     Attributes
     ----------
     time : float
-        [s]
+        Time [s].
     impact : int
-        Number of the impact that it belongs to, -1 for none.
+        Index of the impact to which the margin belongs, -1 for none.
     what : str
-        What is near, in words.
+        Description of the distance.
     value : float
-        Distance from the change, which is at 0.
+        The distance; the sequence changes at 0.
     unit : str
+        Unit of `value`.
     relative : float
-        The same as a part of what is usual: of the size of the body, the speed of impact, ...
+        `value` relative to a typical value: the size of the body, the speed of impact, ...
     gradient : (P,)
         Derivative of `value`.
     """
@@ -53,7 +54,7 @@ class Margin:
 
     @property
     def reach(self) -> np.ndarray:
-        """How far (P,) each parameter alone may go until the sequence changes here, to first order."""
+        """Change (P,) of each parameter alone that changes the sequence here, to first order."""
         with np.errstate(divide="ignore"):
             return np.abs(self.value) / np.abs(self.gradient)
 
@@ -63,35 +64,35 @@ class Margin:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Sensitivities:
-    """Derivatives of a run by P parameters. Where there is none, NaN, and `notes` say why.
+    """Derivatives of a run by P parameters. Missing derivatives are NaN, and `notes` has the reasons.
 
     Attributes
     ----------
     labels : tuple of str
-        One a column: ``"die.velocity.x"``, ``"die-ground.friction"``, ...
+        Labels of the columns: ``"die.velocity.x"``, ``"die-ground.friction"``, ...
     columns : dict of str to slice or int
-        Columns of each name as it was asked for.
+        Columns of each name in `with_respect_to`.
     final : Derivative
-        Of the final state.
+        Derivatives of the final state.
     impact_time : (K, P)
-        Of the times of the impacts of the run [s].
+        Derivatives of the times of the impacts.
     impact_point : (K, 3, P)
-        Of the points where they are, each at its own time, in the world.
+        Derivatives of the points of the impacts, each at the time of its impact, in the world.
     velocity_before, velocity_after : (K, 3, P)
-        Of the relative velocities, contact axes.
+        Derivatives of the relative velocities before and after each impact, contact axes.
     impulse : (K, 3, P)
-        Contact axes.
+        Derivatives of the impulses, contact axes.
     impact_error : (K,)
-        Estimate of the relative error of the derivative of each impact's impulse.
+        Estimated relative error of the derivative of each impulse.
     notes : tuple of str
-        What has no derivative, and why.
+        Reasons of missing derivatives.
     margins : tuple of Margin
-        How far the sequence of contact is from a change, the nearest (in `relative`) first. Between impacts
-        vertices over half-spaces are looked at, not two bodies that pass each other, nor curved ones.
+        Distances from changes of the sequence of contact, the nearest (in `relative`) first. Between impacts
+        only vertices above half-spaces are examined, not pairs of bodies and not curved bodies.
     defect : float
-        Greatest distance between the stepped motion and the exact free flight that is differentiated, as a
-        part of the size of a body: the error of the time integration. By differences: the greatest estimate of
-        their own error, relative.
+        By saltation: the largest distance between the simulated motion and the exact free flight that is
+        differentiated, as a fraction of the size of a body (the error of the time integration). By differences:
+        the largest estimate of their relative error.
     by : str
         ``"saltation"``, the exact derivative of free flight and impacts; or ``"differences"`` of pieces.
     """
@@ -116,10 +117,10 @@ class Sensitivities:
 
     @property
     def reach(self) -> np.ndarray:
-        """How far (P,) each parameter alone may go until the sequence of contact changes, to first order.
+        """Change (P,) of each parameter alone that changes the sequence of contact, to first order.
 
-        The least of all margins; of a parameter that has no derivative, NaN. By differences no margins are
-        known: NaN.
+        It is the least over all margins. It is NaN for a parameter without a derivative, and for all parameters
+        by differences, which have no margins.
         """
         if self.by == "differences":
             return np.full(len(self.labels), np.nan)
@@ -128,20 +129,20 @@ class Sensitivities:
         return np.min([m.reach for m in self.margins], axis=0)
 
     def evaluate(self, t) -> Derivative:
-        """Return the derivatives of the state at times of the run; at that of an impact, after it.
+        """Return the derivatives of the state at times of the run; at the time of an impact, those after it.
 
-        Near an impact the motion is differentiable at each fixed time, but not evenly: between the time of
-        the impact and that of the changed motion the velocity is off by the whole jump.
+        Near an impact the motion is differentiable at each fixed time, but not uniformly: between the time of
+        the impact and that of the impact in the changed motion, the velocity differs by the whole jump.
 
         Parameters
         ----------
         t : float or (n,)
-            Times within the run [s]; by differences, ends of its steps.
+            Times within the run [s]; by differences they must be ends of steps.
 
         Returns
         -------
         Derivative
-            Arrays (n, N, 3, P), without the first axis for a single time.
+            Arrays (n, N, 3, P); for a single time without the first axis.
 
         Raises
         ------

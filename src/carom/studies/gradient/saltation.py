@@ -1,4 +1,4 @@
-"""The saltation of an impact: what a change of the motion before it makes of the motion after it.
+"""The saltation of an impact: the change of the motion after it by a change of the motion before it.
 
 The impact of a changed motion happens at another time, t* + dt, with the gap zero there:
 
@@ -111,7 +111,7 @@ def _point_velocity(body: Moving, arm) -> np.ndarray:
 
 
 def _mobility(body: Moving, arm) -> np.ndarray:
-    """Return what a unit impulse at the arm does to the velocity there, 1/m - r x I^-1 r x."""
+    """Return the change of velocity at the arm by a unit impulse there, 1/m - r x I^-1 r x."""
     A = hat(arm)
     return np.eye(3) / body.mass - A @ body.inverse_inertia @ A
 

@@ -1,4 +1,4 @@
-"""What happened in a run, as a sequence that two runs can be compared by."""
+"""The sequence of contact of a run, by which two runs can be compared."""
 
 from __future__ import annotations
 
@@ -14,17 +14,17 @@ from carom.results.solution import Solution
 
 
 class ImpactKind(NamedTuple):
-    """One event of a contact, without its numbers."""
+    """One event of a contact, without its time and its numerical values."""
 
     event: str  #: "impact", "held", "slips", "sticks", "opens" or "jams"
     contact: int  #: index of the contact
-    feature: int  #: what touches: of a half-space the number of the vertex
-    phases: tuple[str, ...]  #: as of `Impact`, without "slip": all that does not stick slips
-    together: int  #: points that were resolved together; 0 where it is no impact
+    feature: int  #: number of the contact point; on a half-space the vertex of the shape
+    phases: tuple[str, ...]  #: as in `Impact`, without "slip": points that do not stick slip
+    together: int  #: number of points in the multiple impact; 0 for other events
 
 
 class Step(NamedTuple):
-    """An event of a run and what was written about it."""
+    """An event of a run and its records."""
 
     event: Any
     kind: str
@@ -64,14 +64,15 @@ def _impact_of(event, impacts, used) -> int:
 
 
 def contact_sequence(solution: Solution) -> tuple[ImpactKind, ...]:
-    """Return which contacts struck, where, and how, in the order of time.
+    """Return the sequence of contact of a run: its events in the order of time, each an `ImpactKind`.
 
-    Two runs with equal sequences are connected by derivatives as long as none lies between them that differs;
-    after a step along a derivative compare ``contact_sequence(new) == contact_sequence(old)``.
+    A derivative predicts another run only if the sequence of contact is the same on the whole path to it. After
+    a step along a derivative compare ``contact_sequence(new) == contact_sequence(old)``.
 
     Parameters
     ----------
     solution : Solution
+        The run.
     """
     checks.instance("solution", solution, (Solution,))
     found = []

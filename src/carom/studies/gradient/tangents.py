@@ -1,4 +1,4 @@
-"""The tangents of all bodies at any time of a run: along free flight, or as they were found at its steps."""
+"""The tangents of all bodies at any time of a run: along free flight, or at the ends of its steps."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Tangents(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class Flights:
-    """Bodies that fly freely from the last of their knots; where not, they keep the tangents of that."""
+    """Bodies in free flight from their last knot; if a body is not in flight, it keeps the tangents there."""
 
     knots: list[list[Moving]]
     free: list[list[bool]]
@@ -89,7 +89,7 @@ class Steps:
         if not np.all(off <= 1e-6 * np.max(np.diff(self.t))):
             worst = int(np.argmax(off))
             raise ValueError(
-                "t must be the end of a step where derivatives are found by differences, got "
+                "t must be the end of a step if derivatives are found by differences, got "
                 f"{times[worst]:.9g}; the nearest is {self.t[k[worst]]:.9g} s"
             )
         return self.X[k]

@@ -1,4 +1,4 @@
-"""Going through a run from event to event, with the tangents of all bodies."""
+"""Derivatives of a run from event to event, with the tangents of all bodies."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ SAME = 1e-8  # how far the impact of the record may be from the one that is diff
 TIED = 1e-9  # changes by which tied points part that are round-off, relative
 SURE = 1e-5  # error up to which the derivative of an impact counts
 WHY = {
-    "held": "is held from then on",
-    "slips": "goes from stick to slip in a held contact",
-    "sticks": "goes from slip to stick in a held contact",
-    "opens": "leaves a held contact",
+    "held": "begins a persistent contact",
+    "slips": "changes from stick to slip in a persistent contact",
+    "sticks": "changes from slip to stick in a persistent contact",
+    "opens": "ends a persistent contact",
     "jams": "jams",
 }
 
@@ -49,7 +49,7 @@ class Walk:
         self.vectors = [np.full((K, 3, P), np.nan) for _ in range(4)]
         if solution.stats["whole_steps"]:
             for b in range(len(self.bodies)):
-                self.lose(b, 0.0, "has taken steps as a part of a crowd", stays_free=False)
+                self.lose(b, 0.0, "took time-stepping (Moreau) steps in a crowd", stays_free=False)
         for step in steps_of(solution):
             self.pass_event(step)
         end = float(solution.t[-1])
@@ -75,7 +75,7 @@ class Walk:
         ]  # fmt: skip
 
     def result(self) -> Sensitivities:
-        """Return all that was found."""
+        """Return the derivatives."""
         margins = sorted(self.margins, key=lambda m: m.relative)
         point, before, after, impulse = self.vectors
         return Sensitivities(
@@ -89,7 +89,7 @@ class Walk:
     def lose(
         self, b: int, time: float, why: str, columns: np.ndarray | bool = True, stays_free=True
     ) -> None:
-        """Note that the motion of a body has no derivative from now on, by those parameters that it knows."""
+        """Record that the motion of a body has no derivative from now on, by the parameters that change it."""
         body, rows = self.bodies[b], self.system.contacts
         own = np.unique(rows.number[(rows.body == b) | (rows.other == b)])
         p = self.parameters
@@ -116,14 +116,14 @@ class Walk:
         for shot in step.shots:
             b = int(shot.body)
             if not struck:
-                why = WHY.get(step.kind, "takes part in an impact that is not of one point")
+                why = WHY.get(step.kind, "takes part in an impact with several points")
                 self.lose(b, time, why, stays_free=step.kind == "impact")
             self.bodies[b] = replace(self.bodies[b], v=shot.v1.copy(), w=shot.w1.copy())
             self.knots[b].append(self.bodies[b])
             self.flies[b].append(self.free[b])
 
     def meet(self, b: int, shot, time: float) -> None:
-        """Let a body fly to an event; go on from the state that was written there."""
+        """Let a body fly to an event, and continue from the recorded state there."""
         body = self.bodies[b]
         if self.free[b]:
             self.look_between(b, body, time)
@@ -138,7 +138,7 @@ class Walk:
         )  # fmt: skip
 
     def pass_impact(self, step: Step, time: float) -> bool:
-        """Pass an impact of one point; return False if it is none, or there is no derivative for anything."""
+        """Pass an impact of one point; return False for other events, or if there is no derivative at all."""
         if step.row is None or step.row.together != 1:
             return False
         found = self.place_of(step)
@@ -151,12 +151,12 @@ class Walk:
         hit = blow(W, u, float(row.friction), float(row.restitution), int(row.law))
         if hit is None or not _same(hit.impulse, step.row.impulse):
             for b in which:
-                self.lose(b, time, "was struck otherwise than the law of the contact says")
+                self.lose(b, time, "has an impact that does not follow the law of the contact")
             return True
         if hit.kink or not hit.error <= SURE:
-            why = hit.kink or f"its derivative was found to {hit.error:.1g} only"
+            why = hit.kink or f"the error of the derivative is {hit.error:.1g}"
             for b in which:
-                self.lose(b, time, f"strikes where there is no derivative ({why})")
+                self.lose(b, time, f"has an impact without a derivative ({why})")
             return True
         p, number = self.parameters, int(row.number)
         done = strike(place, bodies, hit, p.friction[number], p.restitution[number])
@@ -168,7 +168,7 @@ class Walk:
         for b, body in zip(which, done.bodies):
             self.bodies[b] = body
         for b in which:
-            self.lose(b, time, "strikes with several points, which part", parted)
+            self.lose(b, time, "strikes with several points, which do not stay together", parted)
         for a in (self.times, *self.vectors):
             a[step.impact][..., parted] = np.nan
         return True
@@ -203,7 +203,7 @@ class Walk:
         return candidates[0] if len(candidates) == 1 else None
 
     def parted(self, row, tied: np.ndarray, body: Moving, done: Strike) -> np.ndarray:
-        """Return which parameters (P,) part points that strike as one, by gap or velocity before or after."""
+        """Return which parameters (P,) separate points that strike as one, by gaps or velocities."""
         P = done.time.size
         apart = np.zeros(P, dtype=bool)
         turn, after = done.poses[3:6], done.bodies[0]
@@ -224,7 +224,7 @@ class Walk:
         return apart
 
     def look_between(self, b: int, body: Moving, until: float) -> None:
-        """Find out how near a body comes to half-spaces without striking."""
+        """Find the least gaps of a body above half-spaces between impacts."""
         self.margins += near.of_flight(
             self.system, b, body, until, until == float(self.solution.t[-1])
         )

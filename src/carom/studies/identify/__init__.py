@@ -1,7 +1,7 @@
-"""Parameters of a scene from recorded motion, and initial states from recorded free flight.
+"""Identification: parameters of a scene from recorded motion, initial states from recorded free flight.
 
-Read a recording, fit its start to its free flight (`fit_free_flight`), and fit restitution, friction and
-the like to what happens then (`identify`).
+Make a `Recording`, fit its initial state to its free flight (`fit_free_flight`), and fit restitution, friction
+and other parameters to the motion after that (`identify`).
 """
 
 from carom.studies.identify.errors import (

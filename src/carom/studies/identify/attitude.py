@@ -33,7 +33,7 @@ def fit_attitude(t, q, inertia=None) -> Turn:
     changes = np.concatenate([np.zeros((1, 6)), DIFFERENCE * np.eye(6), -DIFFERENCE * np.eye(6)])
 
     def residuals():
-        """Residuals (13, 3 n): as it stands, and with each unknown a little larger and smaller."""
+        """Return residuals (13, 3 n): at the present unknowns, and with each slightly larger and smaller."""
         starts = quaternion.multiply(quaternion.exp(changes[:, :3]), R0)
         model = spin(t, starts, (turn + changes[:, 3:]) / t[-1])
         off = quaternion.log(quaternion.multiply(q, quaternion.conjugate(model)))
@@ -52,8 +52,9 @@ def fit_attitude(t, q, inertia=None) -> Turn:
         before = length
     else:
         raise RuntimeError(
-            f"orientation is not that of a free body: the fit of the attitude did not converge in {ITERATIONS} "
-            f"iterations, the last one turned it by {length:.3g} rad; give samples of free flight only"
+            "orientation is not that of a free body: the fit of the attitude did not converge in "
+            f"{ITERATIONS} iterations (change in the last one: {length:.3g} rad); give only samples of free "
+            "flight"
         )
     here = residuals()[0].reshape(-1, 3)
     noise = float(np.sqrt(np.sum(here**2) / (here.size - 6)))

@@ -1,4 +1,4 @@
-"""How far a simulated motion is from a recorded one."""
+"""Distances between a simulated and a recorded motion."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class TrajectoryError(NamedTuple):
-    """Means over all samples and bodies."""
+    """Errors of a simulated motion: means over all samples and bodies."""
 
     position: float  #: distance of the mass centres, as a part of `length`
     rotation: float  #: angle from one attitude to the other [rad], 0 to pi
@@ -40,9 +40,9 @@ def trajectory_error(simulated, recorded, length: float = 1.0) -> TrajectoryErro
     Parameters
     ----------
     simulated, recorded : RollOut or Recording
-        With `position` (n, N, 3) and `orientation` (n, N, 4) at the same times.
+        Two motions with `position` (n, N, 3) and `orientation` (n, N, 4) at the same times.
     length : float
-        That distances are divided by, such as an edge of the body [m]. Default 1.
+        Reference length by which distances are divided, such as an edge of the body [m]. Default 1.
 
     Returns
     -------
@@ -64,14 +64,14 @@ def trajectory_error(simulated, recorded, length: float = 1.0) -> TrajectoryErro
 
 
 def mean_error(length: float, angle: float) -> Callable:
-    """Return an objective for `identify`: half the mean distance over `length` plus mean angle over `angle`.
+    """Return an objective for `identify`: half the sum of mean distance / `length` and mean angle / `angle`.
 
-    Distances are not squared, so that single recordings which part early do not lead the fit.
+    Distances are not squared, so that a few recordings with large errors do not dominate the fit.
 
     Parameters
     ----------
     length, angle : float
-        Errors of position [m] and rotation [rad] that count alike, above 0.
+        Errors of position [m] and rotation [rad] with equal weight, above 0.
     """
     length = checks.number("length", length, above=0.0, unit="m")
     angle = checks.number("angle", angle, above=0.0, unit="rad")
@@ -84,9 +84,9 @@ def mean_error(length: float, angle: float) -> Callable:
 
 
 def squared_error(length: float, angle: float) -> Callable:
-    """Return an objective for `identify`: least squares, 1 where errors are as large as the noise.
+    """Return an objective for `identify`: least squares, with the value 1 if errors are as large as the noise.
 
-    Best where the simulated motion is a smooth function of the parameters over the whole recording.
+    It is best if the simulated motion is a smooth function of the parameters over the whole recording.
 
     Parameters
     ----------
@@ -104,18 +104,19 @@ def squared_error(length: float, angle: float) -> Callable:
 
 
 def face_up(orientation: Orientation, up: ArrayLike = (0.0, 0.0, 1.0)) -> np.ndarray:
-    """Return which body axis points up: 0, 1, 2 for x, y, z and 3, 4, 5 for -x, -y, -z.
+    """Return the body axis that points up: 0, 1, 2 for x, y, z and 3, 4, 5 for -x, -y, -z.
 
     Parameters
     ----------
     orientation : (..., 4)
         Unit quaternions (w, x, y, z), body to world.
     up : (3,)
-        Default (0, 0, 1).
+        Upward direction, world axes. Default (0, 0, 1).
 
     Returns
     -------
     ndarray of int (...)
+        Index of the axis for each orientation.
     """
     Q = checks.vectors("orientation", quaternions("orientation", orientation), 4)
     seen = quaternion.rotate_back(Q, checks.unit_vector("up", up))

@@ -1,4 +1,4 @@
-"""The objective of a fit as a function of its parameters, and a note of all that was evaluated."""
+"""The objective of a fit as a function of its parameters, with a record of all evaluations."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Evaluator:
         if isinstance(self.scene, Scene):
             return varied(self.scene, **named, start=recording.start)
         scene = checks.call("scene", self.scene, named, recording)
-        checks.instance("what scene returns", scene, (Scene,))
+        checks.instance("the result of the function scene", scene, (Scene,))
         return scene
 
     def runs(self, point: np.ndarray) -> list[RollOut]:
@@ -45,7 +45,7 @@ class Evaluator:
         return roll_outs(make, self.recordings, **self.settings)
 
     def number(self, point: np.ndarray) -> int:
-        """Return the number of an evaluation, made if it is a new one; points outside are moved inside."""
+        """Return the number of an evaluation, made if it is new; points are moved into the bounds."""
         point = self.space.clip(np.asarray(point, dtype=np.float64)) + 0.0  # no -0.0
         key = point.tobytes()
         if key not in self._known:
@@ -78,7 +78,7 @@ class Evaluator:
 
 
 def checked(values: list, recordings: Sequence[Recording]) -> np.ndarray:
-    """Return the objective of each recording (K,); refuse what is no number."""
+    """Return the objective of each recording (K,); refuse values that are not finite numbers."""
     array = np.array([_number(v) for v in values])
     if not np.all(np.isfinite(array)):
         k = int(np.argmax(~np.isfinite(array)))
@@ -90,7 +90,7 @@ def checked(values: list, recordings: Sequence[Recording]) -> np.ndarray:
 
 
 def _number(value) -> float:
-    """Return a number that a function gave; NaN for what is none."""
+    """Return the result of a function as a number, or NaN if it is not a number."""
     try:
         return checks.number("objective", value)
     except ValueError:

@@ -40,53 +40,56 @@ def identify(
 ) -> Identification:
     """Fit parameters of a scene to recorded motion.
 
-    Each recording is simulated from its own start, and compared over its whole length; what is
-    minimised is the mean of the objective over the recordings.
+    Each recording is simulated from its own initial state and compared over its whole length. The search
+    minimises the mean of the objective over the recordings.
 
     Parameters
     ----------
     scene : Scene or callable
-        A scene whose first N bodies are the recorded ones, of which `varied` makes copies with the start
-        of each recording; or a function of (parameters, recording) that returns a scene.
+        A scene whose first N bodies are the recorded ones; `varied` copies it with the initial state of each
+        recording. Or a function of (parameters, recording) that returns a scene.
     recordings : sequence of Recording
+        The recorded motions.
     parameters : dict
-        A `Parameter`, or (start, step), by name. For a `Scene`: ``restitution``, ``friction``,
-        ``friction_held``, ``inertia_factor`` and ``corner_radius`` of `varied`; for a function, its own.
+        A `Parameter`, or (start, step), for each name. For a `Scene` the names are ``restitution``,
+        ``friction``, ``friction_held``, ``inertia_factor`` and ``corner_radius`` of `varied`; for a function
+        they are free.
     objective : callable
-        From (`RollOut`, `Recording`) to a number, such as ``mean_error(length, angle)`` or
+        Function of (`RollOut`, `Recording`) that returns a number, such as ``mean_error(length, angle)`` or
         ``squared_error(length, angle)``.
     method : {"Nelder-Mead", "Powell", "COBYQA", "L-BFGS-B"}
-        Of `scipy.optimize.minimize`. Default ``"Nelder-Mead"``: for motion with many impacts, whose
-        objective is rough. ``"L-BFGS-B"`` takes differences, and needs a smooth one.
+        Method of `scipy.optimize.minimize`. Default ``"Nelder-Mead"``, for motion with many impacts, whose
+        objective is rough. ``"L-BFGS-B"`` uses finite differences and needs a smooth objective.
     restarts : int
-        How often at most the search starts anew from its best point. Default 2; it ends before that if
-        a restart gains less than `tolerance`.
+        Maximum number of restarts of the search from its best point. Default 2. The search ends earlier if a
+        restart gains less than `tolerance`.
     tolerance : float
-        The search ends when parameters change by less than this part of their steps, and
-        the objective by less than this part of its first value. Default 1e-3.
+        The search ends when parameters change by less than this fraction of their steps, and the objective by
+        less than this fraction of its first value. Default 1e-3.
     max_evaluations : int
-        No search begins or goes on after this many evaluations, each a simulation of all recordings. Default
+        Maximum number of evaluations before the search stops; each evaluation simulates all recordings. Default
         400.
     resamples : int
-        Sets of recordings drawn anew for the uncertainty, 0 for none, at most 100 000. Default 200. They cost a
-        design of 2 p^2 + 1 evaluations, at most six times; should it come upon a point that is better by 2 %,
-        the search goes on from there.
+        Number of bootstrap samples of the recordings for the uncertainty, at most 100 000; 0 for none. Default
+        200. They need 2 p^2 + 1 more evaluations, at most six times. If one of these is better than the best
+        point by 2 %, the search continues from there.
     seed : int
-        Of the drawing. Default 0.
+        Seed of the bootstrap samples. Default 0.
     step, options, threads
-        As of `roll_outs`.
+        As for `roll_outs`.
     progress : callable, optional
-        Called after each evaluation with (number, parameters, objective).
+        Function that is called after each evaluation with (number, parameters, objective).
 
     Returns
     -------
     Identification
+        The fitted parameters, their uncertainty, and the simulated motions.
 
     Raises
     ------
     TypeError, ValueError
-        For an argument that is not as above, parameters with which no scene can be made, or an objective
-        that is no finite number.
+        If an argument is invalid, the parameters do not give a valid scene, or the objective is not a finite
+        number.
     """
     if not isinstance(scene, Scene) and not callable(scene):
         raise TypeError(

@@ -18,7 +18,7 @@ from carom.studies.identify.recording import State, poses, times, unit
 if TYPE_CHECKING:
     from carom.geometry.attitude import Orientation
 
-_ROOM = "a fit needs one sample more than it has unknowns"
+_ROOM = "a fit needs more samples than unknowns"
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,21 +28,21 @@ class FreeFlight:
     Attributes
     ----------
     time : float
-        Of the first sample [s].
+        Time of the first sample [s].
     position, velocity, angular_velocity : (3,)
-        [m], [m/s], [rad/s].
+        Position and velocity of the mass centre [m], [m/s]; angular velocity [rad/s].
     orientation : (4,)
         Unit quaternion (w, x, y, z), body to world.
     acceleration : (3,)
-        Of the mass centre, given or fitted [m/s^2].
+        Acceleration of the mass centre, given or fitted [m/s^2].
     position_error, velocity_error, acceleration_error, orientation_error, angular_velocity_error : (3,)
-        Standard errors of the components, of the orientation those of a small turn about the world axes
-        [rad]. The noise that they rest on is estimated from the residuals, as independent and equal for
-        all components and samples. `acceleration_error` is zero where it was given.
+        Standard errors of the components; for the orientation, of a small rotation about the world axes [rad].
+        The noise is estimated from the residuals, under the assumption that it is independent and equal for all
+        components and samples. `acceleration_error` is zero if the acceleration was given.
     position_residual : (n, 3)
-        Recorded less fitted positions [m].
+        Recorded minus fitted positions [m].
     rotation_residual : (n, 3)
-        Turn from fitted to recorded attitudes, as vectors [rad].
+        Rotation vectors from the fitted to the recorded attitudes [rad].
     position_noise, rotation_noise : float
         Estimated standard deviation of one component of one sample [m], [rad].
     """
@@ -65,7 +65,7 @@ class FreeFlight:
 
     @property
     def state(self) -> State:
-        """The fitted state, as `Recording.start` takes it."""
+        """The fitted state, for `Recording.start`."""
         return State(self.position, self.orientation, self.velocity, self.angular_velocity)
 
 
@@ -77,34 +77,35 @@ def fit_free_flight(
     *,
     inertia: ArrayLike | None = None,
 ) -> FreeFlight:
-    """Fit the motion of a free body to recorded poses; return its state at the first.
+    """Fit the motion of a free body to recorded poses, and return its state at the first sample.
 
     Parameters
     ----------
     t : (n,)
-        Times of free flight, increasing [s]; at least 3, and 4 where gravity is fitted.
+        Times of free flight, increasing [s]; at least 3, or 4 if gravity is fitted.
     position : (n, 3)
-        Mass centre, world [m].
+        Positions of the mass centre, world [m].
     orientation : (n, 4)
-        Quaternions (w, x, y, z), body to world. Turns of half a revolution and more from one sample to the
-        next cannot be told from shorter ones.
+        Quaternions (w, x, y, z), body to world. Rotations between two samples must be less than half a turn,
+        because larger ones cannot be distinguished from smaller ones.
     gravity : (3,) or None
-        Acceleration of the mass centre [m/s^2], default (0, 0, -9.81). None: it is fitted as well.
+        Acceleration of the mass centre [m/s^2]. Default (0, 0, -9.81). None: it is fitted too.
     inertia : (3,) or (3, 3), optional
         Inertia about the mass centre in body axes [kg m^2]; only its ratios matter. The angular velocity then
-        follows Euler's equations without torque. Default: it is constant in the world, which is exact for equal
-        moments (a cube, a ball).
+        satisfies Euler's equations without torque. Default: the angular velocity is constant in the world,
+        which is exact for equal moments (a cube, a ball).
 
     Returns
     -------
     FreeFlight
+        The fitted state, with errors and residuals.
 
     Raises
     ------
     ValueError
-        For too few samples, shapes that do not fit, or values that are not finite.
+        If there are too few samples, shapes do not agree, or values are not finite.
     RuntimeError
-        If the attitudes are not those of a free body: the iteration does not converge.
+        If the iteration does not converge, because the attitudes are not those of a free body.
 
     Notes
     -----
@@ -175,23 +176,23 @@ def free_samples(
     normal: ArrayLike = (0.0, 0.0, 1.0),
     clearance: float = 0.0,
 ) -> int:
-    """Return how many of the first samples stay clear of a half-space.
+    """Return the number of samples at the beginning in which a body does not touch a half-space.
 
     Parameters
     ----------
     position, orientation : (n, 3), (n, 4)
-        Recorded poses, as of `fit_free_flight`.
+        Recorded poses, as for `fit_free_flight`.
     shape
-        Of the body, as `Scene.add_body` takes it.
+        Shape of the body, as for `Scene.add_body`.
     point, normal : (3,)
-        Of the half-space, default the plane z = 0.
+        Point and normal of the half-space. Default: the plane z = 0.
     clearance : float
-        Least gap that counts as clear [m]: what the recording and the shape may be wrong by. Default 0.
+        Smallest gap without contact [m]: the error of the recording and of the shape. Default 0.
 
     Returns
     -------
     int
-        Number of samples before the first whose gap is below `clearance`; n if there is none.
+        Number of samples before the first sample with a gap below `clearance`; n if there is none.
     """
     checks.instance("shape", shape, SHAPES, "; a shape is needed")
     count = len(np.atleast_1d(checks.real_array("position", position, "(n, 3)")))

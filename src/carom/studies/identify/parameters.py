@@ -14,17 +14,17 @@ from carom.studies.identify.varied import KNOWN
 
 @dataclass(frozen=True)
 class Parameter:
-    """One number to be fitted.
+    """A parameter of a fit.
 
     Parameters
     ----------
     start : float
-        Where the search begins, inside the bounds.
+        Initial value of the search, within the bounds.
     step : float
-        How far the first simplex reaches, above 0. Impacts on corners make motion chaotic and the objective
-        rough: a step must be large compared with the roughness.
+        Size of the first simplex, above 0. Impacts on corners make the motion chaotic and the objective rough:
+        the step must be large compared with the roughness.
     lower, upper : float
-        Bounds, themselves allowed. Default none.
+        Bounds; the bounds themselves are allowed. Default: none.
     """
 
     start: float
@@ -57,7 +57,7 @@ def _bound(name: str, value) -> float:
 
 
 class Space:
-    """All parameters of a fit in their order, and units in which their steps are 1."""
+    """All parameters of a fit in order, and the units in which their steps are 1."""
 
     def __init__(self, parameters: Mapping, known: bool):
         if not isinstance(parameters, Mapping) or not parameters:

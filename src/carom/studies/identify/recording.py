@@ -1,4 +1,4 @@
-"""Recorded motion: poses of bodies at given times, and the state from which a run begins."""
+"""Recorded motion: poses of bodies at given times, and the initial state of the simulation."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from carom.scene.values import keep
 
 
 class State(NamedTuple):
-    """Poses and velocities of N bodies at one time, in world axes; (3,) and (4,) for one body."""
+    """Poses and velocities of N bodies at one time, in world axes; arrays (3,) and (4,) for one body."""
 
     position: np.ndarray  #: (N, 3) mass centres [m]
     orientation: np.ndarray  #: (N, 4) unit quaternions (w, x, y, z), body to world
@@ -30,22 +30,22 @@ class Recording:
     Parameters
     ----------
     t : (n,)
-        Times, increasing [s]; a run begins at the first.
+        Times, increasing [s]; the simulation starts at the first.
     position : (n, 3) or (n, N, 3)
-        Mass centres, world [m].
+        Positions of the mass centres, world [m].
     orientation : (n, 4) or (n, N, 4)
-        Quaternions (w, x, y, z), body to world. They are normalised; a length more than 1e-3 from 1 is refused.
-        A SciPy Rotation, or matrices (n, 3, 3) or (n, N, 3, 3), are taken, too.
+        Quaternions (w, x, y, z), body to world. They are normalised; a length that differs from 1 by more than
+        1e-3 is refused. A SciPy Rotation, or matrices (n, 3, 3) or (n, N, 3, 3), are also allowed.
     start : State, optional
-        State at ``t[0]``, where the run is to begin: recorded, or from `fit_free_flight`. Default: what the
-        scene says.
+        Initial state of the simulation at ``t[0]``: recorded, or from `fit_free_flight`. Default: the initial
+        state of the scene.
     name : str
-        For messages.
+        Name in messages.
 
     Raises
     ------
     ValueError
-        If the shapes do not fit each other, a value is not finite, or times do not increase.
+        If the shapes do not agree, a value is not finite, or times do not increase.
     """
 
     t: np.ndarray
@@ -63,7 +63,7 @@ class Recording:
         )
         if x.shape[1] != q.shape[1]:
             raise ValueError(
-                f"orientation must be of as many bodies as position, got {q.shape[1]} and {x.shape[1]}"
+                f"orientation must have as many bodies as position, got {q.shape[1]} and {x.shape[1]}"
             )
         keep(self, t=t, position=x, orientation=q)
         if not isinstance(self.name, str):
@@ -117,7 +117,7 @@ def poses(name: str, value: ArrayLike, n: int, components: int) -> np.ndarray:
 
 
 def unit(name: str, q: np.ndarray) -> np.ndarray:
-    """Return recorded quaternions (..., 4) of length 1; refuse what is none to 1e-3."""
+    """Return recorded quaternions (..., 4), normalised; refuse an error of the length above 1e-3."""
     length = np.linalg.norm(q, axis=-1)
     if not np.all(np.abs(length - 1.0) <= ROUNDED):
         k = np.unravel_index(np.argmax(np.abs(length - 1.0)), length.shape)

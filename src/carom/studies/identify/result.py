@@ -1,4 +1,4 @@
-"""What a fit hands back."""
+"""`Identification`: the result of a fit."""
 
 from __future__ import annotations
 
@@ -14,35 +14,36 @@ from carom.studies.identify.uncertainty import Uncertainty
 
 @dataclass(frozen=True, eq=False)
 class Identification:
-    """Fitted parameters, how sure they are, and how well each of K recordings is met.
+    """Fitted parameters, their uncertainty, and the fit to each of K recordings.
 
     Attributes
     ----------
     parameters : dict of float
-        The best evaluated ones.
+        Parameters with the smallest objective of all evaluations.
     error : dict of float
-        Standard deviation of each over recordings drawn anew, NaN without resampling.
+        Standard deviation of each parameter over bootstrap samples of the recordings; NaN without them.
     interval : dict of (float, float)
-        Where 95 % of these lie.
+        Interval with 95 % of the values of each parameter over the bootstrap samples.
     objective, objective_at_start : float
-        Mean over the recordings.
+        Mean objective over the recordings, for the best parameters and for the initial ones.
     objectives : (K,)
-        Of each recording.
+        Objective of each recording.
     runs : list of RollOut
         Simulated motion of each recording, with the best parameters.
     recordings : list of Recording
+        The recorded motions.
     evaluations : int
-        How often all recordings were simulated.
+        Number of evaluations; each simulated all recordings.
     points, values : (M, p), (M, K)
         All evaluations: parameters, and the objective of each recording.
     failed : (M,)
-        How many runs stopped early in each evaluation.
+        Number of runs that failed in each evaluation.
     converged : bool
-        Whether the search ended by itself.
+        Whether the search converged.
     message : str
-        How it ended.
+        How the search ended.
     uncertainty : Uncertainty or None
-        Samples behind `error` and `interval`.
+        Bootstrap samples for `error` and `interval`.
     """
 
     parameters: dict[str, float]
@@ -60,22 +61,22 @@ class Identification:
 
     @property
     def evaluations(self) -> int:
-        """How often all recordings were simulated."""
+        """Number of evaluations; each simulated all recordings."""
         return len(self.points)
 
     @property
     def error(self) -> dict[str, float]:
-        """Standard deviation of each parameter over recordings drawn anew."""
+        """Standard deviation of each parameter over bootstrap samples of the recordings."""
         if self.uncertainty is None:
             return dict.fromkeys(self.parameters, float("nan"))
         return dict(zip(self.parameters, np.std(self.uncertainty.samples, axis=0).tolist()))
 
     @property
     def smooth(self) -> dict[str, float]:
-        """Minimum of the quadratic surface through evaluations around the best, NaN without resampling.
+        """Minimum of the quadratic surface through evaluations around the best point; NaN without bootstrap.
 
-        Where the objective is rough the best evaluated point is lucky in part; what lies between this and
-        `parameters` is that.
+        If the objective is rough, the best evaluation is partly a matter of chance; the difference between
+        `smooth` and `parameters` shows how much.
         """
         if self.uncertainty is None:
             return dict.fromkeys(self.parameters, float("nan"))
@@ -83,7 +84,7 @@ class Identification:
 
     @property
     def interval(self) -> dict[str, tuple[float, float]]:
-        """Where 95 % of each parameter lie over recordings drawn anew."""
+        """Interval with 95 % of the values of each parameter over the bootstrap samples."""
         if self.uncertainty is None:
             return dict.fromkeys(self.parameters, (float("nan"), float("nan")))
         low, high = np.percentile(self.uncertainty.samples, [2.5, 97.5], axis=0).tolist()

@@ -1,4 +1,4 @@
-"""Simulated motion at the times of a recording, and many of them in threads."""
+"""Simulated motion at the times of a recording, for one recording or for many in threads."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ UNIFORM = 1e-6  # of the sampling time: what clocks write down as rounded
 
 
 class RollOut(NamedTuple):
-    """Simulated poses of the recorded bodies at the n times of a recording."""
+    """Simulated poses of the N recorded bodies at the n times of a recording."""
 
     position: np.ndarray  #: (n, N, 3) [m]
     orientation: np.ndarray  #: (n, N, 4)
@@ -30,22 +30,25 @@ class RollOut(NamedTuple):
 def roll_out(
     scene: Scene, recording: Recording, *, step: float | None = None, options: Options | None = None
 ) -> RollOut:
-    """Simulate a scene from the first time of a recording to its last; compare nothing yet.
+    """Simulate a scene from the first to the last time of a recording.
 
     Parameters
     ----------
     scene : Scene
-        Its first N bodies are the recorded ones.
+        A scene whose first N bodies are the recorded ones.
     recording : Recording
+        The recorded motion, for its times and its initial state.
     step : float, optional
-        Longest time step [s]; it is shortened to a whole part of the sampling time where that is the same
-        throughout. Default: a quarter of the mean sampling time.
+        Longest time step [s]. If the sampling time is constant, the step is shortened so that a whole number of
+        steps makes one sampling time. Default: a quarter of the mean sampling time.
     options : Options, optional
+        As for `simulate`.
 
     Returns
     -------
     RollOut
-        Of a run that failed part-way too: from there on bodies stay, and `message` says why.
+        The simulated motion. If the run fails, the bodies keep their last poses from there on, and `message`
+        has the reason.
     """
     from carom.simulate import simulate
 
@@ -90,17 +93,19 @@ def roll_outs(
     options: Options | None = None,
     threads: int | None = None,
 ) -> list[RollOut]:
-    """Simulate the scene that `make` gives for each recording, in threads.
+    """Simulate a scene for each recording, in threads.
 
     Parameters
     ----------
     make : callable
-        From a `Recording` to its `Scene`.
+        Function that returns the `Scene` of a `Recording`.
     recordings : sequence of Recording
+        The recorded motions.
     step, options
-        As of `roll_out`.
+        As for `roll_out`.
     threads : int, optional
-        Default: the number of cores that the process may use. The compiled loop lets other threads run.
+        Number of threads. Default: the number of cores that the process may use. The compiled loop releases the
+        lock of the interpreter, so threads run in parallel.
     """
     checks.function("make", make)
     recordings = checked_recordings(recordings)
@@ -109,7 +114,7 @@ def roll_outs(
 
     def one(recording: Recording) -> RollOut:
         scene = checks.call("make", make, recording)
-        checks.instance("what make returns", scene, (Scene,))
+        checks.instance("the result of make", scene, (Scene,))
         return roll_out(scene, recording, step=step, options=options)
 
     threads = cores() if threads is None else threads

@@ -8,17 +8,16 @@ from carom.studies.identify.evaluate import Evaluator
 
 
 class BudgetSpent(Exception):
-    """As many evaluations as were allowed have been made."""
+    """The allowed number of evaluations is used up."""
 
 
 def search(
     evaluate: Evaluator, method: str, restarts: int, tolerance: float, most: int
 ) -> tuple[bool, str]:
-    """Search from the best evaluation so far, or the start; return whether it ended by itself, and how.
+    """Search from the best evaluation so far, or the start; return whether it converged, and a message.
 
-    Unknowns are parameters less their start, over their steps. A restart begins with a fresh simplex of
-    half the size around the best point so far, the other way round: a simplex may have become flat without
-    being at a minimum.
+    Unknowns are (parameter - start) / step. A restart uses a new simplex of half the size around the best point
+    so far, mirrored, because a simplex may become flat away from a minimum.
     """
     from scipy.optimize import minimize
 
@@ -46,8 +45,8 @@ def search(
                 break
             best = found
     except BudgetSpent:
-        return False, f"stopped after {most} evaluations, as allowed by max_evaluations"
-    return True, "the search ended by itself"
+        return False, f"stopped after {most} evaluations (max_evaluations)"
+    return True, "the search converged"
 
 
 def simplex(z: np.ndarray, bounds: np.ndarray, size: float) -> np.ndarray:

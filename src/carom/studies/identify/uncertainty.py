@@ -1,4 +1,4 @@
-"""How sure fitted parameters are: bootstrap over recordings on a quadratic surface."""
+"""Uncertainty of fitted parameters: bootstrap over recordings on a quadratic surface."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ ROUGH = 1e-9  # relative to the largest curvature: below it a surface has no min
 
 
 class Uncertainty(NamedTuple):
-    """What resampled recordings say about the parameters."""
+    """Bootstrap samples of the parameters."""
 
     centre: np.ndarray  #: (p,) minimum of the surface of all recordings
     samples: np.ndarray  #: (B, p) minima of the resampled surfaces
@@ -22,11 +22,11 @@ class Uncertainty(NamedTuple):
 
 
 def bootstrap(evaluate: Evaluator, resamples: int, seed: int) -> Uncertainty:
-    """Return the spread of the minimum when recordings are drawn anew, with replacement.
+    """Return the spread of the minimum over bootstrap samples of the recordings (with replacement).
 
-    Around the best point a design of 2 p^2 + 1 points is evaluated and a quadratic fitted to the objective
-    of each recording. The mean of drawn quadratics is one again: no further simulation. The region is
-    fitted to the spread it finds, about three standard deviations wide to each side.
+    Around the best point 2 p^2 + 1 points are evaluated, and a quadratic function is fitted to the objective of
+    each recording. The mean of sampled quadratic functions is again quadratic, so no more simulations are
+    needed. The region of the points is adapted to the spread: about three standard deviations to each side.
     """
     space = evaluate.space
     p, reach = space.start.size, 0.5 * space.step

@@ -1,4 +1,4 @@
-"""A scene once more with other numbers."""
+"""`varied`: a copy of a scene with other values."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from carom.scene.scene import Scene
 from carom.scene.shapes import Box
 from carom.studies.identify.recording import State, checked_state
 
-#: parameters that `varied` knows: lower and upper bound, and a step that is large enough to begin a search with
+#: parameters of `varied`: lower and upper bound, and a step that is large enough for the start of a search
 KNOWN: dict[str, tuple[float, float, float]] = {
     "restitution": (0.0, 1.0, 0.1),
     "friction": (0.0, np.inf, 0.05),
@@ -32,38 +32,38 @@ def varied(
     corner_radius: float | None = None,
     start: State | None = None,
 ) -> Scene:
-    """Return a copy of a scene with some numbers changed, for all its bodies and contacts.
+    """Return a copy of a scene with some values changed, for all its bodies and contacts.
 
     Parameters
     ----------
     scene : Scene
-        Bodies, half-spaces and contacts with half-spaces; joints and forces only if `start` is None.
+        Scene with bodies, half-spaces and contacts; joints and forces are allowed only if `start` is None.
     restitution, friction, friction_held : float, optional
-        Of all contacts; default as they are. A new `friction` is that of persistent contacts too where these
-        had the same and `friction_held` is not given.
+        Values for all contacts. Default: unchanged. A new `friction` also replaces `friction_held` if the two
+        were equal and `friction_held` is not given.
     inertia_factor : float
-        That the inertia of all bodies is multiplied by. Default 1.
+        Factor of the inertia of all bodies. Default 1.
     corner_radius : float, optional
-        Of the rounding of all boxes, whose outer size stays [m]; nor does it change mass and inertia.
+        Radius of the rounding of all boxes [m]. Their outer size, mass and inertia do not change.
     start : State, optional
         Initial state of the bodies, in their order.
 
     Raises
     ------
     ValueError
-        If the scene has what cannot be copied so, or a value is outside its range.
+        If the scene has parts that cannot be copied in this way, or a value is outside its range.
     """
     if not isinstance(scene, Scene):
         raise TypeError(f"scene must be a carom.Scene, got {type(scene).__name__}")
     if scene.contact_default is not None:
         raise ValueError(
-            "scene must name its contacts by add_contact, got one with set_contact_default; "
+            "scene must have its contacts from add_contact, got one with set_contact_default; "
             "give a function that makes the scene instead"
         )
     if start is not None and (scene.joints or scene.forces):
         raise ValueError(
-            "start cannot replace the state of a scene with joints or forces, whose places are those of the "
-            f"start, got {checks.shown(scene)}; give a function that makes the scene instead"
+            "start must be left out for a scene with joints or forces, which are placed for its own initial "
+            f"state, got {checks.shown(scene)}; give a function that makes the scene instead"
         )
     if not scene.bodies:
         raise ValueError(f"scene must have at least one body, got {scene!r}")

@@ -22,38 +22,41 @@ def film(
     zoom: float = 1.0, start: float | None = None, end: float | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Path:  # fmt: skip
-    """Write the motion of a solution as a film: MP4 (H.264) or GIF, as the name ends.
+    """Write the motion of a solution as a film: MP4 (H.264) or GIF, depending on the suffix of the file.
 
-    Bodies are solid, in a colour each, with their shadows on half-spaces, which have a grid (those that the
-    camera is behind are left out). Round ones have patches that show how they turn; bodies without a shape
-    are rods from their mass centre to their joints. An orange arrow is the impulse of an impact, its length as
-    the root of its magnitude, seen for 0.15 s of the film; black dots are contacts that are held. Between saved
-    times the motion is that of `Solution.evaluate`.
+    Bodies are solid, each in its own colour, and cast shadows on half-spaces, which have a grid. A half-space
+    is left out if the camera is behind its surface. Round bodies have patches that show their rotation. Bodies
+    without a shape are drawn as rods from the mass centre to the joints. An orange arrow shows the impulse of
+    an impact for 0.15 s of the film; its length is proportional to the square root of the impulse. Black dots
+    are persistent contacts. Between saved times the motion is that of `Solution.evaluate`.
 
     Parameters
     ----------
     solution : Solution
+        The run.
     path : str or path
-        ``.mp4`` or ``.gif``, in a folder that exists.
+        Path of the film with the suffix ``.mp4`` or ``.gif``, in a folder that exists.
     fps : float
-        Pictures a second, above 0, at most 1000. Default 30. A GIF keeps whole hundredths of a second: at
-        most 50.
+        Frames per second, above 0, at most 1000. Default 30. In a GIF the time of a frame is a whole number of
+        hundredths of a second, so at most 50.
     speed : float
-        Seconds of the motion in one of the film: below 1 slow motion. Default 1. A film has at most 100 000
-        pictures.
+        Seconds of motion per second of the film; below 1 is slow motion. Default 1. A film has at most 100 000
+        frames.
     size : (int, int)
-        Width and height in pixels, even. Default (1280, 720).
+        Width and height in pixels, even numbers. Default (1280, 720).
     view : str or (float, float)
-        "oblique" (default), "front", "side", "top", or azimuth and elevation of the camera [degrees]: the
-        azimuth about the vertical from world x (front: -90), the vertical against gravity (z without).
+        "oblique" (default), "front", "side", "top", or azimuth and elevation of the camera [degrees]. The
+        azimuth is measured about the vertical from world x (front: -90); the vertical is opposite to gravity,
+        or z without gravity.
     follow : str or Body, optional
-        A body that stays in the middle. Default None: the camera stands still and sees the whole motion.
+        A body that stays in the centre of the picture. Default None: the camera does not move and sees the
+        whole motion.
     zoom : float
-        Above 1 nearer, 0.001 to 1000. Default 1.
+        Magnification, 0.001 to 1000; above 1 shows bodies larger. Default 1.
     start, end : float, optional
-        Part of the run to show [s]. Default: all of it.
+        Start and end of the shown part of the run [s]. Default: the whole run.
     progress : callable, optional
-        Called as ``progress(done, count)`` after each picture.
+        Function that is called as ``progress(done, count)`` after each frame.
 
     Returns
     -------
@@ -63,9 +66,9 @@ def film(
     Raises
     ------
     ImportError
-        Without pillow, or for MP4 without imageio and imageio-ffmpeg.
+        If a package is missing: pillow, and for MP4 imageio and imageio-ffmpeg.
     ValueError
-        If an argument is not as above.
+        If an argument is invalid.
     """
     need_bodies(solution, "film")
     path = checks.path("path", path)
@@ -102,7 +105,7 @@ def frame_times(begin: float, end: float, fps: float, speed: float) -> np.ndarra
     """Return the times of the pictures [s], the first at `begin`."""
     if not (end - begin) * fps <= MOST * speed:
         raise ValueError(
-            f"speed and fps must give at most {MOST} pictures, got {(end - begin):g} s with "
+            f"speed and fps must give at most {MOST} frames, got {(end - begin):g} s with "
             f"speed={speed:g} and fps={fps:g}"
         )
     count = math.floor((end - begin) * fps / speed + 1e-9) + 1

@@ -1,4 +1,4 @@
-"""Arrows of impulses, and points of contacts that are held."""
+"""Arrows of impulses, and points of persistent contacts."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Marks:
         self.saved, self.held = solution.forces.saved, solution.forces.point
 
     def draw(self, pen, camera, depth, t: float) -> None:
-        """Draw what is to be seen at a time."""
+        """Draw the arrows and points at a time."""
         unit = camera.height / 720.0
         k = int(np.clip(np.searchsorted(self.solution.t, t, side="right") - 1, 0, None))
         low, high = np.searchsorted(self.saved, [k, k + 1])

@@ -1,4 +1,4 @@
-"""What is drawn of each body: triangles with their colours, normals and edges."""
+"""The triangles of each body for films, with their colours, normals and edges."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def models(scene, length: float) -> list[Model]:
 def split(model: Model, longest: float) -> Model:
     """Return a model whose triangles have no side longer than `longest`, or as many of them as is sensible.
 
-    What is much larger than what is seen reaches behind the camera, where nothing can be drawn: its parts can.
+    A triangle much larger than the picture reaches behind the camera and cannot be drawn, but its parts can.
     """
     while len(model.corners) < MOST:
         ways = np.roll(model.corners, -1, axis=1) - np.roll(model.corners, 1, axis=1)
@@ -171,7 +171,7 @@ def _ends(scene, body) -> list[np.ndarray]:
 
 
 def anchors(parts) -> list[tuple]:
-    """Return (body, place in its axes) of both ends of each joint or spring; None where there is no place."""
+    """Return (body, point in its axes) of both ends of each joint or spring; None without a point."""
     found = []
     for one in parts:
         frames = getattr(one, "frames", None)

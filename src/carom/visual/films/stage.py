@@ -38,7 +38,7 @@ SAMPLES = 400  # times at which a camera looks where the bodies will be
 
 
 class Stage:
-    """What is the same in all pictures of one film."""
+    """The parts of a film that are the same in all pictures."""
 
     def __init__(
         self, solution, size=(1280, 720), view="oblique", follow=None, span=None, zoom=1.0
@@ -67,7 +67,7 @@ class Stage:
         self._kept = None
 
     def _camera(self, places, turns) -> Camera:
-        """Return the camera that sees all that moves, and what is as small; or the body that it follows."""
+        """Return the camera that sees all moving bodies and all small ones, or the body that it follows."""
         width, height = (FINER * n for n in self.size)
         if self.followed is None:
             seen = moving(places, turns)
@@ -149,7 +149,7 @@ class Stage:
         return self._finished(buffer, camera, t, clock)
 
     def _empty(self, camera):
-        """Return a buffer with the planes alone; painted once if the camera stands still."""
+        """Return a buffer with only the planes; it is painted once if the camera does not move."""
         from carom.visual.films.raster import Buffer, ground
 
         if self.followed is not None or self._kept is None:
@@ -219,21 +219,25 @@ def still(
     zoom=1.0,
     clock=True,
 ) -> np.ndarray:
-    """Draw one picture of a motion, as a film would show it; with impulses of the last hundredth of the run.
+    """Draw one picture of a motion, as in a film.
+
+    Impulses of impacts are shown for a hundredth of the duration of the run.
 
     Parameters
     ----------
     solution : Solution
+        The run.
     t : float, optional
         Time within the run [s]. Default: its end.
     size, view, follow, zoom
         As for `carom.film`.
     clock : bool
-        Whether to write the time into a corner. Default True.
+        True (default): write the time in a corner.
 
     Returns
     -------
     ndarray, shape (height, width, 3), uint8
+        Red, green and blue of each pixel.
     """
     need_bodies(solution, "still")
     last = float(solution.t[-1])

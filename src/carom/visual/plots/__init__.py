@@ -1,7 +1,7 @@
-"""Plots of what a run hands back; needs ``carom[plot]``.
+"""Plots of the results of a run; needs ``carom[plot]``.
 
-Each function draws one plot of a `Solution` (of this session or from a file) or a `GeneralizedSolution`, into
-the axes that it is given or a new figure, and returns the axes.
+Each function draws one plot of a `Solution` or a `GeneralizedSolution` into given axes or a new figure, and
+returns the axes.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Where the energy went."""
+"""Plot of the energy balance."""
 
 from __future__ import annotations
 
@@ -16,23 +16,25 @@ NOTHING = 1e-6  # of the greatest energy: an entry that stays below cannot be se
 
 
 def energy(solution, *, ax=None):
-    """Draw the energies and what the ledger explains them by, and below how far its sum is off.
+    """Draw the energies, the entries of the ledger, and the error of the energy balance.
 
-    Above: kinetic and potential energy and their sum; dotted, the entries of the ledger, sums since the start
-    (work of forces and dampers; impacts; friction of persistent contacts; bounces that were not resolved), each
-    only if it comes to a millionth of the greatest energy. Below, on a logarithmic axis, the magnitude of
-    `Ledger.residual`: of total energy less its start less all entries, the error of the time
-    integration.
+    Upper axes: kinetic, potential and total energy; dotted, the entries of the ledger, which are sums since the
+    start (work of forces and dampers; impacts; friction of persistent contacts; dropped bounces). Entries below
+    a millionth of the greatest energy are left out. Lower axes, logarithmic: the magnitude of
+    `Ledger.residual`, i.e. the total energy minus its initial value minus all entries, which is the error of
+    the time integration.
 
     Parameters
     ----------
     solution : Solution or GeneralizedSolution
+        The run.
     ax : sequence of 2 Axes, optional
-        To draw into. Default: a new figure.
+        Axes to draw into. Default: a new figure.
 
     Returns
     -------
     ndarray of 2 Axes
+        Upper and lower axes.
     """
     figure.is_bodies(solution)
     t, ledger = solution.t, solution.ledger

@@ -1,4 +1,4 @@
-"""The table of impacts, over time."""
+"""Plot of the impacts over time."""
 
 from __future__ import annotations
 
@@ -10,20 +10,21 @@ _MARKS = "osD^v<>P"
 
 
 def impacts(solution, *, contacts=None, ax=None):
-    """Draw all impacts over time: normal velocity, slip and impulse, and what each took of the energy.
+    """Draw all impacts over time: normal velocity, slip, impulse and energy loss.
 
-    Four axes. Normal velocity and speed of slip: open marks before, full ones after the impact, a line
-    between them. Normal impulse (full) and tangential impulse (open). Energy lost; what has been gained
-    (Newton's law can) is a cross. Impulses and energies on logarithmic axes, where nothing shows that is
-    below 1e-12 of the greatest.
+    There are four axes. Normal velocity and speed of slip: open marks before and filled marks after the impact,
+    joined by a line. Normal impulse (filled) and tangential impulse (open). Energy loss; a cross is an energy
+    gain, which Newton's law allows. Axes of impulses and energies are logarithmic; values below 1e-12 of the
+    greatest are not shown.
 
     Parameters
     ----------
     solution : Solution or GeneralizedSolution
+        The run.
     contacts : str or sequence of str, optional
-        Names of the contacts (or handles). Default: all.
+        Contacts, as names or objects. Default: all.
     ax : sequence of 4 Axes, optional
-        To draw into. Default: a new figure.
+        Axes to draw into. Default: a new figure.
 
     Returns
     -------
@@ -33,7 +34,7 @@ def impacts(solution, *, contacts=None, ax=None):
     Raises
     ------
     ValueError
-        If there is no impact, or no contact of that name.
+        If there is no impact, or no contact with this name.
     """
     names = figure.contact_names(solution)
     figure.need_impacts(solution)

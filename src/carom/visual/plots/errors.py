@@ -1,4 +1,4 @@
-"""How well joints and constraints are kept."""
+"""Plot of the errors of joints and constraints."""
 
 from __future__ import annotations
 
@@ -10,25 +10,26 @@ ORDER = ("m", "rad", "")  # of the units
 
 
 def constraint_errors(solution, *, ax=None):
-    """Draw the greatest error of joints and constraints at each saved time, of positions and of velocities.
+    """Draw the greatest errors of position and velocity of joints and constraints over time.
 
-    Lengths and angles apart. Logarithmic; errors that are exactly zero do not show.
+    Lengths and angles have separate curves. The axis is logarithmic; errors of exactly zero are not shown.
 
     Parameters
     ----------
     solution : Solution or GeneralizedSolution
-        With joints or constraints.
+        A run with joints or constraints.
     ax : Axes, optional
-        To draw into. Default: a new figure.
+        Axes to draw into. Default: a new figure.
 
     Returns
     -------
     Axes
+        The axes.
 
     Raises
     ------
     ValueError
-        If there is nothing to be kept.
+        If there are no joints and no constraints.
     """
     whole = figure.is_bodies(solution)
     if whole and not (solution.scene.joints or solution.scene.constraints):

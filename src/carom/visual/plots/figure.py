@@ -1,4 +1,4 @@
-"""What the plots share: new figures, the axes that are given, bodies and contacts by name, their colours."""
+"""Common functions of the plots: figures, given axes, bodies and contacts by name, colours."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def drawing(
     Parameters
     ----------
     ax : Axes, or a sequence of `count` of them, or None
-        What the caller was given. None: a new figure of pyplot, `count` axes one below the other unless
+        The argument of the plot. None: a new figure of pyplot, with `count` axes one below the other unless
         `layout` (arguments of `Figure.subplots`) says otherwise; `compressed` for axes of fixed aspect.
     """
     plt = pyplot()
@@ -71,7 +71,7 @@ def drawing_mosaic(rows, size, heights) -> Iterator[Any]:
 
 
 def pyplot() -> Any:
-    """Return matplotlib.pyplot, or say how to get it."""
+    """Return matplotlib.pyplot, or raise an error with the command that installs it."""
     try:
         import matplotlib.pyplot as plt
     except ImportError:
@@ -80,7 +80,7 @@ def pyplot() -> Any:
 
 
 def is_bodies(solution) -> bool:
-    """Return True for a `Solution`, False for a `GeneralizedSolution`; refuse what is neither."""
+    """Return True for a `Solution`, False for a `GeneralizedSolution`; refuse other objects."""
     from carom.generalized.solution import GeneralizedSolution
     from carom.results.solution import Solution
 

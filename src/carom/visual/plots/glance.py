@@ -1,4 +1,4 @@
-"""A whole run at a glance."""
+"""Overview plot of a run."""
 
 from __future__ import annotations
 
@@ -14,19 +14,20 @@ ROWS = 8  # contacts to draw
 
 
 def overview(solution) -> dict:
-    """Draw a run at a glance: the motion, the energies, the contacts, and how well joints are kept.
+    """Draw an overview of a run: motion, energies, contacts, and errors of joints.
 
-    Of a system in coordinates the motion is that of the coordinates over time. Contacts and constraints are
-    there if the system has some (contacts: that touch).
+    The motion of a `GeneralizedSystem` is drawn as coordinates over time. Contacts are drawn if some touch, and
+    constraint errors if there are joints or constraints.
 
     Parameters
     ----------
     solution : Solution or GeneralizedSolution
+        The run.
 
     Returns
     -------
     dict of str to Axes
-        "motion", "energy", "error" (of the energy) and, where there are some, "contacts" and "constraints".
+        "motion", "energy", "error" (of the energy) and, if drawn, "contacts" and "constraints".
     """
     whole = figure.is_bodies(solution)
     held = solution.scene if whole else None

@@ -1,4 +1,4 @@
-"""One impact in the time of its boundary layer."""
+"""Plot of one impact inside its boundary layer."""
 
 from __future__ import annotations
 
@@ -10,31 +10,32 @@ KNOTS = 64  # steps of the spline: so many that a force, given at its knots, is 
 
 
 def impact_inside(solution, k: int = 0, *, steps: int = KNOTS, ax=None):
-    """Draw the course of one impact: normal coordinate, velocities and forces in its boundary layer.
+    """Draw one impact inside its boundary layer: normal coordinate, velocities and forces.
 
-    Three axes over the time since entry. The normal velocity is that of the flat coordinates, minus the
-    approach at entry and the rebound at exit; it is zero where compression ends (dotted line).
+    There are three axes over the time since entry. The normal velocity is that of the flat coordinate: it is
+    minus the approach speed at entry, and the rebound speed at exit. It is zero at the end of compression
+    (dotted line).
 
     Parameters
     ----------
     solution : Solution or LayerHistory
-        A run, or an impact resolved on its own (`carom.impact_layer`).
+        A run, or a single impact (`carom.impact_layer`).
     k : int
-        Number of the impact; negative ones count from the end. Default 0.
+        Index of the impact; negative indices count from the end. Default 0.
     steps : int
-        Spline steps through the layer. Default 64; a `LayerHistory` has its own.
+        Number of spline steps through the layer. Default 64; a `LayerHistory` has its own.
     ax : sequence of 3 Axes, optional
-        To draw into. Default: a new figure.
+        Axes to draw into. Default: a new figure.
 
     Returns
     -------
     ndarray of 3 Axes
+        Axes of the normal coordinate, the velocities and the forces.
 
     Raises
     ------
     ValueError
-        If there is no such impact, or it was resolved together with others and has no course of its
-        own.
+        If there is no impact k, or it is part of a multiple impact and has no boundary layer of its own.
     """
     from carom.impact.history import LayerHistory
 
@@ -77,7 +78,7 @@ def impact_inside(solution, k: int = 0, *, steps: int = KNOTS, ax=None):
 def _jump(force, history, last: int) -> np.ndarray:
     """Return forces at the knots, and twice where compression ends, at which they jump.
 
-    A knot has the force right of it; what is left of it is carried on from the two knots before.
+    A knot has the force just after it; the force just before it is extrapolated from the two knots before.
     """
     if last < 2:
         return np.insert(force, last, force[last - 1])

@@ -1,4 +1,4 @@
-"""Paths of bodies, seen along an axis or another."""
+"""Plot of the paths of bodies, seen along a coordinate axis."""
 
 from __future__ import annotations
 
@@ -16,36 +16,38 @@ MOST = 200  # outlines: more would cover each other
 def trajectory(
     solution, bodies=None, *, plane: str | None = None, outlines=None, ground=True, ax=None
 ):
-    """Draw the paths of mass centres as seen along a coordinate axis.
+    """Draw the paths of mass centres, seen along a coordinate axis.
 
-    A square is the start, dots are impacts of the body; a corner at each. Half-spaces whose planes are seen
-    edge-on, and static bodies, are drawn as the ground.
+    A square is the start of a path, and dots are impacts of the body. Static bodies, and half-spaces whose
+    surface is seen edge-on, are drawn as ground.
 
     Parameters
     ----------
     solution : Solution
+        The run.
     bodies : str or sequence of str, optional
-        Names (or handles). Default: all.
+        Bodies, as names or objects. Default: all.
     plane : str, optional
-        Two of "x", "y", "z": the axis to the right and the axis up. Default: up against gravity, and to the
-        right the other axis along which there is more motion; of motion on a level table the plane of the
-        table, as seen from above.
+        Two of "x", "y", "z": the axis to the right and the axis upwards. Default: upwards opposite to gravity,
+        and to the right the other axis with more motion; for motion on a horizontal table the plane of the
+        table, seen from above.
     outlines : (m,) or int, optional
-        Times [s] at which the outlines of the bodies are drawn, or how many, spread evenly over the run; at
+        Times [s] at which the outlines of the bodies are drawn, or their number, evenly spaced over the run; at
         most 200. Default: none.
     ground : bool
-        Whether to draw half-spaces and static bodies. Default True.
+        True (default): draw half-spaces and static bodies.
     ax : Axes, optional
-        To draw into. Default: a new figure.
+        Axes to draw into. Default: a new figure.
 
     Returns
     -------
     Axes
+        The axes.
 
     Raises
     ------
     ValueError
-        If there is no body of that name, or the plane is none.
+        If there is no body with this name, or `plane` is invalid.
     """
     figure.need_bodies(solution, "trajectory")
     checks.flag("ground", ground)
@@ -124,7 +126,7 @@ def _times(outlines, solution) -> np.ndarray:
 
 
 def _outlines(axes, solution, body, times, seen, colour) -> None:
-    """Draw the edges between what is turned to the eye and what is not."""
+    """Draw the edges between faces that are turned to the viewer and faces that are not."""
     from matplotlib.collections import LineCollection
 
     from carom.visual.surfaces import surface

@@ -1,4 +1,4 @@
-"""Rates against coordinates."""
+"""Phase plane plot."""
 
 from __future__ import annotations
 
@@ -9,27 +9,29 @@ from carom.visual.plots import figure, style
 
 
 def phase(solution, of=None, *, axis: str = "z", number: int = 0, ax=None):
-    """Draw the phase plane of one coordinate: its rate against it.
+    """Draw the phase plane of one coordinate: its rate over its value.
 
-    An impact is a step down or up where the path of a body or of a coordinate is drawn; of a joint only saved
-    times are known, and it slants from one to the next.
+    For a body or a coordinate of a `GeneralizedSystem`, an impact is a vertical line. For a joint only saved
+    times are known, so an impact is an inclined line from one to the next.
 
     Parameters
     ----------
     solution : Solution or GeneralizedSolution
+        The run.
     of : str or handle, optional
-        A body (its place along `axis`) or a joint (its coordinate `number`) by name. Default: the first joint
-        that has a coordinate, else the first body. Of a `GeneralizedSolution`: left out.
+        A body (its position along `axis`) or a joint (its coordinate `number`), as name or object. Default: the
+        first joint that has a coordinate, otherwise the first body. Not for a `GeneralizedSolution`.
     axis : {"x", "y", "z"}
-        Along which a body is looked at. Default "z".
+        Axis of the position of a body. Default "z".
     number : int
-        Which coordinate of a joint with several, or of the system. Default 0.
+        Index of the coordinate of a joint, or of the system. Default 0.
     ax : Axes, optional
-        To draw into. Default: a new figure.
+        Axes to draw into. Default: a new figure.
 
     Returns
     -------
     Axes
+        The axes.
     """
     if not figure.is_bodies(solution):
         if of is not None:
@@ -74,7 +76,7 @@ def _of_scene(solution, of, axis: str, number: int):
 
 
 def _course(solution, pick):
-    """Return times (M,) and what is picked of the states there: at impacts before and after them."""
+    """Return times (M,) and the chosen quantity there; at impacts before and after them."""
     t = figure.with_impacts(solution)
     struck = np.isin(t, solution.impacts.time)
     twice = np.repeat(t, 1 + struck)

@@ -1,4 +1,4 @@
-"""Error against cost."""
+"""Work-precision plot: error over computing time."""
 
 from __future__ import annotations
 
@@ -13,21 +13,22 @@ _MARKS = "osD^v<>P"
 
 
 def work_precision(series: Mapping, *, error: str = "error", ax=None):
-    """Draw errors against wall time of several methods, both logarithmic.
+    """Draw errors of several methods over wall time, both on logarithmic axes.
 
     Parameters
     ----------
     series : mapping of str to (times, errors)
-        By the name for the legend: wall times (n,) [s] and errors (n,), all above 0 (zeros of an error do not
-        show). Points are joined in the order of time.
+        For each name in the legend: wall times (n,) [s] and errors (n,). Times must be above 0, errors at least
+        0; errors of 0 are not shown. Points are joined in the order of time.
     error : str
-        What the error is, with its unit, for the axis. Default "error".
+        Label of the axis of errors, with the unit. Default "error".
     ax : Axes, optional
-        To draw into. Default: a new figure.
+        Axes to draw into. Default: a new figure.
 
     Returns
     -------
     Axes
+        The axes.
     """
     if not isinstance(series, Mapping) or not series:
         raise ValueError(

@@ -1,4 +1,4 @@
-"""Slip in the tangent plane during an impact."""
+"""Plot of slip in the tangent plane during an impact."""
 
 from __future__ import annotations
 
@@ -12,32 +12,34 @@ FLOW = 0.7  # density of the lines of the flow
 
 
 def hodograph(solution, k: int = 0, *, flow: bool = True, ax=None):
-    """Draw the slip velocity during one impact, and the friction that goes with it.
+    """Draw the slip velocity during one impact, and the friction force.
 
-    Left: the path of the slip velocity from before the impact (square) to after it (dot), and rays that slip
-    does not leave (`invariant_directions`): outgoing ones, along which it grows, and incoming ones, along which
-    it dies. Grey lines: how slip of any start moves while it lasts, along ``W_tn - mu W_tt e`` with e its
-    direction (mathematics page, §1.9). Right: friction force by normal force; on the circle of radius mu
-    while the contact slips, inside while it sticks.
+    Left axes: the path of the slip velocity from before the impact (square) to after it (dot), and its
+    invariant rays (`invariant_directions`): slip grows along outgoing rays and decreases along incoming ones.
+    Grey lines are the paths of slip velocities from other starts, along ``W_tn - mu W_tt e`` with the slip
+    direction e (mathematics page, §1.9). Right axes: friction force divided by normal force; it is on the
+    circle of radius mu while the contact slips, and inside while it sticks.
 
     Parameters
     ----------
     solution : Solution or GeneralizedSolution
+        The run.
     k : int
-        Number of the impact; negative ones count from the end. Default 0.
+        Index of the impact; negative indices count from the end. Default 0.
     flow : bool
-        Whether to draw the lines of the flow. Default True.
+        True (default): draw the grey lines.
     ax : sequence of 2 Axes, optional
-        To draw into. Default: a new figure.
+        Axes to draw into. Default: a new figure.
 
     Returns
     -------
     ndarray of 2 Axes
+        Left and right axes.
 
     Raises
     ------
     ValueError
-        If there is no such impact, it was resolved together with others, or it has no tangents.
+        If there is no impact k, it is part of a multiple impact, or its contact has no tangents.
     """
     figure.is_bodies(solution)
     checks.flag("flow", flow)
@@ -45,8 +47,8 @@ def hodograph(solution, k: int = 0, *, flow: bool = True, ax=None):
     W, mu = record.inverse_mass, record.friction
     if record.together > 1:
         raise ValueError(
-            f"impact {k} was resolved together with others ({record.together} closed points): its slip "
-            "depends on theirs; draw one with impacts.together == 1"
+            f"impact {k} is part of a multiple impact ({record.together} closed points), where slip depends on "
+            "the other points; draw an impact with impacts.together == 1"
         )
     if not np.any(W[1:, 1:]):
         raise ValueError(f"impact {k} must have tangential motion, got a contact without tangents")

@@ -1,4 +1,4 @@
-"""One style for every figure: sizes of a two-column journal, colours that all eyes tell apart.
+"""One style for all figures: sizes of a two-column journal, and colours for colour-blind readers too.
 
 Figures are made as objects, never through pyplot, and the settings hold only inside `style`:
 nothing of the caller's matplotlib is touched and no display is needed.

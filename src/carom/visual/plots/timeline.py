@@ -1,4 +1,4 @@
-"""Which contacts are open, strike, slip or stick, over time."""
+"""Plot of the contacts over time: impacts, slip and stick."""
 
 from __future__ import annotations
 
@@ -11,29 +11,31 @@ MODES = (("slipping", style.ORANGE, 0.62), ("sticking", style.BLUE, 0.34))  # wi
 
 
 def contacts(solution, *, contacts=None, most: int = 40, ax=None):
-    """Draw the life of each contact: bars where it is held, slipping or sticking, ticks at impacts.
+    """Draw the state of each contact over time: ticks at impacts, bars for slip and stick.
 
-    Where nothing is drawn the contact is open. A contact with several points can slip at one and stick (or
-    roll, or rest) at another: the narrow bar lies on the wide one.
+    While nothing is drawn, the contact is open. A contact with several points may slip at one and stick (or
+    roll, or rest) at another: then the narrow bar is drawn on the wide one.
 
     Parameters
     ----------
     solution : Solution or GeneralizedSolution
+        The run.
     contacts : str or sequence of str, optional
-        Names of the contacts (or handles). Default: those that ever touch.
+        Contacts, as names or objects. Default: those that touch during the run.
     most : int
-        Rows to draw at most, the contacts with the most impacts and intervals. Default 40.
+        Maximum number of rows: the contacts with the most impacts and intervals are drawn. Default 40.
     ax : Axes, optional
-        To draw into. Default: a new figure.
+        Axes to draw into. Default: a new figure.
 
     Returns
     -------
     Axes
+        The axes.
 
     Raises
     ------
     ValueError
-        If there is no contact of that name, or none ever touches.
+        If there is no contact with this name, or none of the contacts touches.
     """
     names = figure.contact_names(solution)
     most = checks.integer("most", most, least=1)
@@ -72,12 +74,12 @@ def contacts(solution, *, contacts=None, most: int = 40, ax=None):
 
 
 def touching(solution) -> int:
-    """Return how many contacts ever touch."""
+    """Return the number of contacts that touch during the run."""
     return len({*solution.impacts.contact.tolist(), *(row[0] for row in intervals(solution))})
 
 
 def intervals(solution) -> list[tuple[int, float, float, str]]:
-    """Return (contact, start, end, mode) of all intervals in which a contact is held."""
+    """Return (contact, start, end, mode) of all intervals of persistent contact."""
     if figure.is_bodies(solution):
         table = solution.contacts
         rows = zip(table.contact, table.start, table.end, table.mode)

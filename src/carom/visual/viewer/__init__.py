@@ -1,1 +1,1 @@
-"""Looking at a run: `carom.view`, live in a browser or as a page that plays by itself."""
+"""`carom.view`: show a run live in a browser, or as an HTML page."""

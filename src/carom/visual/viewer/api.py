@@ -1,4 +1,4 @@
-"""`carom.view`: look at a run in a browser."""
+"""`carom.view`: show a run in a browser."""
 
 from __future__ import annotations
 
@@ -27,50 +27,53 @@ def view(
     open: bool = True,
     block: bool = True,
 ) -> Exported | LiveView | None:
-    """Look at a run: in a browser at once, or as a page to keep.
+    """Show a run in a browser, or write it as an HTML page.
 
-    Bodies play, stop and can be moved through by hand; arrows are impulses of impacts and forces of contacts
-    that stay; beside them energy, the list of impacts, and of each impact what went on inside it.
+    The motion can be played, stopped and moved to any time. Arrows show impulses of impacts and forces of
+    persistent contacts. Beside the motion are the energy, the list of impacts, and the course of an impact in
+    its boundary layer.
 
     Parameters
     ----------
     solution : Solution or path
-        A run of a `Scene`, or the file of one (``carom[files]``).
+        A run of a `Scene`, or the path of its file (``carom[files]``).
     export : path, optional
-        Write one HTML file that plays by itself, without Python and without a network, and return. Nothing
-        needs to be installed for it. Default None: show it in the browser from here (``carom[view]``).
+        Write one HTML file that plays the run without Python and without a network, and return. This needs no
+        extra package. Default None: show the run in the browser (``carom[view]``).
     title : str, optional
-        Default: the name of the file, or "carom".
+        Title of the page. Default: the name of the file, or "carom".
     follow : str, optional
-        Name of the body that the eye follows at first. Default: none.
+        Name of the body that the camera follows at first. Default: none.
     speed : float, optional
-        Seconds of the run in a second, above 0. Default: 1, or less for a run that lasts below 5 s.
+        Seconds of the run per second, above 0. Default: 1, or less if the run is shorter than 5 s.
     frames : int
-        Greatest number of moments, at least 2. Runs with more saved times are thinned; moments of impacts are
-        added. Default 5000; fewer where there are many bodies (3 million numbers in all).
+        Maximum number of frames, at least 2. Saved times are thinned out to this number, and times of impacts
+        are added. Default 5000; fewer with many bodies (3 million numbers in all).
     port : int, optional
-        Where the viewer is served. Default: a free one.
+        Port of the server. Default: a free one.
     host : str
-        Default ``"127.0.0.1"``: for this machine only. ``"0.0.0.0"`` lets others look.
+        Address of the server. Default ``"127.0.0.1"``: only for this machine. ``"0.0.0.0"``: also for other
+        machines.
     open : bool
-        Open the browser. Default True.
+        True (default): open the browser.
     block : bool
-        Go on only when Ctrl-C was pressed. Default True; with False the viewer is handed back, stop it with
-        ``stop()`` or use it in a ``with``.
+        True (default): return when Ctrl-C is pressed. False: return the viewer at once; stop it with ``stop()``
+        or use it in a ``with`` statement.
 
     Returns
     -------
     Exported, LiveView or None
-        With `export` its path, size in bytes and what was left out; with ``block=False`` the viewer.
+        With `export`, the path, the size in bytes and a note on data that were left out; with ``block=False``
+        the viewer.
 
     Raises
     ------
     ImportError
-        Without viser, where it is needed.
+        If viser is needed and missing.
     TypeError
-        For a run of a `GeneralizedSystem`, whose coordinates do not say where bodies are.
+        If the run is of a `GeneralizedSystem`, because its coordinates do not give the positions of bodies.
     ValueError
-        If an argument is outside its range, or the file is none of a run.
+        If an argument is outside its range, or the file is not a file of a run.
 
     Examples
     --------

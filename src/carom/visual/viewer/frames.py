@@ -1,4 +1,4 @@
-"""What is shown of a run: moments and poses, and where in the world it all takes place."""
+"""The frames of a viewer: times and poses, and the region of the motion."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SMOOTH = 600  # about as many frames has a run with fewer saved times, so that n
 
 
 class Frames(NamedTuple):
-    """Poses of N bodies at F moments; between them straight lines and steady turns are good enough."""
+    """Poses of N bodies in F frames; straight lines and steady rotations suffice between them."""
 
     time: np.ndarray  #: (F,) [s]
     position: np.ndarray  #: (F, N, 3) mass centres, world [m]
@@ -25,7 +25,7 @@ class Frames(NamedTuple):
 
 
 class Place(NamedTuple):
-    """Where the motion takes place, and from where it is best looked at."""
+    """The region of the motion, and the best direction of view."""
 
     centre: np.ndarray  #: (3,) of the box around all bodies at all moments [m]
     radius: float  #: of a ball around that box [m]
@@ -35,17 +35,17 @@ class Place(NamedTuple):
 
 
 class Outline(NamedTuple):
-    """How far a body reaches: a ball of radius `size` [m] about each of its `points` (3,), body axes."""
+    """The extent of a body: a ball of radius `size` [m] about each of its `points` (3,), body axes."""
 
     points: list[np.ndarray]
     size: float
 
 
 def frames_of(solution, most: int = MOST) -> Frames:
-    """Return the moments to show: saved times, thinned to `most`, and those of impacts.
+    """Return the frames to show: saved times, thinned out to `most`, and times of impacts.
 
-    A run with few saved times is filled up from `Solution.evaluate`, which knows what is between them.
-    Many bodies have fewer frames, so that the poses stay below 3 million numbers.
+    If a run has few saved times, `Solution.evaluate` gives states between them. With many bodies there are
+    fewer frames, so that the poses are at most 3 million numbers.
     """
     most = max(2, min(most, max(200, VALUES // (7 * solution.position.shape[1]))))
     times, saved = solution.t, len(solution.t)
@@ -69,20 +69,20 @@ def _poses(solution, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _moments_of_impacts(impacts, most: int) -> np.ndarray:
-    """Return the times of the strongest impacts: there the way has a corner."""
+    """Return the times of the strongest impacts, where paths have corners."""
     strongest = np.argsort(-np.linalg.norm(impacts.impulse, axis=1), kind="stable")
     return impacts.time[strongest[:most]]
 
 
 def place_of(solution, frames: Frames, outlines: list[Outline], fixed: list[np.ndarray]) -> Place:
-    """Return where the motion takes place.
+    """Return the region of the motion.
 
     Parameters
     ----------
     outlines : (N,)
-        Of the bodies.
+        Extents of the bodies.
     fixed
-        Points (3,) of the ground that are to be seen too.
+        Points (3,) of the ground that must be visible too.
     """
     boxes = np.array([_box(frames, b, outline) for b, outline in enumerate(outlines)])  # (N, 2, 3)
     seen = moving(frames.position, frames.orientation)

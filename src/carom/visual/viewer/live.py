@@ -1,4 +1,4 @@
-"""A run in the browser, played from here: needs viser."""
+"""`LiveView`: a run in the browser, served by this process; needs viser."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ FADE = 0.35  # an impact is seen that long [s of the clock on the wall]
 
 
 def need_viser() -> None:
-    """Say what to install if viser is not there."""
+    """Raise an error with the command that installs viser, if it is missing."""
     try:
         import viser  # noqa: F401
     except ImportError as error:
@@ -33,17 +33,18 @@ def need_viser() -> None:
 
 
 class LiveView:
-    """A run that is shown in a browser. Made by `carom.view` with ``block=False``; use it in a ``with``.
+    """A run that is shown in a browser. `carom.view` makes it with ``block=False``; use it with ``with``.
 
     Attributes
     ----------
     time : float
-        The time that is shown [s].
+        Time of the shown state [s].
     playing : bool
+        Whether the motion is playing.
     speed : float
-        Seconds of the run in a second.
+        Seconds of the run per second.
     server : viser.ViserServer
-        To add things of your own.
+        The server; you can add your own objects to its scene.
     """
 
     def __init__(self, show: Show, follow: int, speed: float | None, host: str, port: int | None):
@@ -74,12 +75,12 @@ class LiveView:
 
     @property
     def url(self) -> str:
-        """Where the browser finds it."""
+        """Address of the viewer for the browser."""
         host = "localhost" if self.host in ("0.0.0.0", "127.0.0.1", "") else self.host
         return f"http://{host}:{self.server.get_port()}"
 
     def seek(self, t: float) -> None:
-        """Show the time `t` [s], or the nearest one of the run."""
+        """Show the state at time `t` [s]; times outside the run are moved into it."""
         with self._change, self.server.atomic():
             before = self._place_followed()
             self.time = min(max(float(t), self.start), self.end)
@@ -90,7 +91,7 @@ class LiveView:
             self._move_eyes(before)
 
     def play(self, on: bool = True) -> None:
-        """Play on, or from the start if it is at its end; with False pause."""
+        """Play from the present time, or from the start if it is at the end; with False pause."""
         with self._change:
             if on and self.time >= self.end:
                 self.seek(self.start)
@@ -101,7 +102,7 @@ class LiveView:
             self.panel.show_time(self.time)
 
     def choose(self, k: int) -> None:
-        """Stop at impact `k` of those in the list and show its inside; -1 for none."""
+        """Stop at impact `k` of the list and show its course in the boundary layer; -1 for none."""
         with self._change:
             self.chosen = k
             self.panel.show_impact(k)
@@ -113,7 +114,7 @@ class LiveView:
                 self.seek(self.time)
 
     def next_impact(self, step: int = 1) -> None:
-        """Choose the impact after the chosen one or the time shown, or before it with -1."""
+        """Choose the impact after the chosen one (or after the shown time); with -1 the impact before."""
         times = self.show.solution.impacts.time[self.show.strikes.number]
         if self.chosen >= 0:
             k = self.chosen + step
@@ -123,7 +124,7 @@ class LiveView:
             self.choose(k)
 
     def follow(self, name: str | None) -> None:
-        """Let the eye go with the body called `name`; None: with none."""
+        """Let the camera follow the body with this name; None: no body."""
         self._followed = body_number(self.show, name)
         place = self._place_followed()
         if place is not None:
@@ -131,7 +132,7 @@ class LiveView:
                 client.camera.look_at = place
 
     def show_arrows(self, on: bool, length: float | None = None) -> None:
-        """Show or hide arrows, `length` times as long as at first."""
+        """Show or hide arrows; `length` is a factor of their initial lengths."""
         self.stage.arrows_on = on
         self.stage.length = length or self.stage.length
         self.seek(self.time)
@@ -141,7 +142,7 @@ class LiveView:
         webbrowser.open(self.url)
 
     def wait(self) -> None:
-        """Say where it is and go on when Ctrl-C was pressed."""
+        """Print the address, and return when Ctrl-C is pressed."""
         print(f"{self.show.title}: {self.url} (Ctrl-C ends it)", flush=True)
         try:
             while not self._stopped.wait(0.5):
@@ -152,7 +153,7 @@ class LiveView:
             self.stop()
 
     def stop(self) -> None:
-        """End it; the page in the browser stays as it is."""
+        """Stop the server; the page in the browser does not change any more."""
         if self._stopped.is_set():
             return
         self._stopped.set()
@@ -200,7 +201,7 @@ class LiveView:
 
 
 def free_port(host: str) -> int:
-    """Return a port that nobody uses."""
+    """Return a free port."""
     with socket.socket() as probe:
         probe.bind((host, 0))
         return probe.getsockname()[1]

@@ -1,4 +1,4 @@
-"""What can be pressed and read beside the motion in viser."""
+"""The controls, charts and texts beside the motion in viser."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ INK, ORANGE, SKY, BLUE, GREEN = "#1d252c", "#E69F00", "#56B4E9", "#0072B2", "#00
 
 
 class LivePanel:
-    """Controls, energy, the impacts and the inside of one. What is pressed goes to `view`, a `LiveView`."""
+    """Controls, energy, the impacts, and the course of one impact; controls call methods of `view`."""
 
     def __init__(self, server, show: Show, view: Any):
         self.show, self.view, self.gui = show, view, server.gui
@@ -79,9 +79,9 @@ class LivePanel:
         ]
         inside = inside_of(self.show.solution, int(self.show.strikes.number[k]))
         if inside is None:
-            said.append(f"Resolved with others, {record.together} points: no course of its own.")
+            said.append(f"Part of a multiple impact with {record.together} points.")
             if not record.located:
-                said.append("Its time is the end of a step in which a crowd was taken whole.")
+                said.append("Its time is the end of a time-stepping (Moreau) step.")
         else:
             said.append(", ".join((*inside.phases, f"{inside.time[-1]:.3g} s in its layer")))
             friction = np.linalg.norm(inside.force[:, 1:], axis=1)
@@ -92,7 +92,7 @@ class LivePanel:
         self.words.content = "  \n".join(said)
 
     def _connect(self) -> None:
-        """Let what is pressed reach the view; what the view sets itself does not come back."""
+        """Connect the controls to the view; changes by the view itself are not sent back."""
         view = self.view
         self.play.on_click(lambda _: view.play(not view.playing))
 

@@ -17,7 +17,7 @@ STATIC = "#c3ccd4"
 
 
 class LiveScene:
-    """What of a run is on the stage of a viser server."""
+    """The parts of a run in the scene of a viser server."""
 
     def __init__(self, server, show: Show):
         self.show = show
@@ -108,7 +108,7 @@ class LiveScene:
         )  # fmt: skip
 
     def _paths(self) -> list:
-        """Draw the ways of the mass centres, unless there are too many."""
+        """Draw the paths of the mass centres, unless there are too many."""
         position = self.show.frames.position
         if position.shape[1] > PATHS:
             return []

@@ -1,4 +1,4 @@
-"""A run as one HTML file that plays by itself: no Python, no network."""
+"""A run as one HTML file that plays without Python and without a network."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ POINTS = 1500  # of the curves of energy
 
 
 class Exported(NamedTuple):
-    """What was written."""
+    """The result of an export."""
 
-    path: Path  #: of the file
-    size: int  #: [bytes]
-    left_out: list[str]  #: in words
+    path: Path  #: path of the file
+    size: int  #: size of the file [bytes]
+    left_out: list[str]  #: descriptions of data that are not shown completely
 
     def __str__(self) -> str:
         size = f"{self.size / 1e6:.1f} MB" if self.size >= 1e6 else f"{self.size / 1e3:.0f} kB"

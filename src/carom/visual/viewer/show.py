@@ -1,4 +1,4 @@
-"""All that a viewer shows of a run, whichever viewer it is."""
+"""The contents of a viewer, common to the live view and the page."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ IMPULSE, FORCE = "#D55E00", "#0072B2"
 
 
 class Show(NamedTuple):
-    """What is shown of a run."""
+    """The parts of a run that a viewer shows."""
 
     title: str
     solution: Solution
@@ -34,13 +34,13 @@ class Show(NamedTuple):
 
     @property
     def longest(self) -> float:
-        """Length of the longest arrow [m]: some bodies long, and not lost in the place."""
+        """Length of the longest arrow [m]: a few times the size of a body, and visible in the whole region."""
         radius = self.place.radius
         return min(0.45 * radius, max(0.1 * radius, 8.0 * float(np.median(self.sizes))))
 
     @property
     def left_out(self) -> list[str]:
-        """What is not shown, in words."""
+        """Descriptions of data that are not shown completely."""
         solution, words = self.solution, []
         saved, impacts = len(solution.t), len(solution.impacts)
         shown = int(np.sum(np.isin(solution.t, self.frames.time)))
@@ -50,7 +50,7 @@ class Show(NamedTuple):
             words.append(f"the {len(self.strikes.number)} strongest of {impacts} impacts")
         if len(self.held.point) < len(solution.forces.point):
             words.append(
-                f"{len(self.held.point)} of {len(solution.forces.point)} forces of held contacts"
+                f"{len(self.held.point)} of {len(solution.forces.point)} forces of persistent contacts"
             )
         return words
 
@@ -81,12 +81,12 @@ def solution_of(what) -> Solution:
     """Return the solution that is to be shown, loaded if it is in a file."""
     if isinstance(what, GeneralizedSolution):
         raise TypeError(
-            "solution must be of a Scene to be shown, got one of a GeneralizedSystem: its coordinates do "
-            "not say where bodies are; plot them, or state the system as a Scene"
+            "solution must be of a Scene, got one of a GeneralizedSystem: its coordinates do not give the "
+            "positions of bodies; use carom.plots, or describe the system as a Scene"
         )
     if isinstance(what, (str, os.PathLike)):
         return Solution.load(checks.path("solution", what))
-    checks.instance("solution", what, (Solution,), "; a path to the file of one is allowed too")
+    checks.instance("solution", what, (Solution,), "; the path of its file is also allowed")
     return what
 
 

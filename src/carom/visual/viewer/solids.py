@@ -1,4 +1,4 @@
-"""What bodies look like: their shapes, and rods and balls for those that have none."""
+"""The surfaces of bodies: of their shapes, or rods and balls for bodies without a shape."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def _static(solid) -> Part:
 
 
 def outline_of(scene, body: Body) -> Outline:
-    """Return how far a body reaches: one without a shape to its joints and springs."""
+    """Return the extent of a body; a body without a shape extends to its joints and springs."""
     if body.shape is not None:
         return Outline([np.zeros(3)], body.shape.size)
     anchors = _anchors(scene, body)

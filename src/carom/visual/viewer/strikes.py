@@ -1,4 +1,4 @@
-"""Impacts and persistent contacts as they are shown: arrows in the world, and the inside of each impact."""
+"""Impacts and persistent contacts for viewers: arrows in the world, and the course of each impact."""
 
 from __future__ import annotations
 
