@@ -2,8 +2,8 @@ r"""How thin a stone arch may be
 ============================
 
 A half circle of stones without mortar stands if it is thick enough. A thinner one folds: hinges open at its
-crown, at its haunches and at its feet. The run lets arches stand or fall and so finds the least thickness,
-which is compared with that of limit analysis.
+crown, at its haunches and at its feet. Arches are run until the least thickness is found, and it is compared
+with that of limit analysis.
 """
 
 from itertools import pairwise
@@ -53,8 +53,8 @@ def thinnest(low=0.09, high=0.12):
 # %%
 # A continuous arch needs the thickness 0.107 R (Milankovitch, 1907). For eleven stones the limit is 0.104589
 # R: below it no forces at the corners of the joints, none of which pulls, support each stone. This is a
-# linear programme (limit analysis: Heyman, 1966). The pictures show an arch above this limit, and one below
-# it.
+# linear programme (limit analysis: Heyman, 1966). The pictures show an arch above this limit and one below
+# it, the film shows how the second one folds.
 
 
 def main(out="out/examples"):

@@ -57,7 +57,7 @@ def draw(axes, s):
 
 # %%
 # The sum of the forces on floor and walls must be the weight of all balls. How a heap shares this weight
-# among its contacts depends on its history.
+# among its contacts depends on its history. The film shows how the balls fall.
 
 
 def main(out="out/examples", count=60):

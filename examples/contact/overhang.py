@@ -2,8 +2,8 @@ r"""How far a stack of blocks may lean over the table
 =================================================
 
 Four equal blocks can stand on a table so that the whole of the top block is beyond its edge. The greatest
-overhang is known. A stack with one per cent less must stand to round-off, and a stack with one per cent more
-must fall.
+overhang of such a stack is known. A stack with one per cent less must stand to round-off, and a stack with
+one per cent more must fall.
 """
 
 import numpy as np

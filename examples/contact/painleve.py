@@ -34,8 +34,8 @@ def slide(theta, mu):
 
 
 # %%
-# Friction turns the rod into the table. If it does so faster than the normal force can lift the tip, no force
-# keeps the contact closed (Painlevé, 1895). This is so for
+# Friction turns the rod into the table. If it does so faster than the normal force can lift the tip, no
+# normal force, however large, lets the tip slide on (Painlevé, 1895). This is so for
 #
 # .. math:: \mu > \frac{1 + 3\cos^2\theta}{3 \sin\theta\cos\theta} \geq \frac{4}{3}.
 #

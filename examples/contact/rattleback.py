@@ -1,9 +1,9 @@
 """A rattleback turns back by itself
 =================================
 
-A rattleback is a boat of stone. Spun one way it keeps its spin; spun the other way it begins to rattle,
-stops, and turns back (Walker, 1896; Bondi, 1986). It rolls without slip, so its energy must be constant: what
-the spin loses is in the rattling, and comes back.
+A rattleback is a boat of stone. Spun in one direction it keeps its spin; spun in the other it begins to
+rattle, stops, and turns back (Walker, 1896; Bondi, 1986). It rolls without slip, so its energy must be
+constant: what the spin loses is in the rattling, and comes back.
 """
 
 import numpy as np
@@ -32,13 +32,13 @@ def launch(spin, duration=3.0):
 
 
 # %%
-# We launch it both ways, and look at its spin and at its rattling, which is the horizontal part of its
-# angular velocity. The film shows the second launch.
+# We launch it in both directions, and look at its spin and at its rattling, which is the horizontal part of
+# its angular velocity. The film shows the second launch.
 
 
 def main(out="out/examples"):
     with picture(f"{out}/rattleback.png", columns=2, sharex=True) as (left, right):
-        for sign, name in ((1, "one way"), (-1, "the other way")):
+        for sign, name in ((1, "one direction"), (-1, "the other")):
             s = launch(sign * spin)
             w = s.angular_velocity[:, 0]
             lost = np.max(np.abs(s.total_energy - s.total_energy[0])) / s.kinetic_energy[0]

@@ -32,15 +32,15 @@ def drop():
 #
 # .. math:: t_k = t_1 (1 + 2 e + \ldots + 2 e^{k-1}).
 #
-# For all k the sum is :math:`t_1 (1 + e)/(1 - e)`. At this time the ball comes to rest.
+# These times have the limit :math:`t_1 (1 + e)/(1 - e)`. From then on the ball is at rest.
 
 first, k = np.sqrt(2 * h / g), np.arange(6)
 exact = first * np.cumsum(np.where(k == 0, 1.0, 2 * e**k))
 rest = first * (1 + e) / (1 - e)
 
 # %%
-# The solution has a table of impacts and a table of events. The event ``"held"`` is the begin of a persistent
-# contact.
+# The solution has a table of impacts and a table of events. At the event ``"held"`` a persistent contact
+# begins.
 
 
 def main(out="out/examples"):

@@ -29,8 +29,7 @@ def throw(mu):
 
 
 # %%
-# The slip of this impact keeps its direction s from begin to end. Then the normal and the tangential impulse
-# are
+# The slip of this impact does not change its direction s. Then the normal and the tangential impulse are
 #
 # .. math:: P_n = (1 + e) |u_n| / (W_{nn} - \mu s W_{nt}), \quad P_t = -\mu s P_n .
 #

@@ -52,7 +52,7 @@ def exact(t):
 
 # %%
 # A solution has angular velocities in world axes. We turn them into the axes of the body, and compare them
-# with the closed form over 100 s. The film shows two of the turns, five times as fast.
+# with the closed form over 100 s. The film shows two of the turns, eight times as fast.
 
 
 def main(out="out/examples"):

@@ -33,7 +33,8 @@ def run(M, duration=6.0):
 
 # %%
 # Why :math:`\pi`? The energy is constant, so the point :math:`(\sqrt{M} V, \sqrt{m} v)` stays on a circle.
-# Each pair of impacts turns it by the same arc, :math:`4 \arctan \sqrt{m/M}`, until the balls separate.
+# Each pair of impacts turns it by the same angle, :math:`2 \arctan \sqrt{m/M}`. After half a turn the balls
+# separate.
 
 
 def draw(s, left, right):

@@ -20,10 +20,10 @@ def energy(u):
 
 
 # %%
-# The normal impulse p grows from zero, and the velocities are linear in p (Routh, 1860). The normal velocity
-# has the rate :math:`k_1 = 2.5 + 1.5 \mu` until slip ends, and :math:`k_2` after that, when the tip sticks or
-# slips back. Newton's e is a ratio of velocities, Poisson's a ratio of impulses, and Stronge's the root of a
-# ratio of works.
+# In the course of the impact the normal impulse p grows. With it the normal velocity grows at the rate
+# :math:`k_1 = 2.5 + 1.5 \mu` until slip ends, and at another rate :math:`k_2` while the tip sticks or slips
+# back (Routh, 1860). Newton's e is a ratio of velocities, Poisson's a ratio of impulses, and Stronge's the
+# root of a ratio of works.
 
 
 def exact(mu, law):

@@ -1,9 +1,10 @@
 """Real tosses of a real cube
 ==========================
 
-A cube was tossed and filmed by motion capture. Each toss is run from flight to rest, and its path is compared
-with the measured one. By default these are the even tosses of the record, to which the parameters of the
-contact were fitted; ``--data FILE --start B`` runs all tosses of another file, and ``--fit`` fits anew.
+A cube was tossed, and motion capture has measured its path. Each toss is run from flight to rest, and its
+path is compared with the measured one. By default these are the even tosses of the record, to which the
+parameters of the contact were fitted; ``--data FILE --start B`` runs all tosses of another file, and
+``--fit`` fits anew.
 """
 
 import argparse

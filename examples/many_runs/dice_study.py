@@ -2,9 +2,8 @@
 ====================
 
 A die is released with little spin. How high must it fall until nobody can tell the face that comes up?
-Ensembles of runs give an answer: from a few centimetres the first face still comes back often, from half a
-metre with 1/6, as for a fair die. (For a finer picture:
-``python examples/many_runs/dice_study.py 120 2000``.)
+Ensembles of runs give an answer: from 2 cm the first face comes back in most throws, from 8 cm on in about
+1/6 of them, as of a fair die. (For a finer picture: ``python examples/many_runs/dice_study.py 120 2000``.)
 """
 
 import sys

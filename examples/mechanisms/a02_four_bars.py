@@ -2,8 +2,8 @@ r"""A02: four-bars through their singular position
 ==============================================
 
 Parallelograms of bars move with one freedom. But where all bars are in line, each loop could fold: at this
-instant there are more freedoms, and many programs stop or take a wrong branch. The run passes this position
-ten times, and is compared with the motion of one coordinate.
+instant there are more freedoms, and a run can fail or take a wrong branch. Here it passes this position ten
+times, and is compared with the motion of one coordinate.
 """
 
 import numpy as np

@@ -1,9 +1,9 @@
 """A04: Bricard's mechanism
 ========================
 
-Five rods and the ground form a ring of six hinges. To count freedoms gives 30 - 30 = 0, and yet the ring
-moves: one of the constraints follows from the others in every position. No force does work on the ring from
-outside, so its energy is constant; the benchmark allows a change of 1 mJ in 10 s.
+Five rods and the ground form a ring of six hinges. To count its freedoms gives 30 - 30 = 0, and yet the ring
+moves: one of the constraints follows from the others in every position. Only gravity does work, so the sum of
+kinetic and potential energy is constant; the benchmark allows a change of 1 mJ in 10 s.
 """
 
 from itertools import pairwise

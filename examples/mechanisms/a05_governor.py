@@ -3,7 +3,7 @@ r"""A05: the flyball governor
 
 Two balls on hinged rods turn about a shaft and lift a slider. Springs with strong dampers stand for the lower
 rods, and make the system stiff: they decay with 8100/s at the start. The height of the slider after 10 s is
-compared with that of two coordinates.
+compared with that of a model in two coordinates.
 """
 
 import numpy as np

@@ -35,8 +35,8 @@ def fall(duration):
 
 # %%
 # Every part of the chain comes to rest where it begins to hang, and gives its energy to the part that still
-# falls. If the energy is constant, the end has, after it has come down by x (Calkin and March, *Am. J. Phys.*
-# 57, 1989), the velocity
+# falls. If no energy is lost, the velocity of the end after a fall by x is (Calkin and March, *Am. J. Phys.*
+# 57, 1989)
 #
 # .. math:: v^2 = 2 g x \, \frac{L - x/2}{L - x} .
 
@@ -46,8 +46,8 @@ def exact(x):
 
 
 # %%
-# A solution has places and velocities of mass centres, so those of the end are half a link further. The chain
-# has thick links, and agrees with the closed form to 4 per cent.
+# A solution has places and velocities of mass centres, so those of the end are half a link further. Our chain
+# has links of a finite length, and agrees with the closed form to 4 per cent. The film shows the fall.
 
 
 def main(out="out/examples"):

@@ -38,7 +38,7 @@ def top(w):
 
 
 # %%
-# Energy and both angular momenta that are constant give an equation for the height u of the axle,
+# Energy and two angular momenta are constant. They give an equation for the height u of the axle,
 #
 # .. math:: \dot u^2 = (1 - u^2)(w^2 - \beta u) - (w - b u)^2,
 #
@@ -59,8 +59,8 @@ def nod(w):
 
 
 # %%
-# The axle starts with a push against the precession, without a push, or with a push along it: its path has
-# loops, cusps, or waves. Black dots are the closed form.
+# The axle starts with a push against the precession, with a push along it, or without a push: its path has
+# loops, waves, or cusps. Black dots are the closed form. The film shows the last one.
 
 
 def main(out="out/examples"):

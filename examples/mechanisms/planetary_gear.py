@@ -1,9 +1,9 @@
 r"""A planetary gear
 ================
 
-A sun drives three planets on a carrier inside a ring that does not turn. The gears are relations between
-angles, and most of them are redundant: any one planet would do. The ratio of the gear and its acceleration
-under a torque are compared with their closed form.
+A sun drives three planets on a carrier inside a ring that does not turn. The gears are six relations between
+angles. Two of them are redundant, because one planet alone would fix the ratio. The ratio of the gear and its
+acceleration under a torque are compared with their closed form.
 """
 
 import numpy as np

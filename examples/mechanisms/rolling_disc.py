@@ -25,7 +25,7 @@ Omega = np.sqrt(4 * g * np.sin(alpha) / (np.cos(alpha) * (6 * rho + r * np.sin(a
 
 # %%
 # A `RollingDisc` is a joint that forbids slip. The spin is such that the centre has the velocity
-# :math:`\Omega \rho`. A push adds an angular velocity that lifts or lowers the disc.
+# :math:`\Omega \rho`. A push adds an angular velocity that changes the lean. The film shows the pushed wheel.
 
 
 def roll(push):

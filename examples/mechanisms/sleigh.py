@@ -1,9 +1,9 @@
 r"""Chaplygin's sleigh turns its spin into speed
 ============================================
 
-A sleigh stands on one blade, which may not move sideways: a nonholonomic constraint. With the mass centre
-before the blade the spin dies out, and all of its energy becomes velocity along the blade. Both are compared
-with their closed form (Chaplygin, 1911).
+A sleigh stands on one blade, which may not move sideways: a nonholonomic constraint. With the mass centre in
+front of the blade the spin dies out, and all of its energy becomes velocity along the blade. Both are
+compared with their closed form (Chaplygin, 1911).
 """
 
 import numpy as np
