@@ -1,4 +1,4 @@
-"""How the examples become a gallery: their pictures and pages, square thumbnails, and their order."""
+"""How the examples become a gallery: their pictures, films and pages, square thumbnails, and their order."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
-from PIL import Image
+from PIL import Image, ImageDraw
 from sphinx_gallery.scrapers import figure_rst
 
 import carom
@@ -105,6 +105,10 @@ class Thumbnails:
         place = Path(gallery_conf["src_dir"]) / "gallery" / example.parent.name / "images" / "thumb"
         square = self._square(example.stem)
         if square is not None and place.exists():
+            if (PAGES / f"{example.stem}.html").exists() or any(
+                place.parent.glob(f"*_{example.stem}_*.gif")
+            ):
+                mark_film(square)
             square.save(place / f"sphx_glr_{example.stem}_thumb.png")
 
     def _simulated(self):
@@ -149,6 +153,15 @@ def largest_panel(figure, savefig) -> Image.Image:
     picture.thumbnail((SIDE, SIDE))
     square.paste(picture, ((SIDE - picture.width) // 2, (SIDE - picture.height) // 2))
     return square
+
+
+def mark_film(square) -> None:
+    """Mark the thumbnail of a page that has a film."""
+    pen = ImageDraw.Draw(square)
+    pen.ellipse((SIDE - 58, SIDE - 58, SIDE - 10, SIDE - 10), fill="#4a5560")
+    pen.polygon(
+        [(SIDE - 41, SIDE - 47), (SIDE - 41, SIDE - 21), (SIDE - 20, SIDE - 34)], fill="white"
+    )
 
 
 thumbnails = Thumbnails()

@@ -49,9 +49,8 @@ def draw(axes, s):
     f, at = s.forces, np.flatnonzero(s.forces.saved == s.forces.saved[-1])
     ends = np.where(f.other[at, None] >= 0, x[f.other[at]], f.point[at])
     lines = np.stack([x[f.body[at]], ends], axis=1)[:, :, [0, 2]]
-    axes.add_collection(
-        LineCollection(lines, lw=6 * f.force[at, 0] / f.force[at, 0].max(), color=RED)
-    )
+    width = 6 * f.force[at, 0] / f.force[at, 0].max()
+    axes.add_collection(LineCollection(lines, lw=width, color=RED))
     axes.set(xlabel="x / m", ylabel="z / m", aspect="equal", ylim=(0, 1.1 * x[:, 2].max()))
 
 

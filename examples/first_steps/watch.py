@@ -33,7 +33,7 @@ def throw():
 # %%
 # A ball that slips through the whole impact gets the impulse :math:`P (n - \mu s)`. Here
 # :math:`P = m (1 + e) |v_n|`, n is the normal, and s is the direction of slip. The change of momentum in the
-# run must be this impulse.
+# run must be this impulse. In the picture the impulses are red lines.
 
 
 def main(out="out/examples"):
@@ -47,7 +47,7 @@ def main(out="out/examples"):
         s.plot("trajectory", ax=axes)
         axes.set(aspect="auto", ylim=(-0.06, 0.85))
         (x, _, z), (push, along) = s.impacts.point.T, s.impacts.impulse[:, :2].T
-        axes.quiver(x, z, along, push, angles="xy", scale=1.2, color=RED, width=0.004)
+        axes.plot([x, x + 2 * along], [z, z + 2 * push], color=RED)
     written = carom.view(s, export=Path(out) / "watch.html", title="Backspin", speed=0.5)
     print(written)
     assert error < 1e-12

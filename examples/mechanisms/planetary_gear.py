@@ -61,10 +61,8 @@ def main(out="out/examples"):
     error, slip = (np.max(np.abs(sun - other)) for other in (exact, ratio * carrier))
     print(f"sun: {sun[-1]:.6f} rad, error {error:.0e}; ratio {ratio:g} kept to {slip:.0e} rad")
     with picture(f"{out}/planetary_gear.png", columns=2) as (left, right):
-        (
-            left.imshow(carom.films.still(s, 0.3, size=(600, 500), view=(-80, 50), clock=False)),
-            left.axis("off"),
-        )
+        left.imshow(carom.films.still(s, 0.3, size=(600, 500), view=(-80, 50), clock=False))
+        left.axis("off")
         right.plot(s.t, sun / (2 * np.pi), label="sun")
         right.plot(s.t, carrier / (2 * np.pi), label="carrier")
         right.plot(s.t[::50], exact[::50] / (2 * np.pi), "k.", label="closed form")

@@ -57,10 +57,8 @@ def main(out="out/examples"):
             (line,) = axes.plot(*path.T)
             axes.plot(*path[40], "o", color=line.get_color())
         axes.plot(*exact(np.array([PARTS[0], 1.0]), theta[40]).T, "k", lw=0.8, zorder=0)
-        (
-            axes.axhline(0, color="0.88", lw=4, zorder=-1),
-            axes.axvline(0, color="0.88", lw=4, zorder=-1),
-        )
+        for groove in (axes.axhline, axes.axvline):
+            groove(0, color="0.88", lw=4, zorder=-1)
         axes.set(xlabel="x / m", ylabel="y / m", aspect="equal", xlim=(-1.4, 1.4), ylim=(-1.1, 1.1))
     print(f"five points on their ellipses, at their time, to {max(errors):.0e} m after 5 s")
     assert max(errors) < 1e-10

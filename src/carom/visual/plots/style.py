@@ -69,10 +69,11 @@ def picture(path, height=2.6, columns=1, rows=1, width=PAGE, **options):
     """Within this context new axes are drawn into, of the size given [in]; at its end they become a PNG file.
 
     Yields the axes (one, or an array). Lines that are given no colour take those of the palette in turn;
-    `options` are those of `Figure.subplots`. The folder of the file is made if there is none.
+    `options` are those of `Figure.subplots`. The folder of the file is made at the start, if there is none.
     """
     import matplotlib as mpl
 
+    Path(path).parent.mkdir(parents=True, exist_ok=True)
     palette = mpl.cycler(color=[BLUE, RED, GREEN, ORANGE, PURPLE, SKY])
     with style(), mpl.rc_context({"axes.prop_cycle": palette}):
         figure, axes = new(width, height, rows, columns, **options)
