@@ -19,9 +19,10 @@ WRITTEN = "out/examples"  # where `main` of an example writes by default, from i
 EXAMPLES = Path(__file__).parents[1] / "examples"
 PAGES = Path(__file__).parent / "_static" / "gallery"
 FIRST = (  # of each section; the others follow by name
-    "bouncing_sphere", "die", "own_force", "restitution_laws", "newtons_cradle", "counting_pi",
-    "draw_shot", "ladder", "off_a_sphere", "rocking_block", "overhang", "arch", "trammel", "planetary_gear",
-    "dice_study",
+    "bouncing_sphere", "die", "watch", "own_force", "restitution_laws", "newtons_cradle", "counting_pi",
+    "draw_shot", "ladder", "off_a_sphere", "rocking_block", "overhang", "arch", "heap", "rattleback",
+    "trammel", "planetary_gear", "falling_chain", "heavy_top", "rolling_disc", "sleigh", "striking_four_bar",
+    "load_a_model", "dice_study",
 )  # fmt: skip
 SIDE = 400  # of a thumbnail [pixels]
 #: runs that are seen best at another part of their duration than 0.4, or from elsewhere than usual

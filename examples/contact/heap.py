@@ -51,7 +51,8 @@ def draw(axes, s):
     lines = np.stack([x[f.body[at]], ends], axis=1)[:, :, [0, 2]]
     width = 6 * f.force[at, 0] / f.force[at, 0].max()
     axes.add_collection(LineCollection(lines, lw=width, color=RED))
-    axes.set(xlabel="x / m", ylabel="z / m", aspect="equal", ylim=(0, 1.1 * x[:, 2].max()))
+    axes.set(xticks=[], yticks=[], aspect="equal", ylim=(0, 1.1 * x[:, 2].max()))
+    axes.spines.right.set_visible(True)  # left and right are the walls
 
 
 # %%

@@ -72,9 +72,10 @@ def picture(path, height=2.6, columns=1, rows=1, width=PAGE, **options):
     `options` are those of `Figure.subplots`. The folder of the file is made at the start, if there is none.
     """
     import matplotlib as mpl
+    from cycler import cycler
 
     Path(path).parent.mkdir(parents=True, exist_ok=True)
-    palette = mpl.cycler(color=[BLUE, RED, GREEN, ORANGE, PURPLE, SKY])
+    palette = cycler(color=[BLUE, RED, GREEN, ORANGE, PURPLE, SKY])
     with style(), mpl.rc_context({"axes.prop_cycle": palette}):
         figure, axes = new(width, height, rows, columns, **options)
         yield axes
