@@ -22,6 +22,7 @@ DOORS = {
     ("results.portable", "io.files.reading"),
     ("results.portable", "io.files.convert"),
     ("results.portable", "io.files.resume"),
+    ("results.replay", "run"),
     ("results.drawn", "visual.plots"),
 }
 LOOSE = 8

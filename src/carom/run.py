@@ -184,6 +184,16 @@ class Run:
             self.watch,
         )  # fmt: skip
 
+    @property
+    def parts(self) -> tuple:
+        """All that a step goes on from.
+
+        Not the records, which are written from the top in a new run, nor the workspace of impacts, groups and
+        crowds, which a step writes before it reads it.
+        """
+        system = self.compiled.system
+        return self.now, self.active, self.work, self.islands, self.clock, system, self.watch
+
     def save_now(self) -> None:
         """Write the present state into the records."""
         state = (

@@ -103,6 +103,12 @@ def test_page_of_the_server(live, browser, thrown):
         time.sleep(0.1)
     (client,) = live.server.get_clients().values()
     browser.wait_for("document.querySelector('canvas') !== null")
+    # A page first says where its eye is by default, then where the server has put it: wait for that.
+    end = time.monotonic() + 30
+    while not np.allclose(client.camera.position, live.server.initial_camera.position, atol=1e-5):
+        assert time.monotonic() < end, client.camera.position
+        browser.run("1")
+        time.sleep(0.05)
     live.follow("body1")
     before = client.camera.position.copy()
     live.seek(0.2)

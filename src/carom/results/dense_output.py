@@ -1,4 +1,4 @@
-"""The motion of a body between the states that a run has kept of it."""
+"""The motion of a body between the states that a run has kept of it: in closed form in flight, else a cubic."""
 
 from __future__ import annotations
 
@@ -12,10 +12,13 @@ if TYPE_CHECKING:
     from carom.results.assemble import Nodes
 
 
-class Flights(NamedTuple):
-    """When a body with unequal moments flies: always, but for the intervals in which a contact is held."""
+NEAR = 1e-6  # of an interval: so near to its ends the cubic is as good as the states there
 
-    moments: np.ndarray  # (3,)
+
+class Flights(NamedTuple):
+    """When a body on which only gravity acts flies: always, except in its intervals of persistent contact."""
+
+    moments: np.ndarray | None  # (3,); None if they are equal: it turns steadily, as the cubic does
     starts: np.ndarray  # (M,) of the intervals, sorted
     ends: np.ndarray  # (M,) the same
 
@@ -26,11 +29,8 @@ class Flights(NamedTuple):
 
 
 def flights(solution) -> list[Flights | None]:
-    """Return the flights of each body; None where it turns steadily, or where more than gravity acts on it."""
+    """Return the flights of each body; None where more than gravity acts on it."""
     bodies, contacts = solution._run.bodies, solution.contacts
-    free = (bodies["ballistic"] == 1) & (bodies["isotropic"] == 0)
-    if not free.any():
-        return [None] * len(bodies)
     pairs = solution.pairs
     of_pair = contacts.contact < len(pairs.body)  # the rest are stops in joints
     which = contacts.contact[of_pair]
@@ -38,14 +38,27 @@ def flights(solution) -> list[Flights | None]:
     starts, ends = np.tile(contacts.start[of_pair], 2), np.tile(contacts.end[of_pair], 2)
     out: list[Flights | None] = []
     for b in range(len(bodies)):
+        if bodies["ballistic"][b] == 0:
+            out.append(None)
+            continue
         own = sides == b
-        flies = Flights(np.array(bodies["inertia"][b]), np.sort(starts[own]), np.sort(ends[own]))
-        out.append(flies if free[b] else None)
+        moments = None if bodies["isotropic"][b] == 1 else np.array(bodies["inertia"][b])
+        out.append(Flights(moments, np.sort(starts[own]), np.sort(ends[own])))
     return out
 
 
+def curves(solution, times: np.ndarray, side: str):
+    """Return position, attitude (of the principal axes) and velocities of all bodies at times (K,).
+
+    The last of the five arrays (K, N) says where they are those of a cubic between two states.
+    """
+    known = zip(solution._nodes, solution._flights)
+    bodies = [between(node, flies, times, side) for node, flies in known]
+    return tuple(np.stack(column, axis=1) for column in zip(*bodies))
+
+
 def between(node: Nodes, flies: Flights | None, times: np.ndarray, side: str):
-    """Return position, attitude and velocities of one body at times (K,), from its nodes."""
+    """Return position, attitude and velocities of one body at times (K,), and where they are of a cubic."""
     at, pose, left, right = node
     i = np.searchsorted(at, times, side="right" if side == "right" else "left") - 1
     i = np.clip(i, 0, max(len(at) - 2, 0))
@@ -53,8 +66,9 @@ def between(node: Nodes, flies: Flights | None, times: np.ndarray, side: str):
     start = (pose[i, :3], pose[i, 3:], right[i, :3], right[i, 3:])
     end = (pose[n, :3], pose[n, 3:], left[n, :3], left[n, 3:])
     x, Q, v, w = spline.interpolate(times, at[i], at[n], start, end)
-    if flies is not None:
-        inside = (times > at[i]) & (times < at[n]) & flies.cover(at[i], at[n])
+    free = np.zeros(len(times), dtype=bool) if flies is None else flies.cover(at[i], at[n])
+    if flies is not None and flies.moments is not None:
+        inside = (times > at[i]) & (times < at[n]) & free
         if inside.any():
             ends = [a[inside] for a in (start[1], start[3], end[1], end[3])]
             Q[inside], w[inside] = _along_flight(
@@ -63,7 +77,8 @@ def between(node: Nodes, flies: Flights | None, times: np.ndarray, side: str):
     last = times == at[-1]
     if side == "right" and np.any(last):
         v[last], w[last] = right[-1, :3], right[-1, 3:]
-    return x, Q, v, w
+    margin = NEAR * (at[n] - at[i])
+    return x, Q, v, w, ~free & (times - at[i] > margin) & (at[n] - times > margin)
 
 
 def _along_flight(moments, t, h, Q0, w0, Q1, w1):

@@ -17,7 +17,7 @@ from carom.model.arrays import System
 STATES = 200  # states that a run saves after its first, where nothing else is asked for
 # with tolerances, of the time of a fall by the least size of a body: a step of the run is no longer. Several
 # bodies stay near what they are near to; one has nothing to look for
-ONE_BODY, SEVERAL_BODIES = 0.25, 0.015
+ONE_BODY, SEVERAL_BODIES = 4.0, 0.015
 ALIKE = 1e-12  # of a spacing: by so much a whole number of them may miss the duration
 FEW = 1e4  # steps at most of a scene without weight, by its speed
 
@@ -116,6 +116,16 @@ def longest_step(
     if not several or speed == 0.0:
         return duration
     return min(duration, max(0.5 * size / speed, duration / FEW))
+
+
+def ends_between(grid: Grid, begin: float, end: float) -> np.ndarray:
+    """Return the ends of steps after `begin`, the end of one, and before `end`."""
+    if len(grid.ends):
+        inside = np.searchsorted(grid.ends, begin, "right"), np.searchsorted(grid.ends, end, "left")
+        return grid.ends[inside[0] : inside[1]]
+    first = round(begin / grid.interval) + 1
+    steps = np.arange(first, math.ceil(end / grid.interval)) * grid.interval
+    return steps[steps < end]
 
 
 @inlined

@@ -7,12 +7,11 @@ no run can know what ran before it.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 
 from carom._compiled.record_arrays import Columns
 from carom.model.compile import attitudes
+from carom.model.kept import Kept
 from carom.run import Run, check_start, check_stops
 from carom.scene.scene import Scene
 from carom.stepping.settings import Settings
@@ -32,7 +31,7 @@ class Again:
             self.run = Run(scene, settings)
             start = self.run.compiled.start.copy()
             self.first = start.view(Columns)  # `Run.now` is written to
-            self.remember()
+            self.kept = Kept(self.run.parts)
 
     def start(self, values: dict[str, np.ndarray]) -> Run:
         """Return a run that is to begin with these values, one of each name.
@@ -46,13 +45,12 @@ class Again:
             return Run(changed(self.scene, self.targets, values), self.settings)
         run = self.run
         # contacts may have come, or room for them, while it ran
-        if any(a is not b for a, b in zip(self.parts(), self.known)):
+        if self.kept.is_of(run.parts):
+            self.kept.restore()
+        else:
             run.compiled.start[:] = self.first
             run.renew()
-            self.remember()
-        else:
-            for there, kept in self.kept:
-                there[:] = kept
+            self.kept = Kept(run.parts)
         run.clock.saved = 0
         run.compiled.functions.failed = None  # what a function of the user's raised in the last run
         self.write(values)
@@ -91,28 +89,3 @@ class Again:
                 follows = target.field == "friction" and f"{target.part}.friction_held" not in names
                 if follows and law.friction_held == law.friction:
                     contacts.friction_held[rows] = value
-
-    def remember(self) -> None:
-        """Keep what all arrays hold before the first step, as bytes: records are slow to copy by fields."""
-        flat = [array.reshape(-1).view(np.uint8) for array in arrays_of(self.parts())]
-        self.kept = [(there, there.copy()) for there in flat]
-        self.known = self.parts()
-
-    def parts(self) -> tuple:
-        """Return all that a step of a run goes on from.
-
-        Not its records, which are written anew from the top, nor the workspace of impacts, groups and crowds,
-        which a step writes before it reads it: where that has grown it stays so.
-        """
-        run = self.run
-        return run.now, run.active, run.work, run.islands, run.clock, run.compiled.system, run.watch
-
-
-def arrays_of(value) -> Iterator[np.ndarray]:
-    """Yield the arrays in nested tuples that can be written to."""
-    if isinstance(value, np.ndarray):
-        if value.size and value.flags.writeable:
-            yield np.asarray(value)
-    elif isinstance(value, tuple):
-        for part in value:
-            yield from arrays_of(part)

@@ -52,7 +52,7 @@ class Stage:
             raise ValueError(f"follow must be one body or None, got {checks.shown(follow)}")
         begin, end = span or (float(solution.t[0]), float(solution.t[-1]))
         times = np.linspace(begin, end, SAMPLES)
-        places, turns = solution.evaluate(times)[:2]
+        places, turns = solution._curve(times)[:2]
         middle = places.reshape(-1, 3).mean(axis=0)
         spread = float(np.linalg.norm(places - middle, axis=2).max())
         self.radii = np.array(
@@ -131,7 +131,7 @@ class Stage:
         from carom.visual.films.raster import paint, shade
 
         camera = self.camera
-        x, Q, _, _ = self.solution.evaluate(t)
+        x, Q, _, _ = self.solution._curve(t)
         if self.followed is not None:
             camera = camera._replace(centre=x[self.followed[0].index])
         world, buffer = self._world(x, Q), self._empty(camera)

@@ -51,7 +51,7 @@ def trajectory(
     checks.flag("ground", ground)
     chosen = figure.bodies(solution, bodies)
     t = figure.with_impacts(solution)
-    x = solution.evaluate(t)[0]
+    x = solution._curve(t)[0]
     axes = _plane(plane, solution, x[:, [b.index for b in chosen]])
     seen, times = list(axes), _times(outlines, solution)
     wide, high = np.ptp(x[:, [b.index for b in chosen]][..., seen].reshape(-1, 2), axis=0)
@@ -134,7 +134,7 @@ def _outlines(axes, solution, body, times, seen, colour) -> None:
     vertices, triangles = surface(body.shape, 48)
     sides = {(int(f[k]), int(f[k - 2])): n for n, f in enumerate(triangles) for k in range(3)}
     pairs = np.array([(a, b, n, sides[b, a]) for (a, b), n in sides.items() if a < b])
-    x, Q, _, _ = solution.evaluate(times)
+    x, Q, _, _ = solution._curve(times)
     for place, turn in zip(x[:, body.index], Q[:, body.index]):
         flat = (place + quaternion.rotate(turn, vertices))[:, seen]
         a, b, c = (flat[triangles[:, k]] for k in range(3))

@@ -64,7 +64,7 @@ def _poses(solution, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     new = solution.t[row] != times
     x, Q = solution.position[row], solution.orientation[row]
     if np.any(new):
-        x[new], Q[new] = solution.evaluate(times[new])[:2]
+        x[new], Q[new] = solution._curve(times[new])[:2]
     return x, Q
 
 

@@ -1,0 +1,35 @@
+"""What arrays held at one time, kept so that they can be put back to it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+
+class Kept:
+    """The content of all arrays in nested tuples, as bytes: records are slow to copy by fields."""
+
+    def __init__(self, parts: tuple):
+        self.parts = parts
+        flat = [array.reshape(-1).view(np.uint8) for array in arrays_of(parts)]
+        self.content = [(there, there.copy()) for there in flat]
+
+    def restore(self) -> None:
+        """Write the content back."""
+        for there, kept in self.content:
+            there[:] = kept
+
+    def is_of(self, parts: tuple) -> bool:
+        """Return whether these are still the same tuples: they are others where an array has grown."""
+        return all(a is b for a, b in zip(parts, self.parts))
+
+
+def arrays_of(value) -> Iterator[np.ndarray]:
+    """Yield the arrays in nested tuples that can be written to."""
+    if isinstance(value, np.ndarray):
+        if value.size and value.flags.writeable:
+            yield np.asarray(value)
+    elif isinstance(value, tuple):
+        for part in value:
+            yield from arrays_of(part)

@@ -1,0 +1,112 @@
+"""The motion between two saved states, stepped again from the first of them by the method of the run.
+
+A state between two saved ones is then as exact as they are, however fast a body turns between them. A replay
+begins with what is saved: position, attitude and velocities. A run has more in its memory (guesses of forces,
+whole turns of joints), so each interval is tried first: its replay is used if it ends at the next saved state,
+or misses it by far less than the replay and a cubic through both states differ between them.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from carom.model.kept import Kept
+from carom.results.dense_output import curves
+from carom.status import Status
+from carom.stepping.grid import Grid, ends_between
+
+if TYPE_CHECKING:
+    from carom.results.solution import Solution
+
+FACTOR = 10.0  # a replay may miss the next saved state by so many times the tolerances of the run
+RTOL = 1e-8  # tolerance where the run has given steps
+BETTER = 0.1  # a greater miss may be such a part of the difference from the cubic halfway
+
+
+class Replay:
+    """A run of the scene of a solution that starts at any of its saved states."""
+
+    def __init__(self, solution: Solution):
+        from carom.run import Run
+        from carom.stepping.settings import settings_of
+
+        known = solution._run
+        self.solution, self.states = solution, known.records.state
+        self.run = Run(solution.scene, settings_of(solution.settings, known.options))
+        self.grid = self.run.grid
+        self.kept = Kept(self.run.parts)
+        self.size = self.run.bodies["extent"]
+        rtol, atol = self.run.tolerances or (RTOL, RTOL * float(np.min(self.size)))
+        self.allowed = FACTOR * (atol + rtol * self.size)
+        self.arrives = {}
+
+    def improve(self, times: np.ndarray, cubic: np.ndarray, x, Q, v, w) -> None:
+        """Write states at times (K,) over those (K, N) that are of a cubic."""
+        t = self.solution.t
+        for k in np.flatnonzero(cubic.any(axis=1)):
+            i = min(int(np.searchsorted(t, times[k], side="right")) - 1, len(t) - 2)
+            if self.is_good(i) and self.go(i, times[k]):
+                now, own = self.run.now, cubic[k]
+                x[k, own], Q[k, own], v[k, own], w[k, own] = (
+                    now.x[own], now.Q[own], now.v[own], now.w[own],
+                )  # fmt: skip
+
+    def is_good(self, i: int) -> bool:
+        """Return whether the replay from saved state i ends at the next one, or is better than the cubic."""
+        if i not in self.arrives:
+            self.arrives[i] = self.arrives_from(i)
+        return self.arrives[i]
+
+    def arrives_from(self, i: int) -> bool:
+        """Return the same, worked out."""
+        if not self.go(i, self.solution.t[i + 1]):
+            return False
+        miss, middle = (
+            self.misses(i, self.states[i + 1]),
+            0.5 * float(sum(self.solution.t[i : i + 2])),
+        )
+        if miss <= 1.0:
+            return True
+        cubic = self.states[i].copy()
+        cubic["x"], cubic["Q"], cubic["v"], cubic["w"], _ = (
+            part[0] for part in curves(self.solution, np.array([middle]), "right")
+        )
+        return self.go(i, middle) and miss <= BETTER * self.misses(i, cubic)
+
+    def go(self, i: int, until: float) -> bool:
+        """Go on from saved state i to a time; return whether it was reached."""
+        run, begin = self.run, self.solution.t[i]
+        if self.kept.is_of(run.parts):
+            self.kept.restore()
+        else:  # contacts have come, or room for them
+            run.renew()
+            self.kept = Kept(run.parts)
+        run.now[:] = self.states[i]
+        run.clock["now"] = begin
+        ends = np.concatenate([[begin], ends_between(self.grid, begin, until), [until]])
+        longest = float(np.max(np.diff(ends)))
+        run.grid = Grid(longest, len(ends) - 1, 0, ends, np.zeros(len(ends), dtype=np.int64))
+        run.note_modes()
+        return run.go_on(run.steps) is Status.SUCCESS
+
+    def misses(self, i: int, there: np.ndarray) -> float:
+        """Return by how much the run misses a state within interval i, where 1 is allowed."""
+        now, size = self.run.now, self.size[:, None]
+        turn = now.Q - there["Q"] * np.sign(np.sum(now.Q * there["Q"], axis=1))[:, None]
+        speed = np.abs(now.v - there["v"]) + size * np.abs(now.w - there["w"])
+        step = self.solution.t[i + 1] - self.solution.t[i]
+        miss = np.abs(now.x - there["x"]).max(axis=1) + 2.0 * self.size * np.abs(turn).max(axis=1)
+        return float(np.max((miss + step * speed.max(axis=1)) / self.allowed))
+
+
+def evaluate(solution: Solution, times: np.ndarray, cubic: np.ndarray, x, Q, v, w) -> None:
+    """Write the motion at times (K,) over states (K, N) that are of a cubic, where it can be stepped again."""
+    if len(solution.t) < 2 or getattr(
+        solution._run, "missing", ()
+    ):  # functions that a file could not hold
+        return
+    if not cubic.any() or len(solution.scene.bodies) != solution.position.shape[1]:
+        return
+    solution._replay.improve(times, cubic, x, Q, v, w)
