@@ -66,7 +66,7 @@ def main(out="out/examples", count=60):
     with picture(f"{out}/heap.png", width=3.6, height=3.4) as axes:
         draw(axes, s)
         axes.set(xlim=(-width / 2, width / 2))
-    carom.film(s, f"{out}/heap.gif", size=(320, 320), fps=15, speed=0.15, end=0.4, view="front")
+    carom.film(s, f"{out}/heap.gif", size=(320, 320), fps=12, speed=0.2, end=0.4, view="front")
     print(f"{count} balls, {len(s.impacts)} impacts")
     f, weight = s.forces, g * sum(b.mass for b in s.scene.bodies)
     carried = f.vector[(f.saved == f.saved[-1]) & (f.other < 0), 2].sum()

@@ -64,7 +64,7 @@ def main(out="out/examples"):
         axes.plot(s.t, exact(x), "k:", label="closed form")
         axes.plot(s.t, g * s.t, label="stone")
         axes.set(xlabel="time / s", ylabel="velocity / m s$^{-1}$"), axes.legend()
-    carom.film(s, f"{out}/falling_chain.gif", size=(240, 400), fps=15, speed=0.15, view="front")
+    carom.film(s, f"{out}/falling_chain.gif", size=(240, 400), fps=12, speed=0.15, view="front")
     assert error < 0.04
     assert np.all(x > g * s.t**2 / 2 - 1e-12)
 
