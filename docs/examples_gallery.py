@@ -1,4 +1,4 @@
-"""How the examples become a gallery: their pictures and pages, square thumbnails, and their order."""
+"""How the examples become a gallery: their pictures, films and pages, square thumbnails, and their order."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.transforms import Bbox
-from PIL import Image
+from PIL import Image, ImageDraw
 from sphinx_gallery.scrapers import figure_rst
 
 import carom
@@ -19,24 +19,49 @@ WRITTEN = "out/examples"  # where `main` of an example writes by default, from i
 EXAMPLES = Path(__file__).parents[1] / "examples"
 PAGES = Path(__file__).parent / "_static" / "gallery"
 FIRST = (  # of each section; the others follow by name
-    "bouncing_sphere", "die", "own_force", "restitution_laws", "newtons_cradle", "counting_pi",
-    "draw_shot", "ladder", "off_a_sphere", "rocking_block", "overhang", "arch", "trammel", "planetary_gear",
-    "dice_study",
+    "bouncing_sphere", "die", "watch", "own_force", "restitution_laws", "newtons_cradle", "counting_pi",
+    "draw_shot", "ladder", "off_a_sphere", "rocking_block", "overhang", "arch", "heap", "rattleback",
+    "trammel", "planetary_gear", "falling_chain", "heavy_top", "rolling_disc", "sleigh", "striking_four_bar",
+    "load_a_model", "dice_study",
 )  # fmt: skip
 SIDE = 400  # of a thumbnail [pixels]
-#: runs that are seen best at another part of their duration than 0.4
-SEEN = {"arch": 1.0}
+#: runs that are seen best at another part of their duration than 0.4, or from elsewhere than usual
+SEEN = {
+    "a02_four_bars": (0.02, {"view": "front"}),
+    "a03_andrews": (0.4, {"view": "top"}),
+    "arch": (1.0, {}),
+    "dzhanibekov": (0.4, {"zoom": 3.5}),
+    "falling_chain": (0.6, {"view": "front"}),
+    "heavy_top": (0.15, {"zoom": 1.5}),
+    "newtons_cradle": (0.1, {"view": (-75, 10)}),
+    "overhang": (1.0, {"view": (-75, 12)}),
+    "planetary_gear": (0.6, {"view": (-80, 50)}),
+    "rocking_block": (0.0, {}),
+    "rolling_disc": (0.4, {"zoom": 1.4}),
+    "striking_four_bar": (0.1, {"view": "front"}),
+}
 #: examples whose plot says more than their bodies do
 PLOTTED = {
+    "a01_pendulum",
+    "aim_a_throw",
     "billiard_break",
     "bouncing_sphere",
-    "watch",
-    "own_force",
-    "restitution_laws",
     "counting_pi",
-    "painleve",
-    "vibrating_table",
+    "draw_shot",
     "heap",
+    "ladder",
+    "load_a_model",
+    "off_a_sphere",
+    "one_bounce",
+    "own_force",
+    "painleve",
+    "restitution_laws",
+    "save_and_resume",
+    "sleigh",
+    "tippe_top",
+    "trammel",
+    "vibrating_table",
+    "watch",
 }
 
 
@@ -45,15 +70,15 @@ def pictures(block, block_vars, gallery_conf):
     source = Path(block_vars["src_file"])
     folder = source.parent / WRITTEN
     text = ""
-    page, made = (folder / f"{source.stem}.{suffix}" for suffix in ("html", "png"))
+    page, *drawn = (folder / f"{source.stem}.{suffix}" for suffix in ("html", "gif", "png"))
     if page.exists():
         PAGES.mkdir(exist_ok=True)
         (PAGES / page.name).write_bytes(page.read_bytes())
         page.unlink()
         address = f"../../_static/gallery/{page.name}#loop"
         text += f'.. raw:: html\n\n   <iframe class="run" src="{address}" title="{source.stem}"></iframe>\n\n'
-    if made.exists():
-        place = Path(next(block_vars["image_path_iterator"]))
+    for made in filter(Path.exists, drawn):
+        place = Path(next(block_vars["image_path_iterator"])).with_suffix(made.suffix)
         place.write_bytes(made.read_bytes())
         made.unlink()
         text += figure_rst([place], gallery_conf["src_dir"])
@@ -81,6 +106,10 @@ class Thumbnails:
         place = Path(gallery_conf["src_dir"]) / "gallery" / example.parent.name / "images" / "thumb"
         square = self._square(example.stem)
         if square is not None and place.exists():
+            if (PAGES / f"{example.stem}.html").exists() or any(
+                place.parent.glob(f"*_{example.stem}_*.gif")
+            ):
+                mark_film(square)
             square.save(place / f"sphx_glr_{example.stem}_thumb.png")
 
     def _simulated(self):
@@ -98,13 +127,13 @@ class Thumbnails:
         return savefig
 
     def _square(self, name):
-        bodies = self.solution.scene.bodies if isinstance(self.solution, carom.Solution) else ()
-        if bodies and all(b.shape for b in bodies) and name not in PLOTTED:
-            t = self.solution.t[0] + SEEN.get(name, 0.4) * (
-                self.solution.t[-1] - self.solution.t[0]
-            )
-            near = {"follow": bodies[0].name, "zoom": 2.0} if len(bodies) == 1 else {}
-            return Image.fromarray(still(self.solution, t, size=(SIDE, SIDE), clock=False, **near))
+        if isinstance(self.solution, carom.Solution) and name not in PLOTTED:
+            part, look = SEEN.get(name, (0.4, {}))
+            t, bodies = self.solution.t, self.solution.scene.bodies
+            if len(bodies) == 1 and not self.solution.scene.joints:
+                look = {"follow": bodies[0].name, "zoom": 2.0} | look
+            at = t[0] + part * (t[-1] - t[0])
+            return Image.fromarray(still(self.solution, at, size=(SIDE, SIDE), clock=False, **look))
         return self.panel
 
 
@@ -112,8 +141,10 @@ def largest_panel(figure, savefig) -> Image.Image:
     """Return the largest panel of a figure with its labels, on a white square."""
     renderer = FigureCanvasAgg(figure).get_renderer()
     panel = max(figure.axes, key=lambda axes: np.prod(axes.get_window_extent(renderer).size))
-    if panel.get_aspect() == "auto":  # it becomes a square, and the figure what it must be for that
-        figure.set_size_inches(2.4 * figure.bbox.size / panel.get_window_extent(renderer).size)
+    wide = panel.get_window_extent(renderer).size
+    if panel.get_aspect() != "auto" and panel.get_adjustable() == "box":  # it keeps its shape
+        wide = np.max(wide)
+    figure.set_size_inches(2.4 * figure.bbox.size / wide)  # small: its words are to be read
     figure.draw_without_rendering()
     inches = panel.get_tightbbox(renderer).transformed(figure.dpi_scale_trans.inverted())
     box = Bbox.from_extents(*(inches.min - 0.03), *(inches.max + 0.03))
@@ -123,6 +154,15 @@ def largest_panel(figure, savefig) -> Image.Image:
     picture.thumbnail((SIDE, SIDE))
     square.paste(picture, ((SIDE - picture.width) // 2, (SIDE - picture.height) // 2))
     return square
+
+
+def mark_film(square) -> None:
+    """Mark the thumbnail of a page that has a film."""
+    pen = ImageDraw.Draw(square)
+    pen.ellipse((SIDE - 58, SIDE - 58, SIDE - 10, SIDE - 10), fill="#4a5560")
+    pen.polygon(
+        [(SIDE - 41, SIDE - 47), (SIDE - 41, SIDE - 21), (SIDE - 20, SIDE - 34)], fill="white"
+    )
 
 
 thumbnails = Thumbnails()

@@ -14,10 +14,7 @@ HEAPS = pytest.mark.filterwarnings("ignore::carom.AccuracyWarning")
 
 @pytest.mark.parametrize(
     "path",
-    [
-        pytest.param(p, marks=[HEAPS] if p.stem in ("heap", "arch") else [], id=p.stem)
-        for p in EXAMPLES
-    ],
+    [pytest.param(p, marks=[HEAPS] if p.stem == "heap" else [], id=p.stem) for p in EXAMPLES],
 )
 def test_example(path, tmp_path, capsys):
     main = runpy.run_path(str(path))["main"]

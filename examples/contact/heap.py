@@ -1,19 +1,24 @@
 """A heap of balls and its chains of force
 =======================================
 
-At rest floor and walls carry the weight, shared as it may be. `python examples/contact/heap.py 500` pours more.
+Sixty balls fall between two walls and come to rest. Only some of them carry the weight of the others, along
+chains of large force. At rest, floor and walls must carry the whole weight. To pour more balls:
+``python examples/contact/heap.py 500``.
 """
 
 import sys
-from pathlib import Path
 
 import numpy as np
 from matplotlib.collections import EllipseCollection, LineCollection
-from matplotlib.figure import Figure
 
 import carom
+from carom.visual.plots.style import RED, picture
 
 g, radius, density = 9.81, 0.01, 2500.0
+
+# %%
+# The balls start in rows, with radii and places that are a little random. Two panes before and behind them
+# leave only a little more room than one ball needs.
 
 
 def pour(count, width):
@@ -32,30 +37,38 @@ def pour(count, width):
     return carom.simulate(scene, 1.5, step=1e-3, save_every=10, options=rough)
 
 
-def draw(axes, solution, row, title):
-    x, size = solution.position[row], [2 * b.shape.radius for b in solution.scene.bodies]
-    balls = EllipseCollection(size, size, np.zeros(len(x)), units="xy", offsets=x[:, [0, 2]],
-                              transOffset=axes.transData, fc="0.9", ec="0.5", lw=0.5)  # fmt: skip
-    axes.add_collection(balls)
-    at = np.flatnonzero((f := solution.forces).saved == row)
+# %%
+# ``solution.forces`` has the force of each persistent contact at each saved time. We draw those of the last
+# time as lines between the centres, wide where the force is large.
+
+
+def draw(axes, s):
+    x, size = s.position[-1], [2 * b.shape.radius for b in s.scene.bodies]
+    look = dict(units="xy", transOffset=axes.transData, fc="0.88", ec="0.5", lw=0.5)
+    axes.add_collection(EllipseCollection(size, size, 0 * x[:, 0], offsets=x[:, [0, 2]], **look))
+    f, at = s.forces, np.flatnonzero(s.forces.saved == s.forces.saved[-1])
     ends = np.where(f.other[at, None] >= 0, x[f.other[at]], f.point[at])
-    width = np.minimum(4.0, 4.0 * f.force[at, 0] / f.force[f.saved == f.saved[-1], 0].max())
     lines = np.stack([x[f.body[at]], ends], axis=1)[:, :, [0, 2]]
-    axes.add_collection(LineCollection(lines, lw=width, color="#D55E00"))
-    axes.set(title=title, xlabel="x [m]", aspect="equal")
+    width = 6 * f.force[at, 0] / f.force[at, 0].max()
+    axes.add_collection(LineCollection(lines, lw=width, color=RED))
+    axes.set(xticks=[], yticks=[], aspect="equal", ylim=(0, 1.1 * x[:, 2].max()))
+    axes.spines.right.set_visible(True)  # left and right are the walls
+
+
+# %%
+# The sum of the forces on floor and walls must be the weight of all balls. How a heap shares this weight
+# among its contacts depends on its history. The film shows how the balls fall.
 
 
 def main(out="out/examples", count=60):
-    width = 0.024 * max(5, np.sqrt(count))
-    solution = pour(count, width)
-    figure = Figure(figsize=(9, 4), layout="constrained")
-    for axes, t in zip(figure.subplots(1, 3, sharex=True, sharey=True), (0.02, 0.12, 1.5)):
-        draw(axes, solution, np.searchsorted(solution.t, t - 1e-9), f"{t:g} s")
-        axes.set(xlim=(-width / 2, width / 2), ylim=(0, 1.05 * solution.position[0, :, 2].max()))
-    Path(out).mkdir(parents=True, exist_ok=True)
-    figure.savefig(Path(out) / "heap.png", dpi=150)
-    print(f"{count} balls, {len(solution.impacts)} impacts")
-    f, weight = solution.forces, g * sum(b.mass for b in solution.scene.bodies)
+    width = 0.018 * max(5, np.sqrt(count))
+    s = pour(count, width)
+    with picture(f"{out}/heap.png", width=3.6, height=3.4) as axes:
+        draw(axes, s)
+        axes.set(xlim=(-width / 2, width / 2))
+    carom.film(s, f"{out}/heap.gif", size=(320, 320), fps=12, speed=0.2, end=0.4, view="front")
+    print(f"{count} balls, {len(s.impacts)} impacts")
+    f, weight = s.forces, g * sum(b.mass for b in s.scene.bodies)
     carried = f.vector[(f.saved == f.saved[-1]) & (f.other < 0), 2].sum()
     print(f"floor and walls carry {carried:.9g} N of {weight:.9g} N")
     assert abs(carried - weight) < 1e-5 * weight

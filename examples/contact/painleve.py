@@ -1,26 +1,24 @@
-r"""Painleve's rod jams
+r"""Painlevé's rod jams
 ===================
 
-A rod that is pushed over a rough table, leaning backwards, may have no force at all that keeps it sliding:
-friction turns it into the table faster than the normal force can lift it. That is so for :math:`\mu > (1 +
-3\cos^2\theta)/(3 \sin\theta\cos\theta)` (Painleve, 1895), at least 4/3. What then happens is an impact without
-collision: the tip stops dead, at a loss of :math:`\frac{1}{2} v^2 (W^{-1})_{tt}`. Each point is a run.
+A rod that leans backwards is pushed over a rough table. With much friction there is no force at all with
+which it could keep sliding: it jams, and its tip stops at once, in an impact without collision. Where this
+happens, and the energy that it costs, are compared with their closed form.
 """
 
 from itertools import product
-from pathlib import Path
 
 import numpy as np
 
 import carom
-from carom.visual.plots import style
+from carom.visual.plots.style import picture
 
 g, length, m, v, radius = 9.81, 1.0, 1.0, 3.0, 1e-9
-LOOK = dict(color=style.BLUE, marker="."), dict(color=style.RED, marker="x")
+LOOK = dict(color="C0", marker="."), dict(color="C1", marker="x")
 
-
-def limit(theta):
-    return (1 + 3 * np.cos(theta) ** 2) / (3 * np.sin(theta) * np.cos(theta))
+# %%
+# The rod starts at the angle :math:`\theta` to the table, with the velocity v of its tip along the table. One
+# short step shows what happens.
 
 
 def slide(theta, mu):
@@ -35,29 +33,46 @@ def slide(theta, mu):
     return carom.simulate(scene, 1e-4, step=1e-4)
 
 
+# %%
+# Friction turns the rod into the table. If it does so faster than the normal force can lift the tip, no
+# normal force, however large, lets the tip slide on (Painlevé, 1895). This is so for
+#
+# .. math:: \mu > \frac{1 + 3\cos^2\theta}{3 \sin\theta\cos\theta} \geq \frac{4}{3}.
+#
+# The tip then stops, and the loss of energy is :math:`\frac{1}{2} v^2 (W^{-1})_{tt}`, with the Delassus
+# operator W.
+
+
+def limit(theta):
+    return (1 + 3 * np.cos(theta) ** 2) / (3 * np.sin(theta) * np.cos(theta))
+
+
+def loss(theta):
+    arm = np.array([np.cos(theta), np.sin(theta)])
+    return np.linalg.inv((np.eye(2) + 3 * np.outer(arm, arm)) / m)[1, 1] * v**2 / 2
+
+
+# %%
+# Each point is a run: dots slide, crosses jam. The line is Painlevé's limit.
+
+
 def main(out="out/examples"):
-    loss = []
-    with style.style():
-        figure, (left, right) = style.new(style.PAGE, 2.8, columns=2, width_ratios=(1.3, 1))
+    lost = []
+    with picture(f"{out}/painleve.png", columns=2, width_ratios=(1.3, 1)) as (left, right):
         for theta, mu in product(np.radians(np.arange(32, 89, 4)), np.arange(1.05, 3.0, 0.2)):
-            jams = "jams" in (run := slide(theta, mu)).events.kind
+            run = slide(theta, mu)
+            jams = "jams" in run.events.kind
             left.plot(np.degrees(theta), mu, **LOOK[jams])
             assert jams == (mu > limit(theta))
             if jams:
-                W = (np.eye(2) + 3 * np.outer(arm := [np.cos(theta), np.sin(theta)], arm)) / m
-                exact = np.linalg.inv(W)[1, 1] * v**2 / 2
-                loss.append((np.degrees(theta), -run.impacts.energy_change[0], exact))
+                lost.append((np.degrees(theta), -run.impacts.energy_change[0], loss(theta)))
         left.plot(fine := np.linspace(25, 87, 200), limit(np.radians(fine)), "k", lw=1)
-        left.set(
-            xlabel="angle / degrees", ylabel="friction coefficient", title="dots slide, crosses jam"
-        )
-        theta, found, exact = np.array(loss).T
-        right.plot(theta, found, "x", color=style.RED, label="carom")
-        right.plot(theta, exact, "k", lw=0.8, label="closed form")
+        left.set(xlabel="angle / degrees", ylabel="friction coefficient")
+        angle, found, exact = np.array(lost).T
+        right.plot(angle, found, "C1x", label="carom")
+        right.plot(angle, exact, "k", lw=0.8, label="closed form")
         right.set(xlabel="angle / degrees", ylabel="energy lost / J", ylim=(0, 4)), right.legend()
     print(f"{len(found)} jam; energy lost: error {(error := np.max(np.abs(found - exact))):.0e} J")
-    Path(out).mkdir(parents=True, exist_ok=True)
-    figure.savefig(Path(out) / "painleve.png", dpi=style.DPI)
     assert error < 1e-7
 
 

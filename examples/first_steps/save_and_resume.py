@@ -1,9 +1,9 @@
-"""A run that is killed, and goes on to the same bits
-==================================================
+"""A run that is interrupted, and continues to the same bits
+=========================================================
 
-A long run writes itself to a netCDF file as it goes. Whatever ends it, `carom.resume` goes on from the file,
-and the end is that of a run without interruption, bit for bit: here for a die, a motion in which any change
-would have grown from bounce to bounce.
+A long run writes itself to a netCDF file while it runs. Whatever ends it, `carom.resume` continues from the
+file. The result is compared, bit for bit, with a run without interruption: that of a bouncing die, a motion
+in which any change would grow from impact to impact.
 """
 
 import tempfile
@@ -12,7 +12,10 @@ from pathlib import Path
 import numpy as np
 
 import carom
-from carom.visual.plots import style
+from carom.visual.plots.style import picture
+
+# %%
+# A die is thrown on a table, with spin about all three axes.
 
 
 def throw():
@@ -26,9 +29,18 @@ def throw():
     return scene
 
 
+# %%
+# We interrupt the run after 40 % of its duration, as Ctrl-C would do it.
+
+
 def power_cut(done, total):
     if done > 0.4 * total:
         raise KeyboardInterrupt
+
+
+# %%
+# With ``throw=False`` the interrupted run returns what it has, with a status. Then it continues from the
+# file, and a third run is made in one piece.
 
 
 def main(out="out/examples"):
@@ -44,18 +56,11 @@ def main(out="out/examples"):
           f"{len(whole.impacts)} impacts to {whole.t[-1]:g} s, a file of {size / 1e3:.0f} kB")  # fmt: skip
     print("the same bits as without interruption:", same)
 
-    with style.style():
-        figure, axes = style.new(style.PAGE, 2.2)
-        height = 1e3 * whole.position[:, 0, 2]
-        n = len(part.t)
-        axes.plot(whole.t[n - 1 :], height[n - 1 :], color=style.RED, label="resumed from the file")
-        axes.plot(part.t, height[:n], color=style.BLUE, label="before the cut")
-        axes.plot(straight.t[::25], 1e3 * straight.position[::25, 0, 2], "k.", label="in one go")
-        axes.axvline(part.t[-1], color=style.GREY, lw=0.8, ls="--")
-        axes.set(xlabel="time / s", ylabel="height of the die / mm")
-        axes.legend()
-    Path(out).mkdir(parents=True, exist_ok=True)
-    figure.savefig(Path(out) / "save_and_resume.png", dpi=style.DPI)
+    with picture(f"{out}/save_and_resume.png") as axes:
+        axes.plot(part.t, 1e3 * part.position[:, 0, 2], lw=4, label="before the interruption")
+        axes.plot(whole.t, 1e3 * whole.position[:, 0, 2], label="resumed from the file")
+        axes.plot(straight.t[::25], 1e3 * straight.position[::25, 0, 2], "k.", label="in one run")
+        axes.set(xlabel="time / s", ylabel="height of the die / mm"), axes.legend()
     assert same
     assert part.t[-1] < 0.5 < whole.t[-1]
 

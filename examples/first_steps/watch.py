@@ -1,20 +1,22 @@
 """A page that plays a run
-=========================
+=======================
 
-A ball with backspin comes back; its impulses, which the page shows as arrows, are checked against momentum.
-
-A ball that slides through its whole impact gets the impulse P (n - mu s), P = m (1 + e) times its normal speed,
-s the direction of slip; so the arrows that are shown are known, as long as the slip at the contact lasts.
+A ball with backspin falls on a green, bounces, and comes back. `carom.view` writes a page that plays the run
+in any browser: turn it with the mouse, stop it at an impact. The arrow of the first impulse is compared with
+its closed form.
 """
 
 from pathlib import Path
 
 import numpy as np
-from matplotlib.figure import Figure
 
 import carom
+from carom.visual.plots.style import RED, picture
 
 mass, radius, e, mu = 0.046, 0.0214, 0.7, 0.3
+
+# %%
+# The ball flies to the right, with a fast spin backwards.
 
 
 def throw():
@@ -28,31 +30,28 @@ def throw():
     return carom.simulate(scene, 2.0, step=2e-3)
 
 
-def main(out="out/examples"):
-    solution, out = throw(), Path(out)
-    out.mkdir(parents=True, exist_ok=True)
-    written = carom.view(solution, export=out / "watch.html", title="Backspin", speed=0.5)
-    print(written)
+# %%
+# A ball that slips through the whole impact gets the impulse :math:`P (n - \mu s)`. Here
+# :math:`P = m (1 + e) |v_n|`, n is the normal, and s is the direction of slip. The change of momentum in the
+# run must be this impulse. In the picture the impulses are red lines.
 
-    first = solution.impacts[0]
-    before = solution.evaluate(first.time, side="left")[2][0]
-    after = solution.evaluate(first.time)[2][0]
+
+def main(out="out/examples"):
+    first = (s := throw()).impacts[0]
+    before, after = (s.evaluate(first.time, side)[2][0] for side in ("left", "right"))
     P = mass * (1 + e) * -before[2]
     error = np.max(np.abs(mass * (after - before) - P * np.array([-mu, 0, 1])))
-    print(
-        f"impulse {P:.6f} N s, error {error:.0e}; in the end {solution.velocity[-1, 0, 0]:+.3f} m/s"
-    )
+    print(f"impulse {P:.6f} N s, error {error:.0e}; in the end {s.velocity[-1, 0, 0]:+.3f} m/s")
 
-    figure = Figure(figsize=(6.5, 3), layout="constrained")
-    axes = figure.subplots()
-    axes.plot(*solution.position[:, 0, [0, 2]].T, lw=1.2)
-    hits = solution.impacts
-    axes.quiver(hits.point[:, 0], hits.point[:, 2], hits.impulse[:, 1], hits.impulse[:, 0],
-                angles="xy", scale=1.2, color="#D55E00", width=0.004)  # fmt: skip
-    axes.set(xlabel="x [m]", ylabel="z [m]")
-    figure.savefig(out / "watch.png", dpi=150)
+    with picture(f"{out}/watch.png") as axes:
+        s.plot("trajectory", ax=axes)
+        axes.set(aspect="auto", ylim=(-0.06, 0.85))
+        (x, _, z), (push, along) = s.impacts.point.T, s.impacts.impulse[:, :2].T
+        axes.plot([x, x + 2 * along], [z, z + 2 * push], color=RED)
+    written = carom.view(s, export=Path(out) / "watch.html", title="Backspin", speed=0.5)
+    print(written)
     assert error < 1e-12
-    assert solution.velocity[-1, 0, 0] < 0 < before[0], "it comes back"
+    assert s.velocity[-1, 0, 0] < 0 < before[0], "it comes back"
     assert written.size < 300_000
 
 

@@ -1,22 +1,24 @@
 r"""Real impacts of a real cube
 ===========================
 
-Measured first impacts against the laws of impact, at nominal and at fitted (e, mu). One corner strikes: with
-:math:`W = G M^{-1} G^T` and :math:`u = G v` from the measured state before, the impulse P of
-`carom.resolve_impact` gives :math:`v^+ = v + M^{-1} G^T P`, and gravity acts until the next measured sample.
-What is decided about the data is written in `carom.paper.real`.
+A cube was tossed many times, and its motion was measured. For the first impact of each toss, three laws of
+restitution predict the velocity after it. The errors of these predictions are shown, with nominal and with
+fitted restitution e and friction mu.
 """
 
-from pathlib import Path
-
 import numpy as np
-from matplotlib.figure import Figure
 
 import carom
 from carom.paper import real
+from carom.visual.plots.style import picture
 
 m, J, g = real.MASS, real.INERTIA, real.GRAVITY
 M_inverse = np.diag(1 / np.array([m, m, m, J, J, J]))
+
+# %%
+# In each of these impacts one corner strikes. The Delassus operator :math:`W = G M^{-1} G^T` and the velocity
+# :math:`u = G v` of the corner come from the measured state before. `carom.resolve_impact` gives the impulse
+# P, and then :math:`v^+ = v + M^{-1} G^T P`. Gravity acts until the next measured sample.
 
 
 def after(tosses, e, mu, law):
@@ -28,24 +30,26 @@ def after(tosses, e, mu, law):
     return v
 
 
+# %%
+# We print the medians of the error for three laws, and, to compare, those of a prediction without any impact.
+# How the measured data are prepared is written in `carom.paper.real`.
+
+
 def main(out="out/examples"):
     tosses = real.load()
-    figure = Figure(figsize=(4, 4), layout="constrained")
-    axes = figure.subplots()
     print(f"{len(tosses.toss)} impacts; medians of the error after the impact")
-    for law in ("newton", "poisson", "stronge"):
-        for name, (e, mu) in (("nominal", real.NOMINAL), ("fitted", real.fit(law))):
-            predicted = after(tosses, e, mu, law)
-            dv, dw = real.medians(predicted)
-            print(f"{law:8} {name:8} e = {e:.3f}, mu = {mu:.3f}: {dv:.3f} m/s, {dw:.2f} rad/s")
-            if law == "stronge":
-                axes.plot(tosses.after[:, 2], predicted[:, 2], ".", label=f"{name}")
+    with picture(f"{out}/real_impacts.png", height=3.4, width=3.4) as axes:
+        for law in ("newton", "poisson", "stronge"):
+            for name, (e, mu) in (("nominal", real.NOMINAL), ("fitted", real.fit(law))):
+                predicted = after(tosses, e, mu, law)
+                dv, dw = real.medians(predicted)
+                print(f"{law:8} {name:8} e = {e:.3f}, mu = {mu:.3f}: {dv:.3f} m/s, {dw:.2f} rad/s")
+                if law == "stronge":
+                    axes.plot(tosses.after[:, 2], predicted[:, 2], ".", ms=2.5, label=name)
+        axes.axline((0, 0), slope=1, color="k", lw=0.5)
+        axes.set(xlabel="measured $v_z$ / m s$^{-1}$", ylabel="predicted $v_z$ / m s$^{-1}$")
+        axes.set(aspect="equal"), axes.legend(markerscale=3)
     print("none     : {:.3f} m/s, {:.2f} rad/s".format(*real.medians(real.no_impact())))
-    axes.axline((0, 0), slope=1, color="k", lw=0.5)
-    axes.set(xlabel="measured v_z [m/s]", ylabel="predicted v_z [m/s]", aspect="equal")
-    axes.legend()
-    Path(out).mkdir(parents=True, exist_ok=True)
-    figure.savefig(Path(out) / "real_impacts.png", dpi=150)
     assert dv < 0.1
     assert dw < 2.3
 

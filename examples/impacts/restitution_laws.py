@@ -1,26 +1,29 @@
 r"""Three laws of restitution, one rod
 ==================================
 
-A rod at 45 degrees strikes with its tip, and friction stops the slip in the course of the impact. From there on
-the normal velocity grows at another rate, and e means three different things: a ratio of speeds (Newton), of
-impulses (Poisson), of works (Stronge). Newton's law then *gains* energy (Kane and Levinson, 1985). All is known
-in closed form, with the rates :math:`\mathrm{d}u_n/\mathrm{d}p` before and after slip ends (Routh, 1860).
+A rod at 45 degrees strikes with its tip, and friction stops the slip in the course of the impact. In such an
+impact the coefficient e of Newton, of Poisson and of Stronge means three different things. Newton's law even
+*gains* energy (Kane and Levinson, 1985). All three are compared with their closed form.
 """
-
-from pathlib import Path
 
 import numpy as np
 
 import carom
-from carom.visual.plots import style
+from carom.visual.plots.style import picture
 
 W = np.array([[2.5, -1.5, 0.0], [-1.5, 2.5, 0.0], [0.0, 0.0, 1.0]])  # uniform rod, 1 kg, 1 m
-before, e = np.array([-1.0, 0.6]), 0.9
-LAWS = {"newton": style.RED, "poisson": style.GREEN, "stronge": style.BLUE}
+before, e = np.array([-1.0, 0.6]), 0.9  # normal velocity and slip [m/s]
 
 
 def energy(u):
     return 0.5 * u @ np.linalg.solve(W[:2, :2], u)
+
+
+# %%
+# In the course of the impact the normal impulse p grows. With it the normal velocity grows at the rate
+# :math:`k_1 = 2.5 + 1.5 \mu` until slip ends, and at another rate :math:`k_2` while the tip sticks or slips
+# back (Routh, 1860). Newton's e is a ratio of velocities, Poisson's a ratio of impulses, and Stronge's the
+# root of a ratio of works.
 
 
 def exact(mu, law):
@@ -34,28 +37,28 @@ def exact(mu, law):
     return np.array([u_n, t2 * (compression + u_n / k2 - slip)])
 
 
+# %%
+# `carom.resolve_impact` resolves one impact from W, the velocity before, mu and e. We do so for 121
+# coefficients of friction and draw the energy that is left (above 1 it has grown), and the velocities after
+# the impact.
+
+
 def main(out="out/examples"):
     friction, worst = np.linspace(0, 1.2, 121), 0.0
-    with style.style():
-        figure, (left, right) = style.new(style.PAGE, 2.6, columns=2)
-        for law, colour in LAWS.items():
+    with picture(f"{out}/restitution_laws.png", columns=2) as (left, right):
+        for law in ("newton", "poisson", "stronge"):
             impacts = [carom.resolve_impact(W, (*before, 0), mu, e, law) for mu in friction]
             u = np.array([impact.velocity_after[:2] for impact in impacts])
-            true = np.array([exact(mu, law) for mu in friction])
-            worst = max(worst, np.max(np.abs(u - true)))
+            worst = max(worst, np.max(np.abs(u - [exact(mu, law) for mu in friction])))
             kept = np.array([energy(row) for row in u]) / energy(before)
             print(f"{law:8} energy after / before: {kept[80]:.6f} at mu = {friction[80]:g}")
-            left.plot(friction, kept, color=colour, label=law.capitalize())
-            right.plot(u[:, 1], u[:, 0], color=colour)
-            right.plot(*u[[0, -1], ::-1].T, "o", color=colour)
-        left.axhline(1, color=style.GREY, lw=0.8, ls="--")
-        left.text(0.02, 1.02, "gain", color=style.GREY)
+            left.plot(friction, kept, label=law.capitalize())
+            right.plot(u[:, 1], u[:, 0])
+        left.axhline(1, color="0.6", lw=0.8, ls="--")
         left.set(xlabel="friction coefficient", ylabel="energy after / before", ylim=(0, 1.4))
         left.legend(loc="lower right")
         right.set(xlabel="slip after / m s$^{-1}$", ylabel="rebound / m s$^{-1}$", ylim=(0, 1))
     print(f"velocities: error {worst:.0e} m/s")
-    Path(out).mkdir(parents=True, exist_ok=True)
-    figure.savefig(Path(out) / "restitution_laws.png", dpi=style.DPI)
     assert worst < 1e-12
 
 

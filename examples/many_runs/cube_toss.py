@@ -1,18 +1,34 @@
 """Real tosses of a real cube
 ==========================
 
-Simulated from flight to rest, with the error to motion capture. `python examples/many_runs/cube_toss.py --data
-FILE --start B` runs all recorded tosses of a file (default: the even ones, to which the parameters were
-fitted); `--fit` fits them anew. What is done to the data is written in `carom.paper.tosses`.
+A cube was tossed, and motion capture has measured its path. Each toss is run from flight to rest, and its
+path is compared with the measured one. By default these are the even tosses of the record, to which the
+parameters of the contact were fitted; ``--data FILE --start B`` runs all tosses of another file, and
+``--fit`` fits anew.
 """
 
 import argparse
-from pathlib import Path
 
 import numpy as np
 
 from carom.paper import tosses, tosses_figure
 from carom.visual.plots import style
+
+# %%
+# How the measured data are prepared is written in `carom.paper.tosses`. Besides the runs there are two checks
+# of the numbers: half the step, and starts that are moved by 1e-6.
+
+
+def checked(start, recordings, chosen):
+    half = tosses.simulate(start, recordings, chosen, tosses.STEP / 2)
+    print(f"half the step: {tosses.levels(half, recordings)}")
+    moved = tosses.simulate(start, tosses.perturbed(recordings), chosen)
+    print(f"starts moved by 1e-6: {tosses.levels(moved, recordings)}")
+
+
+# %%
+# All tosses are run with the same parameters. We print the medians of the errors in place and rotation, and
+# draw the toss that is nearest to them. No run may fail, and the energy ledger of each must close.
 
 
 def main(out="out/examples", data=None, start="B", parameters=5, fit=False, most=24, halve=False):
@@ -25,28 +41,19 @@ def main(out="out/examples", data=None, start="B", parameters=5, fit=False, most
     print(f"start {start},", ", ".join(f"{name} {value:g}" for name, value in chosen.items()))
     runs = tosses.simulate(start, recordings, chosen)
     levels = tosses.levels(runs, recordings)
+    failed, residual = sum(bool(run.message) for run in runs), max(run.residual for run in runs)
     print(f"{len(runs)} tosses: {levels}")
-    failed = sum(bool(run.message) for run in runs)
-    residual = max(run.residual for run in runs)
     print(f"{failed} runs failed; ledger closed to {residual:.1e} J")
     print(tosses.rest(start, recordings, chosen))
     if halve:
-        finer = tosses.levels(
-            tosses.simulate(start, recordings, chosen, tosses.STEP / 2), recordings
-        )
-        print(f"half the step: {finer}")
-        moved = tosses.levels(
-            tosses.simulate(start, tosses.perturbed(recordings), chosen), recordings
-        )
-        print(f"starts moved by 1e-6: {moved}")
+        checked(start, recordings, chosen)
 
     far = levels.position / np.median(levels.position), levels.rotation / np.median(levels.rotation)
     typical = int(np.argmin(np.abs(np.log(far)).sum(axis=0)))
-    Path(out).mkdir(parents=True, exist_ok=True)
+    print(f"picture: {recordings[typical].name}, nearest the medians")
     with style.style():
         figure = tosses_figure.draw(recordings[typical], runs[typical], tosses.HALF[start])
-        figure.savefig(Path(out) / "cube_toss.png", dpi=style.DPI)
-    print(f"picture: {recordings[typical].name}, nearest the medians")
+        style.write(figure, f"{out}/cube_toss.png")
     assert failed == 0
     assert np.median(levels.position) < 15.0
 

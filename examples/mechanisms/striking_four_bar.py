@@ -1,22 +1,22 @@
 r"""A closed loop that strikes
 ==========================
 
-A parallelogram of rods tips over onto a stop in one of its hinges. All four are spatial (three rows are
-redundant). With the angle a of the bars on the ground from upright, :math:`T = \frac{5}{6} \dot a^2` and
-:math:`V = 2 g (\cos a - 1)`: the stop at a = 1.2 is first struck with :math:`\dot a^2 = 1 + \frac{12}{5} g (1 -
-\cos 1.2)`, and throws back with e = 0.7. Its impulse reaches every hinge: both bars on the ground turn back at
-once.
+A parallelogram of rods tips over onto a stop in one of its hinges, and bounces. The impulse of such an impact
+reaches every hinge at once, and all bars turn back. The velocity of the first impact is compared with its
+closed form, and the energy ledger must close.
 """
 
-from pathlib import Path
-
 import numpy as np
-from matplotlib.figure import Figure
 
 import carom
+from carom.visual.plots.style import picture
 
 g, e, END = 9.81, 0.7, 1.2
 out_of_plane = (0, 0, 1)
+
+# %%
+# All four hinges are spatial, so three of their constraints are redundant. `add_stop` puts a stop at 1.2 rad
+# into the upper right hinge.
 
 
 def mechanism():
@@ -36,24 +36,31 @@ def mechanism():
     return scene
 
 
+# %%
+# Let a be the angle of the bars from upright. The energies are :math:`T = \frac{5}{6} \dot a^2` and
+# :math:`V = 2 g (\cos a - 1)`, and the motion starts with 1 rad/s. So the stop is first reached with
+#
+# .. math:: \dot a^2 = 1 + \frac{12}{5} g (1 - \cos 1.2).
+
+speed = np.sqrt(1 + 12 / 5 * g * (1 - np.cos(END)))
+
+# %%
+# The plot of the energy ledger shows what each impact takes, and below the error of the sum.
+
+
 def main(out="out/examples"):
     s = carom.simulate(mechanism(), 3.0, step=4e-3, method="rk8")
-    hit, ledger = s.impacts, s.ledger
-    speed = np.sqrt(1 + 12 / 5 * g * (1 - np.cos(END)))
-    error = abs(-hit.relative_velocity_before[0, 0] - speed)
+    found = -s.impacts.relative_velocity_before[0, 0]
+    error, closed = abs(found - speed), np.max(np.abs(s.ledger.residual))
     kept = max(np.max(part) for part in s.constraint_errors)
-    closed = np.max(np.abs(ledger.residual))
-    print(f"{len(hit)} impacts; first at {-hit.relative_velocity_before[0, 0]:.9f} rad/s, error {error:.0e}; "
+    print(f"{len(s.impacts)} impacts; first at {found:.9f} rad/s, error {error:.0e}; "
           f"ledger closes to {closed:.0e} J, joints to {kept:.0e}")  # fmt: skip
-
-    figure = Figure(figsize=(6.5, 5.5), layout="constrained")
-    angle, *energy = figure.subplots(3, 1, sharex=True, height_ratios=(2, 2, 1))
-    angle.plot(s.t, -s.joint_coordinates("foot")[0], lw=1.2)
-    angle.axhspan(END, 1.35, color="0.85")
-    angle.set(ylabel="angle of the bars [rad]", ylim=(0, 1.35))
-    carom.plots.energy(s, ax=energy)
-    Path(out).mkdir(parents=True, exist_ok=True)
-    figure.savefig(Path(out) / "striking_four_bar.png", dpi=150)
+    layout = dict(rows=3, sharex=True, height_ratios=(2, 2, 1))
+    with picture(f"{out}/striking_four_bar.png", height=5.0, **layout) as (angle, *energy):
+        angle.plot(s.t, -s.joint_coordinates("foot")[0])
+        angle.axhspan(END, 1.35, color="0.85")
+        angle.set(ylabel="angle of the bars / rad", ylim=(0, 1.35))
+        s.plot("energy", ax=energy)
     assert max(error, closed, kept) < 1e-9
 
 

@@ -64,6 +64,30 @@ def new(width=COLUMN, height=2.3, rows=1, columns=1, **options) -> tuple[Any, An
     return figure, figure.subplots(rows, columns, **options)
 
 
+@contextmanager
+def picture(path, height=2.6, columns=1, rows=1, width=PAGE, **options):
+    """Within this context new axes are drawn into, of the size given [in]; at its end they become a PNG file.
+
+    Yields the axes (one, or an array). Lines that are given no colour take those of the palette in turn;
+    `options` are those of `Figure.subplots`. The folder of the file is made at the start, if there is none.
+    """
+    import matplotlib as mpl
+    from cycler import cycler
+
+    Path(path).parent.mkdir(parents=True, exist_ok=True)
+    palette = cycler(color=[BLUE, RED, GREEN, ORANGE, PURPLE, SKY])
+    with style(), mpl.rc_context({"axes.prop_cycle": palette}):
+        figure, axes = new(width, height, rows, columns, **options)
+        yield axes
+        write(figure, path)
+
+
+def write(figure, path) -> None:
+    """Write a figure as PNG; the folder is made if there is none."""
+    Path(path).parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path, dpi=DPI)
+
+
 def mosaic(width, height, layout, columns, rows=None) -> tuple[Any, Any]:
     """Return a figure and its axes by name, from their layout and the sizes of columns and rows."""
     from matplotlib.figure import Figure
