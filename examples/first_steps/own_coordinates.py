@@ -28,7 +28,7 @@ def slide():
         position=[1.2, 0.0], velocity=[0.0, 2.0],
     )  # fmt: skip
     bead.add_contact(r * sp.sin(a) - floor, restitution=e, name="floor")
-    return carom.simulate(bead, 4.0, step=1e-3)
+    return carom.simulate(bead, 4.0)
 
 
 # %%

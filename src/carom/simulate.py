@@ -78,8 +78,7 @@ def simulate(
         Time to simulate [s].
     step : float or "auto"
         ``"auto"`` (default): each step is as long as `rtol` and `atol` allow. A number h [s]: every step has
-        this length, except that the last one is shorter if `duration` is not a multiple of it. A
-        `GeneralizedSystem` needs a number.
+        this length, except that the last one is shorter if `duration` is not a multiple of it.
     method : {"rk4", "rk5", "rk8", "rattle", "rattle4", "rattle6", "implicit", "paper", "paper-ode"}
         Time integrator of the smooth motion. Default: ``"rk4"`` if `step` is a number; otherwise ``"rk5"``, or
         ``"rk8"`` if `rtol` is 1e-9 or smaller. All methods except ``"rk5"`` and ``"rk8"`` need a number as
@@ -98,8 +97,8 @@ def simulate(
         body should be at most about ``atol + rtol * size`` [m], where `size` is the size of the body; an error
         of an angle is multiplied by `size`. Defaults: 1e-8, and `rtol` times the size of the smallest body.
         Free flight and times of impacts are exact to round-off. Errors grow in chaotic motion. Persistent
-        contact at several points between bodies, or of joined bodies, has order 2. (Mathematics page, §1.3;
-        page "Choose an accuracy".)
+        contact at several points between bodies, or of joined bodies, has order 2. Each coordinate of a
+        `GeneralizedSystem` has the size 1, in its own unit. (Mathematics page, §1.3; "Choose an accuracy".)
     impact_location : {"locate", "project", "work"}
         ``"locate"`` (default): the time of an impact is located inside the step (event detection); the return
         map only refines the position. ``"project"``: as in the paper, the step keeps its length and the return

@@ -30,7 +30,7 @@ def test_longer_steps_for_less_and_shorter_ones_for_more():
     counts = []
     for rtol in (1e-5, 1e-7, 1e-9):
         found = carom.simulate(system, 2.0, rtol=rtol, method="rk5", save_at=1.0)
-        counts.append(found.stats["trial_steps"])
+        counts.append(found.stats["trial_steps"] - found.stats["rejected"])
     # order 5: a step is shorter by 100^(1/5) = 2.5 each time
     assert 2.0 < counts[1] / counts[0] < 3.0
     assert 2.0 < counts[2] / counts[1] < 3.0
@@ -48,5 +48,5 @@ def test_bounces_that_are_lower_than_the_tolerance_end():
 
 def test_methods_without_an_estimate_need_a_step():
     system = double_pendulum((1.2, -0.4), (0.0, 0.0))[0]
-    with pytest.raises(ValueError, match="step must be given for method='rk4'"):
+    with pytest.raises(ValueError, match=r"step must be .* method='rk4'"):
         carom.simulate(system, 1.0, method="rk4")

@@ -25,7 +25,9 @@ def run(
     load: Annotated[
         float, typer.Option(metavar="X", help="Fraction of the mass under face 1, at least 0 and below 1.")
     ] = 0.0,
-    step: Annotated[float, typer.Option(metavar="S", help="Time step [s].")] = 2e-3,
+    step: Annotated[
+        float | None, typer.Option(metavar="S", help="Time step [s].", show_default="by tolerances")
+    ] = None,
     seconds: Annotated[float, typer.Option(metavar="S", help="Maximum time of a throw [s].")] = 4.0,
     seed: Annotated[int, typer.Option(metavar="N", help="Seed of the random orientations.")] = 0,
     workers: Annotated[
@@ -58,7 +60,7 @@ def run(
     begin = time.perf_counter()
     with show.progress("throw") as bar:
         thrown = carom.ensemble(
-            scene(given), seconds, step=step, runs=count, seed=seed, workers=workers, save=save,
+            scene(given), seconds, step=step or "auto", runs=count, seed=seed, workers=workers, save=save,
             vary={"die.orientation": carom.UniformOrientation()}, progress=bar,
         )  # fmt: skip
     found = summary(thrown, time.perf_counter() - begin)

@@ -2,8 +2,8 @@
 
 States between two saved states are then as accurate as the saved ones, however fast a body rotates. A replay
 starts from the saved position, attitude and velocities. Other data of the run, such as first guesses of forces,
-are not saved, so each interval is checked first: its replay is used if it ends at the next
-saved state, or misses it by far less than the difference between the replay and a cubic through both states.
+are not saved, so each interval is checked first: its replay is used if it ends at the next saved state, or
+misses it by far less than the difference between the replay and a cubic through both states.
 """
 
 from __future__ import annotations
