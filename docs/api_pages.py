@@ -45,6 +45,7 @@ TOPICS = {
         "Joints": (
             "joint_coordinates", "joint_reactions", "constraint_forces", "constraint_errors", "constraint_rows",
         ),
+        "Events that it was asked to look for": ("t_events", "state_events"),
         "How the run ended, and going on": ("status", "success", "message", "warnings", "stats", "simulate"),
         "What was run": ("scene", "settings"),
         "Files, tables and plots": ("save", "load", "to_xarray", "to_pandas", "plot"),

@@ -24,11 +24,12 @@ class Status(IntEnum):
     INACCURATE = 13
     UNSTABLE = 14
     BLOCKED = 15
+    STOPPED = 16
 
     @property
     def ended(self) -> bool:
-        """Whether the run reached its end, with or without the balance of energy."""
-        return self in (Status.SUCCESS, Status.INACCURATE)
+        """Whether the run reached its end or an event that ends it, with or without the balance of energy."""
+        return self in (Status.SUCCESS, Status.STOPPED, Status.INACCURATE)
 
     @property
     def message(self) -> str:
@@ -95,6 +96,7 @@ _MESSAGES = {
         "A driver moves a body into what it touches and leaves it no way to yield: no motion meets both. "
         "Change the motion that is prescribed, or join the body by a spring or a joint that lets it yield."
     ),
+    Status.STOPPED: "An event ended the run, as it was asked to.",
     Status.INTERRUPTED: "The run was interrupted; the solution holds what was computed until then.",
 }
 

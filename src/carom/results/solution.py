@@ -26,6 +26,7 @@ from carom.status import Status
 
 if TYPE_CHECKING:
     from carom.results.assemble import Written
+    from carom.results.state import SystemState
     from carom.run import Run
     from carom.scene.all_pairs import PairTable
     from carom.scene.scene import Scene
@@ -85,6 +86,10 @@ class Solution(Portable, Drawn):
         What was run.
     settings : dict
         Duration, step, method and tolerances of the run.
+    t_events : list of (n,), or None
+        For each of the `events` that `simulate` was given the times [s] at which it happened.
+    state_events : list of lists of SystemState, or None
+        The states at these times. (Files have neither.)
 
     Examples
     --------
@@ -119,6 +124,9 @@ class Solution(Portable, Drawn):
     #: what the rest is worked out from; None: from a file, which has had it all
     _written: Written | None = field(repr=False, default=None)
     warnings: tuple[str, ...] = ()
+    t_events: list[np.ndarray] | None = field(repr=False, default=None)
+    state_events: list[list[SystemState]] | None = field(repr=False, default=None)
+    _stopped_by: str = field(repr=False, default="")
 
     @classmethod
     def _from_run(cls, run: Run, status: Status) -> Solution:
@@ -178,8 +186,8 @@ class Solution(Portable, Drawn):
 
     @property
     def success(self) -> bool:
-        """Whether the run reached its end, and kept the balance of energy."""
-        return self.status is Status.SUCCESS
+        """Whether the run reached its end, or an event that ends it, and kept the balance of energy."""
+        return self.status in (Status.SUCCESS, Status.STOPPED)
 
     @property
     def message(self) -> str:
@@ -188,6 +196,8 @@ class Solution(Portable, Drawn):
             from carom.results.accuracy import taken_whole
 
             why = self.warnings if self.status is Status.INACCURATE else ()
+            if self._stopped_by:
+                why = (f"That was {self._stopped_by} at t = {self.t[-1]:.9g} s.", *why)
             return " ".join((self.status.message, *why, *taken_whole(self.stats)))
         return f"{self.status.message} (reached t = {self.t[-1]:.9g} s)"
 
