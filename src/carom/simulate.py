@@ -116,9 +116,9 @@ def simulate(
         the attribute ``terminal = True`` ends the run (a number n: the n-th time); with ``direction`` above 0
         only rises count, below 0 only falls. ``"at rest"`` ends the run when nothing moves any more: from then
         on all velocities are 0. ``"first impact of A and B"``, two parts by their names, ends it right after
-        that impact. Times are exact to round-off, and states are those of the motion. What comes and goes within
-        a step is not seen (with tolerances: take a shorter `Options.max_step`); what is 0 at the start has not
-        happened. See `Solution.t_events`, `Solution.state_events`. (How to: stop a run, or control it.)
+        that impact. Times are exact to round-off, and states are those of the motion. What comes and goes
+        within a step is not seen (with tolerances: take a shorter `Options.max_step`); what is 0 at the start
+        has not happened. See `Solution.t_events`, `Solution.state_events`. (How to: stop a run, or control it.)
     progress : bool or callable, optional
         True shows a progress bar (of tqdm, or plain text without it); a function is called with (steps done,
         steps in all).

@@ -146,7 +146,7 @@ class Watched:
     def locate(
         self, i: int, step: int, first: float, end: SystemState, guess: float | None
     ) -> SystemState:
-        """Return the first state at which condition i has the sign that it does not have at the start of the step."""
+        """Return the first state at which condition i has another sign than at the start of the step."""
         from scipy.optimize import brentq
 
         condition, side, best = self.conditions[i], math.copysign(1.0, first), end

@@ -13,6 +13,9 @@ from carom.results.joint_coordinates import Motion, coordinates_of, of_scene
 from carom.scene.bodies import Body
 
 
+_NONE = np.array([1.0, 0.0, 0.0, 0.0])
+
+
 class BodyState(NamedTuple):
     """Place and motion of one body at one time, in world axes."""
 
@@ -59,6 +62,8 @@ class SystemState:
     @cached_property
     def orientation(self) -> np.ndarray:
         """Unit quaternions (N, 4), body to world."""
+        if (self._to_principal == _NONE).all():
+            return self._rows["Q"]
         turned = quaternion.conjugate(self._to_principal)
         out = quaternion.multiply(np.array(self._rows["Q"]), turned)
         out.flags.writeable = False
