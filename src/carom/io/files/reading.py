@@ -125,7 +125,7 @@ def _found(arrays: _Arrays, count: int | None, stops: int) -> np.ndarray | None:
 def _settings(given: dict, options: Options) -> dict:
     """Return the settings of a run, checked as those of `simulate` are."""
     save_at = given.get("save_at")
-    longest = max(given["duration"], *given.get("earlier", ()))  # an event may have stopped it
+    longest = max([given["duration"], *given.get("earlier", ())])  # an event may have stopped it
     checked_settings(
         longest, given["step"], given["method"], given["impact_location"],
         save_every=given["save_every"], save_at=save_at, rtol=given.get("rtol"), atol=given.get("atol"),
