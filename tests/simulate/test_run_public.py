@@ -225,7 +225,7 @@ def test_a_solution_stays_as_it_is(tmp_path):
     assert np.allclose(two.t, [0, 0.04, 0.08, 0.1])
     assert np.allclose(run.solution.t[:4], [0, 0.04, 0.08, 0.12])
     assert run.solution.settings["duration"] == run.time
-    with pytest.raises(ValueError, match="take a Run on by Run.advance"):
+    with pytest.raises(ValueError, match="take a Run on by Run"):
         two.simulate(1.0)
     pytest.importorskip("h5netcdf")
     last = run.solution
@@ -252,8 +252,7 @@ def test_a_run_that_fails():
     scene.add_contact(ball, ground, restitution=0.8)
     run = carom.Run(scene, step=0.01, options=carom.Options(hold=False))
     with pytest.raises(carom.SimulationError, match="More impacts in one step") as caught:
-        for _ in range(300):
-            run.advance()
+        run.advance(3.0)
     assert 2.5 < run.time < 2.6
     assert caught.value.solution.t[-1] == run.time
     with pytest.raises(carom.SimulationError):

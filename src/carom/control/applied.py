@@ -12,6 +12,7 @@ from carom.geometry import quaternion
 from carom.scene.forces import AppliedForce, Force, Torque
 from carom.scene.more_forces import JointForce, JointSpring
 
+HINT = "; state one by Scene.add_force, and give it or its name"
 UNITS = {Force: "N", Torque: "N m"}
 
 
@@ -35,7 +36,7 @@ class Applied:
     def set(self, force, value) -> None:
         """Set a force, given itself or by its name."""
         scene = self.run.scene
-        force = scene._parts.member("force", force, (AppliedForce,))
+        force = scene._parts.member("force", force, (AppliedForce,), HINT)
         place = self.places.get(force.index)
         if place is None:
             raise ValueError(

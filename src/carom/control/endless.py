@@ -10,9 +10,13 @@ from carom import checks
 from carom._compiled.record_arrays import Columns
 from carom.dynamics.adapt import FIRST, time_of_bounces
 from carom.run import Run
+from carom.status import Status
 from carom.stepping.grid import ALIKE, Grid, count, longest_step
+from carom.stepping.settings import MOST_STEPS
 
 BLOCK = 1024  # steps for which there is room at first
+PART = 65536  # rows for which room is made at a time
+MOST = 1e7  # longest steps in a call, where tolerances choose them
 
 
 class Endless(Run):
@@ -23,7 +27,8 @@ class Endless(Run):
         how, none = self.how, (np.zeros(0), np.zeros(0, dtype=np.int64))
         self.asked, self.base, self.wait, self.times = 0, 0.0, 0.0, 0
         if how.step is not None:
-            return Grid(how.step, BLOCK * how.save_every, how.save_every, *none)
+            last = min(BLOCK * how.save_every, 2**62)
+            return Grid(how.step, last, how.save_every, *none)
         system, start, later = (
             self.compiled.system,
             self.compiled.start,
@@ -33,30 +38,42 @@ class Endless(Run):
         ends, saves = np.zeros(BLOCK + 1), np.ones(BLOCK + 1, dtype=np.int64)
         return Grid(min(self.longest, 1.0), BLOCK, 0, ends, saves)
 
+    def go_on(self, until: int) -> Status:
+        """Go on to step number `until`, or to a failure: in parts, for which room is made."""
+        status, part = Status.SUCCESS, PART * max(1, self.grid.save_every)
+        while status is Status.SUCCESS and self.steps_done < until:
+            goal = min(until, self.steps_done + part)
+            self.make_room(1 + (goal - self.steps_done) // max(1, self.grid.save_every))
+            status = super().go_on(goal)
+        return status
+
     def ask(self, duration: float | None) -> int:
-        """Make room for so much time [s], and return the number of the step at its end."""
+        """Have steps ready for so much time [s], and return the number of the last of them."""
         step = self.how.step
         if step is None:
             if duration is None:
                 raise ValueError("duration must be given [s] where no step is")
-            return self.ask_time(checks.number("duration", duration, above=0.0, unit="s"))
+            most = MOST * self.longest if math.isfinite(self.longest) else None
+            return self.ask_time(
+                checks.number("duration", duration, above=0.0, most=most, unit="s")
+            )
         steps = 1
         if duration is not None:
-            duration = checks.number("duration", duration, above=0.0, unit="s")
+            most = MOST_STEPS * step
+            duration = checks.number("duration", duration, above=0.0, most=most, unit="s")
             steps = round(duration / step)
             if steps < 1 or abs(steps * step - duration) > 1e3 * ALIKE * duration:
                 raise ValueError(
                     f"duration must be a whole multiple of the step of {step:g} s, got {duration!r}"
                 )
-        until, every = self.steps_done + steps, self.grid.save_every
+        until = self.steps_done + steps
         while until >= self.grid.last:
             self.grid = self.grid._replace(last=2 * self.grid.last)
             self.controls = self.controls._replace(duration=self.grid.last * step)
-        self.make_room(until // every - self.steps_done // every)
         return until
 
     def ask_time(self, wait: float) -> int:
-        """Make room for steps, no longer than the longest, that end so much later."""
+        """Have steps ready, none longer than the longest, that end so much later."""
         done = self.steps_done
         if wait == self.wait:
             self.times += 1
@@ -73,7 +90,6 @@ class Endless(Run):
         self.asked += 1
         saves[done + 1 : until + 1] = 0
         saves[until] = int(self.asked % self.how.save_every == 0)
-        self.make_room(1)
         if self.asked == 1 or piece > self.controls.interval:
             self.aim(piece)
         self.controls = self.controls._replace(duration=end)

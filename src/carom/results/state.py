@@ -12,7 +12,6 @@ from carom.geometry import quaternion
 from carom.results.joint_coordinates import Motion, coordinates_of, of_scene
 from carom.scene.bodies import Body
 
-
 _NONE = np.array([1.0, 0.0, 0.0, 0.0])
 
 
