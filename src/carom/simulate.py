@@ -191,7 +191,9 @@ def simulate(
         checks.choice("method of a system in coordinates", settings.method, EXPLICIT)
         checks.choice("impact_location of a system in coordinates", impact_location, LOCATIONS[:1])
         if events is not None:
-            raise ValueError("events must be left out with a system in coordinates")
+            raise ValueError(
+                f"events must be left out with a system in coordinates, got {checks.shown(events)}"
+            )
 
         from carom.generalized.run import GeneralizedRun
 

@@ -161,6 +161,47 @@ def test_a_motor_of_a_joint():
     assert abs(force[0] - 2.0 * (G - 0.5 * down)) < 1e-9
 
 
+J = carom.joints
+KINDS = [
+    J.Revolute((0.3, 0, 0), (1, 2, 3)), J.Prismatic((1, 2, 3)), J.Cylindrical((0.3, 0, 0), (1, 2, 3)),
+    J.Universal((0.3, 0, 0), (0, 1, 0), (0, 0, 1)), J.Planar((1, 2, 3)), J.Spherical((0.3, 0, 0)),
+    J.PointOnLine((0.3, 0, 0), (1, 2, 3)), J.PointOnPlane((0.3, 0, 0), (1, 2, 3)),
+    J.Screw((0.3, 0, 0), (1, 2, 3), 0.1), J.Fixed(), J.Distance((0, 0, 0), (0.5, 0.1, 0)),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("frames", [False, True])
+@pytest.mark.parametrize("definition", KINDS, ids=lambda d: type(d).__name__)
+def test_coordinates_of_a_joint_at_one_time(definition, frames):
+    """They are those of the solution, angles but for whole turns."""
+    scene = carom.Scene(gravity=(0, 0, 0))
+    tilted = [carom.axis_angle(axis, 40.0) for axis in ((1, 1, 0), (0, 1, 1))]
+    one, two = (
+        scene.add_body(
+            carom.Box(0.1, 0.2, 0.3), mass=1.0, position=(x, 0, 0.1 * x), orientation=Q,
+            angular_velocity=(3, 4, 5), velocity=(0.2, x, 0.3),
+        )
+        for x, Q in zip((0.0, 0.5), tilted)
+    )  # fmt: skip
+    given = {"parent_frame": ((0.1, 0, 0), tilted[1]), "child_frame": ((0, 0.1, 0), tilted[0])}
+    scene.add_joint(definition, one, two, name="joint", **(given if frames else {}))
+    run = carom.Run(scene, step=0.01, options=carom.Options(project_start=True))
+    states = [run.state]
+    for _ in range(60):
+        run.advance()
+        states.append(run.state)
+    found = [state.joint_coordinates("joint") for state in states]
+    q, rates = run.solution.joint_coordinates("joint")
+    turns = getattr(definition, "coordinates", ()) if definition.turn != "ball" else ()
+    for k in range(q.shape[1]):
+        off = np.array([one[0][k] for one in found]) - q[:, k]
+        if turns and turns[k] == "turn":
+            off -= 2.0 * np.pi * np.round(off / (2.0 * np.pi))
+        assert abs(off).max() < 1e-12
+        assert abs(np.array([one[1][k] for one in found]) - rates[:, k]).max() < 1e-12
+    assert all(len(one[0]) == q.shape[1] for one in found)
+
+
 def test_forces_of_every_kind_find_their_place():
     """Set to what another scene has from the start, in any order of forces: the same bits."""
 

@@ -80,7 +80,7 @@ class Run:
         self._run = Endless(scene, settings)
         implicit = METHODS[settings.method].kind == IMPLICIT
         self._applied = Applied(self._run, implicit)
-        self._status = Status.SUCCESS
+        self._status, self._joints = Status.SUCCESS, {}
         for mistake in mistakes(scene, settings):
             warnings.warn(mistake, MistakeWarning, stacklevel=3)
 
@@ -92,7 +92,7 @@ class Run:
     @property
     def state(self) -> SystemState:
         """The state at this time; it stays as it is when the run goes on."""
-        return SystemState(self._run)
+        return SystemState(self._run, self._joints)
 
     @property
     def solution(self) -> Solution:

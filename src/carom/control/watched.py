@@ -50,7 +50,7 @@ class Watched:
         self.grids = run.grid, run.controls
         self.happened: list[Happened] = []
         self.times = [0] * len(conditions)  # how often each has happened
-        self.stopped_by = ""
+        self.stopped_by, self.joints = "", {}
         self.began, self.struck = 0.0, 0
         look = self.look()
         self.values = [1.0 if c.rest else c.value(look) for c in conditions]  # it is yet to rest
@@ -103,7 +103,7 @@ class Watched:
 
     def look(self) -> Look:
         """Return the run as conditions see it."""
-        return Look(self.run, SystemState(self.run), self.struck)
+        return Look(self.run, SystemState(self.run, self.joints), self.struck)
 
     def review(self) -> Status:
         """Look at the step that was just taken; go back before it where that fails."""

@@ -10,6 +10,7 @@ import numpy as np
 from carom import checks
 from carom.geometry import quaternion
 from carom.results.joint_coordinates import Motion, coordinates_of, of_scene
+from carom.results.joint_now import Quick, coordinates, quick
 from carom.scene.bodies import Body
 
 _NONE = np.array([1.0, 0.0, 0.0, 0.0])
@@ -35,7 +36,8 @@ class SystemState:
         As of `Solution` [J].
     """
 
-    def __init__(self, run):
+    def __init__(self, run, joints: dict[int, Quick | None] | None = None):
+        self._joints = {} if joints is None else joints  # what was asked for before
         clock, rows = run.clock, run.now.view(np.ndarray).copy()
         rows.flags.writeable = False
         self._rows, self._scene, self._to_principal = rows, run.scene, run.to_principal
@@ -89,21 +91,22 @@ class SystemState:
     def joint_coordinates(self, joint) -> tuple[np.ndarray, np.ndarray]:
         """Return coordinates and rates (n,) of a joint, as `Solution.joint_coordinates` does.
 
-        Angles are from -pi to pi: one time by itself knows no whole turns.
+        Angles are from -pi to pi, but for those of a `Screw`: one time by itself knows no whole turns.
 
         Parameters
         ----------
         joint : Joint or str
             A joint of the scene, or its name.
         """
-        at_once = (
-            self.position,
-            self.orientation,
-            self.velocity,
-            self.angular_velocity,
-        )
+        joint = of_scene(self._scene, joint)
+        if joint.index not in self._joints:
+            self._joints[joint.index] = quick(joint)
+        made = self._joints[joint.index]
+        if made is not None:
+            return coordinates(made, self)
+        at_once = self.position, self.orientation, self.velocity, self.angular_velocity
         motion = Motion(np.array([self.t]), *(a[None] for a in at_once))
-        q, rate = coordinates_of(motion, of_scene(self._scene, joint))
+        q, rate = coordinates_of(motion, joint)
         return q[0], rate[0]
 
     def __repr__(self) -> str:
