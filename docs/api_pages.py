@@ -12,7 +12,7 @@ HEADING = re.compile(r"^(\w[\w ]*)\n-{3,}$", re.MULTILINE)
 #: classes that users call; of all others, which the library hands back, no signature is shown
 CALLED = {
     "Scene", "Options", "Material", "GeneralizedSystem", "UniformOrientation", "Recording", "Parameter",
-    "State", "Manifold",
+    "State", "Manifold", "Run",
     "Sphere", "Box", "Capsule", "Cylinder", "Disc", "Ellipsoid", "Convex", "Mesh", "Compound",
     "Revolute", "Spherical", "Prismatic", "Cylindrical", "Screw", "Universal", "Planar", "PointOnLine",
     "PointOnPlane", "Fixed", "Distance", "KnifeEdge", "RollingSphere", "RollingDisc",
@@ -45,6 +45,7 @@ TOPICS = {
         "Joints": (
             "joint_coordinates", "joint_reactions", "constraint_forces", "constraint_errors", "constraint_rows",
         ),
+        "Events that it was asked to look for": ("t_events", "state_events"),
         "How the run ended, and going on": ("status", "success", "message", "warnings", "stats", "simulate"),
         "What was run": ("scene", "settings"),
         "Files, tables and plots": ("save", "load", "to_xarray", "to_pandas", "plot"),

@@ -12,7 +12,8 @@ ROOT = Path(carom.__file__).parent
 ORDER = (
     "_compiled", "arguments", "checks", "options", "status", "geometry", "scene", "collision", "model",
     "kinematics", "contact", "friction", "dynamics", "impact", "persistent", "stepping", "results",
-    "generalized", "run", "io", "simulate", "studies", "visual", "baselines", "paper", "bench", "cli",
+    "generalized", "run", "io", "control", "simulate", "studies", "visual", "baselines", "paper", "bench",
+    "cli",
 )  # fmt: skip
 #: methods of what users hold in their hands that need a floor above, imported where they are called
 DOORS = {

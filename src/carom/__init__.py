@@ -37,6 +37,7 @@ from carom.status import AccuracyWarning, MistakeWarning, SimulationError, Statu
 
 if TYPE_CHECKING:
     from carom import baselines, geometry
+    from carom.control.live import Run
     from carom.friction import ContactSolution, solve_contacts
     from carom.impact import Impact, LayerHistory, impact_layer, resolve_impact
     from carom.impact.multiple.api import CornerImpact, resolve_impacts
@@ -73,6 +74,7 @@ __all__ = [
     "MistakeWarning",
     "Model",
     "Options",
+    "Run",
     "Scene",
     "Sensitivities",
     "SimulationError",
@@ -113,6 +115,7 @@ _LAZY = {
     "Impact": "carom.impact",
     "LayerHistory": "carom.impact",
     "Model": "carom.io.models",
+    "Run": "carom.control.live",
     "load_model": "carom.io.models",
     "UniformOrientation": "carom.studies.ensembles",
     "ensemble": "carom.studies.ensembles",

@@ -29,7 +29,15 @@ from carom.status import Status
 from carom.stepping import record, time_loop
 from carom.stepping.crowd.layout import SPOTS, new_crowd, no_crowd, roomier_crowd
 from carom.stepping.energy_balance import SHARE, new_watch
-from carom.stepping.grid import STATES, Grid, longer_grid, longest_step, make_grid
+from carom.stepping.grid import (
+    STATES,
+    Grid,
+    cut_grid,
+    longer_grid,
+    longest_step,
+    make_grid,
+    step_at,
+)
 from carom.stepping.islands.layout import (
     has_events,
     new_islands,
@@ -92,7 +100,10 @@ class Run:
         first, *later = *self.how.earlier, self.how.duration
         grid = self.first_grid(first)
         for begin, end in zip((first, *later), later):
-            grid = longer_grid(grid, begin, end)
+            if end < begin:  # an event has stopped it
+                grid = cut_grid(grid, step_at(grid, end), end)
+            else:
+                grid = longer_grid(grid, begin, end)
         return grid
 
     def first_grid(self, duration: float) -> Grid:

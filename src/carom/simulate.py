@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import os
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import overload
 
 from numpy.typing import ArrayLike
 
 from carom import arguments, checks
+from carom.control.conditions import Event, conditions
 from carom.dynamics.methods import EXPLICIT
 from carom.generalized.solution import GeneralizedSolution
 from carom.generalized.system import GeneralizedSystem
@@ -33,9 +34,9 @@ from carom.stepping.settings import (
 def simulate(
     scene: Scene, duration: float, *, step: float | str = ..., method: str | None = ...,
     rtol: float | None = ..., atol: float | None = ..., impact_location: str = ..., save_every: int = ...,
-    save_at: float | ArrayLike | None = ..., progress: bool | Callable[[float, float], None] | None = ...,
-    options: Options | None = ..., throw: bool = ..., save: str | os.PathLike | None = ...,
-    save_seconds: float = ...,
+    save_at: float | ArrayLike | None = ..., events: Event | Sequence[Event] | None = ...,
+    progress: bool | Callable[[float, float], None] | None = ..., options: Options | None = ...,
+    throw: bool = ..., save: str | os.PathLike | None = ..., save_seconds: float = ...,
 ) -> Solution: ...  # fmt: skip
 
 
@@ -61,6 +62,7 @@ def simulate(
     impact_location: str = "locate",
     save_every: int = 1,
     save_at: float | ArrayLike | None = None,
+    events: Event | Sequence[Event] | None = None,
     progress: bool | Callable[[float, float], None] | None = None,
     options: Options | None = None,
     throw: bool = True,
@@ -111,6 +113,15 @@ def simulate(
         Times at which states are saved: a spacing [s], or increasing times [s] within the run. Steps end at
         these times, so the states are computed, not interpolated. The first and the last state are saved too.
         Default: every step if `step` is a number, otherwise 200 states at equal times.
+    events : callable, str, or a list of these, optional
+        What to look for, as in SciPy's `solve_ivp`: functions ``f(t, state) -> float`` of the time and the
+        `SystemState`, whose zeros are found wherever the sign differs from that of the step before. One with
+        the attribute ``terminal = True`` ends the run (a number n: the n-th time); with ``direction`` above 0
+        only rises count, below 0 only falls. ``"at rest"`` ends the run when nothing moves any more: from then
+        on all velocities are 0. ``"first impact of A and B"``, two parts by their names, ends it right after
+        that impact. Times are exact to round-off, and states are those of the motion. What comes and goes
+        within a step is not seen (with tolerances: take a shorter `Options.max_step`); what is 0 at the start
+        has not happened. See `Solution.t_events`, `Solution.state_events`. (How to: stop a run, or control it.)
     progress : bool or callable, optional
         True shows a progress bar (from tqdm if it is installed, otherwise plain text). A function is called
         with (number of steps done, total number of steps).
@@ -137,7 +148,7 @@ def simulate(
     Raises
     ------
     TypeError
-        If `scene`, `options` or `progress` is of another type.
+        If `scene`, `events`, `options` or `progress` is of another type.
     ValueError
         If an argument is outside its range, a body is inside a half-space at the start, or an initial
         velocity violates a joint. The run has not started then.
@@ -184,16 +195,30 @@ def simulate(
             )
         checks.choice("method of a system in coordinates", settings.method, EXPLICIT)
         checks.choice("impact_location of a system in coordinates", impact_location, LOCATIONS[:1])
+        if events is not None:
+            raise ValueError(
+                f"events must be left out with a system in coordinates, got {checks.shown(events)}"
+            )
 
         from carom.generalized.run import GeneralizedRun
 
         run = GeneralizedRun(scene, settings)
     else:
         check_scene(scene, settings)
+        found = None if events is None else conditions(events, scene)
+        if found is not None and save is not None:
+            raise ValueError(
+                f"save must be left out with events, which no file holds, got {checks.shown(save)}; save the "
+                "solution: solution.save(path)"
+            )
 
         from carom.run import Run
 
         run = Run(scene, settings)
+        if found is not None:
+            from carom.control.watched import Watched
+
+            run = Watched(run, found)
     keeper = None
     if save is not None:
         from carom.io.files.keeper import Keeper

@@ -24,11 +24,12 @@ class Status(IntEnum):
     INACCURATE = 13
     UNSTABLE = 14
     BLOCKED = 15
+    STOPPED = 16
 
     @property
     def ended(self) -> bool:
-        """Whether the run reached its end, whatever its energy balance."""
-        return self in (Status.SUCCESS, Status.INACCURATE)
+        """Whether the run reached its end, or an event that ends it, whatever its energy balance."""
+        return self in (Status.SUCCESS, Status.STOPPED, Status.INACCURATE)
 
     @property
     def message(self) -> str:
@@ -97,6 +98,7 @@ _MESSAGES = {
         "satisfies both the driver and the contact. Change the prescribed motion, or attach the body by a "
         "spring, or by a joint that lets it move away."
     ),
+    Status.STOPPED: "An event ended the run, as requested.",
     Status.INTERRUPTED: "The run was interrupted. The solution has all results up to then.",
 }
 

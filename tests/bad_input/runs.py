@@ -68,7 +68,8 @@ def run(folder):
 
     given = dict(
         duration=0.02, step=0.01, method="rk4", rtol=None, atol=None, impact_location="locate", save_every=1,
-        save_at=None, progress=None, options=carom.Options(), throw=True, save=None, save_seconds=60.0,
+        save_at=None, events=None, progress=None, options=carom.Options(), throw=True, save=None,
+        save_seconds=60.0,
     )  # fmt: skip
     found |= {
         "simulate": lambda: (carom.simulate, dict(scene=thrown(), **given)),
@@ -79,10 +80,23 @@ def run(folder):
         "simulate at times": lambda: (
             carom.simulate, dict(scene=thrown(), **{**given, "save_at": [0.0, 0.01, 0.02]}),
         ),
+        "simulate with events": lambda: (
+            carom.simulate, dict(scene=thrown(), **{**given, "events": [lambda t, state: 1.0]}),
+        ),
         "simulate to a file": lambda: (
             carom.simulate, dict(scene=thrown(), **{**given, "save": folder / "run.nc"}),
         ),
         "simulate in coordinates": lambda: (carom.simulate, dict(scene=one_oscillator(), **given)),
+        "Run": lambda: (
+            carom.Run,
+            dict(scene=thrown(), step=0.01, method="rk4", rtol=None, atol=None, save_every=1,
+                 options=carom.Options()),
+        ),
+        "Run.advance": lambda: (carom.Run(thrown(), step=0.01).advance, dict(duration=0.02)),
+        "Run.set_force": lambda: (things.pushed().set_force, dict(force="push", value=(0.0, 0.0, 1.0))),
+        "results.SystemState.joint_coordinates": lambda: (
+            carom.Run(swing().scene).state.joint_coordinates, dict(joint="j"),
+        ),
         "resume": lambda: (
             carom.resume,
             dict(path=saved(folder), duration=None, functions={}, save_seconds=60.0, progress=None, throw=True),

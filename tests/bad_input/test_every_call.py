@@ -52,6 +52,7 @@ HANDED_BACK = {
     "dynamics.mobility.Mobility", "results.ImpactTable", "results.ImpactRecord",
     "results.EventTable", "results.ContactTable",
     "results.ForceTable", "all_pairs.PairTable", "results.Ledger",
+    "results.SystemState", "results.BodyState",
     "io.files.convert.Frames",
     "visual.viewer.live.LiveView", "visual.viewer.page.Exported", "models.Coordinate", "models.Model",
     "models.Report", "models.Entry", "impact.InvariantDirections",

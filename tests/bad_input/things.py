@@ -37,6 +37,13 @@ def thrown():
     return scene
 
 
+def pushed():
+    """A run of the ball with a force."""
+    scene = thrown()
+    scene.add_force(carom.forces.Force((0, 0, 0)), "ball", name="push")
+    return carom.Run(scene, step=0.01)
+
+
 @functools.cache
 def solution():
     return carom.simulate(thrown(), 0.15, step=0.01)

@@ -26,6 +26,7 @@ LIMIT = 120.0  # seconds that a call may take: the first of its kind is compiled
 DOCUMENTED = {
     "GeneralizedSystem.return_map": KeyError,
     "Solution.joint_coordinates": KeyError,
+    "results.SystemState.joint_coordinates": KeyError,
     "Solution.impact_history": IndexError,
     "Solution.load": FileNotFoundError,
     "Ensemble.load": FileNotFoundError,

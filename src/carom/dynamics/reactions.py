@@ -159,10 +159,13 @@ def follow_turns(system, times, states, k):
 
 
 @entry
-def reactions(system, augment, times, states, touch, work, out):
-    """Write the wrench (T, J, 6) of each joint on its child at saved states."""
+def reactions(system, augment, times, states, rows, touch, work, out):
+    """Write the wrench (T, J, 6) of each joint on its child at saved states from row to row.
+
+    Rows before them have been written, or whole turns of angles would not be known; `touch` begins with these.
+    """
     h = 0
-    for k in range(states.shape[0]):
+    for k in range(rows[0], rows[1]):
         state, work.result[0].time = states[k], times[k]
         follow_turns(system, times, states, k)
         applied_wrenches(system, state, True, work)

@@ -8,5 +8,15 @@ from carom.results.event_tables import (
     ImpactTable,
 )
 from carom.results.ledger import Ledger
+from carom.results.state import BodyState, SystemState
 
-__all__ = ["ContactTable", "EventTable", "ForceTable", "ImpactRecord", "ImpactTable", "Ledger"]
+__all__ = [
+    "BodyState",
+    "ContactTable",
+    "EventTable",
+    "ForceTable",
+    "ImpactRecord",
+    "ImpactTable",
+    "Ledger",
+    "SystemState",
+]

@@ -18,7 +18,7 @@ def joint_coordinates(solution, joint) -> tuple[np.ndarray, np.ndarray]:
         solution.t, solution.position, solution.orientation, solution.velocity,
         solution.angular_velocity,
     )  # fmt: skip
-    return coordinates_of(motion, _of_scene(solution.scene, joint))
+    return coordinates_of(motion, of_scene(solution.scene, joint))
 
 
 class Motion(NamedTuple):
@@ -58,7 +58,8 @@ def _columns(sides, joint):
     return columns
 
 
-def _of_scene(scene, joint) -> Joint:
+def of_scene(scene, joint) -> Joint:
+    """Return a joint of the scene, given itself or by its name."""
     if isinstance(joint, str):
         try:
             joint = scene[joint]

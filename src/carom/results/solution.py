@@ -26,6 +26,7 @@ from carom.status import Status
 
 if TYPE_CHECKING:
     from carom.results.assemble import Written
+    from carom.results.state import SystemState
     from carom.run import Run
     from carom.scene.all_pairs import PairTable
     from carom.scene.scene import Scene
@@ -86,6 +87,10 @@ class Solution(Portable, Drawn):
         The scene of the run.
     settings : dict
         Duration, step, method and tolerances of the run.
+    t_events : list of (n,), or None
+        For each of the `events` that `simulate` was given the times [s] at which it happened.
+    state_events : list of lists of SystemState, or None
+        The states at these times. (Files have neither.)
 
     Examples
     --------
@@ -120,6 +125,9 @@ class Solution(Portable, Drawn):
     #: records from which the other fields are computed; None: loaded from a file, which has all fields
     _written: Written | None = field(repr=False, default=None)
     warnings: tuple[str, ...] = ()
+    t_events: list[np.ndarray] | None = field(repr=False, default=None)
+    state_events: list[list[SystemState]] | None = field(repr=False, default=None)
+    _stopped_by: str = field(repr=False, default="")
 
     @classmethod
     def _from_run(cls, run: Run, status: Status) -> Solution:
@@ -179,8 +187,8 @@ class Solution(Portable, Drawn):
 
     @property
     def success(self) -> bool:
-        """Whether the status is ``SUCCESS``: the run reached its end with the required accuracy."""
-        return self.status is Status.SUCCESS
+        """Whether the run reached its end, or an event that ends it, with the required accuracy."""
+        return self.status in (Status.SUCCESS, Status.STOPPED)
 
     @property
     def message(self) -> str:
@@ -189,6 +197,8 @@ class Solution(Portable, Drawn):
             from carom.results.accuracy import taken_whole
 
             why = self.warnings if self.status is Status.INACCURATE else ()
+            if self._stopped_by:
+                why = (f"That was {self._stopped_by} at t = {self.t[-1]:.9g} s.", *why)
             return " ".join((self.status.message, *why, *taken_whole(self.stats)))
         return f"{self.status.message} (reached t = {self.t[-1]:.9g} s)"
 

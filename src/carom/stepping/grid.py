@@ -95,6 +95,24 @@ def longer_grid(grid: Grid, duration: float, end: float) -> Grid:
     return Grid(grid.interval, len(ends) - 1, grid.save_every, ends, saves)
 
 
+def cut_grid(grid: Grid, step: int, end: float) -> Grid:
+    """Return the steps of a run that ends at this time, within a step or at its end."""
+    if not len(grid.ends):
+        return grid._replace(last=step)
+    ends, saves = np.append(grid.ends[:step], end), np.append(grid.saves[:step], 1)
+    return grid._replace(last=step, ends=ends, saves=saves)
+
+
+def step_at(grid: Grid, end: float) -> int:
+    """Return the number of the step in which a run comes to this time, from 1 on."""
+    if len(grid.ends):
+        return int(np.searchsorted(grid.ends, end))
+    step = max(1, math.ceil(end / grid.interval))
+    while step > 1 and (step - 1) * grid.interval >= end:
+        step -= 1
+    return min(grid.last, step if step * grid.interval >= end else step + 1)
+
+
 def longest_step(
     system: System, start: np.recarray, duration: float, most: float | None, more: bool
 ) -> float:

@@ -65,7 +65,7 @@ def capture(run) -> Checkpoint | None:
         "room": len(islands.which),
         "pairs": 0 if run.found is None else len(run.found),
     }
-    return Checkpoint(found, {name: array.copy() for name, array in _arrays(run)})
+    return Checkpoint(found, {name: array.copy() for name, array in arrays_of(run)})
 
 
 def state_at_end(solution) -> Checkpoint | None:
@@ -94,7 +94,7 @@ def restore(run, checkpoint: Checkpoint, records: r.Records) -> None:
         run.grow(r.FULL_SPOTS)
     while len(run.islands.which) < found["room"]:
         run.grow(r.FULL_PAIRS)
-    here = dict(_arrays(run))
+    here = dict(arrays_of(run))
     if layout_of(here) != layout_of(checkpoint.arrays):
         raise ValueError("the checkpoint was written by another version of carom")
     for name, array in here.items():
@@ -145,7 +145,7 @@ def _type_of(array: np.ndarray | Packed) -> str:
     return str(array.dtype.descr if array.dtype.names else array.dtype.str)
 
 
-def _arrays(run) -> Iterator[tuple[str, np.ndarray]]:
+def arrays_of(run) -> Iterator[tuple[str, np.ndarray]]:
     """Go through the arrays of a run that are its state, by name."""
     system = run.compiled.system
     roots = {

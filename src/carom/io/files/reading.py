@@ -126,8 +126,9 @@ def _found(arrays: _Arrays, count: int | None, stops: int) -> np.ndarray | None:
 def _settings(given: dict, options: Options) -> dict:
     """Return the settings of a run, checked as those of `simulate` are."""
     save_at = given.get("save_at")
+    longest = max([given["duration"], *given.get("earlier", ())])  # an event may have stopped it
     checked_settings(
-        given["duration"], given["step"], given["method"], given["impact_location"],
+        longest, given["step"], given["method"], given["impact_location"],
         save_every=given["save_every"], save_at=save_at, rtol=given.get("rtol"), atol=given.get("atol"),
         options=options,
     )  # fmt: skip
@@ -136,10 +137,8 @@ def _settings(given: dict, options: Options) -> dict:
         known["earlier"] = tuple(
             checks.number("earlier", one, above=0.0) for one in given["earlier"]
         )
-        if not np.all(np.diff((*known["earlier"], given["duration"])) > 0.0):
-            raise ValueError(
-                f"durations must increase, got {known['earlier']}, {given['duration']}"
-            )
+        if not np.all(np.diff((*known["earlier"], given["duration"])) != 0.0):
+            raise ValueError(f"durations must differ, got {known['earlier']}, {given['duration']}")
     return known
 
 

@@ -102,6 +102,10 @@ def go_on(solution, duration: float, progress, throw: bool):
     check_handling(progress, throw, 60.0)
     duration = checks.number("duration", duration, above=0.0, unit="s")
     checkpoint, kept = state_at_end(solution), solution._run
+    if hasattr(kept, "history"):
+        raise ValueError(
+            "the solution must be one of simulate to go on; take a Run on by Run.advance"
+        )
     if not solution.status.ended or checkpoint is None:
         raise ValueError(
             "the run must have reached its end to continue from there, got a run with the message: "

@@ -1,0 +1,1 @@
+"""Stopping a run at events, and taking one on step by step."""

@@ -1,0 +1,145 @@
+"""What a run is watched for: functions of time and state as in SciPy's `solve_ivp`, and conditions by name."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from carom import checks
+from carom.results.state import SystemState
+from carom.scene.bodies import Body, HalfSpace, StaticBody
+
+Event = str | Callable[[float, SystemState], float]
+AT_REST, FIRST_IMPACT = "at rest", "first impact of "
+ALLOWED = (
+    f'a function f(t, state), "{AT_REST}", or "{FIRST_IMPACT}A and B" with the names of two parts'
+)
+
+
+class Look(NamedTuple):
+    """A run between two steps, or at the end of a trial."""
+
+    run: Any
+    state: SystemState
+    struck: int  # impacts before the step
+
+
+class Condition(NamedTuple):
+    """Something that happens where `value` changes its sign."""
+
+    name: str  # for messages
+    value: Callable[[Look], float]
+    terminal: int  # the run ends when it has happened so often; 0: never
+    direction: float  # above 0: the value must rise; below: fall
+    when: Callable[[Look], float | None] = lambda look: None  # its time, from what was written down
+    rest: bool = False  # whether it must still be so a step later
+
+
+def conditions(events, scene) -> list[Condition]:
+    """Return the conditions that `events` of `simulate` stand for, checked.
+
+    Raises
+    ------
+    TypeError, ValueError
+        Naming the event and what is allowed.
+    """
+    alone = isinstance(events, str) or callable(events)
+    given = [events] if alone else events
+    if isinstance(given, (bytes, bytearray)) or not isinstance(given, Sequence):
+        raise TypeError(
+            f"events must be one or a list of these: {ALLOWED}; got {checks.shown(given)}"
+        )
+    return [_condition(f"events[{i}]", one, scene) for i, one in enumerate(given)]
+
+
+def _condition(name: str, event, scene) -> Condition:
+    if callable(event):
+        return _of_function(name, event)
+    if not isinstance(event, str):
+        raise TypeError(f"{name} must be {ALLOWED}; got {checks.shown(event)}")
+    shown = f'{name} ("{event}")'
+    if event == AT_REST:
+        return Condition(shown, _moves, 1, -1.0, rest=True)
+    if event.startswith(FIRST_IMPACT):
+        pair = _pair(name, event.removeprefix(FIRST_IMPACT), scene)
+        strikes = _Strikes(*pair)
+        return Condition(shown, strikes, 1, 1.0, strikes.when)
+    raise ValueError(f"{name} must be {ALLOWED}; got {checks.shown(event)}")
+
+
+def _of_function(name: str, function) -> Condition:
+    terminal = getattr(function, "terminal", None)
+    if terminal is None or isinstance(terminal, (bool, np.bool_)):
+        terminal = int(bool(terminal))
+    else:
+        terminal = checks.integer(f"terminal of {name}", terminal, least=0)
+    direction = checks.number(f"direction of {name}", getattr(function, "direction", 0.0))
+
+    def value(look: Look) -> float:
+        return checks.number(name, checks.call(name, function, look.state.t, look.state))
+
+    called = getattr(function, "__name__", "")
+    known = f" ({called})" if called.isidentifier() else ""
+    return Condition(f"{name}{known}", value, terminal, direction)
+
+
+def _moves(look: Look) -> float:
+    """Return 1 while something moves, -1 when nothing does."""
+    return 1.0 if math.isinf(look.run.clock["still"][0]) else -1.0
+
+
+class _Strikes:
+    """1 when a body has struck another one, or what never moves, in the present step; -1 before."""
+
+    def __init__(self, body: int, other: int, plane: int):
+        self.body, self.other, self.plane = body, other, plane
+
+    def __call__(self, look: Look) -> float:
+        return -1.0 if self.when(look) is None else 1.0
+
+    def when(self, look: Look) -> float | None:
+        """Return the time of the first such impact in the step, or None."""
+        run = look.run
+        rows = run.records.impact[look.struck : int(run.clock["struck"][0])]
+        if not len(rows):
+            return None
+        pairs = run.pairs
+        rows = rows[rows["contact"] < len(pairs.body)]  # stops of joints come after
+        contact = rows["contact"]
+        body, other, plane = pairs.body[contact], pairs.other[contact], pairs.plane[contact]
+        same = (body == self.body) & (other == self.other) & (plane == self.plane)
+        if self.other >= 0:
+            same |= (body == self.other) & (other == self.body)
+        return float(rows["time"][same].min()) if same.any() else None
+
+
+def _pair(name: str, words: str, scene) -> tuple[int, int, int]:
+    """Return the body, the other body and what never moves, -1 for none, of ``"A and B"`` by their names."""
+    parts = {part.name: part for part in (*scene.bodies, *scene.fixed)}
+    pieces = words.split(" and ")
+    splits = [(" and ".join(pieces[:i]), " and ".join(pieces[i:])) for i in range(1, len(pieces))]
+    found = [pair for pair in splits if pair[0] in parts and pair[1] in parts]
+    whole = f'{name} must be "{FIRST_IMPACT}A and B" with the names of two parts that touch'
+    if len(found) > 1:
+        raise ValueError(f"{whole}, got {words!r}, which may be {' or '.join(map(str, found))}")
+    if not found:
+        unknown = [one for one in (splits[0] if splits else (words,)) if one not in parts]
+        near = checks.nearest(unknown[0], parts) if unknown else ""
+        raise ValueError(f"{whole}, got {words!r}; the scene has {_listed(parts)}{near}")
+    first, second = (parts[one] for one in found[0])
+    if not isinstance(first, Body):
+        first, second = second, first
+    if first is second or not isinstance(first, Body):
+        raise ValueError(f"{whole}, got {words!r}, of which no two move against each other")
+    if isinstance(second, (HalfSpace, StaticBody)):
+        return first.index, -1, scene.fixed.index(second)
+    return first.index, second.index, -1
+
+
+def _listed(names) -> str:
+    """Return names, the first ten of them."""
+    known = list(map(repr, names))
+    return ", ".join([*known[:10], *(["..."] if len(known) > 10 else [])])

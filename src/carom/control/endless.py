@@ -1,0 +1,131 @@
+"""A run without an end: its steps are made as they are asked for, and its records grow."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from carom import checks
+from carom._compiled.record_arrays import Columns
+from carom.dynamics.adapt import FIRST, time_of_bounces
+from carom.run import Run
+from carom.status import Status
+from carom.stepping.grid import ALIKE, Grid, count, longest_step
+from carom.stepping.settings import MOST_STEPS
+
+BLOCK = 1024  # steps for which there is room at first
+PART = 65536  # rows for which room is made at a time
+MOST = 1e7  # longest steps in a call, where tolerances choose them
+
+
+class Endless(Run):
+    """A run that goes on for as long as it is asked to."""
+
+    def first_grid(self, duration: float) -> Grid:
+        """Return the first steps: all alike where the step is given, else none yet."""
+        how, none = self.how, (np.zeros(0), np.zeros(0, dtype=np.int64))
+        self.asked, self.base, self.wait, self.times = 0, 0.0, 0.0, 0
+        if how.step is not None:
+            last = min(BLOCK * how.save_every, 2**62)
+            return Grid(how.step, last, how.save_every, *none)
+        system, start, later = (
+            self.compiled.system,
+            self.compiled.start,
+            self.compiled.later is not None,
+        )
+        self.longest = longest_step(system, start, math.inf, self.options.max_step, later)
+        ends, saves = np.zeros(BLOCK + 1), np.ones(BLOCK + 1, dtype=np.int64)
+        return Grid(min(self.longest, 1.0), BLOCK, 0, ends, saves)
+
+    def go_on(self, until: int) -> Status:
+        """Go on to step number `until`, or to a failure: in parts, for which room is made."""
+        status, part = Status.SUCCESS, PART * max(1, self.grid.save_every)
+        while status is Status.SUCCESS and self.steps_done < until:
+            goal = min(until, self.steps_done + part)
+            self.make_room(1 + (goal - self.steps_done) // max(1, self.grid.save_every))
+            status = super().go_on(goal)
+        return status
+
+    def ask(self, duration: float | None) -> int:
+        """Have steps ready for so much time [s], and return the number of the last of them."""
+        step = self.how.step
+        if step is None:
+            if duration is None:
+                raise ValueError("duration must be given [s] where no step is")
+            most = MOST * self.longest if math.isfinite(self.longest) else None
+            return self.ask_time(
+                checks.number("duration", duration, above=0.0, most=most, unit="s")
+            )
+        steps = 1
+        if duration is not None:
+            most = MOST_STEPS * step
+            duration = checks.number("duration", duration, above=0.0, most=most, unit="s")
+            steps = round(duration / step)
+            if steps < 1 or abs(steps * step - duration) > 1e3 * ALIKE * duration:
+                raise ValueError(
+                    f"duration must be a whole multiple of the step of {step:g} s, got {duration!r}"
+                )
+        until = self.steps_done + steps
+        while until >= self.grid.last:
+            self.grid = self.grid._replace(last=2 * self.grid.last)
+            self.controls = self.controls._replace(duration=self.grid.last * step)
+        return until
+
+    def ask_time(self, wait: float) -> int:
+        """Have steps ready, none longer than the longest, that end so much later."""
+        done = self.steps_done
+        if wait == self.wait:
+            self.times += 1
+        else:
+            self.base, self.wait, self.times = self.reached, wait, 1
+        begin, end, n = self.reached, self.base + self.times * wait, count(wait, self.longest)
+        if not end > begin:
+            raise ValueError(f"duration must be more than round-off of the time, got {wait:g} s")
+        piece, until = wait / n, done + n
+        self.make_ends(until)
+        ends, saves = self.grid.ends, self.grid.saves
+        ends[done + 1 : until + 1] = begin + (end - begin) * np.arange(1, n + 1) / n
+        ends[until] = end
+        self.asked += 1
+        saves[done + 1 : until + 1] = 0
+        saves[until] = int(self.asked % self.how.save_every == 0)
+        if self.asked == 1 or piece > self.controls.interval:
+            self.aim(piece)
+        self.controls = self.controls._replace(duration=end)
+        return until
+
+    def aim(self, piece: float) -> None:
+        """Note how long a step of the run may be."""
+        system, tolerances = self.compiled.system, self.tolerances
+        assert tolerances is not None
+        bounces = time_of_bounces(system, tolerances, piece)
+        self.controls = self.controls._replace(step=bounces, interval=piece)
+        self.grid = self.grid._replace(interval=piece)
+        if self.asked == 1:
+            flies = system.bodies["ballistic"] == 1
+            self.work.body["ahead"] = np.where(flies, 1.0, FIRST) * piece
+
+    def make_ends(self, until: int) -> None:
+        """Make the list of the ends of steps longer where it is too short."""
+        known = len(self.grid.ends)
+        if until < known:
+            return
+        more = max(known, until + 1 - known)
+        ends = np.concatenate([self.grid.ends, np.zeros(more)])
+        saves = np.concatenate([self.grid.saves, np.zeros(more, dtype=np.int64)])
+        self.grid = self.grid._replace(ends=ends, saves=saves, last=len(ends) - 1)
+
+    def make_room(self, rows: int) -> None:
+        """Make the records of saved states longer where they have no room for so many more."""
+        saved = int(self.clock["saved"][0])
+        known = len(self.records.series)
+        if saved + rows < known:
+            return
+        longer = {}
+        for name in ("series", "state"):
+            old = getattr(self.records, name)
+            new = np.zeros((max(2 * known, saved + rows + 1), *old.shape[1:]), old.dtype)
+            new[:saved] = old[:saved]
+            longer[name] = new.view(Columns)
+        self.records = self.records._replace(**longer)

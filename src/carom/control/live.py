@@ -1,0 +1,153 @@
+"""A run that users take on themselves, step by step."""
+
+from __future__ import annotations
+
+import warnings
+
+from numpy.typing import ArrayLike
+
+from carom import arguments
+from carom.control.applied import Applied
+from carom.control.endless import BLOCK, Endless
+from carom.control.frozen import solution_of
+from carom.dynamics.methods import METHODS
+from carom.model.method import IMPLICIT
+from carom.options import Options
+from carom.results.solution import Solution
+from carom.results.state import SystemState
+from carom.scene.forces import AppliedForce
+from carom.scene.scene import Scene
+from carom.status import MistakeWarning, SimulationError, Status
+from carom.stepping.settings import check_scene, checked_settings, mistakes
+
+
+@arguments.known
+class Run:
+    """A motion that you take on step by step, in a loop of your own.
+
+    Parameters
+    ----------
+    scene : Scene
+        What moves. It is not changed.
+    step, method, rtol, atol, options
+        As of `simulate`.
+    save_every : int
+        Save each `save_every`-th state only: of all steps where the step is given, else of the ends of
+        `advance`. Default 1.
+
+    Raises
+    ------
+    TypeError, ValueError
+        As of `simulate`.
+
+    Examples
+    --------
+    A cart of 2 kg that a controller (gains 8 N/m and 6 N s/m) brings to x = 1 m:
+
+    >>> scene = carom.Scene(gravity=(0, 0, 0))
+    >>> cart = scene.add_body(carom.Box(0.4, 0.2, 0.1), mass=2.0, name="cart")
+    >>> motor = scene.add_force(carom.forces.Force((0, 0, 0)), cart, name="motor")
+    >>> run = carom.Run(scene, step=0.01)
+    >>> while run.time < 10.0:
+    ...     cart = run.state["cart"]
+    ...     run.set_force("motor", (8 * (1 - cart.position[0]) - 6 * cart.velocity[0], 0, 0))
+    ...     run.advance()
+    >>> print(run.state["cart"].position.round(6) + 0.0)
+    [1. 0. 0.]
+    >>> run.solution.position.shape
+    (1001, 1, 3)
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        *,
+        step: float | str = "auto",
+        method: str | None = None,
+        rtol: float | None = None,
+        atol: float | None = None,
+        save_every: int = 1,
+        options: Options | None = None,
+    ):
+        if not isinstance(scene, Scene):
+            raise TypeError(f"scene must be a carom.Scene, got {type(scene).__name__}")
+        settings = checked_settings(
+            1.0, step, method, save_every=save_every, rtol=rtol, atol=atol, options=options
+        )
+        check_scene(scene, settings)
+        if settings.step is not None:
+            settings = settings._replace(duration=BLOCK * settings.save_every * settings.step)
+        self._run = Endless(scene, settings)
+        implicit = METHODS[settings.method].kind == IMPLICIT
+        self._applied = Applied(self._run, implicit)
+        self._status, self._joints = Status.SUCCESS, {}
+        for mistake in mistakes(scene, settings):
+            warnings.warn(mistake, MistakeWarning, stacklevel=3)
+
+    @property
+    def time(self) -> float:
+        """Time that the run has come to [s], from 0 on."""
+        return self._run.reached
+
+    @property
+    def state(self) -> SystemState:
+        """The state at this time; it stays as it is when the run goes on."""
+        return SystemState(self._run, self._joints)
+
+    @property
+    def solution(self) -> Solution:
+        """All of the run up to this time; it stays as it is when the run goes on, and `simulate` refuses it."""
+        return solution_of(self._run, self._status, self._applied.history)
+
+    def set_force(self, force: AppliedForce | str, value: ArrayLike) -> None:
+        """Set a force of the scene to a new value, which it keeps until it is set again.
+
+        Its work is that of a load, `ledger.loads`.
+
+        Parameters
+        ----------
+        force : AppliedForce or str
+            A `forces.Force`, a `forces.Torque` or a `forces.JointForce` with a number, or its name.
+        value : (3,) or float
+            What takes the place of `vector` [N], [N m], or of `force` of a `JointForce` [N] or [N m].
+
+        Raises
+        ------
+        TypeError, ValueError
+            If it is no such force of the scene, or the value is not finite.
+        """
+        self._applied.set(force, value)
+
+    def advance(self, duration: float | None = None) -> None:
+        """Go on by so much time.
+
+        Parameters
+        ----------
+        duration : float, optional
+            [s]. Where the step is given: a whole multiple of it, by default one step.
+
+        Raises
+        ------
+        ValueError
+            For another duration.
+        SimulationError
+            If the run fails; its `solution` holds all up to there.
+        """
+        run = self._run
+        if self._status is Status.SUCCESS:
+            until = run.ask(duration)
+            try:
+                self._status = run.go_on(until)
+            except KeyboardInterrupt:
+                run.go_back()
+                raise
+            if self._status is Status.INTERRUPTED:
+                self._status = Status.SUCCESS
+                run.go_back()
+                raise KeyboardInterrupt
+        if self._status is not Status.SUCCESS:
+            solution = self.solution
+            raise SimulationError(solution.message, solution) from run.failure
+
+    def __repr__(self) -> str:
+        return f"<Run: {len(self._run.bodies)} bodies at t = {self.time:.9g} s>"

@@ -1,0 +1,210 @@
+"""A run that is watched for events: after each step, and again within a step in which one happened.
+
+Where a value has changed its sign the run is put back to the start of the step, and steps from there to trial
+times, which Brent's method chooses: so the state at the event is one of the motion itself. Then the step is
+taken once more as a whole, with the same bits as without a watch.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from carom.control.conditions import Condition, Look
+from carom.control.snapshot import Snapshot
+from carom.model.records import room_for_one
+from carom.results.solution import Solution
+from carom.results.state import SystemState
+from carom.run import Run
+from carom.status import Status
+from carom.stepping.grid import cut_grid
+
+ROUND_OFF = 4.0 * float(np.finfo(float).eps)  # of a time: no interval is halved that is shorter
+LEAST = 1e-300  # stands for a value of exactly 0, which counts as changed
+
+
+class Happened(NamedTuple):
+    """An event, and the state at its time."""
+
+    condition: int
+    state: SystemState
+
+
+class _Failed(Exception):
+    """A trial that did not reach its time."""
+
+    def __init__(self, status: Status):
+        super().__init__(status.message)
+        self.status = status
+
+
+class Watched:
+    """A `Run` with conditions: what takes a run to its end takes this one."""
+
+    def __init__(self, run: Run, conditions: list[Condition]):
+        self.run, self.conditions = run, conditions
+        self.before = Snapshot(run)
+        self.grids = run.grid, run.controls
+        self.happened: list[Happened] = []
+        self.times = [0] * len(conditions)  # how often each has happened
+        self.stopped_by, self.joints = "", {}
+        self.began, self.struck = 0.0, 0
+        look = self.look()
+        self.values = [1.0 if c.rest else c.value(look) for c in conditions]  # it is yet to rest
+
+    @property
+    def steps(self) -> int:
+        """Number of steps to the end."""
+        return self.run.steps
+
+    @property
+    def steps_done(self) -> int:
+        """Number of finished steps."""
+        return self.run.steps_done
+
+    @property
+    def failure(self) -> BaseException | None:
+        """What a function of the user's has raised."""
+        return self.run.failure
+
+    def go_back(self) -> None:
+        """Go back to the start of a step in the middle of which the run was interrupted."""
+        self.run.go_back()
+
+    def go_on(self, until: int) -> Status:
+        """Go on to step number `until`, to an event that ends the run, or to a failure."""
+        run, status = self.run, Status.SUCCESS
+        while status is Status.SUCCESS and run.steps_done < until:
+            self.began, self.struck = run.reached, int(run.clock["struck"][0])
+            self.before.take()
+            status = run.go_on(run.steps_done + 1)
+            if status is Status.SUCCESS:
+                status = self.review()
+        return status
+
+    def solution(self, status: Status) -> Solution:
+        """Return the solution, with the events that happened."""
+        if status is Status.STOPPED:
+            judged = self.run.judged(Status.SUCCESS)
+            status = status if judged is Status.SUCCESS else judged
+        own = [
+            [one.state for one in self.happened if one.condition == i]
+            for i in range(len(self.times))
+        ]
+        return replace(
+            self.run.solution(status),
+            t_events=[np.array([state.t for state in states]) for states in own],
+            state_events=own,
+            _stopped_by=self.stopped_by,
+        )
+
+    def look(self) -> Look:
+        """Return the run as conditions see it."""
+        return Look(self.run, SystemState(self.run, self.joints), self.struck)
+
+    def review(self) -> Status:
+        """Look at the step that was just taken; go back before it where that fails."""
+        try:
+            return self.find()
+        except _Failed as error:
+            self.put_back()
+            return error.status
+        except KeyboardInterrupt:
+            self.put_back()
+            raise
+        except Exception as error:  # of a function of the user's
+            self.put_back()
+            self.run.compiled.functions.failed = error
+            return Status.FUNCTION_FAILED
+
+    def find(self) -> Status:
+        """Find the events of the last step, and stop at the first that ends the run."""
+        look, step = self.look(), self.run.steps_done
+        old, self.values = self.values, [c.value(look) for c in self.conditions]
+        changed = [i for i, c in enumerate(self.conditions) if crosses(c, old[i], self.values[i])]
+        if not changed:
+            return Status.SUCCESS
+        near = [self.conditions[i].when(look) for i in changed]
+        found = []
+        for i, guess in zip(changed, near):
+            if self.conditions[i].rest and not self.still_rests(step, look.state.t):
+                self.values[i] = 1.0
+                continue
+            found.append(Happened(i, self.locate(i, step, old[i], look.state, guess)))
+        found.sort(key=lambda one: one.state.t)
+        for one in found:
+            self.happened.append(one)
+            self.times[one.condition] += 1
+            if self.times[one.condition] == self.conditions[one.condition].terminal:
+                return self.stop(self.conditions[one.condition], step, one.state.t)
+        self.put_back()
+        return self.run.go_on(step)
+
+    def locate(
+        self, i: int, step: int, first: float, end: SystemState, guess: float | None
+    ) -> SystemState:
+        """Return the first state at which condition i has another sign than at the start of the step."""
+        from scipy.optimize import brentq
+
+        condition, side, best = self.conditions[i], math.copysign(1.0, first), end
+        known = {self.began: first, end.t: self.values[i] or -side * LEAST}
+
+        def value(t: float) -> float:
+            nonlocal best
+            if t not in known:
+                self.put_back()
+                self.go_to(step, t)
+                look = self.look()
+                known[t] = condition.value(look) or -side * LEAST
+                if known[t] * side < 0.0 and t < best.t:
+                    best = look.state
+            return known[t]
+
+        low, high, shortest = self.began, end.t, ROUND_OFF * end.t
+        for t in () if guess is None else (guess + shortest, guess - shortest):
+            if low < t < high:
+                low, high = (t, high) if value(t) * side > 0.0 else (low, t)
+        brentq(value, low, high, xtol=shortest, rtol=np.float64(ROUND_OFF), maxiter=500)
+        return best
+
+    def still_rests(self, step: int, end: float) -> bool:
+        """Return whether nothing moves after one step more: a body may turn round at the end of a step."""
+        run = self.run
+        self.put_back()
+        status = run.go_on(step)
+        if status is Status.SUCCESS:
+            run.records = room_for_one(run.records, int(run.clock["saved"][0]))
+            self.go_to(step + 1, end + run.grid.interval)
+            return self.run.clock["still"][0] <= end
+        raise _Failed(status)
+
+    def stop(self, condition: Condition, step: int, t: float) -> Status:
+        """End the run at time t, within this step."""
+        run, how = self.run, self.run.how
+        self.put_back()
+        self.go_to(step, t)
+        run.how = how._replace(duration=t, earlier=(*how.earlier, how.duration))
+        self.stopped_by = condition.name
+        return Status.STOPPED
+
+    def go_to(self, step: int, t: float) -> None:
+        """Take the run to a step that ends at time t."""
+        run, (grid, controls) = self.run, self.grids
+        run.grid, run.controls = cut_grid(grid, step, t), controls._replace(duration=t)
+        status = run.go_on(step)
+        if status is not Status.SUCCESS:
+            raise _Failed(status)
+
+    def put_back(self) -> None:
+        """Put the run back to the start of the step, with the steps that it was to take."""
+        self.before.put_back()
+        self.run.grid, self.run.controls = self.grids
+
+
+def crosses(condition: Condition, old: float, new: float) -> bool:
+    """Return whether a value has come to zero, or past it, in the direction that counts."""
+    rises, falls = old < 0.0 <= new, old > 0.0 >= new
+    return (rises and condition.direction >= 0.0) or (falls and condition.direction <= 0.0)

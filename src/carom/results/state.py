@@ -1,0 +1,113 @@
+"""The state of a scene at one time, as functions of the user's see it."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from carom import checks
+from carom.geometry import quaternion
+from carom.results.joint_coordinates import Motion, coordinates_of, of_scene
+from carom.results.joint_now import Quick, coordinates, quick
+from carom.scene.bodies import Body
+
+_NONE = np.array([1.0, 0.0, 0.0, 0.0])
+
+
+class BodyState(NamedTuple):
+    """Place and motion of one body at one time, in world axes."""
+
+    position: np.ndarray  #: (3,) mass centre [m]
+    orientation: np.ndarray  #: (4,) unit quaternion (w, x, y, z), body to world
+    velocity: np.ndarray  #: (3,) [m/s]
+    angular_velocity: np.ndarray  #: (3,) [rad/s]
+
+
+class SystemState:
+    """The N bodies of a scene at one time; ``state["die"]`` is one of them, a `BodyState`. Read only.
+
+    Attributes
+    ----------
+    t : float
+        [s]
+    kinetic_energy, potential_energy : float
+        As of `Solution` [J].
+    """
+
+    def __init__(self, run, joints: dict[int, Quick | None] | None = None):
+        self._joints = {} if joints is None else joints  # what was asked for before
+        clock, rows = run.clock, run.now.view(np.ndarray).copy()
+        rows.flags.writeable = False
+        self._rows, self._scene, self._to_principal = rows, run.scene, run.to_principal
+        self.t = float(clock["now"][0])
+        self.kinetic_energy = float(clock["kinetic"][0])
+        self.potential_energy = float(clock["potential"][0])
+
+    @property
+    def position(self) -> np.ndarray:
+        """Mass centres (N, 3), world [m]."""
+        return self._rows["x"]
+
+    @property
+    def velocity(self) -> np.ndarray:
+        """Of the mass centres (N, 3), world axes [m/s]; at the time of an impact after it."""
+        return self._rows["v"]
+
+    @property
+    def angular_velocity(self) -> np.ndarray:
+        """World axes (N, 3) [rad/s]; at the time of an impact after it."""
+        return self._rows["w"]
+
+    @cached_property
+    def orientation(self) -> np.ndarray:
+        """Unit quaternions (N, 4), body to world."""
+        if (self._to_principal == _NONE).all():
+            return self._rows["Q"]
+        turned = quaternion.conjugate(self._to_principal)
+        out = quaternion.multiply(np.array(self._rows["Q"]), turned)
+        out.flags.writeable = False
+        return out
+
+    @property
+    def total_energy(self) -> float:
+        """Kinetic plus potential energy [J]."""
+        return self.kinetic_energy + self.potential_energy
+
+    def __getitem__(self, name: str) -> BodyState:
+        """Return the state of a body, by its name."""
+        try:
+            part = self._scene[name]
+        except KeyError as error:
+            raise KeyError(f"state: {error.args[0]}") from None
+        if not isinstance(part, Body):
+            raise KeyError(f"state: {name!r} must be a body, got {checks.shown(part)}")
+        k = part.index
+        return BodyState(
+            self.position[k], self.orientation[k], self.velocity[k], self.angular_velocity[k]
+        )
+
+    def joint_coordinates(self, joint) -> tuple[np.ndarray, np.ndarray]:
+        """Return coordinates and rates (n,) of a joint, as `Solution.joint_coordinates` does.
+
+        Angles are from -pi to pi, but for those of a `Screw`: one time by itself knows no whole turns.
+
+        Parameters
+        ----------
+        joint : Joint or str
+            A joint of the scene, or its name.
+        """
+        joint = of_scene(self._scene, joint)
+        if joint.index not in self._joints:
+            self._joints[joint.index] = quick(joint)
+        made = self._joints[joint.index]
+        if made is not None:
+            return coordinates(made, self)
+        at_once = self.position, self.orientation, self.velocity, self.angular_velocity
+        motion = Motion(np.array([self.t]), *(a[None] for a in at_once))
+        q, rate = coordinates_of(motion, joint)
+        return q[0], rate[0]
+
+    def __repr__(self) -> str:
+        return f"<SystemState: {len(self._rows)} bodies at t = {self.t:.9g} s>"
