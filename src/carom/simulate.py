@@ -114,14 +114,15 @@ def simulate(
         these times, so the states are computed, not interpolated. The first and the last state are saved too.
         Default: every step if `step` is a number, otherwise 200 states at equal times.
     events : callable, str, or a list of these, optional
-        What to look for, as in SciPy's `solve_ivp`: functions ``f(t, state) -> float`` of the time and the
-        `SystemState`, whose zeros are found wherever the sign differs from that of the step before. One with
-        the attribute ``terminal = True`` ends the run (a number n: the n-th time); with ``direction`` above 0
-        only rises count, below 0 only falls. ``"at rest"`` ends the run when nothing moves any more: from then
-        on all velocities are 0. ``"first impact of A and B"``, two parts by their names, ends it right after
-        that impact. Times are exact to round-off, and states are those of the motion. What comes and goes
-        within a step is not seen (with tolerances: take a shorter `Options.max_step`); what is 0 at the start
-        has not happened. See `Solution.t_events`, `Solution.state_events`. (How to: stop a run, or control it.)
+        Events to detect, as in SciPy's `solve_ivp`: functions ``f(t, state) -> float`` of the time and the
+        `SystemState`. An event is a time at which the value crosses zero. A function with the attribute
+        ``terminal = True`` ends the run (with a number n: at the n-th event); with the attribute ``direction``
+        above 0 only rising crossings count, below 0 only falling ones. ``"at rest"`` ends the run when all
+        velocities are and stay 0. ``"first impact of A and B"``, with the names of two parts, ends it right
+        after that impact. Times are exact to round-off, and states are computed, not interpolated. Two
+        crossings within one step are not detected (with tolerances: take a shorter `Options.max_step`), and a
+        value that is 0 at the start is no event. See `Solution.t_events`, `Solution.state_events`. (How to:
+        stop a run, or control it.)
     progress : bool or callable, optional
         True shows a progress bar (from tqdm if it is installed, otherwise plain text). A function is called
         with (number of steps done, total number of steps).
