@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -50,7 +51,12 @@ _WHAT = {
 }
 
 
-def beyond(i: int, watch: np.record, times: float = 1.0) -> bool:
+def numbers(watch) -> SimpleNamespace:
+    """Return the fields of a record as Python numbers: reading them one by one from the record is slow."""
+    return SimpleNamespace(**dict(zip(watch.dtype.names, watch.item())))
+
+
+def beyond(i: int, watch: SimpleNamespace | np.record, times: float = 1.0) -> bool:
     """Return whether the energy error of a kind exceeds `times` the tolerance."""
     allowed = watch.tolerance * watch.exchanged * times + ROUND_OFF * watch.size
     return not abs(watch.amount[i]) <= allowed
@@ -58,8 +64,9 @@ def beyond(i: int, watch: np.record, times: float = 1.0) -> bool:
 
 def judge(watch: np.record) -> Status:
     """Return SUCCESS or INACCURATE for a run at its end, by its energy, its gaps and its contact problems."""
-    off = beyond(ALL, watch, INACCURATE) or not watch.depth <= TOO_DEEP
-    off = off or not watch.unsolved <= TOO_POOR * watch.speed
+    known = numbers(watch)
+    off = beyond(ALL, known, INACCURATE) or not known.depth <= TOO_DEEP
+    off = off or not known.unsolved <= TOO_POOR * known.speed
     return Status.INACCURATE if off else Status.SUCCESS
 
 
@@ -137,8 +144,9 @@ def watched(t, ledger: Ledger, given, tolerance: float) -> np.record:
 
 def energy_error(watch: np.record) -> float:
     """Return the largest energy error as a fraction of the largest energy exchanged; round-off counts as 0."""
-    amount, of = abs(float(watch.amount[ALL])), float(watch.exchanged)
-    if amount <= ROUND_OFF * float(watch.size):
+    known = numbers(watch)
+    amount, of = abs(float(known.amount[ALL])), known.exchanged
+    if amount <= ROUND_OFF * known.size:
         return 0.0
     return amount / of if of > 0.0 else np.inf
 

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
+from carom.model import records as r
 from carom.results.accuracy import energy_error
 from carom.results.assemble import to_scene_axes
 from carom.run import Run
@@ -46,19 +49,24 @@ def no_outcomes(runs: int, bodies: int) -> np.ndarray:
     return rows
 
 
-def write_outcome(run: Run, status: Status, row: np.void) -> None:
-    """Write the outcome of a run."""
-    now = run.now
-    clock = dict(
-        zip(run.clock.dtype.names or (), run.clock[0].item())
-    )  # fields one by one are slow
-    struck = clock["struck"]
-    row["status"], row["t"], row["impacts"] = int(status), clock["now"], struck
-    row["rest_time"] = clock["still"] if np.isfinite(clock["still"]) else np.nan
-    row["first_impact"] = np.min(run.records.impact["time"][:struck]) if struck else np.nan
-    row["impact_loss"], row["friction_loss"] = -clock["impacts"], -clock["friction"]
-    row["bounce_loss"], row["load_work"] = -clock["bounces"], clock["loads"]
-    row["energy_error"] = energy_error(run.watch[0])
-    row["kinetic_energy"] = clock["kinetic"]
-    row["position"], row["velocity"], row["angular_velocity"] = now.x, now.v, now.w
-    row["orientation"] = to_scene_axes(now.Q[None], run.compiled.to_principal)[0]
+def outcome(run: Run, status: Status) -> tuple:
+    """Return the row of a run at its end, in the order of `outcome_type`."""
+    now, clock, watch = run.now, r.as_numbers(run.clock), run.watch[0]
+    struck, still = clock["struck"], clock["still"]
+    return (
+        int(status),
+        clock["now"],
+        still if math.isfinite(still) else math.nan,
+        struck,
+        float(run.records.impact["time"][:struck].min()) if struck else math.nan,
+        clock["kinetic"],
+        -clock["impacts"],
+        -clock["friction"],
+        -clock["bounces"],
+        clock["loads"],
+        energy_error(watch),
+        now["x"],
+        to_scene_axes(now["Q"][None], run.compiled.to_principal)[0],
+        now["v"],
+        now["w"],
+    )

@@ -15,7 +15,7 @@ from carom.run import Run
 from carom.scene.scene import Scene
 from carom.stepping.settings import Settings, check_scene
 from carom.studies.ensembles.again import Again
-from carom.studies.ensembles.outcome import REFUSED, no_outcomes, write_outcome
+from carom.studies.ensembles.outcome import REFUSED, no_outcomes, outcome
 from carom.studies.ensembles.targets import Target
 
 
@@ -64,7 +64,7 @@ def one(plan: Plan, values: dict[str, np.ndarray], k: int, part: Part) -> None:
     if len(run.now) != plan.bodies:
         raise ValueError(f"scene must have {plan.bodies} bodies, as in run 0, got {len(run.now)}")
     status = run.judged(run.go_on(run.steps))
-    write_outcome(run, status, part.outcomes[k])
+    part.outcomes[k] = outcome(run, status)
     if status != 0:
         part.failures[part.first + k] = f"{status.message} (reached t = {run.reached:.9g} s)"
         if status.ended:
