@@ -35,7 +35,9 @@ class Replay:
 
         known = solution._run
         self.solution = solution
-        self.states = known.records.state[: len(solution.t)]  # a run that was stopped has room for more
+        self.states = known.records.state[
+            : len(solution.t)
+        ]  # a run that was stopped has room for more
         self.run = Run(solution.scene, settings_of(solution.settings, known.options))
         self.grid = self.run.grid
         relations = self.run.compiled.system.relations
