@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.dynamics.reactions import saved_turns
+from carom.model import records as r
 from carom.model.kept import Kept
 from carom.results.dense_output import curves
 from carom.status import Status
@@ -34,16 +35,14 @@ class Replay:
         from carom.stepping.settings import settings_of
 
         known = solution._run
-        self.solution = solution
-        self.states = known.records.state[
-            : len(solution.t)
-        ]  # a run that was stopped has room for more
+        written = r.trimmed(known.records, known.clock)
+        self.solution, self.states = solution, written.state
         self.run = Run(solution.scene, settings_of(solution.settings, known.options))
         self.grid = self.run.grid
         relations = self.run.compiled.system.relations
-        self.turns = np.zeros((len(solution.t), len(relations.coordinates)))
+        self.turns = np.zeros((len(written.state), len(relations.coordinates)))
         if self.turns.size:
-            saved_turns(self.run.compiled.system, solution.t, self.states, self.turns)
+            saved_turns(self.run.compiled.system, written.series.t, written.state, self.turns)
         self.kept = Kept(self.run.memory)
         self.size = self.run.bodies["extent"]
         rtol, atol = self.run.tolerances or (RTOL, RTOL * float(np.min(self.size)))
