@@ -196,7 +196,7 @@ class Run:
         )  # fmt: skip
 
     @property
-    def parts(self) -> tuple:
+    def memory(self) -> tuple:
         """All that a step goes on from.
 
         Not the records, which are written from the top in a new run, nor the workspace of impacts, groups and

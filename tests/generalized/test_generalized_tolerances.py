@@ -50,3 +50,17 @@ def test_methods_without_an_estimate_need_a_step():
     system = double_pendulum((1.2, -0.4), (0.0, 0.0))[0]
     with pytest.raises(ValueError, match=r"step must be .* method='rk4'"):
         carom.simulate(system, 1.0, method="rk4")
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_states_between_saved_ones(name):
+    """The same run with every state saved and with every fourth: the states that were left out are found."""
+    make, duration = CASES[name]
+    whole, few = (carom.simulate(make(), duration, save_every=n) for n in (1, 4))
+    times = whole.t[1:-1:7]
+    q, v = few.evaluate(times)
+    assert np.abs(q - whole.q[1:-1:7]).max() < 1e-9
+    assert np.abs(v - whole.v[1:-1:7]).max() < 1e-7
+    at = few.impacts.time[0] if len(few.impacts) else few.t[3]
+    before, after = (few.evaluate(at, side)[1] for side in ("left", "right"))
+    assert (len(few.impacts) > 0) != np.array_equal(before, after)

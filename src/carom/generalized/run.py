@@ -53,11 +53,16 @@ def grid_of(settings: Settings, touches: bool) -> Grid:
 
 
 class GeneralizedRun:
-    """A run of a `GeneralizedSystem`: state, records and workspace."""
+    """A run of a `GeneralizedSystem`: state, records and workspace.
 
-    def __init__(self, system: GeneralizedSystem, settings: Settings):
+    It begins where the system does, or at a `start`: a time, and the state (q, v) of a run there.
+    """
+
+    def __init__(
+        self, system: GeneralizedSystem, settings: Settings, start: tuple[float, np.ndarray] | None = None
+    ):  # fmt: skip
         options = settings.options
-        self.user, self.options = system, options
+        self.user, self.options, self.how = system, options, settings
         grid = grid_of(settings, len(system.contacts) > 0)
         order = METHODS[settings.method].order if settings.adapts else 0
         atol = settings.rtol if settings.atol is None else settings.atol
@@ -75,8 +80,10 @@ class GeneralizedRun:
         self.method = make_method(settings.method, options, settings.adapts)
         self.active, self.work = new_active_set(C), new_work(n, h, k, C, len(self.method.b))
         self.motion = Motion(self.system, self.method, self.active, self.work)
-        self.x = np.concatenate([system.position, system.velocity])
+        begin, x = start or (0.0, np.concatenate([system.position, system.velocity]))
+        self.x = x.copy()
         self.clock = table(CLOCK, 1)
+        self.clock["now"] = begin
         self.clock["ahead"] = FIRST * grid.interval
         rows = grid.rows + 2
         self.series, self.states = table(SERIES, rows), np.zeros((rows, 2 * n))
@@ -86,7 +93,8 @@ class GeneralizedRun:
         self.counts = {"located events": 0, "impacts": 0, "holds": 0}
         self.failure: BaseException | None = None
         self.at_once, self.last, self.in_step = 0, -1.0, -1
-        self.check_start()
+        if start is None:
+            self.check_start()
         self.start_code = self.contacts.resolve(0, -1)
         self.save_now()
 

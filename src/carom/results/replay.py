@@ -34,14 +34,17 @@ class Replay:
         from carom.stepping.settings import settings_of
 
         known = solution._run
-        self.solution, self.states = solution, known.records.state
+        self.solution = solution
+        self.states = known.records.state[
+            : len(solution.t)
+        ]  # a run that was stopped has room for more
         self.run = Run(solution.scene, settings_of(solution.settings, known.options))
         self.grid = self.run.grid
         relations = self.run.compiled.system.relations
         self.turns = np.zeros((len(solution.t), len(relations.coordinates)))
         if self.turns.size:
             saved_turns(self.run.compiled.system, solution.t, self.states, self.turns)
-        self.kept = Kept(self.run.parts)
+        self.kept = Kept(self.run.memory)
         self.size = self.run.bodies["extent"]
         rtol, atol = self.run.tolerances or (RTOL, RTOL * float(np.min(self.size)))
         self.allowed = FACTOR * (atol + rtol * self.size)
@@ -83,11 +86,11 @@ class Replay:
     def go(self, i: int, until: float) -> bool:
         """Continue from saved state i to a time; return whether it was reached."""
         run, begin = self.run, self.solution.t[i]
-        if self.kept.is_of(run.parts):
+        if self.kept.is_of(run.memory):
             self.kept.restore()
         else:  # contacts have come, or room for them
             run.renew()
-            self.kept = Kept(run.parts)
+            self.kept = Kept(run.memory)
         run.now[:] = self.states[i]
         run.clock["now"] = begin
         if self.turns.size:

@@ -31,7 +31,7 @@ class Again:
             self.run = Run(scene, settings)
             start = self.run.compiled.start.copy()
             self.first = start.view(Columns)  # `Run.now` is written to
-            self.kept = Kept(self.run.parts)
+            self.kept = Kept(self.run.memory)
 
     def start(self, values: dict[str, np.ndarray]) -> Run:
         """Return the run, ready to start with these values, one for each name.
@@ -45,12 +45,12 @@ class Again:
             return Run(changed(self.scene, self.targets, values), self.settings)
         run = self.run
         # contacts may have come, or room for them, while it ran
-        if self.kept.is_of(run.parts):
+        if self.kept.is_of(run.memory):
             self.kept.restore()
         else:
             run.compiled.start[:] = self.first
             run.renew()
-            self.kept = Kept(run.parts)
+            self.kept = Kept(run.memory)
         run.clock.saved = 0
         run.compiled.functions.failed = None  # what a function of the user's raised in the last run
         self.write(values)
