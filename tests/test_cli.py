@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -163,6 +164,19 @@ def test_a_run_that_fails_is_kept_and_code_1(made, capsys):
     assert not carom.Solution.load(made / "failed.h5").success
 
 
+def test_a_result_that_cannot_be_saved_is_a_failure(made, capsys, monkeypatch):
+    def full(*_, **__):
+        raise OSError("no space")
+
+    monkeypatch.setattr("carom.io.files.keeper.write", full)
+    assert (
+        main(["simulate", str(made / "die.py"), "-o", str(made / "lost.h5"), "-d", "0.1"]) == FAILED
+    )
+    found = capsys.readouterr()
+    assert "could not be saved: no space" in found.err
+    assert "lost.h5" not in found.out
+
+
 def test_interrupted_simulate_keeps_the_run_and_resumes(made, capsys, monkeypatch):
     """The progress function stands for Ctrl-C: half-way, as a signal to this process."""
     out, straight = made / "long.h5", made / "straight.h5"
@@ -228,6 +242,7 @@ def test_info_is_what_the_solution_says(made, capsys):
     found = json.loads(capsys.readouterr().out)
     assert found["impacts"]["count"] == len(solution.impacts)
     assert found["impacts"]["energy"] == pytest.approx(solution.impacts.energy_change.sum())
+    assert found["held"]["intervals"] == len(solution.contacts.start)
     assert found["energy"]["start"] == solution.total_energy[0]
     assert found["bodies"][0]["name"] == "die"
     assert found["source"] == f"carom {carom.__version__}"
@@ -236,6 +251,13 @@ def test_info_is_what_the_solution_says(made, capsys):
     out = capsys.readouterr().out
     assert all(word in out for word in ("SUCCESS", "Box(lx=0.02", "greatest residual", "10.1007"))
     assert "\x1b" not in out  # no colours where nobody looks
+
+
+def test_info_of_a_run_that_touches_nothing(made, capsys):
+    assert main(["simulate", str(made / "die.py"), "-o", str(made / "up.h5"), "-d", "0.005"]) == OK
+    capsys.readouterr()
+    assert main(["info", str(made / "up.h5")]) == OK
+    assert re.search(r"persistent contact +0 intervals, 0 points", capsys.readouterr().out)
 
 
 def test_what_is_not_there_is_one_line(made, capsys, monkeypatch):

@@ -49,6 +49,16 @@ ELSEWHERE = {
     "radius": "r R",
     "length": "height h L",
 }
+#: what is stated in another place
+_OTHER_PLACE = {
+    "friction": "state it for a contact, add_contact(..., friction=) or set_contact_default(friction=), "
+                "or in a Material",
+    "restitution": "state it for a contact, add_contact(..., restitution=) or "
+                   "set_contact_default(restitution=), or in a Material",
+    "fixed": "a body that never moves is made by add_static",
+    "static": "a body that never moves is made by add_static",
+}  # fmt: skip
+ALIKE = 0.7  # of two names, from 0 to 1, where one may be a slip for the other
 _MEANT: dict[str, list[str]] = {}
 for _ours, _others in ELSEWHERE.items():
     for _other in _others.split():
@@ -75,15 +85,20 @@ def _guarded(function: Any, shown: str) -> Any:
     @wraps(function)
     def guarded(*args, **kwargs):
         if not kwargs.keys() <= has:
-            raise TypeError(_unknown(shown, [n for n in names if n != "self"], kwargs, has))
+            raise TypeError(
+                _unknown(shown, [n for n in names if n not in ("self", "cls")], kwargs, has)
+            )
         missing = [n for n in required if n not in by_place[: len(args)] and n not in kwargs]
         if missing:
-            call = f"{shown}({', '.join(name for name in required if name != 'self')})"
+            own = [name for name in required if name not in ("self", "cls")]
+            call = f"{shown}({', '.join(n if n in by_place else f'{n}=...' for n in own)})"
             raise TypeError(f"{shown} needs {' and '.join(missing)}: {call}")
         if len(args) > most:
-            firsts = ", ".join(name for name in by_place if name != "self")
+            firsts = ", ".join(name for name in by_place if name not in ("self", "cls"))
             rest = f"; give the others by name, for example {by_name[0]}=" if by_name else ""
-            raise TypeError(f"{shown} takes only {firsts or 'nothing'} without a name{rest}")
+            if not firsts:
+                raise TypeError(f"{shown} takes its arguments by name, for example {by_name[0]}=")
+            raise TypeError(f"{shown} takes only {firsts} without a name{rest}")
         return function(*args, **kwargs)
 
     return guarded
@@ -92,6 +107,16 @@ def _guarded(function: Any, shown: str) -> Any:
 def _unknown(shown: str, names: list[str], given, has) -> str:
     unknown = next(name for name in given if name not in has)
     meant = [name for name in _MEANT.get(unknown, ()) if name in has]
-    meant = meant or get_close_matches(unknown, names, n=1)
+    if not meant and unknown in _OTHER_PLACE:
+        return f"{shown} has no argument {unknown}=; {_OTHER_PLACE[unknown]}"
+    meant = meant or get_close_matches(unknown, names, n=1, cutoff=ALIKE)
     hint = f"it is called {meant[0]}=" if meant else f"it has {', '.join(names)}"
     return f"{shown} has no argument {unknown}=; {hint}"
+
+
+def unknown_member(module: str, name: str, members, elsewhere: dict[str, str]) -> AttributeError:
+    """Return the error for a name that a module does not have; `elsewhere` has names from other engines."""
+    meant = elsewhere.get(name.lower())
+    near = [meant] if meant else get_close_matches(name, members, n=1)
+    hint = f"did you mean {near[0]!r}?" if near else f"it has {', '.join(members)}"
+    return AttributeError(f"{module} has no {name!r}; {hint}")

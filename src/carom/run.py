@@ -352,9 +352,11 @@ def check_stops(scene: Scene, compiled, start, work, options: Options) -> None:
     for stop, gap in zip(scene.stops, gaps[first:, 0]):
         extent = system.contacts.extent[first + stop.index]
         if not gap >= -options.constraint_tolerance * extent:
+            side = "lower" if stop.side > 0.0 else "upper"
+            unit = "rad" if stop.joint.definition.coordinates[stop.coordinate] == "turn" else "m"
             raise ValueError(
-                f"stop {stop.name!r} of {stop.joint.name!r} must not be exceeded at the start, got a gap of "
-                f"{gap:.6g}"
+                f"stop {stop.name!r} of {stop.joint.name!r} must not be exceeded at the start, where the "
+                f"coordinate is 0 (unless the joint has frames), got {side}={stop.end:g} {unit}"
             )
 
 

@@ -1,6 +1,7 @@
 """Intervals of contact that stays, from the events of a run."""
 
 import numpy as np
+import pytest
 
 import carom
 
@@ -67,3 +68,21 @@ def test_intervals_of_a_thrown_die_follow_each_other():
             np.isclose(c.start, s.t[k], atol=1e-12) | np.isclose(c.end, s.t[k], atol=1e-12)
         )
         assert edge or np.any(now) == (s.contact_mode[k, 0] > 0)
+
+
+def test_tables_are_counted_by_rows():
+    """`len` of a table is the number of its rows, not of its columns."""
+    scene = carom.Scene()
+    floor = scene.add_half_space((0, 0, 0), (0, 0, 1))
+    ball = scene.add_body(carom.Sphere(0.1), mass=1.0, position=(0, 0, 0.1), velocity=(1, 0, 0))
+    scene.add_contact(ball, floor, restitution=0.0, friction=0.1)
+    slides = carom.simulate(scene, 0.1, step=0.01)
+    assert (len(slides.contacts), len(slides.events), len(slides.forces)) == (1, 1, 11)
+    assert slides.contacts[0]["mode"] == "slipping"
+    assert [row["kind"] for row in slides.events] == ["held"]
+    assert repr(slides.contacts).startswith(
+        "<ContactTable: 1 rows\n  contact = 0  feature = 0  start = 0"
+    )
+    assert repr(slides.forces).endswith("... 3 more>")
+    with pytest.raises(IndexError, match="there is no row 1: the table has 1"):
+        slides.contacts[1]

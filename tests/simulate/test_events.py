@@ -400,3 +400,10 @@ def test_bad_input(events, kind, words):
 def test_what_events_do_not_go_with(tmp_path):
     with pytest.raises(ValueError, match="save must be left out with events"):
         carom.simulate(thrown(), 0.3, events=[apex], save=tmp_path / "run.nc")
+
+
+def test_a_run_says_which_events_did_not_happen():
+    waits = carom.simulate(thrown(), 0.1, events=["at rest", lambda t, state: t - 0.05, apex])
+    assert waits.status is carom.Status.SUCCESS
+    assert waits.message == "The run reached its end. events[0], events[2] did not happen."
+    assert carom.simulate(thrown(), 0.1).message == "The run reached its end."

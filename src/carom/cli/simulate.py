@@ -121,11 +121,15 @@ def run(
     begin = time.perf_counter()
     if resume is not None:
         out = resume
-        solution = _go_on(resume, scene, duration, {**given, **model}, save_seconds)
+        solution, lost = _go_on(resume, scene, duration, {**given, **model}, save_seconds)
     else:
-        solution = _start(scene, out, {k: v for k, v in given.items() if v is not None}, model,
-                          save_seconds, force)  # fmt: skip
-    return _end(solution, out, scene, time.perf_counter() - begin, json)
+        solution, lost = _start(scene, out, {k: v for k, v in given.items() if v is not None}, model,
+                                save_seconds, force)  # fmt: skip
+    if lost is None:
+        return _end(solution, out, scene, time.perf_counter() - begin, json)
+    _end(solution, None, scene, time.perf_counter() - begin, json)
+    warn("simulate", lost)
+    return FAILED
 
 
 def _step(given: str | None) -> float | str | None:
@@ -164,13 +168,25 @@ def _start(scene, out, given: dict[str, Any], model, save_seconds: float, force:
         raise Refused("--duration must be given [s]")
     duration = settings.pop("duration")
     with show.progress("simulate") as bar:
-        solution = carom.simulate(
-            found.scene, duration, progress=bar, throw=False, save=None if tables else out,
+        solution, lost = _with_its_loss(
+            carom.simulate, found.scene, duration, progress=bar, save=None if tables else out,
             save_seconds=save_seconds, **settings,
         )  # fmt: skip
     if out is not None and tables:
         solution.save(out)
-    return solution
+    return solution, lost
+
+
+def _with_its_loss(call, *given, **settings):
+    """Run; return the solution, and a message if it succeeded and could not be saved, or None."""
+    from carom import SimulationError
+
+    try:
+        return call(*given, **settings), None
+    except SimulationError as error:
+        if error.solution is None:
+            raise
+        return error.solution, str(error) if error.solution.success else None
 
 
 #: settings in a result file that a new run takes over
@@ -195,8 +211,8 @@ def _go_on(path: Path, scene, duration: float | None, given: dict[str, Any], sav
         )
     mine = scenes.functions(scenes.load(scene).scene) if scene is not None else None
     with show.progress("resume") as bar:
-        return carom.resume(
-            path, duration=duration, functions=mine or None, progress=bar, throw=False,
+        return _with_its_loss(
+            carom.resume, path, duration=duration, functions=mine or None, progress=bar,
             save_seconds=save_seconds,
         )  # fmt: skip
 

@@ -85,7 +85,9 @@ def places(run, implicit: bool) -> dict[int, Place]:
     return out
 
 
-def parts(history: list[tuple[int, Place, Any]], system, saved: int) -> Iterator[tuple[int, int]]:
+def rows_of_forces(
+    history: list[tuple[int, Place, Any]], system, saved: int
+) -> Iterator[tuple[int, int]]:
     """Go through ranges of saved rows in which forces stay as they are; write them into the system."""
     first = 0
     for row, place, value in history:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from carom.control.applied import parts
+from carom.control.applied import rows_of_forces
 from carom.control.endless import Endless
 from carom.io.files.kept import KeptRun
 from carom.model import records as r
@@ -21,9 +21,9 @@ class Frozen(KeptRun):
         super().__init__(run.scene, settings, run.options, records, None, [], past, run.found)
         self.history = history
 
-    def parts(self, system, saved: int):
+    def rows_of_forces(self, system, saved: int):
         """Go through ranges of saved rows in which forces stay as they are; write them into the system."""
-        return parts(self.history, system, saved)
+        return rows_of_forces(self.history, system, saved)
 
 
 def solution_of(run: Endless, status: Status, history: list[tuple[int, Any, Any]]) -> Solution:

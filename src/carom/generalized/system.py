@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom import checks
+from carom import arguments, checks
 from carom.generalized.stated import CoordinateContact, answer, checked_contact, checked_functions
 
 if TYPE_CHECKING:
@@ -110,6 +110,7 @@ class GeneralizedSystem:
         self._start(FunctionalModel(n, given, h, k), q, v)
 
     @classmethod
+    @arguments.known
     def from_sympy(
         cls,
         coordinates: Sequence,

@@ -217,9 +217,9 @@ def element_reactions(solution) -> np.ndarray:
     system, rec = run.compiled.system, r.trimmed(run.records, run.clock)
     out = np.zeros((len(rec.state), system.joints.size, 6))
     work = r.new_work(system, run.method.b.size)
-    parts = getattr(run, "parts", None)  # of a run whose forces were set as it went
+    ranges = getattr(run, "rows_of_forces", None)  # of a run whose forces were set as it went
     with _kept_turns(system):
-        for rows in [(0, len(out))] if parts is None else parts(system, len(out)):
+        for rows in [(0, len(out))] if ranges is None else ranges(system, len(out)):
             touch = rec.touch[np.searchsorted(rec.touch.saved, rows[0]) :]
             reactions(
                 system, run.options.augmentation, rec.series.t, rec.state, rows, touch, work, out

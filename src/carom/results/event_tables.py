@@ -121,10 +121,35 @@ class ImpactTable:
         return "\n".join([head, *rows, *more]) + ">"
 
 
-class EventTable(NamedTuple):
+class _Rows:
+    """Number of rows, and one line for each of the first rows, of a table of columns."""
+
+    def __len__(self) -> int:
+        return len(next(iter(vars(self).values())))
+
+    def __getitem__(self, k: int) -> dict:
+        if not -len(self) <= k < len(self):
+            raise IndexError(f"there is no row {k}: the table has {len(self)}, numbered from 0")
+        return {name: _plain(column[k]) for name, column in vars(self).items()}
+
+    def __iter__(self) -> Iterator[dict]:
+        return (self[k] for k in range(len(self)))
+
+    def __repr__(self) -> str:
+        rows = [
+            "  " + "  ".join(f"{name} = {_brief(value)}" for name, value in self[k].items())
+            for k in range(min(len(self), 8))
+        ]
+        more = [f"  ... {len(self) - 8} more"] if len(self) > 8 else []
+        return "\n".join([f"<{type(self).__name__}: {len(self)} rows", *rows, *more]) + ">"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class EventTable(_Rows):
     """Events of contacts in the order of time: impacts, and changes of persistent contacts.
 
-    The kind "held" means that a contact becomes persistent, "jams" that it reaches Painleve's paradox.
+    The kind "held" means that a contact becomes persistent, "jams" that it reaches Painleve's paradox. As in
+    the tables below, ``len`` is the number of rows, and ``table[k]`` is row k as a dict of all columns.
     """
 
     time: np.ndarray  #: (E,) time of the event [s]
@@ -132,7 +157,8 @@ class EventTable(NamedTuple):
     contact: np.ndarray  #: (E,) index of the contact
 
 
-class ContactTable(NamedTuple):
+@dataclass(frozen=True, eq=False, repr=False)
+class ContactTable(_Rows):
     """Intervals of persistent contact, in the order of their starts.
 
     An interval lasts as long as a contact point keeps slipping, or keeps sticking. When faces of two bodies
@@ -149,7 +175,8 @@ class ContactTable(NamedTuple):
     mode: np.ndarray  #: (M,) "slipping" or "sticking" (or rolling, or at rest)
 
 
-class ForceTable(NamedTuple):
+@dataclass(frozen=True, eq=False, repr=False)
+class ForceTable(_Rows):
     """Forces of persistent contacts, in the order of time: one row for each active point and saved time."""
 
     saved: np.ndarray  #: (M,) index of the saved time
@@ -216,3 +243,9 @@ def contact_table(event, kinds, first, end: float) -> ContactTable:
 
 def _plain(value):
     return value.item() if isinstance(value, np.generic) else value
+
+
+def _brief(value) -> str:
+    if isinstance(value, float):
+        return f"{value:.9g}"
+    return np.array2string(value, precision=6) if isinstance(value, np.ndarray) else str(value)

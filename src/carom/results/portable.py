@@ -6,6 +6,8 @@ import os
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Self
 
+from carom import arguments
+
 if TYPE_CHECKING:
     import xarray as xr
 
@@ -90,6 +92,7 @@ class Portable:
         vars(solution).update(cached)
         return solution
 
+    @arguments.known
     def simulate(
         self,
         duration: float,

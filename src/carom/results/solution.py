@@ -199,6 +199,9 @@ class Solution(Portable, Drawn):
             why = self.warnings if self.status is Status.INACCURATE else ()
             if self._stopped_by:
                 why = (f"That was {self._stopped_by} at t = {self.t[-1]:.9g} s.", *why)
+            elif not_seen := [i for i, t in enumerate(self.t_events or ()) if not len(t)]:
+                names = ", ".join(f"events[{i}]" for i in not_seen)
+                why = (f"{names} did not happen.", *why)
             return " ".join((self.status.message, *why, *taken_whole(self.stats)))
         return f"{self.status.message} (reached t = {self.t[-1]:.9g} s)"
 

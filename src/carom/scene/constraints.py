@@ -8,15 +8,17 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from carom import checks
+from carom import arguments, checks
 from carom.scene.bodies import Body
-from carom.scene.joints import Joint
+from carom.scene.joints import Joint, JointDefinition
 from carom.scene.values import keep
 
 
 def coordinate_kind(joint: Joint, coordinate: int, name: str = "joint") -> str:
     """Return "turn" or "slide", the kind of a joint coordinate; refuse one that the joint does not have."""
-    checks.instance(name, joint, (Joint,))
+    definition = isinstance(joint, (str, JointDefinition))
+    hint = "; give what add_joint returned" if definition else ""
+    checks.instance(name, joint, (Joint,), hint)
     own = joint.definition.coordinates
     if not own:
         raise ValueError(
@@ -49,6 +51,7 @@ def check_functions(function, **optional) -> None:
         checks.function(name, given, optional=True)
 
 
+@arguments.known
 @dataclass(frozen=True, init=False, eq=False)
 class Coupling:
     """A linear relation between joint coordinates: gears, racks, differentials.
@@ -81,6 +84,7 @@ class Coupling:
         keep(self, terms=tuple(terms))
 
 
+@arguments.known
 class Gear(Coupling):
     """A gear between two joints: ``q_second - q_second(0) = ratio (q_first - q_first(0))``.
 
@@ -104,6 +108,7 @@ class Gear(Coupling):
         super().__init__({first: ratio, second: -1.0})
 
 
+@arguments.known
 @dataclass(frozen=True, init=False, eq=False)
 class Driver:
     """A motor that prescribes a joint coordinate as a function of time (a rheonomic constraint).
@@ -150,6 +155,7 @@ class Driver:
         keep(self, joint=joint, coordinate=int(coordinate), rate=rate, motion=motion)
 
 
+@arguments.known
 @dataclass(frozen=True, init=False, eq=False)
 class Rows:
     """User-defined constraint rows ``a(q, t) v = b(q, t)``, up to 6, nonholonomic or holonomic.

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom import checks
+from carom import arguments, checks
 from carom.scene.bodies import Body, Ground
 from carom.scene.more_forces import (
     CurveSpring,
@@ -24,6 +24,7 @@ from carom.scene.more_forces import (
 from carom.scene.values import apart, keep, optional_point
 
 
+@arguments.known
 @dataclass(frozen=True, init=False, eq=False)
 class Spring:
     """A spring and damper between a point of the parent and a point of the child.
@@ -74,6 +75,7 @@ class Spring:
         )
 
 
+@arguments.known
 @dataclass(frozen=True, init=False, eq=False)
 class Torque:
     """A constant torque `vector` (3,) [N m] on the child, in world axes.
@@ -90,6 +92,7 @@ class Torque:
         keep(self, vector=vector, follow=checks.flag("follow", follow))
 
 
+@arguments.known
 @dataclass(frozen=True, init=False, eq=False)
 class Force:
     """A constant force `vector` (3,) [N], world axes, on a point of the child.
@@ -108,6 +111,7 @@ class Force:
         keep(self, vector=vector, anchor=anchor, follow=checks.flag("follow", follow))
 
 
+@arguments.known
 @dataclass(frozen=True, init=False, eq=False)
 class Bushing:
     """An elastic mount between the child and the parent, without force or torque at the start.

@@ -8,13 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom import checks
+from carom import arguments, checks
 from carom.scene.bodies import Body
 from carom.scene.constraints import check_functions, coordinate_kind, distinct_bodies
 from carom.scene.joints import Joint
 from carom.scene.values import apart, keep
 
 
+@arguments.known
 @dataclass(frozen=True, init=False, eq=False)
 class JointSpring:
     """A spring and damper along a coordinate of a joint: ``-stiffness (q - rest) - damping q'``.
@@ -57,6 +58,7 @@ class JointSpring:
         )
 
 
+@arguments.known
 @dataclass(frozen=True, init=False, eq=False)
 class JointForce:
     """A force or torque along a joint coordinate: it acts on the child, its opposite on the parent.
@@ -83,6 +85,7 @@ class JointForce:
         keep(self, joint=joint, force=given, coordinate=int(coordinate))
 
 
+@arguments.known
 @dataclass(frozen=True, init=False, eq=False)
 class JointFriction:
     """Dry (Coulomb) friction along a joint coordinate: a force `bound` against the motion.
@@ -109,6 +112,7 @@ class JointFriction:
         keep(self, joint=joint, bound=bound, coordinate=int(coordinate))
 
 
+@arguments.known
 @dataclass(frozen=True, init=False, eq=False)
 class JointInertia:
     """Inertia along a joint coordinate, with the kinetic energy ``inertia q'^2/2``.
@@ -136,6 +140,7 @@ class JointInertia:
         keep(self, joint=joint, inertia=inertia, coordinate=int(coordinate))
 
 
+@arguments.known
 @dataclass(frozen=True, init=False, eq=False)
 class CurveSpring:
     """A spring between a point of the parent and a point of the child, with a given characteristic curve.
@@ -191,6 +196,7 @@ def _curve(given):
     return PchipInterpolator(table[0], table[1])
 
 
+@arguments.known
 @dataclass(frozen=True, init=False, eq=False)
 class UserForce:
     """User-defined forces and torques on any bodies.

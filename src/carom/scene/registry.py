@@ -65,8 +65,9 @@ class Registry:
         """Return a `part`, given as an object or by name; refuse other `kinds` and parts of other scenes."""
         if isinstance(part, str):
             if part not in self._parts:
+                world = hint if Ground in kinds and part.lower() in ("world", "ground") else ""
                 raise ValueError(
-                    f"{argument} must be a part of the scene, which has none {self._called(part)}"
+                    f"{argument} must be a part of the scene, which has none {self._called(part)}{world}"
                 )
             part = self._parts[part]
         checks.instance(argument, part, kinds, hint)

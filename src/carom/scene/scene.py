@@ -292,6 +292,11 @@ class Scene(TouchingPairs):
             )
         if child is None and isinstance(parent, (Body, str)):
             parent, child = GROUND, parent
+        if child is None:
+            raise TypeError(
+                "child must be given: add_force(definition, body) for a force on a body, "
+                "add_force(definition, parent, child) for one between two"
+            )
         parent, child = self._parts.pair(parent, child)
         index, name = self._parts.new(AppliedForce, name, "force")
         return self._parts.add(make_force(index, name, definition, parent, child))

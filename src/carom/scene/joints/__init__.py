@@ -7,6 +7,7 @@ is by default the mass centre of the child.
 
 from __future__ import annotations
 
+from carom.arguments import unknown_member
 from carom.scene.values import subclasses_in
 
 # isort: off
@@ -32,3 +33,16 @@ from carom.scene.joints.joint import Joint as Joint
 from carom.scene.joints.joint import make_joint as make_joint
 
 JOINTS = subclasses_in(globals(), JointDefinition)
+
+_ELSEWHERE = {
+    "hinge": "Revolute", "rotational": "Revolute", "pin": "Revolute", "continuous": "Revolute",
+    "ball": "Spherical", "socket": "Spherical", "slide": "Prismatic", "slider": "Prismatic",
+    "translational": "Prismatic", "weld": "Fixed", "rigid": "Fixed", "rod": "Distance", "rope": "Distance",
+    "cardan": "Universal", "rolling": "RollingSphere", "wheel": "RollingDisc",
+}  # fmt: skip
+
+
+def __getattr__(name: str):
+    if name[:1] == "_":
+        raise AttributeError(name)
+    raise unknown_member("carom.joints", name, [joint.__name__ for joint in JOINTS], _ELSEWHERE)

@@ -7,11 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from carom import arguments
 from carom.checks import shown
 from carom.scene.joints.definition import JointDefinition
 from carom.scene.values import apart, keep
 
 
+@arguments.known
 @dataclass(frozen=True, init=False, eq=False)
 class Distance(JointDefinition):
     """A massless rod between a point of the parent and one of the child, each (3,).

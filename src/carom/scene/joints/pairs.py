@@ -7,11 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from carom import arguments
 from carom.checks import unit_vector
 from carom.scene.joints.definition import JointDefinition
 from carom.scene.values import keep, optional_point, point
 
 
+@arguments.known
 @dataclass(frozen=True, init=False, eq=False)
 class Revolute(JointDefinition):
     """A hinge: the bodies have the point `anchor` (3,) in common and rotate only about `axis` (3,)."""
@@ -26,6 +28,7 @@ class Revolute(JointDefinition):
         keep(self, anchor=point("anchor", anchor), axis=unit_vector("axis", axis))
 
 
+@arguments.known
 @dataclass(frozen=True, init=False, eq=False)
 class Spherical(JointDefinition):
     """A ball joint: the bodies have the point `anchor` (3,) in common and rotate freely about it."""
@@ -38,6 +41,7 @@ class Spherical(JointDefinition):
         keep(self, anchor=point("anchor", anchor))
 
 
+@arguments.known
 @dataclass(frozen=True, init=False, eq=False)
 class Fixed(JointDefinition):
     """A weld: no relative motion. Reactions are reported at `anchor` (3,)."""
@@ -50,6 +54,7 @@ class Fixed(JointDefinition):
         keep(self, anchor=optional_point("anchor", anchor))
 
 
+@arguments.known
 @dataclass(frozen=True, init=False, eq=False)
 class Prismatic(JointDefinition):
     """A slider: the child moves along `axis` (3,), which is fixed in the parent, without rotation."""
@@ -64,6 +69,7 @@ class Prismatic(JointDefinition):
         keep(self, axis=unit_vector("axis", axis), anchor=optional_point("anchor", anchor))
 
 
+@arguments.known
 @dataclass(frozen=True, init=False, eq=False)
 class Cylindrical(JointDefinition):
     """A sleeve: the child rotates about, and slides along, the line through `anchor` (3,) along `axis` (3,)."""
@@ -78,6 +84,7 @@ class Cylindrical(JointDefinition):
         keep(self, anchor=point("anchor", anchor), axis=unit_vector("axis", axis))
 
 
+@arguments.known
 @dataclass(frozen=True, init=False, eq=False)
 class Planar(JointDefinition):
     """A plate on a table: the child slides perpendicular to `normal` (3,) and rotates about it.
@@ -95,6 +102,7 @@ class Planar(JointDefinition):
         keep(self, normal=unit_vector("normal", normal), anchor=optional_point("anchor", anchor))
 
 
+@arguments.known
 @dataclass(frozen=True, init=False, eq=False)
 class PointOnLine(JointDefinition):
     """A bead on a wire: the point `anchor` (3,) of the child stays on a line of the parent.
@@ -112,6 +120,7 @@ class PointOnLine(JointDefinition):
         keep(self, anchor=point("anchor", anchor), direction=unit_vector("direction", direction))
 
 
+@arguments.known
 @dataclass(frozen=True, init=False, eq=False)
 class PointOnPlane(JointDefinition):
     """A pin in a slot between two plates: the point `anchor` (3,) of the child stays in a plane of the parent.

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from carom import arguments
 from carom.checks import number, shown, unit_vector
 from carom.scene.joints.definition import JointDefinition
 from carom.scene.values import keep, point
@@ -14,6 +15,7 @@ from carom.scene.values import keep, point
 PARALLEL = 1e-9  # sine of the angle between two directions below which they count as parallel
 
 
+@arguments.known
 @dataclass(frozen=True, init=False, eq=False)
 class KnifeEdge(JointDefinition):
     """A blade (nonholonomic): a point of the child cannot move sideways over the ground.
@@ -57,6 +59,7 @@ class KnifeEdge(JointDefinition):
         return np.stack([along, self.lateral, self.normal], axis=1)
 
 
+@arguments.known
 @dataclass(frozen=True, init=False, eq=False)
 class RollingSphere(JointDefinition):
     """A ball that rolls without slip on a plane of the parent and cannot leave it (nonholonomic).
@@ -93,6 +96,7 @@ class RollingSphere(JointDefinition):
         return self.radius
 
 
+@arguments.known
 @dataclass(frozen=True, init=False, eq=False)
 class RollingDisc(JointDefinition):
     """A thin disc or wheel that rolls on a plane of the parent without slip (nonholonomic).

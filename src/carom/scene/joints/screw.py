@@ -7,11 +7,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from carom import arguments
 from carom.checks import number, shown, unit_vector
 from carom.scene.joints.definition import JointDefinition
 from carom.scene.values import keep, point
 
 
+@arguments.known
 @dataclass(frozen=True, init=False, eq=False)
 class Screw(JointDefinition):
     """A nut on a thread: the child rotates about a line and slides along it, in proportion.

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from carom import arguments
 from carom.checks import shown, unit_vector
 from carom.scene.joints.definition import JointDefinition
 from carom.scene.values import keep, point
@@ -14,6 +15,7 @@ from carom.scene.values import keep, point
 ACROSS = 1e-9  # cosine of an angle below which directions count as perpendicular
 
 
+@arguments.known
 @dataclass(frozen=True, init=False, eq=False)
 class Universal(JointDefinition):
     """A Cardan joint: a common point, and two axes that stay perpendicular, one fixed in each body.

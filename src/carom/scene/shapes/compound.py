@@ -8,13 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom import checks
+from carom import arguments, checks
 from carom.geometry import quaternion
 from carom.geometry.attitude import attitude
 from carom.scene.pieces import IDENTITY, Piece, Shape
 from carom.scene.values import keep, point
 
 
+@arguments.known
 @dataclass(frozen=True, init=False, eq=False, repr=False)
 class Compound(Shape):
     """Several shapes fixed to each other as one rigid body: a dumbbell, a table, a cup.

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom import checks
+from carom import arguments, checks
 from carom.scene.moments import about_centroid, of_swollen
 from carom.scene.pieces import Piece, Shape
 from carom.scene.values import keep
@@ -17,6 +17,7 @@ FLAT = 1e-10  # thickness relative to the largest extent below which points coun
 SAME_FACE = 1e-8  # sine of the angle between triangles that are one face: rounding, not shape
 
 
+@arguments.known
 @dataclass(frozen=True, init=False, eq=False, repr=False)
 class Convex(Shape):
     """The solid convex hull of points, rounded by a ball if a radius is given.

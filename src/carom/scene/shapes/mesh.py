@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from carom import checks
+from carom import arguments, checks
 from carom.scene.moments import about_centroid, of_triangles
 from carom.scene.pieces import Piece, Shape
 from carom.scene.shapes.convex import Convex, hull_of
@@ -19,6 +19,7 @@ THIN = 1e-12  # height of a triangle relative to the size of the mesh below whic
 BULGE = 1e-9  # height of a vertex above a face, relative to the size, that is rounding
 
 
+@arguments.known
 @dataclass(frozen=True, init=False, eq=False, repr=False)
 class Mesh(Shape):
     """A solid bounded by a closed surface of triangles.

@@ -46,7 +46,7 @@ def _find(scene: Scene, name: str, values: np.ndarray) -> Target:
         hint = f"; did you mean {near[0]!r}?" if near else ""
         raise ValueError(
             "names in vary must be 'gravity', or a body or contact of the scene with one of its fields, like "
-            f"{next(iter(known), 'die.position')!r}, got {name!r}{hint}"
+            f"{next(iter(known), 'die.position')!r}, got {name!r}{hint or _fields_of(scene, name)}"
         )
     part, field = known[name]
     if field in STATE_FIELDS:
@@ -87,6 +87,18 @@ def _known(scene: Scene) -> dict:
         for contact in scene.contacts:
             found.update({f"{contact.name}.{field}": (contact, field) for field in LAW_FIELDS})
     return found
+
+
+def _fields_of(scene: Scene, name: str) -> str:
+    """Return the end of a message: the fields of the part that `name` names."""
+    part, _, field = name.rpartition(".")
+    if part in {body.name for body in scene.bodies}:
+        return f"; a body has {', '.join((*STATE_FIELDS, *BODY_FIELDS))}"
+    if scene.contact_default is None and part in {contact.name for contact in scene.contacts}:
+        return f"; a contact has {', '.join(LAW_FIELDS)}"
+    if field in LAW_FIELDS and scene.contact_default is not None:
+        return "; to vary the law of a contact state it by add_contact, in a scene without set_contact_default"
+    return ""
 
 
 def _shaped(name: str, values: np.ndarray, shape: tuple[int, ...]) -> None:

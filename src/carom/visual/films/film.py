@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from carom import checks
+from carom import arguments, checks
 from carom.visual.films.marks import LINGER
 from carom.visual.films.stage import Stage, pillow
 from carom.visual.plots.figure import need_bodies
@@ -17,6 +17,7 @@ SUFFIXES = (".gif", ".mp4")
 MOST = 100_000  # pictures of a film: an hour
 
 
+@arguments.known
 def film(
     solution, path, *, fps: float = 30, speed: float = 1.0, size=(1280, 720), view="oblique", follow=None,
     zoom: float = 1.0, start: float | None = None, end: float | None = None,

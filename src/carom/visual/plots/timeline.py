@@ -86,7 +86,8 @@ def intervals(solution) -> list[tuple[int, float, float, str]]:
         return [(int(c), float(a), float(b), str(mode)) for c, a, b, mode in rows]
     out, since = [], {}
     modes = {"slips": "slipping", "sticks": "sticking"}
-    for time, kind, contact in zip(*solution.events):
+    event = solution.events
+    for time, kind, contact in zip(event.time, event.kind, event.contact):
         if kind == "impact":
             continue
         if contact in since:

@@ -38,11 +38,17 @@ class Exported(NamedTuple):
         return f"{self.path}: {size}{shown}"
 
 
+SUFFIXES = (".html", ".htm")
+
+
 def write_page(
     show: Show, path: str | os.PathLike, follow: str | None, speed: float | None
 ) -> Exported:
     """Write the page of a run."""
     where = checks.file_to_write("export", path)
+    if where.suffix.lower() not in SUFFIXES:
+        film = "; a film is made by carom.film" if where.suffix.lower() in (".mp4", ".gif") else ""
+        raise ValueError(f"export must end in .html, got {checks.shown(str(where))}{film}")
     text = page_text(show, follow, speed)
     where.write_text(text, encoding="utf-8")
     return Exported(where, len(text.encode("utf-8")), show.left_out)
