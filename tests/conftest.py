@@ -1,5 +1,15 @@
-"""For all tests: what is compiled on the way is not spoken of, as tests look at what is on stderr."""
+"""For all tests: what is compiled on the way is not spoken of, and random examples are the same in each run.
+
+``HYPOTHESIS_PROFILE=search pytest ...`` looks for others.
+"""
+
+import os
+
+from hypothesis import settings
 
 from carom._compiled import notice
 
-notice.silence()
+notice.silence()  # tests look at what is on stderr
+settings.register_profile("same", derandomize=True)
+settings.register_profile("search", derandomize=False)
+settings.load_profile(os.environ.get("HYPOTHESIS_PROFILE", "same"))
