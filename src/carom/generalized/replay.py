@@ -8,7 +8,7 @@ from carom.generalized.run import GeneralizedRun
 from carom.results.dense_output import NEAR
 from carom.results.replay import BETTER, FACTOR, RTOL
 from carom.status import Status
-from carom.stepping.grid import Grid, ends_between
+from carom.stepping.grid import part_of_grid
 
 
 class Replay:
@@ -63,13 +63,6 @@ class Replay:
         s = self.solution
         begin = float(s.t[i])
         run = GeneralizedRun(s.system, self.how, (begin, np.concatenate([s.q[i], s.v[i]])))
-        ends = np.concatenate([[begin], ends_between(self.grid, begin, until), [until]])
-        grid = Grid(
-            float(np.max(np.diff(ends))),
-            len(ends) - 1,
-            0,
-            ends,
-            np.zeros(len(ends), dtype=np.int64),
-        )
+        grid = part_of_grid(self.grid, begin, until)
         run.plan = run.plan._replace(grid=grid)
         return run.x if run.go_on(run.steps) is Status.SUCCESS else None

@@ -15,6 +15,11 @@ class Kept:
         flat = [array.reshape(-1).view(np.uint8) for array in arrays_of(parts)]
         self.content = [(there, there.copy()) for there in flat]
 
+    def take(self) -> None:
+        """Keep what the arrays hold now."""
+        for there, kept in self.content:
+            kept[:] = there
+
     def restore(self) -> None:
         """Write the contents back."""
         for there, kept in self.content:

@@ -17,7 +17,7 @@ from carom.model import records as r
 from carom.model.kept import Kept
 from carom.results.dense_output import curves
 from carom.status import Status
-from carom.stepping.grid import Grid, ends_between
+from carom.stepping.grid import part_of_grid
 
 if TYPE_CHECKING:
     from carom.results.solution import Solution
@@ -70,12 +70,10 @@ class Replay:
         """Compute `is_good`."""
         if not self.go(i, self.solution.t[i + 1]):
             return False
-        miss, middle = (
-            self.misses(i, self.states[i + 1]),
-            0.5 * float(sum(self.solution.t[i : i + 2])),
-        )
+        miss = self.misses(i, self.states[i + 1])
         if miss <= 1.0:
             return True
+        middle = 0.5 * float(sum(self.solution.t[i : i + 2]))
         cubic = self.states[i].copy()
         cubic["x"], cubic["Q"], cubic["v"], cubic["w"], _ = (
             part[0] for part in curves(self.solution, np.array([middle]), "right")
@@ -94,9 +92,7 @@ class Replay:
         run.clock["now"] = begin
         if self.turns.size:
             run.compiled.system.relations.coordinates["reference"] = self.turns[i]
-        ends = np.concatenate([[begin], ends_between(self.grid, begin, until), [until]])
-        longest = float(np.max(np.diff(ends)))
-        run.grid = Grid(longest, len(ends) - 1, 0, ends, np.zeros(len(ends), dtype=np.int64))
+        run.grid = part_of_grid(self.grid, begin, until)
         run.note_modes()
         return run.go_on(run.steps) is Status.SUCCESS
 
@@ -112,9 +108,8 @@ class Replay:
 
 def evaluate(solution: Solution, times: np.ndarray, cubic: np.ndarray, x, Q, v, w) -> None:
     """Replace the states (K, N) of a cubic at times (K,) by the motion, where it can be stepped again."""
-    if len(solution.t) < 2 or getattr(
-        solution._run, "missing", ()
-    ):  # functions that a file could not hold
+    missing = getattr(solution._run, "missing", ())  # functions that a file could not hold
+    if len(solution.t) < 2 or missing:
         return
     if not cubic.any() or len(solution.scene.bodies) != solution.position.shape[1]:
         return

@@ -136,14 +136,18 @@ def longest_step(
     return min(duration, max(0.5 * size / speed, duration / FEW))
 
 
-def ends_between(grid: Grid, begin: float, end: float) -> np.ndarray:
-    """Return the ends of steps after `begin`, the end of one, and before `end`."""
+def part_of_grid(grid: Grid, begin: float, end: float) -> Grid:
+    """Return the steps from `begin`, the end of one, to a time `end`; none of their states is saved."""
     if len(grid.ends):
         inside = np.searchsorted(grid.ends, begin, "right"), np.searchsorted(grid.ends, end, "left")
-        return grid.ends[inside[0] : inside[1]]
-    first = round(begin / grid.interval) + 1
-    steps = np.arange(first, math.ceil(end / grid.interval)) * grid.interval
-    return steps[steps < end]
+        between = grid.ends[inside[0] : inside[1]]
+    else:
+        first = round(begin / grid.interval) + 1
+        between = np.arange(first, math.ceil(end / grid.interval)) * grid.interval
+        between = between[between < end]
+    ends = np.concatenate([[begin], between, [end]])
+    saves = np.zeros(len(ends), dtype=np.int64)
+    return Grid(float(np.max(np.diff(ends))), len(ends) - 1, 0, ends, saves)
 
 
 @inlined
