@@ -152,7 +152,7 @@ def step_once(model, data, k, count, loaded, h):
         if single:
             enough = FIRST if turn == 0 else PART * before
         change = find_impulses(model, data, k, enough)
-        if single and change <= CONVERGED:  # good enough as they were: or the solution?
+        if enough > 0.0 and change <= CONVERGED:  # good enough as they were: or the solution?
             change = find_impulses(model, data, k, 0.0)
         if change <= CONVERGED or (change <= 1e-7 and change >= 0.3 * before):
             break
