@@ -60,7 +60,7 @@ def still_all(k, points, work):
 @kernel
 def inverse_masses(system, k, points, state, work, W):
     """Write W (3k, 3k) = G P G^T. Columns are answers to unit impulses, then made symmetric."""
-    if of_one_body(system, k, points):
+    if of_one_body(system, k, points) and not any_turns(k, points):
         inverse_masses_of_one(system.bodies[points[0].a], k, points, state, W)
         return
     still_all(k, points, work)
@@ -86,11 +86,20 @@ def inverse_masses(system, k, points, state, work, W):
 
 @kernel
 def of_one_body(system, k, points):
-    """Return whether all points are of one body without joints, on half-spaces, and none turns only."""
+    """Return whether all points are of one body without joints, on half-spaces or static bodies."""
     for i in range(k):
-        if points[i].a != points[0].a or points[i].b >= 0 or points[i].turns != 0:
+        if points[i].a != points[0].a or points[i].b >= 0:
             return False
     return system.bodies[points[0].a].isolated == 1
+
+
+@kernel
+def any_turns(k, points):
+    """Return whether a point is one of rolling or pivoting, or a stop."""
+    for i in range(k):
+        if points[i].turns != 0:
+            return True
+    return False
 
 
 @kernel

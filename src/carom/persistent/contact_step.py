@@ -31,7 +31,13 @@ from carom.dynamics.joint_friction import slip_power
 from carom.dynamics.kick import add_momentum
 from carom.dynamics.project import carry_velocity, shift
 from carom.dynamics.rotors import add_rates, note_rates
-from carom.dynamics.several_points import inverse_masses, of_one_body, spread_all, velocities
+from carom.dynamics.several_points import (
+    any_turns,
+    inverse_masses,
+    of_one_body,
+    spread_all,
+    velocities,
+)
 from carom.dynamics.solve import solve
 from carom.friction.layout import BUDGET, CONE, ENOUGH, NEAR
 from carom.friction.residual import measure
@@ -133,6 +139,7 @@ def step_once(model, data, k, count, loaded, h):
     start, end, group, work = data.state, data.work.trial, data.group, data.work
     begin(model, data, k, h, count, loaded)
     before, single = math.inf, of_one_body(system, k, group.points[0])
+    single = single and not any_turns(k, group.points[0])
     clock.contact_steps += 1
     for turn in range(ROUNDS):
         # where impulses are not unique: those of least norm, then those near them

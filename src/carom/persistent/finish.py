@@ -113,11 +113,7 @@ def forces_at_end(model, data, k, known, end):
     place_closed(system, k, end, group, group.points[0], work)
     pose_forces(system, model.controls, active, k, end, group, work)
     status = 0
-    if (
-        known
-        and as_known(k, group)
-        and solve_given(system.bodies[group.member[0]], k, end, group, work)
-    ):
+    if known and as_known(k, group) and solve_given(system, k, end, group, work):
         note_accelerations(k, group, work)
     else:
         status = solve_forces(model, data, k)

@@ -3,6 +3,9 @@
     (G dv/dt)_n = 0 of points that press, all three rows of those that stick,
     lam_t = -mu lam_n d of those that slip along d.
 
+Rolling or pivoting friction of a point is a torque -d lam_n e along the relative rotation e where there is such
+a rotation; where there is none, that row of the rotation is given, too.
+
 Forces need not be unique (four corners of a face): those are taken to which a face of equal springs comes,
 (A + eps S) lam = -c for eps -> 0, with S the scales of the points, as in `carom.friction.newton`.
 """
@@ -36,20 +39,24 @@ def as_known(k, group):
     """Return whether the points that press slip or stick as the rows say that are given."""
     for i in range(k):
         slides, rows = group.kind[i] == SLIDING or group.mu[i] == 0.0, group.closed[i].rows
-        if rows > 0 and slides != (rows == 1):
+        if group.closed[i].turns > 0:
+            if slides != (rows == 0):
+                return False
+        elif rows > 0 and slides != (rows == 1):
             return False
     return True
 
 
 @kernel
-def solve_given(body, k, state, group, work):
+def solve_given(system, k, state, group, work):
     """Write the forces that meet the given rows into P, what they do to the body into its `motion`.
 
     Returns whether they obey Coulomb's law. C holds the accelerations without them.
     """
     A, L, rows, x = group.m[1], group.cone.matrix, group.cone.active, group.v[OLD]
-    p, c, motion = group.v[P], group.v[C], work.body[group.points[0][0].a].motion
-    n, push = write_rows(body, k, state, group), 0.0
+    b = group.points[0][0].a
+    p, c, motion, body = group.v[P], group.v[C], work.body[b].motion, system.bodies[b]
+    n, push = write_rows(system, k, state, group), 0.0
     for row in range(3 * k):
         p[row], push = 0.0, max(push, abs(c[row]))
     for i in range(n):
@@ -65,35 +72,76 @@ def solve_given(body, k, state, group, work):
             x[i] = -c[rows[i]] - dot(group.rows[0, i], motion)
             wrong = max(wrong, abs(x[i]))
         if wrong <= FITS * push:
-            return obeys(k, push, group, work)
+            return obeys(system, k, push, group, work)
         lu.substitute(L, n, group.cone.pivot, x)
         for i in range(n):
-            add_force(group, rows[i], x[i])
+            add_force(system, k, group, rows[i], x[i])
             for r in range(6):
                 motion[r] += group.rows[1, i, r] * x[i]
     return False
 
 
 @kernel
-def write_rows(body, k, state, group):
+def bound_per_force(system, point, closed_point):
+    """Return the greatest impulse of a point of rolling or pivoting for a unit normal one: d over a length."""
+    return system.contacts[closed_point.contact].turning[closed_point.turns - 1] / point.length
+
+
+@kernel
+def turning_axis(point, turns, d):
+    """Return the torque of a unit impulse along d in the rows of rolling or pivoting."""
+    E, length = point.axes, point.length
+    if turns == 2:
+        return length * d[0] * E[0, 0], length * d[0] * E[0, 1], length * d[0] * E[0, 2]
+    return (
+        length * (d[0] * E[1, 0] + d[1] * E[2, 0]),
+        length * (d[0] * E[1, 1] + d[1] * E[2, 1]),
+        length * (d[0] * E[1, 2] + d[1] * E[2, 2]),
+    )
+
+
+@kernel
+def write_rows(system, k, state, group):
     """Write the given rows, and the motions that forces along them give; return how many."""
-    n, q, J = 0, state[group.points[0][0].a].Q, body.inertia
+    n, points = 0, group.points[0]
+    body, q = system.bodies[points[0].a], state[points[0].a].Q
+    J = body.inertia
     for i in range(k):
-        point, d = group.points[0][i], group.heading[i]
+        point, d, turns = points[i], group.heading[i], group.closed[i].turns
         r, E = point.arm_a, point.axes
         mu = group.mu[i] if group.kind[i] == SLIDING else 0.0
         for a in range(group.closed[i].rows):
             G, Y = group.rows[0, n], group.rows[1, n]
-            for b in range(3):
-                G[b], Y[b] = E[a, b], E[a, b] - mu * (d[0] * E[1, b] + d[1] * E[2, b])
-            G[3], G[4], G[5] = cross(r[0], r[1], r[2], G[0], G[1], G[2])
-            t = cross(r[0], r[1], r[2], Y[0], Y[1], Y[2])
+            if turns > 0:
+                for b in range(3):
+                    G[b], Y[b] = 0.0, 0.0
+                G[3], G[4], G[5] = turning_axis(point, turns, (1.0 - a, 1.0 * a))
+                t = (G[3], G[4], G[5])
+            else:
+                for b in range(3):
+                    G[b], Y[b] = E[a, b], E[a, b] - mu * (d[0] * E[1, b] + d[1] * E[2, b])
+                G[3], G[4], G[5] = cross(r[0], r[1], r[2], G[0], G[1], G[2])
+                t = cross(r[0], r[1], r[2], Y[0], Y[1], Y[2])
+                if a == 0:
+                    t = with_turning(system, k, i, t, group)
             t = rotate_back(q[0], q[1], q[2], q[3], t[0], t[1], t[2])
             t = rotate(q[0], q[1], q[2], q[3], t[0] / J[0], t[1] / J[1], t[2] / J[2])
             for b in range(3):
                 Y[b], Y[3 + b] = Y[b] / body.mass, t[b]
-            group.cone.active[n], n = 3 * i + a, n + 1
+            group.cone.active[n], n = 3 * i + a + (1 if turns > 0 else 0), n + 1
     return n
+
+
+@kernel
+def with_turning(system, k, i, t, group):
+    """Return the torque t of a unit normal force of point i with its rolling and pivoting friction."""
+    for j in range(i + 1, k):
+        closed_point = group.closed[j]
+        if closed_point.turns > 0 and closed_point.parent == i and group.kind[j] == SLIDING:
+            most = bound_per_force(system, group.points[0][j], closed_point)
+            e = turning_axis(group.points[0][j], closed_point.turns, group.heading[j])
+            t = (t[0] - most * e[0], t[1] - most * e[1], t[2] - most * e[2])
+    return t
 
 
 @kernel
@@ -106,19 +154,29 @@ def dot(a, b):
 def scale_of(body, state, point):
     """Return a third of the trace of W of a point."""
     q, J, r = state[point.a].Q, body.inertia, point.arm_a
+    if point.turns > 0:
+        return point.length**2 * (1.0 / J[0] + 1.0 / J[1] + 1.0 / J[2]) / 3.0
     x, y, z = rotate_back(q[0], q[1], q[2], q[3], r[0], r[1], r[2])
     turning = (y * y + z * z) / J[0] + (z * z + x * x) / J[1] + (x * x + y * y) / J[2]
     return 1.0 / body.mass + turning / 3.0
 
 
 @kernel
-def add_force(group, row, x):
-    """Add a force along a given row, with its friction."""
+def add_force(system, k, group, row, x):
+    """Add a force along a given row; with a normal force, its friction of slip, rolling and pivoting."""
     p, i = group.v[P], row // 3
     p[row] += x
+    if row % 3 > 0:
+        return
     if group.kind[i] == SLIDING:
         for r in range(2):
             p[row + 1 + r] -= group.mu[i] * group.heading[i, r] * x
+    for j in range(i + 1, k):
+        closed_point = group.closed[j]
+        if closed_point.turns > 0 and closed_point.parent == i and group.kind[j] == SLIDING:
+            most = bound_per_force(system, group.points[0][j], closed_point)
+            for r in range(2):
+                p[3 * j + 1 + r] -= most * group.heading[j, r] * x
 
 
 @kernel
@@ -133,7 +191,7 @@ def note_accelerations(k, group, work):
 
 
 @kernel
-def obeys(k, push, group, work):
+def obeys(system, k, push, group, work):
     """Return whether no force pulls or leaves its cone, and no point without one approaches."""
     p, most = group.v[P], 0.0
     for i in range(k):
@@ -145,11 +203,21 @@ def obeys(k, push, group, work):
                 return False
         if p[q] < -PULL * most:
             return False
-        if group.closed[i].rows == 3:
+        if group.closed[i].turns > 0 or group.closed[i].rows == 3:
             friction = math.sqrt(p[q + 1] * p[q + 1] + p[q + 2] * p[q + 2])
-            if friction > group.mu[i] * p[q] + PULL * most:
+            if friction > bound_of(system, i, group) + PULL * most:
                 return False
     return True
+
+
+@kernel
+def bound_of(system, i, group):
+    """Return the greatest friction of a point under the forces in P."""
+    closed_point = group.closed[i]
+    if closed_point.turns > 0:
+        normal = group.v[P][3 * closed_point.parent]
+        return bound_per_force(system, group.points[0][i], closed_point) * normal
+    return group.mu[i] * group.v[P][3 * i]
 
 
 @kernel

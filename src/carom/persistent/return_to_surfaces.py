@@ -34,7 +34,7 @@ def mark_rows(system, active, k, group):
     for i in range(k):
         active_point, p, q = active.points[group.closed[i].active], group.v[P], 3 * i
         group.closed[i].rows = 0
-        if group.closed[i].turns == 1:
+        if group.closed[i].turns > 0:
             continue
         if group.points[1][i].gap < -1e-12 * system.contacts[active_point.contact].extent:
             some = True
@@ -52,7 +52,11 @@ def mark_rows(system, active, k, group):
 @kernel
 def given(group, row):
     """Return whether a row is given, and can be."""
-    return row % 3 < group.closed[row // 3].rows and yields(group.m[0], row)
+    closed_point = group.closed[row // 3]
+    first = (
+        1 if closed_point.turns > 0 else 0
+    )  # the first row of a point of rolling or pivoting is its bound
+    return first <= row % 3 < first + closed_point.rows and yields(group.m[0], row)
 
 
 @kernel

@@ -15,9 +15,10 @@ from carom.dynamics.contact_impulse import (
     spread,
 )
 from carom.dynamics.elements import driven_power
+from carom.dynamics.energy import energies
 from carom.dynamics.several_points import factor, substitute, yields
 from carom.friction.layout import CONE, SLIDING
-from carom.impact.workspace import OLD, C, P, U
+from carom.impact.workspace import BACK, OLD, C, P, U
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.event_rows import begin_event, end_event
 from carom.model.records import OPENS, PERSIST, SLIPS, STICKS
@@ -25,7 +26,9 @@ from carom.persistent.active_set import activate, deactivate, set_anchor
 from carom.persistent.forces import pose_forces, solve_forces, take_forces, time_to_stop
 from carom.persistent.jam import jams_among, note_jam
 from carom.persistent.one_point import bounces_end, name_work, spare
+from carom.persistent.return_to_surfaces import onto_surfaces
 
+LAID = 1e-9  # of the size of a body: the gap of a point that is on its surface
 DROP = 1e-10  # of a pivot, relative to its row
 LITTLE = 1e-4  # of the speed: what may be taken for round-off of rest
 ROUNDS = 60  # of friction with what it does to the normal impulses
@@ -296,6 +299,31 @@ def first_forces(model, data, label):
         take_forces(active_point, i, group)
         if jams_among(active_point, i, status, group) == 1:
             note_jam(active, active_point)
+    lay_down(model, data, k, label)
+
+
+@kernel
+def lay_down(model, data, k, label):
+    """Bring the points that press back to the surfaces if they are not on them; name the energy of that.
+
+    A rim that is nearly flat strikes as a flat one (`carom.contact.rim`), with points above the surface.
+    """
+    system, active, state = model.system, data.active, data.state
+    group, work, clock = data.group, data.work, data.clocks[0]
+    off = False
+    for i in range(k):
+        contact, point = system.contacts[group.closed[i].contact], group.points[0][i]
+        presses = group.closed[i].turns == 0 and group.v[P][3 * i] > 0.0
+        off = off or (presses and abs(point.gap) > LAID * contact.extent)
+    if not off:
+        return
+    kinetic, potential, _ = energies(system, state, clock.now)
+    for i in range(3 * k):
+        group.v[BACK][i] = 0.0
+    count = members(work, label, group.member)
+    onto_surfaces(system, active, k, count, state, group, work)
+    after, at_end, _ = energies(system, state, clock.now)
+    clock.bounces += after + at_end - kinetic - potential
 
 
 @kernel

@@ -18,11 +18,13 @@ from carom._compiled.decorators import kernel
 from carom.contact.closed_points import place_closed
 from carom.contact.gap import slow
 from carom.contact.place import drift_of
+from carom.contact.place_of_other import on_half_space
 from carom.dynamics.acceleration import OPEN, SLIP, accelerate
 from carom.dynamics.adapt import note_miss
 from carom.dynamics.explicit import bound_accelerations_of, combine_body, copy_state
 from carom.dynamics.several_points import (
     accelerations,
+    inverse_masses,
     inverse_masses_of_one,
     spread_all,
     velocities,
@@ -88,6 +90,10 @@ def begin(model, data, k):
     b = group.member[0]
     push = norm(system.gravity) + system.bodies[b].extent * norm(start[b].w) ** 2
     for i in range(k):
+        if group.closed[i].turns > 0:
+            if not begin_turning(model, data, i, push):
+                return False
+            continue
         closed_point = group.closed[i]
         contact = system.contacts[closed_point.contact]
         active_point, mu = active.points[closed_point.active], contact.friction_held
@@ -104,6 +110,22 @@ def begin(model, data, k):
         heading, part = active_point.heading, 1.0 / speed if slips and speed > still else 0.0
         heading[0], heading[1], active_point.speed = part * u1, part * u2, speed
     return True
+
+
+@kernel
+def begin_turning(model, data, i, push):
+    """Note whether a point of rolling or pivoting turns or not; return whether it is on a half-space."""
+    system, start, group = model.system, data.state, data.group
+    contact, closed_point = system.contacts[group.closed[i].contact], group.closed[i]
+    _, u1, u2 = contact_velocity(group.points[0][i], start)
+    speed = math.sqrt(u1 * u1 + u2 * u2)
+    still = max(10.0 * slow(contact, start), model.controls.rest * push * model.controls.step)
+    turns = speed > still
+    closed_point.stays, group.kind[i], group.mu[i] = 1, SLIDING if turns else CONE, 1.0
+    closed_point.rows = 0 if turns else 3 - closed_point.turns
+    group.heading[i, 0] = u1 / speed if turns else 0.0
+    group.heading[i, 1] = u2 / speed if turns else 0.0
+    return on_half_space(contact)
 
 
 @kernel
@@ -135,7 +157,7 @@ def add_forces(model, data, k, s):
     for i in range(k):
         closed_point = group.closed[i]
         contact = system.contacts[closed_point.contact]
-        if contact.touches != 0:
+        if contact.touches != 0 and closed_point.turns == 0:
             d = drift_of(
                 system, contact, closed_point.feature, closed_point.point, points[i], state, work
             )
@@ -143,8 +165,8 @@ def add_forces(model, data, k, s):
                 group.v[C][3 * i + r] += d[r]
         if not set_direction(active.points[closed_point.active], i, group):
             return False
-    if not solve_given(system.bodies[b], k, state, group, work):
-        if s > 0 and model.controls.order == 0:
+    if not solve_given(system, k, state, group, work):
+        if group.closed[k - 1].turns > 0 or (s > 0 and model.controls.order == 0):
             return False
         inverse_masses_of_one(system.bodies[b], k, points, state, group.m[0])
         solve_forces(model, data, k)
@@ -157,13 +179,19 @@ def add_forces(model, data, k, s):
 
 @kernel
 def set_direction(active_point, i, group):
-    """Let point i slide as it moves now; return whether that is about as it did at the start of the step."""
+    """Let point i slide as it moves now; return whether that is about as it did before.
+
+    That is at the start of the step, and in the last stage for a point of rolling or pivoting.
+    """
+    d1, d2 = active_point.heading[0], active_point.heading[1]
+    if group.closed[i].turns > 0:
+        d1, d2 = group.heading[i, 0], group.heading[i, 1]
     group.heading[i, 0], group.heading[i, 1] = 0.0, 0.0
     if group.kind[i] != SLIDING or group.mu[i] == 0.0:
         return True
     u1, u2 = group.v[U][3 * i + 1], group.v[U][3 * i + 2]
-    speed, d = math.sqrt(u1 * u1 + u2 * u2), active_point.heading
-    if not u1 * d[0] + u2 * d[1] > SAME_WAY * speed:
+    speed = math.sqrt(u1 * u1 + u2 * u2)
+    if not u1 * d1 + u2 * d2 > SAME_WAY * speed:
         return False
     group.heading[i, 0], group.heading[i, 1] = u1 / speed, u2 / speed
     return True
@@ -181,7 +209,9 @@ def finish_smoothly(model, data, k, h):
     onto_surfaces(system, active, k, 1, end, group, work)
     place_at(system, k, end, group, work)
     for i in range(k):
-        if group.closed[i].rows > 0 and group.kind[i] != SLIDING:
+        if group.closed[i].turns > 0:
+            group.closed[i].rows = 0 if group.kind[i] == SLIDING else 3 - group.closed[i].turns
+        elif group.closed[i].rows > 0 and group.kind[i] != SLIDING:
             group.closed[i].rows = 3
     onto_tangents(system, k, end, group, work)
     velocities(k, group.points[0], end, group.v[U])
@@ -192,6 +222,10 @@ def finish_smoothly(model, data, k, h):
     for i in range(k):
         braked += group.v[P][3 * i] / system.bodies[b].mass
     for i in range(k):
+        if group.closed[i].turns > 0:
+            if not turns_on(active, i, group):
+                return False
+            continue
         active_point, rows = active.points[group.closed[i].active], group.closed[i].rows
         if active_point.next != active_point.mode or active_point.comes_to_rest == 1:
             return False
@@ -208,9 +242,22 @@ def finish_smoothly(model, data, k, h):
 
 
 @kernel
+def turns_on(active, i, group):
+    """Return whether a point of rolling or pivoting still turns, far from its stop, or still does not."""
+    u, p, W = group.v[U], group.v[P], group.m[0]
+    q = 3 * i
+    if group.kind[i] != SLIDING:
+        return True
+    if not set_direction(active.points[group.closed[i].active], i, group):
+        return False
+    torque, speed = math.hypot(p[q + 1], p[q + 2]), math.hypot(u[q + 1], u[q + 2])
+    return not torque * max(W[q + 1, q + 1], W[q + 2, q + 2]) > STIFF * speed
+
+
+@kernel
 def place_at(system, k, state, group, work):
     """Write the points of the body in a state, and their W."""
     b = group.member[0]
     copy_state(state[b], work.stage[b])
     place_closed(system, k, state, group, group.points[0], work)
-    inverse_masses_of_one(system.bodies[b], k, group.points[0], state, group.m[0])
+    inverse_masses(system, k, group.points[0], state, work, group.m[0])
