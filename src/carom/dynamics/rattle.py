@@ -1,8 +1,8 @@
 """RATTLE: symmetric, symplectic, constraints exact; order 2, and compositions of order 4 and 6.
 
-A step is half a kick, a move by the discrete Lagrangian of the rotation group, and half a kick. With momenta m
-v and spatial angular momenta l = R J W as P (Hamilton-Pontryagin form; Bou-Rabee and Marsden 2009, with unit
-quaternions as the map):
+A step is half a kick, a move by the discrete Lagrangian of the rotation group, and half a kick. P are the
+linear momenta m v and the spatial angular momenta l = R J W (Hamilton-Pontryagin form; Bou-Rabee and Marsden
+2009, with unit quaternions as the map):
 
     P_h = P_0 + h/2 f(q_0, v_0) + A(q_0)^T Lam     with Lam such that phi(q_1) = 0,
     x_1 = x_0 + h P_h/m,     Q_1 = Q_0 (a, b),     a J b + b x J b = h/2 R_0^T l_h,   a^2 + |b|^2 = 1,

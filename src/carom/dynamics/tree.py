@@ -45,7 +45,7 @@ from carom.model.arrays import (
 
 @kernel
 def dot(a, b):
-    """Return a.b, summed in pairs: along a chain each sum waits for the one before, so latency sets the time."""
+    """Return a.b, summed in pairs: along a chain each sum waits for the one before; latency sets the time."""
     return (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3]) + (a[4] * b[4] + a[5] * b[5])
 
 
