@@ -37,8 +37,8 @@ FACE = 1e-12  # relative to the size: a face's normal is preferred if it is wors
 def closest(pair):
     """Write the nearest points of two convex solids as the first point.
 
-    An overlap must be less than about half of either core; a deeper one may get a displacement that is not the
-    smallest.
+    An overlap must be less than about half of either core. For a deeper one, the displacement that is found may
+    not be the smallest.
     """
     s, a, b = pair.state, pair.a, pair.b
     size = min(a.extent, b.extent)

@@ -1,6 +1,6 @@
 """Distance of two convex cores by the method of Gilbert, Johnson and Keerthi (IEEE J. Robotics 4, 1988).
 
-The nearest point v of A - B to the origin is sought in simplices of its corners. For polytopes it is
+The nearest point v of A - B to the origin is found in simplices of its corners. For polytopes it is
 found in a finite number of steps, to round-off; for smooth cores the error of the distance is of second
 order in that of the direction.
 """

@@ -54,7 +54,7 @@ PAIR_STATE = [
     ("p", "f8", 3),  # origin of A
     ("world", "f8", (3, 3)),  # axes of B to the world
     ("origin", "f8", 3),  # of B in the world
-    ("shift", "f8", 3),  # A is moved by this while a normal is sought
+    ("shift", "f8", 3),  # A is moved by this during the search for a normal
     ("corner", "f8", (2, MOST_CORNERS, 3)),  # opposite faces of A and B
     ("number", "i8", (2, MOST_CORNERS)),  # numbers of their corners
     ("count", "i8", 2),

@@ -67,7 +67,7 @@ def touch_plane(a, plane, hulls, reach, work, out):
 
 @unit
 def plane_unit(a, plane, hulls, reach, work, out):
-    """As `touch_plane`, compiled once; the number of points goes to ``work.state[0].total``."""
+    """Do the same as `touch_plane`, compiled once; the number of points goes to ``work.state[0].total``."""
     work.state[0].total = touch_plane(a, plane, hulls, reach, work, out)
 
 

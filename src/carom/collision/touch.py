@@ -56,7 +56,7 @@ def touch(a, b, hulls, reach, work, out):
 
 @unit
 def touch_unit(a, b, hulls, reach, work, out):
-    """As `touch`, compiled once; the number of points goes to ``work.state[0].total``."""
+    """Do the same as `touch`, compiled once; the number of points goes to ``work.state[0].total``."""
     work.state[0].total = touch(a, b, hulls, reach, work, out)
 
 

@@ -58,7 +58,7 @@ def smaller(contact):
 
 @kernel
 def tangents(n0, n1, n2, axes):
-    """Write rows n, t1, t2: t1 world x made tangent, or y where n is near x; t2 = n x t1.
+    """Write rows n, t1, t2: t1 is the tangent part of world x, or of y if n is near x; t2 = n x t1.
 
     The axis with the least component along n is not used: if two are equal, round-off would decide each time.
     """
@@ -76,7 +76,7 @@ def tangents(n0, n1, n2, axes):
 
 @kernel
 def write_touch(contact, touch, state, point):
-    """Write a found point as a point of contact."""
+    """Write a found point as a contact point."""
     n = touch.normal
     point.a, point.b, point.gap, point.turns = contact.body, contact.other, touch.gap, 0
     if contact.static == 1:

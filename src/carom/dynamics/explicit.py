@@ -49,7 +49,7 @@ def any_held(active):
 
 @inlined
 def constrained(method, system, active, start, h, end, work):
-    """Step the bodies that are joined, loaded or in contact; return what `explicit_step` does."""
+    """Step the bodies that are joined, loaded or in contact; return the same as `explicit_step`."""
     whole_step(method, system, active, start, h, end, work)
     result = work.result[0]
     return result.applied, result.friction, result.code

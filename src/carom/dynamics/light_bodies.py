@@ -51,7 +51,7 @@ def geometric_motion(system, work):
 
 @kernel
 def factor_geometry(system, state, augment, work):
-    """Factor A D^-1 A^T: its pivots are 0 where rows depend on others."""
+    """Factor A D^-1 A^T: its pivots are 0 for rows that depend on others."""
     solver, joints = system.solver, system.joints
     forget_pose(solver)
     build_rows(system, state, work)

@@ -101,7 +101,7 @@ def add_product(S, Y, A, m, n):
 
 @kernel
 def factor_diagonal(S, pivot, diagonal, n, drop):
-    """Factor S = L D L^T in place (unit L below the diagonal); pivot = 1/D, or 0 where dropped."""
+    """Factor S = L D L^T in place (unit L below the diagonal); pivot = 1/D, or 0 for a dropped row."""
     for k in range(n):
         d = S[k, k]
         for s in range(k):

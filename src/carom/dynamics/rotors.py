@@ -7,8 +7,8 @@ compliance,
     J a + lam/I = -d,      d = J' v its drift, so that lam = -I q''.
 
 All responses to impulses and all projections contain it in this form. The exception is the computation of
-velocities of bodies from their own momenta, M v: there the rotors keep the rate r that they had, and -I (q' -
-r) acts as an impulse in the projection that follows.
+velocities of bodies from their own momenta, M v: there the rotors keep the rate r that they had, and
+-I (q' - r) acts as an impulse in the projection that follows.
 """
 
 from __future__ import annotations

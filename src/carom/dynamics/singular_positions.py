@@ -1,4 +1,4 @@
-"""Stages of a step in singular positions, where constraint rows are dependent, but independent elsewhere.
+"""Stages of a step in singular positions: there constraint rows are dependent that are usually independent.
 
 Such rows are left out there, and the acceleration is not the limit of its neighbours: the rows would give 0/0,
 and nearby (at an angle e between them) the round-off of the joints over e^3. On a path q(t) in the constraints

@@ -18,7 +18,7 @@ from carom._compiled.user_functions import call_function
 from carom.geometry.rotation import exp, multiply
 from carom.kinematics.rows import mass_row
 
-WAY = 1e-5  # of the size of a body
+DISPLACEMENT = 1e-5  # relative to the size of a body
 
 
 @kernel
@@ -101,11 +101,11 @@ def user_bias(system, j, state, t, out, workspace):
         b = system.solver.sides[s].body
         v, w, size = state[b].v, state[b].w, system.bodies[b].extent
         # if nothing moves, the time is relative to that of a fall by the size of the body
-        ahead = min(ahead, WAY * (math.sqrt(size / fall) if fall > 0.0 else 1.0))
+        ahead = min(ahead, DISPLACEMENT * (math.sqrt(size / fall) if fall > 0.0 else 1.0))
         speed = math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
         speed += size * math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
-        if speed * ahead > WAY * size:
-            ahead = WAY * size / speed
+        if speed * ahead > DISPLACEMENT * size:
+            ahead = DISPLACEMENT * size / speed
     write_speeds(system, j, state, t, ahead, out)
     write_speeds(system, j, state, t, -ahead, workspace)
     for r in range(system.joints[j].rows):

@@ -138,7 +138,7 @@ def new_active_set(contacts: int) -> ActiveSet:
 
 
 def new_work(n: int, holonomic: int, rows: int, contacts: int, stages: int) -> Work:
-    """Return workspace for a system of these sizes and a method of so many stages."""
+    """Return workspace for a system of these sizes and a method with this number of stages."""
     m = rows + 3 * contacts
     inertia, loads = np.zeros(n * n + n), np.zeros(n + 2)
     row = np.zeros(holonomic + rows * n + rows)

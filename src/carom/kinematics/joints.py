@@ -179,8 +179,8 @@ def turn_error(joint, state):
 def screw_error(joint, state, slide):
     """Return the error of the slide of a screw [m] for its present turn.
 
-    The turn is known up to whole turns, the slide completely: the error is k times (slide/k - turn) modulo 2
-    pi. So turns need not be counted.
+    The turn is known up to whole turns, the slide completely. So the error is k times (slide/k - turn)
+    modulo 2 pi, and turns need not be counted.
     """
     c, p = joint.child, joint.parent
     bx, by, bz = axis(state, c, joint.child_frame, 1)

@@ -209,13 +209,13 @@ def new_work(system: System, stages: int) -> Work:
     )
 
 
-def new_records(system: System, saves: int, events: int, held: int = 0) -> Records:
-    """Return empty records for `saves` saved steps, `events` impacts and events, `held` more active points."""
+def new_records(system: System, saves: int, events: int, points: int = 0) -> Records:
+    """Return empty records for `saves` saved steps, `events` impacts and events, and more active `points`."""
     n = system.bodies.size
     return Records(
         series=table(SERIES, saves),
         state=table(STATE, saves, n),
-        touch=table(TOUCH, events + held),
+        touch=table(TOUCH, events + points),
         impact=table(IMPACTS, events),
         event=table(EVENT, events),
         snapshot=table(SNAPSHOT, 2 * events + 2 * n),

@@ -64,7 +64,7 @@ class Coordinates:
         turns = coordinate_kind(joint, coordinate) == "turn"
         first, second = (self.placement.side(joint, k) for k in range(2))
         frame = d.coordinate_frame(coordinate)
-        if d.turn == "cross" and coordinate == 1:  # seen from the child
+        if d.turn == "cross" and coordinate == 1:  # measured from the child
             first, second = second, first
         anchor = joint.anchor()
         row.kind = REVOLUTE if turns else PRISMATIC

@@ -94,7 +94,7 @@ BODY_WORK = [
     ("spin", "f8", 3),  # angular velocity that belongs to `momentum`, in the three-field step
     ("momentum", "f8", 3),  # spatial angular momentum
     *FLIGHT,
-    ("whole_until", "i8"),  # the body moves as a crowd up to this step
+    ("whole_until", "i8"),  # the body moves in a crowd up to this step
     ("whole_for", "i8"),  # number of such steps at the last decision
     ("home", "f8", 3),  # centre at the start of the step
     ("room", "f8"),  # largest distance of the centre from it in this step
