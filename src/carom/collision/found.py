@@ -51,7 +51,7 @@ def spread(found, count):
     """Move the points that are kept to the front; return their number.
 
     If there are too many, the point with the least gap is kept first, and then, again and again, the point
-    farthest from all kept points. These are the corners of the polygon.
+    farthest from all kept points. This keeps the corners of the polygon.
     """
     if count <= MOST_POINTS:
         return count

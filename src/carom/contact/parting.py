@@ -9,8 +9,8 @@ The least value over a core is a support function, h(d) = max d.p, so that the g
     F(t) = n.(x_a - x_b) + n.(v_a - v_b) t - h_A(-(m_a + t c_a)) - h_B(m_b + t c_b) - radii - a t^2/2.
 
 F is concave, because it is a minimum of concave functions. So chords lie below it, and the root of a chord from
-a point above zero to one below comes before the root of F. All points of the two cores are apart as long as F >
-0. For cores with vertices, the bound of `continuous_detection_pair.time_apart` is the same.
+a point above zero to one below comes before the root of F. All points of the two cores are apart as long as
+F > 0. For cores with vertices, the bound of `continuous_detection_pair.time_apart` is the same.
 """
 
 from __future__ import annotations
