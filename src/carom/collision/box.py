@@ -9,7 +9,7 @@ from carom.collision.features import of_edges, of_vertex_a, of_vertex_b
 from carom.collision.found import put
 from carom.collision.frame import from_a
 
-TOUCHING = 1e-9  # distance of the cores, relative to their size, below which it has no direction
+TOUCHING = 1e-9  # relative to the size of the cores: a shorter distance has no reliable direction
 
 
 @inlined
@@ -20,7 +20,7 @@ def clamp(x, h):
 
 @kernel
 def point_box(pair):
-    """Find the points of a ball and a box; inside it the nearest face counts."""
+    """Find the nearest points of a ball and a box; for a centre inside the box, those on the nearest face."""
     p, g = pair.state.p, pair.b.half
     px, py, pz = p[0], p[1], p[2]
     qx, qy, qz = clamp(px, g[0]), clamp(py, g[1]), clamp(pz, g[2])
@@ -46,7 +46,7 @@ def point_box(pair):
 
 @kernel
 def _slope(c, u, g, t):
-    """Return d/dt of half the square of the distance of c + t u from the box."""
+    """Return the derivative in t of half the squared distance of c + t u from the box."""
     total = 0.0
     for i in range(3):
         x = c[i] + t * u[i]
@@ -58,8 +58,9 @@ def _slope(c, u, g, t):
 def nearest_on_line(c, u, g, h):
     """Return t in [-h, h] where c + t u is nearest to the box of half sizes g.
 
-    The square of the distance is convex in t, with a derivative that is linear between the at most six
-    t at which the line crosses a plane of a face: these bracket its zero, which is then exact.
+    The squared distance is convex in t. Its derivative is linear between the values of t, at most six, at
+    which the line crosses the plane of a face. These bracket the zero, which linear interpolation gives
+    exactly.
     """
     low, high = -h, h
     f_low, f_high = _slope(c, u, g, low), _slope(c, u, g, high)
@@ -85,7 +86,7 @@ def nearest_on_line(c, u, g, h):
 def segment_box(pair):
     """Find the nearest points of a capsule and a box."""
     s, g, h = pair.state, pair.b.half, pair.a.half[2]
-    c, u = s.p, s.w[0]  # the direction of the capsule in a row that nobody else uses here
+    c, u = s.p, s.w[0]  # u, the direction of the capsule, is stored in a row that is free here
     u[0], u[1], u[2] = from_a(s, 0.0, 0.0, 1.0)
     t = nearest_on_line(c, u, g, h)
     ax, ay, az = c[0] + t * u[0], c[1] + t * u[1], c[2] + t * u[2]
@@ -107,7 +108,7 @@ def _outside(x, g):
 
 @kernel
 def _feature(x, y, z, g, t, h):
-    """Return the feature of the nearest points: by the end of the segment and the faces it is beyond."""
+    """Return the feature: an end of the segment, a vertex of the box, two edges, or 0 for a face of the box."""
     i, j, k = _outside(x, g[0]), _outside(y, g[1]), _outside(z, g[2])
     if abs(t) == h:
         return of_vertex_a(1 if t > 0.0 else 0)
@@ -123,9 +124,9 @@ def _feature(x, y, z, g, t, h):
 
 @kernel
 def _through(pair, u):
-    """Find the way out of a segment along u that touches or passes the box: the least of six directions.
+    """Find the smallest displacement out of the box for a segment along u that touches or crosses it.
 
-    Separating axes: the faces, and the cross products of the segment with the edges.
+    Six separating axes are compared: the normals of the faces, and the cross products of u with the edges.
     """
     c, g, h = pair.state.p, pair.b.half, pair.a.half[2]
     best, axis, cross = -math.inf, 0, False
@@ -147,7 +148,7 @@ def _through(pair, u):
         sense = 1.0 if u[j] * c[k] - u[k] * c[j] > 0.0 else -1.0
         size = math.sqrt(u[j] * u[j] + u[k] * u[k])
         n[k], n[j] = sense * u[j] / size, -sense * u[k] / size
-        # Where the segment passes the edge: b = a - best n is on it in the two coordinates j and k.
+        # The segment crosses the edge at t: b = a - best n has the coordinates j and k of the edge.
         bj, bk = math.copysign(g[j], n[j]), math.copysign(g[k], n[k])
         t = u[j] * (bj + best * n[j] - c[j]) + u[k] * (bk + best * n[k] - c[k])
         t = clamp(t / (size * size), h)

@@ -1,4 +1,4 @@
-"""Two boxes: separating axes, which give the exact distance where a face or two edges are nearest."""
+"""Separating axes of two boxes; they give the exact distance if a face or two edges are nearest."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from carom._compiled.decorators import inlined, kernel
 from carom.collision.features import of_edges
 from carom.collision.found import put
 
-ROUNDING = 1e-13  # relative: by so much an axis must be better than a face's to be taken instead
-PARALLEL = 1e-7  # sine below which two edges have no common normal of their own
+ROUNDING = 1e-13  # relative to the size: a later axis must be better by more than this to be chosen
+PARALLEL = 1e-7  # sine below which two edges count as parallel, without a common normal
 
 
 @inlined
@@ -21,8 +21,8 @@ def _sense(x):
 def best_axis(pair):
     """Return the greatest separation of two boxes over the fifteen axes, and the number of the axis.
 
-    0-2 faces of B, 3-5 faces of A, 6 + 3 i + j the cross product of edges i of B and j of A. The
-    separation never exceeds the distance of the cores; negative, it is the depth.
+    Axes 0-2 are normals of faces of B, 3-5 of faces of A, 6 + 3 i + j is the cross product of edges i of B and
+    j of A. The separation never exceeds the distance of the cores; a negative separation is minus the depth.
     """
     R, p, g, h = pair.state.R, pair.state.p, pair.b.half, pair.a.half
     size = g[0] + g[1] + g[2] + h[0] + h[1] + h[2]
@@ -41,7 +41,7 @@ def best_axis(pair):
     for i in range(3):
         i1, i2 = (i + 1) % 3, (i + 2) % 3
         for j in range(3):
-            m1, m2 = -R[i2, j], R[i1, j]  # of e_i x a_j along axes i1, i2
+            m1, m2 = -R[i2, j], R[i1, j]  # components of e_i x a_j along axes i1, i2
             sine = math.sqrt(m1 * m1 + m2 * m2)
             if sine > PARALLEL:
                 j1, j2 = (j + 1) % 3, (j + 2) % 3
@@ -55,9 +55,9 @@ def best_axis(pair):
 
 @kernel
 def edge_pair(pair, best, axis):
-    """Write the nearest points of two edges that cross; return True if both lie on the edges.
+    """Write the nearest points of the lines of two edges; return True if both points lie on the edges.
 
-    The lines are those of the edges which the boxes turn to each other along the common normal.
+    Each box takes part with the edge that is nearest to the other box along the common normal.
     """
     s = pair.state
     R, p, g, h = s.R, s.p, pair.b.half, pair.a.half
@@ -68,7 +68,7 @@ def edge_pair(pair, best, axis):
     n[i], n[i1], n[i2] = 0.0, -R[i2, j] / sine, R[i1, j] / sine
     if not n[i1] * p[i1] + n[i2] * p[i2] > 0.0:
         n[i1], n[i2] = -n[i1], -n[i2]
-    # The edge of B: coordinates i1 and i2 at their bounds. That of A: its other two, against n.
+    # On the edge of B, coordinates i1 and i2 are at their bounds along n; on that of A, j1 and j2 against n.
     j1, j2 = (j + 1) % 3, (j + 2) % 3
     s1 = -_sense(n[0] * R[0, j1] + n[1] * R[1, j1] + n[2] * R[2, j1])
     s2 = -_sense(n[0] * R[0, j2] + n[1] * R[1, j2] + n[2] * R[2, j2])
@@ -76,7 +76,7 @@ def edge_pair(pair, best, axis):
     q = s.w[0]
     for k in range(3):
         q[k] = p[k] + s1 * h[j1] * R[k, j1] + s2 * h[j2] * R[k, j2]
-    # q + t a_j meets the line of B, lifted by the separation along n.
+    # q + t a_j meets the line of B after this line is moved by the separation along n.
     u1, u2 = R[i1, j], R[i2, j]
     d1, d2 = b1 + best * n[i1] - q[i1], b2 + best * n[i2] - q[i2]
     t = (d1 * u1 + d2 * u2) / (sine * sine)
@@ -98,7 +98,7 @@ def edge_pair(pair, best, axis):
 def face_or_edges(pair):
     """Write the separation along the best axis as the first point; return False if it is not the distance.
 
-    Of a face only the normal is written, with the feature 0: its points are those of the overlap.
+    For a face only the gap and the normal are written, with the feature 0: `clip.overlap` finds the points.
     """
     R, p = pair.state.R, pair.state.p
     best, axis = best_axis(pair)

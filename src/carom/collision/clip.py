@@ -1,8 +1,8 @@
-"""Two faces that look at each other: the polygon in which they overlap, seen along a normal.
+"""The polygon in which two opposite faces overlap, seen along a normal.
 
-Sutherland and Hodgman: the corners of one face (the incident one) are cut by the planes that stand on the
-sides of the other (the reference) along its normal. Every corner of the result lies on the incident face;
-its gap is its height above the reference face. It knows which features made it: a corner of
+Method of Sutherland and Hodgman: the polygon of one face (the incident face) is cut by planes through the sides
+of the other (the reference face), parallel to the normal of the reference face. Every corner of the result lies
+on the incident face; its gap is its height above the reference face. The feature of a corner is a corner of
 either face, or a side of each.
 """
 
@@ -15,7 +15,7 @@ from carom.collision.features import of_edges, of_vertex_a, of_vertex_b
 from carom.collision.found import known, put
 from carom.collision.layout import MOST_CORNERS
 
-ROUNDING = 1e-12  # relative to the size of the faces: a corner that lies on a side is kept
+ROUNDING = 1e-12  # tolerance relative to the size of the reference face: a corner on a side is kept
 
 
 @inlined
@@ -41,7 +41,7 @@ def _cut(s, ref, source, count, j, tolerance):
     ex, ey, ez = q[0] - p[0], q[1] - p[1], q[2] - p[2]
     mx, my, mz = n[1] * ez - n[2] * ey, n[2] * ex - n[0] * ez, n[0] * ey - n[1] * ex
     size = math.sqrt(mx * mx + my * my + mz * mz)
-    if not size > 0.0:  # two corners in one place
+    if not size > 0.0:  # two corners coincide
         size = 1.0
     mx, my, mz = mx / size, my / size, mz / size
     old, new = s.ring[source], s.ring[target]
@@ -63,7 +63,7 @@ def _cut(s, ref, source, count, j, tolerance):
             origin = s.side[source, k]
             if origin >= 0:
                 label = _crossing(s, inc, origin, ref, j)
-            else:  # on a side of the reference already: two of its sides meet in a corner
+            else:  # this side lies on a side of the reference, which meets side j in a corner
                 i = -1 - origin
                 label = _vertex(ref, s.number[ref, j if (i + 1) % s.count[ref] == j else i])
             s.label[target, made] = label
@@ -76,7 +76,7 @@ def _cut(s, ref, source, count, j, tolerance):
 def overlap(pair, ref, least, most, count):
     """Add the corners of the overlap with gaps from `least` to `most`; return the new count.
 
-    `ref`: 0 if the face of A is the reference, 1 if that of B.
+    `ref` is 0 if the face of A is the reference, 1 if that of B is.
     """
     s, found, inc = pair.state, pair.found, 1 - ref
     corners = s.count[inc]

@@ -1,10 +1,10 @@
-"""Nearest points of any two convex solids: the distance of the cores, or how deep they overlap.
+"""Nearest points of any two convex solids: the distance of the cores, or the depth of their overlap.
 
-The normal n is the maximum of the separation sigma(n) = min_A a.n - max_B b.n over unit vectors. Apart,
-the distance of the cores gives it. Where they touch or overlap slightly, A is moved out along the best n
-so far until it is clear, and the normal of that distance is the next n: the proximal point method for
-sigma on the sphere, for moving by d adds d n.n0 = d - d |n - n0|^2 / 2. Each step raises sigma. No
-margin stays in the result.
+The normal n maximizes the separation sigma(n) = min_A a.n - max_B b.n over unit vectors. For cores that are
+apart, n is the direction of their distance. If they touch or overlap slightly, A is moved along the best normal
+n0 so far until it is clear of B, and the direction of the new distance is the next n. This is the proximal
+point method for sigma on the sphere, because a displacement d n0 adds d n.n0 = d - d |n - n0|^2 / 2 to sigma.
+Each step raises sigma. The displacement leaves no margin in the result.
 """
 
 from __future__ import annotations
@@ -21,23 +21,24 @@ from carom.collision.layout import CYLINDER
 from carom.collision.polish import polish
 from carom.collision.support import separation
 
-CLEAR = 1e-3  # distance of the cores, relative to the smaller, that gives a direction to round-off
-DIRECTED = 1e-9  # relative to the smaller, from which on the distance has a direction at all
-CLIMBS = 9  # starts from which the way out of an overlap is sought; more helped no sharp hull
-CLIMBS_CURVED = 3  # each takes longer there
-ELSEWHERE = 0.95  # cosine below which a start is another one
-NEARER = 30.0  # clearance relative to the depth
-LEAST = 1e-3  # relative to the usual clearance: below, the direction would be no better
+CLEAR = 1e-3  # relative to the smaller solid: such a distance has a direction exact to round-off
+DIRECTED = 1e-9  # relative to the smaller solid: a shorter distance has no reliable direction
+CLIMBS = 9  # starts of the search for the depth; with more, no sharp hull gave a better result
+CLIMBS_CURVED = 3  # the same for curved cores, where each search takes longer
+ELSEWHERE = 0.95  # cosine of the angle to the best direction; nearer starts are not tried
+NEARER = 30.0  # clearance of the second phase of a climb, relative to the depth
+LEAST = 1e-3  # least clearance, relative to the usual one; a smaller one gives no better direction
 ROUNDS = 30
-ROUGH = 1e-6  # accuracy of the search that Newton's method ends, for curved cores
-FACE = 1e-12  # relative to the size: by so much a face's normal may be worse and is taken
+ROUGH = 1e-6  # accuracy of the search for curved cores, which Newton's method then refines
+FACE = 1e-12  # relative to the size: a face's normal is preferred if it is worse by at most this
 
 
 @unit
 def closest(pair):
     """Write the nearest points of two convex solids as the first point.
 
-    Overlap must be slight, less than about half of either core: deeper, the way out may not be the least.
+    An overlap must be less than about half of either core. For a deeper one, the displacement that is found may
+    not be the smallest.
     """
     s, a, b = pair.state, pair.a, pair.b
     size = min(a.extent, b.extent)
@@ -48,7 +49,7 @@ def closest(pair):
     bx, by, bz = s.on_b[4, 0], s.on_b[4, 1], s.on_b[4, 2]
     if polished == 1:
         best, nx, ny, nz = value, x, y, z
-    # A face's own normal is exact; it is taken where it is as good.
+    # The normal of a face is exact; it is used if its separation is as large.
     flat = False
     for side in (1, 0):
         f = 1.0 if side == 1 else -1.0
@@ -59,15 +60,15 @@ def closest(pair):
             if value >= best - FACE * size:
                 best, nx, ny, nz, flat = value, f * n[0], f * n[1], f * n[2], True
     if flat or polished == 0:
-        if curved:  # not where the method above ends: a point inside a face, or parallel edges
+        if curved:  # Newton's method does not apply to a point inside a face or parallel edges
             value, x, y, z = _search(pair, size, EXACT)
             feature = _feature(s)
             if not flat:
                 best, nx, ny, nz = value, x, y, z
         bx, by, bz = point_on_b(s)
-    if flat and curved:  # somewhere on a face
+    if flat and curved:  # the points may be anywhere on the face
         feature = 0
-    # The two points are `best` apart along n; what else they differ by is rounding along a face.
+    # The two points differ by `best` n; any other difference is rounding along a face, and is dropped.
     e = b.inner
     bx, by, bz = bx + e * nx, by + e * ny, bz + e * nz
     core = best - a.inner - b.inner
@@ -78,7 +79,7 @@ def closest(pair):
 
 @kernel
 def _search(pair, size, accuracy):
-    """Return separation and normal of the cores; the simplex is that of the end, where A may be moved."""
+    """Return separation and normal of the cores; the last simplex stays, perhaps one of a displaced A."""
     s, clear = pair.state, CLEAR * size
     x, y, z = s.p[0], s.p[1], s.p[2]
     if x * x + y * y + z * z == 0.0:
@@ -96,16 +97,16 @@ def _search(pair, size, accuracy):
 
 @kernel
 def _candidate(s, k):
-    """Return candidate k for the direction in which two overlapping cores part; it may have any length.
+    """Return candidate k, of any length, for the direction that separates two overlapping cores.
 
-    The line of centres, the normals of the simplex, the axes of both.
+    The candidates are the line of centres, the normals of the simplex, and the axes of both solids.
     """
     x, y, z = 0.0, 0.0, 0.0
     i = k % 3
     if k == 0:
         return s.p[0], s.p[1], s.p[2]
     if k < 9:
-        j = (k - 1) >> 1  # the corner that is left out
+        j = (k - 1) >> 1  # the corner that is not on this face
         if s.points == 4 or (s.points == 3 and j == 3):
             o, u, v = s.w[0 if j > 0 else 1], s.w[1 if j > 1 else 2], s.w[2 if j > 2 else 3]
             e0, e1, e2 = u[0] - o[0], u[1] - o[1], u[2] - o[2]
@@ -127,7 +128,7 @@ def _candidate(s, k):
 
 @kernel
 def _way_out(pair, accuracy, clear):
-    """Return the greatest separation, and its direction, that the best few of 15 candidates lead to."""
+    """Return the greatest separation and its direction; climbs start from the best of 15 candidates."""
     s = pair.state
     start = s.start
     for k in range(15):
@@ -152,16 +153,16 @@ def _way_out(pair, accuracy, clear):
             value, x, y, z = _climb(pair, accuracy, clear, x, y, z)
             if value > best:
                 best, nx, ny, nz = value, x, y, z
-    # The simplex is to be that of the best.
+    # The best climb is repeated, so that the simplex is that of the result.
     return _climb(pair, accuracy, clear, nx, ny, nz)
 
 
 @kernel
 def _climb(pair, accuracy, clear, nx, ny, nz):
-    """Return the greatest separation near a direction, and its direction; the simplex is that of the end.
+    """Return the greatest separation near a direction, and its direction; the last simplex stays.
 
-    A step turns the normal by about the depth over the clearance; where the depth is small the clearance
-    is too for a while.
+    A step turns the normal by about the depth over the clearance. So for a small depth, the second of three
+    phases uses a smaller clearance.
     """
     s = pair.state
     s.shift[0], s.shift[1], s.shift[2] = 0.0, 0.0, 0.0
@@ -181,7 +182,7 @@ def _climb(pair, accuracy, clear, nx, ny, nz):
             if not d > 0.0:
                 break
             x, y, z = x / d, y / d, z / d
-            # The row of proposals holds points of A as moved.
+            # `separation` is that of the displaced A: the part of the displacement is subtracted.
             value = separation(pair, x, y, z) - move * (nx * x + ny * y + nz * z)
             if not value > best:
                 break
@@ -194,7 +195,7 @@ def _climb(pair, accuracy, clear, nx, ny, nz):
 
 @kernel
 def _feature(s):
-    """Return the feature of the nearest points: by how many vertices of each make the simplex."""
+    """Return the feature of the nearest points, from the number of vertices of A and of B in the simplex."""
     ids = s.ids
     a2, b2, more_a, more_b = ids[0, 0], ids[0, 1], False, False
     for k in range(1, s.points):

@@ -1,7 +1,7 @@
-"""The face of a solid that looks most in a given direction, as a ring of corners.
+"""The face of a solid whose normal is nearest to a given direction, as a ring of corners.
 
-Segments and the mantle of a cylinder have two corners, points and ellipsoids one. A cap of a cylinder
-is stood for by eight points of its rim, fixed in the body.
+Segments and lines of the mantle of a cylinder have two corners, points and ellipsoids one. Eight points of the
+rim, fixed in the body, represent a cap of a cylinder.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ HALF_ROOT = math.sqrt(0.5)
 
 @inlined
 def rim_point(k):
-    """Return cosine and sine of k/8 of a turn, exactly zero or one where they are."""
+    """Return cosine and sine of k/8 of a turn; the values 0, 1 and -1 are exact."""
     i = k % 8
     c = 1.0 if i == 0 else -1.0 if i == 4 else 0.0 if i == 2 or i == 6 else HALF_ROOT
     z = 1.0 if i == 2 else -1.0 if i == 6 else 0.0 if i == 0 or i == 4 else HALF_ROOT
@@ -27,7 +27,7 @@ def rim_point(k):
 
 @kernel
 def _corner(s, side, k, number, x, y, z):
-    """Write corner k of the face of a side, given in the solid's own axes."""
+    """Write corner k of the face of A (side 0) or B (side 1), given in the solid's own axes."""
     if side == 0:
         x, y, z = from_a(s, x, y, z)
         x, y, z = x + s.p[0] + s.shift[0], y + s.p[1] + s.shift[1], z + s.p[2] + s.shift[2]
@@ -38,7 +38,7 @@ def _corner(s, side, k, number, x, y, z):
 
 @kernel
 def _set_normal(s, side, x, y, z):
-    """Write the outward normal of the face of a side, given in the solid's own axes."""
+    """Write the outward normal of the face of A (side 0) or B (side 1), given in the solid's own axes."""
     if side == 0:
         x, y, z = from_a(s, x, y, z)
     s.normal[side, 0], s.normal[side, 1], s.normal[side, 2] = x, y, z
@@ -48,7 +48,7 @@ def _set_normal(s, side, x, y, z):
 def _box_face(s, side, half, axis, sense):
     """Write a face of a box; its corners are numbered as in `carom.scene.Box.vertices`."""
     j = (axis + 1) % 3
-    for n in range(4):  # counter-clockwise about +axis, turned round for -axis
+    for n in range(4):  # counter-clockwise about +axis, in reverse order for -axis
         v = 1.0 if n == 1 or n == 2 else -1.0
         w = 1.0 if n >= 2 else -1.0
         if sense < 0.0:
@@ -92,7 +92,7 @@ def _hull_face(pair, side, x, y, z):
 
 @kernel
 def _cylinder_face(s, side, half, x, y, z):
-    """Write a cap of a cylinder, or the line of its mantle; return the cosine, 0 for the mantle."""
+    """Write a cap of a cylinder, or a line of its mantle; return the cosine, 0 for the mantle."""
     across = math.sqrt(x * x + y * y)
     if abs(z) >= HALF_ROOT or not across > 0.0 or half[2] == 0.0:
         sense = 1.0 if z > 0.0 else -1.0
@@ -112,9 +112,9 @@ def _cylinder_face(s, side, half, x, y, z):
 
 @kernel
 def load_face(pair, side, x, y, z):
-    """Write the face of a solid that looks most along (x, y, z), axes of B; return the cosine.
+    """Write the face of a solid whose normal is nearest to (x, y, z), in axes of B; return the cosine.
 
-    `side` is 0 for A, 1 for B. The cosine is 0 where there is no face but an edge or a point.
+    `side` is 0 for A, 1 for B. The cosine is 0 for an edge or a point instead of a face.
     """
     s, solid = pair.state, pair.a if side == 0 else pair.b
     if side == 0:

@@ -1,7 +1,7 @@
-"""Names of features: a number that stays while the same features touch.
+"""Numbers of features: a contact keeps its number as long as the same features touch.
 
-Bits 60-61: what touches (1 a vertex of A, 2 a vertex of B, 3 an edge of A and one of B, 0 smooth or undecided);
-then 15 bits for each of the vertices a1, a2 of A and b1, b2 of B.
+Bits 60-61 are the kind: 1 a vertex of A, 2 a vertex of B, 3 an edge of A and one of B, 0 smooth or undecided.
+Then follow 15 bits for each of the vertices a1, a2 of A and b1, b2 of B.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ VERTEX_A, VERTEX_B, EDGES = 1, 2, 3
 
 @inlined
 def of_vertex_a(i):
-    """Return the feature of vertex i of A on whatever B has there."""
+    """Return the feature of vertex i of A on any part of B."""
     return (1 << 60) | (i << 45)
 
 
@@ -25,13 +25,13 @@ def vertex_a(feature):
 
 @inlined
 def of_vertex_b(i):
-    """Return the feature of vertex i of B on whatever A has there."""
+    """Return the feature of vertex i of B on any part of A."""
     return (2 << 60) | (i << 15)
 
 
 @inlined
 def of_edges(a1, a2, b1, b2):
-    """Return the feature of the edge a1 a2 of A on the edge b1 b2 of B, whatever their sense."""
+    """Return the feature of the edge a1 a2 of A on the edge b1 b2 of B; the order of the ends is free."""
     return (3 << 60) | (min(a1, a2) << 45) | (max(a1, a2) << 30) | (min(b1, b2) << 15) | max(b1, b2)
 
 

@@ -48,10 +48,10 @@ def _apart(found, i, j):
 
 @kernel
 def spread(found, count):
-    """Move the points to keep to the front; return how many.
+    """Move the points that are kept to the front; return their number.
 
-    Of too many: the nearest, then each time the one farthest from those kept, which keeps the corners of
-    the polygon.
+    If there are too many, the point with the least gap is kept first, and then, again and again, the point
+    farthest from all kept points. This keeps the corners of the polygon.
     """
     if count <= MOST_POINTS:
         return count

@@ -1,7 +1,7 @@
-"""One pair in the axes of B, and back to the world.
+"""Transform a pair of solids to the axes of B, and its contact points back to the world.
 
-Nothing is computed from world coordinates but the difference of the two origins: a pair far from the
-world's origin is as exact as one near it.
+Only the difference of the two origins is computed from world coordinates, so a pair far from the origin of the
+world is as exact as one near it.
 """
 
 from __future__ import annotations
@@ -49,19 +49,19 @@ def _times(r, x, y, z):
 
 @inlined
 def from_a(s, x, y, z):
-    """Return a vector of axes of A in axes of B."""
+    """Transform a vector from axes of A to axes of B."""
     return _times(s.R, x, y, z)
 
 
 @inlined
 def to_world(s, x, y, z):
-    """Return a vector of axes of B in world axes."""
+    """Transform a vector from axes of B to world axes."""
     return _times(s.world, x, y, z)
 
 
 @inlined
 def to_a(s, x, y, z):
-    """Return a vector of axes of B in axes of A."""
+    """Transform a vector from axes of B to axes of A."""
     r = s.R
     return (
         r[0, 0] * x + r[1, 0] * y + r[2, 0] * z,

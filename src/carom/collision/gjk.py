@@ -1,6 +1,6 @@
 """Distance of two convex cores by the method of Gilbert, Johnson and Keerthi (IEEE J. Robotics 4, 1988).
 
-The nearest point v of A - B to the origin is sought in simplices of its corners. For polytopes it is
+The nearest point v of A - B to the origin is found in simplices of its corners. For polytopes it is
 found in a finite number of steps, to round-off; for smooth cores the error of the distance is of second
 order in that of the direction.
 """
@@ -13,17 +13,17 @@ from carom._compiled.decorators import kernel
 from carom.collision.simplex import move_corner, nearest_point, reduce_simplex, size_of
 from carom.collision.support import propose
 
-EXACT = 1e-15  # gain of a step, relative to the distance, that is rounding
-INSIDE = 1e-14  # distance relative to the simplex that counts as none
+EXACT = 1e-15  # gain of a step, relative to the distance, that is only rounding
+INSIDE = 1e-14  # distance, relative to the size of the simplex, that counts as zero
 MOST_STEPS = 100
 
 
 @kernel
 def distance(pair, accuracy, x, y, z):
-    """Return |v| and v, from B to A, of the cores; 0 where they overlap.
+    """Return the distance |v| of the cores and the vector v from B to A; zeros if the cores overlap.
 
-    The search starts in direction (x, y, z), any vector but zero, and ends where a step gains no more than
-    `accuracy` of the distance. The simplex and its weights stay in the workspace: they give the two points.
+    The search starts in the direction (x, y, z), any vector except zero, and ends when the relative gain of a
+    step is at most `accuracy`. The simplex and its weights stay in the workspace: they give the two points.
     """
     s = pair.state
     s.searches += 1
@@ -41,13 +41,13 @@ def distance(pair, accuracy, x, y, z):
         gain = v2 - (vx * w[0] + vy * w[1] + vz * w[2])
         if not gain > accuracy * v2:
             break
+        # A corner that is already in the simplex can change the result only by rounding.
         again = False
         for k in range(s.points):
             if s.w[k, 0] == w[0] and s.w[k, 1] == w[1] and s.w[k, 2] == w[2]:
                 again = True
         if again:
             break
-        # Keep the simplex as it is where the new corner brings nothing but rounding.
         move_corner(s, 4, s.points)
         s.points += 1
         new = reduce_simplex(s)
@@ -62,7 +62,7 @@ def distance(pair, accuracy, x, y, z):
 
 @kernel
 def point_on_b(s):
-    """Return the point of B that the weights of the simplex give."""
+    """Return the nearest point on B, from the weights of the simplex."""
     x, y, z = 0.0, 0.0, 0.0
     for k in range(s.points):
         f, p = s.weight[k], s.on_b[k]

@@ -1,7 +1,7 @@
-"""What the kernels of pairs read and write: solids, hulls, points of contact, workspace.
+"""Records of the kernels for pairs: solids, hulls, contact points, workspace.
 
-A solid is a convex core in its own axes, swollen by a ball of `radius`. Axes of A and B, x and Q, are
-world poses of the solids: of the bodies, combined with the solid's own place in its body.
+A solid is a convex core in its own axes, enlarged by a ball of `radius`. The poses x, Q of A and B are world
+poses of the solids: the pose of the body, combined with the pose of the solid in its body.
 """
 
 from __future__ import annotations
@@ -21,19 +21,19 @@ SOLID = [
     ("kind", "i8"),
     # half sizes of the core: segment (0, 0, l/2), box, cylinder (r, r, l/2), ellipsoid semi-axes
     ("half", "f8", 3),
-    ("radius", "f8"),  # of the ball that swells the core
-    ("inner", "f8"),  # an ellipsoid is also a smaller convex core swollen by this much
+    ("radius", "f8"),  # of the ball that enlarges the core
+    ("inner", "f8"),  # an ellipsoid is also a smaller convex core enlarged by this radius
     ("extent", "f8"),  # greatest distance of a point of the solid from its origin
     ("first", "i8"),  # range of the vertices of a hull
     ("last", "i8"),
     ("first_face", "i8"),
     ("last_face", "i8"),
-    ("body", "i8"),  # number of the shape it is of
-    ("x", "f8", 3),  # place in its body
+    ("body", "i8"),  # number of its shape
+    ("x", "f8", 3),  # pose in its body
     ("Q", "f8", 4),
 ]
 
-#: a face of a hull: outward normal and the range of its corners, counter-clockwise from outside
+#: a face of a hull: outward normal and the range of its corners, counter-clockwise as seen from outside
 FACE = [("normal", "f8", 3), ("first", "i8"), ("last", "i8")]
 
 #: one point of a contact; normal from B to A, points on the two surfaces, all in the world
@@ -46,7 +46,7 @@ TOUCH_POINT = [
 ]
 
 MOST_POINTS = 8  # of one pair
-MOST_CORNERS = 48  # of a face that takes part in a clip; more are thinned out
+MOST_CORNERS = 48  # of a face that is clipped; if it has more, some are left out
 
 #: workspace of one pair, all in axes of B
 PAIR_STATE = [
@@ -54,13 +54,13 @@ PAIR_STATE = [
     ("p", "f8", 3),  # origin of A
     ("world", "f8", (3, 3)),  # axes of B to the world
     ("origin", "f8", 3),  # of B in the world
-    ("shift", "f8", 3),  # A is moved by this while a normal is sought
-    ("corner", "f8", (2, MOST_CORNERS, 3)),  # faces of A and B that look at each other
-    ("number", "i8", (2, MOST_CORNERS)),  # and the numbers of their corners
+    ("shift", "f8", 3),  # A is moved by this during the search for a normal
+    ("corner", "f8", (2, MOST_CORNERS, 3)),  # opposite faces of A and B
+    ("number", "i8", (2, MOST_CORNERS)),  # numbers of their corners
     ("count", "i8", 2),
     ("normal", "f8", (2, 3)),  # their outward normals
     ("ring", "f8", (2, 2 * MOST_CORNERS, 3)),  # polygon before and after a cut
-    ("side", "i8", (2, 2 * MOST_CORNERS)),  # where the side after each of its corners comes from
+    ("side", "i8", (2, 2 * MOST_CORNERS)),  # side after each corner: k incident, -1 - j reference
     ("label", "i8", (2, 2 * MOST_CORNERS)),  # feature of each of its corners
     ("w", "f8", (5, 3)),  # simplex of A - B; the last row is a proposal
     ("on_a", "f8", (5, 3)),  # its points on A and on B
@@ -68,11 +68,11 @@ PAIR_STATE = [
     ("ids", "i8", (5, 2)),  # their vertices
     ("weight", "f8", 4),  # of the corners in the point nearest to the origin
     ("points", "i8"),  # corners in the simplex
-    ("total", "i8"),  # points handed on by `touch_unit`
-    ("searches", "i8"),  # distances that were sought, for who limits work
-    ("start", "f8", (15, 4)),  # directions in which they may part, and their separations
-    ("edge", "f8", (2, 3)),  # directions of the edges that are nearest
-    ("owner", "i8", 2),  # whose they are, 0 of A, 1 of B
+    ("total", "i8"),  # number of points that a unit found
+    ("searches", "i8"),  # number of searches for a distance, for callers that limit the work
+    ("start", "f8", (15, 4)),  # directions that may separate the cores, and separations
+    ("edge", "f8", (2, 3)),  # directions of the nearest edges
+    ("owner", "i8", 2),  # solids of these edges: 0 for A, 1 for B
 ]
 
 
@@ -85,7 +85,7 @@ class Hulls(NamedTuple):
 
 
 class PairWork(NamedTuple):
-    """Scratch of one pair at a time."""
+    """Workspace for one pair at a time."""
 
     state: np.recarray  # (1,) PAIR_STATE
     found: np.recarray  # (96,) TOUCH_POINT, in axes of B, points on the cores
@@ -107,7 +107,7 @@ class Plane(NamedTuple):
 
 
 class Pair(NamedTuple):
-    """Two solids whose contact is sought, the kind of A not above that of B, and the workspace for it."""
+    """Two solids, in an order such that the kind of A is not above that of B, and the workspace."""
 
     a: np.record  # SOLID
     b: np.record
@@ -137,7 +137,7 @@ def solid_table(shapes, turns=None) -> tuple[np.recarray, Hulls]:
     Parameters
     ----------
     shapes : sequence
-        Shapes of `carom.scene`; the solids of one follow each other, `body` is its number.
+        Shapes of `carom.scene`; the solids of one shape follow each other, `body` is its number.
     turns : (n, 4), optional
         For each shape the rotation from the axes that are used (principal axes of inertia) to its
         own body axes. Default: none.

@@ -1,4 +1,4 @@
-"""Contact of a solid (A) with a half-space (B), in closed form: its lowest points."""
+"""Contact of a solid (A) with a half-space (B), in closed form: the lowest points of the solid."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from carom.collision.layout import BOX, CYLINDER, HULL, SEGMENT
 from carom.collision.support import support
 from carom.geometry.rotation import rotate, rotate_back
 
-UPRIGHT = 1e-12  # sine of the tilt of a rim up to which no point of it is lowest
-LOWEST = 2 * RIM  # number of the lowest point of a rim; the fixed ones of both rims are below
+UPRIGHT = 1e-12  # sine of the tilt up to which a rim is flat: none of its points is the lowest
+LOWEST = 2 * RIM  # number of the lowest point of a rim; fixed points of both rims have smaller ones
 
 
 @inlined
@@ -44,10 +44,10 @@ def plane_gap(a, plane, hulls):
 def touch_plane(a, plane, hulls, reach, work, out):
     """Write the points of the contact of a solid with a half-space to `out` (8,); return how many.
 
-    Arguments as of `plane_gap` and `touch.touch`. Vertices keep their numbers as features. A rim has up to
-    four points: its lowest, which rolls (left out when the rim is flat on the plane), and points
-    fixed in the body at quarters of a turn. More would make an impact flat on the ground slow: their rows
-    depend on each other, so that they open and close by turns.
+    Arguments are those of `plane_gap` and `touch.touch`. The feature of a vertex is its number. A rim has up to
+    four points: its lowest point, which moves along the rim in rolling (left out if the rim is flat on the
+    plane), and points fixed in the body at quarters of a turn. More points would make a flat impact slow: their
+    rows are linearly dependent, so that the points open and close in alternation.
     """
     found, x, q, n, r = work.found, a.x, a.Q, plane.normal, a.solid.radius
     ux, uy, uz, height = _seen(a, plane)
@@ -67,7 +67,7 @@ def touch_plane(a, plane, hulls, reach, work, out):
 
 @unit
 def plane_unit(a, plane, hulls, reach, work, out):
-    """As `touch_plane`, compiled once; the number of points goes to ``work.state[0].total``."""
+    """Do the same as `touch_plane`, compiled once; the number of points goes to ``work.state[0].total``."""
     work.state[0].total = touch_plane(a, plane, hulls, reach, work, out)
 
 
@@ -83,10 +83,10 @@ def _add(found, count, seen, p, most, number):
 
 @kernel
 def _vertices(a, hulls, seen, reach, found):
-    """Add the lowest point of the core, and the vertices that are as low to within the reach."""
+    """Add the lowest point of the core, and all vertices that are higher by at most `reach`."""
     ux, uy, uz, height = seen
     px, py, pz, number = support(a, hulls, -ux, -uy, -uz)
-    # Of an ellipsoid the lowest point itself, not that of the body inside it.
+    # For an ellipsoid: its own lowest point, not that of the smaller body inside it.
     px, py, pz = px - a.inner * ux, py - a.inner * uy, pz - a.inner * uz
     most = height + px * ux + py * uy + pz * uz
     count = _add(found, 0, seen, (px, py, pz), math.inf, number)
@@ -123,11 +123,11 @@ def _rims(a, seen, reach, found):
     for side in range(2 if h > 0.0 else 1):
         z = h if side == 1 else -h
         if side != lower and abs(uz) > 0.5:
-            continue  # far above the lower rim, but on a thin disc still within the reach
+            continue  # the upper rim carries nothing, even if a thin disc has it within the reach
         if tilted:
             count = _add(found, count, seen, (r * cx, r * cy, z), most, LOWEST + side)
-        for k in range(0, RIM if abs(uz) > 0.5 else 0, 2):  # of a steep rim only its lowest
-            if not (tilted and k == near):  # that one is as good as the lowest
+        for k in range(0, RIM if abs(uz) > 0.5 else 0, 2):  # a steep rim has only its lowest point
+            if not (tilted and k == near):  # the lowest point replaces the nearest fixed one
                 c, s = rim_point(k)
                 count = _add(found, count, seen, (r * c, r * s, z), most, side * RIM + k)
     return count

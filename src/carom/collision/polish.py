@@ -1,9 +1,9 @@
-"""The last digits of a normal where a core is curved, by Newton's method on the separation.
+"""Newton's method on the separation: it gives the last digits of a normal for curved cores.
 
 With v = a - b of the two farthest points and d = v.n, the separation over the unit sphere has the gradient
 T^T v and the Hessian -(d + T^T H T): T spans the directions in which n may turn, H is the sum of the
-Hessians of the two support functions. Where an edge takes part, n stays across it: T leaves it out.
-Two edges fix n.
+Hessians of the two support functions. If a farthest point lies on an edge, n stays perpendicular to the edge,
+and T excludes its direction. Two edges determine n.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from carom.collision.layout import CYLINDER, ELLIPSOID
 from carom.collision.support import propose, separation
 
 STEPS = 8
-NEAR = 0.99  # cosine within which the method must stay
+NEAR = 0.99  # cosine of the largest angle by which the method may turn the normal
 ROUNDING = 1e-15  # relative to the smaller solid
-STRAIGHT = 1e-6  # sine below which two edges are one direction
+STRAIGHT = 1e-6  # sine below which two edges count as parallel
 
 
 @kernel
@@ -52,7 +52,7 @@ def _edge(pair, side, k):
 
 @kernel
 def _parallel(s, count, side, e):
-    """Return 1 if e is parallel to one of the edges so far, -1 if to one of the other solid, 0 if to none."""
+    """Return 1 if e is parallel to a listed edge of its solid, -1 if to one of the other solid, else 0."""
     found = 0
     for i in range(count):
         c = s.edge[i, 0] * e[0] + s.edge[i, 1] * e[1] + s.edge[i, 2] * e[2]
@@ -67,7 +67,7 @@ def _parallel(s, count, side, e):
 def _edges(pair):
     """Write the directions of the edges in the simplex to rows of `edge`, with their owners; return how many.
 
-    -1: a face, more than two directions, or parallel edges, which do not determine the points.
+    The result is -1 for a face, more than two directions, or parallel edges: these do not determine the points.
     """
     s, count = pair.state, 0
     for side in range(2):
@@ -89,7 +89,7 @@ def _edges(pair):
 
 @kernel
 def _bend(solid, n, u, v):
-    """Return u^T H v of the support function at the unit vector n, all in the solid's own axes."""
+    """Return u^T H v, with the Hessian H of the support function at the unit vector n, in the solid's axes."""
     (x, y, z), (ux, uy, uz), (vx, vy, vz) = n, u, v
     h = solid.half
     if solid.kind == CYLINDER:
@@ -111,7 +111,7 @@ def _bend(solid, n, u, v):
 
 @kernel
 def _curvature(pair, n, u, v):
-    """Return u^T H v of both support functions at the normal n, axes of B."""
+    """Return u^T H v, with the sum H of the Hessians of both support functions at n, in axes of B."""
     s = pair.state
     back = to_a(s, -n[0], -n[1], -n[2])
     total = _bend(pair.a, back, to_a(s, u[0], u[1], u[2]), to_a(s, v[0], v[1], v[2]))
@@ -120,13 +120,13 @@ def _curvature(pair, n, u, v):
 
 @kernel
 def _step(pair, edges, n):
-    """Return the normal after one step of Newton's method; zero where it has no peak (sharp corners)."""
+    """Return the normal after one step of Newton's method; zero without a smooth maximum (sharp corners)."""
     nx, ny, nz = n
     s = pair.state
     propose(pair, nx, ny, nz)
     vx, vy, vz = s.w[4, 0], s.w[4, 1], s.w[4, 2]
     d = vx * nx + vy * ny + vz * nz
-    if edges == 1:  # n is across the edge, t across both
+    if edges == 1:  # n is perpendicular to the edge, t to both
         t = _cross(_along(s, 0), n)
         k = d + _curvature(pair, n, t, t)
         if not k > 0.0:
@@ -151,10 +151,10 @@ def _step(pair, edges, n):
 
 @kernel
 def _iterate(pair, edges, n):
-    """Return the normal where Newton's method ends; zero where it does not."""
+    """Return the normal to which Newton's method converges; zero if it does not converge."""
     for _ in range(STEPS):
         x, y, z = _step(pair, edges, n)
-        # The step before the last leaves the square of this, times lengths over curvatures.
+        # The remaining error is about the square of this step, times lengths over radii of curvature.
         if (x - n[0]) ** 2 + (y - n[1]) ** 2 + (z - n[2]) ** 2 < 1e-18:
             return x, y, z
         n = x, y, z
@@ -163,9 +163,9 @@ def _iterate(pair, edges, n):
 
 @kernel
 def polish(pair, nx, ny, nz):
-    """Return the greatest separation near n and its direction, and 1 where the points are polished too.
+    """Return the greatest separation near n and its direction, and 1 if the points are refined too.
 
-    The two points are then left in row 4 of the simplex.
+    The two points are then in row 4 of the simplex.
     """
     s, edges = pair.state, _edges(pair)
     best = separation(pair, nx, ny, nz)
@@ -193,7 +193,7 @@ def polish(pair, nx, ny, nz):
 
 @kernel
 def _points(s, edges, best, nx, ny, nz):
-    """Slide the farthest points of row 4 along the edges they are on until they are `best` n apart."""
+    """Move the farthest points, in row 4, along their edges until they differ by `best` n."""
     p, q = s.on_a[4], s.on_b[4]
     rx, ry, rz = (
         p[0] - q[0] - best * nx,

@@ -16,7 +16,7 @@ from carom.collision.segments import edge_on_edge
 
 @inlined
 def direction(x, y, z, ex, ey, ez):
-    """Return the length of a vector and its direction; the second vector where it is zero."""
+    """Return the length of a vector and its direction; for a zero vector, the direction (ex, ey, ez)."""
     d = math.sqrt(x * x + y * y + z * z)
     if d > 0.0:
         return d, x / d, y / d, z / d
@@ -25,7 +25,7 @@ def direction(x, y, z, ex, ey, ez):
 
 @kernel
 def point_point(pair):
-    """Find the points of two balls."""
+    """Find the nearest points of two balls."""
     p = pair.state.p
     d, nx, ny, nz = direction(p[0], p[1], p[2], 0.0, 0.0, 1.0)
     gap = d - pair.a.radius - pair.b.radius
@@ -36,7 +36,7 @@ def point_point(pair):
 
 @kernel
 def point_segment(pair):
-    """Find the points of a ball and a capsule."""
+    """Find the nearest points of a ball and a capsule."""
     p, h = pair.state.p, pair.b.half[2]
     z = max(-h, min(h, p[2]))
     d, nx, ny, nz = direction(p[0], p[1], p[2] - z, 1.0, 0.0, 0.0)

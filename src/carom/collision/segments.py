@@ -1,6 +1,6 @@
-"""Two segments: their nearest points, and the ends of the line along which parallel ones touch.
+"""Two segments: their nearest points, and the ends of the line along which parallel segments touch.
 
-A segment joins two corners of the face of A, or of B, that the workspace of the pair holds.
+A segment joins two corners of the face of A or of B in the workspace of the pair.
 """
 
 from __future__ import annotations
@@ -12,13 +12,13 @@ from carom.collision.features import of_edges, of_vertex_a, of_vertex_b
 from carom.collision.found import known, put
 
 PARALLEL = 1e-14  # square of the sine below which two segments count as parallel
-TOUCHING = 1e-9  # distance relative to the lengths below which it has no direction
-BESIDE = 0.99  # cosine of the normals of an end and of the nearest points
+TOUCHING = 1e-9  # relative to the lengths: a shorter distance has no reliable direction
+BESIDE = 0.99  # least cosine between the normal of an end and that of the nearest points
 
 
 @kernel
 def _line(s, side, ends):
-    """Return first corner, direction and length of a segment; length 0 has no direction."""
+    """Return first corner, direction and length of a segment; for length 0 the direction is zero."""
     p, q = s.corner[side, ends[0]], s.corner[side, ends[1]]
     x, y, z = q[0] - p[0], q[1] - p[1], q[2] - p[2]
     d = math.sqrt(x * x + y * y + z * z)
@@ -49,18 +49,18 @@ def _at(p, t, u):
 
 @kernel
 def nearest(d, u, g, w, h):
-    """Return t in [0, g] and z in [0, h] that bring d + t u and z w nearest; u, w unit vectors or zero.
+    """Return t in [0, g] and z in [0, h] where d + t u and z w are nearest; u, w are unit vectors or zero.
 
-    The square of the distance is convex: its free minimum in t, then z and t brought into their
-    intervals in turn (Ericson, *Real-Time Collision Detection*, 2005, 5.1.9). Parallel segments are
-    nearest all along their overlap: then one end of it.
+    The squared distance is convex: t starts at the free minimum, then z and t are limited to their intervals
+    in turn (Ericson, *Real-Time Collision Detection*, 2005, 5.1.9). Parallel segments have the same distance
+    along their whole overlap; the result is one end of it.
     """
     c, n = _dot(u, w), _cross(u, w)
     across, du, dw = _dot(n, n), _dot(d, u), _dot(d, w)
     if across > PARALLEL:
         t = (c * dw - du) / across
     else:
-        t = h - dw if c > 0.0 else dw  # where z is at an end: z = dw + c t
+        t = h - dw if c > 0.0 else dw  # here z = dw + c t is at an end
     t = max(0.0, min(g, t))
     z = max(0.0, min(h, dw + c * t))
     t = max(0.0, min(g, c * z - du))
@@ -78,7 +78,7 @@ def edge_on_edge(pair, ends_a, ends_b):
     n = _minus(on_a, on_b)
     d = math.sqrt(_dot(n, n))
     size = d
-    if not d > 0.0:  # they cross: along their common normal, which has two senses
+    if not d > 0.0:  # they cross: the common normal is used, with either sign
         n = _cross(u, w)
         size = math.sqrt(_dot(n, n))
     n = (n[0] / size, n[1] / size, n[2] / size) if size > 0.0 else (0.0, 0.0, 1.0)
@@ -92,10 +92,10 @@ def edge_on_edge(pair, ends_a, ends_b):
 
 @kernel
 def ends_of_line(pair, ends_a, ends_b, least, most, count):
-    """Add the ends of each segment that lie beside the inside of the other, with gaps up to `most`.
+    """Add the ends of each segment that project into the other, with gaps from `least` to `most`.
 
-    They carry a contact along a line. Each has its own distance and normal, which must be near that of
-    the first point found: an end that overhangs another edge is no contact. Return the new count.
+    These ends carry a contact along a line. Each has its own distance and normal. The normal must be near that
+    of the first point: an end that hangs over another edge is no contact. Return the new count.
     """
     s, found, radii = pair.state, pair.found, pair.a.radius + pair.b.radius
     p, u, g = _line(s, 0, ends_a)

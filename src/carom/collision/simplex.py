@@ -1,7 +1,7 @@
 """The point of a simplex that is nearest to the origin, as weights of its corners.
 
-Each face is tried and the nearest point taken, rather than one region found by signs: so a simplex that is
-almost flat gives a point that is no worse than the best of its faces.
+Each face is tried, and the nearest point is taken; no region is selected by signs. So even for a simplex that
+is almost flat, the point is no worse than that of the best face.
 """
 
 from __future__ import annotations
@@ -23,7 +23,6 @@ def on_edge(a, b):
     e2 = ex * ex + ey * ey + ez * ez
     t = -(a[0] * ex + a[1] * ey + a[2] * ez) / e2 if e2 > 0.0 else 0.0
     t = max(0.0, min(1.0, t))
-    # From the nearer end, for the least rounding.
     x, y, z = a[0] + t * ex, a[1] + t * ey, a[2] + t * ez
     return t, x * x + y * y + z * z
 
@@ -44,7 +43,7 @@ def on_triangle(a, b, c):
     nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
     n2 = nx * nx + ny * ny + nz * nz
     if n2 > 0.0:
-        # Areas that the origin, moved into the plane, spans with the sides: n.(x cross y) / n^2.
+        # Areas of the triangles between the sides and the projection of the origin: n.(x cross y) / n^2.
         h = (a[0] * nx + a[1] * ny + a[2] * nz) / n2
         px, py, pz = h * nx, h * ny, h * nz
         ax, ay, az = a[0] - px, a[1] - py, a[2] - pz
@@ -126,7 +125,7 @@ def move_corner(s, source, target):
 
 @kernel
 def nearest_point(s):
-    """Return the point of the simplex that is nearest to the origin, by its weights."""
+    """Return the point of the simplex that is nearest to the origin, from its weights."""
     x, y, z = 0.0, 0.0, 0.0
     for k in range(s.points):
         f = s.weight[k]

@@ -18,8 +18,8 @@ def _end(x, h):
 def support(solid, hulls, x, y, z):
     """Return the farthest point along (x, y, z), in the solid's own axes, and the number of the vertex.
 
-    Of an ellipsoid: of the smaller convex body that gives it when swollen by `inner`. Smooth points
-    have the number 0.
+    For an ellipsoid, it is the farthest point of a smaller convex body; a ball of radius `inner` enlarges this
+    body to the ellipsoid. Smooth points have the number 0.
     """
     h, kind = solid.half, solid.kind
     if kind == SEGMENT:
@@ -69,7 +69,7 @@ def propose(pair, x, y, z):
 
 @kernel
 def separation(pair, x, y, z):
-    """Return how far the cores are apart along the unit vector (x, y, z): never more than their distance."""
+    """Return the separation of the cores along the unit vector (x, y, z), at most their distance."""
     propose(pair, x, y, z)
     w = pair.state.w[4]
     return w[0] * x + w[1] * y + w[2] * z

@@ -2,9 +2,9 @@
 
 A hierarchical hashed grid (Mirtich 1996; Eitz and Gu 2007): the cells of the coarsest level are as wide as the
 largest ball, those of each further level half as wide, and a ball lies on the finest level that is wide
-enough for it. It meets balls of its own and coarser levels only in the 27 cells around its
-centre on that level; on its own, half of them do, for each pair is found from one side. Balls are put into
-the cells by a counting sort. The pairs come in an order that depends on the balls only.
+enough for it. It can touch balls of its own and of coarser levels only in the 27 cells around its centre on
+that level. On its own level half of these cells are enough, because each pair is found from one side. A
+counting sort puts the balls into the cells. The order of the pairs depends on the balls only.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ import numpy as np
 
 from carom._compiled.decorators import entry, inlined, kernel
 
-LEVELS = 40  # sizes down to 2^-40 of the largest ball; smaller ones share the last level
-MOST = 2**62  # a coordinate in cells is kept within this
-LOW = 2**28 - 1  # bits of it that are hashed
+LEVELS = 40  # sizes down to 2^-40 of the largest ball; smaller balls share the last level
+MOST = 2**62  # bound of the integer coordinates of a cell
+LOW = 2**28 - 1  # bits of such a coordinate that are hashed
 
 
 class SweepWork(NamedTuple):
-    """Scratch for up to n balls."""
+    """Workspace for up to n balls."""
 
-    first: np.ndarray  # (cells + 2,) where the balls of cell c begin in `ball`: at first[c + 1]
+    first: np.ndarray  # (cells + 2,) the balls of cell c begin in `ball` at first[c + 1]
     ball: np.ndarray  # (n,) balls, cell by cell
-    place: np.ndarray  # (n, 5) level, -1 left out; three whole coordinates; hashed cell
+    place: np.ndarray  # (n, 5) level (-1: left out); three integer coordinates; hashed cell
     used: np.ndarray  # (LEVELS + 1,) balls on each level
     made: np.ndarray  # (2,) comparisons, pairs
     width: np.ndarray  # (LEVELS + 1,) of the cells of each level
@@ -50,11 +50,11 @@ def sweep(centres, radii, pairs, work):
     Parameters
     ----------
     centres : (n, 3)
-        [m]. A ball is to hold all places of its solid during the step: of its path, with the radius.
+        [m]. A ball must contain the whole path of its solid during the step.
     radii : (n,)
         At least 0 [m]; a negative one leaves the ball out.
     pairs : (m, 2) int64
-        Where there is no more room the rest are only counted: a result above m asks for a longer
+        Pairs beyond the end of this table are only counted: after a result above m, the caller needs a longer
         table.
     work : SweepWork
 
@@ -84,7 +84,7 @@ def _fill(centres, radii, widest, work):
         work.first[c] = 0
     for e in range(LEVELS + 1):
         work.used[e] = 0
-        # A little more than the balls are wide.
+        # The cells are slightly wider than the balls.
         work.width[e] = math.ldexp(2.0 * (1.0 + 1e-9) * widest, e - LEVELS)
     for i in range(n):
         place = work.place[i]
@@ -100,7 +100,7 @@ def _fill(centres, radii, widest, work):
     for c in range(mask + 1):
         work.first[c + 1] += work.first[c]
     work.first[mask + 2] = work.first[mask + 1]
-    for i in range(n - 1, -1, -1):  # each cell is filled from its end: its balls rise
+    for i in range(n - 1, -1, -1):  # a cell is filled from its end: its balls are in rising order
         if work.place[i, 0] >= 0:
             c = work.place[i, 4] + 1
             work.first[c] -= 1
@@ -109,7 +109,7 @@ def _fill(centres, radii, widest, work):
 
 @kernel
 def _level(r, widest):
-    """Return the finest level whose cells are as wide as a ball; LEVELS is the coarsest."""
+    """Return the finest level whose cells are at least as wide as a ball; LEVELS is the coarsest."""
     if not r > 0.0:
         return 0
     part, power = math.frexp(r / widest)
@@ -118,13 +118,13 @@ def _level(r, widest):
 
 @kernel
 def _cell(x, width):
-    """Return the whole coordinate of a place."""
+    """Return the integer coordinate of the cell that contains x."""
     return int(max(-MOST, min(MOST, math.floor(x / width))))
 
 
 @kernel
 def _hash(e, x, y, z, mask):
-    """Return the cell of a place in the grid: products with large primes (Teschner et al., VMV 2003)."""
+    """Return the hashed cell of integer coordinates: products with large primes (Teschner et al., VMV 2003)."""
     x, y, z = x & LOW, y & LOW, z & LOW  # so that no product overflows
     return ((x * 73856093) ^ (y * 19349663) ^ (z * 83492791) ^ (e * 2654435761)) & mask
 
@@ -141,7 +141,7 @@ def _overlap(i, j, centres, radii):
 
 @kernel
 def _around(i, e, centres, radii, pairs, work):
-    """Write the pairs of ball i with those of level e in the 27 cells around it."""
+    """Write the pairs of ball i with balls of level e in the 27 cells around it."""
     gx = _cell(centres[i, 0], work.width[e])
     gy = _cell(centres[i, 1], work.width[e])
     gz = _cell(centres[i, 2], work.width[e])
@@ -154,7 +154,7 @@ def _around(i, e, centres, radii, pairs, work):
         for at in range(begin, end):
             j = work.ball[at]
             p = work.place[j]
-            # Another place of the grid may share the cell: it is not this neighbour.
+            # Balls from elsewhere in the grid may share the hashed cell; they are skipped.
             there = p[0] == e and p[1] == x and p[2] == y and p[3] == z
             if not there or (same and k == 13 and j <= i) or not _overlap(i, j, centres, radii):
                 continue

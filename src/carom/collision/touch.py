@@ -1,9 +1,8 @@
 """The points that carry the contact of two solids: `touch`.
 
-Sphere, capsule and box among themselves in closed form (two boxes whose vertices or edges face each other
-without crossing by the general way), all others by `convex.closest`. The set is the overlap of the
-two faces that look at each other, or the ends of the line along which two edges lie, with the nearest pair
-of points always in it.
+Pairs of spheres, capsules and boxes are solved in closed form, all others by `convex.closest`; so are two boxes
+whose nearest parts are vertices, or edges that do not cross. The points are those of the overlap of two
+opposite faces, or the ends of the line along which two edges lie. They always include a nearest pair of points.
 """
 
 from __future__ import annotations
@@ -24,9 +23,10 @@ from carom.collision.segments import ends_of_line
 from carom.collision.support import separation
 
 ROUNDING = 1e-12  # relative to the smaller solid
-ALIGNED = 0.7  # cosine of normal and face from which on the face can be the reference; it is, if it
-# parts the solids to within the reach
-ON_FACE = 1.0 - 1e-12  # from which on the normal is the face's
+#: least cosine between the contact normal and the normal of a reference face; the separation along the latter
+#: must also be at least the least gap minus `reach`
+ALIGNED = 0.7
+ON_FACE = 1.0 - 1e-12  # cosine from which on the contact normal is that of the face
 
 
 @entry
@@ -56,13 +56,13 @@ def touch(a, b, hulls, reach, work, out):
 
 @unit
 def touch_unit(a, b, hulls, reach, work, out):
-    """As `touch`, compiled once; the number of points goes to ``work.state[0].total``."""
+    """Do the same as `touch`, compiled once; the number of points goes to ``work.state[0].total``."""
     work.state[0].total = touch(a, b, hulls, reach, work, out)
 
 
 @kernel
 def _ordered(pair, reach):
-    """Find the points of a pair whose first kind is not above its second; return how many."""
+    """Find the points of a pair in which the kind of A is not above that of B; return their number."""
     a, b = pair.a, pair.b
     boxes = a.kind == BOX and b.kind == BOX
     if b.kind <= SEGMENT:
@@ -85,14 +85,14 @@ def _ordered(pair, reach):
         count = _manifold(pair, reach)
         if not (boxes and pair.found[0].feature == 0):
             return count
-        # No points of the two faces are as near as the axis says: vertices or edges beside them are nearest.
+        # No points of the two faces are as near as the axis says: the nearest points are vertices or on edges.
         closest(pair)
         boxes = False
 
 
 @kernel
 def _lowest_side(s, side, nx, ny, nz):
-    """Return the two neighbouring corners of a face that are lowest along a direction, together."""
+    """Return the two neighbouring corners of a face with the lowest mean along a direction."""
     count, best, chosen = s.count[side], 0.0, 0
     for k in range(count):
         p, q = s.corner[side, k], s.corner[side, (k + 1) % count]
@@ -104,7 +104,7 @@ def _lowest_side(s, side, nx, ny, nz):
 
 @kernel
 def _manifold(pair, reach):
-    """Add to the nearest points, the first found, those that carry the contact with them."""
+    """Add the other points of the contact to the nearest pair, the first in `found`; return the count."""
     s, a, b, found = pair.state, pair.a, pair.b, pair.found
     n = found[0].normal
     nx, ny, nz, least = n[0], n[1], n[2], found[0].gap
@@ -131,7 +131,7 @@ def _manifold(pair, reach):
 
 @kernel
 def _without_first(found, count, most, enough):
-    """Drop the nearest pair, any pair of two parallel faces or edges, if `enough` others are as near."""
+    """Drop the first pair, an arbitrary one of parallel faces or edges, if `enough` others are as near."""
     near = 0
     for k in range(1, count):
         near += found[k].gap <= most

@@ -64,9 +64,9 @@ def apart(contact, state, near):
 def gather_closed(system, controls, active, c, state, group, work, strikes):
     """List the points that are closed in `state` together with contact c; return their number, -1 for too many.
 
-    A point is closed if its gap is within the tolerance of ties or of a located gap, or if it is active; if it
-    `strikes`, points of a nearly flat rim are closed too. Closed points and their positions are written. Bodies
-    connected by closed points form one group, and all closed points of the group are listed.
+    A point is closed if its gap is within the tolerance of ties or of a located gap, or if it is active. If
+    `strikes` is true, points of a nearly flat rim are closed too. Closed points and their positions are written
+    to `group`. Bodies connected by closed points form one group, and all closed points of the group are listed.
     """
     first, k, more = system.contacts[c].body, 0, True
     rim_time = RIM_TIME * controls.step if strikes else 0.0
@@ -164,8 +164,8 @@ def add_touches(system, c, near, rim_time, state, k, group, work):
 def _is_same_point(system, active_point, point, state, work) -> bool:
     """Return whether a closed point with the feature of an active one is the same point."""
     contact, r, n = system.contacts[active_point.contact], point.arm_a, point.axes[0]
-    way = way_round(system, contact, n, (r[0], r[1], r[2]), active_point.point, state)
-    return way < OTHER_SIDE
+    moved = way_round(system, contact, n, (r[0], r[1], r[2]), active_point.point, state)
+    return moved < OTHER_SIDE
 
 
 @inlined
@@ -195,7 +195,7 @@ def note_active(system, active, k, state, group, work):
 
 @kernel
 def gather_active(system, active, label, state, group, work):
-    """List the active points of a group, then their rolling and pivoting; return their number."""
+    """List the active points of a group, then entries for their rolling and pivoting; return the number."""
     k = 0
     for i in range(active.count[0]):
         active_point = active.points[i]

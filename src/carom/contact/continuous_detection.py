@@ -1,14 +1,14 @@
-"""Continuous detection for a half-space: may a body have touched it between two states? Misses no impact.
+"""Continuous detection for a half-space: may a body have touched it between two states? No impact is missed.
 
 For each vertex the gap z and its rate are known at both ends, and |d2z/dt2| <= a in between. Then
 
     z(t) >= z0 + z0' t - a t^2/2,      z(t) >= z1 - z1' s - a s^2/2,   s = h - t,
 
 and the path is clear if the times for which these bounds are positive, (z0' + sqrt(z0'^2 + 2 a z0))/a and the
-same from the end, add up to at least h. If not, the caller halves the step. In free flight a is exact: |n.g| +
-(|W|^2 + |W'|) r with the maxima on the flight; otherwise it is twice the largest value in the stages of the
-step. A body in persistent contact is assumed to move on the cubic with the gaps and rates at both ends, which
-is never below its control points (Bezier): z0, z0 + h z0'/3, z1 - h z1'/3, z1.
+same from the end, add up to at least h. If not, the caller halves the step. In free flight a is a strict bound,
+|n.g| + (|W|^2 + |W'|) r with the maxima on the flight; otherwise it is an estimate, twice the largest value in
+the stages of the step. For a body in persistent contact, z is assumed to be the cubic with the gaps and rates
+at both ends. It is never below the least of its control points (Bezier): z0, z0 + h z0'/3, z1 - h z1'/3, z1.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ from carom.kinematics.flight import point_bound
 from carom.model.workspace import FREE, RESTS
 
 #: verdicts on a step: no touch; a point is inside at the end; undecided because the step is too long; a rim in
-#: persistent contact on one side passes the flat position; the same with the implicit method
+#: persistent contact on one side passes the flat position; the implicit method is to repeat the step
 CLEAR, BELOW, UNSURE, FLAT_RIM, AGAIN = range(5)
-MISSED = 1e-9  # of the body: where no more can be missed, the cubic decides in free flight too
+MISSED = 1e-9  # relative to the body: if no more can be missed, the cubic decides in any flight
 
 
 @inlined
@@ -63,7 +63,7 @@ def ball_clears(system, contact, start, end, h, centre, work):
         return False
     s0, s1 = along_normal(contact, start[b].v), along_normal(contact, end[b].v)
     flying = system.bodies[b].ballistic == 1 and work.body[b].status == FREE
-    if flying and (s1 <= 0.0 or s0 >= 0.0):  # constant acceleration: least at an end
+    if flying and (s1 <= 0.0 or s0 >= 0.0):  # the gap is least at an end
         return True
     return reach(z0, s0, centre) + reach(z1, -s1, centre) >= h
 
@@ -82,7 +82,7 @@ def passage(system, controls, active, c, start, h, work):
         return CLEAR, h
     verdict, first, flies = CLEAR, h, work.body[contact.body].status == FREE
     tiny = max(controls.gap * contact.extent, round_off(contact, end))
-    sag = 0.125 * a * h * h  # a path keeps this near its chord
+    sag = 0.125 * a * h * h  # bound of the distance of a path from its chord
     smooth = not flies or sag <= MISSED * contact.extent
     before, after = plane_in_body(contact, start), plane_in_body(contact, end)
     for i in range(contact.first, contact.last):
@@ -95,7 +95,7 @@ def passage(system, controls, active, c, start, h, work):
         t0 = reach(z0, rate0, a)
         first = min(first, t0)
         if not (z1 >= -tiny):
-            # what touches may be on its way out, or be pushed about by others by no more than can be missed
+            # a touching point may be leaving, or other bodies may push it in by no more than may be missed
             pushed = not flies and z1 >= -MISSED * contact.extent
             if not (z0 <= tiny and (pushed or (z0 < -tiny and z1 >= z0))):
                 verdict = BELOW

@@ -1,9 +1,9 @@
-"""Continuous detection for a pair: may two solids have touched between two states? Uses separating planes.
+"""Continuous detection for a pair: may two solids have touched between two states? Separating planes decide.
 
-Along a fixed normal n the gap of any two core points is z(t) >= z0 + z0' t - a t^2/2, a the bound of their
-relative acceleration; the bodies are apart as long as all pairs of vertices are. With n of the nearest points
-at the start, and the same backwards from the end, the path is clear if the two times together reach the step.
-Cores without vertices: `parting`.
+Along a fixed normal n the gap of any two core points is z(t) >= z0 + z0' t - a t^2/2, where a bounds their
+relative acceleration; the bodies are apart as long as all pairs of vertices are. One time results from the
+normal n of the nearest points at the start, another one backwards from the end. The path is clear if the sum of
+both is at least the step. `parting` treats cores without vertices.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from carom.kinematics.flight import point_bound
 from carom.kinematics.wrench import point_velocity
 from carom.model.workspace import FREE, RESTS
 
-SHORT = 0.25  # way past each other, as a part of the smaller body, in which no body gets through another
+SHORT = 0.25  # displacement relative to the smaller body within which none passes through the other
 
 
 @kernel
@@ -49,7 +49,7 @@ def spin_bound(body, extent, state, memory):
 
 @kernel
 def core_extent(solid):
-    """Return the greatest distance of a core point from the mass centre: the ball around it does not turn."""
+    """Return the greatest distance of a core point from the mass centre; the ball around it does not turn."""
     x = solid.x
     return math.sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]) + solid.extent - solid.radius
 
@@ -62,7 +62,7 @@ def relative_bound(system, contact, state, work):
     free_b = b >= 0 and system.bodies[b].ballistic == 1 and work.body[b].status == FREE
     fall = math.sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2])
     centres = 0.0
-    if not (free_a and free_b):  # two in free flight fall alike
+    if not (free_a and free_b):  # two bodies in free flight have the same acceleration
         for body, free in ((a, free_a), (b, free_b)):
             if body >= 0 and work.body[body].status != RESTS:
                 centres += fall if free else 2.0 * work.body[body].bound[0]
@@ -76,7 +76,7 @@ def relative_bound(system, contact, state, work):
 
 @kernel
 def balls_apart(s, u, radii, sign, a):
-    """Return how long two balls stay apart, centres s apart and moving apart at u; -inf if they overlap."""
+    """Return how long two balls with relative position s and velocity u stay apart; -inf if they overlap."""
     d = math.sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2])
     if not d > radii:
         return -math.inf
@@ -120,7 +120,7 @@ def solids_clear(system, contact, start, end, h, most):
 
 @kernel
 def rotate_by(body, p):
-    """Return a vector of a body in world axes."""
+    """Rotate a vector from body axes to world axes."""
     q = body.Q
     return rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
 
@@ -183,7 +183,7 @@ def nearest_touch(work, count):
 
 @kernel
 def flat_rim_strikes(system, contact, state, time, work):
-    """Return whether a point of a rim that is as good as flat approaches the other body."""
+    """Return whether a point of a rim that counts as flat approaches the other body."""
     count = find_touches(system, contact, state, REACH * smaller(contact), work)
     near = closed_rim(system, contact, work.touches[0].normal, state, time)
     for i in range(count):
@@ -202,7 +202,7 @@ def _lowest_pair(system, contact, c, active, state, work) -> tuple[float, float]
 
 @kernel
 def far_apart(system, contact, start, end, h, work):
-    """Return a bound of the relative acceleration of any two points; -1 where balls keep the two apart."""
+    """Return a bound of the relative acceleration of any two points; -1 if they surely stay apart."""
     a, b = contact.body, contact.other
     if on_half_space(contact):
         if work.body[a].status == RESTS:
@@ -223,8 +223,8 @@ def far_apart(system, contact, start, end, h, work):
 def _passage_pair(system, controls, active, c, start, h, work) -> tuple[int, float]:
     """Return CLEAR, BELOW (they overlap at the end), UNSURE or FLAT_RIM, and a time before any contact.
 
-    The end is the trial state. Of a rim that wobbles only steps up to `longest` may follow its lowest point far
-    round.
+    The end is the trial state. Only steps up to `longest` may follow the lowest point of a wobbling rim along a
+    large arc.
     """
     contact, end, leaving = system.contacts[c], work.trial, active.contact_states[c].leaving
     longest = RIM_TIME * controls.step
@@ -239,13 +239,13 @@ def _passage_pair(system, controls, active, c, start, h, work) -> tuple[int, flo
     least, rate = lowest_open(system, contact, c, count, active, end, work)
     nearest = nearest_touch(work, count)
     if touching:
-        way = longest_way(system, contact, c, count, active, end, work)
-        if way > SMOOTH and h > longest:
+        moved = longest_way(system, contact, c, count, active, end, work)
+        if moved > SMOOTH and h > longest:
             return UNSURE, 0.0
-        if way > SMOOTH:
+        if moved > SMOOTH:
             if flat_rim_strikes(system, contact, start, longest, work):
                 return FLAT_RIM, 0.0
-            if way > OTHER_SIDE and h > 0.1 * longest:
+            if moved > OTHER_SIDE and h > 0.1 * longest:
                 return UNSURE, 0.0
             find_touches(system, contact, end, REACH * smaller(contact), work)
     flies = work.body[contact.body].status == FREE
@@ -253,7 +253,7 @@ def _passage_pair(system, controls, active, c, start, h, work) -> tuple[int, flo
         flies = flies and work.body[contact.other].status == FREE
     if not least >= -(tiny if not touching else MISSED * smaller(contact)):
         before, _ = _lowest_pair(system, contact, c, active, start, work)
-        if before <= tiny:  # they touch already: on their way apart, or pushed about by others
+        if before <= tiny:  # they touch already: they separate, or others push them
             if (before < -tiny and least >= before) or (
                 not flies and least >= -MISSED * smaller(contact)
             ):
@@ -273,7 +273,7 @@ def _passage_pair(system, controls, active, c, start, h, work) -> tuple[int, flo
     alike = feature == nearest.feature  # the same points are nearest at both ends
     short = way_past(contact, start, end, h) <= SHORT * smaller(contact)
     smooth = short and (not flies or sag <= MISSED * smaller(contact))
-    follows = alike and smooth  # the gap, as a function of time, does what its ends and rates say
+    follows = alike and smooth  # the cubic between both ends describes the gap
     if follows and cubic_clears(nearest.gap, rate0, least, rate, h, tiny):
         return CLEAR, first
     bends = sag > tiny or follows or not short
@@ -284,7 +284,7 @@ def _passage_pair(system, controls, active, c, start, h, work) -> tuple[int, flo
 
 @kernel
 def way_past(contact, start, end, h):
-    """Return how far two bodies may pass each other in a step, by the velocities of their centres."""
+    """Return the relative displacement in a step, from the larger relative velocity of the centres."""
     most = 0.0
     if on_half_space(contact):
         return 0.0

@@ -54,14 +54,14 @@ def lowest(contact, vertices, state):
 
 @kernel
 def round_off(contact, state):
-    """Return the round-off of a gap, from the size of the coordinates in it [m]."""
+    """Return the round-off of a gap [m], from the size of the coordinates that it is computed from."""
     x = state[contact.body].x
     return 1e-15 * (abs(contact.offset) + abs(x[0]) + abs(x[1]) + abs(x[2]) + contact.extent)
 
 
 @kernel
 def speed_of(b, extent, state):
-    """Return the greatest speed of a point of a body."""
+    """Return a bound of the speed of any point of a body."""
     v, w = state[b].v, state[b].w
     s = math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
     return s + extent * math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])

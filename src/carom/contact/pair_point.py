@@ -1,6 +1,6 @@
-"""Contact points of two bodies in the form for the rest of the library: arms, axes, gap.
+"""Contact points in the form that the rest of the library uses: arms, axes, gap.
 
-Of two bodies, or of a curved body and a half-space (the other is -1 then).
+They belong to two bodies, or to a curved body and a half-space (then the other body is -1).
 """
 
 from __future__ import annotations
@@ -20,10 +20,8 @@ from carom.geometry.rotation import exp, multiply, normalize, rotate, rotate_bac
 from carom.kinematics.wrench import point_velocity
 from carom.model.workspace import STATIC
 
-REACH = 1e-3  # of the smaller body: points that are looked for beyond the nearest
-ACTIVE_REACH = (
-    0.2  # the same for points that are active, which stay so while a step is found in rounds
-)
+REACH = 1e-3  # relative to the smaller body: points are listed up to this above the least gap
+ACTIVE_REACH = 0.2  # the same for active points, which stay active in the iterations of a step
 
 
 @kernel
@@ -60,9 +58,9 @@ def smaller(contact):
 
 @kernel
 def tangents(n0, n1, n2, axes):
-    """Write rows n, t1, t2: t1 world x made tangent, or y where n is near x; t2 = n x t1.
+    """Write rows n, t1, t2: t1 is the tangent part of world x, or of y if n is near x; t2 = n x t1.
 
-    Not the axis least along n: between two that are equal, round-off would choose anew in each round.
+    The axis with the least component along n is not used: if two are equal, round-off would decide each time.
     """
     e0, e1, e2 = (1.0, 0.0, 0.0) if abs(n0) < 0.8 else (0.0, 1.0, 0.0)
     d = e0 * n0 + e1 * n1 + e2 * n2
@@ -78,16 +76,14 @@ def tangents(n0, n1, n2, axes):
 
 @kernel
 def write_touch(contact, touch, state, point):
-    """Write a found point as a point of contact."""
+    """Write a found point as a contact point."""
     n = touch.normal
     point.a, point.b, point.gap, point.turns = contact.body, contact.other, touch.gap, 0
     if contact.static == 1:
         point.b = STATIC
     for k in range(3):
         point.arm_a[k] = touch.on_a[k] - state[contact.body].x[k]
-        point.core[k] = (
-            0.0  # how the velocity there changes as the bodies go on is for `drift` to say
-        )
+        point.core[k] = 0.0  # `drift` gives the change of the velocity at the point
         if contact.other >= 0:
             point.arm_b[k] = touch.on_b[k] - state[contact.other].x[k]
         elif contact.static == 1:
@@ -102,7 +98,7 @@ def write_touch(contact, touch, state, point):
 
 @kernel
 def own_point(contact, touch, state, p):
-    """Write the place of a found point on the first body, in axes of that body."""
+    """Write the position of a found point on the first body, in axes of that body."""
     q, x, s = state[contact.body].Q, state[contact.body].x, touch.on_a
     r = rotate_back(q[0], q[1], q[2], q[3], s[0] - x[0], s[1] - x[1], s[2] - x[2])
     p[0], p[1], p[2] = r
@@ -110,7 +106,7 @@ def own_point(contact, touch, state, p):
 
 @kernel
 def which_touch(system, contact, count, feature, p, state, work):
-    """Return the point that has the feature; where it is no more, the one nearest to the core point p."""
+    """Return the point that has the feature; if none has it any more, the one nearest to the core point p."""
     q, x = state[contact.body].Q, state[contact.body].x
     r = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
     best, chosen = math.inf, 0
@@ -128,7 +124,7 @@ def which_touch(system, contact, count, feature, p, state, work):
 
 @unit
 def _place_pair(system, contact, feature, p, state, point, work):
-    """Write the found point that has the feature, or the one that took its place."""
+    """Write the found point that has the feature, or the point that replaces it."""
     count = find_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
     i = which_touch(system, contact, count, feature, p, state, work)
     write_touch(contact, work.touches[i], state, point)
@@ -168,10 +164,10 @@ def advance(start, t, end):
 
 @unit
 def _drift(system, contact, feature, p, point, state, work) -> tuple[float, float, float]:
-    """Return (d/dt G) v, contact axes: how the velocity at the point changes as the bodies go on unchanged.
+    """Return (d/dt G) v, contact axes: the change of the velocity at the point with constant body velocities.
 
-    On a half-space in closed form. Of two bodies a central difference over a way of 1e-5 of the smaller one:
-    normals and points turn and roll with the shapes, whatever they are.
+    It is a closed form on a half-space. For two bodies it is a central difference over a displacement of 1e-5
+    of the smaller one, which includes the motion of normals and points for shapes of any kind.
     """
     a, b = contact.body, contact.other
     if on_half_space(contact):
@@ -209,14 +205,14 @@ def _drift(system, contact, feature, p, point, state, work) -> tuple[float, floa
 
 @inlined
 def place_pair(system, contact, feature, p, state, point, work):
-    """Write the found point that has the feature, or the one that took its place."""
+    """Write the found point that has the feature, or the point that replaces it."""
     if system.solids.shape[0] > 0:
         _place_pair(system, contact, feature, p, state, point, work)
 
 
 @inlined
 def drift(system, contact, feature, p, point, state, work):
-    """Return (d/dt G) v, contact axes: how the velocity at the point changes as the bodies go on unchanged."""
+    """Return (d/dt G) v, contact axes: the change of the velocity at the point for constant velocities."""
     if system.solids.shape[0] > 0:
         return _drift(system, contact, feature, p, point, state, work)
     return 0.0, 0.0, 0.0

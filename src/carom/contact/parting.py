@@ -1,16 +1,16 @@
 """Bound of the time during which two convex cores stay separated along a fixed direction.
 
-A core point p of a body that moves is, after a time t, at least at
+After a time t, the height of a core point p of a moving body along the fixed n is at least
 
-    n.x + n.v t + (m + t c).p - a t^2/2,   m, c: n and n x w in body axes,
+    n.x + n.v t + (m + t c).p - a t^2/2,   m, c: n and n x w in body axes.
 
-above the origin along the fixed n, and the least over a core is a support function: h(d) = max d.p,
+The least value over a core is a support function, h(d) = max d.p, so that the gap is at least
 
     F(t) = n.(x_a - x_b) + n.(v_a - v_b) t - h_A(-(m_a + t c_a)) - h_B(m_b + t c_b) - radii - a t^2/2.
 
-F is concave, as the least of functions that are; so chords lie below it, and the root of a chord from a
-point above zero to one below comes before the root of F. Points of the two cores are all apart as long as
-F > 0. This is the bound of `exclude_pair.time_apart` for cores of any kind: for vertices the same.
+F is concave, because it is a minimum of concave functions. So chords lie below it, and the root of a chord from
+a point above zero to one below comes before the root of F. All points of the two cores are apart as long as
+F > 0. For cores with vertices, the bound of `continuous_detection_pair.time_apart` is the same.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from carom.collision.layout import BOX, CYLINDER, ELLIPSOID, HULL, SEGMENT
 from carom.contact.place_of_other import on_half_space
 from carom.geometry.rotation import cross, rotate_back
 
-HALVES = 30  # of the step, until the bound is above zero
+HALVES = 30  # largest number of halvings of the step, until the bound is above zero
 CHORDS = 4  # each comes nearer to the root
 
 
@@ -81,7 +81,8 @@ def least_gap(system, contact, n, state, t, a):
 def time_parted(system, contact, n, sign, state, a, h):
     """Return for how long, up to h, all points of two cores stay apart along n; sign -1: in the past.
 
-    They may touch at the beginning, as after an impact: F > 0 at a time t is enough for all times before.
+    They may touch at the beginning, for instance after an impact: because F is concave, F > 0 at a time t is
+    enough for all earlier times.
     """
     g = least_gap(system, contact, n, state, sign * h, a)
     if g >= 0.0:

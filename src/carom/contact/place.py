@@ -11,7 +11,7 @@ from carom.model.arrays import STOP
 
 @kernel
 def place_any(system, contact, feature, p, state, point, work):
-    """Write the point that touches with a feature: a core point p, or one that the kernels of pairs find."""
+    """Write the contact point of a feature: the core point p, a stop, or a point found by `carom.collision`."""
     if contact.touches == 0:
         place(contact, p, state, point)
     elif contact.touches == STOP:
@@ -22,7 +22,7 @@ def place_any(system, contact, feature, p, state, point, work):
 
 @kernel
 def place_active(system, active_point, state, point, work):
-    """Write the point of a persistent contact that is no stop."""
+    """Write the point of a persistent contact that is not a stop."""
     contact = system.contacts[active_point.contact]
     if contact.touches == 0:
         place(contact, active_point.point, state, point)
@@ -32,7 +32,7 @@ def place_active(system, active_point, state, point, work):
 
 @kernel
 def drift_of(system, contact, feature, p, point, state, work):
-    """Return (d/dt G) v, contact axes, of two bodies that touch and of a stop."""
+    """Return (d/dt G) v, contact axes, of two touching bodies or of a stop."""
     if contact.touches == STOP:
         return stop_drift(system, contact, state, work), 0.0, 0.0
     return drift(system, contact, feature, p, point, state, work)

@@ -13,7 +13,7 @@ def on_half_space(contact):
 
 @kernel
 def centre_of_other(contact, state):
-    """Return the place and the velocity of the mass centre of another body, or of a static one."""
+    """Return position and velocity of the mass centre of the other body, moving or static."""
     if contact.static == 1:
         c = contact.centre
         return c[0], c[1], c[2], 0.0, 0.0, 0.0

@@ -1,9 +1,9 @@
 """Rims of cylinders and discs that lie nearly flat on a surface: their lowest point moves fast around the rim.
 
-The lowest point of a rim of radius r has the same feature wherever it is. At a small tilt it runs round the rim
-much faster than the body turns; as the rim passes through flat it is on the other side at once. There a
-step is cut until the point has a way to go that it can follow; if that takes no time against the step, the rim
-is flat as far as the step can tell, and all its points strike together.
+The lowest point of a rim of radius r has the same feature at all positions. At a small tilt it moves along the
+rim much faster than the body turns; when the rim passes through the flat position, the point jumps to the other
+side. There a step is shortened until it can follow the point. If the time would be negligible against the step,
+the rim counts as flat, and all its points strike together.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from carom.collision.layout import CYLINDER
 from carom.contact.place_of_other import on_half_space
 from carom.geometry.rotation import rotate, rotate_back
 
-FLAT = 0.2  # sine of the tilt below which a rim is looked at here
-OTHER_SIDE = 1.5  # square of the way, relative to r, from which on a point is another one
-SMOOTH = 0.03  # up to which a step may follow it: 10 degrees
+FLAT = 0.2  # sine of the tilt below which a rim is nearly flat
+OTHER_SIDE = 1.5  # squared displacement, relative to r, from which on it is a different point
+SMOOTH = 0.03  # the same, up to which a step may follow the point: 10 degrees
 
 
 @kernel
 def in_solid(solid, contact, side, state, n):
-    """Return a world vector in axes of the solid of the body (side 0), or of what it touches (1)."""
+    """Return a world vector in axes of the solid of the body (side 0), or of the other solid (1)."""
     s, a = solid.Q, (n[0], n[1], n[2])
     if side == 0 or contact.static == 0:
         q = state[contact.body if side == 0 else contact.other].Q
@@ -32,22 +32,22 @@ def in_solid(solid, contact, side, state, n):
 
 @kernel
 def flat_rim(system, contact, n, state):
-    """Return the radius of a rim that is nearly flat on what it touches with the normal n, and its tilt.
+    """Return radius and tilt (a sine) of a rim that is nearly flat on a surface with the normal n.
 
-    The radius is 0 if there is none; the tilt is a sine.
+    The radius is 0 if there is no such rim.
     """
     for side in range(1 if on_half_space(contact) else 2):
         solid = system.solids[contact.solid if side == 0 else contact.other_solid]
         if solid.kind == CYLINDER:
             x, y, z = in_solid(solid, contact, side, state, n)
             if 1.0 - z * z < FLAT * FLAT:
-                return solid.half[0], math.sqrt(x * x + y * y)  # exact also where it is small
+                return solid.half[0], math.sqrt(x * x + y * y)  # exact for a small tilt, too
     return 0.0, 0.0
 
 
 @kernel
 def way_round(system, contact, n, arm, p, state):
-    """Return the square of the way from p (body axes) to an arm (world), relative to r; 0 if steep."""
+    """Return the squared distance from p (body axes) to an arm (world), relative to r; 0 for a steep rim."""
     radius, _ = flat_rim(system, contact, n, state)
     if radius == 0.0:
         return 0.0
@@ -59,7 +59,7 @@ def way_round(system, contact, n, arm, p, state):
 
 @kernel
 def way_to(system, contact, touch, p, state):
-    """Return `way_round` to a point that was found."""
+    """Return `way_round` from p to a found point."""
     x, s = state[contact.body].x, touch.on_a
     arm = (s[0] - x[0], s[1] - x[1], s[2] - x[2])
     return way_round(system, contact, touch.normal, arm, p, state)
@@ -67,13 +67,13 @@ def way_to(system, contact, touch, p, state):
 
 @kernel
 def same_point(system, contact, touch, feature, p, state):
-    """Return whether a point that was found is the one with the feature that was at p (body axes)."""
+    """Return whether a found point is the point with this feature that was at p (body axes)."""
     return touch.feature == feature and way_to(system, contact, touch, p, state) < OTHER_SIDE
 
 
 @kernel
 def longest_way(system, contact, c, count, active, state, work):
-    """Return the longest `way_round` of the active points of a contact, to where they are found now."""
+    """Return the largest `way_round` between the active points of a contact and their present positions."""
     longest = 0.0
     for j in range(active.count[0]):
         active_point = active.points[j]
@@ -89,7 +89,7 @@ def longest_way(system, contact, c, count, active, state, work):
 
 @kernel
 def closed_rim(system, contact, n, state, time):
-    """Return the greatest gap of a rim that would be flat within `time`, as it turns now; 0 if none would."""
+    """Return the greatest gap of a rim whose spin can make it flat within `time`; 0 if there is none."""
     radius, tilt = flat_rim(system, contact, n, state)
     if radius == 0.0:
         return 0.0

@@ -7,7 +7,8 @@ With the normal u in axes of the solid, u' = -W x u, and the point p that is low
     ellipsoid          p = -H u/s,  s^2 = u.H u,  H = diag(a^2, b^2, c^2):  p' = -H u'/s + H u (u.H u')/s^3
     all else           p' = 0: a vertex, a point fixed to a rim.
 
-The velocity there, v + w x r, changes by w x r' as the body goes on as it does, r' = w x r_core + R p'.
+While v and w are constant, the velocity at the point, v + w x r, changes at the rate w x r', with
+r' = w x r_core + R p'.
 """
 
 from __future__ import annotations
@@ -50,7 +51,7 @@ def roll_on_plane(system, contact, feature, point, state):
     p = way_of_lowest(solid, feature, u, W)
     p = rotate(s[0], s[1], s[2], s[3], p[0], p[1], p[2])
     p = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
-    # the ball that swells a core does not turn
+    # the ball that enlarges a core does not turn
     c = cross(
         w[0], w[1], w[2],
         r[0] + solid.radius * E[0, 0], r[1] + solid.radius * E[0, 1], r[2] + solid.radius * E[0, 2],

@@ -1,8 +1,8 @@
 """Stops in joints: unilateral constraints on a coordinate, gap = side q - offset, without tangents.
 
-They strike through the same boundary layer as any contact and may be held like one. Where the coordinate is
-an angle the gap is the way at the distance of the body's size, so that all contacts have the same units; a
-solution gives angles and torques (`carom.results.assemble`).
+A stop strikes through the same boundary layer as any contact, and can be in persistent contact. For an angle,
+the gap is the arc at the radius of the body's size, so that all contacts have the same units; a solution
+contains angles and torques (`carom.results.assemble`).
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ def _place_stop(system, contact, state, point):
     """Write the point, axes and gap of a stop."""
     c = system.relations.coordinates[contact.solid]
     nx, ny, nz = axis(state, c.parent, c.parent_frame, 0)
-    # the row is that of the child against the parent; where that is the ground the other way round
+    # the row is that of the child relative to the parent; its sign changes if the child is the ground
     s = 1.0 if (contact.side > 0.0) == (contact.body == c.child) else -1.0
     point.a, point.b = contact.body, contact.other
     tangents(s * nx, s * ny, s * nz, point.axes)
@@ -100,7 +100,7 @@ def check_stop(system, controls, active, contact, c, now, work):
 
 @kernel
 def passage_stop(system, controls, active, c, start, h, work):
-    """Return CLEAR, BELOW or UNSURE, and a time before any contact, by the cubic to the trial state."""
+    """Return CLEAR, BELOW or UNSURE, and a time before any contact, from the cubic to the trial state."""
     contact, end, leaving = system.contacts[c], work.trial, active.contact_states[c].leaving
     if is_active_stop(active, c):
         return CLEAR, h
@@ -119,7 +119,7 @@ def passage_stop(system, controls, active, c, start, h, work):
 
 @kernel
 def safe_time(z0, rate0, z1, rate1, h, tiny):
-    """Return a time before which the cubic has left the stop, and has not come back."""
+    """Return a time at which the cubic has left the stop and has not yet come back."""
     s = 0.5
     for _ in range(40):
         a, b = 1.0 - s, s

@@ -1,8 +1,8 @@
 """Accelerations of all bodies: applied forces, joints, and the force of a contact at one point.
 
-A persistent contact answers with lam = (N, T). While it slips, T = -mu N u_t/|u_t| and the normal row of
-du/dt vanishes; while it sticks (or rolls) all three rows vanish. Where several points share their bodies
-the step is another one (`carom.persistent.contact_step`), and they are left out here.
+A persistent contact has the force lam = (N, T). While it slips, T = -mu N u_t/|u_t| and the normal row of
+du/dt vanishes; while it sticks (or rolls) all three rows vanish. Points that share their bodies with others are
+left out here: `carom.persistent.contact_step` treats them.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def acceleration_unit(system, state, active, work, stage):
 
 @kernel
 def accelerations(system, state, active, work, stage):
-    """Write what `acceleration_unit` does, compiled as a part of the caller."""
+    """Do the same as `acceleration_unit`, compiled as a part of the caller."""
     applied = applied_wrenches(system, state, True, work)
     applied += add_stiff(system, state, work)
     bias_joints(system, state, work)
@@ -88,7 +88,7 @@ def acceleration(system, state, active, work, stage):
 
 @kernel
 def note_slip_directions(system, active, state, work):
-    """Note directions and speeds of slip at the start of a step."""
+    """Store directions and speeds of slip at the start of a step."""
     for i in range(active.count[0]):
         active_point = active.points[i]
         heading = active_point.heading
@@ -104,11 +104,11 @@ def note_slip_directions(system, active, state, work):
 
 @kernel
 def slip_direction(contact, active_point, point, state):
-    """Return a vector along the slip that friction opposes; 0 where slip has yet to start.
+    """Return a vector along the slip that friction opposes; 0 if slip has not started yet.
 
-    Once slip has turned against the direction it had at the start of the step, friction goes on as before: a
-    smooth force up to the end of the step, where the reversal is seen and located. (A force that turned with
-    the slip would hold the slip near zero, and the end of the step would show no reversal.)
+    If slip reverses within the step, friction keeps its direction: the force is smooth up to the end of the
+    step, where the reversal is detected and located. (A force that turned with the slip would keep the slip
+    near zero, and the end of the step would show no reversal.)
     """
     _, u1, u2 = contact_velocity(point, state)
     if not math.sqrt(u1 * u1 + u2 * u2) > 10.0 * slow(contact, state):
@@ -120,9 +120,9 @@ def slip_direction(contact, active_point, point, state):
 
 @kernel
 def add_contact_force(system, contact, active_point, point, state, work, stage):
-    """Find the force that meets the rows of one active point, and add its effect to the accelerations.
+    """Find the force that satisfies the rows of one active point, and add its effect to the accelerations.
 
-    Returns the power of prescribed motions in answer to it.
+    Return the power that this force causes in prescribed motions.
     """
     f, W = active_point.force, active_point.W
     an, a1, a2 = contact_acceleration(point, state, stage)
@@ -140,7 +140,7 @@ def add_contact_force(system, contact, active_point, point, state, work, stage):
             and active_point.heading[1] == 0.0
         ):
             size = math.sqrt(t1 * t1 + t2 * t2)
-            if size > 0.0:  # where slip starts
+            if size > 0.0:  # direction in which slip starts
                 active_point.heading[0], active_point.heading[1] = -t1 / size, -t2 / size
     f[0], f[1], f[2] = n, t1, t2
     spread(system, point, state, n, t1, t2, work)

@@ -1,21 +1,21 @@
 """Adaptive steps: the error of a step in metres, and the length of the next step.
 
-With e_x, e_theta, e_v, e_w = h sum of E_s times the derivatives of the stages (an embedded pair), a body misses
-by
+With e_x, e_theta, e_v, e_w = h sum of E_s times the derivatives of the stages (an embedded pair), the error of
+a body is
 
     miss = max(|e_x|, L |e_theta|, T |e_v|, T L |e_w|),     T = L / max(V, sqrt(L a)),
 
-L its size (`extent`), V its greatest speed and a its greatest acceleration in the step, with what turning does
-at the distance L. So an error of velocity counts as the way it makes while the body moves by its own size. A
-step is good if for all bodies
+where L is its size (`extent`), V its greatest speed and a its greatest acceleration in the step, both including
+rotation at the distance L. So an error of velocity counts as the displacement that it causes while the body
+moves by its own size. A step is accepted if for all bodies
 
     miss <= LOCAL (atol + rtol max(L, h V)),
 
-a part of what a run may miss by, as errors of steps add up. Order 8 has two estimates: miss = miss_5^2 /
-sqrt(miss_5^2 + miss_3^2/100) (Hairer, Norsett and Wanner 1993). Groups in contact at several points have those
-of `carom.persistent.smooth_step`, or a bound; free flight has none. The next step is 0.9 times the one whose
-error would be what is allowed, within 0.2 and 10 times the last. Each island has steps of its own: `ahead` of
-its bodies.
+a fraction of the tolerance of a run, because errors of steps add up. Order 8 has two estimates: miss = miss_5^2
+/ sqrt(miss_5^2 + miss_3^2/100) (Hairer, Norsett and Wanner 1993). Groups in contact at several points have the
+estimates of `carom.persistent.smooth_step`, or a bound; free flight has no error. The next step is 0.9 times
+the length whose error would equal the tolerance, between 0.2 and 10 times the last length. Each island has
+steps of its own: `ahead` of its bodies.
 """
 
 from __future__ import annotations
@@ -30,14 +30,14 @@ from carom.model.workspace import ONE
 
 SAFETY, LEAST, MOST = 0.9, 0.2, 10.0
 LOCAL = 0.1
-FIRST = 1e-3  # of a step of the run: the first of its bodies
-NEARLY = 0.99  # of what is left: the rest is no step of its own
-NOTHING_LEFT = 1e-14  # of the time that is left: no step is shorter
+FIRST = 1e-3  # length of the first trial step, relative to a step of the run
+NEARLY = 0.99  # of the time left: a step longer than this takes all of it
+NOTHING_LEFT = 1e-14  # least length of a step, relative to the duration
 
 
 @kernel
 def forget_misses(work):
-    """Begin anew with the errors of bodies."""
+    """Reset the errors of bodies."""
     for b in range(work.body.shape[0]):
         miss = work.body[b].miss
         miss[0], miss[1], miss[2] = 0.0, 0.0, 0.0
@@ -45,7 +45,7 @@ def forget_misses(work):
 
 @kernel
 def note_misses(system, E, h, work):
-    """Keep for each body the greatest of its errors [m] by the rows of E, and its scale max(L, h V)."""
+    """Store for each body the greatest of its errors [m] by the rows of E, and its scale max(L, h V)."""
     for b in range(work.body.shape[0]):
         if system.bodies[b].ballistic == 1 and work.body[b].status != ONE:
             continue
@@ -54,7 +54,7 @@ def note_misses(system, E, h, work):
 
 @kernel
 def note_miss(system, E, h, longest, b, work):
-    """Keep the greatest errors [m] of body b by the rows of E, and its scale; T is `longest` at most."""
+    """Store the greatest errors [m] of body b by the rows of E, and its scale; T is at most `longest`."""
     L, bound, miss = system.bodies[b].extent, work.body[b].bound, work.body[b].miss
     speed = L * bound[2]
     for s in range(E.shape[1]):
@@ -86,23 +86,23 @@ def greatest_error(weight, h, L, T, b, work):
         w0, w1, w2 = w0 + f * a[3], w1 + f * a[4], w2 + f * a[5]
         d = multiply(0.0, f * u[3], f * u[4], f * u[5], p[0], p[1], p[2], p[3])  # 2 f dQ/dt
         q0, q1, q2, q3 = q0 + d[0], q1 + d[1], q2 + d[2], q3 + d[3]
-    way = max(
+    displacement = max(
         math.sqrt(x0 * x0 + x1 * x1 + x2 * x2),
         L * math.sqrt(q0 * q0 + q1 * q1 + q2 * q2 + q3 * q3),
     )
     rate = max(math.sqrt(v0 * v0 + v1 * v1 + v2 * v2), L * math.sqrt(w0 * w0 + w1 * w1 + w2 * w2))
-    return abs(h) * (way + T * rate)
+    return abs(h) * (displacement + T * rate)
 
 
 @kernel
 def allowed_error(rtol, atol, extent, scale):
-    """Return by how much a body may miss in a step [m]."""
+    """Return the tolerance for the error of a body in a step [m]."""
     return LOCAL * (atol + rtol * max(extent, scale))
 
 
 @kernel
 def step_error(system, rtol, atol, work):
-    """Return the greatest error of the bodies in a step, as a part of what is allowed."""
+    """Return the greatest error of the bodies in a step, relative to the tolerance."""
     first, second = 0.0, 0.0
     for b in range(work.body.shape[0]):
         miss = work.body[b].miss
@@ -118,7 +118,7 @@ def step_error(system, rtol, atol, work):
 
 @kernel
 def allowed_step(left, work):
-    """Return the length of the next step of an island: what is left, in equal steps if less than two."""
+    """Return the length of the next step of an island, from the time that is left."""
     ahead = math.inf
     for b in range(work.body.shape[0]):
         ahead = min(ahead, work.body[b].ahead)
@@ -127,13 +127,13 @@ def allowed_step(left, work):
 
 @kernel
 def part_of(left, ahead):
-    """Return the step to take of what is left: about `ahead`, in equal steps if less than two."""
+    """Return the next step within the time `left`: `ahead`, or half or all of it if 2 `ahead` do not fit."""
     return ahead if 2.0 * ahead <= left else 0.5 * left if ahead < NEARLY * left else left
 
 
 @kernel
 def shorter(dt, error, controls, clock, work):
-    """Return the length to try after a step of too great an error."""
+    """Return the length to try after a step whose error was too large."""
     factor = LEAST
     if math.isfinite(error):
         factor = max(LEAST, SAFETY * error ** (-1.0 / controls.order))
@@ -145,9 +145,9 @@ def shorter(dt, error, controls, clock, work):
 
 @kernel
 def plan_next(dt, error, again, controls, work):
-    """Note the length of the next step after one of length dt; `again`: one was refused just before.
+    """Store the length of the next step after one of length dt; `again` is true if a trial was rejected before.
 
-    A short step (what is left after an event) does not shorten the next.
+    A short step (the rest of the time after an event) does not shorten the next.
     """
     factor = MOST
     if error > 0.0:
@@ -161,14 +161,14 @@ def plan_next(dt, error, again, controls, work):
 
 
 def complete(rtol: float, atol: float | None, system) -> tuple[float, float]:
-    """Return (rtol, atol [m]); where `atol` is left out, `rtol` of the size of the smallest body."""
+    """Return (rtol, atol [m]); the default of `atol` is `rtol` times the size of the smallest body."""
     return rtol, rtol * float(np.min(system.bodies.extent)) if atol is None else atol
 
 
 def time_of_bounces(system, tolerances: tuple[float, float], longest: float) -> float:
     """Return the time of a bounce as high as the tolerance, sqrt(8 tol/g): shorter ones are not resolved.
 
-    It takes the place of the step wherever that is a measure of time: for what is held, and what rests.
+    It replaces the step where this is a measure of time, for persistent contacts and for bodies at rest.
     """
     g = float(np.linalg.norm(system.gravity))
     if not system.contacts.size or g == 0.0:

@@ -1,12 +1,12 @@
 """Elastic mounts: springs and dampers along and about three axes of the parent.
 
-With d the way of the child's anchor from the parent's and theta the rotation vector of the child, both seen
-from the axes of the mount in the parent, u and w their relative velocities,
+Let d be the displacement of the child's anchor from the parent's and theta the rotation vector of the child,
+both in the axes of the mount in the parent, and u, w the relative velocities. Then
 
     U = 1/2 d.K d + 1/2 theta.K_t theta,    F = -K d - C u,    T = -J(theta)^-T K_t theta - C_t w,
 
-J the left Jacobian of the rotation vector, theta' = J^-1 w, so that the elastic part has the potential U for
-any turn below half a turn. F acts on both at the child's anchor.
+with the left Jacobian J of the rotation vector, theta' = J^-1 w, so that the elastic part has the potential U
+for any rotation below half a turn. F acts on both bodies at the child's anchor.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ def add_bushing(bushing, state, work):
     a = attitude(state, p, bushing.parent_frame)
     d0, d1, d2, t0, t1, t2 = displacement(bushing, state)
     rx, ry, rz, qx, qy, qz = point(state, c, bushing.child_anchor)
-    sx, sy, sz = qx, qy, qz  # the same place, from the centre of the parent
+    sx, sy, sz = qx, qy, qz  # the same point, from the centre of the parent
     if p >= 0:
         sx, sy, sz = qx - state[p].x[0], qy - state[p].x[1], qz - state[p].x[2]
     ux, uy, uz = point_velocity(state, c, rx, ry, rz)

@@ -21,7 +21,7 @@ def alone(system, point):
 
 @kernel
 def spread(system, point, state, ln, l1, l2, work):
-    """Write motion = P G^T (ln, l1, l2): of all bodies, or of the point's own if nothing is joined to them."""
+    """Write motion = P G^T (ln, l1, l2) of all bodies, or of those at the point if they have no joints."""
     if not alone(system, point):
         clear_wrenches(work)
         add_impulse(point, ln, l1, l2, work)
@@ -81,7 +81,7 @@ def clear_wrenches(work):
 
 @kernel
 def effective_inverse_mass(system, point, state, work, W):
-    """Write W = G P G^T (3, 3) of one point. Columns are answers to unit impulses."""
+    """Write W = G P G^T (3, 3) of one point. Columns are responses to unit impulses."""
     for k in range(3):
         e0, e1, e2 = 1.0 if k == 0 else 0.0, 1.0 if k == 1 else 0.0, 1.0 if k == 2 else 0.0
         spread(system, point, state, e0, e1, e2, work)
@@ -90,9 +90,7 @@ def effective_inverse_mass(system, point, state, work, W):
         for k in range(i):
             m = 0.5 * (W[i, k] + W[k, i])
             W[i, k], W[k, i] = m, m
-    if (
-        point.turns >= 3
-    ):  # a stop has no tangents; what they are given does not matter, without friction
+    if point.turns >= 3:  # a stop has no tangents and no friction: any positive values do
         W[1, 1], W[2, 2] = W[0, 0], W[0, 0]
 
 

@@ -7,7 +7,7 @@ from carom._compiled.decorators import kernel
 
 @kernel
 def find_piece(pieces, first, last, t):
-    """Return the piece that holds t; the first or the last beyond them."""
+    """Return the piece that contains t; outside all pieces, the first or the last."""
     low, high = first, last - 1
     while low < high:
         middle = (low + high + 1) // 2

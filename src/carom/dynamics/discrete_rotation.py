@@ -1,12 +1,12 @@
-"""The discrete rotation of a rigid body by its momentum: symplectic, and momentum is kept exactly.
+"""The discrete rotation of a rigid body by its momentum: symplectic, with exact momentum.
 
-From the discrete Lagrangian tr((1 - F) J_d)/h of a turn F by the unit quaternion (a, b) in body axes
-(Moser and Veselov 1991; McLachlan and Zanna 2005):
+It follows from the discrete Lagrangian tr((1 - F) J_d)/h of a rotation F by the unit quaternion (a, b) in body
+axes (Moser and Veselov 1991; McLachlan and Zanna 2005):
 
     a J b + b x J b = h/2 m,     a = sqrt(1 - |b|^2),     m = R_0^T l.
 
-Of order 2; turning back with -h from the same l undoes it. The left side is bounded: one step turns by less
-than half a turn, of equal moments by less than a quarter.
+The order is 2; a step -h with the same l reverses a step h. The left side is bounded: one step rotates by less
+than half a turn, for equal moments by less than a quarter.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Double-double arithmetic: a number as an unevaluated sum high + low, of some 31 digits.
 
-Sums and products of two doubles with their round-off are exact (Knuth 1969; Dekker 1971); what is built of them
-here errs by a few 1e-32 of the larger operand.
+Sums and products of two doubles, together with their round-off, are exact (Knuth 1969; Dekker 1971). The
+operations built from them have errors of a few 1e-32 of the larger operand.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ def subtract_product(sh, sl, ah, al, bh, bl):
 
 @kernel
 def inverse_root(ah, al):
-    """Return 1/sqrt(a): one step of Newton's from that of a double."""
+    """Return 1/sqrt(a), by one step of Newton's method from the result for a double."""
     x = 1.0 / math.sqrt(ah)
     sh, sl = multiply(ah, al, x, 0.0)
     rh, rl = subtract_product(1.0, 0.0, sh, sl, x, 0.0)

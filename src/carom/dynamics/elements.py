@@ -1,7 +1,8 @@
 """All constraints: joints, then relations between their coordinates and user-defined rows.
 
-Of each element three errors and their rows are asked. A joint speaks of the relative motion of its two sides,
-six numbers (`carom.kinematics.joints`); the others write one number a row.
+Each element has errors of position and velocity, a bias of the acceleration, and rows. A joint writes them for
+the relative motion of its two sides, six numbers (`carom.kinematics.joints`); other elements write one number
+for each row.
 """
 
 from __future__ import annotations
@@ -63,7 +64,7 @@ def _velocity(system, j, state, work):
 
 @unit
 def _acceleration(system, j, state, work):
-    """Write what the rows of an element ask of the accelerations."""
+    """Write the accelerations that an element requires, as its bias."""
     joint, record, t = system.joints[j], work.joint[j], work.result[0].time
     if joint.kind < RELATION:
         joints.acceleration_bias(joint, state, record.bias)
@@ -71,14 +72,14 @@ def _acceleration(system, j, state, work):
         user_bias(system, j, state, t, record.bias, record.target)
     elif joint.kind == STIFF:
         record.bias[0] = 0.0
-    else:  # of an inertia too: J a + lam/I = -d, and nothing is prescribed
+    else:  # also an inertia: J a + lam/I = -d, without a prescribed part
         relation = system.relations.relations[joint.number]
         record.bias[0] = relation_bias(system, relation, state, t, record.target)
 
 
 @unit
 def _target(system, j, state, relative, out):
-    """Write what each row of an element says of its errors."""
+    """Write the component of the errors of an element along each of its rows."""
     if system.joints[j].kind < RELATION:
         joint_target(system.joints[j], state, relative, out)
         return
@@ -116,7 +117,7 @@ def _prescribed_speeds(system, j, state, work, out):
 
 @unit
 def _driven_power(system, state, work) -> float:
-    """Return the power of what is prescribed, multiplier times b, of the last solve of accelerations."""
+    """Return the power of prescribed motions, multiplier times b, in the last solve of accelerations."""
     power = 0.0
     for j in range(system.joints.shape[0]):
         if system.joints[j].kind >= RELATION:
@@ -129,7 +130,7 @@ def _driven_power(system, state, work) -> float:
 
 @unit
 def _push_other(system, j, state, multiplier, work):
-    """Add A^T multiplier of an element that is no joint to the wrenches."""
+    """Add A^T multiplier of an element that is not a joint to the wrenches."""
     joint, t = system.joints[j], work.result[0].time
     if joint.kind == USER_ROWS:
         push_user_rows(system, j, state, t, multiplier, work)
@@ -158,7 +159,7 @@ def velocity_error(system, j, state, work):
 
 @inlined
 def acceleration_bias(system, j, state, work):
-    """Write what the rows of an element ask of the accelerations."""
+    """Write the accelerations that an element requires, as its bias."""
     if system.joints[j].kind >= RELATION:
         _acceleration(system, j, state, work)
     else:
@@ -167,7 +168,7 @@ def acceleration_bias(system, j, state, work):
 
 @inlined
 def row_target(system, j, state, relative, out):
-    """Write what each row of an element says of its errors."""
+    """Write the component of the errors of an element along each of its rows."""
     if system.joints[j].kind >= RELATION:
         _target(system, j, state, relative, out)
     else:
@@ -187,7 +188,7 @@ def build_rows(system, state, work):
 
 @inlined
 def driven_power(system, state, work):
-    """Return the power of what is prescribed, multiplier times b, of the last solve of accelerations."""
+    """Return the power of prescribed motions, multiplier times b, in the last solve of accelerations."""
     if system.relations.there == 1 and system.solver.kind == LOOPS:
         return _driven_power(system, state, work)
     return 0.0
@@ -205,6 +206,6 @@ def prescribed_speeds(system, j, state, work, out):
 
 @inlined
 def push_other(system, j, state, multiplier, work):
-    """Add A^T multiplier of an element that is no joint to the wrenches."""
+    """Add A^T multiplier of an element that is not a joint to the wrenches."""
     if system.joints[j].kind >= RELATION:
         _push_other(system, j, state, multiplier, work)

@@ -23,9 +23,9 @@ def kinetic_energy(system, state):
 
 @kernel
 def energies(system, state, t):
-    """Return kinetic and potential energy, and the size of what they are made of [J].
+    """Return kinetic and potential energy, and the size of their terms [J].
 
-    A part of 1e-16 of that is the round-off of the two: far from its zero a potential is a difference of large
+    The round-off of the energies is 1e-16 of this size: far from its zero a potential is a difference of large
     numbers, and positions are known to the round-off of coordinates and of the size of the bodies.
     """
     kinetic = kinetic_energy(system, state)

@@ -2,7 +2,7 @@
 
 Stages are plain linear combinations (Q in R^4, normalised); the end of the step returns to the joints
 in the kinetic metric, so that constraints hold at position and velocity level to round-off. Bodies in
-free flight skip all of it (`carom.kinematics.flight`).
+free flight skip all of this (`carom.kinematics.flight`).
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from carom.kinematics.flight import free_flight
 from carom.model.workspace import FREE, ONE, RESTS, SEVERAL
 
 CONSTRAINTS_LOST = 7
-MANY = 1 << 30  # rows, more than there are
-#: turn of a body [rad] for each stage of a part of a step (0.3 of `rk4`), and how many parts there are at most
+MANY = 1 << 30  # more rows than any system has
+#: rotation of a body [rad] for each stage of a part of a step (0.3 for `rk4`), and greatest number of parts
 TURN, MOST_PARTS, TINY = 0.075, 100, 1e-300
 
 
@@ -49,7 +49,7 @@ def any_held(active):
 
 @inlined
 def constrained(method, system, active, start, h, end, work):
-    """Step the bodies that are joined, loaded or in contact; return what `explicit_step` does."""
+    """Step the bodies that are joined, loaded or in contact; return the same as `explicit_step`."""
     whole_step(method, system, active, start, h, end, work)
     result = work.result[0]
     return result.applied, result.friction, result.code
@@ -57,9 +57,9 @@ def constrained(method, system, active, start, h, end, work):
 
 @unit
 def whole_step(method, system, active, start, h, end, work):
-    """Step at once, or in parts in which no body turns far.
+    """Take a step at once, or in parts in which no body turns far.
 
-    The length of a part depends on where it starts alone, so that the end is a continuous function of h.
+    The length of a part depends only on its start, so that the end is a continuous function of h.
     """
     result = work.result[0]
     begin, left, first = result.start, h, start
@@ -97,7 +97,7 @@ def fastest_spin(system, state, work):
 
 @kernel
 def with_care(tableau, system, active, start, h, end, work):
-    """Step; and again with care, if stages fell into a position that is singular (`singular_positions`)."""
+    """Take a step; take it again with care if a stage was near a singular position (`singular_positions`)."""
     result = work.result[0]
     for care in (False, True):
         applied, friction, code, least, most = constrained_step(
@@ -106,13 +106,13 @@ def with_care(tableau, system, active, start, h, end, work):
         if not is_singular(system, least, most):
             break
         if not care:
-            forget_misses(work)  # what was done is void
+            forget_misses(work)  # the first attempt does not count
     result.applied, result.friction, result.code = applied, friction, code
 
 
 @inlined
 def fly(system, active, start, h, end, work):
-    """Move the bodies in free flight, keep those at rest; return whether others are left."""
+    """Move the bodies in free flight, keep those at rest; return whether other bodies remain."""
     mark_active(system, active, work)
     pending = False
     for b in range(system.bodies.shape[0]):
@@ -128,7 +128,7 @@ def fly(system, active, start, h, end, work):
 
 @inlined
 def copy_state(start, end):
-    """Write the record of a body unchanged."""
+    """Copy the record of a body."""
     for k in range(3):
         end.x[k], end.v[k], end.w[k] = start.x[k], start.v[k], start.w[k]
     for k in range(4):
@@ -137,7 +137,7 @@ def copy_state(start, end):
 
 @inlined
 def mark_active(system, active, work):
-    """Note for each body whether it is free, in contact at one point or at several, or at rest."""
+    """Store for each body whether it is free, in contact at one point or at several, or at rest."""
     for b in range(work.body.shape[0]):
         work.body[b].status = FREE
     for i in range(active.count[0]):
@@ -152,8 +152,9 @@ def mark_active(system, active, work):
 def constrained_step(tableau, system, active, start, care, h, end, work):
     """Step the bodies that are joined, loaded or in contact from `result.begin`; the others have reached `end`.
 
-    With `care` the stages return to the joints first, and those in singular positions are passed round. Returns
-    work of loads, of friction, a status, and the least and the most rows that stages left out, or nearly.
+    With `care` the stages return to the joints first, and `pass_round` treats those in singular positions.
+    Return the work of loads, of friction, a status, and the least and the greatest number of rows that stages
+    left out, or nearly left out.
     """
     A, weight, E, t0 = tableau.A, tableau.b, tableau.E, work.result[0].begin
     stages, stage = weight.size, work.stage
@@ -197,7 +198,7 @@ def constrained_step(tableau, system, active, start, care, h, end, work):
 
 @kernel
 def node(weights, count):
-    """Return the place of a stage in the step, from 0 to 1."""
+    """Return the time of a stage within the step, from 0 to 1."""
     total = 0.0
     for r in range(count):
         total += weights[r]
@@ -213,7 +214,7 @@ def combine(weight, count, h, start, stages, out):
 
 @kernel
 def combine_body(weight, count, h, start, stages, b, out):
-    """Write the same of one body."""
+    """Write the same for one body."""
     x0, v0, w0, q = start.x, start.v, start.w, start.Q
     x, v, w = out.x, out.v, out.w
     for k in range(3):
@@ -236,7 +237,7 @@ def combine_body(weight, count, h, start, stages, b, out):
 
 @kernel
 def forget_bounds(work):
-    """Begin anew with the bounds of accelerations."""
+    """Reset the bounds of accelerations."""
     for b in range(work.body.shape[0]):
         bound = work.body[b].bound
         bound[0], bound[1], bound[2] = 0.0, 0.0, 0.0

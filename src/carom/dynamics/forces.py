@@ -50,9 +50,9 @@ def add_load(load, state, work):
 
 @kernel
 def applied_wrenches(system, state, gyroscopic, work):
-    """Write gravity, all applied forces and, if asked for, -w x I w.
+    """Write gravity, all applied forces and, if `gyroscopic`, -w x I w.
 
-    Returns the power of the forces without potential: dampers and constant loads.
+    Return the power of the forces without potential: dampers and constant loads.
     """
     g = system.gravity
     for b in range(system.bodies.shape[0]):
@@ -77,7 +77,7 @@ def applied_wrenches(system, state, gyroscopic, work):
 
 @kernel
 def difference_of_loads(system, h, taken, without, work):
-    """Write h times the applied forces in one state less those in another; return whether that is anything."""
+    """Write h times the difference of the applied forces in two states; return whether it is not zero."""
     applied_wrenches(system, taken, False, work)
     for b in range(system.bodies.shape[0]):
         wrench, kept = work.body[b].wrench, work.stages[0, b].rate

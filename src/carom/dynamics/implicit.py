@@ -1,14 +1,14 @@
-"""Springs and dampers implicitly, all else explicitly: a linearly implicit step of order 2, L-stable.
+"""A linearly implicit step of order 2, L-stable: springs and dampers are implicit, all other forces explicit.
 
 ROS2 of Verwer, Spee, Blom and Hundsdorfer (1999) in q and v, with g = 1 - 1/sqrt(2),
 
     (1 - g h J) k1 = F(u0),    (1 - g h J) k2 = F(u0 + h k1) - 2 k1,    u1 = u0 + h (3 k1 + k2)/2,
 
-is of order 2 whatever J. Here J knows the stiffness k and damping c of the springs along their rows, so that
-the step is bounded by what is left to the explicit part. Each stage is one constrained solve in which a spring
-is a row with a compliance: with d = g h c + (g h)^2 k its force mu in the stage obeys
+has order 2 for any J. Here J contains the stiffness k and damping c of the springs along their rows, so that
+only the explicit part limits the step. Each stage is one constrained solve in which a spring is a row with a
+compliance: with d = g h c + (g h)^2 k its force mu in the stage satisfies
 
-    J a + mu/d = -(k s + c s' + g h k J r)/d,     a the accelerations, r the rates that the stage starts from.
+    J a + mu/d = -(k s + c s' + g h k J r)/d,     a: the accelerations, r: the rates at the start of the stage.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ CONSTRAINTS_LOST = 7
 def implicit_step(method, system, active, start, h, end, work):
     """Write the state a time h after `start` into `end`; return work of loads, of friction, a status.
 
-    While contacts are active all goes by the explicit method.
+    While contacts are active, the explicit method takes the step.
     """
     if not fly(system, active, start, h, end, work):
         return 0.0, 0.0, 0
@@ -71,7 +71,7 @@ def whole_step(system, active, start, h, end, work):
         if system.bodies[b].ballistic == 1:
             continue
         first, second = work.stages[0, b], work.stages[1, b]
-        # k2 from y = k2 + 2 k1, and the mean of the step into the second
+        # k2 from y = k2 + 2 k1; then the second stage stores the mean of the step
         for k in range(6):
             second.rate[k] -= 2.0 * first.rate[k]
             speed = stage[b].v[k] if k < 3 else stage[b].w[k - 3]
@@ -128,7 +128,7 @@ def bias_springs(system, state, h, s, work):
         length, speed = stretch(system, one, state)
         d = g * one.damping + g * g * one.stiffness
         start, more = speed, 0.0
-        if s == 1:  # velocities and accelerations of the first stage, twice
+        if s == 1:  # subtract twice the velocities and accelerations of the first stage
             start, more = speed - 2.0 * (one.speed + g * one.gain), 2.0 * one.gain
         one.speed = speed
         force = one.stiffness * length + one.damping * speed + g * one.stiffness * start
@@ -138,12 +138,12 @@ def bias_springs(system, state, h, s, work):
 
 @kernel
 def release_springs(system, state, h, s, work):
-    """Remove the springs from the rows again, and note what the stage does along them."""
+    """Remove the springs from the rows again, and store the accelerations of the stage along them."""
     for j in range(system.joints.shape[0]):
         if system.joints[j].kind == STIFF:
             one, row = system.relations.stiff[system.joints[j].number], system.solver.rows[j]
             gain = along_row(system, one, state, work)
-            if s == 1:  # the sum of the rates that the dampers see in both stages, less the first
+            if s == 1:  # sum of the rates of the dampers in both stages, minus the first rate
                 one.speed += GAMMA * h * (gain - one.gain)
             one.gain = gain
             row.off, row.compliance[0] = 1, 0.0
@@ -153,8 +153,8 @@ def release_springs(system, state, h, s, work):
 def damper_work(system, start, h, end):
     """Return the work of the dampers: their impulse in the step times the mean rate of its ends.
 
-    In each stage a damper sees the rate s' + g h J a, so that its impulse is -c h/2 times the sum of both. (The
-    power at the stages would be wrong by any factor where the damper is stiff.)
+    In each stage the rate of a damper is s' + g h J a, so that its impulse is -c h/2 times the sum of both.
+    (For a stiff damper, the power at the stages could be wrong by any factor.)
     """
     total = 0.0
     for j in range(system.joints.shape[0]):

@@ -1,14 +1,14 @@
-"""Dry friction along coordinates of joints: |F| <= bound, against the motion where there is any.
+"""Dry friction along coordinates of joints: |F| <= bound, opposite to the motion.
 
-Within a step each is in one mode. Slipping in the direction d its force is -bound d; sticking it is what keeps
-q'' = 0, found for all that stick at once,
+Within a step each coordinate is in one mode. In slip in the direction d the force is -bound d. In stick the
+force keeps q'' = 0; the forces of all sticking coordinates are found together,
 
     (J P J^T) F = -q''_free.
 
-Where a motor moves the coordinate nothing that friction does can keep it: J P J^T is round-off of J M^-1 J^T.
-Sticking ends there as soon as it moves, or is about to; the force is then put beyond its bound.
+If a motor moves the coordinate, friction cannot stop it: J P J^T is round-off of J M^-1 J^T. Stick then ends as
+soon as the coordinate moves or starts to move; for this, the force is set beyond its bound.
 
-A mode ends where d q' or bound - |F| crosses zero; the loop locates that instant as it does an impact
+A mode ends when d q' or bound - |F| crosses zero; the loop locates this instant as for an impact
 (`carom.persistent.joint_events`).
 """
 
@@ -22,15 +22,15 @@ from carom.dynamics.several_points import factor, substitute
 from carom.dynamics.solve import free_body, solve
 from carom.kinematics.coordinate import drift, motion_along, push, rate, speeds_of
 
-DEPENDENT = 1e-10  # of a diagonal: what sticks already through others takes no force
-ROUND_OFF = 1e-13  # of J M^-1 J^T: what joints and motors leave of it where they leave no freedom
-STILL = 1e-12  # of the speeds of both sides: no speed
-BEYOND = 2.0  # of its bound: the force of what cannot stick
+DEPENDENT = 1e-10  # of a diagonal: a coordinate that sticks already by others takes no force
+ROUND_OFF = 1e-13  # of J M^-1 J^T: below, joints and motors leave the coordinate no freedom
+STILL = 1e-12  # of the speeds of both sides: a smaller rate is zero
+BEYOND = 2.0  # times its bound: the force on a coordinate that cannot stick
 
 
 @kernel
 def any_sticks(relations):
-    """Return whether one sticks."""
+    """Return whether any coordinate sticks."""
     for i in range(relations.frictions.shape[0]):
         if relations.frictions[i].mode == 0:
             return True
@@ -51,9 +51,9 @@ def push_all(system, state, work):
 
 @kernel
 def stick(system, state, x, work):
-    """Solve (J P J^T) F = x over those that stick: x becomes F, 0 of the others.
+    """Solve (J P J^T) F = x for the sticking coordinates: x becomes F, and 0 for the others.
 
-    Dependent ones are left out; those that depend on joints and motors are noted.
+    Dependent coordinates are left out; those that joints and motors determine are marked as `driven`.
     """
     relations = system.relations
     count, W = relations.frictions.shape[0], relations.friction_matrix
@@ -83,7 +83,7 @@ def stick(system, state, x, work):
 
 @kernel
 def drive(system, one, state):
-    """Put the force of what cannot stick beyond its bound, if its coordinate moves or is about to."""
+    """Set the force of a driven coordinate beyond its bound, if the coordinate moves or starts to move."""
     c = system.relations.coordinates[one.coordinate]
     speed = rate(c, state)
     still = abs(speed) <= STILL * speeds_of(system, c, state)
@@ -97,7 +97,7 @@ def drive(system, one, state):
 def _joint_friction(system, state, work) -> float:
     """Add the wrenches of friction in joints; return their power.
 
-    The wrenches of all other forces, and the bias of the joints, are in place.
+    The wrenches of all other forces, and the bias of the joints, must be written before.
     """
     relations = system.relations
     if relations.frictions.shape[0] == 0:
@@ -125,7 +125,7 @@ def _joint_friction(system, state, work) -> float:
 
 @unit
 def _stay_stuck(system, state, work):
-    """Take the speeds of those that stick out of a state, in the kinetic metric."""
+    """Remove the rates of sticking coordinates from a state, in the kinetic metric."""
     relations = system.relations
     if not any_sticks(relations):
         return
@@ -169,6 +169,6 @@ def joint_friction(system, state, work):
 
 @inlined
 def stay_stuck(system, state, work):
-    """Take the speeds of those that stick out of a state, in the kinetic metric."""
+    """Remove the rates of sticking coordinates from a state, in the kinetic metric."""
     if system.relations.there == 1:
         _stay_stuck(system, state, work)

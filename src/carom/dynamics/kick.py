@@ -1,6 +1,6 @@
 """Half kicks of a symplectic step: to the momenta at its middle, and to the velocities at its end.
 
-Momenta (m v, l) of the middle are in `push`, l spatial and about each centre.
+Momenta (m v, l) of the middle are in `push`; l is spatial, and about each centre.
 """
 
 from __future__ import annotations
@@ -20,9 +20,10 @@ MOST = 60  # substitutions
 
 @kernel
 def first_kick(system, start, h, work):
-    """Write P_h, with the reactions of this moment as a first guess, into `push`; return the work done.
+    """Write P_h, with the present reactions as a first guess, into `push`; return the work done.
 
-    M a is the applied forces, the reactions and -w x l, which turns l with the body and is no kick.
+    M a is the sum of the applied forces, the reactions and -w x l, which rotates l with the body and is no
+    kick.
     """
     power = applied_wrenches(system, start, True, work)
     bias_joints(system, start, work)
@@ -39,7 +40,7 @@ def first_kick(system, start, h, work):
 
 @kernel
 def times_inertia(body, q, wx, wy, wz):
-    """Return the spatial angular momentum of a body that turns by w (world)."""
+    """Return the spatial angular momentum of a body with the angular velocity w (world)."""
     W = rotate_back(q[0], q[1], q[2], q[3], wx, wy, wz)
     J = body.inertia
     return rotate(q[0], q[1], q[2], q[3], J[0] * W[0], J[1] * W[1], J[2] * W[2])
@@ -59,8 +60,8 @@ def add_momentum(body, q, factor, memory):
 def second_kick(system, h, end, work):
     """Write v_1 from the momenta of the middle; return the work of loads and motors.
 
-    Dampers make it an equation for v_1, solved by substitution (the adjoint of the first half: the step
-    stays symmetric).
+    With dampers it is an equation for v_1, solved by repeated substitution (the adjoint of the first half, so
+    that the step is symmetric).
     """
     power, driven, change = 0.0, 0.0, math.inf
     for k in range(MOST):
@@ -78,7 +79,7 @@ def second_kick(system, h, end, work):
 
 @kernel
 def note_kick(system, k, work):
-    """Keep the wrenches; return their greatest change since they were kept, relative to the greatest."""
+    """Store the wrenches; return their greatest change since the last call, relative to the greatest wrench."""
     change, size = 0.0, 0.0
     for b in range(system.bodies.shape[0]):
         wrench, kept = work.body[b].wrench, work.stages[0, b].rate

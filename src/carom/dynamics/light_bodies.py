@@ -1,18 +1,18 @@
 """Closed loops of bodies whose masses and moments differ by more than `SPREAD`.
 
-A M^-1 A^T is the sum of what all bodies yield. Light bodies yield much, and where one of them stands between
-two heavy ones what the heavy ones yield is a small difference of large numbers: a part (light mass)/(heavy
-mass) of them. So two things change against `carom.dynamics.loops`.
+A M^-1 A^T is the sum of the compliances of all bodies. Light bodies have large compliances. If a light body is
+between two heavy ones, the compliance of the heavy ones is a small difference of large numbers, a fraction
+(light mass)/(heavy mass) of them. So there are two differences from `carom.dynamics.loops`.
 
-Which rows depend on others is a matter of geometry. It is judged with bodies of equal mass, and of moments
-that are the squares of their sizes: in A D^-1 A^T, whose pivots know nothing of masses.
+Whether rows depend on others is a question of geometry. It is decided for bodies of equal mass, with moments
+equal to the squares of their sizes: by A D^-1 A^T, whose pivots do not depend on masses.
 
-The rows that stay are solved with 31 digits (`carom.dynamics.double_double`): with U = A M^-1/2 in principal
-axes, of which each product is exact,
+The remaining rows are solved with 31 digits (`carom.dynamics.double_double`). All products of entries of
+U = A M^-1/2, in principal axes, are exact, and
 
     U U^T = L L^T,    L L^T lam = target - U y0,   y = y0 + U^T lam,    y0 = M^-1/2 wrench, motion = M^-1/2 y.
 
-What rounds is U, by a part 1e-16 of each entry: a change of the joints by so much, whatever the masses are.
+Only U is rounded, by 1e-16 of each entry: this is a relative change of the joints by as much, for any masses.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from carom.dynamics.elements import build_rows, row_target
 from carom.dynamics.loops import eliminate, forget_pose, gather
 from carom.geometry.rotation import rotate, rotate_back
 
-LEAST = 1e-29  # of a diagonal: pivots below are round-off of 31 digits
+LEAST = 1e-29  # of a diagonal: smaller pivots are round-off of 31 digits
 
 
 @kernel
@@ -51,7 +51,7 @@ def geometric_motion(system, work):
 
 @kernel
 def factor_geometry(system, state, augment, work):
-    """Factor A D^-1 A^T: its pivots are 0 where rows depend on others."""
+    """Factor A D^-1 A^T: its pivots are 0 for rows that depend on others."""
     solver, joints = system.solver, system.joints
     forget_pose(solver)
     build_rows(system, state, work)
@@ -61,7 +61,7 @@ def factor_geometry(system, state, augment, work):
         for r in range(joints[j].rows):
             d = solver.block[j, r, r]
             solver.rows[j].weight[r] = d
-            # what yields by itself depends on nothing
+            # a row with a compliance of its own depends on no other row
             yields = augment if augment > 0.0 or solver.rows[j].compliance[r] == 0.0 else 1.0
             solver.block[j, r, r] = d * (1.0 + yields)
     eliminate(system, solver.drop if augment == 0.0 else 0.0)
@@ -69,7 +69,7 @@ def factor_geometry(system, state, augment, work):
 
 @kernel
 def factor_light(system, state, work):
-    """Find the rows that stay, and factor U U^T of those."""
+    """Find the independent rows, and factor U U^T of these."""
     factor_geometry(system, state, 0.0, work)
     scaled_rows(system, state)
     solver, joints, count = system.solver, system.joints, system.joints.shape[0]
@@ -104,7 +104,7 @@ def update_block(solver, joints, t, n):
 
 @kernel
 def scaled_rows(system, state):
-    """Turn Y of all sides into U: rows in principal axes, over roots of masses and moments; keep the axes."""
+    """Turn Y of all sides into U: rows in principal axes, over roots of masses and moments; store the axes."""
     for b in range(system.bodies.shape[0]):
         for k in range(4):
             system.solver.scaled[b, 2, k] = state[b].Q[k]
@@ -143,9 +143,10 @@ def gather_products(system, high, low):
 
 @kernel
 def factor_block(high, low, row, root, rest, n):
-    """Factor a diagonal block in place, L below the diagonal; root + rest = 1/L_kk, 0 where a row is left out.
+    """Factor a diagonal block in place, L below the diagonal; root + rest = 1/L_kk, 0 for a row left out.
 
-    A pivot that is round-off makes it NaN: rows that geometry tells apart, and the masses do not.
+    The result is NaN if a pivot is only round-off: the rows are independent in geometry, but not with the
+    masses.
     """
     for k in range(n):
         d, e = high[k, k], low[k, k]

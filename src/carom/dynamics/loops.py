@@ -2,11 +2,11 @@
 
 The same solve as in `carom.dynamics.tree`, through the multipliers: A M^-1 A^T lam = target - A M^-1 wrench,
 motion = M^-1 (wrench + A^T lam). Bodies are eliminated first (that is A M^-1 A^T), then the joints in
-an order of low fill that was chosen when the scene was compiled. A pivot below `drop` times
+an order with low fill, which was chosen when the scene was compiled. A pivot below `drop` times
 its own diagonal belongs to a row that depends on earlier ones and is left out: redundant
-constraints and singular positions need no help. `augment` > 0 adds that part of each diagonal instead:
-one pass of the augmented Lagrangian, repeated by the caller (the paper's way, and the way to reactions of
-minimal norm).
+constraints and singular positions need no special treatment. `augment` > 0 adds this fraction of each diagonal
+instead: one pass of the augmented Lagrangian, which the caller repeats (the method of the paper, which gives
+reactions of minimal norm).
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def factor(system, state, augment, work):
 
 @kernel
 def forget_pose(solver):
-    """Forget the pose of the last factor; the caller may note that of the next one."""
+    """Forget the pose of the last factor; the caller may store that of the next one."""
     for b in range(solver.pose.shape[0]):
         solver.pose[b, 0] = math.nan
 
@@ -60,7 +60,7 @@ def gather(system):
 
 @kernel
 def eliminate(system, drop):
-    """Factor the blocks in place; `weight` has the diagonal that pivots are judged by."""
+    """Factor the blocks in place; pivots are compared with the diagonals in `weight`."""
     solver, joints, block = system.solver, system.joints, system.solver.block
     count = joints.shape[0]
     for place in range(count):
@@ -101,7 +101,7 @@ def add_product(S, Y, A, m, n):
 
 @kernel
 def factor_diagonal(S, pivot, diagonal, n, drop):
-    """Factor S = L D L^T in place (unit L below the diagonal); pivot = 1/D, or 0 where dropped."""
+    """Factor S = L D L^T in place (unit L below the diagonal); pivot = 1/D, or 0 for a dropped row."""
     for k in range(n):
         d = S[k, k]
         for s in range(k):
@@ -118,7 +118,7 @@ def factor_diagonal(S, pivot, diagonal, n, drop):
 
 @kernel
 def divide(X, L, pivot, m, n):
-    """X <- X L^-T D^-1 for a block below the diagonal block L, so that it holds entries of unit L."""
+    """X <- X L^-T D^-1 for a block below the diagonal block L, so that it contains entries of unit L."""
     for i in range(m):
         for k in range(n):
             t = X[i, k]
@@ -198,7 +198,7 @@ def subtract_rows(system, work):
 
 @kernel
 def add_reactions(system, work):
-    """Motion <- motion + M^-1 A^T multipliers, where rhs holds the multipliers."""
+    """Motion <- motion + M^-1 A^T multipliers, where rhs contains the multipliers."""
     for i in range(system.solver.sides.shape[0]):
         side = system.solver.sides[i]
         Y, motion = side.Y, work.body[side.body].motion
@@ -226,7 +226,7 @@ def solve_factored(system, state, biased, work):
 
 @kernel
 def _dropped_rows(system, part):
-    """Return how many rows the last factor left out, or kept for less than `part` of their diagonal."""
+    """Return how many rows the last factor left out, or kept with a pivot below `part` of their diagonal."""
     count = 0
     for j in range(system.joints.shape[0]):
         row = system.solver.rows[j]
@@ -238,5 +238,5 @@ def _dropped_rows(system, part):
 
 @inlined
 def dropped_rows(system, part):
-    """Return how many rows the last solve left out, or all but left out; only that of loops does."""
+    """Return how many rows the last solve left out or nearly left out; only the solve of loops does so."""
     return _dropped_rows(system, part) if system.solver.kind == LOOPS else 0

@@ -11,8 +11,8 @@ from carom.model.arrays import INERTIA, RELATION
 from carom.options import Options
 from carom.scene.remarks import remarks
 
-DEPENDENT = 1e-8  # of the largest singular value of rows of length 1
-TAKES_PART = 1e-6  # of a vector of length 1
+DEPENDENT = 1e-8  # relative to the largest singular value of rows of length 1
+TAKES_PART = 1e-6  # least component of a row that takes part, in a vector of length 1
 
 
 @dataclass(frozen=True)
@@ -106,11 +106,11 @@ def mobility(scene) -> Mobility:
 
 
 def dense_rows(system, start, work) -> tuple[np.ndarray, np.ndarray]:
-    """Return all rows (K, N, 6), linear in world axes and angular in principal ones, and whose they are."""
+    """Return all rows (K, N, 6), linear in world axes and angular in principal ones, and their elements."""
     from carom.dynamics.reactions import write_rows
 
     write_rows(system, start, work)
-    count = np.where(system.joints.kind == INERTIA, 0, system.joints.rows)  # yields: no constraint
+    count = np.where(system.joints.kind == INERTIA, 0, system.joints.rows)  # no constraint
     first = np.cumsum(count) - count
     A = np.zeros((int(count.sum()), len(system.bodies), 6))
     for side in system.solver.sides:
@@ -129,9 +129,10 @@ def _nonholonomic(element) -> int:
 
 
 def _dependent(A, owner, system) -> tuple[int, np.ndarray]:
-    """Return how many rows (K, N, 6) depend on others, and (J,) which joints have a part in that.
+    """Return how many rows (K, N, 6) depend on others, and (J,) which joints take part in this.
 
-    Only elements in loops can; a joint with a side that nothing else holds is in none, and leaves others so.
+    Only elements in loops can. A joint is in no loop if no other element acts on one of its bodies; it is
+    removed, and then further joints may be in no loop.
     """
     kept = system.joints.kind != INERTIA
     parent, child = system.joints.parent, system.joints.child
@@ -140,7 +141,7 @@ def _dependent(A, owner, system) -> tuple[int, np.ndarray]:
         degree = np.zeros(len(system.bodies) + 1, dtype=np.int64)
         sides = system.solver.sides[kept[system.solver.sides.element]]
         np.add.at(degree, sides.body, 1)
-        degree[-1] = 2  # the ground holds by itself
+        degree[-1] = 2  # the ground is fixed by itself
         loose = kept & joint & ((degree[parent] == 1) | (degree[child] == 1))
         if not loose.any():
             break

@@ -15,7 +15,7 @@ from carom.geometry.rotation import multiply
 from carom.kinematics.coordinate import push, rate, value
 from carom.model.arrays import PRISMATIC
 
-FAR = 1.5  # turn [rad] in a trial step, by the rates at its ends: less than half a turn on the way
+FAR = 1.5  # rotation [rad] in a trial step, by the rates at its ends: safely below half a turn
 
 
 @kernel
@@ -121,7 +121,7 @@ def spring_energy(system, spring, length):
 
 @unit
 def _note_turns(system, state):
-    """Keep the whole turns of all angles, where a trial step has become the present."""
+    """Store the whole turns of all angles, after a trial step has been accepted."""
     for i in range(system.relations.coordinates.shape[0]):
         c = system.relations.coordinates[i]
         c.reference = value(c, state)
@@ -129,14 +129,14 @@ def _note_turns(system, state):
 
 @kernel
 def begin_turns(system):
-    """Keep the angles of the start of a step."""
+    """Store the angles at the start of a step."""
     for i in range(system.relations.coordinates.shape[0]):
         system.relations.coordinates[i].begun = system.relations.coordinates[i].reference
 
 
 @kernel
 def forget_turns(system):
-    """Go back to the angles of the start of the step."""
+    """Restore the angles at the start of the step."""
     for i in range(system.relations.coordinates.shape[0]):
         system.relations.coordinates[i].reference = system.relations.coordinates[i].begun
 
@@ -169,7 +169,7 @@ def more_energy(system, state, t):
 
 @inlined
 def note_turns(system, state):
-    """Keep the whole turns of all angles, where a trial step has become the present."""
+    """Store the whole turns of all angles, after a trial step has been accepted."""
     if system.relations.there == 1:
         _note_turns(system, state)
 

@@ -8,7 +8,7 @@ from carom.geometry import quaternion
 
 
 def mounted(bushing, x, Q):
-    """Return way d and rotation vector (T, 3) in the axes of a mount, those (T, 4), the child's anchor (T, 3).
+    """Return displacement and rotation (T, 3) in mount axes, these axes (T, 4), and the child's anchor (T, 3).
 
     x (T, N, 3), Q (T, N, 4): positions and attitudes of all bodies.
     """
@@ -26,7 +26,7 @@ def mounted(bushing, x, Q):
 
 
 def mount_wrench(bushing, x, Q, v, w):
-    """Return where a mount acts, its force and its torque on the child (T, 3), world axes."""
+    """Return the point at which a mount acts, its force and its torque on the child (T, 3), world axes."""
     d, turn, axes, place = mounted(bushing, x, Q)
     p, c = int(bushing.parent), int(bushing.child)
     u, spin = v[:, c] + np.cross(w[:, c], place - x[:, c]), w[:, c]

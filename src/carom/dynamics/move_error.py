@@ -1,11 +1,12 @@
 """The error of the constraints after a displacement from q_0 to q_1, as a bias of the solve in q_0.
 
-Of holonomic rows that is phi(q_1, t_1). Most directions turn with the parent, so errors are turned back with
-it. Rows without phi, a(q, t) v = b, are asked of the displacement xi from q_0 to q_1, in the mean of both ends:
+For holonomic rows it is phi(q_1, t_1). Most directions rotate with the parent, so errors are rotated back with
+it. Rows without phi, a(q, t) v = b, must hold for the displacement xi from q_0 to q_1, in the mean of both
+ends:
 
     1/2 (a(q_0) + a(q_1)) xi = h/2 (b_0 + b_1),
 
-xi = (x_1 - x_0, rotation vector of Q_1 Q_0^-1), minus itself for the way back: the step stays symmetric.
+xi = (x_1 - x_0, rotation vector of Q_1 Q_0^-1). The reverse step has -xi, so the step is symmetric.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ from carom.model.arrays import KNIFE_EDGE, RELATION, ROLLING, SLIDING, USER_ROWS
 
 @unit
 def _error_of_move(system, start, t, h, end, work) -> float:
-    """Bias all elements by minus their error at the end, in axes of the start; return the largest."""
+    """Write minus the errors at the end, in axes of the start, as biases of elements; return the largest."""
     work.result[0].time = t + h
     error, ready = largest_position_error(system, end, work), False
     for j in range(system.joints.shape[0]):
@@ -43,7 +44,7 @@ def _error_of_move(system, start, t, h, end, work) -> float:
 
 @kernel
 def turn_on(p, q, a):
-    """Turn the vector a with the body from attitude q to attitude p."""
+    """Rotate the vector a with the body from attitude q to attitude p."""
     bx, by, bz = rotate_back(q[0], q[1], q[2], q[3], a[0], a[1], a[2])
     a[0], a[1], a[2] = rotate(p[0], p[1], p[2], p[3], bx, by, bz)
 
@@ -75,7 +76,8 @@ def mean_velocities(system, start, h, end, first):
 def mean_error(system, j, start, t, h, end, work):
     """Add to the bias of an element minus the mean error of its velocity, times h; return its size.
 
-    Of what rolls the part along the plane, in axes of the parent; of a blade that along its lateral direction.
+    For rolling it is the part along the plane, in axes of the parent; for a blade, that along its lateral
+    direction.
     """
     joint, record = system.joints[j], work.joint[j]
     bias, target = record.bias, record.target
@@ -98,7 +100,7 @@ def mean_error(system, j, start, t, h, end, work):
 
 @kernel
 def along_rows(joint, start, state, bias):
-    """Keep of a relative velocity what the rows without position restrict, in axes of the start."""
+    """Keep the part of a relative velocity that rows without position restrict, in axes of the start."""
     bias[0], bias[1], bias[2] = 0.0, 0.0, 0.0
     if joint.kind == KNIFE_EDGE:
         ex, ey, ez = axis(state, joint.child, joint.child_frame, 1)
@@ -115,7 +117,7 @@ def along_rows(joint, start, state, bias):
 
 @inlined
 def error_of_move(system, start, t, h, end, work):
-    """Bias all elements by minus their error at the end, in axes of the start; return the largest."""
+    """Write minus the errors at the end, in axes of the start, as biases of elements; return the largest."""
     if system.joints.shape[0] > 0:
         return _error_of_move(system, start, t, h, end, work)
     return 0.0

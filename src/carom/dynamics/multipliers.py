@@ -1,6 +1,6 @@
 """The paper's second-order multipliers, from a finished run: NumPy, dense, for reports and tests.
 
-Each constraint row a^R has a direction of motion c_R in which it alone is broken,
+Each constraint row a^R has a direction of motion c_R in which only this row is violated,
 
     c_R = M^-1 a^R / (a^R M^-1 a^R),     a^R(c_R) = 1,
 
@@ -10,14 +10,14 @@ with c_R is the equation of that one-dimensional motion; its right-hand side is 
     h_R = (m_RR mu)' + c_RR mu + k_RR lambda - f_R,     mu = lambda',
     m_RR = c_R . M c_R,   c_RR = -c_R . (df/dv) c_R,   k_RR = -c_R . (df/dq) c_R,   f_R = c_R . f.
 
-On the constraints a^R v = 0, and what is left of the law is
+On the constraints a^R v = 0, and the law becomes
 
     h_R + sum over S != R of a^S(c_R) h_S + f_R + affinity_R = 0,
     affinity_R = m_RR (nabla_v a^R)(v) - c_R . (W x J W).
 
-So h_R is Lagrange's multiplier, whatever lambda; (lambda, mu) are another code of its history. Where
-rows depend on each other h is the solution of least norm, rows weighed by (a^R M^-1 a^R)^(1/2). All in
-the left-invariant frame: linear components in world axes, angular ones in principal body axes.
+So h_R is Lagrange's multiplier, for any lambda; (lambda, mu) are another representation of its history. If
+rows depend on each other, h is the solution of least norm, with rows weighted by (a^R M^-1 a^R)^(1/2). All is
+in the left-invariant frame: linear components in world axes, angular ones in principal body axes.
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ def second_order_multipliers(solution) -> Multipliers:
     Raises
     ------
     ValueError
-        If the scene has no joints, or constraints beyond them or forces of the user's, or a contact is active.
+        If the scene has no joints, or has other constraints or user-defined forces, or if a contact is active.
     """
     if not solution.scene.joints:
         raise ValueError("solution must be of a scene with joints, got none")
@@ -228,7 +228,7 @@ def _directions(joint, x, Q, v, w):
 
 
 def _rolling_arm(radius, n, n_rate, a, a_rate):
-    """Return the arm (T, 3) of what rolls and its rate: `carom.kinematics.joints.rolling_bias`, in columns."""
+    """Return the arm (T, 3) of a rolling body and its rate, as `carom.kinematics.joints.rolling_bias`."""
 
     def dot(p, q):
         return np.sum(p * q, axis=1, keepdims=True)
@@ -283,7 +283,7 @@ def applied_force(system: System, x, Q, v, w) -> np.ndarray:
 def _derivatives(system, x, Q, v, w, c, step=1e-5):
     """Return c_RR and k_RR (T, K) by central differences of the force along each c_R.
 
-    Bodies turn by `step`, or move by that part of their size.
+    Bodies turn by `step`, or move by that fraction of their size.
     """
     unit = np.ones((len(system.bodies), 6))
     unit[:, :3] = system.bodies["extent"][:, None]
@@ -296,7 +296,7 @@ def _derivatives(system, x, Q, v, w, c, step=1e-5):
             spin = w + e * quaternion.rotate(Q, turn)
             fast = applied_force(system, x, Q, v + e * along, spin)
             moved = quaternion.multiply(Q, quaternion.exp(e * turn))
-            # the velocity's components in the left-invariant frame stay
+            # the components of the velocity in the left-invariant frame do not change
             carried = quaternion.rotate(moved, quaternion.rotate_back(Q, w))
             pair.append((fast, applied_force(system, x + e * along, moved, v, carried)))
         for out, plus, minus in zip((damping, stiffness), *pair):

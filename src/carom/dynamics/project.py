@@ -2,7 +2,7 @@
 
     xi = -M^-1 A^T (A M^-1 A^T)^+ phi,   q <- Exp_q(xi);    v <- v - M^-1 A^T (A M^-1 A^T)^+ A v
 
-both by the one constrained solve with the error as its bias.
+Both are results of the constrained solve with the error as its bias.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from carom.dynamics.solve import solve, solve_near
 from carom.geometry.rotation import exp, multiply, normalize
 
 ROUND_OFF = 4.4e-16  # two units in the last place
-LOST = 1e-9  # of a body: an error of position that cannot be returned from
+LOST = 1e-9  # relative to a body: an error of position that cannot be corrected
 
 
 @kernel
@@ -34,9 +34,9 @@ def shift(xi, body):
 
 @kernel
 def largest_position_error(system, state, work):
-    """Bias all joints by minus their error of position; return the largest, relative to its body.
+    """Write minus the errors of position as biases of all joints; return the largest, relative to its body.
 
-    Of lengths the round-off of the coordinates is taken off: far from the origin nothing is nearer.
+    The round-off of the coordinates is subtracted from lengths: far from the origin they cannot be more exact.
     """
     largest = 0.0
     for j in range(system.joints.shape[0]):
@@ -54,21 +54,21 @@ def largest_position_error(system, state, work):
 
 @unit
 def _project_position(system, state, near, tolerance, work) -> float:
-    """Bring the positions back to the joints; return the relative error that is left.
+    """Bring the positions back to the joints; return the remaining relative error.
 
-    With `near` the last solve was in a position nearby, and serves for the first correction.
+    With `near`, the last solve was in a position nearby, and its factor serves for the first correction.
     """
     error, before = 0.0, math.inf
     for _ in range(8):
         error = largest_position_error(system, state, work)
-        # what no longer falls is round-off of the coordinates, far from the origin
+        # an error that decreases no more is round-off of the coordinates, far from the origin
         if error <= tolerance or (error <= 1e-11 and error >= 0.5 * before):
             break
         before = error
         clear_wrenches(work)
         if near:
             solve_near(system, state, work)
-            near, before = False, math.inf  # what falls too slowly gets another chance
+            near, before = False, math.inf  # a slow decrease is allowed once
         else:
             solve(system, state, True, work)
         for b in range(state.shape[0]):
@@ -78,7 +78,7 @@ def _project_position(system, state, near, tolerance, work) -> float:
 
 @unit
 def _project_velocity(system, state, carried, work):
-    """Remove from the velocities what the joints forbid; with `carried` rotors go on with the rates noted."""
+    """Remove the velocities that the joints forbid; with `carried`, rotors keep their stored rates."""
     for j in range(system.joints.shape[0]):
         bias = work.joint[j].bias
         velocity_error(system, j, state, work)
@@ -97,7 +97,7 @@ def _project_velocity(system, state, carried, work):
 
 @entry
 def project_start(system, state, work):
-    """Bring an initial state to the joints: what `Options.project_start` asks for. Return what is left."""
+    """Bring an initial state to the joints, for `Options.project_start`; return the remaining error."""
     error = 1.0
     for _ in range(20):
         error = _project_position(system, state, False, 1e-14, work)
@@ -109,7 +109,7 @@ def project_start(system, state, work):
 
 @inlined
 def project_position(system, state, near, tolerance, work):
-    """Bring the positions back to the joints; return the relative error that is left."""
+    """Bring the positions back to the joints; return the remaining relative error."""
     if system.joints.shape[0] > 0:
         return _project_position(system, state, near, tolerance, work)
     return 0.0
@@ -117,16 +117,13 @@ def project_position(system, state, near, tolerance, work):
 
 @inlined
 def project_velocity(system, state, work):
-    """Remove from the velocities what the joints forbid."""
+    """Remove the velocities that the joints forbid."""
     if system.joints.shape[0] > 0:
         _project_velocity(system, state, False, work)
 
 
 @inlined
 def carry_velocity(system, state, work):
-    """Do the same to velocities of bodies by their own momenta: inertia along coordinates keeps its own.
-
-    (`carom.dynamics.rotors`; the rates that it goes on with were noted there.)
-    """
+    """Do the same for velocities from the momenta of bodies; rotors keep the rates that `rotors` has stored."""
     if system.joints.shape[0] > 0:
         _project_velocity(system, state, True, work)

@@ -1,22 +1,22 @@
 """RATTLE: symmetric, symplectic, constraints exact; order 2, and compositions of order 4 and 6.
 
-Half a kick, a move by the rotation group's own discrete Lagrangian, half a kick. With linear momenta m v and
-spatial angular momenta l = R J W as P (Hamilton-Pontryagin form; Bou-Rabee and Marsden 2009, with unit
-quaternions as the map):
+A step is half a kick, a move by the discrete Lagrangian of the rotation group, and half a kick. P are the
+linear momenta m v and the spatial angular momenta l = R J W (Hamilton-Pontryagin form; Bou-Rabee and Marsden
+2009, with unit quaternions as the map):
 
     P_h = P_0 + h/2 f(q_0, v_0) + A(q_0)^T Lam     with Lam such that phi(q_1) = 0,
     x_1 = x_0 + h P_h/m,     Q_1 = Q_0 (a, b),     a J b + b x J b = h/2 R_0^T l_h,   a^2 + |b|^2 = 1,
     P_1 = P_h + h/2 f(q_1, v_1) + A(q_1)^T Mu      with Mu such that A(q_1) v_1 = 0.
 
-Reactions of a joint do no work on a common motion of all bodies, so momenta of a floating system are kept;
-what turns a body is in the map, no gyroscopic torque is applied. (Mathematics page, §1.3.)
+Reactions of a joint do no work on a common motion of all bodies, so momenta of a floating system are conserved.
+The map contains the free rotation of a body, so no gyroscopic torque is applied. (Mathematics page, §1.3.)
 
-Lam by repeated solves in q_0: with no wrench and the bias -phi(q_1)/h the constrained solve gives the motion
-dV with M dV = A(q_0)^T dLam and A dV = -phi/h, so P_h gains M dV. Each turn gains a factor of the order of
-the angle turned in the step, down to round-off. Rows without phi (nonholonomic)
-hold in the mean of both ends for the way from q_0 to q_1. Near a singular position the rows of
-q_0 do not reach those of q_1: where the turns do not converge, or rows are left out at one end and not
-at the other, the explicit method takes the step.
+Lam comes from repeated solves in q_0: without a wrench and with the bias -phi(q_1)/h the constrained solve
+gives the motion dV with M dV = A(q_0)^T dLam and A dV = -phi/h, and M dV is added to P_h. Each iteration
+reduces the error by a factor of the order of the rotation angle in the step, down to round-off. Rows without
+phi (nonholonomic) hold in the mean of both ends for the displacement from q_0 to q_1. Near a singular position
+the rows of q_0 cannot correct those of q_1: if the iteration does not converge, or rows are left out only at
+one end, the explicit method takes the step.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ MOST = 60  # solves for Lam
 def rattle_step(method, system, active, start, h, end, work):
     """Write the state a time h after `start` into `end`; return work of loads, of friction, a status.
 
-    While contacts are active all goes by the explicit method.
+    While contacts are active, the explicit method takes the step.
     """
     if not fly(system, active, start, h, end, work):
         return 0.0, 0.0, 0
@@ -122,7 +122,7 @@ def one_part(system, start, t, h, end, work):
 
 @kernel
 def round_off(system, state):
-    """Return the round-off of the coordinates, relative to the body where that is largest."""
+    """Return the greatest round-off of the coordinates of a body, relative to its size."""
     most = 1.0
     for b in range(state.shape[0]):
         x = state[b].x
@@ -146,7 +146,7 @@ def move_all(system, start, h, end, work):
 
 @kernel
 def _solve_factored(system, state, work):
-    """Do the same with the factor that is there."""
+    """Solve with biased joints and the present factor."""
     if system.solver.scaled.shape[0] > 0:
         solve_near(system, state, work)
         return
@@ -156,7 +156,7 @@ def _solve_factored(system, state, work):
 
 @kernel
 def keep_multipliers(system, state, work):
-    """Keep the multipliers of what is no joint: what is prescribed does work."""
+    """Store the multipliers of elements that are not joints: prescribed motions do work."""
     for j in range(system.joints.shape[0]):
         if system.joints[j].kind >= RELATION:
             joint_wrench(system.joints[j], state, system.solver.rows[j].rhs, work.joint[j].reaction)
@@ -173,7 +173,7 @@ def solve_again(system, state, work):
 
 @unit
 def _correct(system, start, h, work):
-    """Change the momenta of the middle by reactions at the start that take out the error."""
+    """Change the momenta of the middle by reactions at the start that remove the error."""
     for j in range(system.joints.shape[0]):
         bias = work.joint[j].bias
         for k in range(6):
@@ -186,6 +186,6 @@ def _correct(system, start, h, work):
 
 @inlined
 def correct(system, start, h, work):
-    """Change the momenta of the middle by reactions at the start that take out the error."""
+    """Change the momenta of the middle by reactions at the start that remove the error."""
     if system.joints.shape[0] > 0:
         _correct(system, start, h, work)

@@ -27,18 +27,18 @@ from carom.model.arrays import FOREST, LOOPS, RELATION
 
 @kernel
 def of_forest(system, augment, state, work):
-    """Reactions of a forest are unique."""
+    """Write the reactions of a forest, which are unique."""
     joint_wrenches(system, work)
 
 
 @kernel
 def least_norm(system, augment, state, work):
-    """Share reactions by the augmented Lagrangian, started from zero.
+    """Write the reactions of least norm, by the augmented Lagrangian, started from zero.
 
-    Each pass adds (A M^-1 A^T + eps)^-1 of what is missing in A a = target; the sum stays in the range of A
-    M^-1 A^T and so converges to the solution of least norm, rows weighed by eps. Where masses are spread the
-    same is done with A D^-1 A^T (`carom.dynamics.light_bodies`) for the multipliers mu that were found: of A^T
-    lam = A^T mu.
+    Each pass adds (A M^-1 A^T + eps)^-1 times the residual of A a = target. The sum stays in the range of A
+    M^-1 A^T and so converges to the solution of least norm, with rows weighted by eps. If masses differ much,
+    the same is done with A D^-1 A^T (`carom.dynamics.light_bodies`) for A^T lam = A^T mu, with the multipliers
+    mu that were found.
     """
     spread = system.solver.scaled.shape[0] > 0
     if spread:
@@ -77,7 +77,7 @@ def least_norm(system, augment, state, work):
 
 @kernel
 def push_multipliers(system, work):
-    """Write minus what the multipliers of the last solve do to each body into its wrench."""
+    """Write minus the wrench of the multipliers of the last solve on each body into its wrench."""
     for b in range(system.bodies.shape[0]):
         for k in range(6):
             work.body[b].wrench[k] = 0.0
@@ -95,16 +95,18 @@ def push_multipliers(system, work):
 
 @kernel
 def swap(system, work):
-    """Put the multipliers where the solver takes them."""
+    """Copy the multipliers to the right-hand sides of the solver."""
     for j in range(system.joints.shape[0]):
         for k in range(6):
             system.solver.rows[j].rhs[k] = work.joint[j].multiplier[k]
 
 
-#: share reactions that are not unique with least norm; wrenches and bias must be in place
 @kernel
 def share(system, augment, state, work):
-    """Write the wrenches of all joints."""
+    """Write the wrenches of all joints; if they are not unique, those of least norm.
+
+    Wrenches and biases must be written before.
+    """
     if system.solver.kind == FOREST:
         of_forest(system, augment, state, work)
     elif system.solver.kind == LOOPS:
@@ -113,7 +115,7 @@ def share(system, augment, state, work):
 
 @kernel
 def add_touch(touch, work):
-    """Add what a contact does to its bodies: force and moment about their centres, world axes."""
+    """Add force and moment of a contact to its bodies, about their centres, in world axes."""
     wrench = work.body[touch.body].wrench
     for k in range(3):
         wrench[k] += touch.push[k]
@@ -127,9 +129,9 @@ def add_touch(touch, work):
 
 @unit
 def _follow_turns(system, times, states, k):
-    """Count the whole turns of all angles at saved state k; those of the states before are counted.
+    """Count the whole turns of all angles at saved state k, from those at the state before.
 
-    The angle of a motor is the one that it prescribes; others turn by the mean of the rates at both times.
+    The angle of a motor is the prescribed one; others change by the mean of the rates at both times.
     """
     relations = system.relations
     for i in range(relations.coordinates.shape[0]):
@@ -153,16 +155,17 @@ def _follow_turns(system, times, states, k):
 
 @kernel
 def follow_turns(system, times, states, k):
-    """Count the whole turns of all angles at saved state k; those of the states before are counted."""
+    """Count the whole turns of all angles at saved state k, from those at the state before."""
     if system.relations.there == 1:
         _follow_turns(system, times, states, k)
 
 
 @entry
 def reactions(system, augment, times, states, rows, touch, work, out):
-    """Write the wrench (T, J, 6) of each joint on its child at saved states from row to row.
+    """Write the wrench (T, J, 6) of each joint on its child at the saved states `rows[0]` to `rows[1]`.
 
-    Rows before them have been written, or whole turns of angles would not be known; `touch` begins with these.
+    Earlier states must have been treated before, because whole turns of angles are counted; `touch` begins with
+    the first of these states.
     """
     h = 0
     for k in range(rows[0], rows[1]):
@@ -197,7 +200,7 @@ def row_errors(system, times, states, work, position, velocity):
 
 @entry
 def saved_turns(system, times, states, out):
-    """Write the angles (T, C) of joints at saved states, whole turns with them, that relations refer to."""
+    """Write the joint angles (T, C) at saved states that relations use, including whole turns."""
     for k in range(states.shape[0]):
         follow_turns(system, times, states, k)
         for i in range(system.relations.coordinates.shape[0]):

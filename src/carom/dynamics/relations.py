@@ -1,6 +1,6 @@
 """Relations of coordinates, sum of c_k q_k = f(t): gears, couplers, screws of any joints, motors.
 
-One row, holonomic, and rheonomic where f changes. With J_k the row of coordinate k and d_k its drift,
+A relation is one holonomic row, rheonomic if f changes. With the row J_k of coordinate k and its drift d_k,
 
     error  sum c_k q_k - f,     rate  sum c_k q_k' - f',     sum c_k J_k a = f'' - sum c_k d_k.
 """
@@ -45,7 +45,7 @@ def relation_rows(system, j, state, work):
 
 @kernel
 def relation_error(system, relation, state, t):
-    """Return how far the coordinates are from what is prescribed, as a part of its scale."""
+    """Return the error of the coordinates, sum c_k q_k - f."""
     total = -prescribed(system.relations, relation, t)[0]
     for i in range(relation.first, relation.last):
         term = system.relations.terms[i]
@@ -55,7 +55,7 @@ def relation_error(system, relation, state, t):
 
 @kernel
 def relation_speed(system, relation, state, t):
-    """Return the same of the rates."""
+    """Return the error of the rates, sum c_k q_k' - f'."""
     total = -prescribed(system.relations, relation, t)[1]
     for i in range(relation.first, relation.last):
         term = system.relations.terms[i]
@@ -65,7 +65,7 @@ def relation_speed(system, relation, state, t):
 
 @kernel
 def relation_bias(system, relation, state, t, out):
-    """Return what the row times the accelerations must be; `out` is workspace (6,)."""
+    """Return the required value of the row times the accelerations; `out` is workspace (6,)."""
     total = prescribed(system.relations, relation, t)[2]
     for i in range(relation.first, relation.last):
         term = system.relations.terms[i]

@@ -1,7 +1,7 @@
 """Return of a body in contact at one point to the surface at the end of a step, similar to joints.
 
 The rows of a persistent contact hold at the level of accelerations and drift at the order of the method; the
-shortest displacement and the smallest change of velocity in the kinetic metric take that out:
+shortest displacement and the smallest change of velocity in the kinetic metric remove this drift:
 
     xi = -P G_n^T gap/W_nn,        v <- v - P G^T W^-1 u   (normal row only while it slips).
 """
@@ -40,7 +40,7 @@ def shift_reached(system, point, state, work):
 
 @kernel
 def return_active(system, active, state, work):
-    """Bring active points, where a body has a single one, back to the surface."""
+    """Bring active points back to the surface, for bodies with a single one."""
     point = work.point[0]
     for i in range(active.count[0]):
         active_point = active.points[i]
@@ -59,7 +59,7 @@ def return_active(system, active, state, work):
 
 @kernel
 def stay_active(system, active, state, work):
-    """Remove from the velocities what active points, where a body has a single one, forbid."""
+    """Remove the velocities that active points forbid, for bodies with a single one."""
     point = work.point[0]
     for i in range(active.count[0]):
         active_point = active.points[i]

@@ -1,14 +1,14 @@
 """Inertia along coordinates of joints: I q'^2/2 in the kinetic energy, for a motor's rotor behind a gear.
 
-It answers an acceleration of its coordinate with the force -I q''. In a forest that is a term on the diagonal
-of the elimination, D = S.U + I (`carom.dynamics.tree`); with closed loops it is a row J of the coordinate that
-yields,
+The inertia causes the force -I q'' along its coordinate. In a forest this is a term on the diagonal of the
+elimination, D = S.U + I (`carom.dynamics.tree`); with closed loops it is a row J of the coordinate with a
+compliance,
 
     J a + lam/I = -d,      d = J' v its drift, so that lam = -I q''.
 
-All answers to impulses and all projections know it so. What is left is where velocities of bodies are written
-from their own momenta, M v: there the rotors go on with the rate r that they had, and -I (q' - r) acts as an
-impulse in the projection that follows.
+All responses to impulses and all projections contain it in this form. The exception is the computation of
+velocities of bodies from their own momenta, M v: there the rotors keep the rate r that they had, and
+-I (q' - r) acts as an impulse in the projection that follows.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ def _rotor_energy(system, state) -> float:
 
 @unit
 def _note_rates(system, state):
-    """Note the rates of `state`."""
+    """Store the rates of `state`."""
     for i in range(system.relations.rotors.shape[0]):
         rotor = system.relations.rotors[i]
         rotor.rate = rate(system.relations.coordinates[rotor.coordinate], state)
@@ -39,7 +39,7 @@ def _note_rates(system, state):
 
 @unit
 def _add_rates(system, state, work):
-    """Add what the motions of the last solve do to the rates that were noted."""
+    """Add the change by the motions of the last solve to the stored rates."""
     for i in range(system.relations.rotors.shape[0]):
         rotor = system.relations.rotors[i]
         rotor.rate += motion_along(system.relations.coordinates[rotor.coordinate], state, work)
@@ -47,7 +47,7 @@ def _add_rates(system, state, work):
 
 @unit
 def _keep_rates(system, state, work):
-    """Add the impulses of rotors that go on with the rates that were noted to the wrenches."""
+    """Add the impulses of rotors that keep their stored rates to the wrenches."""
     for i in range(system.relations.rotors.shape[0]):
         rotor = system.relations.rotors[i]
         c = system.relations.coordinates[rotor.coordinate]
@@ -56,7 +56,7 @@ def _keep_rates(system, state, work):
 
 @unit
 def _energy_of_change(system, before, after) -> tuple[float, float]:
-    """Return a and b of the kinetic energy a s^2 + b s that rates q' + s (q' - q'_before) have more."""
+    """Return a, b of the additional kinetic energy a s^2 + b s of the rates q' + s (q' - q'_before)."""
     a, b = 0.0, 0.0
     for i in range(system.relations.rotors.shape[0]):
         rotor = system.relations.rotors[i]
@@ -90,28 +90,28 @@ def rotor_energy(system, state):
 
 @inlined
 def note_rates(system, state):
-    """Note the rates of `state`."""
+    """Store the rates of `state`."""
     if system.relations.there == 1:
         _note_rates(system, state)
 
 
 @inlined
 def add_rates(system, state, work):
-    """Add what the motions of the last solve do to the rates that were noted."""
+    """Add the change by the motions of the last solve to the stored rates."""
     if system.relations.there == 1:
         _add_rates(system, state, work)
 
 
 @inlined
 def keep_rates(system, state, work):
-    """Add the impulses of rotors that go on with the rates that were noted to the wrenches."""
+    """Add the impulses of rotors that keep their stored rates to the wrenches."""
     if system.relations.there == 1:
         _keep_rates(system, state, work)
 
 
 @inlined
 def energy_of_change(system, before, after):
-    """Return a and b of the kinetic energy a s^2 + b s that rates q' + s (q' - q'_before) have more."""
+    """Return a, b of the additional kinetic energy a s^2 + b s of the rates q' + s (q' - q'_before)."""
     if system.relations.there == 1:
         return _energy_of_change(system, before, after)
     return 0.0, 0.0

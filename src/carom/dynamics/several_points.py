@@ -59,7 +59,7 @@ def still_all(k, points, work):
 
 @kernel
 def inverse_masses(system, k, points, state, work, W):
-    """Write W (3k, 3k) = G P G^T. Columns are answers to unit impulses, then made symmetric."""
+    """Write W (3k, 3k) = G P G^T. Columns are responses to unit impulses; then W is made symmetric."""
     if of_one_body(system, k, points) and not any_turns(k, points):
         inverse_masses_of_one(system.bodies[points[0].a], k, points, state, W)
         return
@@ -73,14 +73,14 @@ def inverse_masses(system, k, points, state, work, W):
                 W[3 * i, m], W[3 * i + 1, m], W[3 * i + 2, m] = contact_motion(points[i], work)
         if alone(system, points[j]):
             still_ends(points[j], work)
-        else:  # it has moved all that is joined, which a free pair does not
+        else:  # all joined bodies have a motion, not only those of the point
             still_all(k, points, work)
     for i in range(3 * k):
         for j in range(i):
             m = 0.5 * (W[i, j] + W[j, i])
             W[i, j], W[j, i] = m, m
     for i in range(k):
-        if points[i].turns >= 3:  # without tangents: what these are given does not matter
+        if points[i].turns >= 3:  # no tangents: any positive values do
             W[3 * i + 1, 3 * i + 1] = W[3 * i + 2, 3 * i + 2] = W[3 * i, 3 * i]
 
 
@@ -146,7 +146,7 @@ def spread_all(system, k, points, p, count, member, state, work):
 
 @kernel
 def yields(W, i):
-    """Return whether an impulse along row i moves its point; else W_ii is round-off (across a flat one)."""
+    """Return whether an impulse along row i moves its point; if not, W_ii is round-off (planar motion)."""
     n = i - i % 3
     return W[i, i] > ROUND_OFF * (W[n, n] + W[n + 1, n + 1] + W[n + 2, n + 2])
 
@@ -155,8 +155,8 @@ def yields(W, i):
 def factor(n, drop, L):
     """Turn a matrix (n, n) into its factor L D L^T, L unit below the diagonal and D on it.
 
-    Pivots below `drop` of their row are left out: such a row depends on those before it, and gets no impulse of
-    its own.
+    Pivots below `drop` times their diagonal are left out: such a row depends on those before it, and gets no
+    impulse of its own.
     """
     for j in range(n):
         d = L[j, j]

@@ -1,16 +1,16 @@
-"""Stages of a step in singular positions, where constraint rows are dependent that are independent elsewhere.
+"""Stages of a step in singular positions: there constraint rows are dependent that are usually independent.
 
-Such rows are left out there, and the acceleration is not the limit of its neighbours: what the rows would say
-is 0/0, and nearby (at an angle e between them) round-off of the joints over e^3. On a path q(t) in the
-constraints the limit exists, as the acceleration is smooth along it, and comes from what is outside,
+Such rows are left out there, and the acceleration is not the limit of its neighbours: the rows would give 0/0,
+and nearby (at an angle e between them) the round-off of the joints over e^3. On a path q(t) in the constraints
+the limit exists, because the acceleration is smooth along it; it follows from positions outside the singular
+one,
 
     a(0) = sum over k = 2, 3, 4 of c_k (a(k T) + a(-k T))/2 + O(T^6),    c = (12/5, -64/35, 3/7).
 
-The path is that of constant velocities, returned to the joints in position and velocity, which is the same to
-the order that is needed. A stage of a Runge-Kutta step is off the constraints by O(h^2), which rows that all
-but depend on each other multiply by the inverse of their angle; so all stages of the step return to the
-joints first. (With P the projection, F(P(y)) is as good an extension of the motion to all y as F(y): the
-order stays.)
+The path is that of constant velocities, returned to the joints in position and velocity; this is the same to
+the order that is needed. A stage of a Runge-Kutta step is off the constraints by O(h^2), and nearly dependent
+rows multiply this by the inverse of their angle; so all stages of the step return to the joints first. (With
+the projection P, F(P(y)) is as good an extension of the motion to all y as F(y): the order does not change.)
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ from carom.geometry.rotation import exp, multiply
 from carom.model.arrays import LOOPS
 from carom.model.workspace import ONE, RESTS
 
-SINGULAR = 1e-5  # of a row's diagonal: the square of the angle to the rows before it
-# T turns bodies by this angle; if rows still depend on each other, by more
+SINGULAR = 1e-5  # relative to a row's diagonal: the square of the angle to the rows before it
+# bodies turn by this angle in the time T; if rows still depend on each other, by more
 NEAR, FARTHER, TRIES = 1e-2, 3.0, 2
 
 
@@ -47,7 +47,7 @@ def _return_stage(system, stage, work):
 
 @kernel
 def _is_singular(system, least, most):
-    """Return whether a step, whose stages left out so many rows, came near a singular position."""
+    """Return whether a step came near a singular position, from the number of rows that stages left out."""
     usual = system.solver.usual
     usual[0] = least if usual[0] < 0 else min(least, usual[0])
     return most > usual[0]
@@ -55,10 +55,10 @@ def _is_singular(system, least, most):
 
 @unit
 def _pass_round(system, stage, active, sums, work, rates):
-    """Write the accelerations of a stage in a singular position from those before and after it on its way.
+    """Write the accelerations of a stage in a singular position from those before and after it on its path.
 
-    `sums` is workspace: the velocities of the bodies that step. What has no other position on its way stays as
-    it is.
+    `sums` is workspace: the velocities of the bodies that step. If all positions on the path are singular, the
+    accelerations do not change.
     """
     dropped, usual, result = dropped_rows(system, SINGULAR), system.solver.usual, work.result[0]
     if dropped <= usual[0]:
@@ -82,7 +82,7 @@ def _pass_round(system, stage, active, sums, work, rates):
 
 @kernel
 def turning_pace(system, stage):
-    """Return the greatest angular velocity of a body, that of its centre about its far end with it."""
+    """Return the greatest angular velocity of a body, plus the speed of its centre over its size."""
     pace = 0.0
     for b in range(stage.shape[0]):
         v, w = stage[b].v, stage[b].w
@@ -95,7 +95,7 @@ def turning_pace(system, stage):
 def _sum_rates(system, stage, active, sums, work, rates, reach, pace):
     """Write the weighted sums of the accelerations before and after, with T = reach/pace.
 
-    Return the same sums of power and of drag, and the greatest number of rows that were left out.
+    Return the same sums of power and of friction power, and the greatest number of rows that were left out.
     """
     power, drag, most, time = 0.0, 0.0, 0, work.result[0].time
     for b in range(stage.shape[0]):
@@ -125,7 +125,7 @@ def _sum_rates(system, stage, active, sums, work, rates, reach, pace):
 
 @kernel
 def go_on(start, dt, out):
-    """Write where a body is after a time dt at constant velocity."""
+    """Write the pose of a body after a time dt at constant velocity."""
     x, v, w, p = start.x, start.v, start.w, start.Q
     for k in range(3):
         out.x[k], out.v[k], out.w[k] = x[k] + dt * v[k], v[k], w[k]
@@ -136,19 +136,19 @@ def go_on(start, dt, out):
 
 @inlined
 def is_singular(system, least, most):
-    """Return whether a step, whose stages left out so many rows, came near a singular position."""
+    """Return whether a step came near a singular position, from the number of rows that stages left out."""
     return system.solver.kind == LOOPS and _is_singular(system, least, most)
 
 
 @inlined
 def return_stage(system, stage, work):
-    """Bring a stage to the joints, positions and velocities, where there are loops."""
+    """Bring a stage to the joints, positions and velocities, if there are loops."""
     if system.solver.kind == LOOPS:
         _return_stage(system, stage, work)
 
 
 @inlined
 def pass_round(system, stage, active, sums, work, rates):
-    """Write the accelerations of a stage in a singular position from those before and after it on its way."""
+    """Write the accelerations of a stage in a singular position from those before and after it on its path."""
     if system.solver.kind == LOOPS:
         _pass_round(system, stage, active, sums, work, rates)

@@ -15,7 +15,7 @@ from carom.model.arrays import FOREST, NO_JOINTS, RELATION
 
 @unit
 def solve_free(system, state, biased, near, work):
-    """Without joints: motion = M^-1 wrench."""
+    """Solve without joints: motion = M^-1 wrench."""
     for b in range(system.bodies.shape[0]):
         free_body(system.bodies[b], state[b].Q, work.body[b])
 
@@ -33,7 +33,7 @@ def free_body(body, q, work):
 
 @unit
 def solve_loops(system, state, biased, near, work):
-    """With closed loops: factor in this position, and solve; the wrench of each joint from its rows."""
+    """Solve with closed loops: factor in this position, solve, and write the wrench of each joint."""
     poses = system.solver.pose
     if not near and not same_pose(poses, state):
         factor(system, state, 0.0, work)
@@ -46,7 +46,7 @@ def solve_loops(system, state, biased, near, work):
 
 @unit
 def solve_spread(system, state, biased, near, work):
-    """Do the same where masses differ by many orders."""
+    """Do the same for masses that differ by many orders."""
     poses = system.solver.pose
     if not near and not same_pose(poses, state):
         factor_light(system, state, work)
@@ -61,7 +61,7 @@ def solve_spread(system, state, biased, near, work):
 def joint_wrench(joint, state, multiplier, reaction):
     """Write the wrench on the child at its anchor: sum of multiplier times direction.
 
-    Of what is no joint, the multipliers themselves.
+    For an element that is not a joint, write the multipliers themselves.
     """
     for k in range(6):
         reaction[k] = multiplier[k] if joint.kind >= RELATION and k < joint.rows else 0.0
@@ -76,7 +76,7 @@ def joint_wrench(joint, state, multiplier, reaction):
 
 @inlined
 def _solve(system, state, biased, near, work):
-    """Solve by the back end of the system; closed loops with 31 digits where a light body needs them."""
+    """Solve by the back end of the system; closed loops with 31 digits if light bodies need them."""
     if system.solver.kind == NO_JOINTS:
         solve_free(system, state, biased, near, work)
     elif system.solver.kind == FOREST:
@@ -91,13 +91,13 @@ def _solve(system, state, biased, near, work):
 def solve(system, state, biased, work):
     """Write the motion of all bodies under their wrenches, all in `work.body`.
 
-    With `biased` the joints move relative to each other as `work.joint` says, else not. See
-    `carom.dynamics.tree` for the meaning.
+    With `biased`, the forbidden relative motion of each joint equals its bias in `work.joint`, otherwise zero
+    (`carom.dynamics.tree`).
     """
     _solve(system, state, biased, False, work)
 
 
 @inlined
 def solve_near(system, state, work):
-    """Do the same, biased, with what was worked out for the last position: a correction from nearby."""
+    """Do the same, biased, with the factor of the last position, for a correction nearby."""
     _solve(system, state, True, True, work)

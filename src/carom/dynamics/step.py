@@ -15,7 +15,7 @@ from carom.model.method import IMPLICIT, RATTLE, RUNGE_KUTTA
 def step(method, system, active, start, h, end, work):
     """Write the state a time h after `start` into `end`.
 
-    Returns the work of loads without potential, the work of friction in contacts that persist, and 0 or the
+    Return the work of loads without potential, the work of friction in persistent contacts, and 0 or the
     number of a `Status`.
     """
     if method.kind == RUNGE_KUTTA:

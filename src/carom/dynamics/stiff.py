@@ -1,8 +1,8 @@
 """Springs and dampers that are rows of the implicit step: their stretch s, its rate, and forces.
 
-A spring on a line between two points, or along a coordinate of a joint, answers with mu = -(k s + c s') along
-its row J, s' = J v. The implicit step asks for the mu that it will have within the step
-(`carom.dynamics.implicit`); all else (reactions, contact that is active) sees the force that it has now.
+A spring on a line between two points, or along a coordinate of a joint, has the force mu = -(k s + c s') along
+its row J, s' = J v. The implicit step uses the value of mu within the step (`carom.dynamics.implicit`); all
+other computations (reactions, active contacts) use the present force.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ def stiff_rows(system, j, state, work):
 
 @unit
 def _add_stiff(system, state, work) -> float:
-    """Add the wrenches that these springs have now; return the power of their dampers."""
+    """Add the present wrenches of these springs; return the power of their dampers."""
     power = 0.0
     for j in range(system.joints.shape[0]):
         if system.joints[j].kind != STIFF:
@@ -117,7 +117,7 @@ def _stiff_energy(system, state) -> float:
 
 @inlined
 def add_stiff(system, state, work):
-    """Add the wrenches that these springs have now; return the power of their dampers."""
+    """Add the present wrenches of these springs; return the power of their dampers."""
     if system.relations.there == 1 and system.solver.kind == LOOPS:
         return _add_stiff(system, state, work)
     return 0.0

@@ -13,14 +13,14 @@ solves velocities and multipliers with the position frozen, then the position:
     [ M(q^j)   -Abar^T ] [v1 ]   [p0 + h f]
     [ A(q^j)   eps     ] [Lam] = [r       ],     Lam = h hbar,
 
-the second row by the augmented Lagrangian, Lam += (A M^-1 A^T + eps)^-1 (r - A v1), whose passes are those
-of the iteration itself: redundant rows do no harm and share their reaction with least norm. "paper" takes r = 0
+the second row by the augmented Lagrangian, Lam += (A M^-1 A^T + eps)^-1 (r - A v1), with one pass in each block
+iteration: redundant rows do no harm, and their reactions have the least norm. "paper" takes r = 0
 and returns the position to the constraints; "paper-ode" keeps the second-order equation of each constraint,
 
     (m_RR phi')' + c_s phi' + k_s phi = 0:   r = (phi'_0 - (beta^2/h) phi(q^j)) / (1 + 2 zeta beta),
 
-c_s = 2 zeta (beta/h) m_RR, k_s = (beta/h)^2 m_RR, and no return. For a free body energy and spatial angular
-momentum are exact. ActiveSet contacts move by the explicit method.
+c_s = 2 zeta (beta/h) m_RR, k_s = (beta/h)^2 m_RR, and does not return. For a free body energy and spatial
+angular momentum are exact. While contacts are active, the explicit method takes the step.
 """
 
 from __future__ import annotations
@@ -131,10 +131,10 @@ def middle_of_arc(start, h, end, middle):
 
 @kernel
 def take_up_momentum(J, q, w, memory):
-    """Put the spatial momentum into `memory`, unless what the last step has left there goes with w.
+    """Write the spatial momentum into `memory`, unless the momentum of the last step there belongs to w.
 
-    Taken anew from Q and w at each step it would drift by the round-off of each step, all of one sign:
-    2e-11 of the energy in 10^5 steps.
+    Computed anew from Q and w at each step, it would drift by the round-off of each step, which has always the
+    same sign: 2e-11 of the energy in 10^5 steps.
     """
     spin, l = memory.spin, memory.momentum
     if spin[0] == w[0] and spin[1] == w[1] and spin[2] == w[2]:
@@ -149,8 +149,8 @@ def momenta(system, start, h, work):
 
     That is p0 + h f + Abar^T Lam.
 
-    Keeps in `bound` the measure of convergence: the speed each body would have without reactions, at
-    least that of 1e-6 of its size a step (round-off of positions is 1e-10 of that).
+    The scale of convergence is stored in `bound`: the speed that each body would have without reactions, but at
+    least 1e-6 of its size per step (round-off of positions is 1e-10 of that).
     """
     for b in range(system.bodies.shape[0]):
         body, wrench, l = system.bodies[b], work.body[b].wrench, work.body[b].momentum
@@ -192,7 +192,7 @@ def add_row_impulses(system, j, state, multiplier, work):
 
 @kernel
 def set_velocities(system, end, work):
-    """Take v1 = M(q^j)^-1 p1; return the largest change, relative to the largest speed."""
+    """Write v1 = M(q^j)^-1 p1; return the largest change, relative to the largest speed."""
     change, speed = 0.0, 0.0
     for b in range(system.bodies.shape[0]):
         if work.body[b].status == RESTS:
@@ -202,20 +202,20 @@ def set_velocities(system, end, work):
         for k in range(3):
             change = max(change, max(abs(motion[k] - v[k]), size * abs(motion[3 + k] - w[k])))
             speed = max(speed, max(abs(motion[k]), size * abs(motion[3 + k])))
-            speed = max(speed, work.body[b].bound[0])  # also where all is in equilibrium
+            speed = max(speed, work.body[b].bound[0])  # also in equilibrium
             v[k], w[k] = motion[k], motion[3 + k]
     return change / speed if speed > 0.0 else 0.0
 
 
 @kernel
 def velocity_block_free(system, method, h, end, work):
-    """Without joints only v1 = M^-1 p1 is left."""
+    """Write v1 = M^-1 p1: without joints, nothing else remains."""
     return set_velocities(system, end, work)
 
 
 @kernel
 def velocity_block_loops(system, method, h, end, work):
-    """Velocities and multipliers at the frozen position, one pass of the augmented Lagrangian."""
+    """Write velocities and multipliers at the frozen position, by one pass of the augmented Lagrangian."""
     factor(system, end, method.augment, work)
     change = set_velocities(system, end, work)
     for j in range(system.joints.shape[0]):
@@ -235,7 +235,7 @@ def velocity_block_loops(system, method, h, end, work):
 
 @kernel
 def driven_work(system, start, h, end, work):
-    """Return the work of what is prescribed: impulse of each row times its mean speed."""
+    """Return the work of prescribed motions: impulse of each row times its mean speed."""
     total, result = 0.0, work.result[0]
     for j in range(system.joints.shape[0]):
         record = work.joint[j]
@@ -257,7 +257,7 @@ def velocity_block(system, method, h, end, work):
 
 @kernel
 def start_rates(system, start, work):
-    """Keep phi' of all rows at the start of the step."""
+    """Store phi' of all rows at the start of the step."""
     for j in range(system.joints.shape[0]):
         record = work.joint[j]
         velocity_error(system, j, start, work)
@@ -300,7 +300,7 @@ def position_block(system, method, start, h, end, work):
 
 @kernel
 def leave_for_later(system, start, h, end, work):
-    """Keep the momentum of free bodies, and bounds of accelerations (means over the step, doubled)."""
+    """Store the momentum of free bodies, and bounds of accelerations (means over the step, doubled)."""
     for b in range(start.shape[0]):
         linear, angular, spin = 0.0, 0.0, 0.0
         for k in range(3):
@@ -312,9 +312,7 @@ def leave_for_later(system, start, h, end, work):
         bound = work.body[b].bound
         bound[0], bound[1] = 2.0 * math.sqrt(linear), 2.0 * math.sqrt(angular)
         bound[2] = math.sqrt(spin)
-        if (
-            system.bodies[b].isolated == 1
-        ):  # the next step takes up this momentum, not its round-off
+        if system.bodies[b].isolated == 1:  # the next step uses this momentum, not a new one
             memory = work.body[b]
             for k in range(3):
                 memory.spin[k], memory.momentum[k] = end[b].w[k], memory.wrench[3 + k]

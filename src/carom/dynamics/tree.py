@@ -9,17 +9,18 @@ equation of motion; with an impulse and no bias it is P G^T; with no wrench and 
 position or velocity it is the correction that is shortest in the kinetic metric. (Featherstone 1983, in
 absolute coordinates; freedoms are eliminated one at a time, rank one each.)
 
-It has two parts. `articulate` depends on the pose alone: from the leaves to the roots, I of a body and
-of what it carries, U = I S, D = S.U, and what is left, I - U U^T/D, is handed to the parent. `respond` answers
-wrenches and biases: it splits A = A' + B, where B is the motion with all freedoms locked (the biases
-summed from the root), so that the rest is the same elimination of the wrenches - M B, without a bias:
+It has two parts. `articulate` depends only on the pose: from the leaves to the roots it computes the inertia I
+of a body and of all bodies that it carries, U = I S, D = S.U, and adds the rest, I - U U^T/D, to the parent.
+`respond` computes the motion from wrenches and biases: it splits A = A' + B, where B is the motion with all
+freedoms locked (the biases summed from the root); then A' follows from the same elimination, of wrench - M B
+without a bias:
 
     p = M B - wrench,   u = -S.p,   p + U u/D to the parent;    A' = X A'_parent + S (u - U.(X A'_parent))/D.
 
-A row of workspace holds for each body: 0-6 the pose that it was articulated in, 7-12 its own inertia about its
-centre, world axes; 13-15 arm of the child, 16-18 centre of the child from the parent's; 19-39 the articulated
-inertia (19-24 M, 25-33 H, 34-39 I: f = M a + H alpha, t = H^T a + I alpha); 40-45 B; 46-51 p; then 14 for each
-freedom: S (6), U (6), 1/D, u.
+A row of workspace contains for each body: 0-6 the pose that it was articulated in, 7-12 its own inertia about
+its centre, world axes; 13-15 arm of the child, 16-18 centre of the child from the parent's; 19-39 the
+articulated inertia (19-24 M, 25-33 H, 34-39 I: f = M a + H alpha, t = H^T a + I alpha); 40-45 B; 46-51 p; then
+14 for each freedom: S (6), U (6), 1/D, u.
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ from carom.model.arrays import (
 
 @kernel
 def dot(a, b):
-    """Return a.b, summed in pairs: along a chain each sum waits for the last, and their latency is the cost."""
+    """Return a.b, summed in pairs: along a chain each sum waits for the one before; latency sets the time."""
     return (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3]) + (a[4] * b[4] + a[5] * b[5])
 
 
@@ -80,7 +81,7 @@ def freedoms(joint, state, row):
     """Write S of each freedom of a joint at the centre of the child."""
     kind = joint.kind
     c, p = joint.child, joint.parent
-    if kind == REVOLUTE:  # first, as most are
+    if kind == REVOLUTE:  # first, because most joints are of this kind
         ax, ay, az = axis(state, p, joint.parent_frame, 0)
         turn(row, FIRST, ax, ay, az)
         return
@@ -107,9 +108,9 @@ def freedoms(joint, state, row):
 
 @kernel
 def eliminate(row, count, rotor):
-    """Eliminate the freedoms of a body, whose S are in place; return what is left of its inertia (21).
+    """Eliminate the freedoms of a body, whose S are written; return the remaining inertia (21).
 
-    What has inertia I_a along a freedom adds it to D: S.U q'' + I_a q'' = u.
+    An inertia I_a along a freedom is added to D: S.U q'' + I_a q'' = u.
     """
     m0, m1, m2, m3, m4, m5 = row[19], row[20], row[21], row[22], row[23], row[24]
     h0, h1, h2, h3, h4 = row[25], row[26], row[27], row[28], row[29]
@@ -143,7 +144,7 @@ def eliminate(row, count, rotor):
 
 @kernel
 def shift_to_parent(left, row, above):
-    """Add what is left of the inertia of a child to its parent's row `above`.
+    """Add the remaining inertia of a child to its parent's row `above`.
 
     With d from the parent's centre to the child's: H' = H - M hat(d), I' = I - H^T hat(d) + hat(d) H'.
     """
@@ -190,7 +191,7 @@ def articulate(system, state):
             row[13], row[14], row[15] = rx, ry, rz
             row[16], row[17], row[18] = px - rx, py - ry, pz - rz
             freedoms(joint, state, row)
-        elif links[b].has_child == 1:  # a body that floats has six
+        elif links[b].has_child == 1:  # a floating body has six
             for k in range(36):
                 row[FIRST + WIDTH * (k // 6) + k % 6] = 1.0 if k // 6 == k % 6 else 0.0
     for i in range(links.shape[0] - 1, -1, -1):
@@ -236,7 +237,7 @@ def lock(system, biased, work):
 
 @kernel
 def inward(system):
-    """Eliminate the freedoms from p, leaves first: u of each."""
+    """Eliminate the freedoms from p, leaves first, and write u of each."""
     links, workspace = system.solver.links, system.solver.workspace
     for i in range(links.shape[0] - 1, -1, -1):
         b = links[i].order
@@ -273,7 +274,7 @@ def outward(system, biased, work):
             unjoined(system.bodies[b].mass, row, out)
             continue
         a0, a1, a2, a3, a4, a5 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
-        if link.parent >= 0:  # in p from here on: A'
+        if link.parent >= 0:  # p is replaced by A' from here on
             up = workspace[link.parent]
             a3, a4, a5 = up[49], up[50], up[51]
             tx, ty, tz = cross(a3, a4, a5, row[16], row[17], row[18])
@@ -307,13 +308,13 @@ def unjoined(mass, row, out):
 
 @unit
 def solve_tree(system, state, biased, near, work):
-    """Write the motion of all bodies; articulate the pose unless it is, or may be, the last that was."""
+    """Write the motion of all bodies; articulate the pose first, unless the last pose is the same or `near`."""
     walk_tree(system, state, biased, near, work)
 
 
 @kernel
 def walk_tree(system, state, biased, near, work):
-    """Write what `solve_tree` does, compiled as a part of the caller."""
+    """Do the same as `solve_tree`, compiled as a part of the caller."""
     if not near and not same_pose(system.solver.workspace, state):
         articulate(system, state)
     respond(system, biased, work)
@@ -329,7 +330,7 @@ def respond(system, biased, work):
 
 @kernel
 def take_rotor_out(row, f, reaction):
-    """Take what inertia along a freedom answers with out of the reaction: joints do no work along S."""
+    """Remove the force of an inertia along a freedom from the reaction: joints do no work along S."""
     s = dot(six(row, f), six(row, 46))
     ax, ay, az = row[f + 3], row[f + 4], row[f + 5]
     first = 3
@@ -343,7 +344,7 @@ def take_rotor_out(row, f, reaction):
 
 @kernel
 def joint_wrenches(system, work):
-    """Write what each joint does to its child at its anchor: M motion - wrench, summed from the leaves."""
+    """Write the wrench of each joint on its child at its anchor: M motion - wrench, summed from the leaves."""
     links, workspace = system.solver.links, system.solver.workspace
     for i in range(links.shape[0]):
         b = links[i].order

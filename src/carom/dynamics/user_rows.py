@@ -1,12 +1,12 @@
 """User-defined rows a(q, t) v = b(q, t): up to six, on any number of bodies.
 
-The function reads the poses (x, Q) of its bodies, in the axes of the scene, and writes rows (6 numbers a body,
-linear then angular, world axes) with b last. What the rows change by as bodies go on,
+The function reads the poses (x, Q) of its bodies, in the axes of the scene, and writes rows (6 numbers for each
+body, linear then angular, world axes) with b last. The change of the rows in
 
-    a . dv/dt = b' - a' v,
+    a . dv/dt = b' - a' v
 
-is a central difference along the motion, over a way of 1e-5 of the size of the bodies: its error is of the
-order 1e-10 of what it is, and both levels of the constraint are returned to at the end of each step.
+is a central difference along the motion, over a displacement of 1e-5 of the size of the bodies. Its relative
+error is of the order 1e-10, and each step ends with a return to both levels of the constraint.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from carom._compiled.user_functions import call_function
 from carom.geometry.rotation import exp, multiply
 from carom.kinematics.rows import mass_row
 
-WAY = 1e-5  # of the size of a body
+DISPLACEMENT = 1e-5  # relative to the size of a body
 
 
 @kernel
 def read_poses(system, j, state, t, ahead):
-    """Write the poses of the bodies as they will be a time `ahead` from now, at constant velocities."""
+    """Write the poses of the bodies after a time `ahead` at constant velocities."""
     user = system.relations.user[system.joints[j].number]
     read, i = system.relations.read, 0
     for s in range(user.first, user.last):
@@ -41,7 +41,7 @@ def read_poses(system, j, state, t, ahead):
 
 @kernel
 def write_speeds(system, j, state, t, ahead, out):
-    """Write a v - b (rows,) with the rows of the poses a time `ahead` from now, and the velocities of now."""
+    """Write a v - b (rows,) with the rows of the poses after a time `ahead`, and the present velocities."""
     user = read_poses(system, j, state, t, ahead)
     answer, width = system.relations.write, 6 * (user.last - user.first) + 1
     call_function(user.address, t + ahead, system.relations.read, answer)
@@ -80,7 +80,7 @@ def user_speeds(system, j, state, t, out):
 
 @kernel
 def user_error(system, j, state, t, out):
-    """Write phi (rows,), 0 of rows that restrict velocities only."""
+    """Write phi (rows,), 0 for rows that restrict velocities only."""
     user = read_poses(system, j, state, t, 0.0)
     for r in range(6):
         out[r] = 0.0
@@ -93,19 +93,19 @@ def user_error(system, j, state, t, out):
 
 @kernel
 def user_bias(system, j, state, t, out, workspace):
-    """Write what the rows times the accelerations must be."""
+    """Write the required values of the rows times the accelerations."""
     user = system.relations.user[system.joints[j].number]
     g = system.gravity
     fall, ahead = math.sqrt(g[0] * g[0] + g[1] * g[1] + g[2] * g[2]), math.inf
     for s in range(user.first, user.last):
         b = system.solver.sides[s].body
         v, w, size = state[b].v, state[b].w, system.bodies[b].extent
-        # where nothing moves: in the time in which the body falls by its size
-        ahead = min(ahead, WAY * (math.sqrt(size / fall) if fall > 0.0 else 1.0))
+        # if nothing moves, the time is relative to that of a fall by the size of the body
+        ahead = min(ahead, DISPLACEMENT * (math.sqrt(size / fall) if fall > 0.0 else 1.0))
         speed = math.sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])
         speed += size * math.sqrt(w[0] * w[0] + w[1] * w[1] + w[2] * w[2])
-        if speed * ahead > WAY * size:
-            ahead = WAY * size / speed
+        if speed * ahead > DISPLACEMENT * size:
+            ahead = DISPLACEMENT * size / speed
     write_speeds(system, j, state, t, ahead, out)
     write_speeds(system, j, state, t, -ahead, workspace)
     for r in range(system.joints[j].rows):

@@ -19,9 +19,9 @@ from carom.generalized.motion import (
     react,
 )
 
-_STRAIGHT = 1e-4  # Gamma(xi, xi)/2 below this part of xi: two terms of the series do
+_STRAIGHT = 1e-4  # if Gamma(xi, xi)/2 is below this part of xi, two terms of the series suffice
 _PARTS = 8  # steps of order 4 for longer arcs
-_LONG = 64  # and for those of the return map that are more than round-off
+_LONG = 64  # the same for arcs of the return map that are longer than round-off
 
 
 @kernel
@@ -38,7 +38,7 @@ def bend(system, t, x, work, out):
 
 @kernel
 def bend_carried(system, t, x, w, work, out, carried):
-    """As `bend`, and -Gamma(v, w) into `carried` (n,), by Gamma(v+w, v+w) - Gamma(v-w, v-w)."""
+    """Do as `bend`, and write -Gamma(v, w) into `carried` (n,), by Gamma(v+w, v+w) - Gamma(v-w, v-w)."""
     n = system.size[N]
     y = work.arc[7]
     for j in range(n):
@@ -56,7 +56,7 @@ def bend_carried(system, t, x, w, work, out, carried):
 
 @kernel
 def carry(system, t, x, w, parts, work):
-    """Move x = (q, v) to the end of the autoparallel of v, in `parts` RK4 steps, and w (n,) parallel to it."""
+    """Move x = (q, v) to the end of the autoparallel of v, in `parts` RK4 steps; transport w (n,) with it."""
     n, h = system.size[N], 1.0 / parts
     y, k, total = work.arc[0], work.arc[1], work.arc[2]
     wy, wk, wt = work.arc[3], work.arc[4], work.arc[5]
@@ -108,13 +108,13 @@ def follow(system, t, x, parts, work):
 
 @entry
 def run_along(system, t, x, parts, work):
-    """`follow`, for Python."""
+    """Do the same as `follow`, for Python."""
     return follow(system, t, x, parts, work)
 
 
 @kernel
 def correct(system, t, x, xi, work):
-    """Replace the coordinates in `x` by Exp_q(xi), xi (n,); the velocities stay. Return a status."""
+    """Replace the coordinates in `x` by Exp_q(xi), xi (n,), not the velocities; return a status."""
     n, y, k = system.size[N], work.arc[6], work.arc[1]
     largest, curved = 0.0, 0.0
     for j in range(n):
@@ -162,9 +162,9 @@ def normal(system, active, t, x, c, work, out):
 def return_map(system, active, t, x, c, tolerance, work):
     """Bring the coordinates in `x` to gap c = 0 along an autoparallel normal to it; (iterations or -1, status).
 
-    xi = kappa P G_n^T(q_e) carried back along the arc to q, q_e = Exp_q(xi), gap(q_e) = 0. In one chart of a
-    curved manifold the normal at the end is not that at the start: it is carried parallel. With constraints the
-    arc goes on from where it is, and the caller returns to them.
+    xi is kappa P G_n^T(q_e), transported back along the arc to q, where q_e = Exp_q(xi) and gap(q_e) = 0. On a
+    curved manifold the normal at the end is not that at the start, so it needs parallel transport. The arc may
+    leave the constraints; the caller returns to them.
     """
     n, kappa = system.size[N], 0.0
     q, e, nu, xi = work.trial, work.best, work.end, work.stages[0]

@@ -20,7 +20,7 @@ from carom.status import Status
 if TYPE_CHECKING:
     from carom.generalized.run import GeneralizedRun
 
-STILL = 1e-12  # of the speeds of a contact: a relative velocity that is round-off
+STILL = 1e-12  # relative to the speeds of a contact: a relative velocity that is round-off
 ROUNDS = 50
 
 
@@ -42,7 +42,7 @@ class Contacts:
         """Forget the impacts of the last step."""
         self.blows[:] = 0
 
-    # --- what the state says -------------------------------------------------------------------
+    # --- quantities of the state ---------------------------------------------------------------
 
     def look(self) -> None:
         """Evaluate the state: P, the relative velocities u (C, 3), and the speeds that count as 0 (C,)."""
@@ -110,7 +110,7 @@ class Contacts:
         return 0
 
     def return_to(self, contact: int) -> int:
-        """Polish the located state by the return map; return a status."""
+        """Improve the located state by the return map; return a status."""
         run, now = self.run, float(self.run.clock[0].now)
         tolerance = 1e-15 * float(run.work.gap_scale[contact])
         steps, code = return_map(run.system, run.active, now, run.x, contact, tolerance, run.work)
@@ -141,7 +141,7 @@ class Contacts:
             elif c == marked and kind == REVERSE:
                 self.events.append((now, "slips", c))
 
-    # --- contacts that stay -----------------------------------------------------------------------
+    # --- persistent contacts ----------------------------------------------------------------------
 
     def bilateral(self, rows: np.ndarray, rates: np.ndarray, free: np.ndarray) -> np.ndarray:
         """Return the acceleration with additional rows ``rows a = -rates``."""
@@ -177,7 +177,7 @@ class Contacts:
             a = self.bilateral(rows, rates, free)
             draw = -(self.seen.G[c, 0] @ a + self.seen.G_rate[c, 0])
             size = float(np.sqrt(free @ self.seen.M @ free * self.W_nn[c]))
-            # one that the others keep closed (the fourth leg of a table) has come here by round-off
+            # a contact that others keep closed (the fourth leg of a table) was located by round-off
             least = -1e-9 if c == struck and chosen else 1e-12
             if draw > least * size and self.stays(c, draw):
                 chosen.append(c)
@@ -213,7 +213,7 @@ class Contacts:
                 return 0
             self.take_out(chosen, kind, marked, was)
             driven = [c for c in closed if c not in chosen and self.u[c, 0] < -10.0 * self.still[c]]
-            if driven:  # by what was taken out of the others
+            if driven:  # by the change of the others
                 chosen = chosen + driven
                 continue
             G = self.seen.G[chosen].reshape(3 * k, n)
@@ -256,13 +256,13 @@ class Contacts:
             if self.friction[c] > 0.0 and size > 10.0 * self.still[c]:
                 kinds[i], heading[i] = SLIDING, slip / size
             elif c == marked and kind == CONE and self.friction[c] > 0.0:
-                pull = was[c][2][1:]  # stick has just given way
+                pull = was[c][2][1:]  # stick has just ended
                 kinds[i], heading[i] = SLIDING, -pull / np.linalg.norm(pull)
         return kinds, heading
 
     @staticmethod
     def jam(chosen, W: np.ndarray, mu: np.ndarray, heading: np.ndarray) -> int:
-        """Return the first contact that jams, where friction of the slip outweighs W_nn; -1 if none does."""
+        """Return the first contact that jams, because friction outweighs W_nn in slip; -1 if there is none."""
         for i, c in enumerate(chosen):
             if heading[i].any():
                 pressing = mu[i] * heading[i] @ W[3 * i, 3 * i + 1 : 3 * i + 3]
@@ -296,7 +296,7 @@ class Contacts:
                 slip = float(np.linalg.norm(self.u[c, 1:]))
                 stop = 10.0 * self.still[c]
                 if c == marked and kind == REVERSE:
-                    # what friction takes away in a thousandth of a step
+                    # speed that friction removes in a thousandth of a step
                     W_tt = np.einsum("in,nm,im->", self.seen.G[c, 1:], self.P, self.seen.G[c, 1:])
                     brake = self.friction[c] * abs(was[c][2][0]) * float(W_tt)
                     stop = max(stop, 1e-3 * run.moment(brake) * brake)

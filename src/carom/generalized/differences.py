@@ -25,7 +25,7 @@ _SECOND = (-1.0 / 12.0, 4.0 / 3.0, -2.5, 4.0 / 3.0, -1.0 / 12.0)
 
 
 def as_array(function) -> Any:
-    """Return a plain function that gives an array, where it may give lists; others as they are."""
+    """Return a function with arrays as results for a plain one that may return lists; others unchanged."""
     if function is None or is_compiled(function):
         return function
     return lambda *arguments: np.asarray(function(*arguments), dtype=float)
@@ -99,7 +99,7 @@ def as_rows(f, n):
 
 
 def _reach(q, v):
-    """Return how long a motion with velocities v takes to go as far as coordinates of order 1 are."""
+    """Return the time in which velocities v change coordinates by their own size, at least by 1."""
     speed, size = 0.0, 1.0
     for j in range(q.size):
         speed, size = max(speed, abs(v[j])), max(size, abs(q[j]))
@@ -107,7 +107,7 @@ def _reach(q, v):
 
 
 def along(rows, n, m):
-    """Return (d rows/dt) v (m,), from the rows a little further along v and back."""
+    """Return (d rows/dt) v (m,), from the rows at points slightly forward and backward along v."""
     reach = joined(_reach, rows)
 
     def rates(q, v):

@@ -1,11 +1,11 @@
-"""The error of a step in coordinates, as a part of what the tolerances allow.
+"""The error of a step in coordinates, relative to the tolerances.
 
-As for bodies (`carom.dynamics.adapt`), where each coordinate has the size 1 in its own unit: with e_q, e_v = h
-times the sum of E_s times the derivatives of the stages, coordinate i misses by
+The estimate is that for bodies (`carom.dynamics.adapt`), where each coordinate has the size 1 in its own unit.
+With e_q, e_v = h times the sum of E_s times the derivatives of the stages, the error of coordinate i is
 
     miss_i = max(|e_q|, T |e_v|),     T = 1 / max(|v_i|, sqrt |a_i|),
 
-and a step is good if miss_i <= LOCAL (atol + rtol max(1, h |v_i|)) for all of them.
+and a step is accepted if miss_i <= LOCAL (atol + rtol max(1, h |v_i|)) for all of them.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from carom.generalized.layout import N
 
 @kernel
 def step_error(motion, h, plan):
-    """Return the greatest error of the step h whose stages are in the workspace, 1 where it is allowed."""
+    """Return the greatest error of the step h whose stages are in the workspace; up to 1 it is accepted."""
     E, stages, n = motion.method.E, motion.work.stages, motion.system.size[N]
     first, second = 0.0, 0.0
     for i in range(n):

@@ -33,7 +33,7 @@ class Look:
     gap: np.ndarray  # (C,)
     G: np.ndarray  # (C, 3, n)
     G_rate: np.ndarray  # (C, 3)
-    acceleration: np.ndarray  # (n,) with the contacts that are active
+    acceleration: np.ndarray  # (n,) with the active contacts
     status: int
 
 
@@ -57,7 +57,7 @@ class Evaluation:
         self.none_active = new_active_set(C)
 
     def look(self, q, v=None, t: float = 0.0, active: ActiveSet | None = None) -> Look:
-        """Return everything at a state."""
+        """Return all quantities at a state."""
         x = np.concatenate([q, np.zeros(self.n) if v is None else v])
         code = look(self.system, self.none_active if active is None else active, t, x, self.work)
         self.failed()

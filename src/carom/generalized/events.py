@@ -1,7 +1,7 @@
 """Events that end a mode of motion within a step: functions that are positive before and negative after.
 
-GAP        gap                  of a contact that is open
-RATE       d gap/dt, turned     where a gap dips below zero and returns within a step
+GAP        gap                  of an open contact
+RATE       - d gap/dt           of a gap that falls below zero and returns within a step
 SEPARATE   N                    of a persistent contact
 CONE       mu N - |T|           while it sticks
 REVERSE    u_t . e              while it slips, e its direction at the start of the step
@@ -43,7 +43,7 @@ def rate_of(system, c, x, work):
 
 @kernel
 def note_start(system, t, x, work):
-    """Note gaps and their rates at the start of a step."""
+    """Store gaps and their rates at the start of a step."""
     find_contacts(system, t, x, work)
     for c in range(system.size[TOUCHES]):
         work.before[0, c], work.before[1, c] = work.gap[c], rate_of(system, c, x, work)
@@ -51,7 +51,7 @@ def note_start(system, t, x, work):
 
 @kernel
 def detect_event(system, active, t, x, work):
-    """Evaluate at `x` all that `value` reads; return a status."""
+    """Evaluate at `x` all quantities that `value` needs; return a status."""
     if system.size[TOUCHES] == 0:
         return 0
     find_contacts(system, t, x, work)
@@ -66,7 +66,7 @@ def detect_event(system, active, t, x, work):
 
 @kernel
 def value(system, active, kind, i, x, work):
-    """Return (event function, what counts as zero of it)."""
+    """Return (event function, greatest magnitude that counts as zero)."""
     if kind == GAP:
         return work.gap[i], ROUND_OFF * work.gap_scale[i]
     if kind == RATE:
@@ -85,7 +85,7 @@ def value(system, active, kind, i, x, work):
 
 @kernel
 def turned(system, active, t, x, work):
-    """Return whether slip has turned by more than 60 degrees within a step, and not just come to a stop."""
+    """Return whether slip has turned by more than 60 degrees within a step, and has not only stopped."""
     looked = False
     for i in range(active.count[0]):
         if active.mode[i] == SLIP and system.friction[active.contact[i]] > 0.0:
@@ -139,7 +139,8 @@ def first_violated(system, active, x, work):
 def dips(system, active, h, x, work):
     """Return a contact whose gap may have been below zero within the step, -1 if none.
 
-    By the cubic through gaps and rates of both ends: its least value is below a tenth of the depth of the dip.
+    The cubic with the gaps and rates at both ends decides: its least value is below a tenth of the depth of the
+    dip.
     """
     for c in range(system.size[TOUCHES]):
         g0, r0 = work.before[0, c], h * work.before[1, c]
@@ -159,11 +160,12 @@ def dips(system, active, h, x, work):
 def find_root(motion, kind, i, t, x, high):
     """Return (s, status): the time s in (0, high] where an event function crosses zero, `work.end` its state.
 
-    Positive at 0 (or zero there: then a later time where it is positive is looked for first), negative at
-    `high`. Regula falsi with the weights of Anderson and Bjorck (1973), halving where that is slow.
+    The function is positive at 0 and negative at `high`. (If it is zero at 0, a later time at which it is
+    positive is found first.) Regula falsi with the weights of Anderson and Bjorck (1973); every fourth step is
+    a bisection.
     """
     low, f_low, f_high, length = 0.0, 0.0, 0.0, high
-    for _ in range(40):  # from the end of the step down to where it is still positive
+    for _ in range(40):  # halve the time until the function is positive
         f_high, none, code = value_at(motion, kind, i, t, x, high)
         if code != 0:
             return high, code
@@ -199,7 +201,7 @@ def find_root(motion, kind, i, t, x, high):
 
 @kernel
 def state_at(motion, t, x, s):
-    """Write the state a time s after `x` as the end of the step, with all that `value` reads."""
+    """Write the state a time s after `x` as the end of the step, with all quantities that `value` needs."""
     code = take(motion, t, x, s)
     if code != 0:
         return code
@@ -208,7 +210,7 @@ def state_at(motion, t, x, s):
 
 @kernel
 def value_at(motion, kind, i, t, x, s):
-    """Return (event function, what counts as zero of it, status) a time s after `x`."""
+    """Return (event function, greatest magnitude that counts as zero, status) a time s after `x`."""
     code = state_at(motion, t, x, s)
     if code != 0:
         return 0.0, 0.0, code
@@ -218,9 +220,9 @@ def value_at(motion, kind, i, t, x, s):
 
 @kernel
 def locate(motion, t, x, h):
-    """Look for the first event of the step h from `x`, whose end is there; return (s, kind, index, status).
+    """Find the first event in the step h from `x`, whose end is known; return (s, kind, index, status).
 
-    The end is then the state at s. Kind NOTHING: there is none, and s = h.
+    The end is then the state at s. Without an event, the kind is NOTHING and s = h.
     """
     system, active, work = motion.system, motion.active, motion.work
     end = work.end

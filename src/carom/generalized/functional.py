@@ -20,7 +20,7 @@ from carom.generalized.differences import (
 
 
 class FunctionalModel:
-    """Functions of a system of n coordinates, with `holonomic` and `rows` further constraints."""
+    """Functions of a system of n coordinates, with `holonomic` constraints and `rows` further ones."""
 
     def __init__(self, n: int, given: dict[str, Callable | None], holonomic: int, rows: int):
         self.n, self.holonomic, self.rows = n, holonomic, holonomic + rows
@@ -28,7 +28,7 @@ class FunctionalModel:
         self.contacts: list[tuple[Any, Any, Any, int]] = []
 
     def add_contact(self, gap, gradient, tangent, count: int) -> None:
-        """Take the functions of a contact; `count` tangents."""
+        """Store the functions of a contact with `count` tangents."""
         self.contacts.append((as_array(gap), as_array(gradient), as_array(tangent), count))
 
     def metric_at(self, q) -> np.ndarray:
@@ -36,7 +36,7 @@ class FunctionalModel:
         return np.array(self.given["metric"](q.copy()), dtype=float)
 
     def addresses(self, functions) -> list[int]:
-        """Return where the four functions are."""
+        """Return the addresses of the four functions."""
         n, C = self.n, len(self.contacts)
         sizes = (n * n + n, n + 2, self.holonomic + self.rows * (n + 1), C * (4 + 3 * n))
         made: list[Any] = [self.inertia(), self.loads()]
@@ -119,7 +119,7 @@ class FunctionalModel:
         return made
 
 
-# A function for several contacts calls the one for those before: compiled code has no list of functions.
+# The function for several contacts calls that for the contacts before: compiled code has no list of functions.
 
 
 def _rows(before, n, values, h, k, start, phi, slope, bend):

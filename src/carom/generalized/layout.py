@@ -22,10 +22,10 @@ CONTACTS = 3  #: gap (C,), G (C, 3, n), (dG/dt) v (C, 3)
 # The four sizes, by their place in `Coordinates.size`.
 N, HOLONOMIC, ALL_ROWS, TOUCHES = range(4)
 
-# What a persistent contact does.
+# Modes of a persistent contact.
 SLIP, STICK = 1, 2
 
-# What ends a mode of motion.
+# Events that end a mode of motion.
 NOTHING, GAP, RATE, SEPARATE, CONE, REVERSE, JAM = range(7)
 
 # How a call of the loop ended, if not by a `carom.status.Status`.
@@ -33,27 +33,27 @@ DONE, EVENT, PAUSE = 0, 100, 101
 
 
 class Coordinates(NamedTuple):
-    """A system: where its functions are, its sizes, friction of its contacts."""
+    """A system: addresses of its functions, sizes, friction of its contacts."""
 
     address: np.ndarray  # (4,) int64
     size: np.ndarray  # (4,) int64
     friction: np.ndarray  # (C,)
-    drop: float  # part of its diagonal below which the pivot of a row is left out
+    drop: float  # a row is left out if its pivot is below this part of its diagonal
 
 
 class ActiveSet(NamedTuple):
-    """Contacts that are active, `count` of them in use."""
+    """Active contacts; the first `count` entries are in use."""
 
     count: np.ndarray  # (1,) int64
     contact: np.ndarray  # (C,) int64
     mode: np.ndarray  # (C,) int64, SLIP or STICK
     heading: np.ndarray  # (C, 2) direction of slip
     force: np.ndarray  # (C, 3) normal first
-    yields: np.ndarray  # (C,) W_nn - mu W_nt.heading of one that slips
+    yields: np.ndarray  # (C,) W_nn - mu W_nt.heading of a slipping contact
 
 
 class Work(NamedTuple):
-    """Scratch. The first four are the answers of the functions, those below are views of them."""
+    """Workspace. The first four arrays are results of the functions, the next eight are views of them."""
 
     inertia: np.ndarray
     loads: np.ndarray
@@ -70,10 +70,10 @@ class Work(NamedTuple):
     L: np.ndarray  # (n, n) Cholesky factor of M
     a: np.ndarray  # (n,)
     R: np.ndarray  # (m, n) rows that must keep their rate
-    D: np.ndarray  # (m, n) directions of their reactions: R itself, but for a contact that slips
+    D: np.ndarray  # (m, n) directions of their reactions: R itself, except for a slipping contact
     Z: np.ndarray  # (m, n) M^-1 D
     K: np.ndarray  # (m, m) R M^-1 D and its factors
-    inverse: np.ndarray  # (m,) inverse pivots, 0 where left out
+    inverse: np.ndarray  # (m,) inverse pivots, 0 for a row left out
     rhs: np.ndarray  # (m,), then the multipliers
     stages: np.ndarray  # (S, 2n)
     trial: np.ndarray  # (2n,)
@@ -101,19 +101,19 @@ class Plan(NamedTuple):
     duration: float
     step: float  # the longest
     grid: Grid
-    order: int  # of the method, where tolerances choose the steps; else 0
+    order: int  # of the method, if tolerances choose the steps; else 0
     rtol: float
     atol: float
 
 
-#: one run: where it is
+#: progress of a run
 CLOCK = [
     ("now", "f8"), ("step", "i8"), ("saved", "i8"), ("loads", "f8"), ("friction", "f8"),
     ("impacts", "f8"), ("bounces", "f8"), ("kind", "i8"), ("index", "i8"), ("trials", "i8"),
-    ("ahead", "f8"), ("rejected", "i8"),  # the next step by tolerances, and how many had too great an error
+    ("ahead", "f8"), ("rejected", "i8"),  # next step by tolerances, number of steps with too large an error
 ]  # fmt: skip
 
-#: one saved state, beside the state itself
+#: data of a saved state besides the state itself
 SERIES = [("t", "f8"), ("loads", "f8"), ("impacts", "f8"), ("friction", "f8"), ("bounces", "f8")]
 
 
@@ -126,7 +126,7 @@ class Record(NamedTuple):
 
 
 def new_active_set(contacts: int) -> ActiveSet:
-    """Return room for all contacts, none active."""
+    """Return an active set with room for all contacts, none active."""
     return ActiveSet(
         np.zeros(1, dtype=np.int64),
         np.zeros(contacts, dtype=np.int64),
@@ -138,7 +138,7 @@ def new_active_set(contacts: int) -> ActiveSet:
 
 
 def new_work(n: int, holonomic: int, rows: int, contacts: int, stages: int) -> Work:
-    """Return workspace for a system of these sizes and a method of so many stages."""
+    """Return workspace for a system of these sizes and a method with this number of stages."""
     m = rows + 3 * contacts
     inertia, loads = np.zeros(n * n + n), np.zeros(n + 2)
     row = np.zeros(holonomic + rows * n + rows)

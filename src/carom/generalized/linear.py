@@ -42,7 +42,7 @@ def solve_metric(L, b, n):
 def factor(K, inverse, m, drop):
     """Factor K = L U in place (unit L), in the order of the rows.
 
-    A pivot below `drop` times what its diagonal was belongs to a row that depends on earlier ones: row and
+    A pivot below `drop` times its original diagonal belongs to a row that depends on earlier ones: row and
     column are left out (``inverse`` is 0 there).
     """
     for i in range(m):

@@ -1,4 +1,4 @@
-"""The compiled loop: steps until one has an event, which Python code handles."""
+"""The compiled loop: it takes steps until an event, which Python code handles."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from carom.generalized.step import take
 from carom.stepping.grid import end_of, is_saved
 from carom.stepping.trial_step import STEP_TOO_SMALL
 
-CUTS = 12  # most halvings of a step in which slip turns
-LONG = 20_000  # trial steps, times the square of the coordinates, after which the loop is left for a moment
+CUTS = 12  # greatest number of halvings of a step in which slip turns
+LONG = 20_000  # trial steps, times the square of the number of coordinates, after which the loop pauses
 
 
 @entry
@@ -60,9 +60,9 @@ def time_loop(motion, x, plan, until, record):
 
 @kernel
 def first_part(motion, x, left, plan, c):
-    """Take a step that is as exact as asked for, and halved until slip does not turn in it.
+    """Take a step with the required accuracy, halved until slip does not turn in it.
 
-    Returns its length and a status.
+    Return its length and a status.
     """
     part, work = left, motion.work
     if plan.order > 0:
@@ -85,7 +85,7 @@ def first_part(motion, x, left, plan, c):
 
 @kernel
 def exact_part(motion, x, left, plan, c):
-    """Take a step whose estimated error is what the tolerances allow; return its length and a status."""
+    """Take a step whose estimated error is within the tolerances; return its length and a status."""
     part, again = part_of(left, c.ahead), False
     while True:
         code = take(motion, c.now, x, part)
@@ -118,7 +118,7 @@ def save(x, record):
 
 @entry
 def save_now(x, record):
-    """`save`, for Python: at the start, and after a failure."""
+    """Do the same as `save`, for Python: at the start, and after a failure."""
     save(x, record)
 
 

@@ -1,4 +1,4 @@
-"""Replay in coordinates: the motion between two saved states, stepped again (as `carom.results.replay`)."""
+"""Replay in coordinates: steps again between two saved states (as `carom.results.replay` for bodies)."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ class Replay:
         self.arrives: dict[int, bool] = {}
 
     def improve(self, times: np.ndarray, q: np.ndarray, v: np.ndarray) -> None:
-        """Write states at times (K,) over those of a cubic, where a replay is better."""
+        """Replace the states of a cubic at times (K,) where a replay is better."""
         nodes = self.solution._nodes[0]
         n, last = q.shape[1], len(self.solution.t) - 2
         for k, time in enumerate(times):
@@ -42,7 +42,7 @@ class Replay:
         return self.arrives[i]
 
     def arrives_from(self, i: int) -> bool:
-        """Return the same, computed."""
+        """Compute the result of `is_good`."""
         s = self.solution
         miss = self.distance(i, self.go(i, float(s.t[i + 1])), (s.q[i + 1], s.v[i + 1]))
         if miss <= self.allowed:
@@ -52,7 +52,7 @@ class Replay:
         return miss <= BETTER * self.distance(i, self.go(i, middle), (q[0], v[0])) < np.inf
 
     def distance(self, i: int, state: np.ndarray | None, there: tuple) -> float:
-        """Return how far a state is from another one of interval i, velocities times its length."""
+        """Return the distance of two states in interval i, with velocities times its length."""
         if state is None:
             return np.inf
         n, step = len(there[0]), self.solution.t[i + 1] - self.solution.t[i]

@@ -36,10 +36,10 @@ AT_ONCE = 200  # events at one instant
 
 
 def grid_of(settings: Settings, touches: bool) -> Grid:
-    """Return where steps end and states are saved, 200 of them by default.
+    """Return the ends of steps and the saved states, 200 of these by default.
 
-    Where something touches, no step by tolerances is longer than the time between these: a gap that closes and
-    opens within a step is told from its ends.
+    With contacts, no step by tolerances is longer than the time between saved states: a gap that closes and
+    opens within a step is detected from both ends of the step.
     """
     how, every = settings, settings.save_every
     if how.step is not None:
@@ -55,7 +55,8 @@ def grid_of(settings: Settings, touches: bool) -> Grid:
 class GeneralizedRun:
     """A run of a `GeneralizedSystem`: state, records and workspace.
 
-    It begins where the system does, or at a `start`: a time, and the state (q, v) of a run there.
+    It begins at the initial state of the system, or at `start`: a time, and the state (q, v) of a run at this
+    time.
     """
 
     def __init__(
@@ -99,7 +100,7 @@ class GeneralizedRun:
         self.save_now()
 
     def check_start(self) -> None:
-        """Refuse a start that violates constraints or contacts; project velocities with `project_start`."""
+        """Raise an error if the start violates constraints or contacts; `project_start` projects velocities."""
         options, x, n = self.options, self.x, self.n
         seen = self.made.look(x[:n], x[n:])
         tolerance = options.constraint_tolerance
@@ -142,7 +143,7 @@ class GeneralizedRun:
         return float(self.clock[0].now)
 
     def moment(self, acceleration: float) -> float:
-        """Return a time that counts as none: a step, or with tolerances that of a bounce as high as those."""
+        """Return a time that counts as zero: a step, or with tolerances that of a bounce as high as these."""
         plan = self.plan
         if plan.order == 0 or not acceleration > 0.0:
             return plan.step
@@ -153,12 +154,12 @@ class GeneralizedRun:
         save_now(self.x, self.record)
 
     def go_on(self, until: float) -> Status:
-        """Continue to step number `until`, or to a failure."""
+        """Continue until step number `until`, or a failure."""
         code = self.start_code
         while code == 0:
             code = time_loop(self.motion, self.x, self.plan, int(until), self.record)
             if code == PAUSE and self.made.functions.failed is None:
-                code = 0  # here Ctrl-C is raised
+                code = 0  # Python raises Ctrl-C here
                 continue
             if code != EVENT:
                 break
@@ -173,7 +174,7 @@ class GeneralizedRun:
         return Status.SUCCESS if code == DONE else Status(code)
 
     def counted(self) -> dict[str, int]:
-        """Return how many steps there were, and trial steps of too great an error."""
+        """Return the numbers of steps, of trial steps, and of those that were rejected."""
         clock = self.clock[0]
         return {
             "steps": int(clock.step),

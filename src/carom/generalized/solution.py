@@ -30,9 +30,7 @@ class CoordinateImpact(NamedTuple):
     relative_velocity_before: np.ndarray  #: (3,) velocity before; approach is negative
     relative_velocity_after: np.ndarray  #: (3,) velocity after
     impulse: np.ndarray  #: (3,) impulse
-    energy_change: (
-        float  #: change of energy of the system [J]; in a multiple impact the share of the contact
-    )
+    energy_change: float  #: change of energy [J]; in a multiple impact the share of the contact
     law: str  #: law of restitution
     inverse_mass: np.ndarray  #: (3, 3) Delassus operator W of the contact
     restitution: float  #: e of the contact
@@ -167,7 +165,7 @@ class GeneralizedSolution(Drawn):
         names = ("loads", "impacts", "friction", "bounces")
         ledger = Ledger(kinetic, potential, *(np.array(series[one]) for one in names))
         impacts, warnings = CoordinateImpactTable(run.contacts.strike.records, n), ()
-        if steady:  # energies that depend on time are kept by nothing
+        if steady:  # energies that depend on time are not conserved
             watch = watched(t, ledger, given_by_law(t, impacts), run.options.energy_tolerance)
             warnings = sentences(watch)
             status = judge(watch) if status is Status.SUCCESS else status

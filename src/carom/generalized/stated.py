@@ -35,7 +35,7 @@ class CoordinateContact:
 def checked_contact(
     others: Sequence[CoordinateContact], tangent, restitution, friction, impact_law, name
 ) -> CoordinateContact:
-    """Return a contact; refuse numbers out of range and a name that one of `others` has."""
+    """Return a contact; raise an error for numbers out of range, and for the name of one of `others`."""
     e = checks.number("restitution", restitution, least=0.0, most=1.0)
     mu = checks.number("friction", friction, least=0.0)
     checks.choice("impact_law", impact_law, IMPACT_LAWS)
@@ -50,7 +50,7 @@ def checked_contact(
 
 
 def checked_functions(q: np.ndarray, gap, gradient, tangent) -> int:
-    """Refuse functions of a contact that are not callable or return a wrong shape; return their tangents."""
+    """Check that the functions of a contact return the right shapes; return the number of tangents."""
     n = len(q)
     for what, one in (("gap", gap), ("gap_gradient", gradient), ("tangent", tangent)):
         checks.function(what, one, optional=what != "gap")
@@ -69,7 +69,7 @@ def checked_functions(q: np.ndarray, gap, gradient, tangent) -> int:
 
 
 def answer(name: str, function: Callable, shape: tuple, *arguments) -> np.ndarray:
-    """Return the result of a function at the start; refuse a shape other than `shape`."""
+    """Return the result of a function at the start; raise an error for a shape other than `shape`."""
     given = [np.copy(a) if np.ndim(a) else a for a in arguments]
     result = checks.real_array(
         name, checks.call(name, function, *given), "(" + ", ".join(map(str, shape)) + ")"

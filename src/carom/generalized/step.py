@@ -1,4 +1,4 @@
-"""One explicit Runge-Kutta step in coordinates, returned to the constraints in the kinetic metric."""
+"""One explicit Runge-Kutta step in coordinates, with a return to the constraints in the kinetic metric."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from carom.generalized.motion import (
 )
 
 CONSTRAINTS_LOST = 7
-_NONE = 4e-16  # of its terms: error of a row that cannot be smaller
+_NONE = 4e-16  # relative to the terms of a row: its error cannot be smaller
 
 
 @kernel
 def take(motion, t, x, h):
-    """Write the state a time h after `x` into `work.end`; return a status. Works go to `work.spent`."""
+    """Write the state a time h after `x` into `work.end`; return a status. Store the works in `work.spent`."""
     system, method, active, work = motion.system, motion.method, motion.active, motion.work
     end = work.end
     n, stages = system.size[N], method.b.size
@@ -66,7 +66,7 @@ def combine(weight, count, h, x, stages, out):
 
 @kernel
 def note_slip_directions(system, active, t, x, work):
-    """Note the direction of slip of persistent contacts at the start of a step."""
+    """Store the direction of slip of persistent contacts at the start of a step."""
     if active.count[0] == 0:
         return
     find_rows(system, active, t, x, work)
@@ -156,5 +156,5 @@ def project(system, active, t, x, work):
 
 @entry
 def project_rates(system, active, t, x, work):
-    """`project`, for Python."""
+    """Do the same as `project`, for Python."""
     return project(system, active, t, x, work)

@@ -13,9 +13,9 @@ from carom.status import Status
 if TYPE_CHECKING:
     from carom.generalized.contacts import Contacts
 
-BLOWS = 200  # at one instant
-SEED = 1e-7  # approach of a contact that jams, as a part of its slip (mathematics page, §3.6)
-SPENT = 1e-6
+BLOWS = 200  # impacts at one instant
+SEED = 1e-7  # approach of a contact that jams, relative to its slip (mathematics page, §3.6)
+SPENT = 1e-6  # relative to the first impact of a step: slower ones have no restitution
 
 
 class Strike:
@@ -27,7 +27,7 @@ class Strike:
         self.room: Any = None  # workspace for several contacts, made when it is first needed
 
     def all(self, closed: list[int], now: float, jams: int) -> int:
-        """Strike until no closed contact approaches; return a status."""
+        """Resolve impacts until no closed contact approaches; return a status."""
         here = self.contacts
         for _ in range(BLOWS):
             here.look()
@@ -46,11 +46,11 @@ class Strike:
         return Status.TOO_MANY_IMPACTS
 
     def restitution(self, c: int) -> float:
-        """Return e of the next impact; 0 after so many impacts in one step that no speed is left."""
+        """Return e of the next impact; 0 if hardly any speed is left after many impacts in one step."""
         here = self.contacts
-        e, blows = float(here.restitution[c]), float(here.blows[c])
+        e, count = float(here.restitution[c]), float(here.blows[c])
         here.blows[c] += 1
-        return 0.0 if e < 1.0 and e**blows <= SPENT else e
+        return 0.0 if e < 1.0 and e**count <= SPENT else e
 
     def one(self, c: int, now: float, jams: bool) -> int:
         """Solve the impact of one contact."""
@@ -139,7 +139,7 @@ class Strike:
         run.x[n:] += self.contacts.P @ (G.T @ impulse)
         run.clock[0].impacts += 0.5 * (run.x[n:] - v) @ M @ (run.x[n:] + v)
 
-    def write(self, c: int, now: float, blow: dict[str, Any]) -> None:
+    def write(self, c: int, now: float, impact: dict[str, Any]) -> None:
         """Store the record of an impact."""
         here = self.contacts
         here.run.counts["impacts"] += 1
@@ -147,6 +147,6 @@ class Strike:
         self.records.append(
             {
                 "time": now, "contact": c, "position": here.run.x[: here.run.n].copy(),
-                "law": here.run.user.contacts[c].impact_law, "friction": float(here.friction[c]), **blow,
+                "law": here.run.user.contacts[c].impact_law, "friction": float(here.friction[c]), **impact,
             }
         )  # fmt: skip

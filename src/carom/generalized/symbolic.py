@@ -95,7 +95,7 @@ class SymbolicModel:
         self.contacts: list[tuple[Any, list]] = []
 
     def take(self, name: str, expression, allowed: str):
-        """Return an expression in the symbols of this model; refuse others than `allowed` (of t, q, v)."""
+        """Return an expression in the symbols of this model; only those in `allowed` may occur (of t, q, v)."""
         sp = self.sp
         result = self.expression(name, expression)
         result = result.subs(list(zip(self.velocities, self.v)))  # first: they may be derivatives
@@ -118,16 +118,16 @@ class SymbolicModel:
         return result
 
     def _is_finite(self, result: Any) -> bool:
-        """Return whether it is an expression without infinities in it."""
+        """Return whether `result` is an expression without infinities."""
         sp = self.sp
         return isinstance(result, sp.Expr) and not result.has(sp.nan, sp.zoo, sp.oo, -sp.oo)
 
     def expression(self, name: str, given) -> Any:
-        """Return an expression; refuse texts, which SymPy would evaluate, and whatever is no number."""
+        """Return an expression; raise an error for texts, which SymPy would evaluate, and other objects."""
         sp = self.sp
         try:
             result = sp.sympify(given, strict=True)
-        except Exception:  # whatever the conversion of a foreign object raises
+        except Exception:  # any error in the conversion of a foreign object
             result = None
         if isinstance(given, np.ndarray) or not self._is_finite(result):
             raise ValueError(f"{name} must be a SymPy expression, got {checks.shown(given)}")
@@ -175,7 +175,7 @@ class SymbolicModel:
         return all(abs(f(*point)[0]) <= 1e-9 for point in points)
 
     def add_contact(self, gap, tangent) -> None:
-        """Take the expressions of a contact."""
+        """Store the expressions of a contact."""
         given = () if tangent is None else tangent
         given = tuple(given) if isinstance(given, Sequence) else (given,)
         if len(given) > 2:
@@ -219,7 +219,7 @@ class SymbolicModel:
         return [*(rho for rho, _ in self.contacts), *entries, *(self.bent(row) for row in rows)]
 
     def rate(self, expression):
-        """Return the rate of a function of the coordinates, velocities held."""
+        """Return the rate of a function of the coordinates, for constant velocities."""
         return sum(self.sp.diff(expression, q) * v for q, v in zip(self.q, self.v))
 
     def bent(self, row):
@@ -227,7 +227,7 @@ class SymbolicModel:
         return sum(self.rate(a) * v for a, v in zip(row, self.v))
 
     def addresses(self, functions) -> list[int]:
-        """Return where the four compiled functions are."""
+        """Return the addresses of the four compiled functions."""
         result = []
         for name in ("inertia", "loads", "row_terms", "contact_terms"):
             terms = getattr(self, name)()
@@ -239,7 +239,7 @@ class SymbolicModel:
         return result
 
     def write(self, name: str, terms: list):
-        """Return ``name(t, x, out)`` as Python code of scalars, common subexpressions once."""
+        """Return ``name(t, x, out)`` as Python code of scalars; common subexpressions are computed once."""
         from sympy.printing.codeprinter import PrintMethodNotImplementedError
         from sympy.printing.pycode import PythonCodePrinter
 

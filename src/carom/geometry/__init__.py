@@ -2,6 +2,6 @@
 
 Kernels for the step loop: `rotation`, `tangent` (one rotation, in scalars) and `autoparallel` (all
 bodies, writing into arrays). NumPy, free of Numba, for scenes, results and the mathematics:
-`quaternion`, `differential`, `spline`, `inertia`, `connection`; and `manifold`, which shows the
-kernels of `autoparallel` as one checked object.
+`quaternion`, `differential`, `spline`, `inertia`, `connection`; and `manifold`, an object that checks its
+arguments and calls the kernels of `autoparallel`.
 """

@@ -2,7 +2,7 @@
 
 A tangent vector xi (N, 6) has the velocity components of the left-invariant frame: three along the
 world axes [m], then three along the body axes [rad] (mathematics page, *Connection and
-autoparallels*). Arrays may be the same in and out.
+autoparallels*). An output array may be one of the input arrays.
 """
 
 from __future__ import annotations
@@ -38,9 +38,9 @@ def log(x0, Q0, x1, Q1, out):
 
 @entry
 def transport_vector(xi, vector, out):
-    """Write `vector` (N, 6) moved in parallel along the arc xi: exp(-hat xi_theta) on the turns.
+    """Write `vector` (N, 6) after parallel transport along the arc xi: exp(-hat xi_theta) for the rotations.
 
-    The components along the world axes stay: a vector parallel along an arc is fixed in space.
+    The components along the world axes do not change: a vector that is parallel along an arc is fixed in space.
     """
     for i in range(xi.shape[0]):
         ew, ex, ey, ez = rotation.exp(xi[i, 3], xi[i, 4], xi[i, 5])
@@ -53,9 +53,9 @@ def transport_vector(xi, vector, out):
 
 @entry
 def transport_covector(xi, covector, out):
-    """Write `covector` (N, 6) moved in parallel along the arc xi, so that <p, w> is kept.
+    """Write `covector` (N, 6) after parallel transport along the arc xi, which preserves <p, w>.
 
-    The inverse transpose of `transport_vector`, which is that rotation itself.
+    This is the inverse transpose of `transport_vector`; for a rotation it is the rotation itself.
     """
     transport_vector(xi, covector, out)
 

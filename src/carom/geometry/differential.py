@@ -28,7 +28,7 @@ def hat(a: ArrayLike) -> Array:
 
 
 def apply(a: ArrayLike, b: ArrayLike) -> Array:
-    """Return T(a) b, shape (..., 3): rate b of the rotation vector a to body angular velocity.
+    """Return T(a) b, shape (..., 3): the body angular velocity for the rate b of the rotation vector a.
 
     Parameters
     ----------
@@ -44,9 +44,9 @@ def apply(a: ArrayLike, b: ArrayLike) -> Array:
 
 
 def apply_inverse(a: ArrayLike, b: ArrayLike) -> Array:
-    """Return T(a)^-1 b, shape (..., 3): body angular velocity b to the rate of the vector a.
+    """Return T(a)^-1 b, shape (..., 3): the rate of the vector a for the body angular velocity b.
 
-    Good for |a| < 2 pi, where T becomes singular; parameters as in `apply`.
+    Valid for |a| < 2 pi; at 2 pi, T is singular. Parameters as in `apply`.
     """
     a, b = shaped("a", a, 3), shaped("b", b, 3)
     ab = np.cross(a, b)

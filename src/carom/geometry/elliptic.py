@@ -13,7 +13,7 @@ def quarter_period(kc):
     if kc == 0.0:
         return math.inf
     a, b = 1.0, kc
-    for _ in range(12):  # digits double: 1e-150 takes 12
+    for _ in range(12):  # the number of digits doubles: 1e-150 takes 12
         if abs(a - b) <= 1e-8 * a:
             break
         a, b = 0.5 * (a + b), math.sqrt(a * b)
@@ -22,12 +22,12 @@ def quarter_period(kc):
 
 @entry
 def carlson(x, y, z):
-    """Return R_F(x, y, z), of which at most one may be 0.
+    """Return R_F(x, y, z); at most one argument may be 0.
 
-    R_F is half the integral over t > 0 of ((t + x)(t + y)(t + z))^(-1/2). Duplication until what differs is
-    small, then the series to order 7 (Carlson, Numer. Algorithms 10, 13, 1995; NIST DLMF 19.36.1).
+    R_F is half the integral over t > 0 of ((t + x)(t + y)(t + z))^(-1/2). Duplication makes the differences
+    small, then the series to order 7 follows (Carlson, Numer. Algorithms 10, 13, 1995; NIST DLMF 19.36.1).
     """
-    for _ in range(600):  # each takes differences to a quarter; 1e-300 beside 1 takes 20
+    for _ in range(600):  # each divides the differences by four; 1e-300 and 1 take 20
         a = (x + y + z) / 3.0
         if not max(abs(a - x), max(abs(a - y), abs(a - z))) > 0.004 * a:
             break

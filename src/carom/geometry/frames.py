@@ -22,5 +22,5 @@ def triad(axis: np.ndarray) -> np.ndarray:
 
 
 def contact_axes(normal: np.ndarray) -> np.ndarray:
-    """Return rows n, t1, t2: t1 the world axis least along n (x first), made tangent; t2 = n x t1."""
+    """Return rows n, t1, t2: t1 is the world axis least along n (x before y), made tangent; t2 = n x t1."""
     return np.ascontiguousarray(triad(normal).T)

@@ -64,7 +64,7 @@ def rotate(q: ArrayLike, a: ArrayLike) -> Array:
 
 
 def _cross(a: Array, b: Array) -> Array:
-    """Return a x b, a quarter of the time of `numpy.cross` for few vectors."""
+    """Return a x b, four times faster than `numpy.cross` for few vectors."""
     out = np.empty(np.broadcast(a, b).shape)
     a0, a1, a2 = a[..., 0], a[..., 1], a[..., 2]
     b0, b1, b2 = b[..., 0], b[..., 1], b[..., 2]
@@ -93,7 +93,7 @@ def matrix(q: ArrayLike) -> Array:
 def from_matrix(rotation: ArrayLike, tolerance: float = 1e-6) -> Array:
     """Return the unit quaternions (..., 4), w >= 0, of rotation matrices (..., 3, 3).
 
-    Of the four products 4 q_i q its row with the largest q_i is taken, so no angle is singular
+    Of the four vectors 4 q_i q, the one with the largest q_i is used, so no angle is singular
     (Shepperd, *Journal of Guidance and Control* 1, 1978).
 
     Parameters
@@ -106,7 +106,7 @@ def from_matrix(rotation: ArrayLike, tolerance: float = 1e-6) -> Array:
     Raises
     ------
     ValueError
-        If a matrix is not a rotation: its rows not orthonormal, or a reflection.
+        If a matrix is not a rotation: its rows are not orthonormal, or it is a reflection.
     """
     r = shaped("rotation", rotation, 3, 3)
     defect = np.abs(r @ np.swapaxes(r, -1, -2) - np.eye(3)).max(initial=0.0)
@@ -139,7 +139,7 @@ def exp(a: ArrayLike) -> Array:
     """Return the unit quaternions (..., 4) of rotation vectors a (..., 3) [rad], of any angle."""
     a = shaped("a", a, 3)
     t = np.linalg.norm(a, axis=-1, keepdims=True)
-    # sin(t/2)/t with one and the same t is exact to round-off down to the smallest t.
+    # With the same t in both places, sin(t/2)/t is exact to round-off down to the smallest t.
     f = np.where(t > 0.0, np.sin(0.5 * t) / np.where(t > 0.0, t, 1.0), 0.5)
     f = np.where(np.isnan(t), t, f)
     return np.concatenate([np.cos(0.5 * t), f * a], axis=-1)
@@ -148,7 +148,7 @@ def exp(a: ArrayLike) -> Array:
 def log(q: ArrayLike) -> Array:
     """Return the rotation vectors (..., 3) [rad] of quaternions q (..., 4), angles in [0, pi].
 
-    q and -q are one rotation and give one vector, except at the angle pi itself, where both signs
+    q and -q are the same rotation and give the same vector, except at the angle pi, where both signs
     of the axis are right. The length of q does not matter.
     """
     q = shaped("q", q, 4)

@@ -1,6 +1,6 @@
 """Rotations as unit quaternions (w, x, y, z) and 3x3 matrices, in scalars: kernels.
 
-`R(Q)` takes body components to world components. Tuples of scalars in, tuples of scalars out.
+`R(Q)` transforms body components to world components. Arguments are scalars, results are tuples of scalars.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def matrix(w, x, y, z):
 
 @entry
 def rotate(w, x, y, z, ax, ay, az):
-    """Return R a: body components to world components."""
+    """Return R a: transform body components to world components."""
     tx, ty, tz = 2.0 * (y * az - z * ay), 2.0 * (z * ax - x * az), 2.0 * (x * ay - y * ax)
     return (
         ax + w * tx + y * tz - z * ty,
@@ -67,7 +67,7 @@ def rotate(w, x, y, z, ax, ay, az):
 
 @entry
 def rotate_back(w, x, y, z, ax, ay, az):
-    """Return R^T a: world components to body components."""
+    """Return R^T a: transform world components to body components."""
     return rotate(w, -x, -y, -z, ax, ay, az)
 
 
@@ -75,8 +75,8 @@ def rotate_back(w, x, y, z, ax, ay, az):
 def exp(ax, ay, az):
     """Return the unit quaternion exp(a/2) of the rotation vector a; exact to round-off at any angle.
 
-    With t = |a|: (cos(t/2), sin(t/2)/t a). Below t = 0.25 the series in (t/2)^2, whose next terms are
-    below 1e-18: steps are mostly small, and sine and cosine cost more than the rest of a free step.
+    With t = |a| it is (cos(t/2), sin(t/2)/t a). Below t = 0.25 a series in (t/2)^2 is used, whose next terms
+    are below 1e-18: most steps are small, and sine and cosine cost more than the rest of a free step.
     """
     t2 = ax * ax + ay * ay + az * az
     if t2 < 0.0625:
@@ -116,7 +116,7 @@ def log(w, x, y, z):
 
 @entry
 def spin_tensor(R, i):
-    """Return the six entries xx, xy, xz, yy, yz, zz of R diag(i) R^T, R as `matrix` gives it."""
+    """Return the six entries xx, xy, xz, yy, yz, zz of R diag(i) R^T, with R as returned by `matrix`."""
     return (
         R[0] * R[0] * i[0] + R[1] * R[1] * i[1] + R[2] * R[2] * i[2],
         R[0] * R[3] * i[0] + R[1] * R[4] * i[1] + R[2] * R[5] * i[2],

@@ -30,8 +30,8 @@ from carom.geometry.quaternion import (
 Array = NDArray[np.float64]
 State = tuple[ArrayLike, ArrayLike, ArrayLike, ArrayLike]
 
-#: Turn h |Wbar| [rad] above which the chart is carried along; log is one-to-one below pi, and the
-#: true turn may differ from the predicted one.
+#: rotation h |Wbar| [rad] above which the chart moves along; log is one-to-one below pi, and the true rotation
+#: may differ from the predicted one
 CARRIED_ABOVE = 2.0
 
 
@@ -91,7 +91,7 @@ def _rotation(s, h, Q0, W0, Q1, W1):
 
 
 def _cubic(s, h, y0, d0, y1, d1):
-    """Return value and rate, at the part s of a step h, of the cubic with these ends and rates.
+    """Return value and rate, at the fraction s of a step h, of the cubic with these ends and rates.
 
     Both are exactly the given ones at s = 0 and s = 1.
     """

@@ -1,6 +1,6 @@
 """Differential T of the exponential on SO(3) and its inverse, in scalars: kernels.
 
-The same formulas as `differential`, which states them, for one rotation vector at a time.
+The formulas are those in `differential`, here for one rotation vector at a time.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ def inverse_coefficient(t2):
 
 @entry
 def apply(ax, ay, az, bx, by, bz):
-    """Return T(a) b: the rate b of the rotation vector a to body angular velocity."""
+    """Return T(a) b: the body angular velocity for the rate b of the rotation vector a."""
     first, second = coefficients(ax * ax + ay * ay + az * az)
     cx, cy, cz = cross(ax, ay, az, bx, by, bz)
     dx, dy, dz = cross(ax, ay, az, cx, cy, cz)
@@ -54,7 +54,7 @@ def apply(ax, ay, az, bx, by, bz):
 
 @entry
 def apply_inverse(ax, ay, az, bx, by, bz):
-    """Return T(a)^-1 b, for |a| < 2 pi: body angular velocity b to the rate of a."""
+    """Return T(a)^-1 b, for |a| < 2 pi: the rate of a for the body angular velocity b."""
     f = inverse_coefficient(ax * ax + ay * ay + az * az)
     cx, cy, cz = cross(ax, ay, az, bx, by, bz)
     dx, dy, dz = cross(ax, ay, az, cx, cy, cz)

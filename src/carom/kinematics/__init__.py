@@ -1,1 +1,1 @@
-"""Where points, joints and coordinates are and how they move; free flight in closed form."""
+"""Positions and motion of points, joints and coordinates; free flight in closed form."""

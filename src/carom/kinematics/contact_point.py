@@ -1,4 +1,4 @@
-"""A point of contact: where it is and how it moves, u = G v.
+"""A contact point: its position and its velocity, u = G v.
 
 G maps the velocities of all bodies to u = (u_n, u_t1, u_t2), the velocity of body a relative to body b at
 the point. (Paper, change of coordinates at contact.)
@@ -13,7 +13,7 @@ from carom.kinematics.wrench import point_velocity
 
 @kernel
 def place(contact, p, state, point):
-    """Write the point at which the core point p (body axes) touches the half-space, or would."""
+    """Write the contact point of the core point p (body axes) on a half-space, touching or not."""
     b, n, r = contact.body, contact.axes, contact.radius
     q, x, core, arm, axes = state[b].Q, state[b].x, point.core, point.arm_a, point.axes
     core[0], core[1], core[2] = rotate(q[0], q[1], q[2], q[3], p[0], p[1], p[2])
@@ -52,7 +52,7 @@ def in_axes(point, x, y, z):
 def turning_rows(point, x, y, z):
     """Return the rows of a point of rolling or pivoting: relative angular velocity times a length.
 
-    Of a stop that ends a turn that about its axis.
+    For a stop that ends a turn, it is the angular velocity about its axis.
     """
     n, t1, t2 = in_axes(point, x, y, z)
     if point.turns == 3:
@@ -64,7 +64,7 @@ def turning_rows(point, x, y, z):
 
 @kernel
 def own_rows(point, u):
-    """Return u, the normal component alone of a stop."""
+    """Return u; for a stop that ends a slide, only the normal component."""
     if point.turns == 4:
         return u[0], 0.0, 0.0
     return u
@@ -111,7 +111,8 @@ def contact_motion(point, work):
 def contact_acceleration(point, state, stage):
     """Return du/dt in contact axes: a + alpha x r + w x (w x core) (a ball around the core does not turn).
 
-    That is of a half-space, whose normal stays; of two bodies and of stops G times the accelerations alone.
+    This is for a half-space, whose normal is constant. For two bodies and for stops the result is only G times
+    the accelerations.
     """
     if 0 < point.turns < 4:
         m, z = stage[point.a].rate, (0.0, 0.0, 0.0)

@@ -1,9 +1,9 @@
-"""Coordinates of joints: an angle about, or a way along, an axis of the parent, and how bodies change it.
+"""Coordinates of joints: an angle about, or a displacement along, an axis of the parent; values and rates.
 
-    q' = t_a . (w_c - w_p) + t_l . (velocity of the child's anchor less that of the parent's there)
+    q' = t_a . (w_c - w_p) + t_l . (velocity of the child's anchor minus that of the parent at this point)
 
-An angle is known but for whole turns; these are those nearest to its `reference`, the value at the start of
-the trial step, which is short enough for that (`carom.dynamics.more_forces.turns_round`). Either side may be
+An angle is known up to whole turns; the result is the value nearest to `reference`, the value at the start of
+the trial step, which is short enough for this (`carom.dynamics.more_forces.turns_round`). Either side may be
 the ground (the second angle of a universal joint is measured from the child).
 """
 
@@ -38,7 +38,7 @@ def angular_velocity(state, b):
 
 @kernel
 def value(c, state):
-    """Return the coordinate: an angle [rad] or a way [m], 0 where the frames of both sides agree."""
+    """Return the coordinate: an angle [rad] or a displacement [m], 0 if the frames of both sides agree."""
     ax, ay, az = axis(state, c.parent, c.parent_frame, 0)
     if c.kind == PRISMATIC:
         dx, dy, dz = anchor_gap(c, state)
@@ -65,7 +65,7 @@ def rate(c, state):
 
 @kernel
 def drift(c, state, out):
-    """Return q'' of bodies that do not accelerate; `out` is workspace (6,)."""
+    """Return q'' for bodies without acceleration; `out` is workspace (6,)."""
     ax, ay, az = axis(state, c.parent, c.parent_frame, 0)
     if c.kind == PRISMATIC:
         acceleration_bias(c, state, out)
@@ -122,7 +122,7 @@ def add_rows(c, state, factor, child, parent):
 
 @kernel
 def motion_along(c, state, work):
-    """Return what the motions that the last solve wrote do to q'."""
+    """Return the change of q' by the motions that the last solve wrote."""
     ax, ay, az = axis(state, c.parent, c.parent_frame, 0)
     total = 0.0
     for side in range(2):
@@ -144,7 +144,7 @@ def motion_along(c, state, work):
 
 @kernel
 def speeds_of(system, c, state):
-    """Return a bound of the speeds that q' is the difference of."""
+    """Return a bound of the speeds of both sides, whose difference is q'."""
     total = 0.0
     for side in range(2):
         b = c.child if side == 0 else c.parent

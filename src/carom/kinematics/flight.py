@@ -1,9 +1,9 @@
 """Free flight of one body, exact: translation on a parabola, rotation as a torque-free top in closed form.
 
-With equal moments w is constant and the rotation is exp(h w). Otherwise the constants of a flight are worked
-out where it begins (`carom.kinematics.torque_free_top`), and kept with two states whose times on it are known:
-where the last step started, and where it ended. A step from either goes on with the same flight, so that no
-round-off gathers over steps; from any other state, as after an impact, another flight begins.
+With equal moments w is constant and the rotation is exp(h w). Otherwise the constants of a flight are computed
+at its beginning (`carom.kinematics.torque_free_top`). They are stored with two states at known times: the start
+and the end of the last step. A step from either state continues this flight, so that no round-off accumulates;
+any other state, for instance after an impact, begins another flight.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def knows(memory, i, q, w):
 
 @kernel
 def note(memory, i, q, w, age, more):
-    """Make a state, at the time age + more, known state i of the flight."""
+    """Store a state, at the time age + more, as known state i of the flight."""
     a, s = memory.known_attitude, memory.known_spin
     a[i, 0], a[i, 1], a[i, 2], a[i, 3] = q[0], q[1], q[2], q[3]
     s[i, 0], s[i, 1], s[i, 2] = w[0], w[1], w[2]
@@ -53,7 +53,7 @@ def note(memory, i, q, w, age, more):
 
 @kernel
 def board(J, q, w, memory):
-    """Have a state be the known state 0 of the flight in `memory`: of that which it holds, or of a new one."""
+    """Make a state known state 0 of its flight: the flight in `memory` if it is known there, or a new one."""
     if knows(memory, 0, q, w):
         return
     attitude_now, spin_now = (q[0], q[1], q[2], q[3]), (w[0], w[1], w[2])
@@ -67,11 +67,11 @@ def board(J, q, w, memory):
 
 @kernel
 def tumble(J, h, q0, w0, memory):
-    """Return attitude and angular velocity (world) after a time h; momentum and energy are kept."""
+    """Return attitude and angular velocity (world) after a time h; momentum and energy are conserved."""
     board(J, q0, w0, memory)
     age, more = memory.age[0, 0], memory.age[0, 1] + h
     t = age + more
-    more -= t - age  # what the sum has lost, where age is the larger; else a part of round-off of h
+    more -= t - age  # round-off of the sum if age is larger; else a part of the round-off of h
     turn, b = attitude(memory, t)
     q = memory.turn
     q = multiply(q[0], q[1], q[2], q[3], turn[0], turn[1], turn[2], turn[3])
@@ -84,7 +84,7 @@ def tumble(J, h, q0, w0, memory):
 
 @kernel
 def point_bound(body, q, w, memory):
-    """Return a bound of |W x (W x r) + W' x r|/|r| in free flight: of the accelerations of points of a body."""
+    """Return a bound of |W x (W x r) + W' x r|/|r| in free flight, for the accelerations of points."""
     if body.isotropic == 1:
         return w[0] * w[0] + w[1] * w[1] + w[2] * w[2]
     board(body.inertia, q, w, memory)

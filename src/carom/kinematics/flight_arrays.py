@@ -30,10 +30,10 @@ def torque_free(moments, Q, w, t) -> tuple[np.ndarray, np.ndarray]:
     moments : (3,)
         Principal moments [kg m^2].
     Q, w : (K, 4), (K, 3)
-        States: unit quaternions from the principal axes to the world, world axes [rad/s]. Equal ones in a
-        row share the constants of their flight.
+        States: unit quaternions from the principal axes to the world, and angular velocities in world axes
+        [rad/s]. Equal states in succession share the constants of their flight.
     t : (K,)
-        Times since then, of either sign [s].
+        Times after these states [s], positive or negative.
     """
     J = np.array(moments, dtype=np.float64)
     Q, w, t = (np.ascontiguousarray(a, dtype=np.float64) for a in (Q, w, t))

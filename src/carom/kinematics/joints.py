@@ -6,9 +6,9 @@ A joint between a point of the parent (arm r_p from its centre) and one of the c
     relative linear velocity    (v_c + w_c x r_c) - (v_p + w_p x r_p)
 
 A joint leaves some of these six free (its freedoms S) and constrains the others. The constrained
-part of (relative acceleration - bias) vanishes; `position_error`, `velocity_error` and
-`acceleration_bias` fill the bias for the three levels. Arms are used, never differences of centres, so that all
-stays right a little off the manifold (stages of a Runge-Kutta step).
+part of (relative acceleration - bias) vanishes; `position_error`, `velocity_error` and `acceleration_bias`
+write the bias for the three levels. Only arms are used, never differences of centres, so that the results are
+right also slightly off the manifold (stages of a Runge-Kutta step).
 """
 
 from __future__ import annotations
@@ -52,10 +52,10 @@ def axis(state, b, frame, k):
 
 @kernel
 def child_arm(joint, state):
-    """Return the arm r_c of the child (3), world; of what rolls it reaches to the point on the plane.
+    """Return the arm r_c of the child (3), world; for a rolling body it ends at the point on the plane.
 
-    With n the normal of the plane and a the axis of a disc: -r n of a sphere, -r e of a disc, e the unit vector
-    along n - (n.a) a.
+    It is -r n for a sphere, and -r e for a disc, where n is the normal of the plane, a the axis of the disc,
+    and e the unit vector along n - (n.a) a.
     """
     if joint.kind not in ROLLING:
         return arm(state, joint.child, joint.child_anchor)
@@ -70,7 +70,7 @@ def child_arm(joint, state):
 
 @kernel
 def rolling_bias(joint, state):
-    """Return what turns the arms of rolling add: w_p x r_p' - w_c x r_c' (3), as a linear bias.
+    """Return the linear bias from the change of the arms in rolling: w_p x r_p' - w_c x r_c' (3).
 
     r_c' = -r e', e' = (g' - (g'.e) e)/|g|, g = n - (n.a) a, n' = w_p x n, a' = w_c x a;
     r_p' = v_c + r_c' - v_p.
@@ -117,7 +117,7 @@ def anchor_gap(joint, state):
 def parent_arm(joint, state):
     """Return the arm r_p of the parent (3), world; from the origin if the parent is the ground.
 
-    Where the joint slides it reaches to the point of the parent that now lies at the child's anchor.
+    For a sliding joint it ends at the point of the parent that is now at the child's anchor.
     """
     p = joint.parent
     if joint.kind in SLIDING or joint.kind in ROLLING:
@@ -146,10 +146,10 @@ def anchor_speed(joint, state):
 
 @kernel
 def turn_error(joint, state):
-    """Return the rotation vector (world) of the child against the parent, as far as it is forbidden.
+    """Return the forbidden part of the rotation vector (world) of the child relative to the parent.
 
-    The sine of the tilt where an axis is shared, all of it where nothing may turn; of a universal joint
-    minus a_1 . a_2 about n = a_1 x a_2, with n . (w_c - w_p) as its rate.
+    For a shared axis it is the sine of the tilt, for a rigid joint the whole rotation. For a universal joint it
+    is minus a_1 . a_2 about n = a_1 x a_2, with n . (w_c - w_p) as its rate.
     """
     kind = joint.kind
     c, p = joint.child, joint.parent
@@ -166,7 +166,7 @@ def turn_error(joint, state):
     ex, ey, ez = 0.0, 0.0, 0.0
     if kind in RIGID:
         # half the sum of e_p x e_c over the three axes: the rotation vector to first order,
-        # zero only where the frames agree (or are half a turn apart, excluded at the start)
+        # zero only if the frames agree (or are half a turn apart, which is excluded at the start)
         for k in range(3):
             ax, ay, az = axis(state, p, joint.parent_frame, k)
             bx, by, bz = axis(state, c, joint.child_frame, k)
@@ -177,10 +177,10 @@ def turn_error(joint, state):
 
 @kernel
 def screw_error(joint, state, slide):
-    """Return how far the child of a screw is from where its turn would have it, whole turns aside.
+    """Return the error of the slide of a screw [m] for its present turn.
 
-    The turn is known but for whole turns, the slide wholly: (slide/k - turn) modulo 2 pi, times k.
-    So no turns are counted.
+    The turn is known up to whole turns, the slide completely. So the error is k times (slide/k - turn)
+    modulo 2 pi, and turns need not be counted.
     """
     c, p = joint.child, joint.parent
     bx, by, bz = axis(state, c, joint.child_frame, 1)
@@ -222,7 +222,7 @@ def position_error(joint, state, out):
 
 @kernel
 def velocity_error(joint, state, out):
-    """Write the relative velocity of the two sides, as far as it is forbidden: out = (angular, linear)."""
+    """Write the forbidden part of the relative velocity of the two sides: out = (angular, linear)."""
     c, p, kind = joint.child, joint.parent, joint.kind
     wx, wy, wz = state[c].w[0], state[c].w[1], state[c].w[2]
     if p >= 0:
@@ -259,8 +259,9 @@ def universal_bias(joint, state, wx, wy, wz):
 
         n . (w_c - w_p) = 0,    n . alpha + n' . (w_c - w_p) = 0,
 
-    which gives the bias along n, a little off the manifold too. Across it the rates p and q of the angles,
-    w_c - w_p = p a + q b, turn with the axes: alpha = p' a + q' b + p w_p x a + q w_c x b.
+    which gives the bias along n, also slightly off the manifold. Perpendicular to n, the bias follows from the
+    rotation of the axes: with the rates p and q of the angles, w_c - w_p = p a + q b and
+    alpha = p' a + q' b + p w_p x a + q w_c x b.
     """
     ax, ay, az = axis(state, joint.parent, joint.parent_frame, 0)
     bx, by, bz = axis(state, joint.child, joint.child_frame, 1)
@@ -282,10 +283,10 @@ def universal_bias(joint, state, wx, wy, wz):
 def acceleration_bias(joint, state, out):
     """Write the bias of the relative acceleration: out = (angular, linear).
 
-    Angular: an axis that turns with the parent, w_p x (a qd) = w_p x w_c. Linear: centripetal
-    accelerations of the two anchors, w_p x (w_p x r_p) - w_c x (w_c x r_c). A distance adds
-    -|u_perp|^2/d along the line, a sliding joint 2 w_p x u, the knife edge and the universal joint the
-    turning of their own row.
+    The angular bias comes from an axis that turns with the parent, w_p x (a qd) = w_p x w_c. The linear bias
+    comes from the centripetal accelerations of the two anchors, w_p x (w_p x r_p) - w_c x (w_c x r_c). A
+    distance adds -|u_perp|^2/d along the line, a sliding joint 2 w_p x u, the knife edge and the universal
+    joint the rotation of their own row.
     """
     c, p = joint.child, joint.parent
     kind = joint.kind

@@ -1,7 +1,7 @@
-"""Poses that a back end remembers: what it worked out for one is good until another is asked for.
+"""Poses that a back end stores: it uses its results again until a pose changes.
 
-The end of a step is the first stage of the next, and impulses at several points of contact act in one position.
-Poses are compared bit by bit.
+This saves time because the end of a step is the first stage of the next, and impulses at several contact points
+act in the same position. Poses are compared bit by bit.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ def keep_pose(body, row):
 
 @kernel
 def same_pose(rows, state):
-    """Return whether the poses in the rows are those of the state; not if there are none, or NaN."""
+    """Return whether the poses in the rows are those of the state; False for no rows, or NaN."""
     for b in range(rows.shape[0]):
         row, x, Q = rows[b], state[b].x, state[b].Q
         if not (x[0] == row[0] and x[1] == row[1] and x[2] == row[2]):

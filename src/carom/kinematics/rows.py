@@ -1,7 +1,7 @@
 """Constraint rows of joints for systems with closed loops: A (rows) and A M^-1.
 
-Row r of joint j takes the part t_r of the joint's relative motion (angular t_a, linear t_l): on the
-child [t_l, r_c x t_l + t_a], on the parent minus the same with its own arm.
+Row r of joint j is the component of the relative motion along t_r (angular t_a, linear t_l). It is
+[t_l, r_c x t_l + t_a] for the child, and minus the same with its own arm for the parent.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ def direction(joint, r, state):
             return 0.0, 0.0, 0.0, ex, ey, ez
         if kind == SCREW:
             linear, k = 3, -joint.length
-            if r == 2:  # along it as the child turns
+            if r == 2:  # along the axis as the child turns
                 ex, ey, ez = axis(state, p, joint.parent_frame, 0)
                 return k * ex, k * ey, k * ez, ex, ey, ez
     elif kind in WITHIN:
@@ -54,12 +54,12 @@ def direction(joint, r, state):
         if r < 3:
             e0, e1, e2 = 1.0 if r == 0 else 0.0, 1.0 if r == 1 else 0.0, 1.0 if r == 2 else 0.0
             return 0.0, 0.0, 0.0, e0, e1, e2
-    if kind == UNIVERSAL:  # no turning about the normal of both axes
+    if kind == UNIVERSAL:  # no rotation about the normal of both axes
         ax, ay, az = axis(state, p, joint.parent_frame, 0)
         bx, by, bz = axis(state, joint.child, joint.child_frame, 1)
         ex, ey, ez = cross(ax, ay, az, bx, by, bz)
         return ex, ey, ez, 0.0, 0.0, 0.0
-    # where the first axis is shared: no turning about the second and third; else about none
+    # with a shared first axis, no rotation about the second and third; in a rigid joint, about any
     ex, ey, ez = axis(state, p, joint.parent_frame, r - linear + (0 if kind in RIGID else 1))
     return ex, ey, ez, 0.0, 0.0, 0.0
 
@@ -110,14 +110,14 @@ def write_row(system, side, r, row, work):
 
 @kernel
 def mass_row(system, side, r, work):
-    """Write the row times M^-1 of a row that is in place."""
+    """Write the product of a stored row and M^-1."""
     b = side.body
     times_inverse_mass(system.bodies[b].mass, work.body[b].inverse, side.A[r], side.Y[r])
 
 
 @kernel
 def joint_target(joint, state, relative, out):
-    """Write out[r] = t_r . relative (angular, linear): what each row says of a relative motion."""
+    """Write out[r] = t_r . relative (angular, linear): the component of a relative motion along each row."""
     for r in range(joint.rows):
         d = direction(joint, r, state)
         s = 0.0

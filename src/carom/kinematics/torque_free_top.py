@@ -5,14 +5,14 @@ With b = R^T L/|L| the momentum in the body, i = 1/J, and axes in Jacobi's order
     b_1 = A_1 cn u,   b_2 = A_2 sn u,   b_3 = A_3 dn u,   u = u_0 + p t,   p = -+|L| A_3 sqrt(d_31 d_32),
 
 d_jk = |i_j - i_k|, and k^2 = (P d_21)/(Q d_32), 1 - k^2 = d_31 (d_32 b_3^2 - d_21 b_1^2)/(Q d_32), with the
-constants P = d_31 b_1^2 + d_32 b_2^2 = d_31 A_1^2 and Q = d_31 b_3^2 + d_21 b_2^2 = d_31 A_3^2: products and
-sums of what is not negative, so no digits are lost where moments are nearly equal or the axis is nearly
-principal. The attitude is C exp(theta e_3) M(b), M(b) the shortest turn from b to e_3, and
+constants P = d_31 b_1^2 + d_32 b_2^2 = d_31 A_1^2 and Q = d_31 b_3^2 + d_21 b_2^2 = d_31 A_3^2. These are
+products and sums of nonnegative numbers, so no digits are lost if moments are nearly equal or the axis is
+nearly principal. The attitude is C exp(theta e_3) M(b), where M(b) is the shortest rotation from b to e_3, and
 
     theta' = (2T/|L| + |L| i_3 b_3)/(1 + b_3),   theta/2 = lambda t + arg theta_4(z - i eta | q^2) + const,
 
-z = pi u/2K, eta = pi w/2K, dn(iw) = 1/A_3 (mathematics page, free flight). Where K' < K/2 the theta functions
-are taken by Jacobi's imaginary transformation: either way four terms are enough. On the separatrix K is
+z = pi u/2K, eta = pi w/2K, dn(iw) = 1/A_3 (mathematics page, free flight). For K' < K/2 the theta functions are
+computed by Jacobi's imaginary transformation; in both cases four terms are enough. On the separatrix K is
 infinite, and the same formulas hold. Sources: Jacobi 1849; van Zon and Schofield, J. Comput. Phys. 225, 145
 (2007).
 """
@@ -25,15 +25,15 @@ from carom._compiled.decorators import kernel
 from carom.geometry.elliptic import carlson, quarter_period
 from carom.geometry.rotation import multiply
 
-#: how the elliptic functions are worked out: k = 0 to round-off, theta series in z, or in i z
+#: how the elliptic functions are computed: k = 0 to round-off, theta series in z, or in i z
 CIRCLE, NOME, COMPLEMENT = range(3)
 
 
 @kernel
 def order_axes(J, b):
-    """Return which axis comes first, second, third in Jacobi's order; b the momentum in the body.
+    """Return the first, second and third axis in Jacobi's order; b is the momentum in the body.
 
-    The second has the middle moment; about the third the momentum goes round.
+    The second axis has the middle moment; the momentum moves around the third.
     """
     most = 0 if J[0] >= J[1] and J[0] >= J[2] else 1 if J[1] >= J[2] else 2
     least = 2 if J[2] <= J[0] and J[2] <= J[1] else 1 if J[1] <= J[0] else 0
@@ -47,7 +47,7 @@ def order_axes(J, b):
 
 @kernel
 def begin_top(J, q, W, top):
-    """Put the constants of the flight that starts with attitude q and body rates W into `top`."""
+    """Write the constants of the flight that starts with attitude q and body rates W into `top`."""
     m = (J[0] * W[0], J[1] * W[1], J[2] * W[2])
     size = math.sqrt(m[0] * m[0] + m[1] * m[1] + m[2] * m[2])
     for k in range(3):
@@ -64,7 +64,7 @@ def begin_top(J, q, W, top):
 
 @kernel
 def constants(J, b, size, top):
-    """Put amplitudes, rates and series of a flight into `top`; b the direction of the momentum."""
+    """Write amplitudes, rates and series of a flight into `top`; b is the direction of the momentum."""
     first, second, third = order_axes(J, b)
     unit = min(J[first], J[third])  # all i and d in units of its reciprocal
     faster = J[third] < J[first]
@@ -92,7 +92,7 @@ def constants(J, b, size, top):
     if P * d21 > 0.0:
         m = min(P * d21 / (Q * d32), 1.0)
         m1 = min(d31 * max(d32 * x3 * x3 - d21 * x1 * x1, 0.0) / (Q * d32), 1.0)
-    # |W|^2 is greatest where b_2 = 0 or where b_1 = 0; of |W'|^2 each product at its greatest
+    # |W|^2 is greatest at b_2 = 0 or at b_1 = 0; in |W'|^2 each product has its greatest value
     spin = max(i1 * i1 * A1 * A1 + i3 * i3 * A3 * A3, i2 * i2 * A2 * A2 + i3 * i3 * A3 * A3 * m1)
     change = max(i1 * d32 * A2, i2 * d31 * A1) * A3
     nod = 0.5 * i3 * d21 * A1 * A2
@@ -101,7 +101,7 @@ def constants(J, b, size, top):
         return
     K, Kc = quarter_period(math.sqrt(m1)), quarter_period(math.sqrt(m))
     w = math.sqrt(d32) * carlson(d21, d21 + m * d32, d21 + d32)
-    still = y1 * y1 == 0.0 and m1 == 0.0  # about the middle axis for ever
+    still = y1 * y1 == 0.0 and m1 == 0.0  # constant rotation about the middle axis
     u = math.copysign(FAR, y2)
     if not still:
         u = y2 * carlson(y1 * y1, y1 * y1 + m1 * y2 * y2, y1 * y1 + y2 * y2)
@@ -119,7 +119,7 @@ FAR = 800.0
 
 @kernel
 def start_nome(K, Kc, w, u, p, top):
-    """Put the series in z = pi u/2K into `top`; nome q = exp(-pi K'/K) < 0.21."""
+    """Write the series in z = pi u/2K into `top`; nome q = exp(-pi K'/K) < 0.21."""
     c, f = top.series, 0.5 * math.pi / K
     q = math.exp(-2.0 * f * Kc)
     q2, q4 = q * q, q * q * q * q
@@ -146,7 +146,7 @@ def start_nome(K, Kc, w, u, p, top):
 
 @kernel
 def start_complement(K, Kc, w, u, p, top):
-    """Put the series in pi u/2K' into `top`; nome q' = exp(-pi K/K') < 0.0019, 0 on the separatrix."""
+    """Write the series in pi u/2K' into `top`; nome q' = exp(-pi K/K') < 0.0019, 0 on the separatrix."""
     c, f = top.series, 0.5 * math.pi / Kc
     root = math.exp(-f * K)
     q = root * root
@@ -193,7 +193,7 @@ def by_nome(c, z):
 
 @kernel
 def by_complement(c, u):
-    """Return the same where K' < K/2, with r = u less whole periods 2K, and the phase along r apart."""
+    """Return the same for K' < K/2, from r = u minus whole periods 2K; the phase along r is returned apart."""
     periods = math.floor(0.5 * u / c[11] + 0.5)
     r = u - 2.0 * c[11] * periods if periods != 0.0 else u
     odd = periods - 2.0 * math.floor(0.5 * periods)
@@ -231,7 +231,7 @@ def by_complement(c, u):
 
 @kernel
 def attitude(top, t):
-    """Return the turn of the body since `top.turn` as a quaternion, and b, both in the body's own axes."""
+    """Return the rotation of the body since `top.turn` as a quaternion, and b, both in the body's own axes."""
     u = top.phase + top.rate[1] * t
     half = top.rate[0] * t
     X, Y = 1.0, 0.0

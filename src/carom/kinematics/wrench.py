@@ -1,4 +1,4 @@
-"""Points of bodies, their velocities, and what a force there does: -1 stands for the ground."""
+"""Points of bodies, their velocities, and the wrench of a force at a point; body -1 is the ground."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""The scene compiled into arrays (what a run reads), and the records and workspace that a run writes."""
+"""The scene compiled into arrays, which a run reads, and the records and workspace that it writes."""

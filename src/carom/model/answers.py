@@ -1,4 +1,4 @@
-"""Answers of the user's functions at the start: refused where they are no numbers or have another shape."""
+"""Check of the user's functions at the start: their results must be numbers of the right shape."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from carom.scene.more_forces import JointForce, UserForce
 
 
 def check_answers(scene) -> None:
-    """Refuse a function of a force or constraint that gives another shape, no numbers, or NaN at the start.
+    """Raise an error if a function of a force or constraint has a wrong shape, no numbers, or NaN at the start.
 
-    Compiled ones are called as they were written. What a function raises is left to the run, which tells it.
+    Compiled functions are called as plain Python. The run reports the errors that a function itself raises.
     """
     for part in (*scene.forces, *scene.constraints):
         d = part.definition
@@ -21,9 +21,8 @@ def check_answers(scene) -> None:
             _check(f"function of {part.name!r}", d.function, (0.0, states), (len(d.bodies), 6))
             if d.potential is not None:
                 name = f"potential of {part.name!r}"
-                checks.call(
-                    name, d.potential, 0.0, states
-                )  # no step calls it: what it raises is told here
+                # no step calls the potential, so its own errors are reported here
+                checks.call(name, d.potential, 0.0, states)
                 _check(name, d.potential, (0.0, states), ())
         elif isinstance(d, Rows):
             states = _states(d.bodies, with_rates=False)
@@ -32,7 +31,7 @@ def check_answers(scene) -> None:
             if d.position is not None:
                 _check(f"position of {part.name!r}", d.position, (0.0, states), (d.rows,))
         elif isinstance(d, JointForce) and callable(d.force):
-            # the rate at the start is not known here, and NaN at another one is no mistake
+            # the rate at the start is not known here, and NaN at the rate 0 may be correct
             _check(f"force of {part.name!r}", d.force, (0.0, 0.0, 0.0), (), finite=False)
         elif isinstance(d, Driver) and d.motion is not None and not hasattr(d.motion, "c"):
             _check(f"motion of {part.name!r}", d.motion, (0.0,), (3,))
@@ -45,7 +44,7 @@ def _states(bodies, with_rates: bool) -> np.ndarray:
 
 
 def _check(name: str, function, given: tuple, shape: tuple[int, ...], finite: bool = True) -> None:
-    """Refuse another shape than `shape`, axes of length 1 aside, and what is no number."""
+    """Raise an error if the result is no number or has not `shape`; axes of length 1 do not count."""
     try:
         answer = getattr(function, "py_func", function)(*given)
     except Exception:

@@ -1,11 +1,11 @@
-"""A compiled scene: one structured array for each noun. What a run writes is in `carom.model.workspace`.
+"""A compiled scene: one structured array for each kind of part. A run writes into `carom.model.workspace`.
 
 N bodies, J joints, C contacts. Index -1 stands for the ground. Kernels read ``bodies[b].mass``; Python
 sees the same arrays as columns, ``bodies.mass``.
 
-Records, not a tuple of one array per field: Numba hands each array to each function as seven values
-and types and optimises all of them again at every level of the call tree. (Measured: 110 arrays took 125 s
-to compile and 8.5 microseconds a step; docs/development/decisions.md.)
+The arrays contain records. With one array per field instead, Numba passes each array to each function as seven
+values, and types and optimises all of them again at every level of the call tree. (Measured: 110 arrays took
+125 s to compile and 8.5 microseconds a step; docs/development/decisions.md.)
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ REVOLUTE, PRISMATIC = KIND[joints.Revolute], KIND[joints.Prismatic]
 DISTANCE, KNIFE_EDGE = KIND[joints.Distance], KIND[joints.KnifeEdge]
 UNIVERSAL, SCREW = KIND[joints.Universal], KIND[joints.Screw]
 ROLLING_SPHERE, ROLLING_DISC = KIND[joints.RollingSphere], KIND[joints.RollingDisc]
-#: what is no joint but stands among them: a relation of coordinates of joints, rows of the user's own; a spring
-#: and damper as a row, for the implicit step; inertia along a coordinate as a row
+#: other kinds in the table of joints: a relation of coordinates of joints; rows of the user's own; a spring and
+#: damper as a row, for the implicit step; inertia along a coordinate as a row
 RELATION, USER_ROWS, STIFF, INERTIA = range(len(KIND), len(KIND) + 4)
 
 
@@ -32,22 +32,22 @@ def _kinds(chosen) -> tuple[int, ...]:
     return tuple(number for definition, number in KIND.items() if chosen(definition))
 
 
-#: the child's anchor moves along the first direction of the parent's frame
+#: joints whose child's anchor moves along the first direction of the parent's frame
 ALONG = _kinds(lambda joint: joint.guide == "line")
-#: it moves in the plane across it
+#: it moves in the plane perpendicular to this direction
 WITHIN = _kinds(lambda joint: joint.guide == "plane")
 SLIDING = ALONG + WITHIN
 #: the child rolls on a plane of the parent
 ROLLING = (ROLLING_SPHERE, ROLLING_DISC)
 #: the child turns about the first direction alone
 TURNING = _kinds(lambda joint: joint.turn == "axis")
-#: it turns freely
+#: the child turns freely
 BALL = _kinds(lambda joint: joint.turn == "ball")
-#: it does not turn
+#: the child does not turn
 RIGID = _kinds(lambda joint: joint.turn == "rigid")
-#: they do not carry their child in a tree
+#: joints that cannot carry their child in a tree
 LOOSE = _kinds(lambda joint: not joint.in_trees)
-#: they do so from parent to child only: the line or plane is of one body
+#: joints that can do so from parent to child only: the line or plane belongs to the parent
 ONE_WAY = _kinds(lambda joint: joint.turn == "ball" and joint.guide != "point")
 
 #: absolute coordinates, world axes; Q takes principal axes of inertia to the world
@@ -57,13 +57,13 @@ BODY = [
     ("mass", "f8"),
     ("inertia", "f8", 3),  # principal moments
     ("extent", "f8"),  # a length of the body: its shape, or the arms of its joints
-    ("isotropic", "i8"),  # 1 where the three moments are equal
-    ("isolated", "i8"),  # 1 where no joint acts
-    ("ballistic", "i8"),  # 1 where no joint and no force but gravity acts
-    ("component", "i8"),  # its own number, or N for all that have joints
+    ("isotropic", "i8"),  # 1 if the three moments are equal
+    ("isolated", "i8"),  # 1 if no joint acts
+    ("ballistic", "i8"),  # 1 if no joint acts, and no force except gravity
+    ("component", "i8"),  # its own number, or N for all bodies with joints
     ("number", "i8"),  # among all bodies of the scene
     ("axes", "f8", 4),  # quaternion from the principal axes to those of the scene
-    ("ball", "f8"),  # radius of the ball around its centre that holds its shapes
+    ("ball", "f8"),  # radius of the ball around its centre that contains its shapes
 ]
 
 JOINT = [
@@ -75,17 +75,14 @@ JOINT = [
     ("child_anchor", "f8", 3),
     ("parent_frame", "f8", (3, 3)),  # columns: axis, second, third direction, in the parent's axes
     ("child_frame", "f8", (3, 3)),
-    ("length", "f8"),  # of a distance; way of a screw, a radian; radius of what rolls
+    ("length", "f8"),  # distance; displacement of a screw per radian; radius of a rolling body
     ("number", "i8"),  # of a relation, or of rows of the user's, in `Relations`
-    (
-        "reference",
-        "f8",
-    ),  # of a coordinate: the angle at the start of the trial step, with its whole turns
+    ("reference", "f8"),  # angle of a coordinate at the start of the trial step, with whole turns
     ("begun", "f8"),  # the same at the start of the step
 ]
 
-#: a coordinate of a joint: an angle about (kind REVOLUTE), or a way along (PRISMATIC), the first axis of the
-#: parent's frame; either side may be the ground
+#: a coordinate of a joint: an angle about (kind REVOLUTE), or a displacement along (PRISMATIC), the first axis
+#: of the parent's frame; either side may be the ground
 COORDINATE = JOINT
 
 #: a relation: sum of factor times coordinate = f(t)
@@ -94,10 +91,10 @@ RELATION_ROW = [
     ("last", "i8"),
     ("constant", "f8"),  # f = constant + rate t
     ("rate", "f8"),
-    ("address", "i8"),  # or of a function of the user's: t -> (f, f', f'')
-    ("piece", "i8"),  # or the range of pieces of a polynomial
+    ("address", "i8"),  # or f is a function of the user's: t -> (f, f', f'')
+    ("piece", "i8"),  # or f is a range of pieces of a polynomial
     ("last_piece", "i8"),
-    ("scale", "f8"),  # by which its error is judged: 1 for angles, a length for ways
+    ("scale", "f8"),  # of its error: 1 for angles, a length for displacements
 ]
 
 TERM = [
@@ -110,8 +107,8 @@ TERM = [
 #: rows of the user's: a(q, t) v = b(q, t), as a function (t, poses) -> (rows, 6 bodies + 1)
 USER_ROW = [
     ("address", "i8"),
-    ("position_address", "i8"),  # of phi(q, t) = 0, 0 where the rows are nonholonomic
-    ("first", "i8"),  # range of its sides, one a body
+    ("position_address", "i8"),  # of phi(q, t) = 0; 0 if the rows are nonholonomic
+    ("first", "i8"),  # range of its sides, one for each body
     ("last", "i8"),
 ]
 
@@ -125,7 +122,7 @@ PUSH = [
     ("address", "i8"),  # of a function of the user's: t, (q, q') -> force; 0 for none
 ]
 
-#: a spring and damper that the implicit step takes as a row: along a coordinate, or between two points
+#: a spring and damper, a row in the implicit step: along a coordinate, or between two points
 STIFF_SPRING = [
     ("coordinate", "i8"),  # -1: between two points
     ("parent", "i8"),
@@ -137,8 +134,8 @@ STIFF_SPRING = [
     ("rest", "f8"),
     ("child_side", "i8"),
     ("parent_side", "i8"),
-    ("speed", "f8"),  # of the last stage, and what it does to it
-    ("gain", "f8"),
+    ("speed", "f8"),  # rate of its length in the last stage; after a step, for its work
+    ("gain", "f8"),  # second derivative of its length in the last stage
 ]
 
 #: dry friction along a coordinate of a joint: |force| <= bound
@@ -148,26 +145,26 @@ FRICTION = [
     ("mode", "i8"),  # 1 or -1: slips in this direction; 0 sticks
     ("force", "f8"),  # of the last solve
     ("change", "f8"),  # of q' by all other forces
-    ("driven", "i8"),  # 1 while it sticks where joints and motors leave its coordinate no freedom
+    ("driven", "i8"),  # 1 while it sticks, if joints and motors determine its coordinate
 ]
 
 #: inertia along a coordinate of a joint
 ROTOR = [
     ("coordinate", "i8"),
     ("inertia", "f8"),
-    ("rate", "f8"),  # q' that it goes on with, noted before the bodies are moved on
+    ("rate", "f8"),  # q' that the rotor keeps, stored before the bodies move
 ]
 
-#: forces by a function of the user's: t, (bodies, 13) -> (bodies, 6)
+#: forces of a function of the user's: t, (bodies, 13) -> (bodies, 6)
 USER_FORCE = [
     ("address", "i8"),
-    ("energy_address", "i8"),  # of their potential, 0 where they have none
+    ("energy_address", "i8"),  # of their potential, 0 if they have none
     ("first", "i8"),  # range of its bodies in `Relations.named`
     ("last", "i8"),
 ]
 
 #: a piece of a polynomial in (t - start)
-PIECE = [("start", "f8"), ("end", "f8"), ("c", "f8", 6)]  # c: from the constant up
+PIECE = [("start", "f8"), ("end", "f8"), ("c", "f8", 6)]  # c: constant term first
 
 SPRING = [
     ("parent", "i8"),
@@ -177,10 +174,7 @@ SPRING = [
     ("stiffness", "f8"),
     ("damping", "f8"),
     ("rest_length", "f8"),
-    (
-        "piece",
-        "i8",
-    ),  # tension over length, where it is a curve: a range of pieces, empty where it is not
+    ("piece", "i8"),  # tension as a curve of the length: range of pieces, empty if it is linear
     ("last_piece", "i8"),
 ]
 
@@ -207,35 +201,30 @@ BUSHING = [
     ("turn_damping", "f8", 3),
 ]
 
-#: hull of vertices, swollen by a radius, against a half-space; or two solids, the other perhaps a half-space
+#: a hull of vertices, enlarged by a radius, and a half-space; or two solids, one of them perhaps a half-space
 CONTACT = [
     ("number", "i8"),  # among all contacts of the scene
     ("body", "i8"),
     ("other", "i8"),  # -1 for a half-space or a static body
-    ("static", "i8"),  # 1 where the other solid does not move: it is placed in the world
-    ("centre", "f8", 3),  # of it
-    (
-        "touches",
-        "i8",
-    ),  # 1 where the kernels of pairs find the points, 0 where they are the vertices; 2 of a stop in a joint
-    ("part", "i8"),  # 1 where a body has several pieces
+    ("static", "i8"),  # 1 if the other solid is static: its pose is one in the world
+    ("centre", "f8", 3),  # of the static solid
+    ("touches", "i8"),  # 0 in vertices, 1 in points that `carom.collision` finds; 2 a stop
+    ("part", "i8"),  # 1 if a body has several pieces
     ("first", "i8"),  # range of the vertices of the body
     ("last", "i8"),
     ("other_first", "i8"),  # of the other body
     ("other_last", "i8"),
-    (
-        "solid",
-        "i8",
-    ),  # where the kernels of pairs find the points: the two solids; of a stop its coordinate
+    ("solid", "i8"),  # the two solids, if `touches` is 1; coordinate of a stop
     ("other_solid", "i8"),
     ("law", "i8"),  # 0 newton, 1 poisson, 2 stronge
-    ("multiple", "i8"),  # 1: its pair strikes in a blow of its own
-    ("ball_like", "i8"),  # 1 where one of the two is a ball or an ellipsoid
+    ("multiple", "i8"),  # 1: its pair has impacts of its own, one after another
+    ("ball_like", "i8"),  # 1 if one of the two is a ball or an ellipsoid
     ("axes", "f8", (3, 3)),  # of a half-space: rows n, t1, t2
-    ("offset", "f8"),  # n . point of the plane; of a stop side times where it is
-    # of a stop: gap = side q - offset, above 0 for a lower, below for an upper one; 1 or, of a turn, a length
+    ("offset", "f8"),  # n . point of the plane; for a stop, side times its position
+    # of a stop, gap = side q - offset: above 0 for a lower, below 0 for an upper stop; |side| is 1, or a length
+    # for an angle
     ("side", "f8"),
-    ("radius", "f8"),  # of both, where they are two solids
+    ("radius", "f8"),  # sum of both radii for two solids
     ("friction", "f8"),
     ("friction_held", "f8"),
     ("turning", "f8", 2),  # rolling and pivoting friction [m]
@@ -243,8 +232,8 @@ CONTACT = [
     ("stiffness", "f8"),  # of its boundary layer, relative to the others
     ("extent", "f8"),  # largest distance of the shape from the mass centre
     ("other_extent", "f8"),
-    ("core", "f8"),  # largest distance of a core point, without the ball that swells it
-    ("still", "f8"),  # speed that is round-off of what gravity gives over the body's size
+    ("core", "f8"),  # largest distance of a core point, without the ball that enlarges it
+    ("still", "f8"),  # speed that counts as zero: round-off of a fall by the body's size
     ("width", "f8"),  # b of the boundary layer
     ("penetration", "f8"),  # delta
 ]
@@ -252,17 +241,17 @@ CONTACT = [
 #: place of a body in a forest of joints
 LINK = [
     ("order", "i8"),  # the body at this place of the walk, parents before children
-    ("joint", "i8"),  # joint that carries the body, -1 where it floats
-    ("parent", "i8"),  # parent body, -1 where that is the ground or none
+    ("joint", "i8"),  # joint that carries the body, -1 for a floating body
+    ("parent", "i8"),  # parent body, -1 for the ground or none
     ("freedoms", "i8"),  # of the joint; 6 for a floating body
     ("has_child", "i8"),
 ]
 
-#: what the solve for closed loops writes, for each joint
+#: results of the solve for closed loops, for each joint
 ROW = [
     ("first", "i8"),  # range of its sides; of a joint the child, and the parent if it is a body
     ("last", "i8"),
-    ("off", "i8"),  # 1 where its rows do not count
+    ("off", "i8"),  # 1 if its rows are ignored
     ("compliance", "f8", 6),  # added to the diagonal of A M^-1 A^T
     ("pivot", "f8", 6),  # reciprocal pivots, 0 = dropped
     ("weight", "f8", 6),  # diagonal of A M^-1 A^T before elimination
@@ -277,27 +266,26 @@ SIDE = [
     ("Y", "f8", (6, 6)),  # A M^-1
 ]
 
-#: of `touches`: a stop in a joint
+#: value of `touches` for a stop in a joint
 STOP = 2
 
 
-#: of a row of the workspace of a forest: where the freedoms begin, and numbers for each (`carom.dynamics.tree`)
+#: workspace of a forest, for each body: numbers before the freedoms, and for each freedom
+#: (`carom.dynamics.tree`)
 FIRST, WIDTH = 52, 14
 
 
-#: kinds of back ends: every body answers for itself; articulated-body elimination; sparse Cholesky factor
+#: kinds of back ends: each body by itself; articulated-body elimination; sparse Cholesky factor
 NO_JOINTS, FOREST, LOOPS = range(3)
 
 
 class Solver(NamedTuple):
-    """What the constrained solve works with: what its kind does not need is empty."""
+    """Arrays of the constrained solve; those that its kind does not need are empty."""
 
     kind: int  # NO_JOINTS, FOREST or LOOPS
     # forest: articulated-body elimination (`carom.dynamics.tree`)
     links: np.recarray  # (N,) LINK
-    rotor: (
-        np.ndarray
-    )  # (N, most freedoms) inertia along each freedom of the joint that carries a body
+    rotor: np.ndarray  # (N, most freedoms) inertia along each freedom of the joint of a link
     workspace: np.ndarray  # (N, FIRST + WIDTH times the most freedoms) written by each solve
     # closed loops: block-sparse Cholesky factor of A M^-1 A^T, joints in an order of low fill
     order: np.ndarray  # (J,) joints in the order of elimination
@@ -310,10 +298,10 @@ class Solver(NamedTuple):
     sides: np.recarray  # (S,) SIDE
     block: np.ndarray  # (J+B, 6, 6) diagonal blocks, then the others
     drop: float  # pivots below this part of the row's diagonal are dropped
-    pose: np.ndarray  # (N, 7) that was factored, or (0, 7): rows depend on more than the pose
-    #: (1,) how many rows depend on others away from singular positions; -1: not known yet
+    pose: np.ndarray  # (N, 7) of the last factor; (0, 7) if rows depend on more than the pose
+    #: (1,) number of redundant rows away from singular positions; -1: not known yet
     usual: np.ndarray
-    # workspace of `carom.dynamics.light_bodies`, empty where masses are alike: high and low parts
+    # workspace of `carom.dynamics.light_bodies`, empty for similar masses: high and low parts
     fine: np.ndarray  # (2, J+B, 6, 6) blocks
     digits: np.ndarray  # (J, 4, 6) 1/pivots, multipliers
     scaled: np.ndarray  # (N, 3, 6) scaled motions, and attitudes
@@ -322,7 +310,7 @@ class Solver(NamedTuple):
 class Relations(NamedTuple):
     """Coordinates of joints, relations between them, and rows of the user's own."""
 
-    there: int  # 1 where anything is said here; else all is empty
+    there: int  # 1 if any of these arrays has rows
     coordinates: np.recarray  # COORDINATE
     relations: np.recarray  # RELATION_ROW
     terms: np.recarray  # TERM
@@ -335,19 +323,17 @@ class Relations(NamedTuple):
     friction_matrix: np.ndarray  # (F, F) workspace
     friction_vector: np.ndarray  # (F,) workspace
     rotors: np.recarray  # ROTOR
-    named: np.ndarray  # bodies that functions of the user's speak of
-    read: np.ndarray  # what functions of the user's read and write
-    write: np.ndarray
+    named: np.ndarray  # bodies of the user's functions
+    read: np.ndarray  # arguments of the user's functions
+    write: np.ndarray  # and results
 
 
 class System(NamedTuple):
-    """All that the kernels know about a scene. Never written to after compile, but the solver's workspace."""
+    """All that the kernels know about a scene. Once compiled, only the workspaces in it change."""
 
     bodies: np.recarray  # (N,) BODY
     gravity: np.ndarray  # (3,)
-    joints: (
-        np.recarray
-    )  # (J,) JOINT; relations and rows of the user's come after the joints of the scene
+    joints: np.recarray  # (J,) JOINT of the scene, then relations and rows of the user's
     relations: Relations
     springs: np.recarray  # SPRING
     loads: np.recarray  # LOAD

@@ -32,18 +32,19 @@ class Compiled(NamedTuple):
     to_principal: np.ndarray  # (N, 4) principal axes -> the scene's body axes
     flipped: np.ndarray  # (J,) joints whose parent and child were exchanged
     functions: Functions  # of the user's
-    pairs: PairTable  # what touches what, by the number of the contact
-    surfaces: Surfaces  # what rows of contacts are made from
+    pairs: PairTable  # the two sides of each contact, by its number
+    surfaces: Surfaces  # data from which rows of contacts are made
     later: Defaults | None  # pairs of bodies that get rows when they come near each other
 
 
 def compile_scene(
     scene: Scene, options: Options, loops: bool = False, implicit: bool = False, apart: bool = False
 ) -> Compiled:
-    """Return the arrays of `scene`; with `loops` the block-sparse back end even for a forest.
+    """Return the arrays of `scene`.
 
-    With `implicit` springs are rows of the solve, not forces. Where bodies move `apart`, in islands, many pairs
-    of them have no rows until they come near each other (`with_pairs`).
+    With `loops`, even a forest has the block-sparse back end. With `implicit`, springs are rows of the solve,
+    not forces. If bodies move `apart`, in islands, many pairs have no rows until they come near each other
+    (`with_pairs`).
     """
     start, to_principal, moments = _start(scene)
     placement, functions = Placement(start, to_principal), Functions()
@@ -59,7 +60,7 @@ def compile_scene(
     bushings = _bushings(scene, placement)
     bodies = _bodies(scene, moments, joints, elements, springs, loads, bushings, more)
     bodies["axes"] = to_principal
-    # stops have the numbers after those of all pairs, so none may come later
+    # stops have the numbers after those of all pairs, so no pair may be added later
     may_come = apart and bool(bodies["ballistic"].any()) and not scene.stops
     touching = compile_contacts(scene, to_principal, options, may_come)
     contacts = with_stops(scene, touching.rows, coordinates, sizes, options)
@@ -188,10 +189,10 @@ def _joints(scene, moments, placement, elements, options, loops):
 
 
 def rotors_in_tree(scene, kind, flipped) -> tuple[np.ndarray, bool]:
-    """Return the inertia (J, 6) along each freedom of the joints of a forest, and whether it is along these.
+    """Return the inertia (J, 6) along each freedom of the joints of a forest, and whether this is possible.
 
-    Freedoms are slides, then turns (`carom.dynamics.tree.freedoms`), along axes of the side that is walked
-    from. The slides of a planar joint that was flipped are along axes of the other body.
+    Freedoms are slides, then turns (`carom.dynamics.tree.freedoms`), along axes of the body nearer to the root.
+    It is not possible for slides of a flipped planar joint, which are along axes of the other body.
     """
     out = np.zeros((len(kind), 6))
     for force in scene.forces:
@@ -271,7 +272,7 @@ def _bushings(scene, frames):
 
 
 def start_sizes(scene) -> np.ndarray:
-    """Return the size (N,) of the shape of each body; where it has none its radius r, tr J = 2 m r^2."""
+    """Return the size (N,) of the shape of each body; without a shape, the radius r with tr J = 2 m r^2."""
     return np.array(
         [
             np.sqrt(0.5 * np.trace(b.inertia) / b.mass) if b.shape is None else b.shape.size
@@ -281,7 +282,7 @@ def start_sizes(scene) -> np.ndarray:
 
 
 def _extents(scene, joints) -> np.ndarray:
-    """Return a length (N,) of each body: of its shape, or the arms of its joints."""
+    """Return a length (N,) of each body: the largest of the size of its shape and the arms of its joints."""
     size = np.array([0.0 if b.shape is None else b.shape.size for b in scene.bodies])
     for side in ("parent", "child") if len(joints) else ():
         sides, anchors = joints[side], joints[f"{side}_anchor"]

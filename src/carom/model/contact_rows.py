@@ -1,4 +1,4 @@
-"""The contacts of a scene, own ones and those of all pairs, and the rows of each: one for two cores."""
+"""The contacts of a scene, added ones and default ones, and their rows: one for each two cores."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from carom.scene.all_pairs import Defaults, PairTable, every_pair, joined_tables
 from carom.scene.bodies import Body
 from carom.scene.scene import Scene
 
-#: pairs of bodies that are few: all of them have rows from the start, in the order of the scene
+#: number of pairs of bodies up to which all have rows from the start, in the order of the scene
 FEW = 64 * 63 // 2
 
 
 class Rows(NamedTuple):
-    """R rows: what touches what."""
+    """R rows: the two cores that touch."""
 
     number: np.ndarray  # (R,) of the contact
     core: np.recarray  # (R,) CORE of the body
@@ -30,10 +30,10 @@ def touching_pairs(scene: Scene) -> PairTable:
 
 
 def first_pairs(scene: Scene, apart: bool) -> tuple[PairTable, Defaults | None]:
-    """Return the pairs that have rows from the start of a run, and what others may come, if any.
+    """Return the pairs that have rows from the start of a run, and those that may be added later, if any.
 
-    Where bodies move `apart`, in islands, and are many, the pairs of two bodies that touch by default are left
-    to when they come near each other.
+    If many bodies move `apart`, in islands, two bodies that touch by default get rows only when they come near
+    each other.
     """
     default = scene._pairs.defaults(scene.bodies, scene.fixed)
     if default is None:
@@ -48,7 +48,7 @@ def first_pairs(scene: Scene, apart: bool) -> tuple[PairTable, Defaults | None]:
 
 
 def _added(scene: Scene, rest: PairTable) -> PairTable:
-    """Return the pairs of the contacts that were added, then the rest."""
+    """Return the pairs of the contacts that were added to the scene, then the rest."""
     added = scene.contacts
     places = {part: h for h, part in enumerate(scene.fixed)}
     ends = [

@@ -22,7 +22,7 @@ from carom.scene.shapes import Shape
 
 
 class Surfaces(NamedTuple):
-    """What bodies touch with: rows of contacts are made from it, at the start and later."""
+    """The surfaces of bodies, from which rows of contacts are made, at the start and later."""
 
     grounded: Cores  # against half-spaces
     single: Cores  # piece by piece, against each other
@@ -32,7 +32,7 @@ class Surfaces(NamedTuple):
 
 
 class Contacts(NamedTuple):
-    """The contacts of a scene at the start, and what more of them are made from."""
+    """The contacts of a scene at the start, and the data for further ones."""
 
     rows: np.recarray  # CONTACT
     vertices: np.ndarray  # (V, 3)
@@ -46,8 +46,8 @@ class Contacts(NamedTuple):
 def compile_contacts(scene: Scene, to_principal, options: Options, apart: bool = False) -> Contacts:
     """Return the contacts of a scene.
 
-    A contact of the scene has a row for each pair of pieces; against a half-space one for all vertices that
-    are swollen alike, and one for each curved piece. Where bodies move `apart` there may be more to come.
+    A contact of two bodies has a row for each pair of pieces. A contact with a half-space has one row for all
+    vertices of equal radius, and one for each curved piece. If bodies move `apart`, more rows may follow later.
     """
     known, later = first_pairs(scene, apart)
     pairs, to_principal = _with_statics(scene, known), _and_of_statics(scene, to_principal)
@@ -77,13 +77,13 @@ def _with_statics(scene: Scene, pairs: PairTable) -> PairTable:
 
 
 def _and_of_statics(scene: Scene, to_principal: np.ndarray) -> np.ndarray:
-    """Return the rotations (N + S, 4) from the axes that are used, of static bodies those of the world."""
+    """Return the rotations (N + S, 4) from the axes in use to body axes; static bodies use world axes."""
     axes = [quaternion.conjugate(solid.orientation) for solid in scene.statics]
     return np.concatenate([to_principal, np.reshape(axes, (-1, 4))])
 
 
 def _place_statics(scene: Scene, single: Cores, solids: np.recarray, place: np.ndarray) -> None:
-    """Move vertices and solids of static bodies, which are turned already, to where these are in the world."""
+    """Move vertices and solids of static bodies, which are rotated already, to their world positions."""
     for b, solid in enumerate(scene.statics, start=len(scene.bodies)):
         mine = single.group[single.first[b] : single.first[b + 1]]
         if len(mine):
@@ -120,7 +120,7 @@ def _rows(scene, options: Options, pairs: PairTable, which: Rows, surfaces: Surf
 
 
 def _speed(scene: Scene, extent: np.ndarray, fastest: float) -> np.ndarray | float:
-    """Return the speed that gravity gives over the size of a body, or the greatest at the start without it."""
+    """Return the speed of a fall by the size of a body; without gravity, the greatest speed at the start."""
     if np.any(scene.gravity):
         return np.sqrt(np.linalg.norm(scene.gravity) * extent)
     return fastest
@@ -138,7 +138,7 @@ def _parts(scene: Scene) -> tuple:
 
 
 def _write_statics(rows: np.recarray, scene: Scene) -> None:
-    """Write of each row whether the other is static, and where that is: to the kernels it is no body."""
+    """Write whether the other side of each row is static, and its position; for kernels it is not a body."""
     count = len(scene.bodies)
     rows["static"] = rows["other"] >= count
     for b, solid in enumerate(scene.statics, start=count):
@@ -147,7 +147,7 @@ def _write_statics(rows: np.recarray, scene: Scene) -> None:
 
 
 def _write_half_spaces(rows: np.recarray, scene: Scene, plane: np.ndarray) -> None:
-    """Write how the half-space of each row lies; `plane` is its index, -1 for none."""
+    """Write axes and offset of the half-space of each row; `plane` is its index, -1 for none."""
     for h, half_space in enumerate(scene.half_spaces):
         here = plane == h
         rows["axes"][here] = contact_axes(half_space.normal)
@@ -155,7 +155,7 @@ def _write_half_spaces(rows: np.recarray, scene: Scene, plane: np.ndarray) -> No
 
 
 def _write_shapes(rows: np.recarray, which: Rows) -> None:
-    """Write of which form and size the two are, and who finds the points where they touch."""
+    """Write form and size of both sides, and which kernels find their contact points."""
     core, other = which.core, which.other
     rows["touches"] = np.where(rows["other"] >= 0, 1, core["curved"])
     rows["ball_like"] = np.maximum(core["ball_like"], other["ball_like"])
@@ -165,17 +165,17 @@ def _write_shapes(rows: np.recarray, which: Rows) -> None:
 
 
 def _own_vertices(which: Rows, flat: np.ndarray) -> np.ndarray:
-    """Return which vertices the rows with half-spaces have: a contact is held at one, so each has its own."""
+    """Return the vertices of the rows with half-spaces: a vertex carries a contact, so each row has its own."""
     length = np.where(flat, which.core["last"] - which.core["first"], 0)
     first = np.cumsum(length) - length
     return np.repeat(which.core["first"] - first, length) + np.arange(length.sum())
 
 
 def _write_ranges(rows: np.recarray, which: Rows, shared: int) -> None:
-    """Write the ranges of vertices: own ones on half-spaces, row by row.
+    """Write the ranges of vertices.
 
-    Points of two bodies are found anew in each state, and all contacts of a piece share its vertices, which
-    begin at `shared`.
+    Each row with a half-space has its own vertices. Points of two bodies are found anew in each state, so all
+    contacts of a piece share its vertices, which begin at `shared`.
     """
     core, other, flat = which.core, which.other, rows["touches"] == 0
     length = np.where(flat, core["last"] - core["first"], 0)
@@ -190,9 +190,9 @@ def _write_ranges(rows: np.recarray, which: Rows, shared: int) -> None:
 
 
 def _solids(scene: Scene, every: list[Shape | None], curved: np.ndarray, to_principal: np.ndarray):
-    """Return the first solid (N,) of each body, and the table of all, with their hulls.
+    """Return the first solid (N,) of each body, and the table of all solids, with their hulls.
 
-    Of bodies that meet others, and of those with a curved piece on a half-space.
+    It contains bodies that may touch other bodies, and those with a curved piece on a half-space.
     """
     meets = [b for b, shape in enumerate(every) if shape is not None]
     bodies = np.union1d(np.array(meets, dtype=np.int64), curved)

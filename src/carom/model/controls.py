@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-LOCATE, PROJECT, WORK = range(3)  # what is done about an impact within a step
+LOCATE, PROJECT, WORK = range(3)  # treatment of an impact within a step
 
 
 class Controls(NamedTuple):
@@ -17,12 +17,12 @@ class Controls(NamedTuple):
     gap: float  # tolerance of a located gap, relative to the body
     tie: float  # vertices this near the lowest strike together, relative to the body
     hold: int
-    rest: float  # speeds below this part of what forces give in a step are none
+    rest: float  # speeds below this fraction of the speed that forces give in a step count as zero
     layer_steps: int
     layer_time: int  # 1: add the duration of impacts to the clock
     max_impacts: int
     max_cuts: int
-    retry: int  # 1 where a step that does not get on is given up, to be taken whole
+    retry: int  # 1: a step with too much work is given up, and its bodies move as a crowd
     order: int  # of the estimate of the error, with tolerances; 0 without
     rtol: float
     atol: float

@@ -1,4 +1,4 @@
-"""What bodies touch with, by number: groups of pieces and their vertices, once for each body."""
+"""The cores with which bodies touch: groups of pieces and their vertices, once for each body."""
 
 from __future__ import annotations
 
@@ -14,18 +14,15 @@ from carom.geometry import quaternion
 from carom.scene.pieces import Piece
 from carom.scene.shapes import Shape
 
-#: pieces of a body that touch as one hull of vertices, or one curved piece
 ROUND_KINDS = ("point", "ellipsoid")
 
+#: pieces of a body that touch as one hull of vertices, or one curved piece
 CORE = [
     ("piece", "i8"),  # the first of them
-    ("several", "i8"),  # 1 where the body has other pieces
-    ("curved", "i8"),  # 1 where it has no vertices
-    (
-        "ball_like",
-        "i8",
-    ),  # 1 of a ball or an ellipsoid: it touches in a point, as Hertz's law supposes
-    ("radius", "f8"),  # of the ball that swells them
+    ("several", "i8"),  # 1 if the body has other pieces
+    ("curved", "i8"),  # 1 if it has no vertices
+    ("ball_like", "i8"),  # 1 for a ball or an ellipsoid: point contact, as Hertz's law assumes
+    ("radius", "f8"),  # of the ball that enlarges them
     ("extent", "f8"),  # of the whole shape
     ("reach", "f8"),  # largest distance of a core point from the mass centre
     ("first", "i8"),  # range of the vertices
@@ -42,12 +39,12 @@ class Cores(NamedTuple):
 
 
 def singly(pieces: Sequence[Piece]) -> list[list[int]]:
-    """Return the numbers of pieces, each for itself: as bodies touch each other."""
+    """Return each piece as a group of its own, for contacts of bodies with each other."""
     return [[k] for k in range(len(pieces))]
 
 
 def swollen_alike(pieces: Sequence[Piece]) -> list[list[int]]:
-    """Return those with vertices by radius, then each curved one: as bodies touch a half-space."""
+    """Group pieces with vertices by radius, then each curved piece alone, for contacts with half-spaces."""
     alike: dict[float, list[int]] = {}
     for k, piece in enumerate(pieces):
         if piece.corners is not None:
@@ -58,7 +55,7 @@ def swollen_alike(pieces: Sequence[Piece]) -> list[list[int]]:
 def new_cores(
     shapes: Sequence[Shape | None], split: Callable[..., list[list[int]]], to_principal: np.ndarray
 ) -> Cores:
-    """Return the cores of the shape of each body, None to leave one out; `split` groups the pieces."""
+    """Return the cores of the shape of each body; `split` groups the pieces. A shape None has no cores."""
     own = [
         None if shape is None else _cores_of(shape, split, tuple(q))
         for shape, q in zip(shapes, to_principal.tolist())
@@ -81,13 +78,13 @@ def new_cores(
 class CoresOfShape(NamedTuple):
     """G groups of the pieces of one shape."""
 
-    group: np.recarray  # (G,) CORE, `last` as from 0 on for each
+    group: np.recarray  # (G,) CORE, with the number of vertices as `last`
     vertices: np.ndarray  # (V, 3) principal axes
 
 
 @lru_cache(maxsize=64)
 def _cores_of(shape: Shape, split, to_principal: tuple[float, ...]) -> CoresOfShape:
-    """Return the groups of one shape: kept, as the shapes of one simulation are often those of the next."""
+    """Return the groups of one shape; they are cached, because simulations often share shapes."""
     pieces = shape.pieces
     groups = split(pieces)
     rows, points = table(CORE, len(groups)), []
@@ -104,7 +101,7 @@ def _cores_of(shape: Shape, split, to_principal: tuple[float, ...]) -> CoresOfSh
 
 
 def _corners(pieces: Sequence[Piece], size: float) -> np.ndarray:
-    """Return the vertices (n, 3) of some pieces in body axes, each place once; none of a curved one."""
+    """Return the vertices (n, 3) of pieces in body axes, equal ones once; a curved piece has none."""
     corners = [piece.corners for piece in pieces]
     points = np.concatenate([np.zeros((0, 3)), *(c for c in corners if c is not None)])
     if len(pieces) > 1:

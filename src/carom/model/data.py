@@ -1,4 +1,4 @@
-"""What a kernel of a step is given: `Model`, which it reads, and `Data`, which it changes."""
+"""The arguments of the kernels of a step: `Model`, which they read, and `Data`, which they change."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Writing down an event: pose, and velocities before and after, of the bodies that it concerns."""
+"""Record an event: poses, and velocities before and after, of the bodies that take part."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def end_event(system, kind, state, clock, records):
 
 @kernel
 def note_event(system, c, feature, kind, mode, clock, records):
-    """Write an event that no body is interpolated about: of a step that is taken as a whole."""
+    """Write an event of a crowd, without snapshots: states are not interpolated up to it."""
     event = records.event[clock.event]
     event.time, event.saved, event.first = clock.now, clock.saved, clock.snapped
     event.contact, event.feature = system.contacts[c].number, feature

@@ -11,7 +11,7 @@ from carom.model.arrays import LOOSE, ONE_WAY
 
 
 def is_forest(count: int, kind, parent, child) -> bool:
-    """Return whether no joint closes a loop (the ground is one node) and each carries its child."""
+    """Return whether no joint closes a loop (the ground is one node) and each can carry its child."""
     if any(k in LOOSE for k in kind):
         return False
     root = list(range(count + 1))
@@ -31,7 +31,7 @@ def is_forest(count: int, kind, parent, child) -> bool:
 
 
 def cannot_flip(kind) -> np.ndarray:
-    """Return (J,) which joints carry a tree from parent to child only: a line or plane of one body."""
+    """Return (J,) True for joints that carry a tree from parent to child only: a line or plane of one body."""
     return np.isin(kind, ONE_WAY)
 
 
@@ -43,9 +43,9 @@ def forest_order(count: int, parent, child) -> tuple[np.ndarray, np.ndarray, np.
     order : (N,)
         Bodies, parents before children.
     joint : (N,)
-        The joint that carries each body, -1 where it floats.
+        The joint that carries each body, -1 for a floating body.
     flipped : (J,)
-        True where a joint is walked from its child to its parent.
+        True if a joint is walked from its child to its parent.
     """
     touching = [[] for _ in range(count + 1)]
     for j, (p, c) in enumerate(zip(parent, child)):
@@ -75,7 +75,8 @@ def forest_order(count: int, parent, child) -> tuple[np.ndarray, np.ndarray, np.
 def elimination(touching: list[list[int]]) -> tuple[list[int], list[list[int]]]:
     """Order the elements by least degree and return the fill: neighbours of each that come later.
 
-    Two are neighbours when they share a movable body, as in A M^-1 A^T; `touching` has the bodies of each.
+    Two elements are neighbours if they share a movable body, as in A M^-1 A^T; `touching` lists the bodies of
+    each.
     """
     count = len(touching)
     by_body: dict[int, list[int]] = {}

@@ -8,7 +8,7 @@ import numpy as np
 
 
 class Kept:
-    """The contents of all arrays in nested tuples, as bytes, because records are slow to copy by fields."""
+    """A copy of the contents of all arrays in nested tuples, as bytes: records are slow to copy by fields."""
 
     def __init__(self, parts: tuple):
         self.parts = parts
@@ -16,7 +16,7 @@ class Kept:
         self.content = [(there, there.copy()) for there in flat]
 
     def take(self) -> None:
-        """Keep what the arrays hold now."""
+        """Store the present contents of the arrays."""
         for there, kept in self.content:
             kept[:] = there
 
@@ -26,7 +26,7 @@ class Kept:
             there[:] = kept
 
     def is_of(self, parts: tuple) -> bool:
-        """Return whether these are still the same tuples; they are others after an array was lengthened."""
+        """Return whether these are the same tuples; when an array is lengthened, its tuple is replaced."""
         return all(a is b for a, b in zip(parts, self.parts))
 
 

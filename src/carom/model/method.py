@@ -1,4 +1,4 @@
-"""The method of the free phase, as kernels see it: one type for all of them."""
+"""The method of the free phase for kernels: one type for all methods."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ RUNGE_KUTTA, RATTLE, IMPLICIT, THREE_FIELD = range(4)
 
 
 class Method(NamedTuple):
-    """Coefficients of an explicit method, and of another that is built on it: for contacts that persist."""
+    """Coefficients of a method; all kinds have an explicit method, which also moves persistent contacts."""
 
     kind: int
     A: np.ndarray  # (S, S) strictly lower triangular
     b: np.ndarray  # (S,) weights
-    E: np.ndarray  # those of its errors: (0, S) none; (1, S); (2, S) of orders 5 and 3
+    E: np.ndarray  # weights of its error estimates: (0, S) none; (1, S); (2, S) of orders 5 and 3
     parts: np.ndarray  # RATTLE: (P,) of h, sum 1
     # THREE_FIELD
     ode: int  # 1: second-order equations of the multipliers, 0: exact constraints
     beta: float  # natural frequency times the step
     zeta: float
-    augment: float  # eps as a part of the diagonal of A M^-1 A^T
+    augment: float  # eps relative to the diagonal of A M^-1 A^T
     tolerance: float
     most: int  # iterations
 

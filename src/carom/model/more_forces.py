@@ -1,4 +1,4 @@
-"""Forces along coordinates of joints, with curves and by functions of the user's, as arrays."""
+"""Forces along coordinates of joints, forces by curves, and forces of the user's functions, as arrays."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Pieces:
 
 
 class MoreForces:
-    """What the scene's forces say beyond springs, loads and mounts."""
+    """The forces of a scene that are not linear springs, loads or mounts."""
 
     def __init__(self, scene, coordinates, functions: Functions, pieces: Pieces, implicit: bool):
         self.pushes, self.forces, self.frictions, self.named = [], [], [], []
@@ -66,7 +66,7 @@ class MoreForces:
 
     @property
     def any(self) -> bool:
-        """Whether there are some."""
+        """Whether there are any."""
         return bool(self.pushes or self.forces or self.frictions or self.curves)
 
 
@@ -89,7 +89,7 @@ def _friction(d, coordinates):
 
 
 def _of_coordinate(function):
-    """Return a function of (t, x) from one of t, q and its rate."""
+    """Return a function of (t, x), x = (q, q'), from a function of t, q and q'."""
     if not is_compiled(function):
         return lambda t, x: function(float(t), float(x[0]), float(x[1]))
 

@@ -1,4 +1,4 @@
-"""World points and directions at the start, as bodies see them; and the two sides of a joint."""
+"""World points and directions at the start, in axes of bodies; and the two sides of a joint."""
 
 from __future__ import annotations
 
@@ -40,10 +40,10 @@ class Placement:
 
 
 class Side:
-    """One side of a joint: takes what its definition says to the axes of the body.
+    """One side of a joint: it transforms the geometry of the definition to the axes of the body.
 
-    A definition is in the world at the start; or in a frame of the body, (position, orientation) in the scene's
-    body axes.
+    A definition is given in the world at the start, or in a frame of the body: (position, orientation) in the
+    scene's body axes.
     """
 
     def __init__(self, placement: Placement, body, frame):

@@ -1,4 +1,4 @@
-"""What a run writes down, and where it stands: arrays made before the loop."""
+"""Records and clock of a run: arrays that are made before the loop."""
 
 from __future__ import annotations
 
@@ -28,20 +28,20 @@ from carom.model.workspace import (
 EVENTS = ("impact", "held", "slips", "sticks", "opens", "jams")
 IMPACT, PERSIST, SLIPS, STICKS, OPENS, JAMS = range(6)
 
-#: energies of the present, and energy summed since the start
+#: present energies, and energies summed since the start
 ENERGIES = [("kinetic", "f8"), ("potential", "f8")]
 LEDGER = [("loads", "f8"), ("impacts", "f8"), ("friction", "f8"), ("bounces", "f8")]
 
-#: where a run stands; kept between calls of the loop
+#: progress of a run, kept between calls of the loop
 CLOCK = [
     ("now", "f8"),
-    ("spent", "f8"),  # of the present step
+    ("spent", "f8"),  # time of the present step that is done
     ("begin", "f8"),  # start and length of the present step
     ("length", "f8"),
     *ENERGIES,
     *LEDGER,
-    ("before", "f8"),  # line of the impacts when the step began
-    ("owed", "f8"),  # what friction gave since, as bounces were dropped, and has not taken back
+    ("before", "f8"),  # value of `impacts` when the step began
+    ("owed", "f8"),  # energy that friction gave since, for dropped bounces, and has not taken back
     ("step", "i8"),  # finished steps
     ("saved", "i8"),
     ("struck", "i8"),
@@ -51,27 +51,24 @@ CLOCK = [
     ("first_touch", "i8"),  # rows of touches when the island began with the step
     ("concerns", "i8"),  # contact of the event that is being written
     ("in_step", "i8"),  # impacts and events in the present step
-    ("at_once", "i8"),  # impacts and events since time last went on
+    ("at_once", "i8"),  # impacts and events at the present time
     ("cuts", "i8"),
     ("trials", "i8"),
-    ("rejected", "i8"),  # trial steps of too great an error
+    ("rejected", "i8"),  # trial steps with too large an error
     ("tries", "i8"),  # trial steps of the present step of an island
     ("effort", "f8"),  # work for its contact problems and multiple impacts, about [us]
-    ("credit", "f8"),  # how much of it a step may take, as those before took less than they might
-    ("grow", "i8"),  # what is to grow before the loop goes on
+    ("credit", "f8"),  # work that a step may take, because earlier steps took less
+    ("grow", "i8"),  # which arrays must grow before the loop continues
     ("since", "f8"),  # work since the loop was entered, about [us]
-    ("paused", "i8"),  # 1 where it was left in the middle of a trial step
+    ("paused", "i8"),  # 1 if the loop was left in the middle of a trial step
     ("located", "i8"),
     ("holds", "i8"),
-    ("contact_steps", "i8"),  # steps of groups in contact at several points, on trial too
-    ("rounds", "i8"),  # of their iteration
-    ("whole", "i8"),  # steps in which bodies that touch were taken whole, as a crowd
-    ("whole_at", "i8"),  # number, from 1, of the last of them
+    ("contact_steps", "i8"),  # steps, and trial steps, of groups in contact at several points
+    ("rounds", "i8"),  # iterations in these steps
+    ("whole", "i8"),  # steps in which touching bodies moved as a crowd
+    ("whole_at", "i8"),  # number, from 1, of the last of these steps
     ("residual", "f8"),  # greatest of persistent contacts since the last saved row
-    (
-        "still",
-        "f8",
-    ),  # end of the first step from which on nothing has moved; infinite while something does
+    ("still", "f8"),  # end of the step after which nothing has moved; infinite while bodies move
 ]
 
 SERIES = [("t", "f8"), *ENERGIES, *LEDGER, ("residual", "f8")]
@@ -114,11 +111,11 @@ EVENT = [
     ("contact", "i8"),
     ("feature", "i8"),
     ("saved", "i8"),  # rows that were saved before
-    ("first", "i8"),  # its snapshots, up to that of the next event
+    ("first", "i8"),  # first of its snapshots, which end at that of the next event
     ("mode", "i8"),  # of a point that is active from now on
 ]
 
-#: a body at an event that concerns it, velocities before and after
+#: a body that takes part in an event, with the velocities before and after
 SNAPSHOT = [
     ("event", "i8"),
     ("body", "i8"),
@@ -130,18 +127,18 @@ SNAPSHOT = [
     ("w1", "f8", 3),
 ]
 
-MARGIN = 260  # impacts, or events, that one turn of the loop may write
-# codes beyond those of `Status`. Of the loop, which goes on when it is called again:
-GROW = 100  # arrays are full (`clock.grow` says which): the caller makes longer ones
-PAUSE = 101  # much was done: the caller looks for Ctrl-C
-# within it:
+MARGIN = 260  # impacts, or events, that one pass of the loop may write
+# codes that are not in `Status`. The loop returns these, and continues when it is called again:
+GROW = 100  # arrays are full (`clock.grow` tells which): the caller makes longer ones
+PAUSE = 101  # much work was done: the caller checks for Ctrl-C
+# a code within the loop:
 LEFT_BALL = 102  # a body has left the ball that its island gave it
 
-# what is to grow: records of impacts and events, pairs of islands, points of a crowd, of an impact; the
-# contacts, as bodies have come near each other
+# values of `clock.grow`: records of impacts and events, pairs of islands, points of a crowd, points of an
+# impact; contacts, because bodies have come near each other
 FULL_EVENTS, FULL_PAIRS, FULL_SPOTS, FULL_MULTIPLE, NEW_PAIRS = range(5)
 
-LONG = 5e4  # work after which the loop is left for a moment, about [us]
+LONG = 5e4  # work after which the loop pauses, about [us]
 
 
 class Records(NamedTuple):
@@ -212,13 +209,13 @@ def new_work(system: System, stages: int) -> Work:
     )
 
 
-def new_records(system: System, saves: int, events: int, held: int = 0) -> Records:
-    """Return empty records for `saves` saved steps, `events` impacts and events, `held` more active points."""
+def new_records(system: System, saves: int, events: int, points: int = 0) -> Records:
+    """Return empty records for `saves` saved steps, `events` impacts and events, and more active `points`."""
     n = system.bodies.size
     return Records(
         series=table(SERIES, saves),
         state=table(STATE, saves, n),
-        touch=table(TOUCH, events + held),
+        touch=table(TOUCH, events + points),
         impact=table(IMPACTS, events),
         event=table(EVENT, events),
         snapshot=table(SNAPSHOT, 2 * events + 2 * n),
@@ -228,7 +225,7 @@ def new_records(system: System, saves: int, events: int, held: int = 0) -> Recor
 def longer(records: Records, clock: np.recarray) -> Records:
     """Return the records with room for twice as many impacts, events and active points.
 
-    Zeros that nobody has written take no memory.
+    Zeros that were never written take no memory.
     """
     ends = dict(zip(records._fields, _ends(clock)))
     out = {}
@@ -259,7 +256,7 @@ def trimmed(records: Records, clock: np.recarray) -> Records:
 
 
 def written(records: Records, clock: np.recarray) -> Records:
-    """Return the rows that were written: a run that goes on may write to them."""
+    """Return views of the rows that were written; a run that continues may write to them."""
     return Records(*(rows[:end].view(Columns) for rows, end in zip(records, _ends(clock))))
 
 

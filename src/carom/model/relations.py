@@ -34,7 +34,7 @@ from carom.scene.more_forces import JointInertia, JointSpring
 
 
 class Coordinates:
-    """The coordinates that a scene speaks of, each once."""
+    """The coordinates that a scene uses, each once."""
 
     def __init__(self, placement: Placement):
         self.placement = placement
@@ -42,7 +42,7 @@ class Coordinates:
         self._numbers: dict[tuple[int, int], int] = {}
 
     def number(self, joint: Joint, coordinate: int) -> int:
-        """Return the place of a coordinate in the table."""
+        """Return the index of a coordinate in the table; a new one is added."""
         key = joint.index, coordinate
         if key not in self._numbers:
             self._numbers[key] = len(self.rows)
@@ -64,7 +64,7 @@ class Coordinates:
         turns = coordinate_kind(joint, coordinate) == "turn"
         first, second = (self.placement.side(joint, k) for k in range(2))
         frame = d.coordinate_frame(coordinate)
-        if d.turn == "cross" and coordinate == 1:  # seen from the child
+        if d.turn == "cross" and coordinate == 1:  # measured from the child
             first, second = second, first
         anchor = joint.anchor()
         row.kind = REVOLUTE if turns else PRISMATIC
@@ -75,7 +75,7 @@ class Coordinates:
 
 
 class Elements:
-    """What stands after the joints of a scene: relations and rows of the user's."""
+    """The rows after the joints of a scene: relations, rows of the user's, springs and inertias as rows."""
 
     def __init__(self, scene, coordinates, functions: Functions, pieces: Pieces, sizes: np.ndarray):
         self.coordinates = coordinates
@@ -228,7 +228,7 @@ def _joined(fields, rows) -> np.recarray:
 
 
 def _of_time(function):
-    """Return a function of (t, x) from one of t."""
+    """Return a function of (t, x) from a function of t."""
     if not is_compiled(function):
         return lambda t, x: function(float(t))
 

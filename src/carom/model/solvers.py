@@ -18,10 +18,9 @@ from carom.model.arrays import (
 )
 from carom.model.graph import elimination
 
-SPREAD = (
-    1e5  # of masses, from which on A M^-1 A^T loses too many digits (`carom.dynamics.light_bodies`)
-)
-LIMIT = 1e24  # of masses, from which on nothing is left of 31 digits
+#: ratio of masses from which on A M^-1 A^T loses too many digits (`carom.dynamics.light_bodies`)
+SPREAD = 1e5
+LIMIT = 1e24  # ratio of masses from which on even 31 digits are lost
 
 
 def no_joints() -> Solver:
@@ -66,7 +65,7 @@ def tree_solver(
             links.freedoms[b] = 6 - joints.rows[j]
             if p >= 0:
                 links.has_child[p] = 1
-    # no wider than it must be: memory is what a solve of 1000 links waits for
+    # as narrow as possible: memory access limits the speed of a solve of 1000 links
     most = max(
         1, int(np.max(links.freedoms[(links.joint >= 0) | (links.has_child == 1)], initial=0))
     )
@@ -76,10 +75,10 @@ def tree_solver(
 
 
 def spread(touching: list[list[int]], mass, moments, extent) -> tuple[float, int, int]:
-    """Return by how much masses, or moments over squares of sizes, differ in a mechanism, and of which bodies.
+    """Return the greatest ratio of masses, or moments over squared sizes, in a mechanism, and its two bodies.
 
-    `touching` is that of `loop_solver`; for all bodies mass (N,), principal moments (N, 3) and size (N,). The
-    bodies are the lightest and the heaviest of that mechanism.
+    `touching` is that of `loop_solver`; mass (N,), principal moments (N, 3) and size (N,) are those of all
+    bodies. The two bodies are the lightest and the heaviest of that mechanism.
     """
     root = list(range(len(mass)))
 
@@ -107,8 +106,8 @@ def loop_solver(touching: list[list[int]], drop: float, poses: int, bodies: int)
     """Return the solver of a scene with closed loops: the symbolic factor of A M^-1 A^T.
 
     `touching` has the bodies of each element, joints first: the child, then the parent if it is a body. `poses`
-    is the number of bodies if the rows depend on nothing but their poses, else 0; `bodies` is that number where
-    their masses are spread, else 0.
+    is the number of bodies if the rows depend on nothing but their poses, else 0; `bodies` is that number if
+    their masses differ much, else 0.
     """
     number = len(touching)
     order, later = elimination(touching)

@@ -11,7 +11,7 @@ from carom.scene.materials import IMPACT_LAWS
 
 
 def with_stops(scene, contacts: np.recarray, coordinates, sizes, options) -> np.recarray:
-    """Return the contacts and, with the numbers after theirs, the stops."""
+    """Return the contacts, then the stops; the numbers of stops follow those of contacts."""
     if not scene.stops:
         return contacts
     rows, first = table(CONTACT, len(scene.stops)), int(contacts.number.max(initial=-1)) + 1

@@ -1,4 +1,4 @@
-"""What a run writes beside its records: active set, workspace of a step, and points of contact."""
+"""Arrays that a run changes besides its records: active set, workspace of a step, contact points."""
 
 from __future__ import annotations
 
@@ -10,110 +10,98 @@ from carom.collision.layout import PairWork
 
 #: state of a contact between events
 CONTACT_STATE = [
-    ("seen", "i8"),  # workspace: while a group is gathered; 1 + first active point, in a crowd
-    ("near", "i8"),  # 1 where something happened at the last event: look before stepping
-    ("jams", "i8"),  # 1 where an active point of it jams: an impact without collision is due
-    ("leaving", "i8"),  # 1 where the body lifts off without speed: it may touch at the start
+    ("seen", "i8"),  # workspace: mark while a group is gathered; in a crowd 1 + first active point
+    ("near", "i8"),  # 1 if the last event concerns it: it is checked before the next step
+    ("jams", "i8"),  # 1 if an active point of it jams: an impact without collision must follow
+    ("leaving", "i8"),  # 1 if the body lifts off without speed: it may touch at the start
     ("blows", "i8"),  # impacts in this step
-    ("step", "i8"),  # the last in which the two were near each other, plus 1
+    ("step", "i8"),  # last step in which the two were near each other, plus 1
 ]
 
 #: an active point: a point of persistent contact, over time (see `carom.persistent`)
 ACTIVE_POINT = [
     ("contact", "i8"),
-    ("feature", "i8"),  # what touches, the same as long as it does: number of the vertex
+    ("feature", "i8"),  # stays the same as long as the same parts touch: number of the vertex
     ("body", "i8"),  # of the contact
     ("other", "i8"),
     ("touches", "i8"),
     ("mode", "i8"),  # 0 open, 1 slipping, 2 sticking
-    ("next", "i8"),  # mode after the step on trial
-    ("comes_to_rest", "i8"),  # 1 where that step puts the body to rest
-    ("several", "i8"),  # 1 where it shares its bodies with other active points
-    ("rest", "i8"),  # 1 where the body does not move at all
-    ("jams", "i8"),  # 1 where it slips and no finite force keeps it closed
+    ("next", "i8"),  # mode after the trial step
+    ("comes_to_rest", "i8"),  # 1 if that step puts the body to rest
+    ("several", "i8"),  # 1 if it shares its bodies with other active points
+    ("rest", "i8"),  # 1 if the body does not move at all
+    ("jams", "i8"),  # 1 if it slips and no finite force keeps it closed
     ("point", "f8", 3),  # point of the core that carries the contact, body axes
-    ("anchor", "f8", 3),  # where it is in the world since it sticks
+    ("anchor", "f8", 3),  # its position in the world since it sticks
     ("force", "f8", 3),  # of the last solve, contact axes
-    ("heading", "f8", 2),  # direction of slip at the start of the step, or in which it starts
+    ("heading", "f8", 2),  # direction of slip at the start of the step, or of starting slip
     ("speed", "f8"),  # of slip at the start of the step
-    ("stop", "f8"),  # time in which slip will stop under the last forces, where several are held
-    ("lift", "f8"),  # of one of several: how far from opening at the end of a step, below 0: open
-    ("grip", "f8"),  # the same of slip
-    ("due", "i8"),  # 1 where the event that is looked for may be its own too
-    ("turn_stop", "f8", 2),  # the same of rolling and of pivoting
+    ("stop", "f8"),  # for several points: time until slip stops under the last forces
+    ("lift", "f8"),  # for several points: margin before opening at the end of a step, below 0: open
+    ("grip", "f8"),  # the same before slip
+    ("due", "i8"),  # 1 if the event of the search may be its own, too
+    ("turn_stop", "f8", 2),  # as `stop`, of rolling and of pivoting
     ("torque", "f8", 3),  # of rolling and pivoting friction, contact axes
     ("W", "f8", (3, 3)),  # effective inverse mass of the last solve
 ]
 
-#: a point of contact as it is in one state
+#: a contact point in one state
 POINT = [
     ("a", "i8"),  # body on the side that the normal points to
     ("b", "i8"),  # the other, -1 for the ground, STATIC for a static body
     ("arm_a", "f8", 3),  # from the mass centre, world axes
     ("arm_b", "f8", 3),
-    (
-        "core",
-        "f8",
-        3,
-    ),  # from the mass centre of a: the part of the arm that turns with it; 0 if it rolls on
+    ("core", "f8", 3),  # part of arm_a that turns with body a; 0 if `drift` describes the motion
     ("axes", "f8", (3, 3)),  # rows n, t1, t2
     ("gap", "f8"),
-    # 0; rows of relative rotation: 1 rolling (t1, t2), 2 pivoting (t1), 3 a stop that ends a turn (n);
-    # 4: the normal row alone, of a stop that ends a slide
+    # 0 for a usual point; rows of relative rotation: 1 rolling (t1, t2), 2 pivoting (t1), 3 a stop that ends a
+    # turn (n); 4: the normal row alone, of a stop that ends a slide
     ("turns", "i8"),
-    ("length", "f8"),  # that makes a speed of an angular velocity
+    ("length", "f8"),  # that converts an angular velocity to a speed
 ]
 
-#: in the place of a body that does not move
+#: index that stands for a static body
 STATIC = -2
 
 #: the flight that a body is on, or was on last (`carom.kinematics.flight`, `carom.kinematics.torque_free_top`)
 FLIGHT = [
-    (
-        "known_attitude",
-        "f8",
-        (2, 4),
-    ),  # states of it whose times are known: where a step starts, and ends
+    ("known_attitude", "f8", (2, 4)),  # its states at known times: start and end of a step
     ("known_spin", "f8", (2, 3)),
-    ("age", "f8", (2, 2)),  # their times since it began, each as a sum of two numbers
-    ("turn", "f8", 4),  # attitude at its start, less the turn that `attitude` gives for that
+    ("age", "f8", (2, 2)),  # their times since the flight began, each as a sum of two numbers
+    ("turn", "f8", 4),  # attitude at its start, times the inverse of `attitude` at time 0
     ("axes", "i8", 3),  # place of each principal axis in Jacobi's order
-    ("sign", "f8", 3),  # by place: -1 where the axis is turned round
+    ("sign", "f8", 3),  # by place: -1 for a reversed axis
     ("magnitude", "f8"),  # of the angular momentum
     ("amplitude", "f8", 3),  # of its direction in the body
     ("rate", "f8", 2),  # of half the turn about the momentum, and of the argument
     ("phase", "f8"),  # argument at the start
-    ("kind", "i8"),  # how elliptic functions are worked out
+    ("kind", "i8"),  # how elliptic functions are computed
     ("series", "f8", 14),
     ("fastest", "f8"),  # bound of the acceleration of a point, over its distance from the centre
 ]
 
 BODY_WORK = [
-    ("wrench", "f8", 6),  # what a solve takes: force and torque, or impulse
-    ("motion", "f8", 6),  # what a solve gives: linear, angular
+    ("wrench", "f8", 6),  # input of a solve: force and torque, or impulse
+    ("motion", "f8", 6),  # result of a solve: linear, angular
     ("bound", "f8", 3),  # greatest linear, angular acceleration and spin of the last step
-    ("miss", "f8", 3),  # two estimates of the error of a step [m], and what they are measured by
+    ("miss", "f8", 3),  # two estimates of the error of a step [m], and their scale
     ("ahead", "f8"),  # with tolerances: length of the next step of its island
     ("inverse", "f8", 6),  # inverse inertia, world axes
-    ("label", "i8"),  # bodies with the same number move each other: joined, or held to each other
-    ("n_active", "i8"),  # of the body that its group is named after: active points of the group
+    ("label", "i8"),  # bodies with the same label move each other, by joints or active contacts
+    ("n_active", "i8"),  # of the body with the number of a label: active points of the group
     ("status", "i8"),  # FREE, ONE, RESTS or SEVERAL active points
     ("push", "f8", 6),  # change of momentum (linear, angular about the centre) in a step
-    (
-        "spin",
-        "f8",
-        3,
-    ),  # angular velocity that the momentum below goes with, in the three-field step
+    ("spin", "f8", 3),  # angular velocity that belongs to `momentum`, in the three-field step
     ("momentum", "f8", 3),  # spatial angular momentum
     *FLIGHT,
-    ("whole_until", "i8"),  # steps up to this are taken whole
-    ("whole_for", "i8"),  # for so many steps, when that was last found
+    ("whole_until", "i8"),  # the body moves in a crowd up to this step
+    ("whole_for", "i8"),  # number of such steps at the last decision
     ("home", "f8", 3),  # centre at the start of the step
-    ("room", "f8"),  # how far from it the centre may go in this step
+    ("room", "f8"),  # largest distance of the centre from it in this step
 ]
 
 JOINT_WORK = [
-    ("bias", "f8", 6),  # relative motion that a solve shall give: angular, linear
+    ("bias", "f8", 6),  # relative motion that a solve must give: angular, linear
     ("reaction", "f8", 6),  # wrench on the child at its anchor: force, torque
     ("multiplier", "f8", 6),  # impulses of the rows in the three-field step
     ("target", "f8", 6),
@@ -130,12 +118,12 @@ RESULT = [
     ("power", "f8"),  # of loads, and of friction, with the last accelerations
     ("drag", "f8"),
     ("residual", "f8"),  # greatest of the groups in contact at several points
-    ("unnamed", "f8"),  # the same: energy lost without a name, as a part of what may be
-    ("parts", "i8"),  # more parts of steps in which bodies turned far than steps
-    ("fallen", "i8"),  # steps of a symplectic method that the explicit one has taken
-    ("start", "f8"),  # time at which the step on trial starts
-    ("begin", "f8"),  # of the part of it at hand
-    ("time", "f8"),  # of the state that is looked at: what is prescribed depends on it
+    ("unnamed", "f8"),  # greatest of these: unexplained loss of energy, relative to the tolerance
+    ("parts", "i8"),  # additional parts of steps in which bodies turned far
+    ("fallen", "i8"),  # steps of a symplectic method that the explicit method took instead
+    ("start", "f8"),  # time at which the trial step starts
+    ("begin", "f8"),  # time at which its present part starts
+    ("time", "f8"),  # time of the present state, on which prescribed motion depends
 ]
 
 #: search for an event inside a step
@@ -158,26 +146,26 @@ SEARCH = [
     ("d2", "f8"),
     ("width", "f8"),
     ("tolerance", "f8"),
-    ("eager", "i8"),  # 0 where events of several points are left to the end of the step
+    ("eager", "i8"),  # 0 if events of several points wait for the end of the step
     ("pending", "i8"),  # an action that waits for its unit to be compiled
     ("horizon", "f8"),  # time in which bounces may end
     ("left", "f8"),  # time to the end of the step
     ("dt", "f8"),  # the trial step,
     ("pace", "f8"),  # the longest that may be taken,
-    ("cuts", "i8"),  # how often it was cut,
+    ("cuts", "i8"),  # number of times that it was cut,
     ("effort", "f8"),  # work of the step until it was proposed [us],
-    ("again", "i8"),  # whether one was refused for its error,
+    ("again", "i8"),  # whether one was rejected for its error,
     ("code", "i8"),  # of the step without contacts,
     ("applied", "f8"),  # work of loads and of friction in it,
     ("friction", "f8"),
-    ("alone", "f8"),  # of points that are active one to a body,
+    ("alone", "f8"),  # work of friction at points that are alone on their body,
     ("found", "i8"),  # whether an event is at its end
 ]
 
 #: state of a body: in FREE flight, in contact at ONE point, at rest (RESTS), in contact at SEVERAL points
 FREE, ONE, RESTS, SEVERAL = range(4)
 
-#: an impact in the making
+#: an impact while it is computed
 HIT = [
     ("W", "f8", (3, 3)),
     ("u", "f8", 3),
@@ -200,7 +188,7 @@ class ActiveSet(NamedTuple):
 
 
 class Work(NamedTuple):
-    """Workspace of one run: made once, never grown."""
+    """Workspace of one run: it is made once and never grows."""
 
     body: np.recarray  # (N,) BODY_WORK
     joint: np.recarray  # (J,) JOINT_WORK
@@ -209,7 +197,7 @@ class Work(NamedTuple):
     trial: np.recarray  # (N,) STATE
     middle: np.recarray  # (N,) STATE
     first: np.recarray  # (N,) STATE
-    point: np.recarray  # (1,) POINT, the one that strikes, or is looked at
+    point: np.recarray  # (1,) POINT, the one that strikes or is checked
     pair: PairWork
     touches: np.recarray  # (8,) TOUCH_POINT of the last pair
     solid_pose: np.ndarray  # (2, 7) of its solids

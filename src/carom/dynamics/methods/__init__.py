@@ -17,12 +17,12 @@ METHODS: dict[str, Definition] = {}
 for _file in FILES:
     METHODS |= import_module(f"{__name__}.{_file}").METHODS
 EXPLICIT = tuple(name for name, one in METHODS.items() if one.kind == RUNGE_KUTTA)
-#: methods of accelerations; the others write momenta of bodies, and know no inertia along joints
+#: methods with accelerations; the others use momenta of bodies, and do not allow inertia along joints
 CARRIES = tuple(name for name, one in METHODS.items() if one.kind in (RUNGE_KUTTA, IMPLICIT))
 ADAPTIVE = tuple(name for name, one in METHODS.items() if one.with_error is not None)
 
 
 def make_method(name: str, options: Options, adapts: bool = False) -> Method:
-    """Return the coefficients of a method by its name; with those of its error where steps vary."""
+    """Return the coefficients of a method by its name; with error weights if it `adapts` its steps."""
     one = METHODS[name]
     return one.with_error() if adapts and one.with_error else one.coefficients(options)

@@ -1,6 +1,6 @@
 """Order 5 with 6 stages (Dormand and Prince 1980), order 8 with 12 (Hairer, Norsett and Wanner 1993, DOP853).
 
-The coefficients are those of SciPy, which is loaded when they are asked for.
+The coefficients are those of SciPy, which is loaded when they are needed.
 """
 
 from __future__ import annotations

@@ -10,7 +10,7 @@ from carom.model.method import RATTLE, Definition, Method
 
 
 def rattle(options=None) -> Method:
-    """Return a step in one part; contacts that persist go by the method of order 4."""
+    """Return a step in one part; persistent contacts use the explicit method of order 4."""
     return rk4()._replace(kind=RATTLE, parts=np.ones(1))
 
 
