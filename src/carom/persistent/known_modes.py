@@ -40,7 +40,7 @@ def as_known(k, group):
     for i in range(k):
         slides, rows = group.kind[i] == SLIDING or group.mu[i] == 0.0, group.closed[i].rows
         if group.closed[i].turns > 0:
-            if slides != (rows == 0):
+            if slides and rows > 0:
                 return False
         elif rows > 0 and slides != (rows == 1):
             return False
@@ -199,8 +199,13 @@ def obeys(system, k, push, group, work):
     for i in range(k):
         q = 3 * i
         if group.closed[i].rows == 0:
-            if group.v[C][q] + contact_motion(group.points[0][i], work)[0] < -PULL * push:
+            a = contact_motion(group.points[0][i], work)
+            if group.v[C][q] + a[0] < -PULL * push:
                 return False
+            if group.kind[i] != SLIDING and pivots_or_rolls(i, group):
+                gain = max(abs(group.v[C][q + 1] + a[1]), abs(group.v[C][q + 2] + a[2]))
+                if gain > PULL * push:
+                    return False
         if p[q] < -PULL * most:
             return False
         if group.closed[i].turns > 0 or group.closed[i].rows == 3:
@@ -208,6 +213,13 @@ def obeys(system, k, push, group, work):
             if friction > bound_of(system, i, group) + PULL * most:
                 return False
     return True
+
+
+@kernel
+def pivots_or_rolls(i, group):
+    """Return whether a closed point is one of rolling or pivoting, of a point that presses."""
+    closed_point = group.closed[i]
+    return closed_point.turns > 0 and group.closed[closed_point.parent].rows > 0
 
 
 @kernel

@@ -91,7 +91,7 @@ def begin(model, data, k):
     push = norm(system.gravity) + system.bodies[b].extent * norm(start[b].w) ** 2
     for i in range(k):
         if group.closed[i].turns > 0:
-            if not begin_turning(model, data, i, push):
+            if not begin_turning(model, data, k, i, push):
                 return False
             continue
         closed_point = group.closed[i]
@@ -113,7 +113,7 @@ def begin(model, data, k):
 
 
 @kernel
-def begin_turning(model, data, i, push):
+def begin_turning(model, data, k, i, push):
     """Note whether a point of rolling or pivoting turns or not; return whether it is on a half-space."""
     system, start, group = model.system, data.state, data.group
     contact, closed_point = system.contacts[group.closed[i].contact], group.closed[i]
@@ -122,10 +122,28 @@ def begin_turning(model, data, i, push):
     still = max(10.0 * slow(contact, start), model.controls.rest * push * model.controls.step)
     turns = speed > still
     closed_point.stays, group.kind[i], group.mu[i] = 1, SLIDING if turns else CONE, 1.0
-    closed_point.rows = 0 if turns else 3 - closed_point.turns
+    closed_point.rows = turning_rows_given(k, i, group)
     group.heading[i, 0] = u1 / speed if turns else 0.0
     group.heading[i, 1] = u2 / speed if turns else 0.0
     return on_half_space(contact)
+
+
+@kernel
+def turning_rows_given(k, i, group):
+    """Return how many rows of a point of rolling or pivoting are given: none where it turns.
+
+    None either where the other points alone keep the body from it: three that press from rolling, two that
+    stick from pivoting. Torques are not unique there, and none is one of the solutions.
+    """
+    if group.kind[i] == SLIDING or group.closed[group.closed[i].parent].rows == 0:
+        return 0
+    press, stick = 0, 0
+    for j in range(k):
+        if group.closed[j].turns == 0 and group.closed[j].rows > 0:
+            press, stick = press + 1, stick + (1 if group.closed[j].rows == 3 else 0)
+    if group.closed[i].turns == 1:
+        return 0 if press > 2 else 2
+    return 0 if stick > 1 else 1
 
 
 @kernel
@@ -208,9 +226,9 @@ def finish_smoothly(model, data, k, h):
     place_at(system, k, end, group, work)
     onto_surfaces(system, active, k, 1, end, group, work)
     place_at(system, k, end, group, work)
-    for i in range(k):
+    for i in range(k):  # points of rolling and pivoting come after all others
         if group.closed[i].turns > 0:
-            group.closed[i].rows = 0 if group.kind[i] == SLIDING else 3 - group.closed[i].turns
+            group.closed[i].rows = turning_rows_given(k, i, group)
         elif group.closed[i].rows > 0 and group.kind[i] != SLIDING:
             group.closed[i].rows = 3
     onto_tangents(system, k, end, group, work)
