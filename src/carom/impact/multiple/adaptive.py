@@ -40,7 +40,7 @@ def start(k, work):
         work.vector[D, i] = 0.0
     set_velocity(k, work)
     for i in range(k):
-        if work.vector[U, 3 * i] <= APART:  # contacts at rest too: they load if other forces press them
+        if work.vector[U, 3 * i] <= APART:  # contacts at rest too, as forces may press them
             law.close(work.contact[i])
 
 

@@ -113,7 +113,7 @@ class MultipleResult(NamedTuple):
     compression: np.ndarray  # (K,) work of the normal force while loading, <= 0
     restitution: np.ndarray  # (K,) work of the normal force while unloading, >= 0
     friction: np.ndarray  # (K,) energy dissipated by friction
-    wedged: np.ndarray  # (K,) 1 where friction blocks the contact at the end, so its law does not hold
+    wedged: np.ndarray  # (K,) 1 if friction blocks the contact at the end: its law fails
     summary: np.recarray  # (1,) RESULT
 
 
@@ -207,7 +207,7 @@ CLOCK = [
     ("branched", "i8"),  # 1 once a state is saved at the first unloading
     ("rest", "i8"),  # steps since all contacts came to rest
     ("stretched", "i8"),  # 1: the last step is measured in stretched time
-    ("cut", "i8"),  # 1: the last series step ended where a contact cannot stick with its share of friction
+    ("cut", "i8"),  # 1: the last series step ended where a contact ceases to stick
     ("stiff", "i8"),  # implicit steps to take before series are tried again
     ("saved_stiff", "i8"),
     ("left", "i8"),  # steps that the impact may still take; below 0 it was stopped

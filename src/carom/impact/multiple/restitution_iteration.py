@@ -9,7 +9,7 @@ from carom.impact.multiple.fixed import pass_fixed
 from carom.impact.multiple.layout import CAPPED, MISSED, OUT_F, OUT_NEW
 
 _GAIN = 0.8  # a round is a gain if it reduces the greatest miss to this part or less
-_PATIENCE = 4  # rounds without gain before the iteration begins again, damped; after twice as many it ends
+_PATIENCE = 4  # rounds without gain until it begins again, damped; after twice as many it ends
 _COARSE = 1e-4  # greatest tolerance of a passage; it decreases with the misses
 _NEAR = 0.1  # greatest ln(target/reached) at which the nearest result is used
 
