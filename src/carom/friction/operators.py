@@ -1,4 +1,4 @@
-"""The operations of the solver on the Delassus operator W, which is stored in one of two ways.
+"""The operations of the solver on the Delassus operator W, which is stored in one of two forms.
 
 DENSE: W itself (`dense`). BY_BODIES: bodies and rows without W (`island`). Variables are scaled; there are k
 contacts.

@@ -60,9 +60,9 @@ def _sphere():
         top = exact.times(k)[-1] + exact.speed * 0.8**k / exact.gravity
         found = tuple(run.evaluate(top)[0][0, 2] - 0.1 for run in runs)
         yield Row(f"{name}: apex {k}", "m", form, exact.drop * 0.8 ** (2 * k), found, 1e-9)
-    held = tuple(run.events.time[run.events.kind == "held"][0] for run in runs)
-    yield Row(f"{name}: comes to rest (within a step)", "s", form, exact.rest, held, STEP)
-    moved = tuple(np.max(np.abs(r.position[r.t > h, 0, 2] - 0.1)) for r, h in zip(runs, held))
+    at_rest = tuple(run.events.time[run.events.kind == "held"][0] for run in runs)
+    yield Row(f"{name}: comes to rest (within a step)", "s", form, exact.rest, at_rest, STEP)
+    moved = tuple(np.max(np.abs(r.position[r.t > h, 0, 2] - 0.1)) for r, h in zip(runs, at_rest))
     yield Row(f"{name}: greatest gap afterwards", "m", form, 0.0, moved, 1e-12)
     drift = tuple(_drift(sphere_run(1.0, method, duration=57.5), 100) for method in METHODS)
     quantity = "sphere, e = 1: relative change of energy over 100 impacts"

@@ -33,7 +33,7 @@ def finish(model, data, k, h, fall, residual):
         data.records,
     )
     tolerance = rest_speed(controls, fall * h, residual, k, POORLY)
-    blows, pressing, rubbing = 0.0, 0.0, 0.0
+    impacts, pressing, rubbing = 0.0, 0.0, 0.0
     for i in range(k):
         spot, point = crowd.spots[i], crowd.points[0][i]
         p, u = spot.impulse, spot.before
@@ -41,7 +41,7 @@ def finish(model, data, k, h, fall, residual):
         normal = 0.5 * p[0] * (u[0] + w[0]) if spot.turns == 0 else 0.0
         tangential = 0.5 * (p[1] * (u[1] + w[1]) + p[2] * (u[2] + w[2]))
         if spot.turns == 0 and p[0] > 0.0 and spot.strikes == 1:
-            blows += normal + tangential
+            impacts += normal + tangential
             write_impact(model, data, i, k, w, normal, tangential)
             note_event(system, spot.contact, spot.feature, IMPACT, 0, clock, records)
         else:
@@ -50,11 +50,11 @@ def finish(model, data, k, h, fall, residual):
     # no entry gains energy: if slip or rows turn within the step, the work of friction or of normal forces is
     # less than these products; the caller assigns the rest (`carom.stepping.crowd.balance.take_over`)
     pressing, rubbing = min(0.0, pressing + max(0.0, rubbing)), min(0.0, rubbing)
-    blows = min(0.0, blows)
+    impacts = min(0.0, impacts)
     if k > 0 and clock.whole_at != clock.step + 1:
         clock.whole += 1
         clock.whole_at = clock.step + 1
-    clock.impacts += blows
+    clock.impacts += impacts
     clock.friction += rubbing
     clock.bounces += pressing
     count = list_active(model, data, k, h, tolerance)
@@ -71,7 +71,7 @@ def finish(model, data, k, h, fall, residual):
     for i in range(k):  # in event-driven steps these contacts are checked first
         active.contact_states[crowd.spots[i].contact].near = 1
         active.contact_states[crowd.spots[i].contact].leaving = 0
-    return blows + pressing + rubbing
+    return impacts + pressing + rubbing
 
 
 @kernel
