@@ -1,1 +1,1 @@
-"""Compiled code: decorators, cache, records by reference, units. Knows Numba, and nothing of mechanics."""
+"""Compiled code: decorators, cache, records by reference, units. This folder has no mechanics."""

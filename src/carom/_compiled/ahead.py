@@ -1,10 +1,10 @@
-"""A second process compiles the units that this one is about to need.
+"""A second process compiles the units that this process will need next.
 
-A first run needs a dozen units one after the other, seconds of work each; which others a unit may call is
-known while it is compiled. Where there is more than one processor a process beside this one compiles what is
-likely to be called, and each tells the other of the units that it comes across. What is compiled lies on disk.
-A unit that the other process is at work on is waited for (`carom._compiled.file_lock`), and another one is
-compiled meanwhile. The second process ends with the first. ``NUMBA_NUM_THREADS=1`` does without it.
+A first run needs a dozen units, one after the other, with seconds of compiling for each. When a unit is
+compiled, the units that it may call become known. If there is more than one processor, a second process
+compiles the units that are likely to be called. Each process tells the other which units it finds; compiled
+code is on disk. If the other process is compiling a unit, this one waits for it (`carom._compiled.file_lock`),
+and compiles another meanwhile. The second process ends with the first. ``NUMBA_NUM_THREADS=1`` turns it off.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from numba.core import config
 
 from carom._compiled.file_lock import FileLock
 
-#: what a body that is thrown needs, in the order in which it does; other units follow as they are asked for
+#: units that a thrown body needs, in this order; other units are compiled later
 FIRST = (
     "carom.stepping.event_step:advance",
     "carom.impact.strike:strike",
@@ -42,17 +42,17 @@ FIRST = (
 
 
 class _State:
-    """What this process does about units that may be called."""
+    """The state of this process: its connection to the other process, and the units that may be called."""
 
-    started = False  # the second process
-    helps = False  # this is it
+    started = False  # whether the second process was started
+    helps = False  # whether this is the second process
     out: IO[bytes] | None = None  # to the other process
     wanted: queue.PriorityQueue[tuple[int, int, str, bytes]] = queue.PriorityQueue()
-    seen: ClassVar[set[str]] = set()  # units that this process has told of
+    seen: ClassVar[set[str]] = set()  # names of the units found
 
 
 def start() -> None:
-    """Start the second process, once; called when something is not on disk."""
+    """Start the second process once; called when compiled code is not on disk."""
     if _State.started or _State.helps:
         return
     _State.started = True
@@ -66,14 +66,14 @@ def start() -> None:
             env={**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, paths))},
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL,
         )  # fmt: skip
-        process.returncode = 0  # nobody waits for it: it ends when its input does
+        process.returncode = 0  # no wait for its end: it ends when its input is closed
         _State.out = process.stdin
         atexit.register(_hang_up)
         threading.Thread(target=_listen, args=(process.stdout,), daemon=True).start()
 
 
 def do_without() -> None:
-    """Start no second process: what is compiled here is all to be known here."""
+    """Start no second process, so that all units are compiled, and known, in this process."""
     _State.started = True
 
 
@@ -85,7 +85,7 @@ def tell(name: str, packed: bytes) -> None:
     try:
         _State.out.write(f"{name} {packed.hex()}\n".encode())
         _State.out.flush()
-    except (OSError, ValueError):  # the other one has ended
+    except (OSError, ValueError):  # the other process has ended
         _hang_up()
 
 
@@ -98,14 +98,14 @@ def compile_one() -> bool:
     if turn < len(FIRST) or _State.helps:
         from carom._compiled import units
 
-        with contextlib.suppress(Exception):  # whoever calls it will say what is wrong
+        with contextlib.suppress(Exception):  # an error is raised again when the unit is called
             if not units.find(name).compiled._cache.is_taken():
                 units.address(name, units.unpack(packed))
     return True
 
 
 def serve() -> None:
-    """Compile what the process at the other end tells of, as long as that lives."""
+    """Compile the units that the first process reports, until it ends."""
     _State.helps, _State.out = True, sys.stdout.buffer
 
     def listen():
@@ -119,7 +119,7 @@ def serve() -> None:
 
 
 def _hang_up() -> None:
-    """Tell nothing any more; the second process ends when it hears so."""
+    """Close the connection; the second process then ends."""
     pipe, _State.out = _State.out, None
     if pipe is not None:
         with contextlib.suppress(OSError):
@@ -127,7 +127,7 @@ def _hang_up() -> None:
 
 
 def _put(name: str, packed: bytes) -> None:
-    """Keep in mind to compile a unit: those that any run needs before the others."""
+    """Queue a unit to be compiled; units that every run needs come first."""
     if name not in _State.seen:
         _State.seen.add(name)
         turn = FIRST.index(name) if name in FIRST else len(FIRST)
@@ -135,7 +135,7 @@ def _put(name: str, packed: bytes) -> None:
 
 
 def _listen(pipe: IO[bytes]) -> None:
-    """Read what the other process has come across."""
+    """Read the units that the other process reports."""
     with contextlib.suppress(Exception), pipe:
         for line in pipe:
             name, packed = line.split()

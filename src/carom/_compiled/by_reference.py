@@ -1,9 +1,9 @@
-"""Records of arrays (system, workspace, active points, ...) are handed from kernel to kernel by one address.
+"""Records of arrays (system, workspace, active points, ...) are passed from kernel to kernel by one address.
 
-Numba passes a named tuple by value: some 300 numbers for a step of a scene, written out and read back at every
-call, in the compiler's work as in the run. Here a named tuple of ours becomes a pointer when
-compiled code is entered, and each field is loaded where it is used. Nobody writes to the fields of a
-named tuple: the loads are marked invariant, so that they cost no more than numbers at hand.
+Numba passes a named tuple by value: some 300 numbers for a step of a scene are written and read at every call,
+which costs time in compiling and in the run. Here a named tuple of carom becomes a pointer when compiled code
+is entered, and each field is loaded where it is used. Fields of a named tuple never change, so the loads are
+marked invariant, and cost no more than local variables.
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ def _reference(record: Any) -> Reference:
 
 
 def type_of(value: Any) -> types.Type:
-    """Return the type of an argument from Python: a reference if it is a named tuple of ours."""
+    """Return the type of an argument from Python: a reference if it is a named tuple of carom."""
     kind = _type_of(value)
     return _reference(kind) if is_ours(kind) else kind
 
@@ -79,7 +79,7 @@ def is_ours(kind: Any) -> bool:
 
 
 def refer_to(builder, kind, value):
-    """Return type and value of a reference to a named tuple at hand; other things as they are."""
+    """Return type and value of a reference to a named tuple; other values are returned unchanged."""
     return (_reference(kind), _keep(builder, value)) if is_ours(kind) else (kind, value)
 
 
@@ -103,7 +103,7 @@ class _ReferenceAttribute(AttributeTemplate):
 
 @lower_getattr_generic(Reference)
 def _load_field(context, builder, reference, pointer, attr):
-    """Load a field; it is the same whenever it is loaded."""
+    """Load a field; every load gives the same value."""
     place = cgutils.gep_inbounds(builder, pointer, 0, reference.fields.index(attr))
     loaded = builder.load(place)
     loaded.set_metadata("invariant.load", builder.module.add_metadata([]))
@@ -111,10 +111,10 @@ def _load_field(context, builder, reference, pointer, attr):
 
 
 def _keep(builder, value):
-    """Store a value in the frame of the function at hand; return its address.
+    """Store a value in the stack frame of the present function; return its address.
 
-    The address goes through an empty instruction that the compiler cannot look into: for what it sees
-    stored the loads would not be invariant.
+    The address passes an empty instruction that hides the store from the compiler, because the loads after a
+    visible store would not be invariant.
     """
     place = cgutils.alloca_once(builder, value.type)
     builder.store(value, place)
@@ -132,7 +132,7 @@ def _unbox(reference, value, c):
 
 @intrinsic
 def refer(typing, record):
-    """Return a reference to a named tuple; it holds as long as the function that asks for it runs."""
+    """Return a reference to a named tuple; it is valid until the calling function returns."""
 
     def generate(context, builder, signature, values):
         return refer_to(builder, record, values[0])[1]

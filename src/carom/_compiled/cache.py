@@ -1,8 +1,7 @@
-"""Compiled code on disk: valid for one state of a function and of all that is linked into it.
+"""Compiled code on disk: valid for one state of a function and of all code that is linked into it.
 
-What goes wrong with it (a full disk, a folder that is no longer writable, a file cut short) costs a recompile
-and nothing else. Of several processes that want the same function one compiles it, and the others wait for its
-file.
+Any error of the cache (a full disk, a folder without write access, a truncated file) only causes a new compile.
+If several processes need the same function, one compiles it, and the others wait for its file.
 """
 
 from __future__ import annotations
@@ -18,23 +17,23 @@ from carom._compiled import ahead, notice
 from carom._compiled.cache_key import stamp
 from carom._compiled.file_lock import FileLock
 
-#: is there where a wheel has brought compiled code (`tools/build_wheel.py`)
+#: exists if a wheel contained compiled code (`tools/build_wheel.py`)
 SHIPPED = Path(__file__).parent / "shipped"
 
 
 class StampedCache(FunctionCache):
-    """A function cache that is valid as long as the stamp of its function."""
+    """A function cache that is valid while the stamp of its function does not change."""
 
-    told = False  # that nothing can be kept
+    told = False  # whether the warning that the cache cannot be written was given
 
     def __init__(self, py_func):
         super().__init__(py_func)
         self._kept, self._noted = py_func, False
         self._lock = FileLock(Path(self._cache_path) / f"{self._impl.filename_base}.lock")
-        del self._cache_file  # made when it is first asked for: what is called may be defined later
+        del self._cache_file  # made at first use, because called functions may be defined later
 
     def load_overload(self, sig, target_context):
-        """Load a compiled function, or return None: then no other process compiles it until `release`."""
+        """Load a compiled function; if the result is None, no other process compiles it until `release`."""
         found = self._load(sig, target_context)
         if found is None:
             ahead.start()
@@ -60,22 +59,22 @@ class StampedCache(FunctionCache):
         return self._lock.is_taken()
 
     def release(self):
-        """Let other processes have what was compiled, or compile it if it could not be."""
+        """Let other processes load the compiled function, or compile it if this process could not."""
         self._lock.release()
         self._end()
 
     def _load(self, sig, target_context):
-        """Load a compiled function; a file that is broken is as good as none, and is written anew."""
+        """Load a compiled function; a damaged file counts as missing, and is written again."""
         try:
             found = super().load_overload(sig, target_context)
-        except Exception:  # cut short by a crash or a full disk: whatever unpickling makes of it
+        except Exception:  # a truncated file may cause any error of unpickling
             with contextlib.suppress(OSError):
                 self.flush()
             return None
         return self._load_shipped(sig, target_context) if found is None else found
 
     def _load_shipped(self, sig, target_context):
-        """Load what a wheel has brought, where its folder cannot be written and so is not that of the cache."""
+        """Load compiled code from a wheel, if its folder is not writable and therefore not the cache."""
         place = Path(self._kept.__code__.co_filename).parent / "__pycache__"
         if not SHIPPED.exists() or place == Path(self._cache_path):
             return None
@@ -88,7 +87,7 @@ class StampedCache(FunctionCache):
             self._cache_file = written
 
     def save_overload(self, sig, data):
-        """Keep a compiled function; where that fails say so, once."""
+        """Save a compiled function; if this fails, warn once."""
         try:
             super().save_overload(sig, data)
         except OSError as error:
@@ -102,14 +101,14 @@ class StampedCache(FunctionCache):
                 )
 
     def note_asked(self, packed: bytes) -> None:
-        """Keep by which types compiled code calls this function, for `carom warmup`; where it fails, do not."""
+        """Save the types with which compiled code calls this function, for `carom warmup`; ignore errors."""
         file = self._asked_file(self._cache_path)
         with contextlib.suppress(OSError):
             if not file.exists() or file.read_bytes() != packed:
                 file.write_bytes(packed)
 
     def asked(self) -> bytes | None:
-        """Return what `note_asked` has kept, in this process or another one."""
+        """Return the types that `note_asked` has saved, in this process or in another one."""
         with contextlib.suppress(OSError):
             return self._asked_file(self._cache_path).read_bytes()
         return None

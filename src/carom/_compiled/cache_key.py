@@ -1,8 +1,8 @@
-"""What compiled code was made from: a hash of a function and of all that is linked into it.
+"""The source of compiled code: a hash of a function and of all code that is linked into it.
 
-Numba's cache looks at the file of the cached function only: a change of a callee in another file would go
-unseen. This stamp follows the calls. Units (`carom._compiled.units`) are compiled on their own and left
-out, so that a change recompiles the units that contain it and no others.
+Numba's cache checks only the file of the cached function, so it does not see a change of a called function in
+another file. This stamp follows the calls. Units (`carom._compiled.units`) are compiled separately and left
+out, so that a change recompiles only the units that contain it.
 """
 
 from __future__ import annotations
@@ -23,12 +23,12 @@ _RULES = (
     "user_functions.py",
     "by_reference.py",
     "simd.py",
-)  # how everything is compiled
+)  # files with the rules of compiling
 _CONSTANTS = (int, float, str, bool, tuple, frozenset)
 
 
 def stamp(function: Callable) -> str:
-    """Return the hash of what the compiled form of `function` depends on, types of arguments aside."""
+    """Return the hash of all that the compiled `function` depends on, except the types of arguments."""
     digest = hashlib.sha256(_rules())
     for part in _reached(function, set()):
         digest.update(part.encode())
@@ -42,7 +42,7 @@ def _rules() -> bytes:
 
 
 def _reached(function: Callable, seen: set[int]) -> Iterator[str]:
-    """Yield the text of a function, and of all that it can reach, each once."""
+    """Yield the text of a function and of all functions that it can reach, each once."""
     if id(function) in seen:
         return
     seen.add(id(function))
@@ -62,12 +62,12 @@ def _reached(function: Callable, seen: set[int]) -> Iterator[str]:
 
 
 def _value(name: str, value: object, seen: set[int]) -> Iterator[str]:
-    """Yield what a global stands for: a constant, a kernel, a unit."""
+    """Yield the text of a global: a constant, a kernel or a unit."""
     if isinstance(value, _CONSTANTS):
         yield f"{name}={value!r}"
     if hasattr(
         value, "compiled"
-    ):  # a unit is not linked in; what it returns is known to its callers
+    ):  # a unit is not linked in; its callers depend only on the type of its result
         yield f"{name} -> {getattr(value, 'returned', None)}"
     for part in getattr(value, "parts", ()):
         yield from _reached(getattr(part, "py_func", part), seen)
@@ -77,7 +77,7 @@ def _value(name: str, value: object, seen: set[int]) -> Iterator[str]:
 
 
 def _names(code: types.CodeType) -> list[str]:
-    """Return the names that a function and those defined in it look up."""
+    """Return the names used in a function and in the functions defined in it."""
     names = [*code.co_names, *code.co_freevars]
     for part in code.co_consts:
         if isinstance(part, types.CodeType):
@@ -86,7 +86,7 @@ def _names(code: types.CodeType) -> list[str]:
 
 
 def _text(code: types.CodeType) -> str:
-    """Return the instructions of a function, without its place in the file and its docstring."""
+    """Return the instructions of a function, without line numbers and docstring."""
     consts = [
         _text(part) if isinstance(part, types.CodeType) else repr(part)
         for k, part in enumerate(code.co_consts)

@@ -1,4 +1,4 @@
-"""Functions made of functions: compiled where all that they call is. Numba is loaded when it is asked."""
+"""Functions made of functions: compiled if all that they call are. Numba is loaded only when needed."""
 
 from __future__ import annotations
 

@@ -1,11 +1,11 @@
-"""The decorators for compiled code: `kernel`, and `entry` where Python calls it.
+"""The decorators for compiled code: `kernel`, and `entry` for calls from Python.
 
 Kernels are plain functions on scalars and arrays. They call only other kernels, and also run uncompiled
-(``NUMBA_DISABLE_JIT=1``, or where Numba is one that we do not know). They are compiled without Numba's memory
-manager: a kernel that would allocate does not compile, and no array is counted when it is passed on (which cost
-8 microseconds a step). Kernels are parts of what calls them (`carom._compiled.link_only`); units
-(`carom._compiled.units`) and entries are compiled as a whole, and kept on disk until something in them changes
-(`carom._compiled.cache`).
+(with ``NUMBA_DISABLE_JIT=1``, or with an unknown version of Numba). They are compiled without Numba's memory
+manager: a kernel that allocates does not compile, and references to arrays are not counted (counting cost 8
+microseconds a step). Kernels become parts of their callers (`carom._compiled.link_only`); units
+(`carom._compiled.units`) and entries are compiled as a whole, and are stored on disk until some part of them
+changes (`carom._compiled.cache`).
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from typing import Any
 import numba
 from numba.core import config
 
-#: whether kernels are compiled, or left as the plain functions that they are
+#: whether kernels are compiled, or stay plain functions
 COMPILES = not getattr(config, "DISABLE_JIT", 0)
 if COMPILES:
-    try:  # inner parts of Numba that the versions we have tried hold (pyproject.toml)
+    try:  # inner parts of Numba that exist in the tested versions (pyproject.toml)
         from carom._compiled.by_reference import refer
         from carom._compiled.cache import StampedCache
         from carom._compiled.link_only import PartCompiler
@@ -43,40 +43,39 @@ _PART: dict[str, Any] = {
     **({"pipeline_class": PartCompiler} if COMPILES else {}),
 }
 
-#: for `numba.extending.overload`, whose functions are compiled by these rules
+#: the same rules for functions of `numba.extending.overload`
 OPTIONS: dict[str, Any] = {"jit_options": {**_PART, "forceinline": True}}
 
 
 def kernel(function):
     """Compile `function` for calls from other kernels only, as a part of them.
 
-    Division follows IEEE (``error_model="numpy"``), no fast-math: results are the same on every run.
+    Division follows IEEE (``error_model="numpy"``), and there is no fast-math: every run has the same results.
     """
     return jit(**_PART)(function)
 
 
 def inlined(function):
-    """Compile `function` as `kernel` does, always inlined: for what every step passes."""
+    """Compile `function` as `kernel` does, and always inline it: for functions called in every step."""
     return jit(**_PART, forceinline=True)(function)
 
 
 def jit(**options):
-    """Return the decorator of the target, or one that leaves functions as they are."""
+    """Return the decorator of the target, or one that returns functions unchanged."""
     return _compiled(**options) if COMPILES else lambda function: function
 
 
 def entry(function):
-    """Compile `function` for calls from Python as well, and keep it on disk with all that it calls.
+    """Compile `function` for calls from Python as well, and store it on disk with all that it calls.
 
-    Where no directory can be written (a read-only install without a user cache) it is compiled in each
-    process.
+    If no directory is writable (a read-only install without a user cache), it is compiled in each process.
     """
     compiled = jit(**RULES, **_OUTSIDE)(function)
     return keep_on_disk(compiled, function)
 
 
 def keep_on_disk(compiled, function):
-    """Keep what is compiled in files beside the source, or in the cache of the user."""
+    """Store compiled code in files beside the source, or in the cache of the user."""
     if COMPILES:
         with contextlib.suppress(RuntimeError):  # no writable place for a cache
             compiled._cache = StampedCache(function)
@@ -88,5 +87,5 @@ def _same(record):
     return record
 
 
-#: for named tuples that are put together in compiled code: by reference from there on
+#: converts a named tuple that was made in compiled code to a reference
 by_reference: Any = refer if COMPILES else _same

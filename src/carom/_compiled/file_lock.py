@@ -1,4 +1,4 @@
-"""A lock between processes: a file that the one who holds it has made, with its number inside."""
+"""A lock between processes: a file made by the process with the lock, which contains the process number."""
 
 from __future__ import annotations
 
@@ -9,22 +9,22 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import ClassVar
 
-_PAUSE = 0.02  # seconds between two looks
-_TOO_LONG = 600.0  # seconds after which whoever holds a lock is taken for dead
+_PAUSE = 0.02  # seconds between two tries
+_TOO_LONG = 600.0  # seconds after which the process with a lock counts as dead
 
 
 class FileLock:
-    """A lock by the name of a file. Where no file can be made nothing is locked, and nobody waits."""
+    """A lock with the name of a file. If no file can be made, nothing is locked, and no process waits."""
 
-    _all: ClassVar[set[FileLock]] = set()  # those that this process holds
+    _all: ClassVar[set[FileLock]] = set()  # locks of this process
 
     def __init__(self, path: Path):
         self._path = path
 
     def take(self, meanwhile: Callable[[], bool]) -> bool:
-        """Take the lock; return whether another process had to be waited for.
+        """Take the lock; return whether this process had to wait for another one.
 
-        What is called meanwhile returns whether it had anything to do.
+        During the wait `meanwhile` is called; it returns whether it had work to do.
         """
         waited = False
         while not self.try_to_take():
@@ -34,7 +34,7 @@ class FileLock:
         return waited
 
     def try_to_take(self) -> bool:
-        """Take the lock, if no other living process has it."""
+        """Take the lock if no other living process has it; return whether it was taken."""
         try:
             with open(self._path, "x") as file:
                 self._all.add(self)
@@ -45,20 +45,20 @@ class FileLock:
             with contextlib.suppress(OSError):
                 self._path.unlink()
             return self.try_to_take()
-        except OSError:  # a folder that cannot be written, a full disk
+        except OSError:  # a folder without write access, or a full disk
             pass
         return True
 
     def release(self) -> None:
-        """Give the lock back, if it is held."""
+        """Release the lock if this process has it."""
         if self in self._all:
             with contextlib.suppress(OSError):
                 self._path.unlink()
-            self._all.discard(self)  # last: `release_all` may end the process at any time
+            self._all.discard(self)  # last, because the process may end at any time
 
     @classmethod
     def release_all(cls) -> None:
-        """Give back all locks of this process."""
+        """Release all locks of this process."""
         for lock in list(cls._all):
             lock.release()
 
@@ -67,24 +67,24 @@ class FileLock:
         return self not in self._all and self._path.exists()
 
     def _is_left_over(self) -> bool:
-        """Return whether who made the file has died."""
+        """Return whether the process that made the file has ended."""
         try:
             if time.time() - self._path.stat().st_mtime > _TOO_LONG:
                 return True
             number = int(self._path.read_text() or 0)
-        except (OSError, ValueError):  # it was given back just now
+        except (OSError, ValueError):  # it was released at this moment
             return False
         return number > 0 and not _lives(number)
 
 
 def _lives(number: int) -> bool:
-    """Return whether there is a process of this number, as far as the system tells."""
-    if os.name != "posix":  # where signal 0 would end it
+    """Return whether a process with this number exists, or may exist."""
+    if os.name != "posix":  # signal 0 would end the process there
         return True
     try:
         os.kill(number, 0)
     except ProcessLookupError:
         return False
-    except OSError:  # one of another user
+    except OSError:  # a process of another user
         pass
     return True

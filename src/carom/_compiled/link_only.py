@@ -1,9 +1,9 @@
-"""Compile a kernel as a part of its callers: lowered once, linked in, and optimised only with the whole.
+"""Compile a kernel as a part of its callers: it is lowered once, linked in, and optimised only with the whole.
 
-Numba optimises each function together with all that it calls and turns it into machine code, though a kernel is
-never called on its own: what lies ten calls deep is gone through ten times. Here a kernel ends as
-LLVM code that its callers link in; only what is called from Python or through its address is optimised,
-once, with everything in it. (Measured on a die thrown to rest: docs/development/decisions.md.)
+Numba optimises each function together with all that it calls, and makes machine code of it, although a kernel
+is never called separately: a function ten calls deep is optimised ten times. Here a kernel stays LLVM code that
+its callers link in. Only functions called from Python or through an address are optimised, once, with all their
+parts. (Measured on a die thrown to rest: docs/development/decisions.md.)
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ class Part(JITCodeLibrary):
     """Code that is only linked into other code."""
 
     def _optimize_final_module(self):
-        pass  # its callers are
+        pass  # only its callers are optimised
 
     def _finalize_final_module(self):
         self._finalize_dynamic_globals()
@@ -28,7 +28,7 @@ class Part(JITCodeLibrary):
         self._finalized = True
 
     def get_pointer_to_function(self, name):
-        """Return that there is no machine code."""
+        """Return 0, because there is no machine code."""
         return 0
 
 
@@ -39,7 +39,7 @@ class PartLowering(typed_passes.NativeLowering):
     _name = "part_lowering"
 
     def run_pass(self, state):
-        """Write the code of the kernel, and let it be known to its callers."""
+        """Write the code of the kernel, and register it for its callers."""
         context, flags = state.targetctx, state.flags
         state.library = Part(context.codegen(), state.func_id.func_qualname)
         kept, flags.no_compile = flags.no_compile, True
@@ -49,7 +49,7 @@ class PartLowering(typed_passes.NativeLowering):
             flags.no_compile = kept
         made: Any = state["cr"]
         function = made.fndesc
-        # what callers know it by; it has no machine code and cannot be called
+        # the object by which callers refer to it; it has no machine code and cannot be called
         entry = _dynfunc.make_function(
             function.lookup_module(), function.qualname, "", 0, made.env, (state.library,)
         )
@@ -60,7 +60,7 @@ class PartLowering(typed_passes.NativeLowering):
 
 
 class PartCompiler(compiler.CompilerBase):
-    """Numba's own pipeline, with another end."""
+    """Numba's own pipeline with another last pass."""
 
     def define_pipelines(self):
         """Return the passes."""

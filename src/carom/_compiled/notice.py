@@ -1,4 +1,4 @@
-"""Messages on stderr while code is compiled for more than two seconds: that it is, and how far it has come."""
+"""Messages on stderr about progress if code is compiled for more than two seconds."""
 
 from __future__ import annotations
 
@@ -7,30 +7,30 @@ import sys
 import threading
 import time
 
-AFTER = 2.0  # seconds of compiling before anything is said
-EVERY = 10.0  # seconds from one word to the next
-REST = 1.5  # seconds without compiling after which it is over
+AFTER = 2.0  # seconds of compiling before the first message
+EVERY = 10.0  # seconds between messages
+REST = 1.5  # seconds without compiling before the last message
 _TICK = 0.1
 
 
 class _State:
-    """What this process compiles now."""
+    """The present state of compiling in this process."""
 
     silent = False
     depth = 0  # functions that are being compiled
-    parts = 0  # functions since it began
-    spoken = False  # of compiling, before
+    parts = 0  # functions compiled or being compiled so far
+    spoken = False  # whether a message was printed before
     watcher: threading.Thread | None = None
     lock = threading.Lock()
 
 
 def silence() -> None:
-    """Say nothing in this process: somebody else shows progress, or nobody looks."""
+    """Print no messages in this process: something else shows progress, or there is no reader."""
     _State.silent = True
 
 
 def begin() -> None:
-    """Note that a function has to be compiled."""
+    """Record that a function is about to be compiled."""
     with _State.lock:
         _State.depth += 1
         _State.parts += 1
@@ -40,19 +40,19 @@ def begin() -> None:
 
 
 def end() -> None:
-    """Note that a function that had to be compiled is there."""
+    """Record that a function has been compiled."""
     with _State.lock:
         _State.depth = max(0, _State.depth - 1)
 
 
 def _is_worker() -> bool:
-    """Return whether this is a worker process of another one, which speaks for it."""
+    """Return whether this is a worker of another process, which then prints the messages."""
     known = sys.modules.get("multiprocessing.process")
     return known is not None and known.parent_process() is not None
 
 
 def _watch() -> None:
-    """Speak while functions are compiled, until there has been none for a while."""
+    """Print messages while functions are compiled, until no function has been compiled for a while."""
     first, spent, idle, said = _State.parts - 1, 0.0, 0.0, None
     before = time.perf_counter()
     while True:
@@ -83,6 +83,6 @@ def _watch() -> None:
 
 
 def _say(words: str) -> None:
-    """Print a line on stderr, which may be closed, or none."""
+    """Print a line on stderr, unless it is closed or does not exist."""
     with contextlib.suppress(Exception):
         print(f"carom: {words}", file=sys.stderr, flush=True)

@@ -1,9 +1,8 @@
-"""Four numbers that a processor takes at once: loaded from arrays and stored side by side, added, multiplied.
+"""Operations of a processor on four numbers at once: load them from arrays, store, add, multiply.
 
-LLVM does not find such code by itself: Numba leaves its search for it off, and loops over four lanes are
-unrolled before others are looked at. Each operation is that of plain numbers in each lane, rounded the same.
-An index counts numbers from the start of a contiguous array of any shape; it is not checked and may not be
-negative.
+LLVM does not make such code by itself: Numba turns its search for it off, and loops over four lanes are
+unrolled before outer loops are examined. Each lane has the same operation and rounding as plain numbers. An
+index counts numbers from the start of a contiguous array of any shape; it is unchecked, and never negative.
 """
 
 from __future__ import annotations
@@ -17,7 +16,7 @@ from numba.extending import intrinsic, models, register_model
 
 from carom._compiled.decorators import COMPILES
 
-LANES = 4  # numbers that a processor takes at once
+LANES = 4  # numbers in one operation
 
 
 class Four(types.Type):
@@ -115,11 +114,11 @@ def _greatest(typing, v):
 
 
 def _either(plain, definition) -> Any:
-    """Return the operation for compiled code, or the plain one for what runs uncompiled."""
+    """Return the operation for compiled code, or the plain one if code runs uncompiled."""
     if not COMPILES:
         return plain
     made: Any = intrinsic(definition)
-    made.parts = (definition, _pointer, _lanes)  # a change of these is one of what was compiled
+    made.parts = (definition, _pointer, _lanes)  # a change of these changes compiled code
     return made
 
 
@@ -127,9 +126,9 @@ def _plain_store(x, i, v):
     x.reshape(-1)[i : i + LANES] = v
 
 
-#: load(x, i): four numbers of the array x from i on
+#: load(x, i): four numbers of the array x, from index i
 load = _either(lambda x, i: x.reshape(-1)[i : i + LANES].copy(), _load)
-#: store(x, i, v): write them
+#: store(x, i, v): write four numbers v to them
 store = _either(_plain_store, _store)
 #: same(f): f in all lanes
 same = _either(lambda f: np.full(LANES, f), _same)

@@ -1,12 +1,12 @@
-"""A target of Numba of our own: code for a fixed processor, and nothing changed for other users of Numba.
+"""Carom's own target of Numba: code for a fixed processor, without changes for other users of Numba.
 
-Kernels are typed in a typing context of their own and become code in a target context of their own, by Numba's
-target extension. What makes that quick or small is said in subclasses here: operators on numbers are resolved
-once, flags compare by what was set, names have a length that can be handled, named tuples of ours are typed as
-references. Plain `numba.njit` in the same process goes on as it was.
+By Numba's target extension, kernels have their own typing context and their own target context. The subclasses
+here make compiling faster and code smaller: operators on numbers are resolved once, flags are compared by the
+options that were set, names are short, and named tuples of carom are typed as references. Plain `numba.njit` in
+the same process works as usual.
 
-The processor is a baseline (`processor`), so that results are the same, and files of compiled code are good, on
-every machine of an architecture.
+The processor is a baseline (`processor`), so that results are the same, and files of compiled code are valid,
+on every machine of an architecture.
 """
 
 from __future__ import annotations
@@ -34,21 +34,21 @@ from carom._compiled.by_reference import type_of
 from carom._compiled.cache import StampedCache
 
 NAME = "carom"
-NATIVE = "CAROM_NATIVE"  # environment: "1" compiles for the processor at hand
+NATIVE = "CAROM_NATIVE"  # environment variable: "1" compiles for the present processor
 _BASELINES = {
-    # x86-64-v3 is Haswell and Excavator, and all that came after
+    # x86-64-v3 is Haswell and Excavator and all later processors
     "x86_64": ("x86-64-v3", "", ("avx2", "bmi2", "fma", "lzcnt", "movbe", "f16c")),
     "aarch64": ("generic", "+v8a", ()),
 }
-_LONG = 120  # letters of what a name says of the types of arguments
+_LONG = 120  # greatest length of the types of arguments in a name
 
 
 @functools.cache
 def processor() -> tuple[str, str]:
-    """Return name and features of the processor that is compiled for.
+    """Return name and features of the processor for which code is compiled.
 
-    That is the baseline of the architecture, where the machine has all of it; with ``CAROM_NATIVE=1``, or on
-    other machines, the one at hand; ``NUMBA_CPU_NAME`` and ``NUMBA_CPU_FEATURES`` come before both.
+    It is the baseline of the architecture if the machine has all its features, otherwise, or with
+    ``CAROM_NATIVE=1``, the present processor. ``NUMBA_CPU_NAME`` and ``NUMBA_CPU_FEATURES`` have priority.
     """
     name: Any = getattr(config, "CPU_NAME", None)
     if name is not None:
@@ -61,7 +61,7 @@ def processor() -> tuple[str, str]:
     return llvm.get_host_cpu_name(), llvm.get_host_cpu_features().flatten()
 
 
-#: how to lower what Numba does not know
+#: rules to lower code that Numba does not know
 _own = Registry("carom")
 
 
@@ -80,7 +80,7 @@ class Codegen(codegen.JITCPUCodegen):
 
 
 class TypingContext(numba.core.typing.context.Context):
-    """Types of expressions; what a function makes of plain numbers is found once, not in each place."""
+    """Types of expressions; the signature of a function of plain numbers is resolved only once."""
 
     _plain = (types.Integer, types.Float, types.Boolean)
 
@@ -91,8 +91,8 @@ class TypingContext(numba.core.typing.context.Context):
     def resolve_function_type(self, func, args, kws):
         """Return the signature of a call.
 
-        What Numba writes as an overload or an intrinsic (``max``, ``int``) is resolved each time: it keeps one
-        implementation for all targets, that of the last one that asked.
+        Functions that Numba defines by an overload or an intrinsic (``max``, ``int``) are resolved each time,
+        because Numba stores one implementation for all targets, that of the last request.
         """
         plain = not kws and isinstance(func, types.Function)
         if not (plain and all(isinstance(a, self._plain) for a in args)):
@@ -108,21 +108,21 @@ class TypingContext(numba.core.typing.context.Context):
 
 
 class TargetContext(cpu.CPUContext):
-    """Code of expressions; names of functions are kept short.
+    """Code of expressions, with short names of functions.
 
-    Numba spells the types of all arguments in the name of a function: 29 000 letters for the loop of a run.
+    Numba writes the types of all arguments in the name of a function: 29 000 letters for the loop of a run.
     """
 
     def init(self):
-        """Begin with code generation of our own."""
+        """Begin with carom's own code generation."""
         super().init()
         self._internal_codegen: Any = Codegen("carom.exec")
 
     def load_additional_registries(self):
-        """Know how to lower what kernels use: numbers, tuples, records, arrays and their elements, mathematics.
+        """Load the rules that kernels need: numbers, tuples, records, arrays and their elements, mathematics.
 
-        Numba's own list goes on to strings, dictionaries and linear algebra, for which it imports SciPy: a
-        third of the first run of a process.
+        Numba's own list also has strings, dictionaries and linear algebra, for which it imports SciPy; this
+        took a third of the first run of a process.
         """
         from numba.core import optional  # noqa: F401
         from numba.core.runtime.nrt import rtsys
@@ -163,7 +163,7 @@ def _spelled(kinds: tuple) -> str:
 
 
 class Flags(compiler.Flags):
-    """Options of a compile, compared by what was set: Numba asks 15 million times whether two are the same."""
+    """Options of a compile, compared by the options that were set: Numba compares them 15 million times."""
 
     def __eq__(self, other):
         if self is other or (type(self) is type(other) and self._values == other._values):
@@ -171,11 +171,11 @@ class Flags(compiler.Flags):
         return super().__eq__(other)
 
     def __hash__(self):
-        return 20261123  # there are few
+        return 20261123  # there are few different options
 
 
 class Target(TargetDescriptor):
-    """Both contexts, made at first use."""
+    """The typing and target contexts, made at first use."""
 
     options: Any = cpu.CPUTargetOptions
 
@@ -191,7 +191,7 @@ class Target(TargetDescriptor):
 
 
 class _Compiler(dispatcher._FunctionCompiler):  # pyright: ignore[reportAttributeAccessIssue]
-    """Compiles one function, with `Flags` of ours."""
+    """Compiler of one function, with `Flags` of this file."""
 
     def _customize_flags(self, flags):
         own = Flags()
@@ -211,7 +211,7 @@ class Dispatcher(dispatcher.Dispatcher):
         )
 
     def compile(self, sig):
-        """Compile for a signature, or load; the garbage collector, which would go through all of it, waits."""
+        """Compile for a signature, or load; meanwhile the garbage collector is off, which saves time."""
         waits = gc.isenabled()
         gc.disable()
         try:
@@ -225,38 +225,38 @@ class Dispatcher(dispatcher.Dispatcher):
                 cache.release()
 
     def typeof_pyval(self, val):
-        """Return the type of an argument from Python: a reference where it is a named tuple of ours."""
+        """Return the type of an argument from Python: a reference if it is a named tuple of carom."""
         kind = type_of(val)
         self._types_active_call.add(kind)  # pyright: ignore[reportAttributeAccessIssue]
         return kind
 
     def get_call_template(self, args, kws: Any):
-        """Return how a call is typed, for plain types only.
+        """Return the typing of a call, for plain types only.
 
-        A variable that begins as a constant (``n = 0``) has a type of its own until all that is assigned to it
-        is known. Numba compiles what is called meanwhile for that type, with all that this calls, and uses none
-        of it: a quarter of all functions that a thrown die needs. An array that is a field of a record has a
-        type of its own, too, that of its shape.
+        A variable that begins as a constant (``n = 0``) has a special type until all its assignments are known.
+        Numba would compile called functions for this type, with all that they call, and use none of them: a
+        quarter of all functions for a thrown die. An array that is a field of a record has a special type, too,
+        which includes its shape.
         """
         plain = {name: plain_type(kind) for name, kind in kws.items()}
         return super().get_call_template(tuple(map(plain_type, args)), plain)
 
 
 def plain_type(kind) -> types.Type:
-    """Return the type that a function is compiled for: one for constants and variables, fields and arrays."""
-    if isinstance(kind, types.NestedArray):  # in memory they are alike
+    """Return the type for which a function is compiled: that of a variable or of an array."""
+    if isinstance(kind, types.NestedArray):  # its memory layout is that of an array
         return types.Array(kind.dtype, kind.ndim, "C")
     return types.unliteral(kind)
 
 
 @_own.lower_cast(types.NestedArray, types.Array)
 def _field_as_array(context, builder, fromty, toty, val):
-    """Hand a field of a record on as the array that it is."""
+    """Return a field of a record as an array."""
     return val
 
 
 def compiled(function=None, **options):
-    """Compile for the target: `numba.njit` for our own code, and what its overloads are compiled with."""
+    """Compile for the target, in place of `numba.njit`, for carom's code and for its overloads."""
     if function is None:
         return functools.partial(compiled, **options)
     options.pop("nopython", None)

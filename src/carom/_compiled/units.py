@@ -1,12 +1,11 @@
-"""Units: kernels that are compiled on their own, and found when compiled code first calls them.
+"""Units: kernels that are compiled separately, and loaded when compiled code first calls them.
 
-What a kernel calls directly is compiled again into each of its callers, and theirs; a solve that is reached
-from twenty places cost a minute that way. A unit is called through its address instead. The caller has room for
-the address, empty at first; where it is empty the caller asks Python for it (`_find`), which loads the unit
-from disk or compiles it. So a scene waits only for what it does: joints, several points, groups, when they
-first occur.
+A kernel is compiled again into each of its callers, and into their callers; a solve with twenty callers cost a
+minute. A unit is called through its address instead. The caller has a slot for the address, which is empty at
+first. If it is empty, the caller requests the address from Python (`_find`), which loads the unit from disk or
+compiles it. So a scene waits only for the units that it needs: joints, several points or groups.
 
-Uncompiled a unit is a plain function.
+Without compiling a unit is a plain function.
 """
 
 from __future__ import annotations
@@ -35,14 +34,14 @@ if COMPILES:
     from carom._compiled.target import plain_type
 
 _RETURNS = {"float": types.float64, "int": types.int64, "bool": types.boolean}
-_FINDER = "carom_find_unit"  # symbol of the function that compiled code asks
+_FINDER = "carom_find_unit"  # symbol of `_find` in compiled code
 
 
 class NotCompiled(RuntimeError):
-    """A unit that compiled code has called could not be compiled; its cause says why."""
+    """A unit called by compiled code could not be compiled; `__cause__` is the reason."""
 
     stopped_by: BaseException | None = (
-        None  # the last compile; an error has no way through compiled code
+        None  # error of the last compile, because errors cannot pass through compiled code
     )
 
     def __init__(self, name: str):
@@ -51,9 +50,9 @@ class NotCompiled(RuntimeError):
 
 
 def unit(function):
-    """Compile `function` on its own; kernels call it like any other kernel.
+    """Compile `function` separately; kernels call it like any other kernel.
 
-    It returns nothing, or what its annotation says: `float`, `int`, `bool`, or a tuple of these.
+    It returns nothing, or the type in its annotation: `float`, `int`, `bool`, or a tuple of these.
     """
     if not COMPILES:
         return function
@@ -84,7 +83,7 @@ def unit(function):
 
 
 def _returned(annotation) -> types.Type:
-    """Return the type of what a unit returns, from the text of its annotation."""
+    """Return the type of the result of a unit, from the text of its annotation."""
     if annotation is inspect.Signature.empty:
         return types.none
     if annotation.startswith("tuple["):
@@ -93,7 +92,7 @@ def _returned(annotation) -> types.Type:
 
 
 def _call(context, builder, name, result, kinds, values):
-    """Generate the call of a unit: look into the slot, fill it if it is empty, call."""
+    """Generate the call of a unit: read the slot, fill it if it is empty, and call."""
     pointer, number = ir.IntType(8).as_pointer(), ir.IntType(64)
     ASKED[name, kinds] = None
     packed = pack(kinds)
@@ -136,7 +135,7 @@ def _global(module, name, value, constant):
 
 #: all units, by module and name
 UNITS: dict[str, Any] = {}
-#: what code that was compiled in this process may call: name and types of arguments
+#: units that code compiled in this process may call: name and types of arguments
 ASKED: dict[tuple[str, tuple], None] = {}
 
 
@@ -151,12 +150,12 @@ def unpack(packed: bytes) -> tuple:
 
 
 def asked_before() -> set[tuple[str, tuple]]:
-    """Return units of modules that are loaded, with the types by which compiled code on disk calls them."""
+    """Return units of loaded modules, with the types with which compiled code on disk calls them."""
     out = set()
     for name, made in UNITS.items():
         packed = getattr(made.compiled._cache, "asked", lambda: None)()
         if packed is not None:
-            with contextlib.suppress(Exception):  # of another version of Numba
+            with contextlib.suppress(Exception):  # a file of another version of Numba
                 out.add((name, unpack(packed)))
     return out
 
@@ -180,7 +179,7 @@ def _find(name, packed, size):
     """Return the address of a unit to compiled code, or 0 if it could not be compiled."""
     try:
         return address(name.decode(), unpack(ctypes.string_at(packed, size)))
-    except BaseException as error:  # Ctrl-C too: it has no way through compiled code
+    except BaseException as error:  # Ctrl-C too: errors cannot pass through compiled code
         NotCompiled.stopped_by = error
         return 0
 
@@ -188,12 +187,12 @@ def _find(name, packed, size):
 llvm.add_symbol(_FINDER, ctypes.cast(_find, ctypes.c_void_p).value)
 
 _FLAGS = 0x1 | 0x2 | 0x100 | 0x400  # of an array: C order, Fortran order, aligned, writeable
-_KINDS: dict[tuple, object] = {}  # something of its own for each: quicker to compare
+_KINDS: dict[tuple, object] = {}  # one object for each key, which is faster to compare
 _ENTRIES: dict[tuple, Callable] = {}
 
 
 def kind(value):
-    """Return a key that values of one Numba type have in common."""
+    """Return a key that is equal for values of the same Numba type."""
     if isinstance(value, tuple):
         return (type(value), *map(kind, value))
     if isinstance(value, np.ndarray):
@@ -202,9 +201,9 @@ def kind(value):
 
 
 class Entries:
-    """Finds entries for arguments that are made of these parts, of numbers, and of a workspace and records.
+    """Entries for arguments that consist of these parts, numbers, workspace and records, found without Numba.
 
-    Numba looks at the types of all arguments, some 600 arrays and numbers, each time an entry is called: 25
+    Numba examines the types of all arguments, some 600 arrays and numbers, at each call of an entry: 25
     microseconds, of which 2 are the call. Workspace and records are named tuples of arrays of the same types in
     every run.
     """
@@ -220,13 +219,13 @@ class Entries:
         self._kind = _KINDS.setdefault(kinds, object())
 
     def __call__(self, function, *arguments) -> Any:
-        """Call an entry with arguments whose types are not looked at.
+        """Call an entry without an examination of all types.
 
-        Raises what stopped the compile of a unit that it needs, if one could not be compiled.
+        If a unit that it needs could not be compiled, the error of its compile is raised.
         """
         key = (function, self._kind, *map(type, arguments))
         if key not in _ENTRIES:
-            jitted = hasattr(function, "typeof_pyval")  # not where nothing is compiled
+            jitted = hasattr(function, "typeof_pyval")  # false if nothing is compiled
             types = tuple(map(function.typeof_pyval, arguments)) if jitted else ()
             _ENTRIES[key] = function.compile(types) if jitted else function
         try:

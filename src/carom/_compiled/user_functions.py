@@ -1,12 +1,12 @@
-"""Functions of the user's, called from compiled code through an address.
+"""User-defined functions, called from compiled code through an address.
 
-One form for all: ``f(t, x, out)`` reads a time and an array of numbers and writes an array of numbers. What
-Numba has compiled is called directly (50 ns with an array made for the answer); a plain Python function through
-`ctypes`, with the interpreter's lock taken for the call (13 microseconds). The address is a number among
-the data of a run, so that no function of the user's makes the loop compile again.
+All have one form: ``f(t, x, out)`` reads a time and an array of numbers and writes an array of numbers. A
+function compiled by Numba is called directly (50 ns, with a new array for the result); a plain Python function
+is called through `ctypes` with the interpreter's lock (13 microseconds). The address is a number in the data of
+a run, so a new function does not cause a new compile of the loop.
 
-An error in a plain function cannot pass through compiled code: it is kept, the result is NaN, the run stops
-and the error is raised then (`Functions.failed`).
+An error in a plain function cannot pass through compiled code: it is stored, the result is NaN, the run stops,
+and then the error is raised (`Functions.failed`).
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ _SIGNATURE = types.void(types.float64, types.CPointer(types.float64), types.CPoi
 
 
 class Functions:
-    """The functions of one run: keeps them alive, and the first error that one of them raised."""
+    """The functions of one run: references to them, and the first error that one of them raised."""
 
     def __init__(self):
         self._kept: list[Any] = []
@@ -46,9 +46,9 @@ class Functions:
         return ctypes.cast(made, ctypes.c_void_p).value
 
     def written(self, function: Callable, inside: tuple[int, ...], outside: tuple[int, ...]):
-        """Return the address of ``function(t, x, out)`` that only reads and writes numbers of its arguments.
+        """Return the address of ``function(t, x, out)``, which only reads and writes numbers of its arguments.
 
-        Compiled as it stands, without arrays: for code that the library itself has written.
+        It is compiled without a wrapper for arrays, for code that the library itself has written.
         """
         if not COMPILES:
 
@@ -71,7 +71,7 @@ class Functions:
             x = np.ctypeslib.as_array(read, inside)
             try:
                 out[...] = function(t, x)
-            except BaseException as error:  # it has no way through the compiled loop
+            except BaseException as error:  # errors cannot pass through the compiled loop
                 self.failed = error
 
         return call

@@ -8,7 +8,7 @@ import numpy as np
 
 from carom import checks
 
-_TIE = 1e-9  # points that differ in height by less than this part of the size strike as one
+_TIE = 1e-9  # points whose heights differ by less than this part of the size strike together
 
 
 class OneBody(NamedTuple):
@@ -17,7 +17,7 @@ class OneBody(NamedTuple):
     mass: float
     inertia: np.ndarray  # (3, 3), body axes, about the mass centre
     points: np.ndarray  # (m, 3) vertices in body axes; the mass centre for a sphere
-    radius: float  # of the ball around each point
+    radius: float  # radius of the ball around each point
     axes: np.ndarray  # (3, 3) rows n, t1, t2
     plane_point: np.ndarray
     restitution: float
@@ -26,7 +26,7 @@ class OneBody(NamedTuple):
 
 
 def read_scene(scene) -> tuple[OneBody, Any]:
-    """Return the arrays of a scene of one body and one contact, and the body; refuse any other."""
+    """Return the arrays of a scene of one body and one contact, and the body; refuse other scenes."""
     if isinstance(scene, type) or not (hasattr(scene, "bodies") and hasattr(scene, "contacts")):
         raise TypeError(f"scene must be a Scene, got {checks.shown(scene)}")
     if hasattr(scene, "validate"):
@@ -70,7 +70,7 @@ def contact_axes(normal) -> np.ndarray:
 def lowest_point(system: OneBody, x, R) -> tuple[float, np.ndarray]:
     """Return the gap [m] and the arm (3,) from mass centre to contact, in world axes.
 
-    Several lowest points at the same height, an edge or a face, count as one: their mean.
+    Several lowest points at the same height (an edge or a face) are replaced by their mean.
     """
     n = system.axes[0]
     arms = system.points @ R.T

@@ -8,8 +8,8 @@ In the paper's parameters, ``0 <= alpha <= 1/3``, ``beta = (1 + alpha)^2/4`` and
     v_{n+1} = v_n + h ((1 - gamma) a_n + gamma a_{n+1})
 
 Elsewhere the parameter is often alpha_H = -alpha in [-1/3, 0], and the weights are written
-``(1 + alpha_H) f_{n+1} - alpha_H f_n``: the same numbers. Order 2 for every alpha; alpha > 0 damps
-the high frequencies.
+``(1 + alpha_H) f_{n+1} - alpha_H f_n``, which are the same numbers. The order is 2 for every alpha;
+alpha > 0 damps high frequencies.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ import numpy as np
 
 from carom import checks
 
-MOST_STEPS = 1e6  # of a run in plain Python
+MOST_STEPS = 1e6  # greatest number of steps of a run, which is in plain Python
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,7 @@ from carom import checks
 from carom.baselines.hht import newmark_constants
 from carom.baselines.layer_exact import layer_constants, layer_motion
 
-_MOST_INTERVALS = 3  # a run that has not left after three times the exact duration is stopped
+_MOST_INTERVALS = 3  # a run still in the layer after this multiple of the exact duration is stopped
 
 
 @dataclass(frozen=True)

@@ -118,7 +118,7 @@ def _step(system: OneBody, inverse, x, Q, v, h, theta):
 
 
 def _free_spin(J, W, h, theta):
-    """Return W+ of ``J (W+ - W) = -h (theta W+ x J W+ + (1 - theta) W x J W)``, by Newton."""
+    """Solve ``J (W+ - W) = -h (theta W+ x J W+ + (1 - theta) W x J W)`` for W+ by Newton's method."""
     start = J @ W - h * (1.0 - theta) * np.cross(W, J @ W)
     W1 = W
     for _ in range(20):
@@ -133,7 +133,7 @@ def _free_spin(J, W, h, theta):
 
 
 def _turned(Q, angle):
-    """Return the quaternion after a turn by a rotation vector in body axes."""
+    """Return the quaternion Q after a rotation by a vector in body axes."""
     from carom.geometry import rotation
 
     turn = rotation.exp(angle[0], angle[1], angle[2])
@@ -148,7 +148,7 @@ def _rotation(Q):
 
 
 def _run(system: OneBody, saved) -> MoreauJeanRun:
-    """Put the saved states into the shapes of a solution, with gap and energies."""
+    """Return the saved states in the shapes of a solution, with gap and energies."""
     t, x, Q, v, p = (np.array(column) for column in zip(*saved))
     R = np.array([_rotation(q) for q in Q])
     W = v[:, 3:]

@@ -1,8 +1,8 @@
 """One contact with Coulomb friction, solved exactly: ``w = W p + c`` with p in the friction cone.
 
-Conditions (normal first): ``0 <= p_n  _|_  w_n >= 0``, ``|p_t| <= mu p_n``, and where the contact
-slides (w_t not 0) ``p_t = -mu p_n w_t/|w_t|``. The cone acts on the velocity w AFTER the impulse:
-the algebraic law of time stepping, not the impulse path of an impact with reversals of slip.
+Conditions (normal first): ``0 <= p_n  _|_  w_n >= 0``, ``|p_t| <= mu p_n``, and if the contact slides (w_t not
+0) ``p_t = -mu p_n w_t/|w_t|``. Coulomb's law holds for the velocity w AFTER the impulse. This is the algebraic
+law of time stepping; there is no impulse path with reversals of slip as in an impact.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ def solve_one_contact(inverse_mass, velocity, friction) -> np.ndarray:
 
         A = W_tt - W_tn W_nt / W_nn ,   b = c_t - W_tn c_n / W_nn ,   w_t = A p_t + b
 
-    It sticks, ``p_t = -A^-1 b``, if that is inside the cone. Otherwise it slides, ``w_t = -alpha p_t`` with
-    alpha > 0, hence ``p_t = -(A + alpha I)^-1 b``; alpha is a root of ``|p_t| - mu p_n``, which is
-    positive at 0 and negative for large alpha: there is one (several only if mu is large).
+    The contact sticks, ``p_t = -A^-1 b``, if this is inside the cone. Otherwise it slides, ``w_t = -alpha p_t``
+    with alpha > 0, hence ``p_t = -(A + alpha I)^-1 b``; alpha is a root of ``|p_t| - mu p_n``, which is
+    positive at 0 and negative for large alpha, so a root exists (several only if mu is large).
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def solve_one_contact(inverse_mass, velocity, friction) -> np.ndarray:
         return np.array([-c[0] / W[0, 0], 0.0, 0.0])
     high = stiffness.max()
     while excess(high) > 0.0:
-        if not high < 1e300:  # the cone is so narrow that no number tells it from a line
+        if not high < 1e300:  # round-off cannot distinguish so narrow a cone from a line
             return np.array([-c[0] / W[0, 0], 0.0, 0.0])
         high *= 4.0
     return impulse(brentq(excess, 0.0, high, xtol=1e-16 * high))

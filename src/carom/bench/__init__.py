@@ -1,5 +1,5 @@
-"""Standard problems and how they are timed: for ``carom bench``, and for the scripts in benchmarks/.
+"""Standard problems and their timing, for ``carom bench`` and for the scripts in benchmarks/.
 
-Each problem is a file in `problems`: what moves, what its exact answer is, and the same for MuJoCo. How a
-time is taken is in `measure`, which problems make the standard set in `standard`.
+Each problem is a file in `problems`: the scene, its exact result, and the same scene for MuJoCo. `measure` has
+the measurement of times, and `standard` the standard set of problems.
 """

@@ -1,4 +1,4 @@
-"""Compiled loops over many impacts, so that calls from Python do not count."""
+"""Compiled loops over many impacts, so that the cost of calls from Python is not measured."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from carom.impact.resolve import resolve
 
 @entry
 def resolve_many(W, u, mu, e, law, out):
-    """Resolve each impact; return how many failed."""
+    """Resolve each impact; return the number of failures."""
     failed = 0
     for i in range(u.shape[0]):
         if resolve(W[i], u[i], mu, e, law, out) != 0:
@@ -19,7 +19,7 @@ def resolve_many(W, u, mu, e, law, out):
 
 @entry
 def traverse_many(W, u, mu, e, law, history, out):
-    """Take each impact through the layer; return how many failed."""
+    """Pass each impact through the layer; return the number of failures."""
     failed = 0
     for i in range(u.shape[0]):
         if traverse(W[i], u[i], mu, e, law, (1e-6, 0.2, 2), history, out) != 0:

@@ -1,4 +1,4 @@
-"""Timing: processor time of calls and of steps, medians with quartiles, and what the machine is."""
+"""Timing: processor time of calls and of steps, medians with quartiles, and a description of the machine."""
 
 from __future__ import annotations
 
@@ -16,15 +16,15 @@ from types import ModuleType
 from typing import Any, NamedTuple
 
 ROUNDS = 5
-PATIENCE = 10  # times as many rounds as were asked for, at most
+PATIENCE = 10  # greatest number of rounds, relative to the requested number
 PEERS = ("mujoco", "pybullet")
 
-#: Processor time: what is measured runs in one thread, and others use the machine too.
+#: Processor time, because the measured code runs in one thread, and other programs may use the machine too.
 clock = time.process_time
 
 
 class Spread(NamedTuple):
-    """The middle of some values, and the quartiles around it."""
+    """Median and quartiles of some values."""
 
     median: float
     low: float
@@ -50,7 +50,7 @@ def spread(values: Sequence[float]) -> Spread:
 def seconds(
     function: Callable[[], Any], rounds: int = ROUNDS, timer: Callable[[], float] = clock
 ) -> list[float]:
-    """Return the times of `rounds` calls, after one that is not counted."""
+    """Return the times of `rounds` calls, after one call that is not measured."""
     function()
     times = []
     for _ in range(rounds):
@@ -61,10 +61,10 @@ def seconds(
 
 
 def per_step(run: Callable[[int], Any], few: int, many: int, rounds: int = ROUNDS) -> list[float]:
-    """Return the time [s] of one more step: ``run(many)`` against ``run(few)``, each round anew.
+    """Return the time [s] of one step in each round, from the difference of ``run(many)`` and ``run(few)``.
 
-    What a call costs besides its steps (setting up, handing back) cancels. Where the lower quartile is not
-    above 0 there are up to `PATIENCE` times as many rounds; nan where that does not help.
+    Other costs of a call (preparation, results) cancel. If the lower quartile is not above 0, there are up to
+    `PATIENCE` times as many rounds; if it is still not above 0, the result is nan.
     """
     run(few)
     slopes = []
@@ -81,7 +81,7 @@ def per_step(run: Callable[[int], Any], few: int, many: int, rounds: int = ROUND
 
 
 def stepper(scene, step: float, **how) -> Callable[[int], Any]:
-    """Return ``run(steps)`` of a scene, nothing saved but both ends."""
+    """Return ``run(steps)`` of a scene, which saves only the first and the last state."""
     import carom
 
     def run(steps: int):
@@ -90,18 +90,18 @@ def stepper(scene, step: float, **how) -> Callable[[int], Any]:
     return run
 
 
-TOLERANCE = "tolerance"  # in the place of a method: the step is what `rtol` is
+TOLERANCE = "tolerance"  # in place of a method: the given step is `rtol`
 
 
 def ends_only(step: float, method: str, duration: float) -> dict[str, Any]:
-    """Return the settings of a run with a step, or by a tolerance, of which nothing is saved but both ends."""
+    """Return the settings of a run with a step or a tolerance that saves only the first and last state."""
     if method == TOLERANCE:
         return {"rtol": step, "save_at": duration}
     return {"step": step, "method": method, "save_every": 10**9}
 
 
 def peer(name: str) -> ModuleType | None:
-    """Return the module of another tool, or None where it cannot be imported."""
+    """Return the module of another tool, or None if it cannot be imported."""
     try:
         return importlib.import_module(name)
     except ImportError:

@@ -1,4 +1,4 @@
-"""The standard set of ``carom bench``: what is measured, in which unit, beside MuJoCo where it is asked for."""
+"""The standard set of ``carom bench``: the measured quantities and their units, with MuJoCo on request."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from carom.bench.problems.task import Task
 
 
 class Side(NamedTuple):
-    """What one tool needs, in the unit of the problem, and how wrong it is (None: no answer to compare)."""
+    """Time of one tool in the unit of the problem, and its error (None without a reference)."""
 
     time: Spread
     error: float | None
@@ -39,14 +39,14 @@ class Problem(NamedTuple):
 
 
 class Row(NamedTuple):
-    """A problem that was measured."""
+    """The measurement of a problem."""
 
     problem: Problem
     ours: Side
     theirs: Side | None
 
     def as_dict(self) -> dict[str, Any]:
-        """Return it as plain values."""
+        """Return the row as a dict of plain values."""
         told: dict[str, Any] = {
             "name": self.problem.name, "what": self.problem.what, "unit": self.problem.unit,
             "error_is": self.problem.error,
@@ -58,12 +58,12 @@ class Row(NamedTuple):
 
 
 def _whole(task: Task, rounds: int) -> Side:
-    """Return milliseconds of the whole work."""
+    """Return the time of the whole work [ms]."""
     return Side(spread([1e3 * t for t in seconds(task.run, rounds)]), task.error())
 
 
 def _step(task: Task, rounds: int) -> Side:
-    """Return microseconds a step."""
+    """Return the time of a step [us]."""
     return Side(spread([1e6 * t / task.count for t in task.times(rounds)]), task.error())
 
 
@@ -76,7 +76,7 @@ def _of(module, how, step: float, what: str, unit: str, name: str = "", **more) 
 
 
 def _rate(of: Callable[[int], float], rounds: int) -> Spread:
-    """Return throws a second."""
+    """Return the number of throws per second."""
     of(0)
     return spread([of(seed) for seed in range(rounds)])
 
@@ -120,7 +120,7 @@ def _corner() -> Problem:
 
 
 def problems() -> tuple[Problem, ...]:
-    """Return the set."""
+    """Return the standard set."""
     chains = (
         _of(chain, _step, 2e-3, f"chain of {n} rods, h = 2 ms", "us a step", f"chain_{n}", links=n)
         for n in (1, 10, 100)
@@ -138,7 +138,7 @@ def run(
     wanted: list[str] | None = None, rounds: int = measure.ROUNDS, peer: Any = None,
     tell: Callable[[int, int, str], None] = lambda done, total, name: None,
 ) -> Iterator[Row]:  # fmt: skip
-    """Measure the problems that are wanted (all), one after the other; beside `peer`, the module of MuJoCo."""
+    """Measure the `wanted` problems (default: all), one by one; also with `peer`, the module of MuJoCo."""
     chosen = [p for p in problems() if not wanted or p.name in wanted]
     for k, problem in enumerate(chosen):
         tell(k, len(chosen), problem.what)

@@ -1,12 +1,12 @@
-"""Alternating directions: slow, but it gets near a solution where sweeps and Newton do not.
+"""Alternating directions: slow, but the method comes near a solution where sweeps and Newton do not.
 
-With v = w + mu |w_t| e_n the problem reads: p in the cone, v in the dual cone, p.v = 0 (de Saxce). Split into
-x, on the equations, and z, in the cone, over-relaxed by r:
+With v = w + mu |w_t| e_n the problem is: p in the cone, v in the dual cone, p.v = 0 (de Saxce). It is split
+into x, which satisfies the equations, and z, which lies in the cone; r is the over-relaxation:
 
     (W + sigma) x = v + sigma z - c - mu |v_t| e_n,    z' = P_K(y - v/sigma),  y = r x + (1 - r) z
     v' = v + sigma (z' - y)
 
-All contacts are treated alike, whatever their order.
+The order of the contacts has no effect.
 """
 
 from __future__ import annotations

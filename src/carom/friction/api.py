@@ -123,7 +123,7 @@ def solve_contacts(
     code = np.array([KINDS[checks.choice("kind", one, KINDS)] for one in kinds], dtype=np.int64)
     direction = _heading(heading, k)
     p = np.zeros(3 * k) if start is None else _triples("start", start, k, "N s")
-    with np.errstate(over="ignore", invalid="ignore"):  # what does not converge says so itself
+    with np.errstate(over="ignore", invalid="ignore"):  # the status reports a failure
         status, residual, iterations = solve_cones(
             k, W, c, mu, code, direction, p, new_contact_work(k)
         )
@@ -143,7 +143,7 @@ def solve_contacts(
 
 
 def _triples(name: str, value, k: int | None, unit: str) -> np.ndarray:
-    """Return (3k,) of either shape."""
+    """Return `value`, of either shape, with shape (3k,)."""
     rows = checks.real_array(name, value, "(3k,) or (k, 3)").ndim == 2
     array = checks.finite_array(
         name, value, (k, 3) if rows else (None if k is None else 3 * k,), unit

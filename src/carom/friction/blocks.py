@@ -1,4 +1,4 @@
-"""Block LU on the graph of bodies: blocks 6x6, rows exchanged inside the diagonal blocks only."""
+"""Block LU on the graph of bodies; rows are exchanged only inside the diagonal blocks, which are 6x6."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ _LEAST = 1e-14  # pivots smaller than this are replaced by it
 
 @kernel
 def factor_blocks(work):
-    """Factor in place: right of the diagonal U, below it L with unit diagonal blocks."""
+    """Factor in place: U right of the diagonal, below it L with unit diagonal blocks."""
     block, target = work.block, work.target
     right = work.body.shape[0]
     below = right + work.later.shape[0]
@@ -27,7 +27,7 @@ def factor_blocks(work):
 
 @kernel
 def substitute_blocks(work):
-    """Solve with the factors: the motion of the bodies becomes the solution."""
+    """Solve with the factors: replace the motion of the bodies by the solution."""
     block, later = work.block, work.later
     right = work.body.shape[0]
     below = right + later.shape[0]
@@ -90,11 +90,11 @@ def _divide(X, A, pivot):
     """Replace X by X A^-1, row by row."""
     for r in range(6):
         x = X[r]
-        for k in range(6):  # times U^-1
+        for k in range(6):  # multiply by U^-1
             x[k] /= A[k, k]
             for j in range(k + 1, 6):
                 x[j] -= x[k] * A[k, j]
-        for k in range(5, -1, -1):  # times L^-1, then the exchanges
+        for k in range(5, -1, -1):  # multiply by L^-1, then exchange
             for j in range(k):
                 x[j] -= x[k] * A[k, j]
         for k in range(5, -1, -1):

@@ -1,4 +1,4 @@
-"""Checks of the input of several contacts: their inverse masses, and one number of each."""
+"""Checks of the input for several contacts: their inverse masses, and one number for each."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def checked_inverse_masses(inverse_mass, k: int) -> np.ndarray:
 
 
 def per_contact(name: str, value, k: int, **bounds) -> np.ndarray:
-    """Return `value`, one number or k of them, as an array (k,); each within `bounds`."""
+    """Return `value`, one number or k of them, as an array (k,); each must be within `bounds`."""
     if checks.real_array(name, value, "() or (k,)").ndim == 0:
         return np.full(k, checks.number(name, value, **bounds))
     array = checks.finite_array(name, value, (k,))

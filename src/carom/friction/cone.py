@@ -1,4 +1,4 @@
-"""The allowed impulses of a contact: projections on them. A contact has the fields mu, kind, h1, h2."""
+"""Projections on the allowed impulses of a contact, which has the fields mu, kind, h1, h2."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from carom.friction.layout import CONE, DISC, SLIDING
 
 @kernel
 def project(contact, x0, x1, x2):
-    """Return the projection of Alart and Curnier: normal first, then on the disc of radius mu x_n.
+    """Return the projection of Alart and Curnier: on x_n >= 0, then on the disc of radius mu x_n.
 
     A solution is a fixed point p = project(p - rho w), for every rho > 0.
     """
@@ -58,12 +58,12 @@ def slope(contact, x0, x1, x2):
 
 @kernel
 def nearest(kind, mu, h1, h2, x0, x1, x2):
-    """Return the nearest point: of the cone, of the ray (1, -mu h), of the half-space, or of a disc."""
+    """Return the nearest point of the set for `kind`: cone, ray (1, -mu h), half-space, or disc."""
     if kind == DISC:
         return in_disc(h1, x1, x2)
     if kind == CONE:
         size = math.sqrt(x1 * x1 + x2 * x2)
-        if mu * size <= -x0:  # first: without friction and slip both hold where x_n < 0
+        if mu * size <= -x0:  # tested first: if x_n < 0, mu = 0 and size = 0 both tests hold
             return 0.0, 0.0, 0.0
         if size <= mu * x0:
             return x0, x1, x2
@@ -86,7 +86,7 @@ def in_disc(radius, x1, x2):
 
 @kernel
 def shift(kind, mu, h1, h2, w1, w2):
-    """Return the correction of w_n by which w lies in the dual of the set of allowed impulses (de Saxce)."""
+    """Return the term added to w_n so that w lies in the dual of the set of allowed impulses (de Saxce)."""
     if kind == CONE:
         return mu * math.sqrt(w1 * w1 + w2 * w2)
     if kind == SLIDING:

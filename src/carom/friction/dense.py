@@ -1,4 +1,4 @@
-"""W stored whole: products, sweeps, and the linear systems of Newton and of alternating directions."""
+"""Full matrix W: products, sweeps, and the linear systems of Newton and of alternating directions."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ _LEAST_PIVOT = 1e-14
 
 @kernel
 def multiply(work, k, x, out):
-    """Add W x to `out`, column by column (they are the rows of a symmetric W)."""
+    """Add W x to `out`, column by column; the columns of the symmetric W are its rows."""
     n = 3 * k
     for j in range(n):
         q, column = x[j], work.W[j]
@@ -36,7 +36,7 @@ def magnitude(work, k):
 
 @kernel
 def sweep(work, k, backward):
-    """Solve each contact in turn, the others held."""
+    """Solve each contact in turn, with fixed impulses of the others."""
     p, c = work.vector[o.P], work.vector[o.C]
     for place in range(k):
         i = k - 1 - place if backward else place
@@ -60,9 +60,9 @@ def sweep(work, k, backward):
 
 @kernel
 def factor_newton(work, k, eps):
-    """Factor I - D + D (W + eps); count its rows.
+    """Factor I - D + D (W + eps), and count its rows.
 
-    Where a contact is open D = 0 and the step is -f: those rows are left out.
+    For an open contact D = 0 and the step is -f: its rows are left out.
     """
     p, w, active, m = work.vector[o.P], work.vector[o.VELOCITY], work.active, 0
     for i in range(k):
@@ -97,7 +97,7 @@ def factor_newton(work, k, eps):
 
 @kernel
 def solve_newton(work, k):
-    """Write the step for the f at p, w with the factors at hand."""
+    """Write the step for the f at p, w with the present factors."""
     p, w, f = work.vector[o.P], work.vector[o.VELOCITY], work.vector[o.F]
     step, rhs = work.vector[o.STEP], work.vector[o.RHS]
     opening, rows = False, work.count[o.ROWS]
@@ -116,7 +116,7 @@ def solve_newton(work, k):
             work.contact[n // 3], p[n] - w[n], p[n + 1] - w[n + 1], p[n + 2] - w[n + 2]
         )
         r0, r1, r2 = work.W[n], work.W[n + 1], work.W[n + 2]
-        s0, s1, s2 = 0.0, 0.0, 0.0  # what the opening contacts do
+        s0, s1, s2 = 0.0, 0.0, 0.0  # effect of the steps of open contacts
         for j in range(3 * k):
             q = step[j]
             s0 += r0[j] * q

@@ -1,13 +1,13 @@
-"""W = G P G^T through bodies, never formed: products, sweeps, and the linear systems.
+"""W = G P G^T is used through the bodies, without being formed: products, sweeps, and the linear systems.
 
-Both systems have the form J x + D W x = r with 3x3 blocks J and D of each contact. With the bodies' motion
-y = P G^T x the contacts are eliminated, x = J^-1 (r - D G y), and
+Both linear systems have the form J x + D W x = r with 3x3 blocks J and D of each contact. With the motion of
+the bodies, y = P G^T x, the contacts are eliminated, x = J^-1 (r - D G y), and
 
     (I + P G^T K G) y = P G^T J^-1 r,   K = J^-1 D,
 
-is a system on the graph of the bodies. P is M^-1 where nothing is joined; an impulse moves what joints tie to
-its bodies too (`OTHER`). It is stiff, K ~ 1/eps where a contact sticks: what is lost to round-off
-comes back in the next iteration, which starts from the true residual.
+is a system on the graph of the bodies. Without joints P is M^-1; with joints an impulse also moves the bodies
+joined to its own (`OTHER`). The system is stiff, K ~ 1/eps if a contact sticks. The next iteration starts from
+the true residual, and so corrects the round-off.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def multiply(work, k, x, out):
 
 @kernel
 def impart(work, k):
-    """Write the motion that the impulses at hand cause."""
+    """Write the motion that the present impulses cause."""
     _impart(work, k, work.vector[o.P])
 
 
@@ -81,7 +81,7 @@ def _pull_size(work, i, a):
 
 @unit
 def sweep(work, k, backward):
-    """Solve each contact in turn, the others held."""
+    """Solve each contact in turn, with fixed impulses of the others."""
     p, c = work.vector[o.P], work.vector[o.C]
     _impart(work, k, p)
     for place in range(k):
@@ -110,7 +110,7 @@ def factor_newton(work, k, eps):
         d00, d10, d11, d12, d20, d21, d22 = slope(
             contact, p[n] - w[n], p[n + 1] - w[n + 1], p[n + 2] - w[n + 2]
         )
-        # J is lower block-triangular: the normal first.
+        # J is block-triangular, so the normal is solved first.
         j00, j10, j20 = 1.0 - e * d00, -e * d10, -e * d20
         j11, j12, j22 = 1.0 - e * d11, -e * d12, 1.0 - e * d22
         det = j11 * j22 - j12 * j12
@@ -130,7 +130,7 @@ def factor_newton(work, k, eps):
 
 @unit
 def solve_newton(work, k):
-    """Write the step for the f at hand."""
+    """Write the step for the present f."""
     f, step, rhs = work.vector[o.F], work.vector[o.STEP], work.vector[o.RHS]
     for i in range(3 * k):
         rhs[i] = -f[i]
@@ -191,7 +191,7 @@ def _assemble(work, k):
 
 @kernel
 def _add_columns(work, link, side):
-    """Add P G^T K G of a contact: the columns of its body `side`, the rows of all that it moves."""
+    """Add P G^T K G of a contact: the columns of its body `side`, the rows of all bodies that it moves."""
     G, K = link.rows[side], link.stiffness
     for j in range(6):
         a = K[0, 0] * G[0, j] + K[0, 1] * G[1, j] + K[0, 2] * G[2, j]
@@ -241,7 +241,7 @@ def _push(work, i, p0, p1, p2):
 
 @kernel
 def _pull(work, i):
-    """Return the velocity of contact i in the motion at hand."""
+    """Return the velocity of contact i in the present motion."""
     link = work.link[i]
     u0, u1, u2 = _rate(link.rows[0], work.body[link.body[0]].motion)
     if link.body[1] >= 0:
@@ -252,7 +252,7 @@ def _pull(work, i):
 
 @kernel
 def _rate(G, v):
-    """Return G v of one body: linear and angular parts side by side, as each waits for its last sum."""
+    """Return G v of one body; two separate sums, linear and angular, are faster than one long sum."""
     a0 = G[0, 0] * v[0] + G[0, 1] * v[1] + G[0, 2] * v[2]
     a1 = G[1, 0] * v[0] + G[1, 1] * v[1] + G[1, 2] * v[2]
     a2 = G[2, 0] * v[0] + G[2, 1] * v[1] + G[2, 2] * v[2]

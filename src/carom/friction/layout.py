@@ -8,10 +8,10 @@ import numpy as np
 
 from carom._compiled.record_arrays import table
 
-# What a contact may do.
+# Kinds of contact.
 CONE, SLIDING, STICKING, DISC = range(4)
 
-# How a solve ended.
+# Results of a solve.
 SOLVED, NOT_SOLVED, BAD_INPUT = 0, 1, 2
 
 MESSAGES = {
@@ -28,7 +28,7 @@ MESSAGES = {
 CONTACT = [
     ("mu", "f8"),
     ("kind", "i8"),
-    ("h1", "f8"),  # direction of slip where that is known; of a DISC, its radius
+    ("h1", "f8"),  # known direction of slip of SLIDING; radius of a DISC
     ("h2", "f8"),
     ("scale", "f8"),  # impulse / scaled impulse
 ]
@@ -40,31 +40,31 @@ VELOCITY = 2  # W p + c
 F = 3  # p - projection
 STEP = 4
 CHANGE = 5  # W step
-RHS = 6  # of a linear system
-CENTRE = 7  # of the proximal term
+RHS = 6  # right-hand side of a linear system
+CENTRE = 7  # centre of the proximal term
 KEPT = 8  # the best p of one start
 BEST = 9  # the best p of all
 GIVEN = 10  # p at the start
 VECTORS = 11
 
 
-# Numbers of a search.
+# Places in `count`, the numbers of a search.
 ITERATIONS = 0
-ROWS = 1  # of the factors at hand, -1 where there are none
-LIMIT = 3  # most steps of one call of Newton, 0: what is usual
-BUDGET = 4  # most iterations of a search, about; 0: as many as its starting points take
-NEAR = 2  # 1: of several solutions the one near the start is wanted, not that of least norm
+ROWS = 1  # rows of the present factors, -1 if there are none
+LIMIT = 3  # greatest number of steps of one call of Newton; 0: the default
+BUDGET = 4  # approximate greatest number of iterations of a search; 0: no limit
+NEAR = 2  # 1: seek the solution near the start, not the one of least norm
 
-# Place in `mismatch`: an |f|, and a residual as a part of c, at which a search may end; 0: at round-off.
+# Place in `mismatch` of a tolerance for |f|, and for the residual relative to c; 0: round-off.
 ENOUGH = 1
 
 
 #: a place in the order of elimination
 PLACE = [
     ("body", "i8"),
-    ("pair", "i8"),  # its pairs: from, to
+    ("pair", "i8"),  # range of its pairs
     ("pairs_end", "i8"),
-    ("update", "i8"),  # its rows of `target`: from, to
+    ("update", "i8"),  # range of its rows of `target`
     ("updates_end", "i8"),
 ]
 
@@ -73,36 +73,36 @@ LINK = [
     ("body", "i8", 2),
     ("corner", "i8", (2, 2)),
     ("rows", "f8", (2, 3, 6)),  # scaled G
-    ("response", "f8", (2, 6, 3)),  # of both to an impulse, P G^T; without joints M^-1 G^T
-    ("others", "i8"),  # its rows of `other`: from, to
+    ("response", "f8", (2, 6, 3)),  # of both bodies to an impulse, P G^T; without joints M^-1 G^T
+    ("others", "i8"),  # range of its rows of `other`
     ("others_end", "i8"),
     ("local", "f8", 6),  # upper triangle of the diagonal block of W
-    ("basis", "f8", 4),  # of that (`one_contact.basis_of`)
+    ("basis", "f8", 4),  # eigenbasis of that block (`one_contact.basis_of`)
     ("compliance", "f8", (3, 3)),  # inverse of J
     ("stiffness", "f8", (3, 3)),  # J^-1 D
 ]
 
-#: a body that an impulse moves by way of joints
+#: a body that an impulse moves through joints
 OTHER = [("body", "i8"), ("corner", "i8", 2), ("response", "f8", (6, 3))]
 
 ISLAND_BODY = [("motion", "f8", 6), ("pivot", "i8", 6)]
 
 
-#: how the Delassus operator W is kept: whole; or by bodies, as G and P G^T, W itself never formed
+#: the Delassus operator W is stored as a full matrix; or by bodies, as G and P G^T, without W itself
 DENSE, BY_BODIES = range(2)
 
 
 class ContactWork(NamedTuple):
-    """Work arrays of a contact problem of up to K contacts; what its kind does not need is empty."""
+    """Work arrays of a contact problem of up to K contacts; arrays that its kind does not need are empty."""
 
     kind: int  # DENSE or BY_BODIES
     contact: np.recarray  # (K,) CONTACT
     vector: np.ndarray  # (VECTORS, 3K)
     count: np.ndarray  # (5,) int64
-    mismatch: np.ndarray  # (2,) |f| that Newton reached, and one that is ENOUGH
+    mismatch: np.ndarray  # (2,) |f| that Newton reached, and the tolerance ENOUGH
     # DENSE
     W: np.ndarray  # (3K, 3K) scaled: each diagonal block has trace 3
-    matrix: np.ndarray  # (3K, 3K) of a linear system, and its factors
+    matrix: np.ndarray  # (3K, 3K) matrix of a linear system, then its factors
     pivot: np.ndarray  # (3K,) int64, rows exchanged
     active: np.ndarray  # (3K,) int64, rows of `matrix`
     # BY_BODIES
@@ -110,7 +110,7 @@ class ContactWork(NamedTuple):
     other: np.recarray  # (R,) OTHER
     body: np.recarray  # (N,) ISLAND_BODY
     place: np.recarray  # (N,) PLACE
-    later: np.ndarray  # (pairs,) the body of a pair that is eliminated later
+    later: np.ndarray  # (pairs,) the body of a pair that is eliminated second
     target: (
         np.ndarray
     )  # (updates, 3) pair s, pair t, block from which below[s] right[t] is subtracted
@@ -118,7 +118,7 @@ class ContactWork(NamedTuple):
 
 
 def new_contact_work(capacity: int) -> ContactWork:
-    """Return work arrays for up to `capacity` contacts whose W is given whole."""
+    """Return work arrays for up to `capacity` contacts with a full matrix W."""
     contacts = max(capacity, 1)
     n = 3 * contacts
     return ContactWork(

@@ -1,4 +1,4 @@
-"""One contact of any kind, the others held: the step of a Gauss-Seidel sweep."""
+"""One contact of any kind, with fixed impulses of the others: the step of a Gauss-Seidel sweep."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from carom.friction.rays import solve_tangential
 
 @kernel
 def solve_local(contact, W, c):
-    """Return (found, p_n, p_1, p_2) of w = W p + c; W by its upper triangle (W_nn, W_n1, W_n2, W_11, ...)."""
+    """Return (found, p_n, p_1, p_2) of w = W p + c; W is an upper triangle (W_nn, W_n1, W_n2, W_11, ...)."""
     if contact.kind == CONE:
         return solve_one(W, c, contact.mu)
     return solve_other(contact, W, c)
@@ -18,7 +18,7 @@ def solve_local(contact, W, c):
 
 @kernel
 def solve_prepared(contact, link, c):
-    """Do the same with the basis that stands with the contact: a sweep meets the same W again and again."""
+    """Solve as `solve_local` does, with the stored eigenbasis of W, as sweeps use the same W many times."""
     row, basis = link.local, link.basis
     W, d = (
         (row[0], row[1], row[2], row[3], row[4], row[5]),
@@ -34,7 +34,7 @@ def solve_prepared(contact, link, c):
 
 @kernel
 def prepare(link):
-    """Write the basis of W of a contact; of a torque, which has no normal row, that of a disc."""
+    """Write the eigenbasis of W of a contact, or of the disc of a torque, which has no normal row."""
     row, basis = link.local, link.basis
     W = row[0] if row[0] > 0.0 else 1.0, row[1], row[2], row[3], row[4], row[5]
     basis[0], basis[1], basis[2], basis[3] = basis_of(W)
@@ -42,7 +42,7 @@ def prepare(link):
 
 @kernel
 def solve_other(contact, W, c):
-    """Solve a contact that is no cone."""
+    """Solve a contact of a kind other than CONE."""
     kind, mu = contact.kind, contact.mu
     w00, w01, w02, w11, w12, w22 = W
     c0, c1, c2 = c
@@ -53,11 +53,11 @@ def solve_other(contact, W, c):
         if c0 >= 0.0:
             return True, 0.0, 0.0, 0.0
         d = w00 - mu * (w01 * h1 + w02 * h2)
-        if not d > 0.0:  # friction drives the bodies together: a jam
+        if not d > 0.0:  # the normal force with friction makes the bodies approach: a jam
             return False, 0.0, 0.0, 0.0
         n = -c0 / d
         return True, n, -mu * n * h1, -mu * n * h2
-    # Sticking: tangents eliminated, then the normal.
+    # Sticking: eliminate the tangents, then solve the normal.
     a1, a2 = solve_tangential(w11, w12, w22, w01, w02)
     b1, b2 = solve_tangential(w11, w12, w22, c1, c2)
     d = w00 - w01 * a1 - w02 * a2

@@ -7,9 +7,9 @@ from carom._compiled.decorators import kernel
 
 @kernel
 def factor(A, n, pivot, least):
-    """Factor A[:n, :n] in place; a pivot smaller than `least` is replaced by it. Return how many were.
+    """Factor A[:n, :n] in place; replace pivots smaller than `least` by it; return how many were replaced.
 
-    Four columns at a time, so that what is right of them is read and written once for all of them.
+    Four columns are eliminated at a time, so that columns to their right are read and written once for four.
     """
     replaced = 0
     for first in range(0, n, 4):
@@ -37,7 +37,7 @@ def factor(A, n, pivot, least):
 
 @kernel
 def exchange(A, n, pivot, k):
-    """Exchange row k with that of the largest number below it in its column."""
+    """Exchange row k with the row that has the largest number in column k, from row k down."""
     top, row = abs(A[k, k]), k
     for i in range(k + 1, n):
         if abs(A[i, k]) > top:
@@ -61,7 +61,7 @@ def subtract(a, m, first, last, b):
 
 @kernel
 def subtract_four(A, k, n, b):
-    """Subtract four rows from k on from row b, whose multiples of them stand in its columns k to k + 3."""
+    """Subtract multiples of four rows, k to k + 3, from row b; columns k to k + 3 of b have the factors."""
     a0, a1, a2, a3 = A[k], A[k + 1], A[k + 2], A[k + 3]
     m0, m1, m2, m3 = b[k], b[k + 1], b[k + 2], b[k + 3]
     if m0 != 0.0 or m1 != 0.0 or m2 != 0.0 or m3 != 0.0:
@@ -71,7 +71,7 @@ def subtract_four(A, k, n, b):
 
 @kernel
 def substitute(A, n, pivot, x):
-    """Solve with the factors: x[:n] becomes the solution."""
+    """Solve with the factors: replace x[:n] by the solution."""
     for k in range(n):
         row = pivot[k]
         if row != k:

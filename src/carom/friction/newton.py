@@ -1,8 +1,8 @@
 """Semi-smooth Newton on the equations of Alart and Curnier, with a proximal term.
 
 f(p) = p - project(p - w) = 0 with w = W p + c + eps (p - centre), in scaled variables. W is often singular
-(four corners of a box: rank 6 of 12); eps makes the step unique, and with the centre at 0 the
-solution that of least norm. Mathematics page, §3.2.
+(four corners of a box: rank 6 of 12). With eps the step is unique; if the centre is 0, the solution is
+the one of least norm. Mathematics page, §3.2.
 """
 
 from __future__ import annotations
@@ -16,17 +16,17 @@ from carom.friction.cone import project
 from carom.friction.operators import factor, multiply, solve
 
 _LIMIT = 100
-_FLOOR = 1e-13  # below this part of 1 + |p| the iteration only polishes, while each step halves f
-_SHORTEST = 1e-3  # of the line search
-_CHORD = 0.1  # factors are kept for another step if the last one reduced f by this
+_FLOOR = 1e-13  # an |f| below this part of 1 + |p| is enough, unless a step still halves it
+_SHORTEST = 1e-3  # shortest step of the line search
+_CHORD = 0.1  # factors are used again if the last step reduced f to this part or less
 
 
 @unit
 def newton(work, k, eps, patient):
-    """Iterate from p; add the steps to `ITERATIONS`, and write the |f| that was reached to `mismatch`.
+    """Iterate from p; add the number of steps to `ITERATIONS`, and write the final |f| to `mismatch`.
 
-    A step must reduce |f|; or, if `patient`, the greatest of the last four: the way past a kink. Factors at
-    hand (work.count[ROWS] >= 0) are tried first.
+    A step must reduce |f|; if `patient`, it must only be below the greatest of the last four |f|, which helps
+    to pass a kink. Existing factors (work.count[ROWS] >= 0) are tried first.
     """
     p, step, change = work.vector[o.P], work.vector[o.STEP], work.vector[o.CHANGE]
     count, limit = 0, work.count[o.LIMIT] if work.count[o.LIMIT] > 0 else _LIMIT
@@ -66,7 +66,7 @@ def newton(work, k, eps, patient):
 
 @kernel
 def step(work, k, eps):
-    """Make one whole step from p, which is the centre of the proximal term too, and project what it reaches."""
+    """Make one whole step from p, which is also the centre of the proximal term, and project the result."""
     p, centre, change = work.vector[o.P], work.vector[o.CENTRE], work.vector[o.STEP]
     for i in range(3 * k):
         centre[i] = p[i]
@@ -83,7 +83,7 @@ def step(work, k, eps):
 
 @kernel
 def _search(work, k, bound):
-    """Return the first of t = 1, 1/2, ... with |f| well below the bound, else the best, 0 if none is below."""
+    """Return the first of t = 1, 1/2, ... with |f| well below the bound; else the best, 0 if none is below."""
     t, best_t, best = 1.0, 0.0, bound
     while t >= _SHORTEST:
         trial = _mismatch(work, k, t)
@@ -116,7 +116,7 @@ def velocity(work, k):
 
 @kernel
 def _magnitude(work, k):
-    """Return 1 + the greatest scaled impulse: what round-off is relative to."""
+    """Return 1 + the greatest scaled impulse: the scale of round-off."""
     most, p = 0.0, work.vector[o.P]
     for i in range(3 * k):
         most = max(most, abs(p[i]))

@@ -1,4 +1,4 @@
-"""One contact, exactly: stick where the cone allows it, else the slip that is nearest to stick."""
+"""Exact solution for one contact: stick if the cone allows it, otherwise the slip nearest to stick."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 
 from carom._compiled.decorators import entry, kernel
 
-_EMPTY = 1e-13  # of the trace of W_tt: directions in which nothing moves
+_EMPTY = 1e-13  # of the trace of W_tt: smaller eigenvalues are directions in which nothing moves
 
 
 @kernel
@@ -39,13 +39,13 @@ def upper_triangle(W):
 
 @kernel
 def solve_one(W, velocity, mu):
-    """Return (found, p_n, p_1, p_2) for W by its upper triangle and the velocity without impulses.
+    """Return (found, p_n, p_1, p_2) for W, given by its upper triangle, and the velocity without impulses.
 
-    Slip with w_t = -alpha p_t, alpha > 0: p_t = -(A + alpha)^-1 b, with the normal eliminated. In the
-    eigenbasis of A the condition |p_t| = mu p_n, freed of denominators D_i = a_i + alpha, reads
+    In slip w_t = -alpha p_t, alpha > 0; with the normal eliminated p_t = -(A + alpha)^-1 b. In the
+    eigenbasis of A the condition |p_t| = mu p_n, multiplied by the denominators D_i = a_i + alpha, is
     h = |(b_1 D_2, b_2 D_1)| + m (c_n D_1 D_2 - g_1 D_2 - g_2 D_1) = 0: a convex term and a
-    concave quadratic. With the former replaced by its tangent the root of the quadratic lies left of the
-    least root of h: the iteration rises to that root, quadratically, and never passes it.
+    concave quadratic. If the convex term is replaced by its tangent, the root of the quadratic is below the
+    least root of h: the iteration converges quadratically to that root from below.
     """
     return solve_in_basis(
         W, basis_of(W) if velocity[0] < 0.0 else (0.0, 0.0, 1.0, 0.0), velocity, mu
@@ -54,7 +54,7 @@ def solve_one(W, velocity, mu):
 
 @kernel
 def basis_of(W):
-    """Return (d1, d2, c, s): eigenvalues and eigenbasis of A = W_tt - W_tn W_nt/W_nn; 0 where nothing moves."""
+    """Return (d1, d2, c, s): eigenvalues and eigenbasis of A = W_tt - W_tn W_nt/W_nn; round-off is set to 0."""
     wnn, wn1, wn2, w11, w12, w22 = W
     if not wnn > 0.0:
         return 0.0, 0.0, 1.0, 0.0
@@ -66,7 +66,7 @@ def basis_of(W):
 
 @kernel
 def solve_in_basis(W, basis, velocity, mu):
-    """Do the same with the basis of A that is known."""
+    """Solve as `solve_one` does, with the known eigenbasis of A."""
     wnn, wn1, wn2, _, _, _ = W
     d1, d2, c, s = basis
     cn, c1, c2 = velocity
@@ -98,7 +98,7 @@ def _tangential(d, b, g, wnn, cn, mu):
         if math.sqrt(p1 * p1 + p2 * p2) * wnn <= -mu * (cn + g1 * p1 + g2 * p2):
             return True, p1, p2
     m = mu / wnn
-    if d1 == 0.0:  # nothing moves in the plane of contact by itself
+    if d1 == 0.0:  # A = 0: tangential impulses alone move nothing
         size = math.sqrt(b1 * b1 + b2 * b2)
         denominator = size - m * (g1 * b1 + g2 * b2)
         if not denominator > 0.0:
@@ -123,7 +123,7 @@ def _tangential(d, b, g, wnn, cn, mu):
         root = math.sqrt(rate * rate - 4.0 * m * cn * value)
         t = (rate + root) / (-2.0 * m * cn) if rate > 0.0 else 2.0 * value / (root - rate)
         alpha += t
-        if not t > 1e-9 * alpha:  # it converges quadratically: what is left is round-off
+        if not t > 1e-9 * alpha:  # with quadratic convergence the rest is round-off
             break
     e1, e2 = d1 + alpha, d2 + alpha
     if not (alpha > 0.0 and e2 > 0.0):

@@ -1,6 +1,6 @@
-"""The operations of the solver on the Delassus operator W, which is stored in one of two ways.
+"""The operations of the solver on the Delassus operator W, which is stored in one of two forms.
 
-DENSE: W itself (`dense`). BY_BODIES: bodies and rows, W never formed (`island`). All in scaled variables; k
+DENSE: W itself (`dense`). BY_BODIES: bodies and rows without W (`island`). Variables are scaled; there are k
 contacts.
 """
 
@@ -22,7 +22,7 @@ def multiply(work, k, x, out):
 
 @inlined
 def magnitude(work, k):
-    """Return the greatest (|W| |p|)_i, in units of velocity (unscaled but for gamma)."""
+    """Return the greatest (|W| |p|)_i, in units of velocity (scaled only by gamma)."""
     if work.kind == DENSE:
         return dense.magnitude(work, k)
     return island.magnitude(work, k)
@@ -30,7 +30,7 @@ def magnitude(work, k):
 
 @inlined
 def sweep(work, k, backward):
-    """Solve each contact in turn exactly."""
+    """Solve each contact in turn, exactly, with fixed impulses of the others."""
     if work.kind == DENSE:
         dense.sweep(work, k, backward)
     else:
@@ -48,7 +48,7 @@ def factor(work, k, eps):
 
 @inlined
 def solve(work, k):
-    """Write the step, with the factors at hand."""
+    """Write the step, with the present factors."""
     if work.kind == DENSE:
         dense.solve_newton(work, k)
     else:
@@ -66,7 +66,7 @@ def factor_shifted(work, k, sigma):
 
 @inlined
 def solve_shifted(work, k):
-    """Write (W + sigma)^-1 rhs over the right-hand side."""
+    """Replace the right-hand side by (W + sigma)^-1 times it."""
     if work.kind == DENSE:
         dense.solve_shifted(work, k)
     else:

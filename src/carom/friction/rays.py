@@ -1,7 +1,7 @@
-"""Where slip stops, u_t = 0: stick, or a new start along the one ray that leads away.
+"""At u_t = 0, where slip stops: stick, or a new start along the one ray that leads away.
 
-Impulse form (mathematics page, §1.9), a = W_tn, B = W_tt: in slip du_t/dp = a - mu B e with e the
-direction of slip; in stick B tau = -a. Stick needs |tau| <= mu.
+With a = W_tn, B = W_tt (mathematics page, §1.9), du_t/dp = a - mu B e in slip in the direction e, and
+B tau = -a in stick. Stick requires |tau| <= mu.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import math
 
 from carom._compiled.decorators import entry, kernel
 
-# Pivots of B below this part of its trace are zero: a rail, or a planar problem in space.
+# Pivots of B below this part of its trace count as zero (a rail, or a planar problem in space).
 _EMPTY = 1e-13
 
 
@@ -20,7 +20,7 @@ def solve_tangential(b11, b12, b22, x, y):
     trace = b11 + b22
     if not trace > 0.0:
         return 0.0, 0.0  # nothing moves in the plane of contact
-    # Elimination, the greater pivot first: B times the answer is (x, y) to round-off, however thin B is.
+    # Greater pivot first: B times the solution is (x, y) to round-off, even if B is nearly singular.
     if b11 >= b22:
         ratio = b12 / b11
         left = b22 - ratio * b12
@@ -48,12 +48,12 @@ def stick_ratio(a1, a2, b11, b12, b22):
 def outgoing(a1, a2, b11, b12, b22, mu):
     """Return (c, s, g): the direction in which slip starts from rest, and its rate d|u_t|/dp > 0.
 
-    The ray satisfies a - mu B e = g e, so e = (mu B + g)^-1 a, and |(mu B + g)^-1 a| falls with g:
-    from |a|_{stick}/mu > 1 at g = 0 to 0. So for mu below the critical value there is exactly one.
-    Newton's iteration on 1/|e(g)| rises to the root from the left without ever passing it. Where mu is the
-    critical value to round-off g is 0, |(c, s)| <= 1, and -mu (c, s) the ratio of stick.
+    The ray satisfies a - mu B e = g e, so e = (mu B + g)^-1 a. |(mu B + g)^-1 a| decreases with g, from
+    |B^-1 a|/mu > 1 at g = 0 to 0, so there is exactly one ray if mu is below the critical value. Newton's
+    iteration on 1/|e(g)| converges to the root from below. If mu is the critical value to round-off, g is 0,
+    |(c, s)| <= 1, and -mu (c, s) is the ratio of stick.
     """
-    # In the principal axes of B, the greater first: each direction to round-off of its own, and |e| = 1.
+    # In the principal axes of B, greater first, each component has only its own round-off, and |e| = 1.
     half = 0.5 * (b11 - b22)
     root = math.sqrt(half * half + b12 * b12)
     b1 = 0.5 * (b11 + b22) + root

@@ -1,8 +1,8 @@
 """The residual of the contact problem for given impulses (mathematics page, §3.2).
 
-That of a contact, in units of velocity, is |p - P_K(p - rho (w + s e_n))| / rho, rho = 3 / trace W_ii, with
-s = mu |w_t| (the natural map of de Saxce's form). It is to be at most ``RELATIVE`` of the
-greatest velocity without impulses, plus ``ROUND_OFF`` times the greatest (|W| |p|)_i.
+The residual of a contact, in units of velocity, is |p - P_K(p - rho (w + s e_n))| / rho, rho = 3 / trace W_ii,
+with s = mu |w_t| (the natural map of de Saxce's form). The tolerance is ``RELATIVE`` times the greatest
+velocity without impulses, plus ``ROUND_OFF`` times the greatest (|W| |p|)_i.
 """
 
 from __future__ import annotations
@@ -15,16 +15,16 @@ from carom.friction.layout import CONE, SLIDING
 
 RELATIVE, ROUND_OFF = 1e-10, 50.0 * 2.220446049250313e-16
 
-#: the greatest values of no contact: residual, |c_i|, (|W| |p|)_i, penetration, violation, complementarity
+#: greatest values at the start: residual, |c_i|, (|W| |p|)_i, penetration, violation, complementarity
 NOTHING = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @entry
 def measure(k, W, c, mu, kind, heading, p):
-    """Return (residual, tolerance, penetration, cone violation, complementarity), greatest of k contacts.
+    """Return (residual, tolerance, penetration, cone violation, complementarity), the greatest of k contacts.
 
-    Penetration: -w_n [m/s]. Cone violation: |p_t| - mu p_n, or how far p_t is from -mu p_n heading, or -p_n
-    [N s]. Complementarity: |p_n w_n| [J].
+    Penetration is -w_n [m/s]. Cone violation is |p_t| - mu p_n, or |p_t + mu p_n heading|, or -p_n [N s].
+    Complementarity is |p_n w_n| [J].
     """
     greatest = NOTHING
     for i in range(k):
@@ -51,7 +51,7 @@ def _row(k, W, c, p, i):
 
 @kernel
 def with_contact(greatest, cone, scale, p, w):
-    """Return the greatest values with those of one contact more: its impulse p and its velocity w.
+    """Return the greatest values with one more contact, which has the impulse p and the velocity w.
 
     `cone` is its kind, mu and heading; `scale` the trace of W_ii, and the greatest |c_i| and (|W| |p|)_i.
     """
@@ -63,7 +63,7 @@ def with_contact(greatest, cone, scale, p, w):
     y0, y1, y2 = nearest(kind, mu, h1, h2, x0, p1 - rho * w1, p2 - rho * w2)
     d0, d1, d2 = p0 - y0, p1 - y1, p2 - y2
     r = math.sqrt(d0 * d0 + d1 * d1 + d2 * d2) / rho
-    if not r <= worst and worst == worst:  # NaN enters, and stays
+    if not r <= worst and worst == worst:  # NaN replaces any number, and stays
         worst = r
     outside = -p0
     if kind == CONE:

@@ -1,4 +1,4 @@
-"""The contact problem with W stored whole: `solve_cones`."""
+"""The contact problem with a full matrix W: `solve_cones`."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ from carom.friction.strategy import search
 def solve_cones(k, W, c, mu, kind, heading, p, workspace):
     """Solve w = W p + c, 0 <= p_n _|_ w_n >= 0 with Coulomb friction; return (status, residual, iterations).
 
-    Rows (n, t1, t2) of k contacts; arrays for K >= k of them, the leading part is used. `W` (3K, 3K) is
-    symmetric, `c` (3K,) the velocity without impulses, `mu` (K,) the friction, `p` (3K,) the start and then
-    the solution, `workspace` from `layout.new_contact_work(K)`. `kind` (K,) int64: CONE, friction against
-    w_t; SLIDING, p_t = -mu p_n heading, `heading` (K, 2); STICKING, w_t = 0 whatever force that takes, even
-    where p_n = 0. Status: SOLVED; NOT_SOLVED, p is the best that was found; BAD_INPUT, p is 0. The
-    residual is that of `residual.measure`.
+    Arrays have rows (n, t1, t2) for K >= k contacts, of which the first k are used. `W` (3K, 3K) is
+    symmetric, `c` (3K,) the velocity without impulses, `mu` (K,) the friction, `p` (3K,) the first guess and
+    then the solution, `workspace` from `layout.new_contact_work(K)`. `kind` (K,) int64: CONE, friction against
+    w_t; SLIDING, p_t = -mu p_n heading, `heading` (K, 2); STICKING, w_t = 0 with any tangential impulse, even
+    if p_n = 0. Status: SOLVED; NOT_SOLVED, p is the best result found; BAD_INPUT, p is 0. The residual is
+    that of `residual.measure`.
     """
     if k == 0:
         return SOLVED, 0.0, 0
@@ -49,8 +49,8 @@ def _load(work, k, W, c, mu, kind, heading, p):
     """Write the problem in scaled variables; return gamma, or NaN if the input is bad.
 
     p_i = gamma s_i q_i, w_i = gamma v_i / s_i with s_i^2 = 3 / trace W_ii, so that each diagonal block
-    has trace 3, and gamma such that the greatest entry of the scaled c is 1. One number for the three
-    rows of a contact: its cone stays what it is. The solver knows neither units nor ratios of masses.
+    has trace 3, and gamma such that the greatest entry of the scaled c is 1. The three rows of a contact
+    have one scale, so that its cone does not change. Units and ratios of masses have no effect on the solver.
     """
     total = 0.0
     for i in range(k):
@@ -72,7 +72,7 @@ def _load(work, k, W, c, mu, kind, heading, p):
 
 @kernel
 def set_contact(contact, mu, kind, heading, trace):
-    """Write what a contact is and its scale; return whether that is sound."""
+    """Write the data of a contact and its scale; return whether they are valid."""
     contact.mu, contact.kind, contact.h1, contact.h2 = mu, kind, heading[0], heading[1]
     contact.scale = math.sqrt(3.0 / trace) if trace > 0.0 else 1.0
     return mu >= 0.0 and math.isfinite(mu + heading[0] + heading[1] + trace)
@@ -80,7 +80,7 @@ def set_contact(contact, mu, kind, heading, trace):
 
 @kernel
 def scale_link(link, contact, mu, kind, heading):
-    """Write the product of rows and responses, and scale all three; return whether the contact is sound."""
+    """Write the product of rows and responses, and scale all three; return whether the contact is valid."""
     local = link.local
     for r in range(6):
         local[r] = 0.0

@@ -1,4 +1,4 @@
-"""The strategy of the solver: Newton's method first; where it fails, again from other starting points."""
+"""The strategy of the solver: Newton's method; if it fails, again from other starting points."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ from carom.friction.operators import magnitude, sweep
 from carom.friction.residual import RELATIVE, ROUND_OFF
 
 _EPS = 1e-8  # weight of the proximal term
-_POLISH = 8  # most moves of the proximal centre
-_STARTS = 20  # most starting points
-_EXTRA = 2  # more of them where the tolerance is met, but not to round-off
-_SWEEPS = 25  # at first, twice as many each time, at most
+_POLISH = 8  # greatest number of rounds, each with a new proximal centre
+_STARTS = 20  # greatest number of starting points
+_EXTRA = 2  # further starting points if the tolerance is satisfied, but not round-off
+_SWEEPS = 25  # at first; twice as many each time, up to
 _MOST_SWEEPS = 200
 _ALTERNATIONS = 300
 _RELEASE_FROM, _RELEASE_BY = 0.1, 0.3  # weights of the proximal term in a release
 _RELEASES = 60
-_ALLOWED, _AMOUNT = 300, 1e6  # iterations of a search that must end; their number times k^2
+_ALLOWED, _AMOUNT = 300, 1e6  # budget of a search: the greater of 300 and 1e6 / k^2 iterations
 
 
 @unit
 def search(work, k):
-    """Try one starting point after the other; the best p that is found and the iterations are left in `work`.
+    """Try one starting point after another; leave the best p and the number of iterations in `work`.
 
-    Start 0: what was given, to the solution of least norm (unless one that is near is wanted). Start 1: what
-    was given, if anything was, to a solution that is near. Then in turn: after sweeps, after alternating
-    directions, after a release.
+    Start 0 seeks the solution of least norm from the given p (or a near one if that is required). Start 1
+    seeks a solution near the given p, unless p is 0. The others begin after sweeps, after alternating
+    directions, and after a release, in turn.
     """
     p, best, given = work.vector[o.P], work.vector[o.BEST], work.vector[o.GIVEN]
     least, last, cold = math.inf, _STARTS, True
@@ -56,7 +56,7 @@ def search(work, k):
             least = r
             for i in range(3 * k):
                 best[i] = p[i]
-        if not r < math.inf:  # overflow: begin anew
+        if not r < math.inf:  # overflow: begin again from 0
             for i in range(3 * k):
                 p[i] = 0.0
         if least <= goal:
@@ -78,7 +78,7 @@ def copy(k, p, to):
 
 @kernel
 def allow(work, k):
-    """Allow a search as many iterations as can be made in about 0.3 s, and some in any case."""
+    """Allow a search about 0.3 s of iterations, but a minimum number in any case."""
     work.count[o.BUDGET] = max(_ALLOWED, int(_AMOUNT / (k * k)))
 
 
@@ -89,14 +89,14 @@ def spent(work):
 
 
 @kernel
-def _approach(work, k, way, again):
-    """Move p to another starting point for Newton; `again`: how often this way was gone before."""
-    if way == 0:
+def _approach(work, k, method, again):
+    """Move p to another starting point for Newton by a method; `again` counts its earlier uses."""
+    if method == 0:
         sweeps = min(_SWEEPS * 2**again, _MOST_SWEEPS)
         for i in range(sweeps):
             sweep(work, k, i % 2 == 1)
         work.count[o.ITERATIONS] += sweeps
-    elif way == 1:
+    elif method == 1:
         p = work.vector[o.P]
         if again == 0:
             for i in range(3 * k):
@@ -110,9 +110,9 @@ def _approach(work, k, way, again):
 
 @kernel
 def release(work, k, enough):
-    """Apply Newton's method with a strong proximal term, which is weakened as long as that succeeds.
+    """Apply Newton's method with a strong proximal term, which is weakened as long as the method succeeds.
 
-    Ends where the residual is `enough`, as it may well be before the term is weak.
+    It ends when the residual is at most `enough`, which may happen before the term is weak.
     """
     p, kept, centre = work.vector[o.P], work.vector[o.KEPT], work.vector[o.CENTRE]
     for i in range(3 * k):
@@ -186,7 +186,7 @@ def residual(work, k):
         y0, y1, y2 = nearest(t.kind, t.mu, t.h1, t.h2, x0, p[n + 1] - w[n + 1], p[n + 2] - w[n + 2])
         d0, d1, d2 = p[n] - y0, p[n + 1] - y1, p[n + 2] - y2
         r = math.sqrt(d0 * d0 + d1 * d1 + d2 * d2) / t.scale
-        if not r <= worst and worst == worst:  # NaN enters, and stays
+        if not r <= worst and worst == worst:  # NaN replaces any number, and stays
             worst = r
         largest = max(largest, max(abs(c[n]), abs(c[n + 1]), abs(c[n + 2])) / t.scale)
     size = magnitude(work, k)

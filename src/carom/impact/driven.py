@@ -19,7 +19,7 @@ ROUND_OFF = 1e-13
 
 @unit
 def _driven_work(system, state, first, clock, records, work) -> float:
-    """Return the work of motors in the impact whose rows begin at `first` and whose event is being written."""
+    """Return the work of motors in the impact that is being written; its rows begin at `first`."""
     total = 0.0
     for b in range(state.shape[0]):
         before, body, q = records.snapshot[clock.snapped + b], system.bodies[b], state[b].Q
@@ -40,7 +40,7 @@ def _driven_work(system, state, first, clock, records, work) -> float:
 
 @kernel
 def _blocked(system, point, inverse_mass):
-    """Return whether prescribed motions leave a point none along its normal: W_nn is round-off of 1/m."""
+    """Return whether prescribed motions block a point along its normal: W_nn is round-off of 1/m."""
     free = 1.0 / system.bodies[point.a].mass
     if point.b >= 0:
         free += 1.0 / system.bodies[point.b].mass
@@ -49,7 +49,7 @@ def _blocked(system, point, inverse_mass):
 
 @inlined
 def driven_work(system, state, first, clock, records, work):
-    """Return the work of motors in the impact whose rows begin at `first` and whose event is being written."""
+    """Return the work of motors in the impact that is being written; its rows begin at `first`."""
     if system.relations.there == 1 and system.solver.kind == LOOPS:
         return _driven_work(system, state, first, clock, records, work)
     return 0.0
@@ -57,7 +57,7 @@ def driven_work(system, state, first, clock, records, work):
 
 @inlined
 def blocked(system, point, inverse_mass):
-    """Return whether prescribed motions leave a point none along its normal: W_nn is round-off of 1/m."""
+    """Return whether prescribed motions block a point along its normal: W_nn is round-off of 1/m."""
     if system.relations.there == 1 and system.solver.kind == LOOPS:
         return _blocked(system, point, inverse_mass)
     return False

@@ -1,8 +1,8 @@
-"""Closed points that move alike become one contact at their mean point: an edge or a face that strikes evenly.
+"""Closed points that move alike become one contact at their mean point: an edge or a face that strikes flat.
 
-If all points of a contact have the same velocity u, and an impulse at their mean gives all of them the same
-change as their mean, they stay together all through the boundary layer and share the impulse. In planar
-motion only impulses in the plane count: those along n and along the slip d, as long as neither turns anything
+If all points of a contact have the same velocity u, and an impulse at their mean point changes all their
+velocities equally, then their velocities stay equal in the whole boundary layer, and they share the impulse.
+In planar motion only impulses in the plane count: those along n and along the slip d, if neither moves a body
 out of the plane.
 """
 
@@ -16,12 +16,12 @@ from carom.dynamics.contact_impulse import effective_inverse_mass, spread
 from carom.dynamics.several_points import inverse_masses_of_one, of_one_body
 from carom.kinematics.contact_point import contact_motion, contact_velocity, copy_point, place
 
-SAME = 1e-12  # relative to W_nn: round-off of a difference of two answers
+SAME = 1e-12  # relative to W_nn: round-off of a difference of two velocities
 
 
 @kernel
 def as_one(system, k, state, group, work):
-    """Return whether the k closed points are one; if so put its point, W and u into `work`."""
+    """Return whether the k closed points move as one contact; then `work` has its point, W and u."""
     hit, point, closed = work.hit[0], work.point[0], group.closed
     c = closed[0].contact
     contact, core = system.contacts[c], hit.point
@@ -51,7 +51,7 @@ def as_one(system, k, state, group, work):
             if not abs(u[r] - hit.u[r]) <= still:
                 return False
     W, tiny = hit.W, SAME * hit.W[0, 0]
-    # directions: the normal; then any tangent, or only the one along which all happens
+    # impulses to compare: along the normal; then along both tangents, or, in the plane, along slip only
     if not answers_alike(system, k, (1.0, 0.0, 0.0), state, group, work):
         return False
     if answers_alike(system, k, (0.0, 1.0, 0.0), state, group, work) and answers_alike(
@@ -64,7 +64,7 @@ def as_one(system, k, state, group, work):
         d1, d2 = W[1, 0], W[2, 0]  # slip starts along the coupling with the normal
         speed = math.sqrt(d1 * d1 + d2 * d2)
         if not speed > tiny:
-            return True  # no slip ever: impulses are normal
+            return True  # slip never begins: impulses are normal
     d1, d2 = d1 / speed, d2 / speed
     t1, t2 = W[1, 1] * d1 + W[1, 2] * d2, W[2, 1] * d1 + W[2, 2] * d2
     planar = abs(W[2, 0] * d1 - W[1, 0] * d2) <= tiny and abs(t2 * d1 - t1 * d2) <= tiny
@@ -73,7 +73,7 @@ def as_one(system, k, state, group, work):
 
 @kernel
 def _inverse_mass(system, state, work):
-    """Write W of the point in `work`; that of one free body in closed form."""
+    """Write W of the point in `work`; for one free body it is in closed form."""
     points, W = work.point, work.hit[0].W
     if of_one_body(system, 1, points):
         inverse_masses_of_one(system.bodies[points[0].a], 1, points, state, W)

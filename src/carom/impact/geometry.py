@@ -1,7 +1,7 @@
 """Geometry of the boundary layer, and its closed forms without friction (mathematics page, §1.8).
 
-The layer is 0 < x < b. Its metric is singular at the boundary x = 0, g_11 = m (b/x)^2, so that the
-boundary is infinitely far: in the flat coordinate s = b ln(x/b) motion is as usual.
+The layer is 0 < x < b. Its metric g_11 = m (b/x)^2 is singular at the boundary x = 0, so the boundary is
+infinitely far away. In the coordinate s = b ln(x/b) the metric is constant (flat).
 """
 
 from __future__ import annotations
@@ -25,17 +25,17 @@ def normal_coordinate(s, width):
 
 
 def depth_number(penetration):
-    """Return l = -ln(1 - delta): the layer is passed to s = -b l."""
+    """Return l = -ln(1 - delta): the least s in the layer is -b l."""
     return -np.log1p(-np.asarray(penetration))
 
 
 def affinity(x):
-    """Return L^1_11 = -1/x, the one component of the connection of the layer that is not zero."""
+    """Return L^1_11 = -1/x, the only nonzero component of the connection of the layer."""
     return -1.0 / np.asarray(x)
 
 
 def metric(effective_mass, x, width):
-    """Return the metric at x: the effective mass W^-1 (3, 3), first row and column times b/x."""
+    """Return the metric at x: the effective mass W^-1 (3, 3) with its first row and column times b/x."""
     g = np.array(effective_mass, dtype=np.float64)
     g[0, :] *= width / x
     g[:, 0] *= width / x
@@ -103,9 +103,8 @@ class NormalMotion:
 def diagonal_form(inverse_mass, velocity, force):
     """Return the paper's uncoupled form of an impact, equations (8) and (9).
 
-    With vtil^1 = u_n, vtil^a = u_a - (W_an/W_nn) u_n, the tangential axes turned to the principal
-    ones of the reduced W_tt - W_tn W_nt/W_nn:  g_ii d(vtil^i)/dt = f_i,  f_1 = N + W_nt.T/W_nn,
-    f_a = T_a.
+    g_ii d(vtil^i)/dt = f_i with vtil^1 = u_n, vtil^a = u_a - (W_an/W_nn) u_n, f_1 = N + W_nt.T/W_nn, f_a = T_a.
+    The tangential axes are turned to the principal axes of the reduced W_tt - W_tn W_nt/W_nn.
 
     Parameters
     ----------

@@ -9,7 +9,7 @@ import numpy as np
 from carom import checks
 from carom.impact.api import checked_impact, phase_names, raise_for
 
-MOST_STEPS = 100_000  # of one passage: more would only add round-off
+MOST_STEPS = 100_000  # of one passage through the layer: more steps would only add round-off
 
 
 @dataclass(frozen=True)
@@ -84,7 +84,7 @@ class LayerHistory:
         y0, y1 = self._flat[i], self._flat[i + 1]
         u0, u1 = self.velocity[i], self.velocity[i + 1]
         mean = (y1 - y0) / d
-        # Cubic Hermite about its left end, and its derivative.
+        # The cubic Hermite polynomial in powers of z from its left end, and its derivative.
         y = y0 + d * z * (u0 + z * (3.0 * mean - 2.0 * u0 - u1 + z * (u0 + u1 - 2.0 * mean)))
         u = u0 + z * (2.0 * (3.0 * mean - 2.0 * u0 - u1) + 3.0 * z * (u0 + u1 - 2.0 * mean))
         return self.width * np.exp(y[..., 0] / self.width), u

@@ -1,14 +1,14 @@
 """The paper's phase inside the boundary layer, in time, by geometric cubic splines.
 
-Flat coordinates (s, x^2, x^3), s = b ln(x/b). There are two forms of the normal force:
+The coordinates are flat: (s, x^2, x^3), s = b ln(x/b). There are two forms of the normal force:
 
-- Newton's law: law A (mathematics page, §1.8), the normal acceleration is prescribed, constant in
-  compression, v_0^2/(2 b l), and e^2 of it in restitution; N = a/k(tau).
-- Poisson and Stronge, and Newton if k(tau) <= 0 at some point (jam): the steps are taken in the
-  normal impulse and replayed in time with constant N_c = |A_c|/(b l), N_r = A_r/(b l) (§1.10).
+- Newton's law uses law A (mathematics page, §1.8): the normal acceleration a is prescribed. It is constant,
+  v_0^2/(2 b l) in compression, and e^2 times that in restitution; N = a/k(tau).
+- With Poisson's and Stronge's laws, and Newton's if k(tau) <= 0 somewhere (jam), steps are taken in the normal
+  impulse, and then converted to time with constant N_c = |A_c|/(b l), N_r = A_r/(b l) (§1.10).
 
-With both, s returns to 0 from exactly -b l; a wedged pair stays there, compressed. The time at which slip ends,
-where a step must be divided, comes from the impact solver; all velocities are those of the spline.
+In both forms s returns to 0 from exactly -b l; a wedged pair stays at -b l, compressed. The impact solver gives
+the time at which slip ends, where a step must be divided; all velocities are those of the spline.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class Passage(NamedTuple):
     depth: float  # b l
     steps: int  # of a phase
     timed: bool  # law A: steps in time; else in the normal impulse
-    wedged: bool  # no law says where the phases end then: the resolver does
+    wedged: bool  # the impact solver then says where the phases end, and no law does
 
 
 @entry
@@ -66,19 +66,19 @@ def traverse(W, u, mu, e, law, layer, history, out):
         if law == laws.NEWTON and phases & (o.JAM | o.WEDGED) == 0:
             given = Passage(m, mu, before, e, law, depth, n, True, wedged)
             code = _pass(given, history, out)
-        if code != o.OK:  # or so near a jam that law A fails at this number of steps
+        if code != o.OK:  # also so near a jam that law A fails with this number of steps
             given = Passage(m, mu, before, e, law, depth, n, False, wedged)
             code = _pass(given, history, out)
         if code == o.OK:
             out[o.X_MIN] = b * (1.0 - delta)
             return code
-        steps *= 2  # slip passes too near u_t = 0 for steps of this length
+        steps *= 2  # slip comes too near u_t = 0 for steps of this length
     return code
 
 
 @kernel
 def _friction(given):
-    """Return the friction from the start on, and whether its constant ratio is that of stick after u_t = 0."""
+    """Return the friction at the start, and whether the contact sticks once u_t = 0."""
     m, mu, (u0, u1, u2) = given.m, given.mu, given.u
     if not mu > 0.0:
         return Friction(True, 0.0, 0.0), False
@@ -92,7 +92,7 @@ def _friction(given):
 
 @kernel
 def _pass(given, history, out):
-    """Run both phases; `out` has the result of `resolve`, and at the end the results of the layer."""
+    """Integrate both phases; `out` has the result of `resolve`, and at the end that of the layer."""
     u, e, v0, depth, timed = given.u, given.e, -given.u[0], given.depth, given.timed
     friction, sticks = _friction(given)
 
@@ -102,7 +102,7 @@ def _pass(given, history, out):
     if ok == 0:
         return o.NO_CONVERGENCE
     before = (u[1], u[2], u[0])
-    # In stick u_t is 0, and not the round-off of W (1, tau).
+    # In stick u_t is exactly 0, without the round-off of W (1, tau).
     state = (0.0, 0.0, 0.0) if fixed and sticks else (end[0], end[1], 0.0)
     work_c, loss = _works(given, before, state, total)
     C = P = (total[3], total[4], total[5])
@@ -111,7 +111,7 @@ def _pass(given, history, out):
     place = (-depth, total[1] / factor, total[2] / factor)
     replay(history, 0, row, (0.0, 0.0, 0.0, 0.0), factor)
 
-    # Restitution, to where the law ends it.
+    # Restitution, which the law ends.
     friction = Friction(fixed, friction.t1, friction.t2)
     if e >= E_MIN and not (given.wedged and out[o.IMPULSE] <= out[o.P_C]):
         first, before = row, state
@@ -149,7 +149,7 @@ def _pass(given, history, out):
 
 @kernel
 def _compress(given, accel, friction, history, out):
-    """Run compression (see `run`)."""
+    """Integrate compression (see `run`)."""
     slip_end_p, p_c, v0 = out[o.SLIP_END_P], out[o.P_C], -given.u[0]
     contact, start = Contact(given.m, given.mu, accel), (given.u[1], given.u[2], given.u[0])
     ends = 0.0 <= slip_end_p <= p_c
@@ -164,7 +164,7 @@ def _compress(given, accel, friction, history, out):
 
 @kernel
 def _restore(given, accel, goal, start, friction, history, row, out):
-    """Run restitution (see `run`)."""
+    """Integrate restitution (see `run`)."""
     p_c = out[o.P_C]
     contact = Contact(given.m, given.mu, accel)
     later = out[o.SLIP_END_P] >= 0.0 and not friction.fixed
@@ -185,6 +185,6 @@ def _works(given, before, after, total):
     P0, P1, P2 = total[3], total[4], total[5]
     energy = P0 * (before[2] + after[2]) + P1 * (before[0] + after[0]) + P2 * (before[1] + after[1])
     energy *= 0.5
-    # In the impulse form it is that of the spline's s, so that s_min = -b l.
+    # With steps in the impulse it is the work along the spline's s, so that s_min = -b l.
     work = energy + total[6] if given.timed or not given.mu > 0.0 else total[0]
     return work, work - energy

@@ -15,28 +15,28 @@ ENERGY_CHANGE = 12  #: change of kinetic energy, A_c + A_r - friction loss [J]
 P_C = 13  #: normal impulse at the end of compression [N s]
 PHASES = 14  #: bit mask of the phases passed, below
 STEPS = 15  #: integrator steps, closed-form pieces included
-SLIP_END_P = 16  #: normal impulse where slip first stops, -1 if it does not [N s]
-SLIP_END_UN = 17  #: normal velocity there [m/s]
+SLIP_END_P = 16  #: normal impulse at which slip first stops, -1 if it never stops [N s]
+SLIP_END_UN = 17  #: normal velocity at which slip first stops [m/s]
 DURATION = 18  #: duration of the impact in the layer [s]; 0 from `resolve`
 X_MIN = 19  #: least x in the layer [m]; 0 from `resolve`
 KNOTS = 20  #: knots of the history; 0 from `resolve`
-STILL = 21  #: given, not a result: speed that counts as none, round-off of u itself [m/s]
+STILL = 21  #: an input: speed that counts as zero, round-off of u itself [m/s]
 SIZE = 24  #: length of `out`; the rest is free
 
 SLIP = 1  #: the contact slipped
-STICK = 2  #: it stuck, to the end
+STICK = 2  #: the contact stuck until the end
 RESTART = 4  #: slip stopped and began again at once (reversal)
 JAM = 8  #: the normal force drove the bodies together while slipping (Painleve)
 WEDGED = (
-    16  #: friction held the pair in restitution, however large the impulse: W is singular there
+    16  #: friction blocked the pair in restitution, however large the impulse: W is singular there
 )
-AT_END = 32  #: its time was not located: one of a crowd, at the end of its step
+AT_END = 32  #: its time was not located: an impact in a crowd, at the end of a step
 
 OK = 0
 BAD_INPUT = 1  #: a number is not finite, or W_nn is not positive
 NOT_APPROACHING = 2  #: u_n is not negative
-NO_END = 3  #: the pair approaches, and no impulse stops it: W is singular along the way
-TOO_MANY_STEPS = 4  #: the integrator did not get to the end
+NO_END = 3  #: the pair approaches, and no impulse stops it: W is singular during the impact
+TOO_MANY_STEPS = 4  #: the integrator did not reach the end
 NO_CONVERGENCE = 5  #: a step of the spline was not solved
 
 MESSAGES = {

@@ -1,7 +1,7 @@
 """One phase of the layer, compression or restitution, as a sequence of spline steps.
 
-Time is the time of the layer where the normal acceleration is given (`accel` > 0, law A), the
-normal impulse where it is not (`accel` = 0; then the end is found from the restitution law).
+If the normal acceleration is given (`accel` > 0, law A), steps are in the time of the layer. Otherwise
+(`accel` = 0) they are in the normal impulse, and the restitution law gives the end.
 """
 
 from __future__ import annotations
@@ -14,26 +14,26 @@ from carom.friction.rays import solve_tangential
 from carom.impact import laws
 from carom.impact.spline import Step, force, quadratures, slip_ratio, solve_slip
 
-# Columns of `history`, a row a knot: time, s, velocity, tangential displacement, force right of it.
+# Columns of `history`, one row for each knot: time, s, velocity, tangential displacement, force after the knot.
 COLUMNS = 10
 
-_SHORTEST = 1e-9  # of a phase: a step of slip that fails even so meets u_t = 0
-_MAX_STEPS = 10000  # in a phase, beyond those asked for
+_SHORTEST = 1e-9  # of the length of a phase: if so short a step of slip fails, u_t reaches 0 in it
+_MAX_STEPS = 10000  # in a phase, beyond the requested number
 
 
 class Span(NamedTuple):
-    """A phase that is to be run."""
+    """A phase to integrate."""
 
     start: tuple  # (u_1, u_2, u_n)
     steps: int  # of equal length
     length: float
-    split: float  # where slip ends, -1: nowhere
+    split: float  # where slip ends, -1 if nowhere
 
 
 class Friction(NamedTuple):
-    """The friction ratio: that of slip, or the constant that it is when slip has ended."""
+    """The friction ratio: that of slip, or a constant after slip has ended."""
 
-    fixed: bool  # whether it is the constant already
+    fixed: bool  # whether it is constant
     t1: float
     t2: float
 
@@ -63,10 +63,10 @@ def write(history, row, time, state, place, load):
 
 @kernel
 def run(contact, span, friction, history, row):
-    """Run a phase; friction becomes the constant ratio where slip ends.
+    """Integrate a phase; the friction ratio becomes constant where slip ends.
 
-    Returns 1 if it was solved, the state at the end, whether friction is now the constant ratio,
-    the integrals (displacement n, t1, t2; impulse n, t1, t2; friction loss), next row.
+    Return 1 if it was solved, the state at the end, whether the friction ratio is now constant,
+    the integrals (displacement n, t1, t2; impulse n, t1, t2; friction loss), and the next row.
     """
     state, total, q = span.start, (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0), 0.0
     n, length, split = span.steps, span.length, span.split
@@ -99,9 +99,9 @@ def run(contact, span, friction, history, row):
 
 @kernel
 def _advance(contact, friction, state, total, d, to_rest, shortest):
-    """Take a step of `d` at most; `to_rest`: slip is known to end with it.
+    """Take a step of at most `d`; `to_rest` says that slip is known to end with it.
 
-    Returns 1 if it was solved, its length, whether slip has ended with it, the new state and integrals.
+    Return 1 if it was solved, its length, whether slip has ended with it, the new state and integrals.
     """
     m, (x, y, u_n) = contact.m, state
     t1, t2 = ratio(contact, friction, state)
@@ -112,7 +112,7 @@ def _advance(contact, friction, state, total, d, to_rest, shortest):
     if not straight:
         ok, step = _slip_step(contact, (x, y), d, shortest, to_rest)
         if ok == 0:
-            # The spline's slip ends here, before the resolver's: by its error.
+            # Slip ends here, earlier than in the impact solver, because of the error of the spline.
             if not abs(x) + abs(y) <= 1e3 * step.length * (abs(ax) + abs(ay)):
                 return 0, d, to_rest, state, total
             straight = to_rest = True
@@ -136,10 +136,10 @@ def _advance(contact, friction, state, total, d, to_rest, shortest):
 
 @kernel
 def _slip_step(contact, start, d, shortest, to_rest):
-    """Solve a step of `d`, or of half of it ...; return 1 if solved, and the step.
+    """Solve a step of length `d`, halved until it is accepted; return 1 if it was solved, and the step.
 
-    A step is refused if Newton's iteration fails on it (slip passes near u_t = 0), or if slip turns
-    by more than 60 degrees. `to_rest` counts only for the whole step.
+    A step is rejected if Newton's iteration fails (slip passes near u_t = 0), or if slip turns by more
+    than 60 degrees. `to_rest` holds only for the whole step.
     """
     while True:
         ok, step = solve_slip(contact, start, d, to_rest)
@@ -154,9 +154,9 @@ def _slip_step(contact, start, d, shortest, to_rest):
 
 @kernel
 def _stopped(contact, state, total):
-    """Return state and integrals after the impulse that takes the rest of u_t, an error of the spline, to zero.
+    """Return state and integrals after an impulse that removes the remaining u_t, an error of the spline.
 
-    Where the normal velocity is prescribed (law A), W (dp, dP_t) = (0, -u_t); otherwise dp = 0.
+    If the normal velocity is prescribed (law A), W (dp, dP_t) = (0, -u_t); otherwise dp = 0.
     """
     m, (x, y, u_n) = contact.m, state
     r1, r2 = solve_tangential(m[3], m[4], m[5], x, y)
@@ -172,7 +172,7 @@ def _stopped(contact, state, total):
 
 @kernel
 def shoot(contact, law, goal, span, friction, history, row):
-    """Run a phase in the normal impulse to where `law` meets its `goal`; the length given is a first guess."""
+    """Integrate a phase in the normal impulse until `law` reaches its `goal`; the length is a first guess."""
     last, length = math.inf, span.length
     result = run(contact, span, friction, history, row)
     for _ in range(40):
@@ -193,9 +193,9 @@ def shoot(contact, law, goal, span, friction, history, row):
 
 @kernel
 def replay(history, first, last, origin, factor):
-    """Turn the rows of a phase, counted from its start with N = 1, into time with N = `factor`.
+    """Convert the rows of a phase from the normal impulse (N = 1) to time, with N = `factor`.
 
-    `origin` is time, s and the tangential displacement at the start of the phase.
+    `origin` is time, s and the tangential displacement at the start of the phase, where the rows count from 0.
     """
     for i in range(first, min(last, history.shape[0])):
         history[i, 0] = origin[0] + history[i, 0] / factor

@@ -13,7 +13,7 @@ _NOT_LAW_A = layout.JAM | layout.WEDGED
 
 @kernel
 def write_impact(contact, c, state, point, hit, clock, records):
-    """Write the row of one impact: what was given, and what the resolver or the layer returned."""
+    """Write the row of one impact: its input, and the result of the impact solver or of the layer."""
     row, x, out = records.impact[clock.struck], state[point.a].x, hit.out
     row.time = clock.now
     row.contact, row.together = contact.number, 1
@@ -38,7 +38,7 @@ def write_impact(contact, c, state, point, hit, clock, records):
 def layer_time(contact, hit, out):
     """Return the time that the impact takes in the layer.
 
-    With Newton's law it is that of law A, T_c = 2 b l/v_0, T_r = T_c/e. With the others, and after a jam, N is
+    With Newton's law law A gives T_c = 2 b l/v_0, T_r = T_c/e. With the other laws, and after a jam, N is
     constant in each phase, N_c = |A_c|/(b l) and N_r = A_r/(b l). A wedged pair has no restitution.
     """
     depth = -contact.width * math.log1p(-contact.penetration)

@@ -1,8 +1,8 @@
 """One frictional impact by the Darboux-Keller equation, solved to round-off.
 
 The normal impulse p is the independent variable (mathematics page, §1.9): du/dp = W (1, tau), with tau = -mu
-u_t/|u_t| in slip and tau = -W_tt^-1 W_tn in stick. If the direction of slip is constant, u is linear in p and
-the piece is in closed form; otherwise it is integrated (`taylor`). A jam needs no special treatment, because p
+u_t/|u_t| in slip and tau = -W_tt^-1 W_tn in stick. While the direction of slip is constant, u is linear in p,
+in closed form; otherwise slip is integrated (`taylor`). A jam needs no special treatment, because p
 always grows. If no impulse changes the velocity (`wedge`), the velocity reached so far is the result.
 """
 
@@ -23,15 +23,15 @@ _ACCURACY = 1e-14  # last term of the series of slip, relative to the root of |u
 _AT_REST = 1e-12  # slip is over below this part of the speed of impact
 _ON_RAY = 1e-13  # the direction of slip is constant if it turns slower than this (relative)
 _ROUND_OFF = 4e-15
-_LEFT = 1e-9  # greatest impulse that takes such slip, relative to that of the impact
+_LEFT = 1e-9  # greatest impulse that removes the slip that remains, relative to the impulse of the impact
 _FARTHEST = 1e6  # longest step in p, in units of size / W_nn: round-off of u grows with p
 _MAX_STEPS = 2000
 
-# What the contact does: it slips along a curve or along a line, or it sticks.
+# The contact slips along a curve or along a line (in the plane of u_t), or it sticks.
 _CURVED, _STRAIGHT, _STICK = range(3)
 
-# How a piece of the path ended: within the phase, where slip stops, at the goal of the phase, where no impulse
-# moves anything any more, or not at all.
+# The end of a piece of the path: within the phase, where slip stops, at the goal of the phase, where the pair
+# is wedged (no impulse changes the velocity), or nowhere.
 _WITHIN, _AT_STOP, _AT_GOAL, _CAUGHT, _ENDLESS = range(5)
 
 
@@ -41,7 +41,7 @@ class Contact(NamedTuple):
     m: tuple  # W, as in `slip_step`
     mu: float
     size: float  # speed of impact |u|
-    still: float  # speed that counts as none
+    still: float  # speed that counts as zero
 
 
 class Phase(NamedTuple):
@@ -50,13 +50,13 @@ class Phase(NamedTuple):
     law: int
     goal: float  # value of the law's measure at the end
     restitution: bool
-    taken: float  # energy that compression took
+    taken: float  # energy lost in compression
 
 
 class Line(NamedTuple):
     """A piece of the path along which u is linear in p."""
 
-    mode: int  # _STRAIGHT or _STICK; _CURVED: there is none
+    mode: int  # _STRAIGHT or _STICK; _CURVED if there is no line
     t1: float  # friction impulse per normal impulse
     t2: float
     growth: float  # d|u_t|/dp
@@ -85,7 +85,7 @@ def resolve_one(W, u, mu, e, law, out):
         return o.BAD_INPUT
     if not u[0] < 0.0:
         return o.NOT_APPROACHING
-    # Units of W and u themselves: powers of the series of slip neither overflow nor vanish.
+    # Scale W and u by themselves, so that powers in the series of slip neither overflow nor vanish.
     w = power_of_two(max(W[0, 0], W[1, 1], W[2, 2]))
     v = power_of_two(max(abs(u[0]), abs(u[1]), abs(u[2])))
     m = (W[0, 0] / w, W[0, 1] / w, W[0, 2] / w, W[1, 1] / w, W[1, 2] / w, W[2, 2] / w)
@@ -125,7 +125,7 @@ def _follow(contact, u, e, law):
 
     while steps < _MAX_STEPS:
         steps += 1
-        # What the contact does from here on.
+        # Does the contact slip or stick from here?
         if stopped:
             if phases & o.SLIP:
                 slip_end = (before[0] + s[3], s[2])
@@ -140,7 +140,7 @@ def _follow(contact, u, e, law):
         if line.mode != _STICK and mu > 0.0:
             phases |= o.SLIP
 
-        # One piece: to the end of the phase, to the end of slip, or one step.
+        # One piece, until the phase ends or slip ends, or one step.
         if line.mode == _CURVED:
             s, ended, marks = _along_curve(contact, phase, s)
         else:
@@ -152,8 +152,8 @@ def _follow(contact, u, e, law):
 
         # The next phase.
         if phase.restitution and ended != _CAUGHT and s[2] < -at_rest:
-            # Driven together again before restitution was over (jam): compression goes on, and
-            # what came back counts to it. So p_c and A_c belong to the last zero of u_n.
+            # Jam: the bodies approach again before restitution ends. Compression continues and includes
+            # the restitution so far, so p_c and A_c belong to the last zero of u_n.
             phase = _COMPRESSION
             s = (s[0], s[1], s[2], s[3] + before[0], s[4] + before[1], s[5] + before[2],
                  s[6] + before[3], s[7] + before[4])  # fmt: skip
@@ -220,13 +220,13 @@ def _turning(m, mu, c, n):
 
 @kernel
 def _along_curve(contact, phase, s):
-    """Take one step of turning slip: return the new state, the kind of end, and marks of the phases."""
+    """Take one step of turning slip; return the new state, the kind of end, and marks of the phases."""
     m, mu, size, law, goal = contact.m, contact.mu, contact.size, phase.law, phase.goal
     r, k = normal_rate(m, mu, s)
     marks = o.JAM if k <= 0.0 else 0
     t = expand(m, mu, s)
     h = reach(t[0], t[1], _ACCURACY * math.sqrt(size * r))
-    # Hardly any friction: not far beyond the end that is to be seen from here.
+    # With hardly any friction the series reaches far: step little beyond the end expected from here.
     unit = size / m[0]
     left = laws.remaining(law, goal, s[2], s[3], s[7])
     end = min(laws.straight(law, left, s[2], k), _FARTHEST * unit) if k > 0.0 else 0.0
@@ -242,14 +242,14 @@ def _along_curve(contact, phase, s):
 
 @inlined
 def _along_line(contact, phase, line, s):
-    """Move to the end of the phase or of slip: return the new state, kind of end, and marks of the phases."""
+    """Move to the end of the phase or of slip; return the new state, the kind of end, marks of the phases."""
     m, mu, law, t1, t2, growth = contact.m, contact.mu, phase.law, line.t1, line.t2, line.growth
     k = m[0] + m[1] * t1 + m[2] * t2
     f1, f2 = m[1] + m[3] * t1 + m[4] * t2, m[2] + m[4] * t1 + m[5] * t2
     left = laws.remaining(law, phase.goal, s[2], s[3], s[7])
     length = laws.straight(law, left, s[2], k) if left > 0.0 else 0.0
 
-    # Where nothing moves the velocity stays. Only a law of impulses knows how much impulse is to come.
+    # If the pair is wedged the velocity stays. Only a law of impulses then gives the impulse that remains.
     caught, marks, ended = moves_nothing(m, t1, t2, k, growth), 0, _AT_GOAL
     if phase.restitution and law not in laws.BY_IMPULSE and not (caught or growth < 0.0):
         p, p1, p2 = s[3] + length, s[4] + length * t1, s[5] + length * t2
@@ -263,9 +263,9 @@ def _along_line(contact, phase, line, s):
     elif k <= 0.0 and line.mode == _STRAIGHT:
         marks = o.JAM
     if line.mode == _STICK and not abs(f1) + abs(f2) > _ROUND_OFF * (abs(m[1]) + abs(m[2])):
-        f1, f2 = 0.0, 0.0  # else W_tt is so thin that stick leaves some creep
+        f1, f2 = 0.0, 0.0  # otherwise W_tt is so nearly singular that stick leaves some creep
 
-    # As far as slip lasts.
+    # Slip may end before the phase.
     r, loss = math.sqrt(s[0] * s[0] + s[1] * s[1]), 0.0
     if line.mode == _STRAIGHT:
         if mu > 0.0 and growth < 0.0 and r <= -growth * length:
@@ -288,9 +288,9 @@ def _along_line(contact, phase, line, s):
 
 @kernel
 def _without_slip(m, s, size):
-    """Return the state with u_t = 0: the rest of u_t at the end of slip is removed by an impulse.
+    """Return the state with u_t = 0: an impulse removes the u_t that remains at the end of slip.
 
-    The rest is round-off, and so is the impulse, unless W_tt is nearly singular: then the rest stays.
+    This u_t is round-off, and so is the impulse, unless W_tt is nearly singular: then u_t stays.
     """
     d1, d2 = solve_tangential(m[3], m[4], m[5], s[0], s[1])
     if not abs(d1) + abs(d2) <= _LEFT * size:
@@ -300,7 +300,7 @@ def _without_slip(m, s, size):
 
 @kernel
 def write(out, v, w, u, s, P, before):
-    """Write velocities, impulses and works, from those in the units `v` of velocity and `w` of W."""
+    """Write velocities, impulses and works; the arguments are in units of `v` for velocity and `w` for W."""
     p, p1, p2 = P
     one, work = v / w, v * (v / w)
     out[o.VELOCITY], out[o.VELOCITY + 1], out[o.VELOCITY + 2] = s[2] * v, s[0] * v, s[1] * v

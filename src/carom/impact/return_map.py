@@ -1,10 +1,10 @@
-"""The return map: back to the boundary along an autoparallel that is normal to it in the kinetic metric.
+"""The return map moves back to the boundary along an autoparallel that is normal to it in the kinetic metric.
 
     xi = kappa P G_n^T(q_e),   q_e = Exp_q(xi),   rho(q_e) = 0
 
-kappa is found by Newton's method, kappa -= rho/(G_n P G_n^T), with G_n and P at the current q_e. A free
-body takes the whole arc from q again; a joined one goes on from where it is, and its joints are polished
-after each pass. (Paper, contact detection; Eq. (10).)
+kappa is found by Newton's method, kappa -= rho/(G_n P G_n^T), with G_n and P at the current q_e. For a free
+body each iteration starts again from q; a body with joints continues from the current q_e, and its position is
+projected on the joints after each iteration. (Paper, contact detection; Eq. (10).)
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ from carom.kinematics.contact_point import contact_motion, place
 
 @kernel
 def return_map(system, contact, state, work, tie, tolerance):
-    """Move `state` onto the surface of the contact. Returns the number of iterations, or -1 (paper, Eq. (10)).
+    """Move `state` onto the surface of the contact; return the number of iterations, or -1 (paper, Eq. (10)).
 
-    The point that is brought back stays the same until it is on the surface; if the turn of the body has
-    then brought another one lower, it is the next.
+    One point is moved until it is on the surface. If the rotation of the body has then moved another point
+    below the surface, that point is next.
     """
     origin, core, point = work.middle, work.hit[0].point, work.point[0]
     joined = system.bodies[contact.body].isolated == 0
@@ -65,7 +65,7 @@ def copy_pose(start, end):
 
 @kernel
 def carry(system, point, kappa, origin, state, work):
-    """Put `state` at Exp of kappa times the motion of the last solve, from `origin`."""
+    """Set `state` to Exp of kappa times the motion of the last solve, from `origin`."""
     if alone(system, point):
         move(work.body[point.a].motion, kappa, origin[point.a], state[point.a])
         if point.b >= 0:
@@ -77,7 +77,7 @@ def carry(system, point, kappa, origin, state, work):
 
 @kernel
 def move(xi, kappa, start, end):
-    """Put one body at Exp of kappa xi from `start`."""
+    """Move one body to Exp of kappa xi from `start`."""
     Q0, Q = start.Q, end.Q
     for k in range(3):
         end.x[k] = start.x[k] + kappa * xi[k]

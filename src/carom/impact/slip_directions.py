@@ -49,8 +49,8 @@ def invariant_directions(inverse_mass, friction: float) -> InvariantDirections:
     mu = checks.number("friction", friction, least=0.0)
     a, B = W[1:, 0], W[1:, 1:]
 
-    # f = a.e' - mu (B_12 cos 2th + (B_22 - B_11)/2 sin 2th), e' = (-sin, cos), times 2 z^2 with
-    # z = exp(i th), is a polynomial of degree 4: its roots on the unit circle.
+    # With z = exp(i th), 2 z^2 f is a polynomial of degree 4, whose roots on the unit circle are sought, where
+    # f = a.e' - mu (B_12 cos 2th + (B_22 - B_11)/2 sin 2th), e' = (-sin, cos).
     c = mu * complex(B[0, 1], -0.5 * (B[1, 1] - B[0, 0]))
     first = complex(a[1], a[0])
     terms = np.array([-c, first, 0.0, np.conj(first), -np.conj(c)])
@@ -61,7 +61,7 @@ def invariant_directions(inverse_mass, friction: float) -> InvariantDirections:
     terms[np.abs(terms) < 1e-15 * size] = 0.0
     roots = np.roots(terms)
     angles = np.angle(roots[np.abs(np.abs(roots) - 1.0) < 1e-6])
-    for _ in range(3):  # Newton: the roots of the polynomial are good to about 1e-12
+    for _ in range(3):  # Newton's iteration: the roots of the polynomial have errors of about 1e-12
         turn, slope = _turning(a, mu * B, angles)
         angles = angles - np.where(np.abs(slope) > 1e-6 * size, turn / slope, 0.0)
     angles = np.sort(np.mod(angles, 2.0 * np.pi))

@@ -1,7 +1,7 @@
 """Steps of the slip velocity, and the last step to the end of a phase.
 
-State: ``(u_1, u_2, u_n, p, P_1, P_2, loss, work)``, the last five counted from the start of the
-phase. Mass: ``(W_nn, W_n1, W_n2, W_11, W_12, W_22)``.
+The state is ``(u_1, u_2, u_n, p, P_1, P_2, loss, work)``; the last five are counted from the start of the
+phase. The mass is ``(W_nn, W_n1, W_n2, W_11, W_12, W_22)``.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ def expand(m, mu, s):
 
 @kernel
 def moved(m, mu, s, t, h):
-    """Return the state `h` in tau after `s`, on the series `t`."""
+    """Return the state at `h` in tau after `s`, from the series `t`."""
     p, p1, p2 = integral(t[2], h), -mu * integral(t[0][:16], h), -mu * integral(t[1][:16], h)
     loss = mu * integral(t[3], h)
     x, y = value(t[0], h), value(t[1], h)
     u_n = s[2] + (m[0] * p + m[1] * p1 + m[2] * p2)
-    # The work of the normal force from the exact change of energy, dE = P.(u + u')/2.
+    # The work of the normal force follows from the exact change of energy, dE = P.(u + u')/2.
     energy = 0.5 * (p * (s[2] + u_n) + p1 * (s[0] + x) + p2 * (s[1] + y))
     work = s[7] + (energy + loss)
     return (x, y, u_n, s[3] + p, s[4] + p1, s[5] + p2, s[6] + loss, work)
@@ -41,9 +41,9 @@ def moved(m, mu, s, t, h):
 
 @kernel
 def land(m, mu, law, goal, start, end, t, h):
-    """Return the state on the series `t` where the goal is met, between `start` and `end`, `h` on.
+    """Return the state at which the goal is reached, from the series `t` between `start` and `end`, `h` later.
 
-    Newton's iteration, kept between the last point before the goal and the first behind it.
+    Newton's iteration is kept between the last point before the goal and the first point after it.
     """
     low, high = 0.0, h
     left = laws.remaining(law, goal, start[2], start[3], start[7])

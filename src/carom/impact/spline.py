@@ -1,13 +1,13 @@
 """One step of the geometric cubic spline through the boundary layer (mathematics page, §1.11).
 
-In the flat coordinates of the layer the equation is du/dt = N W (1, tau); the unknown is the cubic
-Hermite of the step, given by the velocity at its end, U, and its mean velocity, Y. The weak form
-with test functions 1 and D - t, by three Gauss points,
+In the flat coordinates of the layer the equation is du/dt = N W (1, tau). The unknown is the cubic
+Hermite polynomial of the step, given by the velocity U at its end and the mean velocity Y. The weak form
+with test functions 1 and D - t, integrated with three Gauss points,
 
     U = u_0 + int acc dt,    D Y = D u_0 + int (D - t) acc dt,
 
 is solved by Newton's iteration for the tangential part; the normal part follows. The step is exact
-where the acceleration is constant, of order 4 in general.
+if the acceleration is constant, and of order 4 in general.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def gauss(i):
 
 
 class Contact(NamedTuple):
-    """A contact in a phase of the layer, and how the normal force is given there."""
+    """A contact in a phase of the layer, with the prescription of the normal force."""
 
     m: tuple  # W, as in `slip_step`
     mu: float
@@ -52,7 +52,7 @@ class Step(NamedTuple):
 def force(contact, t1, t2):
     """Return N (paper, Eq. (8)) and k for the ratio (t1, t2): N = accel / k (law A, §1.9), or 1.
 
-    N is 1 if `accel` is 0: the time of the step is the normal impulse then, scaled later by `layer` (§1.10).
+    If `accel` is 0, N is 1 and steps are in the normal impulse; `layer` converts them to time later (§1.10).
     """
     m, accel = contact.m, contact.accel
     k = m[0] + m[1] * t1 + m[2] * t2
@@ -70,7 +70,7 @@ def slip_ratio(mu, x, y):
 def solve_slip(contact, start, d, to_rest):
     """Return 1 if the step of length `d` in slip from u_t = `start` was solved, and the step (paper, Eq. (9)).
 
-    `to_rest` says that slip is known to end with the step: then U starts at 0.
+    `to_rest` says that slip is known to end with the step: then the first guess of U is 0.
     """
     m, (x0, y0) = contact.m, start
     t1, t2 = slip_ratio(contact.mu, x0, y0)
@@ -98,7 +98,7 @@ def solve_slip(contact, start, d, to_rest):
 
 @kernel
 def _hermite(step, z):
-    """Return u_t at the part `z` of a step, and the weights there of Y and of U."""
+    """Return u_t at the fraction `z` of a step, and the weights of Y and of U in it."""
     al, be, ga = 6.0 * z * (1.0 - z), (1.0 - z) * (1.0 - 3.0 * z), z * (3.0 * z - 2.0)
     (x0, y0), (ux, uy), (yx, yy) = step.start, step.end, step.mean
     return al * yx + be * x0 + ga * ux, al * yy + be * y0 + ga * uy, al, ga
@@ -106,7 +106,7 @@ def _hermite(step, z):
 
 @kernel
 def _equations(contact, step):
-    """Return 1 if there are forces, the mismatch of the weak form and its Jacobian, by blocks [A B; C E]."""
+    """Return 1 if the forces exist, the residual of the weak form, and its Jacobian by blocks [A B; C E]."""
     m, mu, accel, d = contact.m, contact.mu, contact.accel, step.length
     (x0, y0), (ux, uy), (yx, yy) = step.start, step.end, step.mean
     mismatch = ux - x0, uy - y0, yx - x0, yy - y0
@@ -128,7 +128,7 @@ def _equations(contact, step):
         w2 = w1 * (1.0 - z)
         r1, r2, r3, r4 = mismatch
         mismatch = r1 - w1 * n * f1, r2 - w1 * n * f2, r3 - w2 * n * f1, r4 - w2 * n * f2
-        # dF/du_t = q (-s, c), rank one: only the turning of u_t changes the force.
+        # dF/du_t = q (-s, c) has rank one: only the direction of u_t changes the force.
         g1, g2 = -m[3] * s + m[4] * c, -m[4] * s + m[5] * c
         bend = (-m[1] * s + m[2] * c) / k if accel > 0.0 else 0.0
         q1, q2 = -mu * n / r * (g1 - bend * f1), -mu * n / r * (g2 - bend * f2)
@@ -164,10 +164,10 @@ def _eliminated(mismatch, A, B, C, E):
 
 @kernel
 def quadratures(contact, step, straight, ratio):
-    """Return the integrals over a solved step: p, P_1, P_2, friction loss, u_n gain, its moment.
+    """Return the integrals over a solved step: p, P_1, P_2, friction loss, the gain of u_n, and its moment.
 
-    The last two are int acc_n dt and int (D - t) acc_n dt. `straight` says that friction is the constant
-    `ratio` and not that of slip.
+    The last two are int acc_n dt and int (D - t) acc_n dt. If `straight`, friction has the constant `ratio`
+    in place of that of slip.
     """
     p, p1, p2, loss, gain, moment = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     d, t1, t2 = step.length, ratio[0], ratio[1]

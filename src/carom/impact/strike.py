@@ -29,15 +29,15 @@ from carom.model.method import THREE_FIELD
 from carom.model.records import FULL_MULTIPLE, GROW, IMPACT, JAMS
 
 RETURN_MAP_FAILED, IMPACT_FAILED, TOO_MANY_POINTS = 5, 6, 10
-SEED = 1e-10  # approach given to a point that jams, as a part of its slip; the result does not depend on it
+SEED = 1e-10  # speed of approach given to a point that jams, as a part of its slip; it changes no result
 
 
 @kernel
 def onto_surface(system, controls, c, state, work):
-    """Move the body to the surface and write its striking point to work.hit. Return 0 or a status.
+    """Move the body to the surface and write its striking point to work.hit; return 0 or a status.
 
     After a located impact this is the last correction. After a complete step it is the return map of the paper,
-    and the velocity block is solved again with the new position.
+    and velocities are projected on the joints again at the new position.
     """
     contact, point = system.contacts[c], work.hit[0].point
     if contact.touches != 0:
@@ -63,7 +63,7 @@ def onto_surface(system, controls, c, state, work):
 def strike(model, data, method, c):
     """Solve the impact of contact c, together with all closed points of its group.
 
-    0 or the number of a `Status` is written to work.hit, and the number of closed points if there was an
+    The results in work.hit are 0 or the number of a `Status`, and the number of closed points if there was an
     impact. The velocities of `state` change; its position changes only by the return map.
     """
     system, controls = model.system, model.controls
@@ -87,7 +87,7 @@ def strike(model, data, method, c):
         if u < -slow(system.contacts[closed_point.contact], state):
             approach = min(approach, u)
     if approach < 0.0 or jams:
-        hit.closed = max(k, 2) if jams else k  # a point that is active is always judged anew
+        hit.closed = max(k, 2) if jams else k  # after a jam active points are always decided again
         single = as_one(system, k, state, group, work)
         if not single and data.multiple.e.shape[0] < k:
             clock.grow, hit.code = FULL_MULTIPLE, GROW
@@ -113,14 +113,14 @@ def strike(model, data, method, c):
             if concerns(system.contacts[i], work.body[contact.body].label, work):
                 active.contact_states[i].near = 1
         label_groups(system, active, work)
-    if controls.location != LOCATE:  # others may be inside as well
+    if controls.location != LOCATE:  # other contacts may have penetrated as well
         for i in range(active.contact_states.shape[0]):
             active.contact_states[i].near = 1
 
 
 @kernel
 def forget_jams(active, k, group):
-    """Clear the mark of active points whose jam this impact has ended."""
+    """Remove the mark of a jam from the active points of this impact, which ended it."""
     for i in range(k):
         if group.closed[i].active >= 0:
             active.points[group.closed[i].active].jams = 0
@@ -149,7 +149,7 @@ def strike_one(model, data, method, c):
 
 @inlined
 def collide(method, controls, contact, hit, history):
-    """Solve the impact in work.hit as the method requires: to round-off, or as in the paper."""
+    """Solve the impact in work.hit by the method of the run: to round-off, or as in the paper."""
     if method.kind == THREE_FIELD:
         return by_layer(controls, contact, hit, history)
     return resolve_one(hit.W, hit.u, hit.friction, hit.restitution, contact.law, hit.out)

@@ -1,4 +1,4 @@
-"""A multiple impact within a run: all closed points of a group, at a corner of the manifold, together."""
+"""A multiple impact within a run: all closed points of a group together, at a corner of the manifold."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from carom.impact.workspace import U
 from carom.model.allowance import affordable
 
 IMPACT_FAILED = 6
-SEED = 1e-7  # of the slip
-ROUND_OFF = 1e-14  # of the speeds of a multiple impact
+SEED = 1e-7  # speed of approach given to a point that jams, relative to its slip
+ROUND_OFF = 1e-14  # relative to the greatest speed in a multiple impact
 #: exponents of the normal force: if all points are on round bodies, and otherwise
 HERTZ, LINEAR = 1.5, 1.0
 #: cost per point of a step through the layers [us]: by series, and with the many short steps of other exponents
@@ -28,7 +28,7 @@ STEP, STAGES = 30.0, 5.0
 
 @unit
 def resolve_group(k, W, u, mu, multiple):
-    """Solve the impact of k points; its code is written to the clock of the workspace."""
+    """Solve the impact of k points; the clock of the workspace gets its code."""
     contacts = by_reference(
         CornerContacts(k, 0, W, u, mu, multiple.e, multiple.law, multiple.kappa, multiple.pair)
     )
@@ -99,7 +99,7 @@ def strike_several(model, data, c, k):
         multiple.pair[i] = pair_of(i, system.contacts, group.closed, all_by_pairs)
     passage = multiple.workspace.work.clock[0]
     each = k * (STEP if exponent_of(k, multiple) == LINEAR else STAGES)
-    if model.controls.retry == 1:  # the group can be taken whole instead
+    if model.controls.retry == 1:  # the group can take a time-stepping step instead
         passage.left = int(max(0.0, affordable(model.controls, clock) - clock.effort) / each)
     resolve_group(k, group.m[0], u, group.mu, multiple)
     worked = each * multiple.result.summary[0].steps

@@ -6,9 +6,9 @@ With dtau = dp/|u_t| in place of the normal impulse p, Coulomb slip (mathematics
 
 autonomous, and smooth down to u_t = 0, which it reaches only as tau -> infinity. The series follows
 from q := r^2 = u_t.u_t and r r = q, order by order (q_n = sum x_i x_{n-i} + y_i y_{n-i}; r_n from
-sum r_i r_{n-i} = q_n), with no coefficient of a method in it. All else is a quadrature of the
-series: p = int r, P_t = -mu int u_t, friction loss = mu int q. A phase that ends inside a step is
-found on the series, without a further step.
+sum r_i r_{n-i} = q_n). The other results are integrals of the series: p = int r, P_t = -mu int u_t,
+friction loss = mu int q. The end of a phase inside a step is found on the series, without another
+step.
 """
 
 from __future__ import annotations
@@ -24,8 +24,8 @@ ORDER = 16
 def series(rate, x0, y0):
     """Return the coefficients in tau of u_t = (x, y), r and q from u_t = (x0, y0).
 
-    `rate` is W_tn and mu W_tt, (a_1, a_2, m_11, m_12, m_22). Four tuples: x and y of orders 0 to ORDER, r and q
-    of orders 0 to ORDER - 1. All sums are written out, as trees of pairs: a loop would need arrays.
+    `rate` is W_tn and mu W_tt, (a_1, a_2, m_11, m_12, m_22). The results are four tuples: x and y of orders 0
+    to ORDER, r and q of orders 0 to ORDER - 1. All sums are written out in pairs: a loop would need arrays.
     """
     # fmt: off
     q0 = x0*x0 + y0*y0
@@ -105,7 +105,7 @@ def _next(rate, r, x, y, part):
 
 @kernel
 def value(c, h):
-    """Return the series `c` of orders 0 to ORDER at `h`."""
+    """Return the value at `h` of the series `c` of orders 0 to ORDER."""
     v = c[16]
     v = v * h + c[15]
     v = v * h + c[14]
@@ -128,7 +128,7 @@ def value(c, h):
 
 @kernel
 def integral(c, h):
-    """Return the integral of the series `c` from 0 to `h`; its orders 0 to ORDER - 1 are used."""
+    """Return the integral from 0 to `h` of the series `c`, of orders 0 to ORDER - 1."""
     v = c[15] * 0.0625
     v = v * h + c[14] * 0.06666666666666667
     v = v * h + c[13] * 0.07142857142857142

@@ -1,8 +1,8 @@
 """Wedging: W is singular during the impact, so the normal impulse changes no velocity (mathematics page, §1.9).
 
-A body that joints leave few freedoms has a W of rank 1 or 2. With z = (1, tau), z.W z = k - mu g for slip
-that grows at the rate g, and k for stick: so k <= 0 without slip that fades means W z = 0, friction holds
-the pair however large the impulse is.
+If joints leave a body few degrees of freedom, W has rank 1 or 2. With z = (1, tau), z.W z is k - mu g in slip
+that grows at the rate g, and k in stick. Since z.W z >= 0, k <= 0 and g >= 0 imply W z = 0: friction blocks the
+pair, however large the impulse is.
 """
 
 from __future__ import annotations
@@ -11,15 +11,15 @@ import math
 
 from carom._compiled.decorators import kernel
 
-#: a sum of products counts as none below this part of them: their errors are some 1e-15, and what is left is
-#: known to a thousandth at least
+#: a sum of products counts as zero below this part of the products: their errors are about 1e-15, so a larger
+#: sum is known to one part in a thousand
 _ROUND_OFF = 1e-12
 _OF_W = 1e-14
 _LAST_DIGIT = 2.2e-16
 _BALANCE = (
-    1e-6  # part of the energy that compression took to which the balance of an impact is known
+    1e-6  # accuracy of the energy balance of an impact, relative to the energy lost in compression
 )
-#: a speed of approach counts as none below this part of the speed of impact: round-off, and the seed of a jam
+#: a speed of approach below this part of the speed of impact counts as zero: round-off, or the seed of a jam
 _PUSHED = 1e-9
 
 
@@ -27,11 +27,11 @@ _PUSHED = 1e-9
 def moves_nothing(m, t1, t2, k, grow):
     """Return whether the impulse p (1, t1, t2) changes no velocity, `m` as in `slip_step`.
 
-    k = du_n/dp, judged by the products of z.W z from which it is left, and `grow` = d|u_t|/dp (0 in stick).
+    k = du_n/dp is compared with the products whose sum is z.W z; `grow` is d|u_t|/dp (0 in stick).
     """
     a1, a2, b = m[1] * t1, m[2] * t2, m[4] * t1 * t2
     terms = m[0] + 2.0 * (abs(a1) + abs(a2) + abs(b)) + m[3] * t1 * t1 + m[5] * t2 * t2
-    # W itself may be a difference, known to the round-off of its greatest entry alone.
+    # W itself may be a difference; its errors are then round-off of its greatest entry.
     own = max(m[0], m[3], m[5]) * min(1.0, (abs(a1) + abs(a2)) / m[0]) if grow == 0.0 else 0.0
     if not abs(k) > _ROUND_OFF * terms + _OF_W * own:
         k = 0.0
@@ -41,10 +41,10 @@ def moves_nothing(m, t1, t2, k, grow):
 
 @kernel
 def drowned(m, p, p1, p2, energy):
-    """Return whether the round-off of P.W P, of an impulse of restitution, shows in the balance of energy.
+    """Return whether round-off of P.W P, P the impulse of restitution, is visible in the energy balance.
 
-    `energy` is what compression took. Only Newton's law asks for such impulses, as k comes near to nothing:
-    p = e v0/k, where Stronge's p grows with 1/sqrt(k) only.
+    `energy` was lost in compression. Only Newton's law requires such large impulses if k is nearly zero:
+    p = e v0/k, while Stronge's p grows only with 1/sqrt(k).
     """
     p, p1, p2 = abs(p), abs(p1), abs(p2)
     both = m[0] * p * p + m[3] * p1 * p1 + m[5] * p2 * p2
@@ -54,12 +54,12 @@ def drowned(m, p, p1, p2, energy):
 
 @kernel
 def pushed(u_n, size, still):
-    """Return whether a pair that nothing moves still approaches, faster than `still`: no impulse stops it."""
+    """Return whether a wedged pair approaches faster than `still`, so that no impulse stops it."""
     return not u_n >= -max(_PUSHED * size, still)
 
 
 @kernel
 def power_of_two(x):
-    """Return the power of two just above x > 0: a unit by which nothing is rounded."""
+    """Return the power of two just above x > 0: division by it causes no rounding."""
     _, exponent = math.frexp(x)
     return math.ldexp(1.0, exponent)

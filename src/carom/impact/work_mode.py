@@ -1,8 +1,8 @@
 """Energy across the return map: `impact_location="work"`.
 
-Moving back to the boundary at constant velocity would inject the work m g pen. Here the normal velocity
-at the boundary is changed so that the kinetic energy changes by the work of the applied forces along the
-return arc: u_n -> u_n', with (u_n'^2 - u_n^2)/(2 W_nn) = V(before) - V(after).
+A return to the boundary at constant velocity would add the energy m g pen. Here the normal velocity at the
+boundary is changed so that the kinetic energy changes by the work of the applied forces along the return arc:
+u_n -> u_n', with (u_n'^2 - u_n^2)/(2 W_nn) = V(before) - V(after).
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from carom.kinematics.contact_point import contact_velocity, place
 
 @kernel
 def restore_work(system, contact, state, drop, work):
-    """Change u_n at the core point of `work.hit` for the potential energy `drop` [J] that was lost."""
+    """Change u_n at the core point of `work.hit` by the potential energy `drop` [J] that became kinetic."""
     hit, point = work.hit[0], work.point[0]
     place(contact, hit.point, state, point)
     un = contact_velocity(point, state)[0]

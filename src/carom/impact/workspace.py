@@ -19,40 +19,40 @@ from carom.impact.multiple.layout import (
 from carom.model.arrays import STATE, System
 from carom.model.workspace import POINT
 
-#: most points that are solved for together
+#: greatest number of points that are solved together
 MOST = 192
 
-#: a closed point: what touches, and where it stands in the list of active points
+#: a closed point: its contact, and its place in the list of active points
 CLOSED_POINT = [
     ("contact", "i8"),
     ("feature", "i8"),
-    ("active", "i8"),  # place among the active points, -1 where it is open
-    ("stays", "i8"),  # 1 where it is to be held
-    ("point", "f8", 3),  # of the core, body axes
-    ("rows", "i8"),  # that the return to the surface uses
+    ("active", "i8"),  # its place among the active points, -1 if it is not active
+    ("stays", "i8"),  # 1 if its contact is to persist
+    ("point", "f8", 3),  # point of the core, body axes
+    ("rows", "i8"),  # number of rows that the return to the surface uses
     ("stopped", "i8"),  # 1 where slip has stopped within the step
-    ("turns", "i8"),  # of its POINT
+    ("turns", "i8"),  # as in its POINT
     (
         "parent",
         "i8",
-    ),  # of rolling and pivoting: the closed point whose normal force bounds the torque
+    ),  # of a torque of rolling or pivoting friction: the closed point whose normal force bounds it
 ]
 
 #: rows of `v`: velocities; velocities or accelerations without the unknown impulses; impulses or forces; those
-#: of the last round; multipliers of the way back to the surfaces, as of the last round
+#: of the last round; multipliers of the return to the surfaces, from the last round
 U, C, P, OLD, BACK = range(5)
 
 
 class Group(NamedTuple):
-    """Workspace for up to K points of N bodies, in few arrays: each costs at every call.
+    """Workspace for up to K points of N bodies, in few arrays, because each array costs time at every call.
 
-    Vectors (3K,) and matrices (3K, 3K) have rows n, t1, t2 a point.
+    Vectors (3K,) and matrices (3K, 3K) have rows n, t1, t2 for each point.
     """
 
     closed: np.recarray  # (K,) CLOSED_POINT
     points: (
         np.recarray
-    )  # (2, K) POINT: in the state at hand, or in the middle of a step; at its end
+    )  # (2, K) POINT: in the present state, or in the middle of a step; at its end
     v: np.ndarray  # (5, 3K) vectors
     m: np.ndarray  # (2, 3K, 3K) inverse mass W, and a factor
     rows: (
@@ -76,11 +76,11 @@ class MultipleImpact(NamedTuple):
     law: np.ndarray  # (K,)
     kappa: np.ndarray  # (K,)
     pair: np.ndarray  # (K,) of `CornerContacts`
-    ball_like: np.ndarray  # (K,) 1 of a ball or an ellipsoid
+    ball_like: np.ndarray  # (K,) 1 for a ball or an ellipsoid
 
 
 def capacity(system: System, more: bool) -> int:
-    """Return the greatest number of points that may be closed in one group; `more` where contacts may come."""
+    """Return the greatest number of closed points in one group; `more` says that contacts may be added."""
     if more:
         return MOST
     contacts = system.contacts
@@ -95,7 +95,7 @@ def capacity(system: System, more: bool) -> int:
 
 
 def new_group(system: System, more: bool = False) -> Group:
-    """Return the workspace for the largest group of `system`, to which contacts may come if `more`."""
+    """Return the workspace for the largest group of `system`; `more` says that contacts may be added."""
     n, k = system.bodies.size, capacity(system, more)
     return Group(
         closed=table(CLOSED_POINT, k),

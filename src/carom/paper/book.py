@@ -1,4 +1,4 @@
-"""All of the paper into one folder: figures, tables, real impacts, and a page over them."""
+"""The whole reproduction of the paper in one folder: figures, tables, real impacts, and an index page."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def names() -> tuple[str, ...]:
 
 
 def figures() -> dict:
-    """Return every figure by its name."""
+    """Return all figures by name."""
     from carom.paper import layer, planar, real_figure, spatial, sphere
 
     parts = (sphere, layer, planar, spatial, real_figure)
@@ -52,11 +52,11 @@ def make(
     Parameters
     ----------
     folder : Path
-        Made if it is not there.
+        Folder of the files; it is made if it does not exist.
     wanted : sequence of str, optional
-        Names of figures; default all, with table and pages.
+        Names of figures. Default: all, with tables and pages.
     progress : callable
-        Called with the name of each part when it begins; see `parts` for how many.
+        Function that is called with the name of each part when the part begins; see `parts`.
 
     Returns
     -------
@@ -85,7 +85,7 @@ def make(
 
 
 def parts(wanted: Sequence[str] | None = None) -> int:
-    """Return how often `make` calls its progress function."""
+    """Return the number of calls that `make` makes to its progress function."""
     return len(wanted) if wanted else len(names()) + 2
 
 

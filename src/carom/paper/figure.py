@@ -1,4 +1,4 @@
-"""What a figure of the paper is: how it is drawn, and the words that go with it."""
+"""The definition of a figure of the paper: a function that draws it, and its texts."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 
 class FigureOfPaper(NamedTuple):
-    """One figure. `draw` returns a matplotlib figure; `seen` says what it shows, computed."""
+    """One figure. `draw` returns a matplotlib figure; `seen` returns sentences with its computed numbers."""
 
     name: str
     caption: str

@@ -36,7 +36,7 @@ def hht(steps: int, alpha: float = 0.0):
 
 @cache
 def least_steps(alpha: float = 0.0) -> int | None:
-    """Return the least number of steps with which HHT-alpha gets through the layer at all."""
+    """Return the least number of steps with which HHT-alpha passes the layer."""
     exact, _ = first_impact()
     return first_completing_steps(
         exact.approach_speed, exact.restitution, penetration=exact.penetration, alpha=alpha

@@ -30,7 +30,7 @@ def _ground(axes):
 
 
 def _trajectory():
-    """Draw the whole throw at the left, the bounces of each friction at the right."""
+    """Draw the whole throw on the left, and the bounces for each friction coefficient on the right."""
     figure, axes = style.mosaic(style.PAGE, 4.1, [["all", "0"], ["all", "1"]], (1, 1.4))
     whole = axes["all"]
     _ground(whole)

@@ -2,18 +2,16 @@
 
 Data: 285 tosses of an acrylic cube at 148 Hz (ContactNets, Pfrommer, Halm and Posa 2020; licence
 beside the file), cut to the first impact of each toss: the state one sample before the first
-sample at which a corner is at the table or below, and three samples after that one. Velocities are
-backward differences, so they belong to half a sample before their time. Attitudes are those of the
-sample itself.
+sample at which a corner is at the table or below, and the state three samples after that sample. Velocities
+are backward differences, so they belong to a time half a sample earlier; attitudes belong to the sample.
 
-What is decided here:
+Assumptions:
 
-- only clean impacts: the second-lowest corner at least 15 mm above the table;
-- the corner reaches the table within the sample interval, at dt + z/|u_n| after its beginning (z
-  is its height at the end, not above zero), to which the attitude is carried on with constant
-  angular velocity;
-- gravity acts all the time: up to the impact it changes the approach, after it the velocities that
-  are measured. Between the two recorded velocities there are four samples.
+- only clean impacts count: the second-lowest corner is at least 15 mm above the table;
+- the corner reaches the table within the sample interval, dt + z/|u_n| after its beginning, where z is its
+  height at the end (not above zero); the attitude at that time follows with constant angular velocity;
+- gravity acts all the time: before the impact on the approach, after it on the measured velocities. There are
+  four samples between the two recorded velocities.
 """
 
 from __future__ import annotations
@@ -29,10 +27,10 @@ from carom.geometry import quaternion
 
 GRAVITY, DT = 9.81, 1.0 / 148.0
 MASS, INERTIA, HALF = 0.37, 8.1e-4, 0.0524  # [kg], [kg m^2], [m]
-NOMINAL = (0.125, 0.18)  # e, mu: drop test and tilt test of those who made the data
+NOMINAL = (0.125, 0.18)  # e, mu: drop test and tilt test by the authors of the data
 LAWS = ("newton", "poisson", "stronge")
 CLEAN = 0.015  # least height of the second corner [m]
-SAMPLES = 4  # between the two recorded velocities
+SAMPLES = 4  # samples between the two recorded velocities
 
 _AXES = np.array([[0, 0, 1.0], [1, 0, 0], [0, 1, 0]])  # n, t1, t2
 _CORNERS = HALF * np.array(np.meshgrid(*[(-1, 1)] * 3)).reshape(3, 8).T
@@ -46,9 +44,9 @@ class Tosses(NamedTuple):
     before: np.ndarray  # (K, 6) v [m/s], w [rad/s] at the impact
     after: np.ndarray  # (K, 6) measured, `flight` later
     attitude: np.ndarray  # (K, 4) at the impact
-    height: np.ndarray  # (K,) of the centre at the impact [m]
+    height: np.ndarray  # (K,) height of the centre at the impact [m]
     jacobian: np.ndarray  # (K, 3, 6) G of the corner that strikes
-    flight: np.ndarray  # (K,) from the impact to the measured velocity [s]
+    flight: np.ndarray  # (K,) time from the impact to the measured velocity [s]
 
 
 @cache
@@ -67,8 +65,8 @@ def load() -> Tosses:
     w, w_after = (columns(w, "wxb wyb wzb") for w in ("pre", "post"))
     w, w_after = quaternion.rotate(q, w), quaternion.rotate(q_after, w_after)
 
-    since = np.full(len(table), DT)  # from the sample before to the impact
-    for _ in range(3):  # the approach speed depends on the corner, a little
+    since = np.full(len(table), DT)  # time from the earlier sample to the impact
+    for _ in range(3):  # the approach speed depends slightly on the corner
         now = quaternion.multiply(quaternion.exp(w * since[:, None]), q)
         arms = np.einsum("kij,cj->kci", quaternion.matrix(now), _CORNERS)
         arm = arms[np.arange(len(arms)), np.argmin(arms[:, :, 2], axis=1)]
@@ -90,7 +88,7 @@ def load() -> Tosses:
 
 
 def predict(restitution: float, friction: float, law: str = "newton") -> np.ndarray:
-    """Return (v, w) (K, 6) when velocities were measured: one impact, then free flight."""
+    """Return (v, w) (K, 6) at the time of measurement, after one impact and free flight."""
     tosses = load()
     result = tosses.before.copy()
     for k, (G, state) in enumerate(zip(tosses.jacobian, tosses.before)):
@@ -101,7 +99,7 @@ def predict(restitution: float, friction: float, law: str = "newton") -> np.ndar
 
 
 def simulated(restitution: float, friction: float, law: str = "newton") -> np.ndarray:
-    """As `predict`, by `carom.simulate` from the impact on: with whatever strikes next."""
+    """Return the result of `predict` by `carom.simulate` from the impact on, which includes later impacts."""
     tosses = load()
     result = np.empty_like(tosses.before)
     for k, state in enumerate(tosses.before):
@@ -123,7 +121,7 @@ def simulated(restitution: float, friction: float, law: str = "newton") -> np.nd
 
 
 def no_impact() -> np.ndarray:
-    """Return what there would be without a table."""
+    """Return the velocities (K, 6) that the cubes would have without a table."""
     return _fly(load().before.copy())
 
 
@@ -139,7 +137,7 @@ def errors(predicted: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def objective(parameters, law: str) -> float:
-    """Mean of |dv| + r |dw| [m/s], r = sqrt(J / m) the radius of gyration; not squared."""
+    """Return the mean of |dv| + r |dw| [m/s], not squared; r = sqrt(J / m) is the radius of gyration."""
     e, mu = parameters
     if not (0.0 <= e <= 1.0 and mu >= 0.0):
         return np.inf

@@ -28,7 +28,7 @@ def cases() -> dict[str, tuple]:
 
 
 def _scatter(axes, part: slice, unit: str, reach: float):
-    """Draw predicted against measured components after the impact, fitted Stronge."""
+    """Draw predicted against measured components after the impact, with Stronge's law fitted."""
     predicted = cases()["stronge, fitted"][3][:, part]
     measured = real.load().after[:, part]
     axes.plot([-reach, reach], [-reach, reach], color=style.BLACK, lw=0.5)
@@ -42,7 +42,7 @@ def _scatter(axes, part: slice, unit: str, reach: float):
 
 
 def _spread(axes, which: int, label: str, reach: float):
-    """Draw the share of impacts whose error is below the abscissa."""
+    """Draw the fraction of impacts with an error below the abscissa."""
     for name, (law, *_, predicted) in cases().items():
         error = np.sort(real.errors(predicted)[which])
         share = np.arange(1, error.size + 1) / error.size

@@ -1,4 +1,4 @@
-"""What the runs are compared with: closed forms, and an integration without any code of carom."""
+"""References for the runs: closed forms, and an integration without any code of carom."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Bounce(NamedTuple):
         return self.first * (1.0 + e) / (1.0 - e) if e < 1.0 else np.inf
 
     def motion(self, t) -> tuple[np.ndarray, np.ndarray]:
-        """Height [m] and velocity [m/s]; after an impact at its very time."""
+        """Return height [m] and velocity [m/s]; at the time of an impact, those after it."""
         t = np.asarray(t, dtype=float)
         hits = self.times(400)
         k = np.searchsorted(hits, t, side="right")
@@ -76,9 +76,9 @@ def root(function, low: float, high: float) -> float:
 
 @cache
 def die_impact(kind: str) -> DieImpact:
-    """Free flight of the die, and the corner or edge that strikes first.
+    """Return the first impact after the free flight of the die, and the corner or edge that strikes.
 
-    A cube is isotropic: it turns about a fixed axis, and its centre flies on a parabola.
+    A cube is isotropic: it turns about a fixed axis, and its centre moves on a parabola.
     """
     w = np.array(SPINS[kind])
     rate = np.linalg.norm(w)
@@ -103,11 +103,11 @@ def die_impact(kind: str) -> DieImpact:
 
 @cache
 def die_after(kind: str, friction: float) -> np.ndarray:
-    """Return (v, w) (6,) after the first impact, Newton's law.
+    """Return (v, w) (6,) after the first impact with Newton's law.
 
-    In the plane Routh's closed form: slip keeps its direction, so N grows from 0 to
-    (1 + e) |u_n| / (W_nn - mu s W_nt). In space the Darboux-Keller equation with u_n as the
-    variable, du_t/du_n = (W_tn + W_tt tau)/(W_nn + W_nt.tau), tau = -mu u_t/|u_t|, by a
+    In the plane it is Routh's closed form: slip keeps its direction, so N grows from 0 to
+    (1 + e) |u_n| / (W_nn - mu s W_nt). In space the Darboux-Keller equation is integrated over u_n,
+    du_t/du_n = (W_tn + W_tt tau)/(W_nn + W_nt.tau), tau = -mu u_t/|u_t|, by a
     Runge-Kutta method of order 8.
     """
     at = die_impact(kind)

@@ -57,14 +57,14 @@ def sphere_run(restitution: float, method: str = "paper", duration: float = 3.0)
 def die_run(
     friction: float, kind: str, method: str = "paper", duration: float = 0.45, layer_steps: int = 2
 ) -> carom.Solution:
-    """Run the die; up to 0.45 s, before it comes to rest on several corners at once."""
+    """Run the die, for 0.45 s by default: before it comes to rest on several corners at once."""
     options = carom.Options(penetration=DIE_DELTA, layer_steps=layer_steps)
     scene = die(friction, kind)
     return carom.simulate(scene, duration, step=STEP, method=method, options=options)
 
 
 def with_jumps(solution: carom.Solution, end: float | None = None):
-    """Return t, position, attitude, velocity, angular velocity of body 0; impacts are jumps."""
+    """Return t, position, attitude, velocity, angular velocity of body 0, with jumps at impacts."""
     end = solution.t[-1] if end is None else end
     impacts = solution.impacts.time[solution.impacts.time < end]
     saved = solution.t[solution.t <= end]

@@ -31,7 +31,7 @@ def _outlines(axes, run, times, up, colour):
 
 
 def _trajectory():
-    """Draw the whole throw at the left; the bounces from the side and from above at the right."""
+    """Draw the whole throw on the left, and the bounces from the side and from above on the right."""
     layout, heights = [["all", "side"], ["all", "top"]], (0.076, 0.093)
     figure, axes = style.mosaic(style.PAGE, 4.1, layout, (1, 1.4), heights)
     whole, side, top = axes["all"], axes["side"], axes["top"]
@@ -69,7 +69,7 @@ def stick_limit(W) -> float:
 def invariant_rays(W, friction) -> list[tuple[float, bool]]:
     """Return the directions of slip that do not turn: angle [rad], and whether slip grows along it.
 
-    Roots of ``e x (W_tn - mu W_tt e)`` over the angle of e.
+    The angles of e are the roots of ``e x (W_tn - mu W_tt e)``.
     """
 
     def rate(angle):
@@ -139,7 +139,7 @@ def _second() -> str:
 
 
 def velocity_error(steps: int, friction: float) -> float:
-    """Greatest error of v and w L/2 [m/s] after the first impact, by that many spline steps."""
+    """Return the greatest error of v and w L/2 [m/s] after the first impact with so many spline steps."""
     run = die_run(friction, "spatial", layer_steps=steps)
     _, _, v, w = run.evaluate(run.impacts.time[0])
     error = np.abs(np.concatenate([v[0], w[0]]) - die_after("spatial", friction))

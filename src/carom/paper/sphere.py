@@ -38,7 +38,7 @@ def _velocity():
 
 
 def _errors(column: int) -> float:
-    """Greatest error of the computed motion at times that are not those of impacts."""
+    """Return the greatest error of the computed motion at times without an impact."""
     worst = 0.0
     for e, _ in CASES:
         run = sphere_run(e)

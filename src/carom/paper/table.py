@@ -1,4 +1,4 @@
-"""The table of numbers: exact or independent value, the paper's method, the production method."""
+"""The table of numbers: the exact or independent value, the paper's method, and the production method."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ from carom.paper.runs import FRICTIONS, STEP, die_run, sphere_run
 METHODS = ("paper", "rk4")
 ALPHAS = (0.0, 0.05, 0.1, 0.2, 0.3)
 COUNTS = (8, 20, 40, 80, 320)
-FINE = 512  # spline steps of the rows that show the paper's method converged
+FINE = 512  # spline steps of the rows with the converged result of the paper's method
 
 
 class Row(NamedTuple):
-    """One quantity; None where a method has no such number."""
+    """One quantity; the value is None if a method has no such number."""
 
     quantity: str
     unit: str
     source: str
     reference: float
     values: tuple[float | None, ...]  # by the paper's method, by the production method
-    tolerance: float  # of the errors of both
+    tolerance: float  # of the errors of both methods
 
     @property
     def errors(self) -> tuple[float | None, ...]:
-        """Absolute errors of both methods."""
+        """The absolute errors of both methods."""
         return tuple(None if x is None else abs(x - self.reference) for x in self.values)
 
 
@@ -60,9 +60,9 @@ def _sphere():
         top = exact.times(k)[-1] + exact.speed * 0.8**k / exact.gravity
         found = tuple(run.evaluate(top)[0][0, 2] - 0.1 for run in runs)
         yield Row(f"{name}: apex {k}", "m", form, exact.drop * 0.8 ** (2 * k), found, 1e-9)
-    held = tuple(run.events.time[run.events.kind == "held"][0] for run in runs)
-    yield Row(f"{name}: comes to rest (within a step)", "s", form, exact.rest, held, STEP)
-    moved = tuple(np.max(np.abs(r.position[r.t > h, 0, 2] - 0.1)) for r, h in zip(runs, held))
+    at_rest = tuple(run.events.time[run.events.kind == "held"][0] for run in runs)
+    yield Row(f"{name}: comes to rest (within a step)", "s", form, exact.rest, at_rest, STEP)
+    moved = tuple(np.max(np.abs(r.position[r.t > h, 0, 2] - 0.1)) for r, h in zip(runs, at_rest))
     yield Row(f"{name}: greatest gap afterwards", "m", form, 0.0, moved, 1e-12)
     drift = tuple(_drift(sphere_run(1.0, method, duration=57.5), 100) for method in METHODS)
     quantity = "sphere, e = 1: relative change of energy over 100 impacts"
@@ -70,13 +70,13 @@ def _sphere():
 
 
 def _drift(run, impacts: int) -> float:
-    """Return the relative spread of the energy through so many impacts."""
+    """Return the relative spread of the energy over this number of impacts."""
     until = run.impacts.time[impacts - 1] + STEP
     return float(np.ptp(run.total_energy[run.t <= until]) / run.total_energy[0])
 
 
 def _layer():
-    """Compare with law A in closed form; `resolve_impact` has the velocity at exit, but no path."""
+    """Compare with the closed form of law A; `resolve_impact` gives the velocity at exit, but no path."""
     entry, _ = first_impact()
     v, b, delta = entry.approach_speed, entry.width, entry.penetration
     W, u = np.eye(3), np.array([-v, 0.0, 0.0])
@@ -161,7 +161,7 @@ def _spatial():
 
 
 def hht_rows() -> list[tuple]:
-    """For each alpha: alpha, first step count that completes, errors of velocity at `COUNTS`."""
+    """Return for each alpha: alpha, the least complete number of steps, errors of velocity at `COUNTS`."""
     return [
         (alpha, least_steps(alpha), *(hht(n, alpha).velocity_error for n in COUNTS))
         for alpha in ALPHAS

@@ -1,17 +1,16 @@
 """Whole tosses of a real cube, from flight to rest: simulated against motion capture.
 
-Data: 285 tosses of an acrylic cube at 148 Hz (ContactNets, Pfrommer, Halm and Posa 2020; licence
-beside the file), those with even numbers. The others are held out: parameters are fitted to the even ones
-alone.
+Data: the 285 tosses with even numbers of an acrylic cube at 148 Hz (ContactNets, Pfrommer, Halm and Posa
+2020; licence beside the file). Parameters are fitted only to these; the odd tosses are kept for a test.
 
-Error of a toss: the mean over all its samples, the first and those at rest included, of the distance of the
-centres as a part of the edge, and of the angle between the attitudes. The simulation begins
+The errors of a toss are means over all its samples, from the first to those at rest: of the distance of the
+centres, relative to the edge, and of the angle between the attitudes. The simulation begins
 
-- "A": in the recorded state of the first sample, nominal lengths. Recorded velocities are differences to the
-  sample before, so v_z is 0.030 m/s too high, and noise is 0.01 m/s and 0.1 rad/s;
-- "B": in the state that `carom.identify.fit_free_flight` gives from the samples before the lowest corner is
-  3 mm above the table. Lengths are those of the recording, which are 2 % short: gravity in free flight
-  is 9.614 m/s^2 and the cube rests with its centre at 51.2 mm.
+- "A": in the recorded state of the first sample, with nominal lengths. Recorded velocities are differences to
+  the sample before, so v_z is 0.030 m/s too high, and noise is 0.01 m/s and 0.1 rad/s;
+- "B": in the state that `carom.identify.fit_free_flight` gives from the samples up to a height of 3 mm of the
+  lowest corner. Lengths are those of the recording, which are 2 % too short: gravity in free flight is
+  9.614 m/s^2, and the centre of the cube at rest is at 51.2 mm.
 """
 
 from __future__ import annotations
@@ -41,16 +40,16 @@ from carom.studies.identify import (
 DT = 1.0 / 148.0  # [s]
 EDGE, MASS, INERTIA = 0.1048, 0.37, 8.1e-4  # [m], [kg], [kg m^2]
 CLEARANCE = 0.003  # [m]
-STEP = DT / 4.0  # for levels; a search takes DT, which moves the means by 0.03 % and 0.02 deg
+STEP = DT / 4.0  # for levels; a search uses DT, which changes the means by 0.03 % and 0.02 deg
 GRAVITY = {"A": 9.81, "B": 9.614}
 HALF = {"A": 0.0524, "B": 0.0512}  # half edge of the model [m]
 LENGTH, ANGLE = 0.135 * EDGE, np.radians(16.5)  # errors of the best published simulator
 
-#: parameters by start and number of fitted ones; 0: drop test and tilt test of those who made the data
+#: parameters by start and number of fitted ones; 0: drop test and tilt test by the authors of the data
 CHOSEN: dict[tuple[str, int], dict[str, float]] = {
     ("A", 0): {"restitution": 0.125, "friction": 0.18},
     ("B", 0): {"restitution": 0.125, "friction": 0.18},
-    # fitted to the even tosses by others with a like model; a fit of our own (`fit`) may move them a little
+    # fitted to the even tosses by others with a similar model; a fit with carom (`fit`) may differ slightly
     ("A", 2): {"restitution": 0.16, "friction": 0.179},
     ("B", 2): {"restitution": 0.27, "friction": 0.179},
     ("A", 5): {
@@ -69,7 +68,7 @@ class Levels(NamedTuple):
 
     position: np.ndarray  # [% of the edge]
     rotation: np.ndarray  # [deg]
-    other_face: np.ndarray  # whether it ends on another face than recorded
+    other_face: np.ndarray  # whether it ends on another face than in the recording
 
     def __str__(self) -> str:
         means, medians = (
@@ -82,8 +81,8 @@ class Levels(NamedTuple):
 def read(path: str | Path | None = None) -> list[tuple[int, np.ndarray]]:
     """Return number and states (n, 13) of each toss: x, q, v (world), w (body axes).
 
-    The file of the package has whole multiples of 1e-6 m and 1e-6, as second differences, and velocities
-    at first samples only.
+    The file of the package has second differences in multiples of 1e-6 m and 1e-6, and velocities only for
+    first samples.
     """
     own = files("carom.paper") / "data" / "cube_tosses_even.npz"
     source = own if path is None else Path(path)
@@ -113,7 +112,7 @@ def template(start: str) -> carom.Scene:
 
 
 def recordings(start: str, path: str | Path | None = None) -> list[Recording]:
-    """Return all tosses with the state from which each is to be simulated."""
+    """Return all tosses, each with the start of its simulation."""
     scene, found = template(start), []
     shape = scene.bodies[0].shape
     for number, states in read(path):
@@ -128,7 +127,7 @@ def recordings(start: str, path: str | Path | None = None) -> list[Recording]:
 
 
 def levels(runs, tosses) -> Levels:
-    """Return the errors of simulated motion."""
+    """Return the errors of simulated motions."""
     errors = np.array([trajectory_error(*pair, EDGE) for pair in zip(runs, tosses)])
     ends = [[face_up(of.orientation[-1, 0]) for of in some] for some in (runs, tosses)]
     other = np.not_equal(ends[0], ends[1])
@@ -146,10 +145,10 @@ def simulate(start: str, tosses: list[Recording], parameters: dict, step: float 
 
 
 def rest(start: str, tosses: list[Recording], parameters: dict, longer: float = 1.0) -> str:
-    """Simulate some time longer than recorded; say how many cubes rest flat on a face then.
+    """Simulate some time longer than recorded; return a sentence about how many cubes then rest flat on a face.
 
-    A rest is velocities of exactly 0; flat is a face turned from the table by less than 1e-9 rad, with
-    the centre half an edge above it to 1e-9 m.
+    At rest velocities are exactly 0. A cube is flat if the angle between a face and the table is less than
+    1e-9 rad and its centre is half an edge above the table to 1e-9 m.
     """
     half = HALF[start]
     more = int(np.ceil(longer / DT))
@@ -176,7 +175,7 @@ def rest(start: str, tosses: list[Recording], parameters: dict, longer: float = 
 
 
 def perturbed(tosses: list[Recording], size: float = 1e-6, seed: int = 0) -> list[Recording]:
-    """Return the tosses with starts moved by normal noise of `size` [m], [rad], [m/s], [rad/s]."""
+    """Return the tosses with normal noise of `size` [m], [rad], [m/s], [rad/s] added to their starts."""
     random, found = np.random.default_rng(seed), []
     for toss in tosses:
         assert toss.start is not None
@@ -189,7 +188,7 @@ def perturbed(tosses: list[Recording], size: float = 1e-6, seed: int = 0) -> lis
 
 
 def fit(start: str, count: int, tosses: list[Recording], **settings) -> Identification:
-    """Fit 2 parameters (e, mu) or 5 (and mu of held contacts, inertia, radius of the corners) to tosses."""
+    """Fit 2 parameters (e, mu) or 5 (also mu of persistent contacts, inertia, corner radius) to tosses."""
     begin: dict = {"restitution": (0.2, 0.1), "friction": (0.18, 0.015)}
     if count == 5:
         begin["friction_held"] = (0.2, 0.015)

@@ -1,4 +1,4 @@
-"""Picture of a real toss and the same toss simulated, of one start."""
+"""Picture of a real toss and its simulation from one start."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ WIDE, BELOW, ABOVE = 0.125, 0.06, 0.225
 
 
 def draw(recording, run, half: float) -> Any:
-    """Return a figure: real poses above, simulated ones at the same times below, then both over time.
+    """Return a figure: real poses, below them simulated poses at the same times, and then both over time.
 
     Parameters
     ----------
     recording, run
         Measured and simulated motion of one cube, `Recording` and `RollOut`.
     half
-        Half its edge [m].
+        Half of its edge [m].
     """
     from matplotlib.figure import Figure
 
@@ -60,7 +60,7 @@ def draw(recording, run, half: float) -> Any:
 
 
 def _camera(x: np.ndarray) -> np.ndarray:
-    """Return rows right, up, towards the viewer: the motion goes from left to right."""
+    """Return the rows right, up, and towards the viewer, so that the motion is from left to right."""
     along = x[-1] - x[0]
     along[2] = 0.0
     right = along / np.linalg.norm(along)
@@ -70,7 +70,7 @@ def _camera(x: np.ndarray) -> np.ndarray:
 
 
 def _picked(recording) -> np.ndarray:
-    """Return the samples to draw: equally far from each other along the path of a corner or so."""
+    """Return the samples to draw, at about equal distances along the path of a corner."""
     x, q = recording.position[:, 0], recording.orientation[:, 0]
     turn = np.linalg.norm(quaternion.between(q[:-1], q[1:]), axis=-1)
     step = np.linalg.norm(np.diff(x, axis=0), axis=1) + 0.5 * tosses.EDGE * turn
@@ -79,7 +79,7 @@ def _picked(recording) -> np.ndarray:
 
 
 def _pose(axes, motion, k: int, half: float, camera, middle) -> None:
-    """Draw the cube of sample k on the table; `middle` is what the camera points at."""
+    """Draw the cube of sample k on the table; the camera points at `middle`."""
     from matplotlib.collections import LineCollection, PolyCollection
     from scipy.spatial import ConvexHull
 
@@ -134,7 +134,7 @@ def _positions(axes, recording, run) -> None:
     axes.plot([], [], "o", color=style.GREY, ms=2.2, mew=0, label="real")
     axes.plot([], [], color=style.GREY, lw=1.0, label="simulated")
     colours, ends = (style.BLUE, style.ORANGE, style.RED), run.position[-1, 0]
-    places, apart = ends.copy(), 0.08 * float(np.ptp(recording.position))  # of the labels
+    places, apart = ends.copy(), 0.08 * float(np.ptp(recording.position))  # for the labels
     for lower, upper in np.argsort(ends)[[[0, 1], [1, 2]]]:
         places[upper] = max(ends[upper], places[lower] + apart)
     for k, colour in enumerate(colours):
@@ -148,7 +148,7 @@ def _positions(axes, recording, run) -> None:
 
 
 def _errors(axes, recording, run) -> None:
-    """Draw distance and angle between the two over time, and their means."""
+    """Draw the distance and the angle between the two motions over time, and their means."""
     t = recording.t - recording.t[0]
     distance = 100.0 * distances(run, recording)[:, 0] / tosses.EDGE
     angle = np.degrees(angles(run, recording)[:, 0])

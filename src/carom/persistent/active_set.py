@@ -23,7 +23,7 @@ from carom.contact.rim import same_point
 
 @kernel
 def begin_point(active_point, contact, c, feature, mode):
-    """Write a new active point of contact c, as one of several and without a force."""
+    """Write a new active point of contact c, marked as one of several, without a force."""
     active_point.contact, active_point.feature = c, feature
     active_point.body, active_point.other, active_point.touches = (
         contact.body,
@@ -60,7 +60,7 @@ def activate(system, active, closed_point, mode, state, work):
 
 @kernel
 def set_anchor(system, active_point, state, work):
-    """Store the present position of a point, where it stays while it sticks."""
+    """Store the present position of a point, at which it stays while it sticks."""
     point, x = work.point[0], state[active_point.body].x
     place_any(
         system,
@@ -114,7 +114,7 @@ def always_several(contact):
 def regroup(system, active, work):
     """Label the groups of active points, and mark points whose bodies have other active points."""
     label_groups(system, active, work)
-    joined, n = 0, work.body.shape[0]  # the number N is of all that have joints
+    joined, n = 0, work.body.shape[0]  # label N: all bodies with joints
     for b in range(n):
         work.body[b].n_active = 0
     for i in range(active.count[0]):

@@ -1,4 +1,4 @@
-"""The error of a step of order 2 of bodies on several points (`carom.persistent.contact_step`), bounded."""
+"""A bound of the error of a step of order 2 of bodies on several points (`carom.persistent.contact_step`)."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from carom.geometry.rotation import norm
 
 @kernel
 def bound_of_step(L, changes, start, h, end):
-    """Return the error [m] of a step of order 2, in which modes change or not.
+    """Return the error [m] of a step of order 2; `changes` says that modes change in it.
 
-    Of its turn, L (h w)^3/12; of friction whose direction turns, h |dv| alpha/12, alpha being the angle between
-    the velocities (v, L w) at both ends; of a stop inside, h |dv|/8, where half the speed is lost.
+    The rotation gives L (h w)^3/12, friction with a turning direction h |dv| alpha/12, where alpha is the angle
+    between the velocities (v, L w) at both ends, and a stop (the loss of more than half the speed) h |dv|/8.
     """
     turn = abs(h) * max(norm(start.w), norm(end.w))
     before, after = norm(start.v) + L * norm(start.w), norm(end.v) + L * norm(end.w)
@@ -47,7 +47,7 @@ def change_of_velocity(L, start, end):
 
 @kernel
 def note_bounds(system, changes, h, start, end, count, group, work):
-    """Keep the errors of the bodies of a group in a step of order 2, and their sizes."""
+    """Store the errors of the bodies of a group in a step of order 2, and their sizes."""
     for m in range(count):
         b = group.member[m]
         L, miss = system.bodies[b].extent, work.body[b].miss
@@ -57,9 +57,9 @@ def note_bounds(system, changes, h, start, end, count, group, work):
 
 @kernel
 def is_better_bounded(system, controls, h, start, end, b, work):
-    """Return whether the error of a step of order 2 would do for body b where that of its method does not.
+    """Return whether for body b the error of a step of order 2 is allowed, and that of its method is not.
 
-    So it is just before a body stops, where the directions of slip turn ever faster.
+    This happens just before a body stops, when the directions of slip turn faster and faster.
     """
     L, miss = system.bodies[b].extent, work.body[b].miss
     allowed = allowed_error(controls.rtol, controls.atol, L, miss[2])
@@ -71,7 +71,7 @@ def is_better_bounded(system, controls, h, start, end, b, work):
 
 @kernel
 def modes_change(active, k, group):
-    """Return whether a point opens, slips anew or stops in a step, or its body comes to rest."""
+    """Return whether a point opens, begins to slip or stops in a step, or its body comes to rest."""
     for i in range(k):
         active_point, closed_point = active.points[group.closed[i].active], group.closed[i]
         stops = active_point.mode == SLIP and closed_point.stopped == 1

@@ -1,6 +1,6 @@
 """Events that end a mode of a persistent contact: its normal force vanishes, it slips, or slip stops.
 
-Each event is a function that is positive before and negative after, evaluated at the end of a step:
+The function of an event is positive before it and negative after it, and is evaluated at the end of a step:
 
     SEPARATE   N                    the normal force
     CONE       mu N - |T|           while sticking
@@ -20,7 +20,7 @@ from carom.kinematics.contact_point import contact_velocity
 from carom.persistent.jam import JAMMED, yields
 
 GAP, SEPARATE, CONE, REVERSE, JAM = range(5)
-_NO_GRIP = 1e-9  # of the friction that there may be: less is round-off
+_NO_GRIP = 1e-9  # of mu N: less friction is round-off
 
 
 @kernel
@@ -43,7 +43,7 @@ def contact_event_value(system, active_point, kind, d1, d2, state, work):
 
 @inlined
 def end_forces(system, active, state, work):
-    """Write the forces at `state` of points that are the only active ones of their bodies, if any moves."""
+    """Write the forces at `state` of points that are the only active points of their bodies, if any moves."""
     for i in range(active.count[0]):
         active_point = active.points[i]
         if active_point.mode != OPEN and active_point.rest == 0 and active_point.several == 0:
@@ -55,7 +55,7 @@ def end_forces(system, active, state, work):
 def find_contact_event(system, active, end, h, work):
     """Return (event, index, d1, d2) of the first active point whose mode ends; index -1 if there is none.
 
-    Slip that was turned by an error of the step h does not show a jam; `turned` handles it.
+    Slip that is turned by the error of the step h is no sign of a jam; `turned` handles it.
     """
     for i in range(active.count[0]):
         active_point = active.points[i]
@@ -81,7 +81,7 @@ def find_contact_event(system, active, end, h, work):
             d1, d2 = active_point.heading[0], active_point.heading[1]
             if reverses(system, active_point, end, work):
                 return REVERSE, i, d1, d2
-        # a cone met to round-off (a body on the verge of slip) is no event
+        # a force on the cone to round-off (a body that is about to slip) is no event
         elif (
             contact_event_value(system, active_point, CONE, 0.0, 0.0, end, work)
             < -1e-12 * active_point.force[0]
@@ -101,7 +101,7 @@ def grips(system, active_point):
 
 @inlined
 def reverses(system, active_point, end, work):
-    """Return whether slip has stopped and reversed; not if it has turned to a side."""
+    """Return whether slip has stopped and reversed; slip that has turned sideways does not count."""
     point = work.point[0]
     place_active(system, active_point, end, point, work)
     _, u1, u2 = contact_velocity(point, end)
@@ -118,7 +118,7 @@ def turned(system, active, end, h, work):
 
     The step is too long if slip turns by more than 60 degrees. If friction can reverse slip within the step, mu
     N h W_tt > |u_t|, an explicit step does not work: its stages oscillate about a slip that does not end, and
-    this adds energy. The implicit step for several points then takes the point
+    this adds energy. Then the implicit step for several points moves the body
     (`carom.persistent.contact_step`).
     """
     found = 0
@@ -134,7 +134,7 @@ def turned(system, active, end, h, work):
 
 @kernel
 def strays(system, active_point, end, h, work):
-    """Return the same as `turned`, for one point."""
+    """Return the result of `turned` for one point."""
     d1, d2 = active_point.heading[0], active_point.heading[1]
     point, contact = work.point[0], system.contacts[active_point.contact]
     place_active(system, active_point, end, point, work)

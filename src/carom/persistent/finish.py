@@ -31,9 +31,9 @@ def gained(start, count, group):
 
 @kernel
 def finish(model, data, k, h, count):
-    """Put the bodies to rest if nothing is left to move them; note modes and bounds, return friction's work.
+    """Set the bodies to rest if nothing moves them; write modes and bounds; return the work of friction.
 
-    That is never positive: what friction seems to give by rows that turn within the step is an error of it.
+    The work is never positive: a gain, from directions that turn within the step, is an error of the step.
     """
     system, controls = model.system, model.controls
     active, start, end, group, work = (
@@ -80,9 +80,9 @@ def finish(model, data, k, h, count):
 
 @kernel
 def come_to_rest(system, tolerance, start, end, count, group):
-    """Stop the bodies, exactly, if all their speed at the end is below the tolerance.
+    """Stop the bodies exactly if all their speeds at the end are below the tolerance.
 
-    If they had none at the start they have not moved either. Returns whether so.
+    Return whether they were at rest at the start too; then they also have not moved.
     """
     speed, before = 0.0, 0.0
     for m in range(count):
@@ -104,7 +104,7 @@ def come_to_rest(system, tolerance, start, end, count, group):
 
 @kernel
 def forces_at_end(model, data, k, known, end):
-    """Put the forces in the state at the end into the list of active points; by `known` modes if these hold."""
+    """Write the forces at the end to the active points, by the `known` modes if these are still valid."""
     system, active, group, work = model.system, data.active, data.group, data.work
     for i in range(k):
         closed_point = group.closed[i]

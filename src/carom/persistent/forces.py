@@ -2,8 +2,8 @@
 
     a = W f + c,    0 <= f_n _|_ a_n >= 0,    Coulomb's law for f_t:
 
-against the slip where there is slip, in the cone against the acceleration of slip where there is none. Forces
-need not be unique (four corners of a box); accelerations are.
+with friction against slip if the point slips, and otherwise against the acceleration of slip, within the cone.
+Forces need not be unique (four corners of a box); accelerations are.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from carom.persistent.step_control import charge_iterations, iterations_left
 
 @kernel
 def pose_forces(system, controls, active, k, state, group, work):
-    """Write W, u, and c = du/dt without contact forces, of the k points of the group, and how each slips."""
+    """Write W, u, c = du/dt without contact forces, and the direction of slip, of the k points of the group."""
     if (
         of_one_body(system, k, group.points[0])
         and system.bodies[group.points[0][0].a].ballistic == 1
@@ -69,7 +69,7 @@ def pose_forces(system, controls, active, k, state, group, work):
 
 @kernel
 def set_heading(group, i, u1, u2, still):
-    """Let point i slide along (u1, u2), or look for its direction where that is below `still`."""
+    """Let point i slide along (u1, u2); if this is below `still`, its direction is unknown."""
     speed = math.sqrt(u1 * u1 + u2 * u2)
     if speed > still:
         group.kind[i] = SLIDING
@@ -81,7 +81,7 @@ def set_heading(group, i, u1, u2, still):
 
 @kernel
 def solve_forces(model, data, k):
-    """Write the forces of the points that stay into p, and the accelerations of all k into `old`."""
+    """Write the forces of the points that stay closed to P, and the accelerations of all k points to OLD."""
     system, group, turning = model.system, data.group, False
     for i in range(k):
         turning = turning or group.closed[i].turns > 0
@@ -97,7 +97,7 @@ def solve_forces(model, data, k):
 
 @kernel
 def solve_once(model, data, k):
-    """Write forces and accelerations, for bounds of torques that are known."""
+    """Write forces and accelerations for known bounds of torques."""
     group, clock = data.group, data.clocks[0]
     W, M, b, p = group.m[0], group.m[1], group.v[OLD], group.v[P]
     n = 3 * k
@@ -121,7 +121,7 @@ def solve_once(model, data, k):
 
 @kernel
 def time_to_stop(i, group):
-    """Return when slip of point i stops, going on as it does: speed over the deceleration along it."""
+    """Return the time until slip of point i stops at its present deceleration."""
     d1, d2 = group.heading[i, 0], group.heading[i, 1]
     speed = group.v[U][3 * i + 1] * d1 + group.v[U][3 * i + 2] * d2
     rate = group.v[OLD][3 * i + 1] * d1 + group.v[OLD][3 * i + 2] * d2
@@ -130,7 +130,7 @@ def time_to_stop(i, group):
 
 @kernel
 def take_forces(active_point, i, group):
-    """Put the force of point i into the list, its W, and when its slip stops; or its torque."""
+    """Write force and W of the closed point i to its active point, and when slip stops; or its torque."""
     turns = group.closed[i].turns
     if turns > 0:
         active_point.turn_stop[turns - 1] = time_to_stop(i, group)

@@ -4,9 +4,9 @@ While a point slips along e its force is N (1, -mu e), and its normal accelerati
 
     k = W_nn - mu W_nt.e.
 
-k > 0: N = -a_n/k. k <= 0: where a_n < 0 no force is enough, the slip ends in an impact without collision;
-where a_n >= 0 the point opens. Slip that comes to k = 0 with a_n < 0 has a force that grows without bound on
-its way, which no step follows: it jams a little before, at k = `JAMMED` W_nn.
+If k > 0, N = -a_n/k. If k <= 0 and a_n < 0, no force is enough, and slip ends in an impact without collision;
+if k <= 0 and a_n >= 0, the point opens. While slip approaches k = 0 with a_n < 0, the force grows without
+bound, which no step can follow: the point jams a little earlier, at k = `JAMMED` W_nn.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ JAMMED = 1e-6
 
 @kernel
 def yields(W, mu, u1, u2):
-    """Return k, how the normal acceleration of a point that slips along (u1, u2) answers its normal force."""
+    """Return k = da_n/dN, a_n the normal acceleration of a point that slips along (u1, u2)."""
     speed = math.sqrt(u1 * u1 + u2 * u2)
     if not speed > 0.0:
         return W[0, 0]
@@ -30,13 +30,13 @@ def yields(W, mu, u1, u2):
 
 @kernel
 def presses(active_point, k):
-    """Return whether a_n = -k N < 0, from the N that this would take."""
+    """Return whether a_n = -k N < 0, with the N that would keep the point closed."""
     return active_point.force[0] * k > 0.0
 
 
 @kernel
 def note_jam(active, active_point):
-    """Have the impact of a point that jams resolved before anything else."""
+    """Mark a point that jams, so that its impact is resolved first."""
     active_point.jams = 1
     (
         active.contact_states[active_point.contact].jams,
@@ -46,7 +46,7 @@ def note_jam(active, active_point):
 
 @kernel
 def jams_among(active_point, i, status, group):
-    """Return whether point i of several jams: it slips, k <= 0, and there are no forces for all of them."""
+    """Return whether point i of several jams: it slips, k <= 0, and the contact problem has no solution."""
     if status == SOLVED or group.kind[i] != SLIDING or group.closed[i].turns > 0:
         return 0
     if group.closed[i].stays == 0:

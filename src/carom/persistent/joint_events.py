@@ -1,7 +1,7 @@
 """Events that end a mode of dry friction in a joint: slip stops, or a force exceeds its bound.
 
-Where some have no speed, all of them are tried as sticking, and the one whose force is most above its bound is
-let go, until none is.
+All frictions without speed are first assumed to stick. Then the one whose force exceeds its bound most is set
+to slip, until no force exceeds its bound.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from carom.dynamics.acceleration import acceleration
 from carom.dynamics.joint_friction import any_sticks, stay_stuck
 from carom.kinematics.coordinate import drift, motion_along, rate, speeds_of
 
-STOPS, BREAKS = 5, 6  # events, after those of persistent contacts
-STILL = 1e-12  # of the speeds of both sides: no speed
-ABOVE = 1e-10  # of a bound: round-off of a force
+STOPS, BREAKS = 5, 6  # events, numbered after those of persistent contacts
+STILL = 1e-12  # relative to the speeds of both sides: less counts as zero
+ABOVE = 1e-10  # relative to a bound: less is round-off of a force
 
 
 @unit
@@ -63,9 +63,9 @@ def _turn_joint(system, kind, i, active, now, work):
 def change(system, one, active, state, work):
     """Return q'' of the coordinate of a friction, in its present mode.
 
-    Where q'' goes the way of the mode that slip would turn to, slip turns, and nothing sticks. The force of
-    stick would say so too, but not where a loop passes its dead centre: there J P J^T and what friction can do
-    are nothing, and q' = 0 in the metric of J would stop all that moves.
+    If q'' has the direction of the mode to which slip would turn, slip turns, and does not stick. The force of
+    stick decides this too, except where a loop passes its dead centre: there J P J^T and the effect of friction
+    vanish, and q' = 0 in the metric of J would stop the whole motion.
     """
     acceleration(system, state, active, work, work.stages[0])
     for b in range(state.shape[0]):
@@ -77,7 +77,7 @@ def change(system, one, active, state, work):
 
 @kernel
 def let_go(system, active, now, work):
-    """Let slip, one after the other, what its friction cannot keep from it."""
+    """Let coordinates slip, one after the other, if their friction does not suffice for stick."""
     relations = system.relations
     for _ in range(relations.frictions.shape[0]):
         acceleration(system, now, active, work, work.stages[0])
@@ -95,7 +95,7 @@ def let_go(system, active, now, work):
 
 @unit
 def _review_joints(system, active, now, work):
-    """Find the mode of each anew: at the start, and after velocities have jumped."""
+    """Find the mode of each friction again: at the start, and after velocities have jumped."""
     relations = system.relations
     if relations.frictions.shape[0] == 0:
         return
@@ -134,12 +134,12 @@ def turn_joint(system, kind, i, active, now, work):
 
 @inlined
 def review_joints(system, active, now, work):
-    """Find the mode of each anew: at the start, and after velocities have jumped."""
+    """Find the mode of each friction again: at the start, and after velocities have jumped."""
     if system.relations.there == 1:
         _review_joints(system, active, now, work)
 
 
 @entry
 def first_modes(system, active, now, work):
-    """Find how all frictions in joints begin."""
+    """Find the initial modes of all frictions in joints."""
     review_joints(system, active, now, work)

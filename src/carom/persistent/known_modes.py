@@ -1,12 +1,12 @@
 """Forces of the points of one body whose modes are known: one linear system, checked against Coulomb's law.
 
-    (G dv/dt)_n = 0 of points that press, all three rows of those that stick,
-    lam_t = -mu lam_n d of those that slip along d.
+    (G dv/dt)_n = 0 for loaded points (N > 0), all three rows for those that stick,
+    lam_t = -mu lam_n d for those that slip along d.
 
-Rolling or pivoting friction of a point is a torque -d lam_n e along the relative rotation e where there is such
-a rotation; where there is none, that row of the rotation is given, too.
+Rolling or pivoting friction of a point that rotates about the axis e is the torque -d lam_n e. If a point does
+not rotate, the rows of that rotation are given, too.
 
-Forces need not be unique (four corners of a face): those are taken to which a face of equal springs comes,
+Forces need not be unique (four corners of a face). The forces of a face of equal springs are used, the limit of
 (A + eps S) lam = -c for eps -> 0, with S the scales of the points, as in `carom.friction.newton`.
 """
 
@@ -21,14 +21,14 @@ from carom.geometry.rotation import cross, rotate, rotate_back
 from carom.impact.workspace import OLD, C, P
 from carom.kinematics.contact_point import contact_motion
 
-# weight of S; corrections of the forces, and how well they must fit: relative to the accelerations without them
+# weight of S; number of corrections of the forces; their error, relative to the accelerations without forces
 EPS, CORRECTIONS, FITS = 1e-5, 12, 1e-12
-PULL = 1e-9  # of the greatest force or acceleration: what may be taken for round-off of none
+PULL = 1e-9  # of the greatest force or acceleration: less counts as round-off of zero
 
 
 @kernel
 def rows_of(push, slides):
-    """Return how many rows of a point are given: none where it does not press."""
+    """Return the number of given rows of a point: none if it is not loaded."""
     if not push > 0.0:
         return 0
     return 1 if slides else 3
@@ -36,7 +36,7 @@ def rows_of(push, slides):
 
 @kernel
 def as_known(k, group):
-    """Return whether the points that press slip or stick as the rows say that are given."""
+    """Return whether the loaded points slip or stick in agreement with their given rows."""
     for i in range(k):
         slides, rows = group.kind[i] == SLIDING or group.mu[i] == 0.0, group.closed[i].rows
         if group.closed[i].turns > 0:
@@ -49,9 +49,9 @@ def as_known(k, group):
 
 @kernel
 def solve_given(system, k, state, group, work):
-    """Write the forces that meet the given rows into P, what they do to the body into its `motion`.
+    """Write the forces that satisfy the given rows to P, and the acceleration of the body to its `motion`.
 
-    Returns whether they obey Coulomb's law. C holds the accelerations without them.
+    Return whether they obey Coulomb's law. C has the accelerations without them.
     """
     A, L, rows, x = group.m[1], group.cone.matrix, group.cone.active, group.v[OLD]
     b = group.points[0][0].a
@@ -102,7 +102,7 @@ def turning_axis(point, turns, d):
 
 @kernel
 def write_rows(system, k, state, group):
-    """Write the given rows, and the motions that forces along them give; return how many."""
+    """Write the given rows, and the motions from forces along them; return their number."""
     n, points = 0, group.points[0]
     body, q = system.bodies[points[0].a], state[points[0].a].Q
     J = body.inertia
@@ -181,7 +181,7 @@ def add_force(system, k, group, row, x):
 
 @kernel
 def note_accelerations(k, group, work):
-    """Write the accelerations of all points under the forces that were found into OLD."""
+    """Write the accelerations of all points with the forces found to OLD."""
     a = group.v[OLD]
     for i in range(k):
         q = 3 * i
@@ -192,7 +192,7 @@ def note_accelerations(k, group, work):
 
 @kernel
 def obeys(system, k, push, group, work):
-    """Return whether no force pulls or leaves its cone, and no point without one approaches."""
+    """Return whether no force pulls or leaves its cone, and no point without force approaches."""
     p, most = group.v[P], 0.0
     for i in range(k):
         most = max(most, p[3 * i])
@@ -217,7 +217,7 @@ def obeys(system, k, push, group, work):
 
 @kernel
 def pivots_or_rolls(i, group):
-    """Return whether a closed point is one of rolling or pivoting, of a point that presses."""
+    """Return whether a closed point is the rolling or pivoting friction of a loaded point."""
     closed_point = group.closed[i]
     return closed_point.turns > 0 and group.closed[closed_point.parent].rows > 0
 
@@ -234,7 +234,7 @@ def bound_of(system, i, group):
 
 @kernel
 def note_given(k, group):
-    """Note which points press by the forces in P; return whether those that stick are inside their cones."""
+    """Write which points are loaded by the forces in P; return whether sticking ones are inside their cones."""
     p = group.v[P]
     for i in range(k):
         q, slides = 3 * i, group.kind[i] == SLIDING

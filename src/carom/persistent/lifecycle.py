@@ -4,10 +4,10 @@ After an impact with exit speed u_n, a contact whose free acceleration of approa
 
     t_i = 2 u_n / (g_i (1 - e)),
 
-exactly, as long as g_i is constant. If the bounces end within the present step, the contact becomes persistent:
+which is exact if g_i is constant. If the bounces end within the present step, the contact becomes persistent:
 u_n is removed in the kinetic metric, and its energy is added to the ledger. There is no threshold of speed:
-with a smaller step the contact becomes persistent later. For several closed points, each is judged by the
-acceleration that it has while the points that do not leave stay closed.
+with a smaller step the contact becomes persistent later. If several points are closed, the acceleration of each
+is that with all points closed that do not leave.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def activate_contact(model, data, c, horizon):
     for i in range(active.count[0]):
         active_point = active.points[i]
         if work.body[active_point.body].label == label:
-            if active_point.several == 0:  # from now on it stays where it is
+            if active_point.several == 0:  # from now on its position is kept
                 set_anchor(system, active_point, state, work)
             active_point.rest, active_point.several = 0, 1  # together with the new one
     if k < 0:

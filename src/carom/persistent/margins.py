@@ -1,11 +1,11 @@
 """Margins of active points at the end of a step: their distances from opening and from slip.
 
-Forces of several points need not be unique, accelerations are. So the point opens where its normal
-acceleration is above nothing, and slips where its tangential one is; before that its force tells how far it is:
+Forces of several points need not be unique, but accelerations are. So a point opens if its normal acceleration
+is positive, and slips if its tangential one is not zero. Before that, its force gives the distance:
 
     lift    N W_nn,  or  -a_n,               grip    (mu N - |T|) W_tt,  or  -|a_t|,
 
-relative to what the bodies do without contact forces. A force of nothing, or at the cone, is no event.
+relative to the accelerations without contact forces. A zero force, or one at its cone, is no event.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from carom.dynamics.acceleration import OPEN, SLIP, STICK
 from carom.impact.workspace import OLD, C, P
 from carom.persistent.events import SEPARATE
 
-LEAST = 1e-5  # before an event: what counts as none is not near
-NONE = 1e-7  # of an acceleration: those of two bodies are worked out to 1e-9
+LEAST = 1e-5  # least margin before an event
+NONE = 1e-7  # accelerations below this part count as zero: those of two bodies have errors of 1e-9
 NEAR = 1e-6  # an event is located to this part of the acceleration
 
 
@@ -26,8 +26,8 @@ NEAR = 1e-6  # an event is located to this part of the acceleration
 def greatest_push(k, group):
     """Return the greatest acceleration of the k points without contact forces.
 
-    0 where two bodies touch at several points: the corners of their overlap come and go, most of them without
-    a force, and their events are left to the end of the step.
+    The result is 0 if two bodies touch at several points: the corners of their overlap appear and vanish, most
+    of them without a force, so their events are handled at the end of the step.
     """
     push = 0.0
     for i in range(k):
@@ -42,7 +42,7 @@ def greatest_push(k, group):
 
 @kernel
 def set_margins(active_point, i, push, group):
-    """Write lift and grip of point i; `next` says what the step has found."""
+    """Write lift and grip of point i; `next` is its mode at the end of the step."""
     active_point.lift, active_point.grip = 1.0, 1.0
     if not push > 0.0:
         return
@@ -67,13 +67,13 @@ def set_margins(active_point, i, push, group):
 
 @kernel
 def margin(active_point, kind):
-    """Return how far a point is from an event."""
+    """Return the margin of a point from an event."""
     return active_point.lift if kind == SEPARATE else active_point.grip
 
 
 @kernel
 def note_due(active, search, work):
-    """Mark the points of the same group for which the step on trial has the event that is looked for."""
+    """Mark the points of the same group that have the event of the search within the trial step."""
     label = work.body[active.points[search.contact].body].label
     for i in range(active.count[0]):
         active_point = active.points[i]
@@ -87,7 +87,7 @@ def note_due(active, search, work):
 
 @kernel
 def switch_due(active, search):
-    """Give the points whose event has been located their new mode; return whether there are any."""
+    """Set the new mode of the points whose event has been located; return whether there are any."""
     if active.points[search.contact].several == 0:
         return False
     for i in range(active.count[0]):

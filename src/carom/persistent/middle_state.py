@@ -8,7 +8,7 @@ from carom.geometry.rotation import exp, log, multiply, normalize, rotate, rotat
 
 @kernel
 def halfway(start, end, out):
-    """Write the state of a body half-way: mean position and velocities, half the turn."""
+    """Write the middle state of a body: mean position and velocities, half the rotation."""
     p, q, Q = start.Q, end.Q, out.Q
     t = multiply(q[0], q[1], q[2], q[3], p[0], -p[1], -p[2], -p[3])
     a = log(t[0], t[1], t[2], t[3])

@@ -66,7 +66,7 @@ def only_free(system, body, work):
 
 @kernel
 def turn_modes(model, data):
-    """Take over the modes at the end of a step of several active points, and the residual of the step."""
+    """Set the modes of several active points at the end of a step, and record its residual."""
     system, controls = model.system, model.controls
     active, now, work, clock, records = (
         data.active,

@@ -96,8 +96,8 @@ def begin_contact(model, data, contact, active_point, stop, a, horizon):
 
     Slip has stopped if it is below `stop` (or round-off). Return False if a contact that should stick continues
     to slip. If slip lasts, under the acceleration `a`, as long as the dropped bounces, t = 2 u_n/(g (1 - e)),
-    friction acts with the impulse that removes u_n: the normal impulse of the bounces is (g t - u_n)/k, that of
-    persistent contact for the same time g t/k.
+    the impulse that removes u_n has friction: the normal impulse of the bounces is (g t - u_n)/k, and that of
+    persistent contact in the same time is g t/k.
     """
     system = model.system
     state, work, clock = data.state, data.work, data.clocks[0]
@@ -107,13 +107,11 @@ def begin_contact(model, data, contact, active_point, stop, a, horizon):
     W = work.hit[0].W
     effective_inverse_mass(system, point, state, work, W)
     n, t1, t2 = -u[0] / W[0, 0], 0.0, 0.0
-    s1, s2 = u[1] + W[1, 0] * n, u[2] + W[2, 0] * n  # slip once the normal velocity is out
+    s1, s2 = u[1] + W[1, 0] * n, u[2] + W[2, 0] * n  # slip after the normal velocity is removed
     slip = math.sqrt(s1 * s1 + s2 * s2)
     stops = slip <= max(stop, 10.0 * still)
     if math.sqrt(u[1] * u[1] + u[2] * u[2]) <= 10.0 * still:
-        stops = stops or sticks(
-            W, a, contact.friction_held
-        )  # bounces that stick leave no slip either
+        stops = stops or sticks(W, a, contact.friction_held)  # bounces with stick leave no slip
     if stop > 0.0 and not stops:
         return False
     if stops:
@@ -129,7 +127,7 @@ def begin_contact(model, data, contact, active_point, stop, a, horizon):
     spread(system, point, state, n, t1, t2, work)
     add_velocity(system, point, work, state)
     if not alone(system, point):
-        clock.loads += driven_power(system, state, work)  # of an impulse: its work
+        clock.loads += driven_power(system, state, work)  # the work of an impulse
     # work of the impulse: half of it times the sum of the velocities before and after
     name_work(0.5 * n * u[0], 0.5 * (t1 * (u[1] + s1) + t2 * (u[2] + s2)), clock)
     return True
@@ -137,7 +135,7 @@ def begin_contact(model, data, contact, active_point, stop, a, horizon):
 
 @kernel
 def spare(clock):
-    """Return the energy that dropped bounces may add: the loss by impacts of the step, minus what is owed."""
+    """Return the energy that dropped bounces may add: the loss by impacts of the step minus the energy owed."""
     return max(0.0, clock.before - clock.impacts - clock.owed)
 
 
@@ -145,8 +143,8 @@ def spare(clock):
 def name_work(normal, tangential, clock):
     """Add the work of the impulse that removes bounces to the ledger.
 
-    If it is a gain, it belongs to friction. It is less than the loss by friction in persistent contact until
-    the bounces would have ended, and is owed until then (`carom.stepping.time_loop.charge_impacts`).
+    A gain belongs to friction. It is less than the loss by friction in persistent contact until the time at
+    which the bounces would have ended, and is owed until then (`carom.stepping.time_loop.charge_impacts`).
     """
     if normal + tangential <= 0.0:
         clock.bounces += normal + tangential
@@ -165,9 +163,9 @@ def sticks(W, a, mu):
 
 @kernel
 def lasts(W, a, u, v1, v2, mu, horizon):
-    """Return whether a contact with velocity u and free acceleration a slips along u_t until the given time.
+    """Return whether a contact with velocity u and free acceleration a slips along u_t for the time `horizon`.
 
-    It starts from the slip u_t, and from (v1, v2), the slip after the impulse with friction.
+    Both the slip u_t and (v1, v2), the slip after the impulse with friction, must last.
     """
     speed = math.sqrt(u[1] * u[1] + u[2] * u[2])
     if not (speed > 0.0 and horizon < math.inf):
@@ -181,7 +179,7 @@ def lasts(W, a, u, v1, v2, mu, horizon):
 
 @kernel
 def moved(W, r, n, t1, t2):
-    """Return the velocity r after an impulse (n, t1, t2)."""
+    """Return the change of component r of the velocity by an impulse (n, t1, t2)."""
     return W[r, 0] * n + W[r, 1] * t1 + W[r, 2] * t2
 
 

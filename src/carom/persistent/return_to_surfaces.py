@@ -1,10 +1,10 @@
 """Return of a group of bodies to the surfaces of its active points, and of sticking vertices to their points.
 
-    xi = -P G^T lam,   W lam = phi,    phi: the gap of each point that presses, and for a vertex that sticks the
-                                       tangential way from its anchor too,
+    xi = -P G^T lam,   W lam = phi,    phi: the gap of each loaded point, and for a vertex that sticks also the
+                                       tangential displacement from its anchor,
 
-with the rows of the middle of the step, repeated to round-off. Redundant rows are left out of the factor. A
-step is found in rounds: each begins with what lam came to in the last.
+with the rows of the middle of the step, repeated until phi is round-off. Redundant rows are left out of the
+factor. A step is solved in rounds: each begins with the final lam of the last round.
 """
 
 from __future__ import annotations
@@ -21,14 +21,14 @@ from carom.dynamics.several_points import factor, spread_all, substitute, veloci
 from carom.impact.workspace import BACK, P, U
 from carom.kinematics.contact_point import in_axes
 
-DROP = 1e-10  # of a pivot, relative to its row: what is left of a redundant one is round-off
+DROP = 1e-10  # relative to its row: a smaller pivot is round-off of a redundant row
 
 
 @kernel
 def mark_rows(system, active, k, group):
-    """Mark in `rows` what each point gives: 0 nothing, 1 its gap, 3 its gap and its place; return if any.
+    """Write how many `rows` each point gives: 0, 1 (its gap), 3 (gap and position); return whether any.
 
-    A point that does not press gives its gap where that is negative.
+    A point without load gives its gap if that is negative.
     """
     some = False
     for i in range(k):
@@ -51,17 +51,18 @@ def mark_rows(system, active, k, group):
 
 @kernel
 def given(group, row):
-    """Return whether a row is given, and can be."""
+    """Return whether a row is given and its W is not zero.
+
+    The first row of a point of rolling or pivoting is its bound.
+    """
     closed_point = group.closed[row // 3]
-    first = (
-        1 if closed_point.turns > 0 else 0
-    )  # the first row of a point of rolling or pivoting is its bound
+    first = 1 if closed_point.turns > 0 else 0
     return first <= row % 3 < first + closed_point.rows and yields(group.m[0], row)
 
 
 @kernel
 def factor_given(k, group):
-    """Write the factor of W of the rows that are given."""
+    """Write the factor of W for the given rows."""
     n, L = 3 * k, group.m[1]
     for i in range(n):
         row = given(group, i)
@@ -73,17 +74,17 @@ def factor_given(k, group):
 
 @kernel
 def onto_surfaces(system, active, k, count, state, group, work):
-    """Bring the bodies of the group back to the points that press."""
+    """Move the bodies of the group back to the surfaces at the loaded points."""
     place_closed(system, k, state, group, group.points[1], work)
     if not mark_rows(system, active, k, group):
         return
     n, L = 3 * k, group.m[1]
     factor_given(k, group)
-    x, way = group.v[U], group.v[BACK]
+    x, total = group.v[U], group.v[BACK]
     known = False
     for i in range(n):
-        x[i] = way[i] if given(group, i) else 0.0
-        way[i], known = 0.0, known or x[i] != 0.0
+        x[i] = total[i] if given(group, i) else 0.0
+        total[i], known = 0.0, known or x[i] != 0.0
     for _ in range(11):
         if not known:
             if errors(system, active, k, state, group, x, work):
@@ -93,7 +94,7 @@ def onto_surfaces(system, active, k, count, state, group, work):
                 x[i] = -x[i] if given(group, i) else 0.0
         known = False
         for i in range(n):
-            way[i] += x[i]
+            total[i] += x[i]
         spread_all(system, k, group.points[0], x, count, group.member, work.stage, work)
         for m in range(count):
             shift(work.body[group.member[m]].motion, state[group.member[m]])
@@ -103,7 +104,7 @@ def onto_surfaces(system, active, k, count, state, group, work):
 
 @kernel
 def onto_tangents(system, k, state, group, work):
-    """Take out the velocities of a body in the rows that are given."""
+    """Remove the velocities of a body along the given rows."""
     b, x = group.member[0], group.v[U]
     factor_given(k, group)
     velocities(k, group.points[0], state, x)
@@ -121,7 +122,7 @@ def onto_tangents(system, k, state, group, work):
 
 @kernel
 def errors(system, active, k, state, group, x, work):
-    """Write the errors of all rows (0 where there is none); return whether all are round-off."""
+    """Write the errors of all rows (0 for rows not given); return whether all are round-off."""
     small = True
     for i in range(k):
         active_point, point = active.points[group.closed[i].active], group.points[1][i]

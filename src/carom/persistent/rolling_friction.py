@@ -3,9 +3,9 @@
     |M_t| <= d_r N    against the tangential part of the relative angular velocity (rolling),
     |M_n| <= d_p N    against its normal part (pivoting).
 
-Each is a closed point of its own in the contact problem, its rows those of the rotation times a length l of the
-body: a Coulomb contact of friction 1 whose "normal" row sees nothing but itself, so that its impulse is the
-bound d N/l, from the N of the last round.
+Each torque is a separate closed point in the contact problem; its rows are those of the rotation times a length
+l of the body. It is a Coulomb contact of friction 1 whose "normal" row is coupled to nothing else, so that its
+normal impulse is the bound d N/l, with the N of the last round.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from carom.impact.workspace import C, P
 
 @kernel
 def bound_turning(system, k, group):
-    """Write the bounds of torques from the normal impulses (or forces) in P; return their change, relative."""
+    """Write the bounds of torques from the normal impulses (or forces) in P; return their relative change."""
     change, largest = 0.0, 0.0
     for i in range(k):
         closed_point = group.closed[i]
@@ -34,7 +34,7 @@ def bound_turning(system, k, group):
 
 @kernel
 def take_torque(active_point, i, group):
-    """Put the torque of the closed point i, of rolling or of pivoting, into the list."""
+    """Write the torque of the closed point i, of rolling or of pivoting, to its active point."""
     p, length = group.v[P], group.points[0][i].length
     if group.closed[i].turns == 1:
         active_point.torque[1], active_point.torque[2] = (
@@ -47,7 +47,7 @@ def take_torque(active_point, i, group):
 
 @kernel
 def first_torque(system, active_point, i, h, group):
-    """Write the last torque of closed point i, over a step h, as the first guess."""
+    """Write the last torque of closed point i, times a step h, as the first guess."""
     closed_point, length = group.closed[i], group.points[0][i].length
     d, p = system.contacts[active_point.contact].turning[closed_point.turns - 1], group.v[P]
     p[3 * i] = h * d / length * active_point.force[0]

@@ -1,12 +1,12 @@
 """A step of one body on several points by the Runge-Kutta method of the run, while their modes do not change.
 
-While the same points press, slip and stick the motion is smooth:
+While the same points are loaded, slip and stick, the motion is smooth:
 
-    M dv/dt = f + G^T lam,    (G dv/dt)_n = 0 of points that press, all three rows of those that stick,
-                              lam_t = -mu lam_n u_t/|u_t| of those that slip,
+    M dv/dt = f + G^T lam,    (G dv/dt)_n = 0 for loaded points, all three rows for those that stick,
+                              lam_t = -mu lam_n u_t/|u_t| for those that slip.
 
-one linear system at each stage (`carom.persistent.known_modes`); where its forces do not obey Coulomb's law the
-stage is solved as a contact problem (`carom.persistent.forces`). At its end the body returns to the surfaces.
+Each stage is one linear system (`carom.persistent.known_modes`). If its forces do not obey Coulomb's law, the
+stage is solved as a contact problem (`carom.persistent.forces`). At the end the body returns to the surfaces.
 (Mathematics page, §3.1.)
 """
 
@@ -40,14 +40,14 @@ from carom.persistent.known_modes import note_given, rows_of, solve_given
 from carom.persistent.return_to_surfaces import onto_surfaces, onto_tangents
 from carom.persistent.step_control import kinetic, unnamed
 
-# least cosine between the directions of slip in a step; most that friction may change of the speed of slip
-# across it, as a part: beyond about 2.7 an explicit step is unstable
+# least cosine between the directions of slip in a step; greatest change that friction may cause in slip,
+# relative to its speed, where an explicit step is unstable from about 2.7 on
 SAME_WAY, STIFF = 0.5, 2.0
 
 
 @kernel
 def smooth_step(model, data, method, k, h):
-    """Write the end of a step of the one body of a group, and its error; return whether modes stay in it."""
+    """Write the end of a step of the only body of a group, and its error; return whether its modes stay."""
     system, controls = model.system, model.controls
     start, end, group, work = data.state, data.work.trial, data.group, data.work
     b, result, clock = group.member[0], data.work.result[0], data.clocks[0]
@@ -84,7 +84,7 @@ def smooth_step(model, data, method, k, h):
 
 @kernel
 def begin(model, data, k):
-    """Note which points press, slip and stick; return whether that can last for the step."""
+    """Write which points are loaded, slip and stick; return whether these modes can last for the step."""
     system, controls, active = model.system, model.controls, data.active
     start, group = data.state, data.group
     b = group.member[0]
@@ -114,7 +114,7 @@ def begin(model, data, k):
 
 @kernel
 def begin_turning(model, data, k, i, push):
-    """Note whether a point of rolling or pivoting turns or not; return whether it is on a half-space."""
+    """Write whether a point of rolling or pivoting rotates; return whether it is on a half-space."""
     system, start, group = model.system, data.state, data.group
     contact, closed_point = system.contacts[group.closed[i].contact], group.closed[i]
     _, u1, u2 = contact_velocity(group.points[0][i], start)
@@ -148,7 +148,7 @@ def turning_rows_given(k, i, group):
 
 @kernel
 def lasting(model, data, k, h, friction):
-    """Return how long an error of the velocity lasts at most: of what friction stops, until then."""
+    """Return how long an error of the velocity lasts: at most until friction stops the body."""
     system, start, end, group = model.system, data.state, data.work.trial, data.group
     b = group.member[0]
     L, body, before = system.bodies[b].extent, system.bodies[b], start[b]
@@ -197,9 +197,9 @@ def add_forces(model, data, k, s):
 
 @kernel
 def set_direction(active_point, i, group):
-    """Let point i slide as it moves now; return whether that is about as it did before.
+    """Write the direction in which point i slides; return whether it is about the direction before.
 
-    That is at the start of the step, and in the last stage for a point of rolling or pivoting.
+    The direction before is that of the start of the step; of rolling and pivoting, that of the last stage.
     """
     d1, d2 = active_point.heading[0], active_point.heading[1]
     if group.closed[i].turns > 0:
@@ -217,7 +217,7 @@ def set_direction(active_point, i, group):
 
 @kernel
 def finish_smoothly(model, data, k, h):
-    """Return the body to the surfaces; note modes, bounds and forces; return whether modes have stayed."""
+    """Move the body to the surfaces; write modes, bounds and forces; return whether the modes have stayed."""
     system, active = model.system, data.active
     end, group, work = data.work.trial, data.group, data.work
     b = group.member[0]

@@ -1,7 +1,7 @@
 """Step control of a group by its energy error: if the error is too large, the step is too long.
 
-Edges that are nearly parallel turn their normal in some 1e-5 s, with forces of 1e4 times the weight: a step of
-order 2 over all of such a push takes energy that no friction has. Where only gravity acts the balance is known.
+The normal of nearly parallel edges can turn within about 1e-5 s, with forces of 1e4 times the weight. A step of
+order 2 over such a time loses energy, and friction is not the cause. With gravity alone the balance is known.
 """
 
 from __future__ import annotations
@@ -15,33 +15,33 @@ from carom.model.arrays import LOOPS
 from carom.model.workspace import ONE
 from carom.persistent.middle_state import spin_momentum
 
-# what a step of several bodies may lose: this part of the kinetic energy at its start, and of what a fall of a
-# whole step gains, but no more than of m g times their size, which does not grow with the step; one that is cut
-# is cut on until it loses CAREFUL of that
+# Allowed loss in a step of several bodies: OF_MOTION of the kinetic energy at its start, plus the lesser of
+# OF_FALL of the energy that a fall of a whole step gains and OF_SIZE of m g times the size, which does not grow
+# with the step. Once a step is cut, only CAREFUL of this is allowed.
 OF_MOTION, OF_FALL, OF_SIZE = 1e-6, 1e-2, 1e-7
-# ... of a body that hardly moves not even that: of so many times what it exchanges in the step, and of this
-# part of m g times its size, which is far above round-off
+# For a body that hardly moves, m g times the size is replaced by MUCH times the energy that it exchanges in the
+# step plus LEAST of m g times the size, which is far above round-off.
 MUCH, LEAST = 1e3, 1e-4
 CAREFUL = 0.01
-SURE = 1.0 / 32.0  # of that: what a step may lose for the next to be twice as long (order 4: 2^5)
-# of one body: these parts of its kinetic energy and of m g times its size, at one point and at several
+SURE = 1.0 / 32.0  # of the allowed loss: with less, the next step is twice as long (order 4: 2^5)
+# Allowed loss of one body, relative to its kinetic energy plus m g times its size, at one point and at several.
 OF_ONE, OF_SEVERAL = 1e-9, 2e-8
-# ... and how far it may turn: the methods are of use for less than a radian
+# Greatest rotation in a step [rad]: the methods are useful below one radian.
 TURN = 0.5
-# residual of contacts, as a part of what gravity gives in a step: where a step is cut, then taken whole; where
-# there is nothing to take whole, and the run stops
+# Residual of contacts, relative to the speed that gravity gives in a step: above UNSOLVED a step is cut, and at
+# last replaced by a time-stepping step; if there is none, the run stops above USELESS.
 UNSOLVED, USELESS = 0.01, 10.0
-# what is solved so much worse than rest asks for is not rest: of a few bodies, and of a crowd
+# Greatest speed of rest from a residual, relative to the tolerance of rest: of a few bodies, and of a crowd.
 POORLY, MANY = 10.0, 1e3
-# of the step: what is no longer is cut no more, for what it loses and for a solution
+# Least length of a step, relative to the whole step, that is cut for its loss, and for want of a solution.
 SHORTEST, RETRIED = 1e-4, 1e-2
-# what is so many times more than may be lost, in a step that is cut no more, is not lost by its length: where a
-# force grows without bound (near a jam, or as a rim becomes flat) no step is short enough, and it is taken
-# whole in the end. Of groups, and of one body
+# If the loss of a shortest step is so many times the allowed one, its length is not the reason: where a force
+# grows without bound (near a jam, or as a rim becomes flat) no step is short enough, and a time-stepping step
+# replaces it. Of groups, and of one body.
 WILD, GROSS = 100.0, 1e4
-# about what a step without contacts takes of a body [us], with closed loops and without
+# Approximate time for one body in a step without contacts [us], with closed loops and without.
 LOOPS_STEP, OTHER_STEP = 25.0, 0.6
-# of a search for impulses: what an iteration takes for k points, by k^2 [us]; how many it has in any case
+# A search for impulses: time of an iteration for k points, divided by k^2 [us]; its least number of iterations.
 ITERATION, SOME = 0.3, 100
 
 
@@ -71,7 +71,7 @@ def may_lose(system, b, start, part):
 
 @kernel
 def weigh(system, b, start, end):
-    """Return the weight of a body times its size; less where it hardly moves: it is not what is looked at."""
+    """Return the weight of a body times its size, or less if the body hardly moves (see MUCH and LEAST)."""
     body, g, fallen = system.bodies[b], system.gravity, 0.0
     for k in range(3):
         fallen += body.mass * g[k] * (end[b].x[k] - start[b].x[k])
@@ -82,7 +82,7 @@ def weigh(system, b, start, end):
 
 @kernel
 def unnamed(system, controls, start, end, friction, count, member):
-    """Return what the step has lost or gained besides the work of friction, as a part of what it may."""
+    """Return the change of energy in the step besides the work of friction, relative to the allowed loss."""
     lost, may = friction, 0.0
     fall = 0.5 * OF_FALL * (controls.step * norm(system.gravity)) ** 2
     for m in range(count):
@@ -98,7 +98,7 @@ def unnamed(system, controls, start, end, friction, count, member):
 
 @kernel
 def unnamed_alone(system, start, end, friction, work):
-    """Return the same of bodies in contact at one point each, on which gravity alone acts besides."""
+    """Return the same for bodies in contact at one point each, if only gravity acts on them otherwise."""
     lost, may = friction, 0.0
     for b in range(start.shape[0]):
         if work.body[b].status == ONE:
@@ -111,7 +111,7 @@ def unnamed_alone(system, start, end, friction, work):
 
 @kernel
 def turns_far(system, active, start, end, dt):
-    """Return whether a body that is active turns too far in a step."""
+    """Return whether a body with an active point turns too far in a step."""
     for i in range(active.count[0]):
         active_point = active.points[i]
         if (
@@ -125,14 +125,14 @@ def turns_far(system, active, start, end, dt):
 
 @kernel
 def unsolved(system, controls, work, part):
-    """Return whether contacts of the last trial step are off by that part of what gravity gives in one."""
+    """Return whether the residual of the last trial step exceeds `part` of the speed that gravity gives."""
     gained = controls.step * norm(system.gravity)
     return gained > 0.0 and not work.result[0].residual <= part * gained
 
 
 @inlined
 def too_long(model, data):
-    """Return whether a step with active points is to be cut: for want of a solution, or for what it loses."""
+    """Return whether a step with active points is to be cut, for want of a solution or for its loss."""
     system, controls = model.system, model.controls
     active, start, work, search = data.active, data.state, data.work, data.work.search[0]
     end, dt = work.trial, search.dt
@@ -153,42 +153,42 @@ def too_long(model, data):
 
 @inlined
 def goes_wild(work):
-    """Return whether a step of a group that was cut as far as it may be loses a lot all the same."""
+    """Return whether a group loses too much energy even in a step that must not be cut further."""
     return work.result[0].unnamed > WILD
 
 
 @inlined
 def next_pace(pace, work):
-    """Return how long the next step may be: twice as long, unless that would lose too much."""
+    """Return the limit for the next step: twice the last limit, unless the loss would be too large."""
     return 2.0 * pace if work.result[0].unnamed <= SURE * CAREFUL else pace
 
 
 @kernel
 def plain_step(system):
-    """Return about what a step without contacts takes [us]."""
+    """Return the approximate time of a step without contacts [us]."""
     each = LOOPS_STEP if system.solver.kind == LOOPS else OTHER_STEP
     return system.bodies.shape[0] * each
 
 
 @kernel
 def iterations_left(controls, clock, k):
-    """Return how many iterations for k points the step can afford, some in any case."""
+    """Return the number of iterations for k points that the step can afford, at least SOME."""
     return max(SOME, int((affordable(controls, clock) - clock.effort) / (ITERATION * k * k)))
 
 
 @kernel
 def charge_iterations(clock, k, iterations):
-    """Add the work of iterations for k points to that of the step."""
+    """Add the time of iterations for k points to that of the step."""
     clock.effort += ITERATION * k * k * iterations
     clock.since += ITERATION * k * k * iterations
 
 
 @kernel
 def rest_speed(controls, gained, residual, k, poorly):
-    """Return the speed [m/s] below which bodies rest that are held at k points.
+    """Return the speed [m/s] below which bodies on k persistent points are at rest.
 
-    `Options.rest_tolerance` of the speed that applied forces give them in the step, or what k contacts that are
-    solved to a residual may leave of it, up to so many times the former.
+    It is `Options.rest_tolerance` of the speed `gained` from applied forces in the step, or the speed that the
+    residual of k contacts may leave, if this is greater, but at most `poorly` times the former.
     """
     least = controls.rest * gained
     return max(least, min(k * residual, poorly * least))

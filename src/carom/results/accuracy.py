@@ -24,10 +24,10 @@ if TYPE_CHECKING:
     from carom.scene.all_pairs import PairTable
     from carom.scene.scene import Scene
 
-INACCURATE = 100.0  # times the tolerance: what is no success any more
-# parts of its size that a body is in what it touches: said, and no success
+INACCURATE = 100.0  # relative to the tolerance: a run with a larger error is no success
+# depth of a penetration, relative to the size of the body, that gives a warning, and that is no success
 DEEP, TOO_DEEP = 1e-8, 1e-2
-# parts of the greatest speed that contacts are not solved to: said, and no success
+# residual of contacts, relative to the greatest speed, that gives a warning, and that is no success
 POOR, TOO_POOR = 1e-2, 0.1
 
 _WHAT = {
@@ -52,7 +52,7 @@ _WHAT = {
 
 
 def numbers(watch) -> SimpleNamespace:
-    """Return the fields of a record as Python numbers: reading them one by one from the record is slow."""
+    """Return the fields of a record as Python numbers, because reading them one by one is slow."""
     return SimpleNamespace(**dict(zip(watch.dtype.names, watch.item())))
 
 
@@ -123,9 +123,9 @@ def _sentence(i: int, watch: np.record) -> str:
 
 
 def watched(t, ledger: Ledger, given, tolerance: float) -> np.record:
-    """Return the record of energy errors from a ledger at saved times t, for runs without it in their loop.
+    """Return the record of energy errors from a ledger at saved times t, for loops that do not write one.
 
-    `given` is the energy that impacts had added by then where Newton's law with friction allows it.
+    `given` is the energy that impacts have added up to these times by Newton's law with friction.
     """
     watch = new_watch(tolerance)[0]
     rises = {IMPACTS: ledger.impacts - given, FRICTION: ledger.friction, BOUNCES: ledger.bounces}

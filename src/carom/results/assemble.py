@@ -30,12 +30,12 @@ OF_CONTACTS = (
 class Written(NamedTuple):
     """Copies of the records of a run; a solution computes its columns from them on demand."""
 
-    attitude: np.ndarray  # (T, N, 4) of the principal axes
+    attitude: np.ndarray  # (T, N, 4) attitudes of the principal axes
     series: np.recarray  # (T,) SERIES
     impact: np.recarray  # (K,) IMPACTS, in the order of time
     event: np.recarray  # (E,) EVENT, in the order of time
     contacts: dict[str, np.ndarray]  # (C,) columns of CONTACT
-    forces: tuple[AppliedForce, ...]  # of the scene, which may be given more
+    forces: tuple[AppliedForce, ...]  # of the scene during the run; more may be added later
 
 
 def assemble(run, status: Status) -> dict:
@@ -71,7 +71,7 @@ def assemble(run, status: Status) -> dict:
 
 
 def _in_time(rows: np.recarray) -> np.recarray:
-    """Return rows in the order of time: of a step they were written one island after the other."""
+    """Return rows in the order of time, because the islands of a step write theirs one after the other."""
     return rows[rows["time"].argsort(kind="stable")].view(Columns)
 
 
@@ -81,7 +81,7 @@ def orientation(solution) -> np.ndarray:
 
 
 def energy(solution, name: str) -> np.ndarray:
-    """Return the kinetic or the potential energy (T,) of all that has one."""
+    """Return the kinetic or the potential energy (T,) of the system."""
     return np.array(solution._written.series[name])
 
 
@@ -148,7 +148,7 @@ def impact_table(solution) -> ImpactTable:
 
 
 def named(contact: np.ndarray, scene, pairs) -> dict[str, np.ndarray]:
-    """Return the names (K,) of contacts and of the two that touch, by the number of the contact."""
+    """Return the names (K,) of contacts and of their two parts, by the number of the contact."""
     return {name: part[contact] for name, part in contact_names(scene, pairs)._asdict().items()}
 
 
@@ -166,7 +166,7 @@ def nodes(run) -> list[Nodes]:
     rec = r.trimmed(run.records, run.clock)
     state, shot = rec.state, rec.snapshot
     events = rec.event[shot.event].view(Columns)
-    # an event stands after the saved rows that were written before it
+    # an event comes after the saved rows that were written before it
     place = np.arange(1.0, len(state) + 1)
     by_body = np.argsort(shot.body, kind="stable")
     ends = np.searchsorted(shot.body[by_body], np.arange(state.shape[1] + 1))
@@ -202,7 +202,7 @@ def contact_sums(touch: np.recarray, saved: int, contacts: int) -> tuple[np.ndar
 
 @contextmanager
 def _kept_turns(system):
-    """Restore the whole turns of angles, which the reports count along the saved states."""
+    """Restore the whole turns of angles at the end; the reports count them along the saved states."""
     reference = system.relations.coordinates["reference"]
     kept = reference.copy()
     yield
@@ -217,7 +217,7 @@ def element_reactions(solution) -> np.ndarray:
     system, rec = run.compiled.system, r.trimmed(run.records, run.clock)
     out = np.zeros((len(rec.state), system.joints.size, 6))
     work = r.new_work(system, run.method.b.size)
-    ranges = getattr(run, "rows_of_forces", None)  # of a run whose forces were set as it went
+    ranges = getattr(run, "rows_of_forces", None)  # for a run whose forces were set in steps
     with _kept_turns(system):
         for rows in [(0, len(out))] if ranges is None else ranges(system, len(out)):
             touch = rec.touch[np.searchsorted(rec.touch.saved, rows[0]) :]
@@ -240,7 +240,7 @@ def joint_reactions(solution) -> np.ndarray:
     run = solution._run
     system, rec = run.compiled.system, r.trimmed(run.records, run.clock)
     out = solution._reactions[:, : len(run.scene.joints)].copy()
-    for j in np.flatnonzero(run.compiled.flipped):  # the scene's child is the tree's parent there
+    for j in np.flatnonzero(run.compiled.flipped):  # in the tree parent and child are exchanged
         out[:, j] *= -1.0
         joint = system.joints[j]
         anchors = [
@@ -250,7 +250,7 @@ def joint_reactions(solution) -> np.ndarray:
                 (joint.child, joint.child_anchor),
             )
         ]
-        out[:, j, 3:] += np.cross(anchors[1] - anchors[0], out[:, j, :3])  # where it slides
+        out[:, j, 3:] += np.cross(anchors[1] - anchors[0], out[:, j, :3])  # for slides
     return out
 
 

@@ -9,11 +9,11 @@ import numpy as np
 if TYPE_CHECKING:
     from carom.results.solution import Solution
 
-#: allowed difference, as a fraction of the path at the greatest speed: that of a harmonic motion with a phase
-#: of 1.1 rad in a step, and of 2.2 rad for the method of order 8, which still follows it
+#: allowed difference, relative to the path at the greatest speed: that of a harmonic motion with 1.1 rad in a
+#: step, and with 2.2 rad for the method of order 8, which is still accurate then
 COARSE, OF_ORDER_8 = 0.1, 0.4
-SEEN = 1e-3  # of the size of a body: what is less does not count
-GOOD = 1e-3  # the same for a step that is short enough to begin with
+SEEN = 1e-3  # of the size of a body: smaller differences do not count
+GOOD = 1e-3  # the same difference for the step that the sentence recommends
 
 
 def too_long(solution: Solution, bodies, step: float, method: str) -> tuple[str, ...]:
@@ -47,7 +47,7 @@ def too_long(solution: Solution, bodies, step: float, method: str) -> tuple[str,
         smooth[np.clip(k, 0, len(smooth) - 1)] = False
     if not smooth.any():
         return ()
-    # more than that in a quarter of all steps: what a stiff damper ends in its first steps does not count
+    # a quarter of all steps differ by more; the few first steps in which a stiff damper acts do not count
     most = np.quantile(off[smooth], 0.75, axis=0)
     part = np.where(most > SEEN * sizes[bound], most, 0.0) / np.maximum(step * fastest, 1e-300)
     worst = int(np.argmax(part))

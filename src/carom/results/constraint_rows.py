@@ -50,12 +50,14 @@ def constraint_rows(scene) -> ConstraintRows:
 def row_units(definition: JointDefinition | ConstraintDefinition) -> list[str]:
     """Return the unit of each row of a joint or a constraint."""
     if isinstance(definition, JointDefinition):
-        # first those that hold the anchor (`kinematics.rows.direction`); the third of a screw is along its axis
-        ways = ACTIVE_POINT.get(definition.guide, definition.rows) + isinstance(definition, Screw)
-        return ["m"] * ways + ["rad"] * (definition.rows - ways)
+        # first the rows of the anchor (`kinematics.rows.direction`); the third of a screw is along its axis
+        lengths = ACTIVE_POINT.get(definition.guide, definition.rows) + isinstance(
+            definition, Screw
+        )
+        return ["m"] * lengths + ["rad"] * (definition.rows - lengths)
     if isinstance(definition, Driver):
         return [UNITS[coordinate_kind(definition.joint, definition.coordinate)]]
-    if isinstance(definition, Gear):  # the ratio makes the first coordinate what the second one is
+    if isinstance(definition, Gear):  # the ratio gives the first term the unit of the second one
         joint, coordinate, _ = definition.terms[1]
         return [UNITS[coordinate_kind(joint, coordinate)]]
     if isinstance(definition, Coupling):

@@ -10,15 +10,15 @@ import numpy as np
 class ContactNames(NamedTuple):
     """Names of all contacts of a run in the order of their numbers, then of the stops of joints."""
 
-    name: np.ndarray  #: (C,) of the contact; ``body-other`` of one by default
-    body: np.ndarray  #: (C,) of a stop the child of its joint
+    name: np.ndarray  #: (C,) name of the contact; ``body-other`` for a default pair
+    body: np.ndarray  #: (C,) name of the body; for a stop the child of its joint
     other: (
         np.ndarray
-    )  #: (C,) the half-space, static body or body; of a stop the parent of its joint
+    )  #: (C,) name of the half-space or other body; for a stop the parent of its joint
 
 
 def contact_names(scene, pairs) -> ContactNames:
-    """Return the names of all contacts of a scene (`pairs` of the run), and of its stops."""
+    """Return the names of all contacts of a scene, which are the `pairs` of the run, and of its stops."""
     bodies = [body.name for body in scene.bodies]
     planes = [part.name for part in scene.fixed]
     body = [bodies[b] for b in pairs.body.tolist()]

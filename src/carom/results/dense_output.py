@@ -12,15 +12,15 @@ if TYPE_CHECKING:
     from carom.results.assemble import Nodes
 
 
-NEAR = 1e-6  # of an interval: so near to its ends the cubic is as good as the states there
+NEAR = 1e-6  # of an interval: at this distance from its ends the cubic is as accurate as the states
 
 
 class Flights(NamedTuple):
     """Times of free flight of a body on which only gravity acts: all except intervals of persistent contact."""
 
-    moments: np.ndarray | None  # (3,); None if they are equal: it turns steadily, as the cubic does
-    starts: np.ndarray  # (M,) of the intervals, sorted
-    ends: np.ndarray  # (M,) the same
+    moments: np.ndarray | None  # (3,); None if they are equal: then a cubic is exact
+    starts: np.ndarray  # (M,) starts of the intervals of contact, sorted
+    ends: np.ndarray  # (M,) ends of the intervals, sorted
 
     def cover(self, t0: np.ndarray, t1: np.ndarray) -> np.ndarray:
         """Return whether there is no persistent contact between the times t0 and t1 (K,)."""
@@ -32,7 +32,7 @@ def flights(solution) -> list[Flights | None]:
     """Return the flights of each body; None if other forces than gravity act on it."""
     bodies, contacts = solution._run.bodies, solution.contacts
     pairs = solution.pairs
-    of_pair = contacts.contact < len(pairs.body)  # the rest are stops in joints
+    of_pair = contacts.contact < len(pairs.body)  # the others are stops in joints
     which = contacts.contact[of_pair]
     sides = np.concatenate([pairs.body[which], pairs.other[which]])
     starts, ends = np.tile(contacts.start[of_pair], 2), np.tile(contacts.end[of_pair], 2)
@@ -50,7 +50,7 @@ def flights(solution) -> list[Flights | None]:
 def curves(solution, times: np.ndarray, side: str):
     """Return position, attitude (of the principal axes) and velocities of all bodies at times (K,).
 
-    The last of the five arrays (K, N) says where they are those of a cubic between two states.
+    The last of the five arrays (K, N) marks the states that are from a cubic between two states.
     """
     known = zip(solution._nodes, solution._flights)
     bodies = [between(node, flies, times, side) for node, flies in known]
@@ -58,7 +58,7 @@ def curves(solution, times: np.ndarray, side: str):
 
 
 def between(node: Nodes, flies: Flights | None, times: np.ndarray, side: str):
-    """Return position, attitude and velocities of one body at times (K,), and where they are of a cubic."""
+    """Return position, attitude and velocities of one body at times (K,), and a mark of states from a cubic."""
     at, pose, left, right = node
     i = np.searchsorted(at, times, side="right" if side == "right" else "left") - 1
     i = np.clip(i, 0, max(len(at) - 2, 0))
@@ -82,9 +82,9 @@ def between(node: Nodes, flies: Flights | None, times: np.ndarray, side: str):
 
 
 def _along_flight(moments, t, h, Q0, w0, Q1, w1):
-    """Return attitude and angular velocity at times t of steps h, of a body without torque.
+    """Return attitude and angular velocity of a body without torque at times t after the start of steps h.
 
-    The flight from the start may miss the state at the end, by round-off or by impulses of a time-stepping
+    The flight from the start may miss the state at the end, because of round-off or impulses of a time-stepping
     step. The difference is added as a cubic, as in `carom.geometry.spline`, in the chart of the flight.
     """
     from carom.kinematics.flight_arrays import torque_free

@@ -10,7 +10,7 @@ import numpy as np
 
 from carom._compiled.record_arrays import Columns
 
-CURVED = 1 << 40  # features of curved pieces are above, numbers of vertices below
+CURVED = 1 << 40  # features of curved pieces are above this number, vertices below
 
 
 class ImpactRecord(NamedTuple):
@@ -210,13 +210,13 @@ def contact_table(event, kinds, first, end: float) -> ContactTable:
     first : (C,) first vertex of each contact with a half-space, 0 for two bodies
     end : time of the last state
     """
-    rows, at = [], {}  # rows: contact, feature, start, end, mode; at: the row that a point is in
+    rows, at = [], {}  # rows: contact, feature, start, end, mode; at: the present row of a point
     fields = ("contact", "feature", "kind", "time", "mode")
     for contact, feature, code, time, first_mode in zip(*(event[f].tolist() for f in fields)):
         key, kind = (contact, feature), kinds[code]
         if kind not in ("held", "slips", "sticks", "opens"):
             continue
-        if kind != "held" and key not in at:  # took the place of another
+        if kind != "held" and key not in at:  # the point has replaced another one
             others = [other for other in at if other[0] == key[0]]
             if not others:
                 continue
@@ -224,7 +224,7 @@ def contact_table(event, kinds, first, end: float) -> ContactTable:
         mode: int = first_mode if kind == "held" else _MODES[kind]
         if key in at:
             if rows[at[key]][4] == mode:
-                continue  # slip that has turned
+                continue  # slip has only turned
             rows[at.pop(key)][3] = time
         if mode > 0:
             at[key] = len(rows)

@@ -22,7 +22,7 @@ def joint_coordinates(solution, joint) -> tuple[np.ndarray, np.ndarray]:
 
 
 class Motion(NamedTuple):
-    """A motion at T times, orientations of the scene's body axes."""
+    """A motion at T times, with the orientations of the scene's body axes."""
 
     t: np.ndarray
     position: np.ndarray
@@ -47,19 +47,19 @@ def coordinates_of(motion: Motion, joint: Joint) -> tuple[np.ndarray, np.ndarray
 
 
 def _columns(sides, joint):
-    """Pairs (coordinate, rate) of joints whose axes of coordinates are fixed in the parent."""
+    """Return pairs (coordinate, rate) of a joint whose axes are fixed in the parent."""
     d, anchor, columns = joint.definition, joint.anchor(), []
     for k, kind in enumerate(d.coordinates):
         axis = d.coordinate_frame(k)[:, 0]
         columns.append(sides.turn(axis) if kind == "turn" else sides.slide(anchor, axis))
-    if isinstance(d, j.Screw):  # the slide knows all turns
+    if isinstance(d, j.Screw):  # the displacement gives the angle with all whole turns
         (_, rate), (along, speed) = columns
         return [(along / d.scale(), rate), (along, speed)]
     return columns
 
 
 def of_scene(scene, joint) -> Joint:
-    """Return a joint of the scene, given itself or by its name."""
+    """Return a joint of the scene; the argument is the joint or its name."""
     if isinstance(joint, str):
         try:
             joint = scene[joint]
@@ -74,11 +74,11 @@ def of_scene(scene, joint) -> Joint:
 
 
 class _Side(NamedTuple):
-    """A body as the definition of a joint sees it, at T times: a point p of it is at x + R p + offset."""
+    """One side of a joint at T times: a point p of the joint's definition is at x + R p + offset."""
 
-    turn: np.ndarray  # (T, 4) R, from the axes of the definition to the world
+    turn: np.ndarray  # (T, 4) R as a quaternion, from the axes of the definition to the world
     offset: np.ndarray  # (T, 3)
-    position: np.ndarray  # (T, 3) x, of the mass centre
+    position: np.ndarray  # (T, 3) x, the mass centre
     velocity: np.ndarray
     spin: np.ndarray
 
@@ -88,7 +88,7 @@ class _Side(NamedTuple):
 
 
 def _side(motion, body, frame) -> _Side:
-    """Return a side of a joint: defined in the world at the start, or in a frame of the body."""
+    """Return a side of a joint, which is defined in the world at the start, or in a frame of the body."""
     k, zero = body.index, np.zeros((len(motion.t), 3))
     same = np.tile([1.0, 0.0, 0.0, 0.0], (len(zero), 1))
     Q = same if k < 0 else motion.orientation[:, k]
@@ -109,7 +109,7 @@ def _side(motion, body, frame) -> _Side:
 
 
 class _Sides:
-    """Both sides of a joint over the run, and their relative turn: world axes."""
+    """Both sides of a joint over the run, and their relative rotation, in world axes."""
 
     def __init__(self, motion, joint):
         self.t = motion.t
@@ -120,7 +120,7 @@ class _Sides:
         self.spin = self.child.spin - self.parent.spin
 
     def across(self, start, end):
-        """Return the vector from a point of the parent to one of the child (T, 3), and its velocity."""
+        """Return the vector (T, 3) from a point of the parent to a point of the child, and its velocity."""
         p, c = self.parent, self.child
         rp, rc = p.arm(start), c.arm(end)
         gap = c.position + rc - p.position - rp
@@ -129,7 +129,7 @@ class _Sides:
     def slide(self, anchor, direction):
         e = quaternion.rotate(self.parent.turn, direction)
         gap, speed = self.across(anchor, anchor)
-        # as seen from the parent, which turns: without w_p x gap
+        # relative to the rotating parent: without w_p x gap
         speed = speed - np.cross(self.parent.spin, gap)
         return np.sum(e * gap, axis=1), np.sum(e * speed, axis=1)
 

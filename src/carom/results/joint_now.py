@@ -1,6 +1,6 @@
-"""Coordinates of a joint at one time, quickly: by numbers, not arrays, for control loops.
+"""Coordinates of a joint at one time, for control loops: plain numbers are faster than arrays.
 
-The same as `carom.results.joint_coordinates` says for turns and slides along axes fixed in the parent.
+Results are those of `carom.results.joint_coordinates` for turns and slides along axes fixed in the parent.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ import numpy as np
 
 from carom.scene.joints import Distance, Joint, Screw, Spherical, Universal
 
-OTHERS = (Distance, Spherical, Universal, Screw)  # are left to the arrays
+OTHERS = (Distance, Spherical, Universal, Screw)  # joints for which arrays are used
 TURN = 2.0 * math.pi
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
@@ -24,7 +24,7 @@ class Side(NamedTuple):
     body: int  # -1 for the ground
     turn: Quaternion
     offset: Vector
-    anchor: Vector  # turn p turn* + offset, of the anchor
+    anchor: Vector  # turn p turn* + offset for the anchor p
 
 
 class Quick(NamedTuple):
@@ -36,7 +36,7 @@ class Quick(NamedTuple):
 
 
 def quick(joint: Joint) -> Quick | None:
-    """Return a joint made ready, or None for one of another kind."""
+    """Return a prepared joint, or None for a joint of another kind."""
     d = joint.definition
     if isinstance(d, OTHERS):
         return None
@@ -70,7 +70,7 @@ def coordinates(joint: Quick, state) -> tuple[np.ndarray, np.ndarray]:
     spin, q, rates = subtract(c.spin, p.spin), [], []
     gap = subtract(add(c.position, c.arm), add(p.position, p.arm))
     speed = subtract(add(c.velocity, cross(c.spin, c.arm)), add(p.velocity, cross(p.spin, p.arm)))
-    speed = subtract(speed, cross(p.spin, gap))  # as seen from the parent, which turns
+    speed = subtract(speed, cross(p.spin, gap))  # relative to the rotating parent
     for turns, axis in joint.axes:
         along = rotate(p.turn, axis)
         if turns:
@@ -84,7 +84,7 @@ def coordinates(joint: Quick, state) -> tuple[np.ndarray, np.ndarray]:
 
 
 class _Placed(NamedTuple):
-    """A side as it is now, in world axes."""
+    """The present state of a side, in world axes."""
 
     turn: Quaternion
     arm: Vector  # from the mass centre to the anchor
@@ -139,7 +139,7 @@ def multiply(p, q):
 
 
 def rotate(q, v):
-    """Return a vector turned by a unit quaternion."""
+    """Return a vector rotated by a unit quaternion."""
     t = cross(q[1:], v)
     t = 2.0 * t[0], 2.0 * t[1], 2.0 * t[2]
     u = cross(q[1:], t)

@@ -9,7 +9,7 @@ import numpy as np
 
 @dataclass(frozen=True, eq=False)
 class Ledger:
-    """Energy balance at each saved time; all arrays are (T,) [J], all but the first two sums since the start.
+    """Energy balance at each saved time, arrays (T,) [J]; all except the first two are sums since the start.
 
     ``kinetic + potential = start + loads + impacts + friction + bounces + residual``
 

@@ -1,9 +1,9 @@
-"""Replay: the motion between two saved states, stepped again from the first one by the method of the run.
+"""Replay: the motion between two saved states, computed again from the first one by the method of the run.
 
 States between two saved states are then as accurate as the saved ones, however fast a body rotates. A replay
 starts from the saved position, attitude and velocities. Other data of the run, such as first guesses of forces,
 are not saved, so each interval is checked first: its replay is used if it ends at the next saved state, or
-misses it by far less than the difference between the replay and a cubic through both states.
+misses it by far less than the replay and a cubic through both states differ.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ from carom.stepping.grid import part_of_grid
 if TYPE_CHECKING:
     from carom.results.solution import Solution
 
-FACTOR = 10.0  # a replay may miss the next saved state by so many times the tolerances of the run
-RTOL = 1e-8  # tolerance where the run has given steps
-BETTER = 0.1  # a greater miss may be such a part of the difference from the cubic halfway
+FACTOR = 10.0  # allowed miss of the next saved state, relative to the tolerances of the run
+RTOL = 1e-8  # tolerance for a run with a given step
+BETTER = 0.1  # allowed greater miss, relative to the difference from the cubic at the middle
 
 
 class Replay:
@@ -85,7 +85,7 @@ class Replay:
         run, begin = self.run, self.solution.t[i]
         if self.kept.is_of(run.memory):
             self.kept.restore()
-        else:  # contacts have come, or room for them
+        else:  # contacts have been added, or room for them
             run.renew()
             self.kept = Kept(run.memory)
         run.now[:] = self.states[i]
@@ -107,8 +107,8 @@ class Replay:
 
 
 def evaluate(solution: Solution, times: np.ndarray, cubic: np.ndarray, x, Q, v, w) -> None:
-    """Replace the states (K, N) of a cubic at times (K,) by the motion, where it can be stepped again."""
-    missing = getattr(solution._run, "missing", ())  # functions that a file could not hold
+    """Replace the states (K, N) of a cubic at times (K,) by those of a replay, where this is possible."""
+    missing = getattr(solution._run, "missing", ())  # functions that a file cannot contain
     if len(solution.t) < 2 or missing:
         return
     if not cubic.any() or len(solution.scene.bodies) != solution.position.shape[1]:

@@ -122,7 +122,7 @@ class Solution(Portable, Drawn):
     settings: dict[str, Any]
     _run: Run = field(repr=False)
     _touch: np.recarray = field(repr=False)
-    #: records from which the other fields are computed; None: loaded from a file, which has all fields
+    #: records from which other fields are computed; None if the solution is from a file, which has all fields
     _written: Written | None = field(repr=False, default=None)
     warnings: tuple[str, ...] = ()
     t_events: list[np.ndarray] | None = field(repr=False, default=None)
@@ -341,11 +341,11 @@ class Solution(Portable, Drawn):
         return self._seen(t, *states)
 
     def _curve(self, t, side: str = "right"):
-        """Return the same as `evaluate`, but with cubics where there is no closed form: for pictures."""
+        """Return the result of `evaluate`, but with cubics where there is no closed form, for pictures."""
         return self._seen(t, *curves(self, np.atleast_1d(np.asarray(t, dtype=float)), side)[:4])
 
     def _seen(self, t, x, Q, v, w):
-        """Return states with attitudes of the scene's axes; for a single time without the first axis."""
+        """Return states with attitudes of the scene's axes, without the first axis for a single time."""
         Q = quaternion.multiply(Q, quaternion.conjugate(self._run.to_principal))
         return tuple(a[0] for a in (x, Q, v, w)) if np.ndim(t) == 0 else (x, Q, v, w)
 

@@ -1,4 +1,4 @@
-"""The state of a scene at one time, as functions of the user's see it."""
+"""The state of a scene at one time, in the form for user-defined functions."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ _NONE = np.array([1.0, 0.0, 0.0, 0.0])
 
 
 class BodyState(NamedTuple):
-    """Place and motion of one body at one time, in world axes."""
+    """Position, orientation and velocities of one body at one time, in world axes."""
 
     position: np.ndarray  #: (3,) mass centre [m]
     orientation: np.ndarray  #: (4,) unit quaternion (w, x, y, z), body to world
-    velocity: np.ndarray  #: (3,) [m/s]
-    angular_velocity: np.ndarray  #: (3,) [rad/s]
+    velocity: np.ndarray  #: (3,) velocity of the mass centre [m/s]
+    angular_velocity: np.ndarray  #: (3,) angular velocity [rad/s]
 
 
 class SystemState:
@@ -31,13 +31,13 @@ class SystemState:
     Attributes
     ----------
     t : float
-        [s]
+        Time [s].
     kinetic_energy, potential_energy : float
-        As of `Solution` [J].
+        Energies of the whole system [J].
     """
 
     def __init__(self, run, joints: dict[int, Quick | None] | None = None):
-        self._joints = {} if joints is None else joints  # what was asked for before
+        self._joints = {} if joints is None else joints  # joints prepared so far
         clock, rows = run.clock, run.now.view(np.ndarray).copy()
         rows.flags.writeable = False
         self._rows, self._scene, self._to_principal = rows, run.scene, run.to_principal
@@ -47,17 +47,17 @@ class SystemState:
 
     @property
     def position(self) -> np.ndarray:
-        """Mass centres (N, 3), world [m]."""
+        """Positions of the mass centres (N, 3), world [m]."""
         return self._rows["x"]
 
     @property
     def velocity(self) -> np.ndarray:
-        """Of the mass centres (N, 3), world axes [m/s]; at the time of an impact after it."""
+        """Velocities of the mass centres (N, 3), world axes [m/s]; at the time of an impact, after it."""
         return self._rows["v"]
 
     @property
     def angular_velocity(self) -> np.ndarray:
-        """World axes (N, 3) [rad/s]; at the time of an impact after it."""
+        """Angular velocities (N, 3), world axes [rad/s]; at the time of an impact, after it."""
         return self._rows["w"]
 
     @cached_property
@@ -76,7 +76,7 @@ class SystemState:
         return self.kinetic_energy + self.potential_energy
 
     def __getitem__(self, name: str) -> BodyState:
-        """Return the state of a body, by its name."""
+        """Return the state of the body with this name."""
         try:
             part = self._scene[name]
         except KeyError as error:
@@ -91,7 +91,7 @@ class SystemState:
     def joint_coordinates(self, joint) -> tuple[np.ndarray, np.ndarray]:
         """Return coordinates and rates (n,) of a joint, as `Solution.joint_coordinates` does.
 
-        Angles are from -pi to pi, but for those of a `Screw`: one time by itself knows no whole turns.
+        Angles are from -pi to pi, because a single time has no whole turns; except those of a `Screw`.
 
         Parameters
         ----------

@@ -3,11 +3,11 @@
 After each step, with sums since the start,
 
     residual = T + V - (T_0 + V_0) - loads - impacts - friction - bounces,
-    unnamed  = |residual| + sum over lines that never rise of (line - its lowest so far),
-    exchanged = greatest so far of T, |V - V_0|, |loads|, |impacts|, |friction|, |bounces|.
+    unnamed  = |residual| + sum over entries that never rise of (entry - its lowest value so far),
+    exchanged = greatest value so far of T, |V - V_0|, |loads|, |impacts|, |friction|, |bounces|.
 
 "unnamed" is the energy error, which no entry of the ledger explains. The balance does not depend on the zero of
-the potential. The sum over impacts may rise where Newton's law with friction adds energy. The largest error of
+the potential. The sum over impacts may rise if Newton's law with friction adds energy. The largest error of
 a run is compared with the largest energy exchanged in it; 1e-13 of the terms of the energies is round-off.
 (Mathematics page, §1.12.)
 """
@@ -29,38 +29,38 @@ from carom.persistent.step_control import CAREFUL
 #: kinds of energy errors: indices in the columns of `WATCH`
 RESIDUAL, IMPACTS, FRICTION, BOUNCES, ALL = range(5)
 ROUND_OFF = 1e-13
-# a step that gains this part of all that it exchanges is cut, down to this part of a whole step; so many of
-# those in a row that gain all the same are the last
+# a step that gains more than GAIN of the energy that it exchanges is cut, but not below SHORTEST of a whole
+# step; after IN_A_ROW shortest steps that still gain the run ends
 GAIN, SHORTEST, IN_A_ROW = 0.25, 1.0 / 1024.0, 3
-# what a step of an explicit method may have without a name, as a part of `Options.energy_tolerance`: it is cut
-# otherwise; ten times that with active points, where the order is lower. A limit that the shortest step does
-# not keep is made so many times wider
+# allowed energy error of a step of an explicit method, as a part of `Options.energy_tolerance`: if it is
+# greater, the step is cut. OF_ACTIVE times as much is allowed with active points, because the order is lower.
+# If the shortest step exceeds the limit, the limit grows by the factor WIDER
 SHARE, OF_ACTIVE, WIDER = 1e-3, 10.0, 4.0
 
 WATCH = [
     ("tolerance", "f8"),  # `Options.energy_tolerance`
     ("total", "f8"),  # kinetic and potential energy at the start
-    ("potential", "f8"),  # at the start
+    ("potential", "f8"),  # potential energy at the start
     ("exchanged", "f8"),
-    ("struck", "i8"),  # impacts that were looked at
-    ("named", "f8"),  # what impacts gave by Newton's law with friction
-    ("lowest", "f8", 4),  # of the lines so far
-    ("size", "f8"),  # of what the energies are made of, greatest
-    ("amount", "f8", 5),  # greatest without a name, of each kind
-    ("time", "f8", 5),  # and when
-    ("depth", "f8"),  # greatest of a contact at a saved time, by the size of the body
+    ("struck", "i8"),  # number of impacts checked
+    ("named", "f8"),  # energy that impacts added by Newton's law with friction
+    ("lowest", "f8", 4),  # lowest values of the entries so far
+    ("size", "f8"),  # greatest size of the terms of the energies
+    ("amount", "f8", 5),  # greatest error of each kind
+    ("time", "f8", 5),  # its time
+    ("depth", "f8"),  # greatest depth at a saved time, relative to the size of the body
     ("deep_at", "f8"),  # its time, and its contact
     ("deep_contact", "i8"),
-    ("speed", "f8"),  # greatest of a body so far, and what gravity gives in a step [m/s]
-    ("unsolved", "f8"),  # greatest residual of active contacts so far [m/s], and when
+    ("speed", "f8"),  # greatest speed of a body so far, plus the gain from gravity in a step [m/s]
+    ("unsolved", "f8"),  # greatest residual of active contacts so far [m/s], and its time
     ("unsolved_at", "f8"),
     ("gains", "i8"),  # shortest steps in a row that gained
-    ("share", "f8"),  # part of what was exchanged that a step may have without a name
+    ("share", "f8"),  # allowed error of a step, as a part of the energy exchanged
 ]
 
 
 def new_watch(tolerance: float, share: float = np.inf) -> np.recarray:
-    """Return the record of errors for a new run, (1,); without a limit for a single step."""
+    """Return the record of errors for a new run, (1,); by default single steps have no limit."""
     watch = table(WATCH, 1)
     watch["tolerance"], watch["share"] = tolerance, share
     return watch
@@ -149,7 +149,7 @@ def given_by_law(system, clock, records, watch):
 def may_give(system, number):
     """Return whether the contact with this number in the scene has Newton's law and friction."""
     low, high = 0, system.contacts.shape[0]
-    while low < high:  # numbers rise
+    while low < high:  # numbers are sorted
         middle = (low + high) // 2
         if system.contacts[middle].number < number:
             low = middle + 1
@@ -187,7 +187,7 @@ def speeds_known(system, state, h):
 
 @kernel
 def unbalanced(system, active, start, end, named, t, h, watch):
-    """Return the same as `imbalance`, for joined or loaded bodies; `named` is the work of loads and friction.
+    """Return the result of `imbalance` for joined or loaded bodies; `named` is the work of loads and friction.
 
     A step multiplies energy if its unexplained gain is as large as the energy that it exchanges, and above the
     tolerance. Explicit methods do so with springs and dampers that are too stiff for the step.

@@ -22,12 +22,12 @@ from carom.persistent.events import GAP, contact_event_value, find_contact_event
 from carom.persistent.joint_events import STOPS, find_joint_event, joint_event_value
 from carom.persistent.margins import LEAST, NEAR
 
-NEWTON = 6  # steps to the root of a cubic, from near by
+NEWTON = 6  # steps to the root of a cubic from a near start
 
 
 @inlined
 def detect_event(system, controls, active, now, dt, work):
-    """Return the first event of the step on trial: verdict, event, contact, a time before it, slip."""
+    """Return the first event of the trial step: verdict, event, contact, a time before it, slip."""
     found, which, low = CLEAR, -1, 0.0
     for c in range(active.contact_states.shape[0]):
         contact = system.contacts[c]
@@ -93,10 +93,10 @@ def begin_search(search, kind, contact, low, high, d1, d2):
 
 @kernel
 def update_bracket(search, t, f, rate):
-    """Narrow the bracket by the value f at t; return 1 if that is the event, 0 if not yet, -1 if f is NaN."""
+    """Narrow the bracket by the value f at t; return 1 if t is the event, 0 if not, -1 if f is NaN."""
     search.before, search.f_before, search.rate_before = search.t, search.f, search.rate
     search.t, search.f, search.rate = t, f, rate
-    if search.f_low < 0.0:  # the first value; nothing is known at the low end but the sign
+    if search.f_low < 0.0:  # the first value: only the sign is known at the low end
         search.f_low = abs(f)
         if search.tolerance < 0.0:
             search.tolerance = 1e-13 * abs(f)
@@ -121,7 +121,7 @@ def update_bracket(search, t, f, rate):
 def cubic_root(search):
     """Return a root of the cubic through the last two values and rates by Newton's method from the last."""
     a, h = search.before, search.t - search.before
-    if search.rate_before == 0.0 or h == 0.0:  # not known
+    if search.rate_before == 0.0 or h == 0.0:  # no earlier value
         return math.inf
     f, r, slope = search.f_before, search.rate_before, (search.f - search.f_before) / h
     c = (3.0 * slope - 2.0 * r - search.rate) / h
@@ -137,14 +137,14 @@ def cubic_root(search):
 
 @kernel
 def next_trial(search):
-    """Return the next time to try: of a cubic, Newton's or the regula falsi's, else the middle."""
+    """Return the next time to try, by a cubic, Newton's method or regula falsi, otherwise the middle."""
     if search.kind == GAP and search.rate < 0.0:
         t = cubic_root(search)
         if not (search.low < t < search.high):
             t = search.t - search.f / search.rate
     else:
         low, high = search.low, search.high
-        if search.tolerance == NEAR and search.f_low <= LEAST:  # nothing is known but the sign
+        if search.tolerance == NEAR and search.f_low <= LEAST:  # only the sign is known
             return 0.5 * (low + high)
         t = (low * search.f_high - high * search.f_low) / (search.f_high - search.f_low)
     if not (search.low < t < search.high):

@@ -49,7 +49,7 @@ NO_CONVERGENCE, TOO_MANY, NOT_FINITE = 1, 3, 4
 
 @unit
 def advance(model, data, method) -> int:
-    """Move the bodies of an island to the end of the step. Return 0, or the code that `run` must return.
+    """Move the bodies of an island to the end of the step; return 0, or the code that `run` must return.
 
     Propose a step, find the first event in it, accept the motion up to there, and act on the event.
     """
@@ -66,7 +66,7 @@ def advance(model, data, method) -> int:
             code = first_event(model, data, method)
             if code != 0:
                 return code
-            if search.pending != NOTHING:  # points of a flat rim, which strike where they are
+            if search.pending != NOTHING:  # points of a flat rim strike at the present position
                 continue
             code, action = accept_step(model, data)
             if code != 0:
@@ -80,7 +80,7 @@ def advance(model, data, method) -> int:
 
 @inlined
 def may_go_on(model, data):
-    """Return 0, or the code with which the loop is left: pause, longer arrays, or too expensive a step."""
+    """Return 0, or the code with which the loop is left: pause, longer arrays, or a too expensive step."""
     controls, clock = model.controls, data.clocks[0]
     if clock.since > r.LONG and clock.paused == 0:
         return r.PAUSE
@@ -101,7 +101,7 @@ def due_action(model, data):
     action = search.pending
     search.pending = NOTHING
     if action != NOTHING and clock.paused == 0:
-        return action  # put off until its unit was compiled: the horizon is that of then
+        return action  # it was postponed until its unit was compiled, and keeps its horizon
     search.horizon = search.left if exact(controls) else controls.step
     if clock.paused == 1:
         return NOTHING
@@ -123,7 +123,7 @@ def accept_step(model, data):
     system, controls, work = model.system, model.controls, data.work
     active, now, clock, search = data.active, data.state, data.clocks[0], data.work.search[0]
 
-    # an island is taken whole otherwise; where there are none the run goes on as long as it makes sense
+    # if a time-stepping step is possible, it replaces this one; otherwise the run accepts larger residuals
     bearable = UNSOLVED if controls.retry == 1 else USELESS
     if active.count[0] > 0 and unsolved(system, controls, work, bearable):
         return NO_CONVERGENCE, NOTHING
@@ -132,7 +132,7 @@ def accept_step(model, data):
     if not finite(work.trial):
         return NOT_FINITE, NOTHING
 
-    # the motion up to the end of the trial step, and what it ends with
+    # the motion up to the end of the trial step, and the modes at its end
     accept(data, search)
     note_turns(system, now)
     search.pace = next_pace(search.pace, work)
@@ -146,7 +146,7 @@ def accept_step(model, data):
         turn_modes(model, data)
     if search.found == 0:
         if controls.order > 0 and search.dt < 0.5 * search.pace:
-            clock.tries, clock.effort = 0, search.effort  # what tolerances ask for is not counted
+            clock.tries, clock.effort = 0, search.effort  # steps for tolerances do not count
         return 0, NOTHING
 
     # its event
@@ -197,7 +197,7 @@ def act(model, data, method, action):
             return work.hit[0].code
         review_joints(system, data.active, data.state, work)
         if controls.layer_time == 1 and clock.struck > struck:
-            clock.spent += data.records.impact[struck].duration  # the position stays
+            clock.spent += data.records.impact[struck].duration  # positions do not change
         contact = system.contacts[search.contact]
         if closed == 1 and not may_end(contact, system, data.state, search.horizon, work):
             return 0
@@ -206,7 +206,7 @@ def act(model, data, method, action):
 
 @inlined
 def persist(model, data, action):
-    """Make the closed points of the contact persistent, or change their modes. Return a code."""
+    """Make the closed points of the contact persistent, or change their modes; return a code."""
     work, clock, search = data.work, data.clocks[0], data.work.search[0]
     if action == RENEW_MODE:
         renew_mode(model, data, search.contact)
@@ -214,7 +214,7 @@ def persist(model, data, action):
         activate_contact(model, data, search.contact, search.horizon)
         if work.hit[0].code != 0:
             return work.hit[0].code
-    if clock.now == 0.0:  # touching from the start: the first row says so
+    if clock.now == 0.0:  # in contact from the start: write it to the first row
         clock.touched = clock.first_touch
         save_contacts(model.system, data.active, data.state, 0, clock, work, data.records)
     return 0
@@ -240,7 +240,7 @@ def full(system, active, clock, records):
 def left_ball(system, now, dt, work):
     """Return whether a body may have left its ball of this step.
 
-    It has not if both ends of a piece of its path are inside by the distance that a fall of this time can add.
+    It has not left it if both ends of the step are inside by the distance that a fall in this time can add.
     """
     fall = norm(system.gravity)
     for b in range(now.shape[0]):
@@ -317,7 +317,7 @@ def find_due_contact(system, controls, active, now, work):
         if contact_state.jams == 1:
             contact_state.jams, action = 0, STRIKE
         if action == PERSIST:
-            contact_state.leaving = 1  # unless it is active now
+            contact_state.leaving = 1  # if it does not become active now
         if action != NOTHING:
             return action, c
     return NOTHING, -1
@@ -325,9 +325,9 @@ def find_due_contact(system, controls, active, now, work):
 
 @inlined
 def may_end(contact, system, state, horizon, work):
-    """Return whether the bounces of a contact that was just struck, alone, could end within the horizon.
+    """Return whether the bounces of a contact that has just struck, alone, could end within the horizon.
 
-    This is a first check, with a bound of the acceleration if there is one, before the forces are computed.
+    This is a first check with a bound of the acceleration, before forces are computed.
     """
     if contact.touches != 0:
         return True

@@ -1,7 +1,7 @@
 """The steps of a run: their ends, and the ends at which states are saved.
 
 A step of a run is the time between two searches for islands. Within it each island moves from event to event,
-and with tolerances in steps of its own (`carom.dynamics.adapt`).
+and, if tolerances are given, in its own steps (`carom.dynamics.adapt`).
 """
 
 from __future__ import annotations
@@ -14,20 +14,20 @@ import numpy as np
 from carom._compiled.decorators import inlined
 from carom.model.arrays import System
 
-STATES = 200  # states that a run saves after its first, where nothing else is asked for
-# with tolerances, of the time of a fall by the least size of a body: a step of the run is no longer. Several
-# bodies stay near what they are near to; one has nothing to look for
+STATES = 200  # default number of saved states after the first
+# longest step of a run with tolerances, relative to the time of a fall through the least size of a body. With
+# several bodies it is short, because nearness is checked once a step; one body has no neighbours
 ONE_BODY, SEVERAL_BODIES = 4.0, 0.015
-ALIKE = 1e-12  # of a spacing: by so much a whole number of them may miss the duration
-FEW = 1e4  # steps at most of a scene without weight, by its speed
+ALIKE = 1e-12  # relative error allowed when a duration is a whole number of spacings
+FEW = 1e4  # greatest number of steps by speed in a scene without gravity
 
 
 class Grid(NamedTuple):
-    """The ends of steps: all `interval` apart, except the last; or `ends`, if times to save at were given."""
+    """The ends of steps: multiples of `interval`, except the last; or `ends`, if times to save were given."""
 
-    interval: float  # the length of a step, or of the longest
+    interval: float  # length of a step, or of the longest step
     last: int  # number of steps
-    save_every: int  # without `ends`: steps from a saved state to the next; the last is saved too
+    save_every: int  # without `ends`: steps between saved states; the last state is always saved
     ends: np.ndarray  # (last + 1,) from 0, or (0,)
     saves: np.ndarray  # (last + 1,) 1 where the state is saved, or (0,)
 
@@ -88,7 +88,7 @@ def longer_grid(grid: Grid, duration: float, end: float) -> Grid:
         ends = np.append(steps[:-1] * grid.interval, duration)
         saves = np.where((steps % grid.save_every == 0) | (steps == grid.last), 1, 0)
     more = np.arange(1, count(end - duration, grid.interval) + 1)
-    every = max(1, grid.save_every)  # 0 with times to save at: all that come after them are saved
+    every = max(1, grid.save_every)  # it is 0 with given times: then all new steps are saved
     ends = np.append(ends, duration + more * grid.interval)
     ends[-1] = end
     saves = np.append(saves, (more % every == 0) | (more == more[-1])).astype(np.int64)
@@ -104,7 +104,7 @@ def cut_grid(grid: Grid, step: int, end: float) -> Grid:
 
 
 def step_at(grid: Grid, end: float) -> int:
-    """Return the number of the step in which a run comes to this time, from 1 on."""
+    """Return the number of the step, from 1 on, in which a run reaches this time."""
     if len(grid.ends):
         return int(np.searchsorted(grid.ends, end))
     step = max(1, math.ceil(end / grid.interval))
@@ -137,7 +137,7 @@ def longest_step(
 
 
 def part_of_grid(grid: Grid, begin: float, end: float) -> Grid:
-    """Return the steps from `begin`, the end of one, to a time `end`; none of their states is saved."""
+    """Return the steps from `begin`, the end of a step, to a time `end`; none of their states is saved."""
     if len(grid.ends):
         inside = np.searchsorted(grid.ends, begin, "right"), np.searchsorted(grid.ends, end, "left")
         between = grid.ends[inside[0] : inside[1]]
@@ -161,7 +161,7 @@ def begin_and_length(grid, duration, step):
 
 @inlined
 def end_of(grid, duration, step):
-    """Return the time after this number of steps, to the last digit."""
+    """Return the time after this number of steps, without round-off at the end of the run."""
     if grid.ends.shape[0] > 0:
         return grid.ends[step]
     return duration if step == grid.last else step * grid.interval

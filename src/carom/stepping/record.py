@@ -87,7 +87,7 @@ def save_contacts(system, active, now, k, clock, work, records):
         tx, ty, tz = cross(arm[0], arm[1], arm[2], fx, fy, fz)
         sx, sy, sz = cross(other[0], other[1], other[2], -fx, -fy, -fz)
         unit = 1.0
-        if point.turns == 3:  # the force of such a stop is a torque over a length
+        if point.turns == 3:  # the force of a stop of an angle is a torque divided by a length
             unit = point.length
             tx, ty, tz = unit * fx, unit * fy, unit * fz
             sx, sy, sz = -tx, -ty, -tz

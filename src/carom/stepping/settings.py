@@ -15,8 +15,8 @@ from carom.scene.remarks import remarks
 from carom.scene.scene import Scene
 
 LOCATIONS = ("locate", "project", "work")
-RTOL = 1e-8  # where nothing is said
-TIGHT = 1e-9  # from here on the default is the method of order 8
+RTOL = 1e-8  # default
+TIGHT = 1e-9  # at this tolerance or below the default is the method of order 8
 MOST_STEPS = 1e12
 _DEFAULT = Options()
 
@@ -34,17 +34,15 @@ class Settings(NamedTuple):
     """The arguments of `simulate`, checked and completed."""
 
     duration: float
-    step: float | None  # None: tolerances choose
+    step: float | None  # None if tolerances choose the steps
     method: str
     impact_location: str
     save_every: int
     save_at: float | tuple[float, ...] | None
-    rtol: float  # where tolerances choose; else 0
+    rtol: float  # 0 if the step is given
     atol: float | None  # None: `rtol` of the size of the smallest body
     options: Options
-    earlier: tuple[
-        float, ...
-    ] = ()  # durations that the run had before it went on to the present one
+    earlier: tuple[float, ...] = ()  # earlier durations of the run, before it was continued
 
     @property
     def adapts(self) -> bool:

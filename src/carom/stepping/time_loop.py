@@ -22,7 +22,7 @@ from carom.stepping.islands.plan import READY
 from carom.stepping.record import finite, grow, save, still
 from carom.stepping.trial_step import STEP_TOO_SMALL
 
-AGAIN = -1  # the step is to be done again
+AGAIN = -1  # the step is to be repeated
 
 
 @entry
@@ -99,7 +99,7 @@ def step_apart(model, data, method, islands) -> int:
                 data.clocks, data.records, data.watch,
             )
         )  # fmt: skip
-        if plan.entered == 0:  # not done before the loop was left
+        if plan.entered == 0:  # if the loop was left within an island, it has been entered
             parts.enter(part.system, own.active, data.active, own.work, islands, clock.begin, clock)
             clock.first_touch = clock.touched
         code = move_island(part, own, method)
@@ -111,7 +111,7 @@ def step_apart(model, data, method, islands) -> int:
 
 @inlined
 def pay(clock):
-    """Subtract the work that was done from the credit of the steps."""
+    """Subtract the effort of the step from the credit."""
     clock.credit, clock.effort = max(0.0, clock.credit - clock.effort), 0.0
 
 
@@ -140,7 +140,7 @@ def finish_step(model, data, grid):
 def charge_impacts(clock):
     """Assign to impacts the energy that friction gained by dropped bounces in the step and did not lose again.
 
-    Impacts, bounces and persistent contact together have mu times their normal impulse of friction. If the
+    The friction of impacts, bounces and persistent contact together is mu times their normal impulse. If the
     contact ends early, the impacts have lost less.
     """
     part = min(clock.owed, max(0.0, clock.before - clock.impacts))
@@ -215,7 +215,7 @@ def retry_apart(model, data, islands, code):
     island failed event by event.
     """
     if code >= r.GROW and code != r.LEFT_BALL:
-        return False  # the caller sees to it, and comes back
+        return False  # the caller handles the code, and calls again
     clock, again = data.clocks[0], code == r.LEFT_BALL
     if again:
         islands.plan[0].widen *= 2.0
@@ -229,6 +229,6 @@ def retry_apart(model, data, islands, code):
 
 @unit
 def end_islands(model, data, islands):
-    """Write all islands back into the whole system."""
+    """Write all islands back to the whole system."""
     clock = data.clocks[0]
     parts.end_step(model.system, data.active, data.state, clock.length, clock, data.work, islands)

@@ -32,9 +32,9 @@ from carom.stepping.record import finite
 
 STEP_CUT, TOO_MANY, NOT_FINITE = 2, 3, 4
 STEP_TOO_SMALL, UNSTABLE = 12, 14
-TRIES = 3000  # trial steps of a step that is given up
-SEARCH = 4.0  # about what the distance of two solids of any kind takes [us]
-ONCE_MORE = -1  # another trial step is to be made
+TRIES = 3000  # trial steps after which a step is given up
+SEARCH = 4.0  # approximate time for the distance of two solids of any kind [us]
+ONCE_MORE = -1  # another trial step is needed
 
 
 @inlined
@@ -63,14 +63,14 @@ def until_stop(controls, active, dt, clock):
         if active_point.several == 1 and active_point.rest == 0:
             first = min(first, active_point.stop if active_point.mode == SLIP else first)
             first = min(first, min(active_point.turn_stop[0], active_point.turn_stop[1]))
-    # not where they follow each other without end, nor for round-off of the step
+    # except if stops follow each other without end, or the difference is round-off of the step
     inside = first > controls.rest * dt and first < (1.0 - 1e-12) * dt
     return first if inside and clock.in_step < 20 else dt
 
 
 @inlined
 def first_event(model, data, method):
-    """Make trial steps until one has no event, or only the first event at its end. Return a code."""
+    """Make trial steps until one has no event, or only the first event at its end; return a code."""
     clock, search = data.clocks[0], data.work.search[0]
     search.found = 0
     while True:
@@ -90,7 +90,7 @@ def first_event(model, data, method):
 
 @inlined
 def trial_step(model, data, method):
-    """Make a step of length `search.dt` from the present to `work.trial`, with its contact impulses.
+    """Make a step of length `search.dt` from the present state to `work.trial`, with its contact impulses.
 
     The code of the step without contact impulses is stored in the search, because a shorter step may succeed.
     """
@@ -99,7 +99,7 @@ def trial_step(model, data, method):
     work.result[0].start = clock.now
     applied, friction, code = step(method, system, active, now, search.dt, work.trial, work)
     search.applied, search.friction, search.code = applied, friction, code
-    search.alone = friction  # of points that are active one to a body
+    search.alone = friction  # of points that are the only active ones of their bodies
     clock.trials += 1
     clock.tries += 1
     clock.effort += plain_step(system) if system.joints.shape[0] > 0 else 0.0
@@ -114,7 +114,7 @@ def trial_step(model, data, method):
         if work.result[0].code != 0:
             return work.result[0].code
         if retry and clock.effort > affordable(controls, clock):
-            return TOO_MANY  # and its rounds were not all made
+            return TOO_MANY  # some of its rounds were left out
         search.applied += work.result[0].applied
         search.friction += work.result[0].friction
     return 0
@@ -122,7 +122,7 @@ def trial_step(model, data, method):
 
 @kernel
 def charge_searches(clock, work):
-    """Add the cost of nearest points of solids since the last trial step to the work of the step."""
+    """Add the time for nearest points of solids since the last trial step to the effort of the step."""
     pair = work.pair.state[0]
     clock.effort += SEARCH * pair.searches
     pair.searches = 0
@@ -156,7 +156,7 @@ def fits(model, data):
 
 @inlined
 def is_root(model, data):
-    """Return 0 if the end of the trial step is the event that is searched for; ONCE_MORE or a code if not."""
+    """Return 0 if the end of the trial step is the event of the search; otherwise ONCE_MORE or a code."""
     system, controls, work, search = model.system, model.controls, data.work, data.work.search[0]
     f, rate = event_value(system, controls, data.active, search, work.trial, work)
     state = update_bracket(search, search.dt, f, rate)
@@ -174,7 +174,7 @@ def event_within(model, data):
     system, controls, active, now = model.system, model.controls, data.active, data.state
     work, search = data.work, data.work.search[0]
 
-    # is it too long for what it loses?
+    # is the energy error too large?
     loses = too_long(model, data)
     if search.active == 0 and search.dt > SHORTEST * controls.step:
         loses = loses or turns_round(system, now, work.trial, search.dt)
@@ -187,7 +187,7 @@ def event_within(model, data):
 
     # does an event lie inside?
     verdict, kind, other, low, d1, d2 = detect_event(system, controls, active, now, search.dt, work)
-    if verdict == FLAT_RIM:  # its points strike together where they are
+    if verdict == FLAT_RIM:  # its points strike together at the present position
         search.pending, search.contact, search.horizon = STRIKE, other, search.left
         return 0
     own = search.active == 1 and kind == search.kind and other == search.contact
@@ -232,7 +232,7 @@ def bracket(model, data):
         return 0
     if (
         search.kind == GAP and system.contacts[search.contact].touches == 0
-    ):  # what is known at the start
+    ):  # the value at the start is known
         search.f, search.rate = event_value(system, controls, data.active, search, data.state, work)
     f, rate = event_value(system, controls, data.active, search, work.trial, work)
     update_bracket(search, search.dt, f, rate)

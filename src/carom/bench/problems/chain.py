@@ -1,6 +1,6 @@
-"""A chain of rods (1 m, 1 kg) with hinges along y, released horizontal.
+"""A chain of rods (1 m, 1 kg) with hinges along y, released in a horizontal position.
 
-Long chains are chaotic, so that energy is compared, in a time in which errors are still those of the method.
+Long chains are chaotic, so the energy is compared, after a time in which the errors still come from the method.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def scene(links: int = 1):
 
 
 def scale(links: int) -> float:
-    """Return m g N L/2, the energy that errors are compared with."""
+    """Return m g N L/2, the scale of energy errors."""
     return 9.81 * links / 2.0
 
 

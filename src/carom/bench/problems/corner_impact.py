@@ -1,4 +1,4 @@
-"""A cube strikes with one corner: the impact alone, with friction, many at random."""
+"""Impacts of a cube on one corner, with friction and random data; only the impact is computed."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def impacts(count: int = COUNT, seed: int = 1) -> tuple[np.ndarray, np.ndarray]:
 
 
 def ours(mu: float = 0.2, e: float = 0.5, law: int = NEWTON) -> Callable[[], None]:
-    """Return what resolves all of them once."""
+    """Return a function that resolves all impacts once."""
     from carom.bench.loops import resolve_many
     from carom.impact.layout import SIZE
 
@@ -42,7 +42,7 @@ def ours(mu: float = 0.2, e: float = 0.5, law: int = NEWTON) -> Callable[[], Non
 
 
 def error(mu: float = 0.2, e: float = 0.5, count: int = 200) -> float:
-    """Return by how much velocities after miss Newton's law, -e u_n, and u + W P, at most [m/s]."""
+    """Return the greatest error of velocities after, from Newton's law, -e u_n, and from u + W P [m/s]."""
     import carom
 
     W, u = impacts(count)
@@ -55,7 +55,7 @@ def error(mu: float = 0.2, e: float = 0.5, count: int = 200) -> float:
 
 
 def through_layer(mu: float = 0.2, e: float = 0.5, law: int = NEWTON) -> Callable[[], None]:
-    """Return what takes all of them through the paper's boundary layer, two spline steps each."""
+    """Return a function that passes all impacts through the paper's boundary layer, with two spline steps."""
     from carom.bench.loops import traverse_many
     from carom.impact.layout import SIZE
 

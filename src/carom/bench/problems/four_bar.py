@@ -1,7 +1,7 @@
 """Two four-bars in a row (IFToMM A02): closed loops, redundant rows, all bars in line once in each half turn.
 
-All bars have 1 m and 1 kg. One freedom, the lean theta of the N + 1 upright bars:
-theta'' = g sin(theta) ((N + 1)/2 + N) / ((N + 1)/3 + N).
+All bars have 1 m and 1 kg. There is one degree of freedom, the angle theta of the N + 1 upright bars from the
+vertical: theta'' = g sin(theta) ((N + 1)/2 + N) / ((N + 1)/3 + N).
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ TIP = (0.328458111536, 0.944518538180)  # m at 10 s: elliptic motion
 
 
 def scene(count: int = N):
-    """Return `count` four-bars, upright, that lean with 1 rad/s."""
+    """Return `count` upright four-bars with theta' = 1 rad/s."""
     import carom
 
     made, hinge = carom.Scene(gravity=(0, -GRAVITY, 0)), carom.joints.Revolute
@@ -59,7 +59,7 @@ def ours(step: float, method: str = "rk4") -> Task:
 
 
 def mujoco(module, step: float) -> Task:
-    """Return the work of MuJoCo: hinges, and loops closed by equalities as stiff as it says for the step."""
+    """Return the work of MuJoCo: hinges, and loops closed by equalities as stiff as it advises for the step."""
     bar = '<inertial pos="{} {} 0" mass="1" diaginertia=".0833333 .0833333 .0833333"/>'
     bodies = []
     for k in range(N + 1):
@@ -88,7 +88,7 @@ def mujoco(module, step: float) -> Task:
         for k, address in enumerate(ups):
             data.qvel[address] = -1.0
             if k < N:
-                data.qvel[address + 1] = 1.0  # across bars stay level
+                data.qvel[address + 1] = 1.0  # the bars across stay level
         module.mj_step(made, data, nstep=count)
         return data.qpos[ups[0]]
 

@@ -1,4 +1,4 @@
-"""One step of a die that flies, with the check whether it touches the table."""
+"""One step of a die in free flight, with the check for contact with the table."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ STEP = 1e-3
 GENERAL = (0.9e-6, 1.0e-6, 1.2e-6)
 FAR = {"height": 1e7, "velocity": (0.5, 0, -0.5), "spin": (0, 10, 0)}
 NEAR = {"height": 0.012, "velocity": (0.5, 0, 0), "spin": (0, 0, 10), "gravity": 0.0}
-#: far: the ball around the die clears the table; near: it does not, and each corner is bounded
+#: far: the ball around the die cannot reach the table; near: it can, so the motion of each corner is bounded
 CASES = {
     "equal moments, far": FAR,
     "equal moments, near (8 corners checked)": NEAR,
@@ -27,7 +27,7 @@ def ours(case: str = "equal moments, far") -> Callable[[int], object]:
 
 
 def mujoco(module, integrator: str = "Euler") -> Callable[[int], object]:
-    """Return ``run(steps)`` of MuJoCo, far above a plane; the steps are made in C."""
+    """Return ``run(steps)`` of MuJoCo, far above a plane; the loop of steps runs in C."""
     model = module.MjModel.from_xml_string(f"""
     <mujoco><option timestep="{STEP}" integrator="{integrator}"/>
       <worldbody><geom type="plane" size="1 1 1"/>
@@ -44,7 +44,7 @@ def mujoco(module, integrator: str = "Euler") -> Callable[[int], object]:
 
 
 def pybullet(module) -> Callable[[int], object]:
-    """Return ``run(steps)`` of pybullet, far above a plane; one Python call a step."""
+    """Return ``run(steps)`` of pybullet, far above a plane; each step is a call from Python."""
     module.connect(module.DIRECT)
     module.setTimeStep(STEP)
     module.setGravity(0, 0, -9.81)

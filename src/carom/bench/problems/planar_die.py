@@ -1,4 +1,4 @@
-"""The paper's planar die: thrown with spin, strikes a table with an edge, and is turned back by friction."""
+"""The paper's planar die: it is thrown with spin, strikes a table on an edge, and friction turns it back."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ def scene(
 
 
 def centre() -> tuple[float, float]:
-    """Return where (x, z) the centre is at END."""
+    """Return the position (x, z) of the centre at END."""
     s, z = END - FIRST, 0.3 - 0.5 * FIRST - 0.5 * GRAVITY * FIRST**2
     return 0.5 * FIRST + AFTER[0] * s, z + AFTER[1] * s - 0.5 * GRAVITY * s * s
 
 
 def wrong(x: float, z: float) -> float:
-    """Return the distance from there."""
+    """Return the distance of a position from `centre`."""
     return math.hypot(x - centre()[0], z - centre()[1])
 
 
@@ -64,7 +64,7 @@ def ours(step: float, method: str = "rk4", duration: float = DURATION, **how) ->
 
 
 def model(module, step: float, frequency: float):
-    """Return MuJoCo's die and its data, before any throw."""
+    """Return MuJoCo's model of the die and its data, before any throw."""
     made = module.MjModel.from_xml_string(f"""
     <mujoco><option timestep="{step}" integrator="implicitfast" cone="elliptic" impratio="10">
     <flag refsafe="disable"/></option><default><geom condim="3" friction=".2 0 0" solimp=".999 .999 .001"
@@ -75,12 +75,12 @@ def model(module, step: float, frequency: float):
 
 
 def stiffness(step: float) -> float:
-    """Return a frequency of the contact [rad/s] that the step resolves, the best of those tried."""
+    """Return the best frequency found of the contact [rad/s] that the step resolves."""
     return {1e-3: 500.0, 1e-4: 3000.0}.get(step, 0.2 / step)
 
 
 def throw(module, made, data, steps: int, spin=(0, 10, 0), turn=(1, 0, 0, 0)):
-    """Throw MuJoCo's die; return where its centre ends."""
+    """Throw MuJoCo's die; return the final position of its centre."""
     module.mj_resetData(made, data)
     data.qpos[:] = [0, 0, 0.3, *turn]
     data.qvel[:] = [0.5, 0, -0.5, *spin]
@@ -89,7 +89,7 @@ def throw(module, made, data, steps: int, spin=(0, 10, 0), turn=(1, 0, 0, 0)):
 
 
 def mujoco(module, step: float, duration: float = DURATION) -> Task:
-    """Return the work of MuJoCo: springs and dampers, stiffer with a smaller step."""
+    """Return the work of MuJoCo with springs and dampers, which are stiffer with a smaller step."""
     made, data = model(module, step, stiffness(step))
 
     def error() -> float:

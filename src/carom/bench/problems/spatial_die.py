@@ -1,4 +1,4 @@
-"""The die of the paper thrown with spin about two axes, to rest: a corner strikes first."""
+"""The die of the paper, thrown with spin about two axes until it is at rest; a corner strikes first."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def scene():
 
 @cache
 def centre() -> np.ndarray:
-    """Return where the centre is at END: a cube flies exactly, and its impact is to round-off."""
+    """Return the centre at END, exact to round-off, because free flight and the impact are."""
     import carom
 
     return carom.simulate(scene(), END, step=1e-4).position[-1, 0]
@@ -56,7 +56,7 @@ def mujoco(module, step: float, duration: float = DURATION) -> Task:
 
 
 def throws(step: float, runs: int, seed: int = 0, workers: int = 1):
-    """Return an ensemble of throws in random orientation."""
+    """Return an ensemble of throws with random orientation."""
     import carom
 
     made = planar_die.scene()
@@ -68,14 +68,14 @@ def throws(step: float, runs: int, seed: int = 0, workers: int = 1):
 
 
 def rate(step: float, runs: int, seed: int = 0, workers: int = 1, timer=perf_counter) -> float:
-    """Return throws of carom a second, of wall time if not otherwise."""
+    """Return the number of throws of carom per second, by default of wall time."""
     begin = timer()
     throws(step, runs, seed, workers)
     return runs / (timer() - begin)
 
 
 def mujoco_rate(module, step: float, runs: int, seed: int = 0, timer=perf_counter) -> float:
-    """Return the same of MuJoCo on one thread, contact of 500 rad/s."""
+    """Return the same number for MuJoCo on one thread, with a contact of 500 rad/s."""
     made, data = planar_die.model(module, step, 500.0)
     turns = np.random.default_rng(seed).normal(size=(runs, 4))
     turns /= np.linalg.norm(turns, axis=1, keepdims=True)

@@ -1,4 +1,4 @@
-"""A ball that bounces without loss for 60 s: falls of 0.4 m, one after the other."""
+"""A ball that bounces without loss for 60 s, from a height of 0.4 m."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def scene():
 
 
 def height(t: float) -> float:
-    """Return where the centre is: parabolas over the period 2 sqrt(2 h/g), highest at t = 0."""
+    """Return the height of the centre: parabolas of the period 2 sqrt(2 h/g), highest at t = 0."""
     half = math.sqrt(2.0 * DROP / GRAVITY)
     since = (t + half) % (2.0 * half) - half  # the time since the last apex
     return RADIUS + DROP - 0.5 * GRAVITY * since * since
@@ -44,7 +44,7 @@ def ours(step: float, method: str = "rk4", duration: float = DURATION) -> Task:
 
 
 def mujoco(module, step: float, duration: float = DURATION) -> Task:
-    """Return the work of MuJoCo: an undamped spring, as stiff as the step allows."""
+    """Return the work of MuJoCo with an undamped spring, as stiff as the step allows."""
     model = module.MjModel.from_xml_string(f"""
     <mujoco><option timestep="{step}" integrator="implicitfast" gravity="0 0 {-GRAVITY}">
     <flag refsafe="disable"/></option>

@@ -1,7 +1,7 @@
-"""A stack of 20 boxes that slides as one and is slowed by friction: 80 points of contact that stay.
+"""A stack of 20 boxes that slides as one body and is slowed by friction, with 80 points in persistent contact.
 
-Between boxes friction is 0.5, below 0.02: nothing slips but the lowest one, and x = v t - mu g t^2/2 for all.
-(It stands: mu times the height of its centre, 1 m, is less than half an edge.)
+The coefficient of friction is 0.5 between boxes and 0.02 on the floor: only the lowest box slips, and all have
+x = v t - mu g t^2/2. (It does not tip over: mu times the height of its centre, 1 m, is less than half an edge.)
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ BOXES, EDGE, SPEED, MU, BETWEEN, GRAVITY, DURATION = 20, 0.1, 1.0, 0.02, 0.5, 9.
 
 
 def scene(count: int = BOXES):
-    """Return the stack, sliding."""
+    """Return the sliding stack."""
     import carom
 
     made = carom.Scene(gravity=(0, 0, -GRAVITY))
@@ -34,7 +34,7 @@ def scene(count: int = BOXES):
 
 
 def places(count: int = BOXES) -> np.ndarray:
-    """Return where the centres are at the end."""
+    """Return the positions of the centres at the end."""
     z = (np.arange(count) + 0.5) * EDGE
     x = SPEED * DURATION - 0.5 * MU * GRAVITY * DURATION**2
     return np.stack([np.full(count, x), np.zeros(count), z], axis=1)
@@ -59,7 +59,7 @@ def ours(step: float, method: str = "rk4", boxes: int = BOXES) -> Task:
 
 
 def mujoco(module, step: float, boxes: int = BOXES) -> Task:
-    """Return the work of MuJoCo, contact as stiff as it says for the step; the floor has its own friction."""
+    """Return the work of MuJoCo, with the contact stiffness that it advises for the step."""
     half = EDGE / 2
     text = "".join(
         f'<body pos="0 0 {(k + 0.5) * EDGE}"><freejoint/><geom type="box" size="{half} {half} {half}" mass="1" '

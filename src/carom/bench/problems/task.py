@@ -1,4 +1,4 @@
-"""One way to solve one problem: what is timed, and how wrong its answer is."""
+"""The solution of one problem by one tool: the work to time, and the error of its result."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from carom.bench.measure import ROUNDS, per_step, seconds
 
 
 class Task(NamedTuple):
-    """A problem by a tool with a step.
+    """A problem solved by a tool with a step.
 
-    ``run()`` is the whole work. Where setting up is not to count there is ``steps(n)``, which makes n steps,
-    and `count`, how many the work has.
+    ``run()`` is the whole work. If preparation is not to be measured, ``steps(n)`` makes n steps, and `count`
+    is the number of steps of the work.
     """
 
     tool: str
@@ -30,8 +30,8 @@ class Task(NamedTuple):
         return [self.count * t for t in per_step(self.steps, few, max(many, few + 50), rounds)]
 
 
-#: contact of MuJoCo as a spring and damper of frequency w: no coefficient of restitution, but a damping ratio
-#: that gives one on a flat impact (0: e = 1, 0.2155: e = 0.5), as found by integrating one free mass
+#: contact of MuJoCo as a spring and damper of a frequency: it has no coefficient of restitution, but a damping
+#: ratio that gives one in a flat impact (0: e = 1, 0.2155: e = 0.5), found by integration for one free mass
 def solref(frequency: float, ratio: float) -> str:
-    """Return stiffness and damping as MuJoCo wants them."""
+    """Return stiffness and damping in MuJoCo's form."""
     return f"{-(frequency**2)} {-2 * ratio * frequency}"

@@ -1,11 +1,12 @@
 """The laws of restitution by number, one file for each, with the names of `carom.scene.materials.IMPACT_LAWS`.
 
-A law says what is measured during restitution, and the value of it at which restitution ends:
+Restitution ends when a measured quantity reaches a goal. A law defines
 
-- `MEASURE`: "speed" (u_n), "impulse" (the normal impulse of restitution), or "work" (that of its normal force);
-- `goal(e, v0, p_c, work_c)`: from the restitution, the speed of approach [m/s], the normal impulse [N s] of
-  compression and the work [J] of its normal force, below zero. It is proportional to what is measured;
-- `GAINS`: whether the law may raise the energy where there is friction.
+- `MEASURE`, the quantity: "speed" (u_n), "impulse" (the normal impulse of restitution), or "work" (the work of
+  the normal force in restitution);
+- `goal(e, v0, p_c, work_c)`, its value at the end, from the restitution, the speed of approach [m/s], and the
+  normal impulse [N s] and the work of the normal force [J], below zero, of compression;
+- `GAINS`: whether the law may raise the energy if there is friction.
 
 Compression is Newton's law with the goal u_n = 0.
 """
@@ -35,7 +36,7 @@ COUNT = len(LAWS)
 
 
 def _goal_up_to(number: int):
-    """Return the kernel that asks the law of its number, as far as `number`."""
+    """Return the kernel that calls the goal of a law by its number, for all numbers up to `number`."""
     own = LAWS[number].goal
     others = _goal_up_to(number - 1) if number > 0 else own
 
@@ -58,7 +59,7 @@ goal = _goal_up_to(COUNT - 1)
 
 @kernel
 def remaining(law, goal, u_n, p, work):
-    """Return how far the phase is from its goal, `p` and `work` counted from its start."""
+    """Return how far the phase is from its goal; `p` and `work` are counted from its start."""
     if law in BY_SPEED:
         return goal - u_n
     if law in BY_IMPULSE:
@@ -78,7 +79,7 @@ def rate(law, u_n, k):
 
 @kernel
 def straight(law, left, u_n, k):
-    """Return the normal impulse that covers `left` while du_n/dp = k; infinite if never."""
+    """Return the normal impulse that reaches the goal, `left` away, if du_n/dp = k; infinite if none does."""
     if law in BY_SPEED:
         return left / k if k > 0.0 else math.inf
     if law in BY_IMPULSE:

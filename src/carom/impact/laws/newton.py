@@ -1,7 +1,7 @@
-"""Kinematic restitution: the bodies part with e times the speed of approach.
+"""Kinematic restitution: the bodies separate with e times the speed of approach.
 
 I. Newton, Philosophiae Naturalis Principia Mathematica (1687), scholium to the laws of motion. The
-law of the paper. With friction it can raise the energy (mathematics page, §1.10): that is the law.
+law of the paper. With friction this law can raise the energy (mathematics page, §1.10).
 """
 
 from __future__ import annotations

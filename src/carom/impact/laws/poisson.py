@@ -1,7 +1,7 @@
 """Kinetic restitution: the normal impulse of restitution is e times that of compression.
 
 S. D. Poisson, Traite de mecanique (1833), and E. J. Routh, Dynamics of a System of Rigid Bodies
-(1905), who carries it through slip and stick.
+(1905), who extends it to slip and stick.
 """
 
 from __future__ import annotations

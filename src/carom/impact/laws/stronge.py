@@ -1,7 +1,7 @@
 """Energetic restitution: the work of restitution is e^2 times that lost in compression.
 
-W. J. Stronge, Rigid body collisions with friction, Proc. R. Soc. A 431 (1990) 169-181. Never raises
-the energy.
+W. J. Stronge, Rigid body collisions with friction, Proc. R. Soc. A 431 (1990) 169-181. The law never
+raises the energy.
 """
 
 from __future__ import annotations

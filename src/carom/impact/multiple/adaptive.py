@@ -14,10 +14,10 @@ from carom.impact.multiple.motion import set_velocity
 
 ENDED, TRAPPED = 0, 1
 
-APART = 1e-12  # velocities of approach below this part of the scale, or 1e-4 rtol, are none
-WEDGED = 1e-11  # greatest velocity of a group that rests wedged
+APART = 1e-12  # speeds of approach below this part of the scale, or below 1e-4 rtol, count as zero
+WEDGED = 1e-11  # greatest velocity of a group that is wedged at rest
 _LASTING = 0.01
-_FINE = 1e-10  # stages of order four go no further
+_FINE = 1e-10  # least useful tolerance of steps by stages (order four)
 _FIRST_STEP = 0.05
 _STIFF_STEPS = 4  # steps by stages before series are tried again
 
@@ -31,7 +31,7 @@ def start(k, work):
     clock.rest, clock.cut, clock.stretched = 0, 0, 0
     for i in range(3 * k):
         work.vector[P, i] = 0.0
-        work.vector[DISC_T, i] = 0.0  # a first guess: not that of another impact
+        work.vector[DISC_T, i] = 0.0  # a first guess, independent of other impacts
     for i in range(k):
         c = work.contact[i]
         c.mode, c.slope, c.rest, c.most = law.OPEN, 0.0, 0.0, 0.0
@@ -40,13 +40,13 @@ def start(k, work):
         work.vector[D, i] = 0.0
     set_velocity(k, work)
     for i in range(k):
-        if work.vector[U, 3 * i] <= APART:  # those that touch begin to load, if they are driven
+        if work.vector[U, 3 * i] <= APART:  # contacts at rest too, as forces may press them
             law.close(work.contact[i])
 
 
 @kernel
 def branch(k, work, latest):
-    """Save the state at the first unloading: what came before does not depend on restitution."""
+    """Save the state at the first unloading; it does not depend on restitution."""
     clock = work.clock[0]
     clock.branched, clock.saved_step, clock.saved_latest = 1, clock.step, latest
     clock.saved_stiff = clock.stiff
@@ -61,7 +61,7 @@ def branch(k, work, latest):
 
 @kernel
 def resume(k, work, p):
-    """Go back to the first unloading, with the coefficients e that the contacts have now; unload."""
+    """Go back to the first unloading with the present coefficients e of the contacts; unload."""
     clock = work.clock[0]
     clock.step, clock.idle, clock.stiff = clock.saved_step, clock.saved_idle, clock.saved_stiff
     clock.rest, clock.cut, clock.stretched = 0, 0, 0
@@ -79,7 +79,7 @@ def resume(k, work, p):
 
 @inlined
 def drift(k, work, apart, p):
-    """Return 1 if the event is over. Where no force acts, move with constant velocities to the next closure."""
+    """Return 1 if the event is over; if no force acts, move with constant velocities to the next closure."""
     u, d = work.vector[U], work.vector[D]
     for i in range(k):
         c = work.contact[i]
@@ -109,11 +109,11 @@ def drift(k, work, apart, p):
 
 @inlined
 def wedged(k, work, h, p):
-    """Return whether all that are closed rest though forces act: friction holds them, and so it stays.
+    """Return whether all closed contacts rest although forces act: friction blocks them for good.
 
-    With u = 0 in all rows that have forces their power is nothing for good, so W times the forces is, and what
-    has opened keeps its velocity too. At the deepest point all may rest for a moment: it must last for a
-    step of some length `h`.
+    With u = 0 in all rows with forces, their power stays zero. Then W times the forces is zero, so that open
+    contacts keep their velocity too. At the deepest point all contacts may rest for an instant, so only rest
+    during steps of some length counts; `h` is the last step.
     """
     clock, u = work.clock[0], work.vector[U]
     for i in range(k):
@@ -125,7 +125,7 @@ def wedged(k, work, h, p):
     clock.rest += 1 if h >= _LASTING and clock.stretched == 0 else 0
     if clock.rest < 2:
         return False
-    for i in range(k):  # what is stored is lost
+    for i in range(k):  # stored energy is lost
         work.contact[i].wedged = 1 if law.force(work.contact[i], work.vector[D, i], p) > 0.0 else 0
         law.abandon(work.contact[i], work.vector[D, i], p)
     return True
@@ -133,7 +133,7 @@ def wedged(k, work, h, p):
 
 @kernel
 def traverse(k, work, rtol, p, max_events, max_steps):
-    """Go on to the end of the event: ENDED, or TRAPPED after too many changes of mode or steps."""
+    """Continue to the end of the event; return ENDED, or TRAPPED after too many changes of mode or steps."""
     clock = work.clock[0]
     when = work.vector[WHEN]
     set_velocity(k, work)
@@ -154,7 +154,7 @@ def traverse(k, work, rtol, p, max_events, max_steps):
         if p == 1.0 and clock.stiff == 0:
             h, changes = series_step(k, work, rtol)
         if h < 0.0:
-            fine = max(0.1 * rtol, min(rtol, _FINE)) if p == 1.0 else rtol  # as exact as series are
+            fine = max(0.1 * rtol, min(rtol, _FINE)) if p == 1.0 else rtol  # as accurate as series
             by_stages(k, work, fine, p)
             h, changes = clock.length, clock.changes == 1
             clock.stiff = clock.stiff - 1 if clock.stiff > 0 else _STIFF_STEPS - 1
@@ -169,5 +169,5 @@ def traverse(k, work, rtol, p, max_events, max_steps):
 
 @unit
 def pass_layer(k, work, rtol, p, max_events, max_steps):
-    """Traverse the layer; the code goes to the clock."""
+    """Traverse the layer; the clock gets the code."""
     work.clock[0].code = traverse(k, work, rtol, p, max_events, max_steps)

@@ -33,7 +33,7 @@ _SAMPLES = 4
 
 @inlined
 def reach(k, work, degree, stretched, tolerance):
-    """Return the step at which the last two terms are within `tolerance`."""
+    """Return the longest step for which the last two terms are within `tolerance`."""
     last, other = _greatest(k, work.series, degree), _greatest(k, work.series, degree - 1)
     h = math.log(_FARTHEST_STRETCHED if stretched else _FARTHEST)
     small = math.log(tolerance)
@@ -46,7 +46,7 @@ def reach(k, work, degree, stretched, tolerance):
 
 @kernel
 def _greatest(k, S, n):
-    """Return the greatest of the terms of order `n`; the direction of slow slip counts."""
+    """Return the greatest term of order `n`; those of slow slip have more weight, for its direction."""
     line, most = S.shape[2] * LANES, same(0.0)
     for b in range(blocks(k)):
         i = n * line + LANES * b
@@ -64,7 +64,7 @@ def _size(v):
 
 @inlined
 def move(k, work, degree, x):
-    """Go to `x` on the series: velocities, depths and impulses; what friction dissipated is added."""
+    """Move to `x` on the series: set velocities, depths and impulses, and add the friction loss."""
     S, vector = work.series, work.vector
     line = S.shape[2] * LANES
     for b in range(blocks(k)):
@@ -86,8 +86,8 @@ def move(k, work, degree, x):
 def first_turn(k, work, degree, end):
     """Return the first x in [0, end] where slip has turned by a right angle, or 2 end.
 
-    Slip along a line passes through u_t = 0 without any sign of it in the series, which then go on with
-    friction of the wrong sign.
+    When slip along a line passes through u_t = 0, the series do not show it, and continue with friction of the
+    wrong sign.
     """
     S, first, keeps_on = work.series, 2.0 * end, False
     for i in range(k):
@@ -109,7 +109,7 @@ def first_turn(k, work, degree, end):
 
 @kernel
 def _turn_between(S, i, degree, low, high, tolerance):
-    """Return where between `low` and `high` slip has turned by a right angle, by bisection."""
+    """Return the x between `low` and `high` where slip has turned by a right angle, by bisection."""
     for _ in range(60):
         x = 0.5 * (low + high)
         if _along(S, i, degree, x) > 0.0:
@@ -123,7 +123,7 @@ def _turn_between(S, i, degree, low, high, tolerance):
 
 @kernel
 def _keeps_on(S, p, degree, end):
-    """Return whether all terms together cannot turn the slip of any contact of the block at `p` so far."""
+    """Return whether all terms together are too small to turn the slip of the block at `p` by a right angle."""
     u1, u2, line, f = S[S_U1], S[S_U2], S.shape[2] * LANES, same(end)
     x, y, s = load(u1, p), load(u2, p), same(0.0)
     for j in range(degree, 0, -1):
@@ -135,7 +135,7 @@ def _keeps_on(S, p, degree, end):
 
 @kernel
 def _along(S, i, degree, x):
-    """Return the slip of contact `i` at `x` along that of the start."""
+    """Return the component of the slip of contact `i` at `x` along its slip at the start."""
     b, l = i // LANES, i % LANES
     p, q = S[S_U1, degree, b, l], S[S_U2, degree, b, l]
     for j in range(degree - 1, -1, -1):

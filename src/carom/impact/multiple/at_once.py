@@ -1,8 +1,8 @@
-"""The whole impact as one contact problem, where the boundary layer could not be passed.
+"""The whole impact as one contact problem, used if the passage of the boundary layer fails.
 
-Newton's law at each contact, 0 <= p_n _|_ u_n+ + e u_n- >= 0, with Coulomb's cones at the velocity after
-(Moreau 1988). It has no path, so the order in which contacts load and slip is lost; where it would raise the
-energy it is solved again with e = 0, which never does.
+Newton's law holds at each contact, 0 <= p_n _|_ u_n+ + e u_n- >= 0, with Coulomb's cones at the velocity after
+(Moreau 1988). There is no path, so the order in which contacts load and slip is lost. If the result would raise
+the energy, the problem is solved again with e = 0, which never raises it.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from carom.friction.solve import solve_cones
 from carom.friction.strategy import allow
 from carom.impact.multiple.layout import CLEAN, FACTOR, SCRATCH, STACK, TRY
 
-_GROWTH = 1e-9  # of the energy that the greatest velocity stands for
-_MOST = 1e3  # times the greatest velocity before: none is thrown off faster
+_GROWTH = 1e-9  # greatest growth of energy that is round-off, relative to sum |p u|
+_MOST = 1e3  # greatest sound velocity after, relative to the greatest velocity before
 
 
 @kernel
 def unsound(k, u, scale, out):
-    """Return whether a result cannot be: speeds without bound, energy that grows, bodies that still meet."""
+    """Return whether a result is impossible: huge speeds, growing energy, or bodies that still approach."""
     top, gain, bound = 0.0, 0.0, 0.0
     for a in range(3 * k):
         top = max(top, abs(out.velocity[a]))

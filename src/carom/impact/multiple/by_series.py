@@ -10,9 +10,9 @@ from carom.impact.multiple import series as taylor
 from carom.impact.multiple.grip import first_slip, gather_stuck, halt
 from carom.impact.multiple.layout import LANES, S_SIGMA, S_U1, S_U2, WEIGHT, WHEN, U
 
-AT_REST = 1e-10  # slip below this velocity, and below 0.1 rtol, is over
-_MORE = 3  # orders that are added to the series where those at first do not reach a change
-_SAFE = 0.01  # of the tolerance, for a series that is broken off: its last terms are no bound
+AT_REST = 1e-10  # slip below this velocity, or below 0.1 rtol, has ended
+_MORE = 3  # orders that are added to the series until it reaches a change of mode
+_SAFE = 0.01  # of the tolerance, for a series of low order: its last terms do not bound the error
 _STIFF = 100.0  # rate at which a slow direction relaxes, in units of the fastest contact
 
 
@@ -20,7 +20,7 @@ _STIFF = 100.0  # rate at which a slow direction relaxes, in units of the fastes
 def series_step(k, work, rtol):
     """Take a step by series, cut at the first change of mode; return its length and whether a mode changes.
 
-    The length is -1 where the step has to be taken by stages.
+    The length is -1 if the step has to be taken by stages.
     """
     clock, when, u = work.clock[0], work.vector[WHEN], work.vector[U]
     least = max(AT_REST, 0.1 * rtol)
@@ -44,7 +44,7 @@ def series_step(k, work, rtol):
     clock.steps += 1
     most = taylor.degree_for(rtol)
     known, degree, h = 0, most // 2, 0.0
-    while True:  # no more orders than the next change of mode needs
+    while True:  # only as many orders as the next change of mode needs
         taylor.expand(k, z, closed, work, known, degree, stretched)
         if known == 0 and stretched and _stiff(k, work):
             return -1.0, False
@@ -58,7 +58,7 @@ def series_step(k, work, rtol):
     if z > 0:
         slip = first_slip(z, work, degree, end)
         if slip < end:
-            if slip <= 1e-9 or clock.cut == 1:  # once more with forces shared anew, not again
+            if slip <= 1e-9 or clock.cut == 1:  # only one more series step shares the forces anew
                 clock.cut = 0
                 return -1.0, False
             clock.cut = 2
@@ -74,7 +74,7 @@ def series_step(k, work, rtol):
 
 @kernel
 def _stiff(k, work):
-    """Return whether a contact slips so slowly that its direction is stiff, and does not come to rest.
+    """Return whether a contact slips so slowly that its direction is stiff, without coming to rest.
 
     With r = |u_t| and c the rate at which friction changes u_t, the direction relaxes in a time r/c.
     """

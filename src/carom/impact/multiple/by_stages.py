@@ -13,12 +13,12 @@ from carom.impact.multiple.layout import DISC, DISC_T, FORCE, MASS, NEW_D, NEW_U
 from carom.impact.multiple.motion import friction_now, gather_discs, normal_forces, set_velocity
 
 _LEAST_STEP = 1e-9
-_AT_CHANGE = 0.02  # part of the tolerance where a contact begins or ceases to stick
+_AT_CHANGE = 0.02  # part of the tolerance for steps in which a contact begins or ceases to stick
 
 
 @unit
 def by_stages(k, work, rtol, p):
-    """Take an implicit step, cut at the first change of mode; its length and any change go to the clock."""
+    """Take an implicit step, cut at the first change of mode; the clock gets its length and any change."""
     m = gather_discs(k, work)
     work.clock[0].stretched = 0
     h, changes = stages_step(k, m, work, rtol, p)
@@ -51,7 +51,7 @@ def stages_step(k, m, work, rtol, p):
     if changes:
         if first > events.SAME_TIME:
             h = _land(k, m, work, first, p, tolerance, 0.1 * rtol)
-            for i in range(k):  # in the time of the step as it is now
+            for i in range(k):  # times of changes, relative to the new length of the step
                 when[i] -= first - h
         else:
             return first, True
@@ -63,7 +63,7 @@ def stages_step(k, m, work, rtol, p):
 
 @kernel
 def _land(k, m, work, h, p, tolerance, residual):
-    """Step to the change of mode near `h`: Newton's iteration on the length of the step."""
+    """Step to the change of mode near `h`, by Newton's iteration for the length of the step."""
     when, lead = work.vector[WHEN], 0
     for i in range(k):
         if when[i] < when[lead]:
@@ -105,7 +105,7 @@ def _sticks(s, work, slow):
 
 @kernel
 def regime_changes(m, work, slow):
-    """Return whether a contact begins or ceases to stick within the step: its error is seen too small."""
+    """Return whether a contact begins or ceases to stick in the step: its error estimate is then too small."""
     for s in range(m):
         if work.contact[work.index[DISC, s]].sticks != _sticks(s, work, slow):
             return True

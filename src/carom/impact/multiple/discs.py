@@ -1,8 +1,8 @@
 """Friction for given normal forces: min_T T.A T/2 + T.c with |T_i| <= rho_i (mathematics page, §2.3).
 
-A = W_tt is positive semidefinite, often singular (redundant contacts): the minimum w = A T + c is
-unique, T need not be. Convex, so there is always a solution: no jam. Gauss-Seidel with each disc solved
-exactly, and a semi-smooth Newton iteration on T = project(T - s w), s_i = 2 / trace A_ii.
+A = W_tt is positive semidefinite, and singular if contacts are redundant: then w = A T + c at the minimum is
+unique, but T is not. The problem is convex and always has a solution, so there is no jam. It is solved by
+Gauss-Seidel with exact discs, and a semi-smooth Newton iteration on T = project(T - s w), s_i = 2 / trace A_ii.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from carom.impact.multiple.layout import (
     RADIUS,
 )
 
-_EMPTY = 1e-13  # of the trace of a block: directions in which nothing moves
+_EMPTY = 1e-13  # relative to the square of the trace: a smaller determinant of a block is singular
 _PROXIMAL = 1e-10  # regularises the Newton matrix where A is singular
 _NEWTON = 12
 _SWEEPS = 100
@@ -31,7 +31,7 @@ _SWEEPS = 100
 
 @kernel
 def in_disc(a11, a12, a22, b1, b2, rho):
-    """Return the minimum of T.A T/2 + T.b in the disc of radius `rho`, A 2x2."""
+    """Return the T in the disc of radius `rho` that minimizes T.A T/2 + T.b, A 2x2."""
     trace = a11 + a22
     if not (rho > 0.0 and trace > 0.0):
         return 0.0, 0.0
@@ -67,7 +67,7 @@ def in_disc(a11, a12, a22, b1, b2, rho):
 
 @kernel
 def sweep(m, A, radius, t, w):
-    """One pass of block Gauss-Seidel; w is kept up to date."""
+    """Make one sweep of block Gauss-Seidel; update w too."""
     for i in range(m):
         a, b = 2 * i, 2 * i + 1
         a11, a12, a22 = A[a, a], A[a, b], A[b, b]
@@ -115,7 +115,7 @@ def mismatch(m, A, radius, t, w, f):
 
 @kernel
 def _newton_step(m, A, J, vector, index):
-    """Write the step: (I - M + s M (A + eps)) step = -f, M the derivative of the projection."""
+    """Write the solution of (I - M + s M (A + eps)) step = -f, M the derivative of the projection."""
     n, pivot, radius, step = 2 * m, index[PIVOT], vector[RADIUS], vector[DISC_STEP]
     t, w, f = vector[DISC_T], vector[DISC_W], vector[DISC_F]
     for i in range(m):
@@ -145,9 +145,9 @@ def _newton_step(m, A, J, vector, index):
 
 @kernel
 def solve_discs(m, A, J, vector, index, tolerance):
-    """Solve for T of `m` discs, warm start given; return (error in w, iterations).
+    """Solve for T of `m` discs, from the T given as first guess; return (error in w, iterations).
 
-    A, and room J for Newton's matrix; rows of `vector` and `index` as in `layout`.
+    `J` is space for Newton's matrix; rows of `vector` and `index` are as in `layout`.
     """
     n, radius, c = 2 * m, vector[RADIUS], vector[DISC_C]
     t, w, f = vector[DISC_T], vector[DISC_W], vector[DISC_F]
@@ -210,5 +210,5 @@ def _project(m, radius, t):
 
 @unit
 def friction(m, A, J, vector, index, tolerance):
-    """Solve for the friction of `m` discs as `solve_discs` does, compiled on its own."""
+    """Solve for the friction of `m` discs as `solve_discs` does; this unit is compiled separately."""
     solve_discs(m, A, J, vector, index, tolerance)

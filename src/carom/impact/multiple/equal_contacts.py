@@ -1,14 +1,14 @@
 """Exact reductions of a multiple impact.
 
-Contacts that move alike are solved as one, contacts that no force presses take no part, and groups of contacts
-that do not act on each other are solved one after the other.
+Contacts that move alike are solved as one, contacts that no force presses are left out, and groups that do not
+act on each other are solved one after the other.
 
-Contacts of equal velocity, friction, restitution, law and stiffness whose coupling to each class of such
-contacts is equal have the same history in the layer. m of them are one contact, with the impulse shared
-equally: W_CD = sum_ij W_ij / (m_C m_D), kappa_C = m_C kappa. A box that falls flat on its face is one contact.
+Contacts form a class if they have equal velocity, friction, restitution, law and stiffness, and equal coupling
+to each class. They have the same history in the layer: m of them are one contact, whose impulse they share
+equally, W_CD = sum_ij W_ij / (m_C m_D), kappa_C = m_C kappa. A box that falls flat on its face is one contact.
 
-A contact that does not approach stays open, whatever the forces of the others are, if each of them can only
-part it: W_jn,in >= mu_i |W_jn,it|. (One end of an edge strikes while the other lies: that one is lifted.)
+A contact j that does not approach stays open if all forces at the other contacts i can only separate it:
+W_jn,in >= mu_i |W_jn,it|. (If one end of an edge strikes, the other end, at rest on the ground, is lifted.)
 """
 
 from __future__ import annotations
@@ -18,15 +18,15 @@ import math
 from carom._compiled.decorators import kernel
 from carom.impact.multiple.layout import CLASS, FIRST, GROUP, PRESSED, SIZE, STACK
 
-SAME = 1e-11  # relative difference of velocities and inverse masses that is round-off
+SAME = 1e-11  # smaller relative differences of velocities and inverse masses are round-off
 _NONE = 1e-13  # coupling below this part of the diagonal is round-off
 
 
 @kernel
 def reduce(given, acting, scale, index):
-    """Write W and friction as far as they act, and the classes of contacts; return how many classes.
+    """Write the W and the friction that act, and the classes of contacts; return the number of classes.
 
-    `acting` are the same contacts as `given`, with room for these W and friction; `scale`: greatest velocity.
+    `acting` are the contacts `given`, with space for this W and friction; `scale` is the greatest velocity.
     """
     if nothing_slips(given, scale):
         for i in range(given.k):
@@ -43,7 +43,7 @@ def reduce(given, acting, scale, index):
 
 @kernel
 def clean(given, acting):
-    """Copy W, without what rounds to nothing and without tangents where no friction acts; return its scale."""
+    """Copy W without round-off, and without tangents of contacts that have no friction; return its scale."""
     k, W, mu, largest = given.k, given.W, acting.friction, 0.0
     for a in range(3 * k):
         row, new = W[a], acting.W[a]
@@ -61,7 +61,7 @@ def clean(given, acting):
 
 @kernel
 def find_classes(contacts, scale_W, scale_u, index):
-    """Write the class of each contact, the first member and the size of each class; return how many."""
+    """Write the class of each contact, and the first member and size of each class; return their number."""
     k, cls, first, count = contacts.k, index[CLASS], index[FIRST], 0
     for i in range(k):
         cls[i] = -1
@@ -89,14 +89,14 @@ def find_classes(contacts, scale_W, scale_u, index):
 
 @kernel
 def _split(contacts, q, count, tolerance, index):
-    """Make a new class `count` of the members of class `q` that are not coupled as its first; return if any."""
+    """Move the members of class `q` with another coupling than its first to a class `count`; return if any."""
     cls, first, found = index[CLASS], index[FIRST], False
     for i in range(first[q] + 1, contacts.k):
         if cls[i] == q and not _same_coupling(contacts, count, i, first[q], tolerance, cls):
             if not found:
                 found = True
                 first[count] = i
-            cls[i] = -1 - count  # counts as its old class until all members are compared
+            cls[i] = -1 - count  # still part of the old class until all members are compared
     for i in range(contacts.k):
         if cls[i] == -1 - count:
             cls[i] = count
@@ -105,7 +105,7 @@ def _split(contacts, q, count, tolerance, index):
 
 @kernel
 def friction_sleeps(contacts, count, scale_W, index):
-    """Return whether friction never acts on contacts that do not slip: no normal force makes them slip.
+    """Return whether friction never acts, because no normal force makes a contact slip; no contact slips now.
 
     `index` has the classes of contacts without friction, whose normal forces are equal.
     """
@@ -165,7 +165,7 @@ def _same_coupling(contacts, count, i, j, tolerance, cls):
 
 @kernel
 def _difference(k, row, other, s, q, own, cls):
-    """Return the difference of two rows of W, summed over class `q`; if `own`, over those that leave it too."""
+    """Return the difference of two rows of W, summed over class `q`; if `own`, with members that leave it."""
     total = 0.0
     for b in range(k):
         if cls[b] == q or (own and cls[b] < 0):
@@ -197,7 +197,7 @@ def coupled(W, i, j):
 
 @kernel
 def find_pressed(contacts, least, index):
-    """Note the contacts that approach faster than `least`, and those that forces of such can press."""
+    """Mark the contacts that approach faster than `least`, and those that forces of marked ones can press."""
     k, W, u, mu = contacts.k, contacts.W, contacts.u, contacts.friction
     pressed, stack, height = index[PRESSED], index[STACK], 0
     for i in range(k):
@@ -221,7 +221,7 @@ def find_pressed(contacts, least, index):
 
 @kernel
 def parts_others(k, W, i, index):
-    """Return whether forces of contact `i` act on others that nothing presses."""
+    """Return whether forces of contact `i` act on contacts that no force presses."""
     for j in range(k):
         if index[PRESSED, j] == 0 and coupled(W, i, j):
             return True
@@ -230,9 +230,9 @@ def parts_others(k, W, i, index):
 
 @kernel
 def find_groups(k, count, W, index):
-    """Write the group of each class: classes that reach each other; return how many.
+    """Write the group of each class: classes of one group are coupled; return the number of groups.
 
-    Classes that nothing presses are of no group (-1).
+    Classes that no force presses belong to no group (-1).
     """
     group, stack = index[GROUP], index[STACK]
     for q in range(count):
@@ -252,7 +252,7 @@ def find_groups(k, count, W, index):
 
 @kernel
 def _push_neighbours(k, W, height, index):
-    """Push the classes that the one at `height` of the stack reaches, with its group; return the new height."""
+    """Add to the group of the class at `height` of the stack those coupled to it; return the new height."""
     group, stack, cls, pressed = index[GROUP], index[STACK], index[CLASS], index[PRESSED]
     q = stack[height]
     for i in range(k):

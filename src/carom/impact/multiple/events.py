@@ -8,14 +8,14 @@ from carom.impact.multiple import law
 from carom.impact.multiple.lanes import blocks, value_and_slope, values
 from carom.impact.multiple.layout import AT_D, AT_U, LANES, S_AT, S_D, S_U, D, P
 
-ROUND_OFF = 1e-13  # of the scales of velocity and depth
-SAME_TIME = 1e-10  # changes closer than this in time are one
+ROUND_OFF = 1e-13  # relative to the scales of velocity and depth
+SAME_TIME = 1e-10  # changes closer than this in time are simultaneous
 _SAMPLES = 5
 
 
 @kernel
 def gauge(c, d, u_n):
-    """Return what turns positive where contact `c` changes its mode."""
+    """Return a number that becomes positive where contact `c` changes its mode."""
     if c.mode == law.OPEN:
         return d - c.d0
     if c.mode == law.LOAD:
@@ -47,9 +47,9 @@ def any_change(k, work, degree, x):
 
 @inlined
 def find_changes(k, work, degree, end, when):
-    """Write the first change of each contact in [0, end] to `when`, a number beyond if there is none.
+    """Write the time of the first change of each contact in [0, end] to `when`, 2 end if there is none.
 
-    Return the first of all; others that come later than that are not looked for.
+    Return the earliest; changes after the sample next to it are not sought.
     """
     first, a = 2.0 * end, 0.0
     d, u = work.series[S_AT, AT_D], work.series[S_AT, AT_U]
@@ -71,9 +71,9 @@ def find_changes(k, work, degree, end, when):
 
 @kernel
 def _gauge_and_slope(c, i, over, series, degree, x):
-    """Return the gauge of contact `i` less round-off at x, and its derivative.
+    """Return the gauge of contact `i` at x minus round-off, and its derivative.
 
-    A contact that unloads opens if `over`.
+    `over` says that a contact in unloading opens, and does not load again.
     """
     if c.mode == law.LOAD:
         s, slope = value_and_slope(series[S_U], i, degree, x)
@@ -88,7 +88,7 @@ def _gauge_and_slope(c, i, over, series, degree, x):
 
 @kernel
 def _root(c, i, over, series, degree, a, b):
-    """Return where the gauge passes round-off between a and b, where it has: Newton, with bisection."""
+    """Return where the gauge exceeds round-off between a and b: Newton's iteration with bisection."""
     g, _ = _gauge_and_slope(c, i, over, series, degree, a)
     if g >= 0.0:
         return a
@@ -116,7 +116,7 @@ def _root(c, i, over, series, degree, a, b):
 
 @kernel
 def change_modes(k, work, when, latest, p, one_only):
-    """Change the mode of each contact with ``when <= latest``; return their number."""
+    """Change the mode of each contact with ``when <= latest``, or of one only; return their number."""
     count = 0
     for i in range(k):
         if not when[i] <= latest:

@@ -1,7 +1,7 @@
 """The layers of a multiple impact in fixed steps: leap-frog for depths, friction implicit (mathematics, §2.5).
 
-Modes change at the ends of steps. Of order two between changes; for many contacts cheaper than to
-locate each change.
+Modes change at the ends of steps. The method has order two between changes. With many contacts it is cheaper
+than to locate each change.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ from carom.impact.multiple.layout import (
 )
 from carom.impact.multiple.motion import add_velocity, gather_discs, normal_forces, set_velocity
 
-_TOLERANCE = 1e-10  # of velocities, in friction
-_APART = 1e-10  # velocities of approach below this are none
+_TOLERANCE = 1e-10  # of the velocities that friction gives
+_APART = 1e-10  # speeds of approach below this count as zero
 
 
 @kernel
 def traverse_fixed(k, work, n, p, max_events, max_steps):
-    """Pass the layer with `n` steps a unit of time (of the fastest contact, and of its unloading)."""
+    """Pass the layer with `n` steps per unit of time, which is e times shorter for unloading."""
     clock = work.clock[0]
     least = 1.0
     for i in range(k):
@@ -63,7 +63,7 @@ def traverse_fixed(k, work, n, p, max_events, max_steps):
 
 @unit
 def pass_fixed(k, work, n, p, max_events, max_steps):
-    """Traverse the layer; the code goes to the clock."""
+    """Traverse the layer; the clock gets the code."""
     work.clock[0].code = traverse_fixed(k, work, n, p, max_events, max_steps)
 
 
@@ -104,7 +104,7 @@ def _step(k, m, work, h, p):
 
 @kernel
 def _switch(k, work, p):
-    """Change the modes as the state at the end of a step asks; return how many changed."""
+    """Change the modes as the state at the end of a step requires; return the number of changes."""
     changed = 0
     for i in range(k):
         c, d = work.contact[i], work.vector[D, i]

@@ -1,8 +1,8 @@
-"""Contacts that stick: the friction that keeps them at rest, linear in all other forces.
+"""Contacts that stick: the friction that keeps them at rest is linear in all other forces.
 
-W_ZZ T = -a has many solutions where contacts are redundant (four corners of a box: rank 3 of 8); all
-act alike. Taken is the one that loads each contact in the measure of mu N a moment ahead: the least
-|D^-1 T|, D = diag(mu N), so that discs are left only about when no solution fits in them.
+W_ZZ T = -a has many solutions if contacts are redundant (four corners of a box: rank 3 of 8); all have the same
+effect. The solution of least |D^-1 T| is used, D = diag(mu N) a moment ahead. It loads contacts according to
+mu N, so that a contact leaves its disc only about when no solution fits in the discs.
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ from carom.impact.multiple.layout import (
 from carom.impact.multiple.motion import set_velocity
 from carom.impact.multiple.series import stick
 
-_EMPTY = 1e-11  # pivots below this part of the largest: directions that are redundant
+_EMPTY = 1e-11  # directions with pivots below this part of the largest are redundant
 _SAMPLES = 5
-_MOMENT = 0.3  # units of the time of the fastest contact
+_MOMENT = 0.3  # the moment ahead, in units of the time of the fastest contact
 
 
 @kernel
 def gather_stuck(k, work):
-    """List the closed contacts that stick; return how many. What holds them goes to HOLDING."""
+    """List the closed contacts that stick and write the matrix of their friction; return their number."""
     z = 0
     for i in range(k):
         c = work.contact[i]
@@ -55,7 +55,7 @@ def gather_stuck(k, work):
 
 @kernel
 def _bearing(z, work, weight):
-    """Write (mu N)^2 of the sticking contacts, relative to the greatest, at the next opening if near."""
+    """Write (mu N)^2 of the sticking contacts, relative to the greatest, a moment ahead or at an opening."""
     d, u, slot = work.vector[D], work.vector[U], work.index[STUCK]
     moment = _MOMENT
     for a in range(z):
@@ -74,21 +74,21 @@ def _bearing(z, work, weight):
             now = max(now, c.mu * c.slope * (d[i] - c.rest))
         if most > 1e-8 * now * now or turn == 1:
             break
-        moment = 0.0  # all open together
+        moment = 0.0  # all open at the same time: use the present forces
     for a in range(z):
         weight[a] = weight[a] / most if most > 0.0 else 1.0
 
 
 @unit
 def find_holding(z, work):
-    """Write H = D^2 L (L^T D^2 L)^-1 (L^T L)^-1 L^T, W_ZZ = L L^T by Cholesky with pivots: T = -H a."""
+    """Write H in T = -H a: H = D^2 L (L^T D^2 L)^-1 (L^T L)^-1 L^T, W_ZZ = L L^T by Cholesky with pivots."""
     n, slot, vector = 2 * z, work.index[STUCK], work.vector
     L, M, hold = work.matrix[FACTOR], work.matrix[MIDDLE], work.matrix[HOLDING]
     weight, row = vector[SCALE], vector[STICK_T]
     rank = _factor(z, slot, work.matrix[MASS], L, vector[LEFT], row)
     _bearing(z, work, weight)
     gram(n, rank, L, weight, M)
-    if not cholesky(rank, M):  # those that bear do not hold all that can move
+    if not cholesky(rank, M):  # the loaded contacts alone cannot stop all motion
         for a in range(z):
             weight[a] += 0.01
         gram(n, rank, L, weight, M)
@@ -117,7 +117,7 @@ def find_holding(z, work):
 
 @kernel
 def _factor(z, slot, W, L, left, column):
-    """Write L with W_ZZ = L L^T; return its rank."""
+    """Write L in W_ZZ = L L^T; return its rank."""
     n, largest, rank = 2 * z, 0.0, 0
     for a in range(n):
         i = 3 * slot[a // 2] + 1 + a % 2
@@ -147,7 +147,7 @@ def _factor(z, slot, W, L, left, column):
 
 @kernel
 def gram(n, rank, L, weight, M):
-    """Write M = L^T D^2 L, the lower triangle; `weight` is one number of D^2 for two rows."""
+    """Write the lower triangle of M = L^T D^2 L; each number of `weight` is D^2 of two rows."""
     for p in range(rank):
         for q in range(p + 1):
             s = 0.0
@@ -158,7 +158,7 @@ def gram(n, rank, L, weight, M):
 
 @kernel
 def cholesky(n, M):
-    """Factor M in place, the lower triangle; return whether it is positive definite."""
+    """Factor the lower triangle of M in place; return whether M is positive definite."""
     largest = 0.0
     for i in range(n):
         largest = max(largest, M[i, i])
@@ -178,7 +178,7 @@ def cholesky(n, M):
 
 @kernel
 def solve_cholesky(n, M, x):
-    """Solve with the factors, in place."""
+    """Solve with the factors M for x, in place."""
     for i in range(n):
         s = x[i]
         for j in range(i):
@@ -193,7 +193,7 @@ def solve_cholesky(n, M, x):
 
 @kernel
 def halt(k, z, work):
-    """Bring the sticking contacts to rest: what is left of their velocity is taken by an impulse."""
+    """Bring the sticking contacts to rest: an impulse removes the rest of their velocity."""
     stick(k, z, work, work.vector[P], work.vector[U])
     set_velocity(k, work)
     for b in range(z):

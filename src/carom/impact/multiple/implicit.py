@@ -1,9 +1,9 @@
 """A step of order four, implicit in friction: the pair ARK4(3)6L[2]SA, depths explicit, impulses implicit.
 
-C. A. Kennedy and M. H. Carpenter, Applied Numerical Mathematics 44 (2003) 139-181. At each stage the depths
-and so the normal forces are known, and friction is the convex problem of §2.3 for the velocity at the end
-of the stage. Stick is exact (u_t = 0 at every stage), slip that begins from rest, where the direction is stiff
-(at a rate mu N W/|u_t|), needs no small steps, and no threshold divides stick from slip.
+C. A. Kennedy and M. H. Carpenter, Applied Numerical Mathematics 44 (2003) 139-181. At each stage the depths,
+and therefore the normal forces, are known, and friction is the convex problem of §2.3 for the velocity at the
+end of the stage. Stick is exact (u_t = 0 at every stage). Slip that begins from rest needs no small steps,
+although its direction is stiff (rate mu N W/|u_t|), and no threshold separates stick from slip.
 """
 
 from __future__ import annotations
@@ -68,10 +68,10 @@ DEFECT = WEIGHTS - np.array([
 
 @unit
 def implicit_step(k, m, work, h, p, tolerance):
-    """Step from (d, P, u) by `h` to the new state; the error goes to the clock.
+    """Step from (d, P, u) by `h` to the new state; the clock gets the error.
 
-    Forces of this instant are in ``work.stage[FORCE, 0]``; `m` discs are gathered. `tolerance` is for the
-    velocity of friction. At the end ``work.stage[FORCE, 5]`` holds the forces of the new instant.
+    ``work.stage[FORCE, 0]`` has the present forces; `m` discs are gathered. `tolerance` is for the tangential
+    velocity in the problem of friction. At the end ``work.stage[FORCE, 5]`` has the forces of the new instant.
     """
     n = 3 * k
     force, rate, W = work.stage[FORCE], work.stage[STAGE], work.matrix[MASS]
@@ -149,7 +149,7 @@ def _friction(k, m, work, step, force, u, tolerance):
 
 @kernel
 def advance(k, work, h):
-    """Take over the new state; add what friction has dissipated."""
+    """Make the new state the present one; add the friction loss."""
     rate, vector = work.stage[STAGE], work.vector
     for i in range(3 * k):
         vector[P, i] = vector[NEW_P, i]
@@ -163,9 +163,9 @@ def advance(k, work, h):
 
 @kernel
 def interpolate(k, work, h):
-    """Write depths as polynomials of degree five in time, normal velocities as their derivatives.
+    """Write depths as polynomials of degree five in time, and normal velocities as their derivatives.
 
-    Hermite's interpolation: depth, velocity and acceleration at both ends.
+    Hermite's interpolation uses depth, velocity and acceleration at both ends.
     """
     vector, W = work.vector, work.matrix[MASS]
     a0, a1 = vector[SCRATCH], vector[ERROR]
@@ -179,7 +179,7 @@ def interpolate(k, work, h):
         n, b, l = 3 * i, i // LANES, i % LANES
         y0, v0, w0 = vector[D, i], -vector[U, n], -a0[n]
         y1, v1, w1 = vector[NEW_D, i], -vector[NEW_U, n], -a1[n]
-        # Remainders at the end after the Taylor polynomial of the start, times powers of h.
+        # Differences at the end from the Taylor polynomial at the start, times powers of h.
         e0 = y1 - y0 - h * (v0 + 0.5 * h * w0)
         e1 = h * (v1 - v0 - h * w0)
         e2 = h * h * (w1 - w0)

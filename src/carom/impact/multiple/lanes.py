@@ -1,7 +1,7 @@
-"""Series of four contacts at a time: coefficients of one order are adjacent and are added together (SIMD).
+"""Series of four contacts at a time: four coefficients of one order are adjacent, for SIMD instructions.
 
-Contact i is lane i % 4 of block i // 4. Lanes without a contact hold zeros. An array of a series is
-(ORDERS, B, 4); `line` is the distance of one order from the next, and `p` where a block begins in its order.
+Contact i is lane i % 4 of block i // 4. Lanes without a contact are zero. An array of a series has the shape
+(ORDERS, B, 4); `line` is the distance from one order to the next, and `p` the start of a block in its order.
 """
 
 from __future__ import annotations
@@ -13,13 +13,13 @@ from carom.impact.multiple.layout import LANES
 
 @kernel
 def blocks(k):
-    """Return how many blocks `k` contacts fill."""
+    """Return the number of blocks of `k` contacts."""
     return (k + LANES - 1) // LANES
 
 
 @kernel
 def product(line, x, p, y, q, first, n):
-    """Return the sums over j = first .. n of x_j y_(n-j), of the blocks at `p` and `q`."""
+    """Return the sums over j = first .. n of x_j y_(n-j), for the blocks at `p` and `q`."""
     s = same(0.0)
     i, j = p + first * line, q + (n - first) * line
     for _ in range(first, n + 1):
@@ -31,7 +31,7 @@ def product(line, x, p, y, q, first, n):
 
 @kernel
 def square(line, x, p, first, n):
-    """Return the sums over j = first .. n - first of x_j x_(n-j), each product once."""
+    """Return the sums over j = first .. n - first of x_j x_(n-j); equal products are computed once."""
     s = same(0.0)
     i, j = p + first * line, p + (n - first) * line
     while i < j:
@@ -47,7 +47,7 @@ def square(line, x, p, first, n):
 
 @kernel
 def values(line, x, p, degree, h):
-    """Return the four polynomials of a block at `h`."""
+    """Return the values at `h` of the four polynomials of a block."""
     f, i = same(h), p + degree * line
     s = load(x, i)
     for _ in range(degree):
@@ -58,7 +58,7 @@ def values(line, x, p, degree, h):
 
 @kernel
 def value_and_slope(x, i, degree, h):
-    """Return the polynomial of contact `i` at `h`, and its derivative."""
+    """Return the value at `h` of the polynomial of contact `i`, and its derivative."""
     b, l = i // LANES, i % LANES
     s, slope = x[degree, b, l], 0.0
     for j in range(degree - 1, -1, -1):

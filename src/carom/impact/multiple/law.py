@@ -1,14 +1,14 @@
 """The normal law of a contact in the layer: continuous, hysteretic, energetic (mathematics page, §2.2).
 
-Of the depth d = -s in the logarithmic coordinate, with the memory (d0, dm), erased at opening:
+N depends on the depth d = -s in the logarithmic coordinate and on a memory (d0, dm), which opening resets:
 
     open    N = 0                       until d > d0, the depth at the last opening
     load    N = kappa (d - d0)^p        until u_n > 0; then dm = d - d0
     unload  N = kappa dm^p ((d - d0 - (1 - e^2) dm) / (e^2 dm))^p      until N = 0, or d - d0 > dm
 
-The work that is returned is e^2 times the work of loading for every p, whatever friction does: Stronge's
-law. N is continuous everywhere, unlike the constant forces of one contact (law A), which are void for
-a contact that touches at rest.
+The work returned is e^2 times the work of loading for every p and any friction, which is Stronge's law. N is
+continuous everywhere. The constant forces of a single contact (law A) are not, and do not exist for a contact
+that touches at rest.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from carom._compiled.decorators import kernel
 
 OPEN, LOAD, UNLOAD = 0, 1, 2
 
-E_MIN = 0.01  # unloading is 1/e^2 stiffer: smaller e are taken as this one
+E_MIN = 0.01  # replaces smaller e, because unloading is 1/e^2 stiffer than loading
 
 
 @kernel
@@ -33,14 +33,14 @@ def force(c, d, p):
 
 @kernel
 def close(c):
-    """Begin to load: from the depth at the last opening."""
+    """Begin to load, from the depth at the last opening."""
     c.mode = LOAD
     c.slope, c.rest = c.root, c.d0
 
 
 @kernel
 def unload(c, d, p_n):
-    """Begin to unload at depth `d`, normal impulse `p_n` so far."""
+    """Begin to unload at depth `d`; `p_n` is the normal impulse so far."""
     c.mode = UNLOAD
     c.most = d - c.d0
     c.rest = c.d0 + (1.0 - c.e * c.e) * c.most
@@ -51,7 +51,7 @@ def unload(c, d, p_n):
 
 @kernel
 def load_again(c, p_n):
-    """Go on with loading, on the same curve."""
+    """Load again, on the same curve as before."""
     c.mode = LOAD
     c.slope, c.rest = c.root, c.d0
     c.unloading += p_n - c.mark
@@ -60,7 +60,7 @@ def load_again(c, p_n):
 
 @kernel
 def release(c, d, p_n, p):
-    """Open at depth `d`; the blow is over, and its works are written down."""
+    """Open at depth `d`: the impact of this contact ends, and its works are added."""
     if c.mode == UNLOAD:
         c.unloading += p_n - c.mark
         work = (c.root * c.most) ** p * c.most / (p + 1.0)
@@ -76,7 +76,7 @@ def release(c, d, p_n, p):
 
 @kernel
 def abandon(c, d, p):
-    """Write down the works of a blow that is broken off at depth `d`; what is stored is lost."""
+    """Open a contact before the end of its impact, at depth `d`: add its works; stored energy is lost."""
     if c.mode == OPEN:
         return
     depth = d - c.d0 if c.mode == LOAD else c.most

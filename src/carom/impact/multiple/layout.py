@@ -16,7 +16,7 @@ MULTIPLE = {"simultaneous": SIMULTANEOUS, "sequential": SEQUENTIAL, "newton": BY
 
 OK = 0
 BAD_INPUT = 1  #: a number is not finite, or a law or a coefficient is out of its range
-NOT_RESOLVED = 2  #: no method ended with contacts that do not approach
+NOT_RESOLVED = 2  #: after every method some contact still approaches
 
 MESSAGES = {
     BAD_INPUT: "a number is not finite or out of its range",
@@ -24,13 +24,13 @@ MESSAGES = {
 }
 
 # Bits of `marks`.
-PLASTIC = 1  #: closed by the plastic event: trapped, or e = 0 everywhere
-MISSED = 2  #: the law of Newton or Poisson was not met: the nearest was taken, or the energetic law
-CAPPED = 4  #: the law asks for more than e_* = 1 somewhere: not met there, energy cannot grow
-FIXED = 8  #: passed with fixed steps
+PLASTIC = 1  #: ended by the plastic event, because a body is trapped or all e are 0
+MISSED = 2  #: the law of Newton or Poisson was not satisfied; the nearest result or Stronge's law was used
+CAPPED = 4  #: the law of a contact requires e_* > 1, and is not satisfied: energy cannot grow
+FIXED = 8  #: the layer was passed with fixed steps
 EXACT = 16  #: contacts that move alike, resolved exactly as one
-AT_ONCE = 64  #: the layer could not be passed: one contact problem instead
-REPELLED = 32  #: the impulse was scaled back by round-off, so that energy does not grow
+AT_ONCE = 64  #: the passage of the layer failed; one contact problem was solved instead
+REPELLED = 32  #: the impulse was changed by round-off, so that energy does not grow
 
 
 class MultipleSettings(NamedTuple):
@@ -38,11 +38,11 @@ class MultipleSettings(NamedTuple):
 
     multiple: int = SIMULTANEOUS
     rtol: float = 1e-8  # relative error of velocities
-    exponent: float = 1.0  # p of the normal law; 0 in a run: by the shapes that touch
-    adaptive_up_to: int = 24  # contacts (unlike ones); above: fixed steps
-    fixed_steps: int = 40  # a period of the fastest contact, above `adaptive_up_to`
-    max_events: int = 200  # changes of mode, a contact
-    max_steps: int = 2000  # a contact
+    exponent: float = 1.0  # p of the normal law; 0 in a run: by the shapes in contact
+    adaptive_up_to: int = 24  # classes of contacts; with more of them steps are fixed
+    fixed_steps: int = 40  # per unit of time of the fastest contact
+    max_events: int = 200  # changes of mode per contact
+    max_steps: int = 2000  # per contact
     max_rounds: int = 40  # of the outer iteration of Newton's and Poisson's law
 
 
@@ -50,18 +50,18 @@ class CornerContacts(NamedTuple):
     """The contacts of an impact: the first `k` of each array; (n, t1, t2) of each are rows of W and u."""
 
     k: int
-    others: int  # closed contacts that are not among these: their blows are others
+    others: int  # number of closed contacts that are not in this impact of a sequence
     W: np.ndarray  # (3K, 3K) inverse mass, symmetric, often singular
     u: (
         np.ndarray
-    )  # (3K,) velocity before, approach negative; u_n = 0 where contacts touch or are held
+    )  # (3K,) velocity before, approach negative; u_n = 0 for contacts that touch or persist
     friction: np.ndarray  # (K,)
     restitution: np.ndarray  # (K,)
     law: np.ndarray  # (K,) of `carom.impact.laws`
     stiffness: np.ndarray  # (K,), only ratios matter
     pair: (
         np.ndarray
-    )  # (K,) contacts of one number strike together, those of another in a blow of their own
+    )  # (K,) contacts with equal numbers strike together, others in an impact of their own
 
 
 #: one contact, or a class of contacts that move alike, in scaled variables
@@ -71,7 +71,7 @@ CONTACT = [
     ("e", "f8"),  # energetic coefficient in use
     ("root", "f8"),  # kappa^(1/p)
     ("law", "i8"),
-    ("approach", "f8"),  # speed of approach before, 0 where there is none
+    ("approach", "f8"),  # speed of approach before, at least 0
     ("members", "i8"),
     # memory of the normal law
     ("mode", "i8"),
@@ -80,23 +80,23 @@ CONTACT = [
     ("slope", "f8"),  # N = (slope (d - rest))^p
     ("rest", "f8"),
     ("mark", "f8"),  # normal impulse at the last change of mode
-    ("wedged", "i8"),  # 1: friction holds it compressed at the end
+    ("wedged", "i8"),  # 1: friction keeps it compressed at the end
     # friction
     ("sticks", "i8"),
-    ("grip", "f8"),  # mu times the greatest own inverse mass of W_tt
+    ("grip", "f8"),  # mu times the trace of its W_tt
     # sums
     ("loading", "f8"),  # p_c
     ("unloading", "f8"),  # p_r
-    ("absorbed", "f8"),  # work taken, >= 0
-    ("returned", "f8"),  # work given back
+    ("absorbed", "f8"),  # work absorbed, >= 0
+    ("returned", "f8"),  # work returned
     ("loss", "f8"),  # by friction
 ]
 
 RESULT = [
     ("energy_change", "f8"),
-    ("plastic_change", "f8"),  # part of it: by the plastic event
+    ("plastic_change", "f8"),  # its part in the plastic event
     ("miss", "f8"),  # greatest ln(target/reached) of Newton's and Poisson's law where not met
-    ("error", "f8"),  # estimated, of the velocities; 0 where not estimated
+    ("error", "f8"),  # estimated error of the velocities; 0 if not estimated
     ("steps", "i8"),
     ("events", "i8"),
     ("rounds", "i8"),  # of the outer iteration
@@ -111,14 +111,14 @@ class MultipleResult(NamedTuple):
     impulse: np.ndarray  # (3K,)
     velocity: np.ndarray  # (3K,) after
     compression: np.ndarray  # (K,) work of the normal force while loading, <= 0
-    restitution: np.ndarray  # (K,) while unloading, >= 0
+    restitution: np.ndarray  # (K,) work of the normal force while unloading, >= 0
     friction: np.ndarray  # (K,) energy dissipated by friction
-    wedged: np.ndarray  # (K,) 1 where friction holds it at the end, and its law could not be met
+    wedged: np.ndarray  # (K,) 1 if friction blocks the contact at the end: its law fails
     summary: np.recarray  # (1,) RESULT
 
 
 class PassageWork(NamedTuple):
-    """Workspace for the passage of a group of K contacts, in few arrays: each costs at every call."""
+    """Workspace for the passage of a group of K contacts, in few arrays: each array costs time at a call."""
 
     contact: np.recarray  # (K,) CONTACT
     saved: np.recarray  # (K,) CONTACT, at the first unloading
@@ -135,9 +135,9 @@ class PassageWork(NamedTuple):
 
 
 class BlowWork(NamedTuple):
-    """The contacts of one blow, and its result; of a sequence of blows each in turn."""
+    """The contacts and the result of one impact, used in turn for each impact of a sequence."""
 
-    member: np.ndarray  # (K,) their places among all contacts
+    member: np.ndarray  # (K,) places of these contacts among all contacts
     W: np.ndarray  # (3K, 3K)
     given: np.ndarray  # (4, 3K) rows below
     law: np.ndarray  # (2, K) laws and pairs
@@ -160,8 +160,8 @@ BLOW_U, BLOW_FRICTION, BLOW_RESTITUTION, BLOW_STIFFNESS = range(4)
 #: a group, a stack, contacts of the discs, contacts that stick, pivots, contacts that are closed,
 #: 1 for those that some force can press
 CLASS, FIRST, SIZE, GROUP, MEMBER, STACK, DISC, STUCK, PIVOT, CLOSED, PRESSED = range(11)
-#: `matrix`: W of all contacts, cleaned; W of the group, scaled; W_tt of the discs; Newton's matrix; what
-#: holds the sticking contacts, and two for it; the inverse Jacobian of the outer iteration; W of one contact
+#: `matrix`: W of all contacts, cleaned; W of the group, scaled; W_tt of the discs; Newton's matrix; H of the
+#: sticking contacts, and two to find it; the inverse Jacobian of the outer iteration; W of one contact
 CLEAN, MASS, DISCS, JACOBIAN, HOLDING, FACTOR, MIDDLE, INVERSE, SINGLE = range(9)
 #: rows of `vector`. Velocities before, impulse, velocity; the same at the end of a step
 U0, P, U, NEW_P, NEW_U, D, NEW_D, SAVED_P, SAVED_D, WHEN, SCRATCH, ERROR, TRY = range(13)
@@ -169,7 +169,7 @@ U0, P, U, NEW_P, NEW_U, D, NEW_D, SAVED_P, SAVED_D, WHEN, SCRATCH, ERROR, TRY = 
 DISC_C, DISC_T, DISC_W, DISC_F, DISC_STEP, DISC_TRY, RADIUS = range(13, 20)
 #: velocities of contacts that jam, with a seed
 SEEDED = 32
-#: friction as far as it acts
+#: friction where it acts, otherwise 0
 FRICTION = 33
 #: of the series and of stick
 WEIGHT, SCALE, LEFT, STICK_T = range(20, 24)
@@ -177,7 +177,7 @@ WEIGHT, SCALE, LEFT, STICK_T = range(20, 24)
 OUT_X, OUT_F, OUT_NEW, OUT_DX, OUT_DF, OUT_H, OUT_BEST, OUT_BEST_F = range(24, 32)
 #: of a new order of the series: impulses and velocities
 ORDER_P, ORDER_U = 34, 35
-#: of the first unloading: which contacts change their modes then
+#: at the first unloading: times of the changes of mode
 SAVED_WHEN = 36
 #: first index of `series`: velocity n, t1, t2; impulse n, t1, t2; depth; N; |u_t|^2; |u_t|; mu N/|u_t|, the
 #: same times dt/dtau; 1/|u_t|; friction loss; dtau/dt and dt/dtau; numbers of each contact (rows below)
@@ -185,8 +185,8 @@ S_U, S_U1, S_U2, S_P, S_P1, S_P2, S_D, S_N, S_Q, S_R, S_F, S_FS, S_G, S_LOSS, S_
     range(16)
 )
 S_LANE, S_AT = 16, 17
-#: rows of S_LANE: stiffness, mu where friction is that of slip, 1/|u_t| there, the rates c_i of stretched
-#: time, how much more slow slip must be exact, whether any contact of a block slips
+#: rows of S_LANE: stiffness, mu where a contact slips, 1/|u_t| there, the rates c_i of stretched time,
+#: the weight of errors of slow slip, whether any contact of a block slips
 SLOPE, ROUGH, ONE_OVER, PULL, FINE, SLIPPING = range(6)
 #: rows of S_AT, values at one instant: depth, normal velocity
 AT_D, AT_U = 0, 1
@@ -195,7 +195,7 @@ ORDERS = 26  # room for series
 
 UNLIMITED = 2**62  # steps
 
-#: where the passage of the layer stands
+#: progress of the passage of the layer
 CLOCK = [
     ("step", "f8"),  # next step to try
     ("saved_step", "f8"),
@@ -203,15 +203,15 @@ CLOCK = [
     ("saved_idle", "i8"),
     ("steps", "i8"),
     ("events", "i8"),
-    ("idle", "i8"),  # changes of mode since time last went on
+    ("idle", "i8"),  # successive changes of mode without a step in time
     ("branched", "i8"),  # 1 once a state is saved at the first unloading
-    ("rest", "i8"),  # steps since all came to rest
+    ("rest", "i8"),  # steps since all contacts came to rest
     ("stretched", "i8"),  # 1: the last step is measured in stretched time
-    ("cut", "i8"),  # 1: the last step by series ended where a contact cannot stick with its share
+    ("cut", "i8"),  # 1: the last series step ended where a contact ceases to stick
     ("stiff", "i8"),  # implicit steps to take before series are tried again
     ("saved_stiff", "i8"),
-    ("left", "i8"),  # steps that the impact may still take; below 0: it was broken off
-    # what the units answer
+    ("left", "i8"),  # steps that the impact may still take; below 0 it was stopped
+    # results of the units
     ("error", "f8"),
     ("change", "f8"),
     ("code", "i8"),

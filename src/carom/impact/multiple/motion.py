@@ -36,7 +36,7 @@ def add_velocity(n, W, impulse, u):
 
 @kernel
 def set_velocity(k, work):
-    """Write u = u0 + W P: exact momentum, at every step."""
+    """Write u = u0 + W P, so that momentum is exact at every step."""
     u, u0 = work.vector[U], work.vector[U0]
     for i in range(3 * k):
         u[i] = u0[i]
@@ -45,7 +45,7 @@ def set_velocity(k, work):
 
 @kernel
 def into_lanes(k, work):
-    """Copy W of the group, column by column, as the series take it."""
+    """Copy W of the group, column by column, in the form for the series."""
     W, columns = work.matrix[MASS], work.columns
     width = columns.shape[1] // 3
     for j in range(3 * k):
@@ -58,7 +58,7 @@ def into_lanes(k, work):
 
 @kernel
 def gather_discs(k, work):
-    """List the closed contacts with friction and write W_tt of theirs; return how many."""
+    """List the closed contacts with friction and write their W_tt; return their number."""
     slot, A, W, m = work.index[DISC], work.matrix[DISCS], work.matrix[MASS], 0
     for i in range(k):
         if work.contact[i].mode != OPEN and work.contact[i].mu > 0.0:
@@ -88,9 +88,9 @@ def normal_forces(k, work, d, p, out):
 def friction_now(k, m, work, horizon, slow, tolerance, out):
     """Add the friction of this instant to the normal forces `out`; `m` discs are gathered.
 
-    Of a contact that slips T = -mu N u_t/|u_t|; of those at rest, slower than `slow`, the solution of §2.3:
-    both are the friction for the velocity a time `horizon` ahead, in the limit of none. `tolerance` is for
-    accelerations.
+    For a contact that slips, T = -mu N u_t/|u_t|; for contacts at rest (slower than `slow`), T is the solution
+    of §2.3. Both are limits of the friction for the velocity a time `horizon` ahead, as `horizon` tends to 0.
+    `tolerance` is for accelerations.
     """
     if m == 0:
         return

@@ -8,5 +8,5 @@ from carom.impact.resolve import resolve_one
 
 @unit
 def resolve_single(clock, W, u, mu, e, law, out):
-    """Resolve one impact into `out`; its code goes to the clock."""
+    """Resolve one impact into `out`; the clock gets its code."""
     clock[0].code = resolve_one(W, u, mu, e, law, out)

@@ -1,4 +1,4 @@
-"""One group of contacts in scaled variables: through the layer, plastic, or one impact after another."""
+"""One group of contacts in scaled variables: its passage through the layer, or its plastic event."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from carom.impact.multiple.restitution_iteration import iterate_restitution, run
 
 @kernel
 def all_plastic(k, work):
-    """Return whether no contact gives anything back."""
+    """Return whether e = 0 at all contacts."""
     for i in range(k):
         if work.contact[i].restitution > 0.0:
             return False
@@ -22,9 +22,9 @@ def all_plastic(k, work):
 
 @kernel
 def pass_group(k, work, cones, settings, result):
-    """Resolve the group of `k` contacts in `work`; velocities before are in row U0, impulses go to P.
+    """Resolve the group of `k` contacts in `work`; row U0 has the velocities before, row P gets the impulses.
 
-    Where `left` of the clock is below 0 then, the group was broken off: it has taken all steps that it may.
+    If `left` of the clock is below 0 at the end, the group was stopped, because it took too many steps.
     """
     p = settings.exponent
     r.energetic(k, work)

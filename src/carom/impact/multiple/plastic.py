@@ -1,6 +1,6 @@
 """The plastic event: Coulomb's cones at the velocity after (mathematics page, §2.6).
 
-For e = 0 everywhere, and to close what does not end by itself (a body trapped between two walls).
+It is used if all e are 0, and to end an event that does not end by itself (a body trapped between two walls).
 """
 
 from __future__ import annotations
@@ -37,13 +37,13 @@ def plastic_event(k, work, cones, p):
 
 @unit
 def end_plastically(k, work, cones, p):
-    """End the event plastically; the change of energy goes to the clock."""
+    """End the event plastically; the clock gets the change of energy."""
     work.clock[0].change = plastic_event(k, work, cones, p)
 
 
 @kernel
 def _once(k, work, cones, turn):
-    """Solve once, without friction from the third turn on."""
+    """Solve the contact problem once; from the third turn on without friction."""
     n, u, before, impulse = 3 * k, work.vector[U], work.vector[SCRATCH], work.vector[TRY]
     for i in range(n):
         before[i] = u[i]
@@ -52,14 +52,14 @@ def _once(k, work, cones, turn):
     for i in range(k):
         mu[i] = work.contact[i].mu if turn < 2 else 0.0
         kind[i] = CONE
-    heading = work.matrix[FACTOR]  # of no meaning for cones, but finite
+    heading = work.matrix[FACTOR]  # cones do not use it, but it must be finite
     for i in range(k):
         heading[i, 0], heading[i, 1] = 0.0, 0.0
     cones.mismatch[ENOUGH] = 0.0
     allow(cones, k)
     status, _, _ = solve_cones(k, work.matrix[MASS], before, mu, kind, heading, impulse, cones)
     change = _take(k, work, 1.0)
-    if status != SOLVED and change > 0.0:  # too much: as far as the energy falls most
+    if status != SOLVED and change > 0.0:  # take the part of the impulse with the least energy
         part = _best_part(k, work, before, impulse)
         _take(k, work, part - 1.0)
         change = _change(k, work, before, impulse, part)
@@ -79,7 +79,7 @@ def _once(k, work, cones, turn):
 
 @kernel
 def _take(k, work, part):
-    """Add a part of the impulse; return the change of energy if it is the whole one."""
+    """Add a part of the impulse; return the change of energy, which is correct for the whole impulse."""
     impulse = work.vector[TRY]
     for i in range(3 * k):
         work.vector[P, i] += part * impulse[i]
@@ -97,7 +97,7 @@ def _change(k, work, before, impulse, part):
 
 @kernel
 def _best_part(k, work, before, impulse):
-    """Return s in [0, 1] where P.u + s P.W P s / 2 is least."""
+    """Return the s in [0, 1] that minimizes the energy s P.u + s^2 P.W P / 2."""
     slope, curve, u = 0.0, 0.0, work.vector[U]
     for i in range(3 * k):
         slope += impulse[i] * before[i]

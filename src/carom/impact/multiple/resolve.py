@@ -1,4 +1,4 @@
-"""An impact at a corner: several contacts closed while one or more of them strike (mathematics, part 2)."""
+"""An impact at a corner: several contacts are closed, and one or more strike (mathematics page, part 2)."""
 
 from __future__ import annotations
 
@@ -42,8 +42,8 @@ from carom.impact.multiple.one import resolve_single
 from carom.impact.multiple.passage import pass_group
 from carom.impact.multiple.sequential import choose, strikes_at_once, take
 
-_NOTHING = 1e-15  # impulses below this part of the greatest are none
-_TOUCHES = 1e-13  # approach below this part of the greatest velocity is none
+_NOTHING = 1e-15  # impulses below this part of the greatest count as zero
+_TOUCHES = 1e-13  # speeds of approach below this part of the greatest velocity count as zero
 
 
 @entry
@@ -54,10 +54,10 @@ def resolve_multiple(contacts, settings, workspace, out):
 
 @kernel
 def resolve_contacts(contacts, settings, workspace, out):
-    """Resolve an impact of `CornerContacts`; return OK or BAD_INPUT (nothing is written then).
+    """Resolve an impact of `CornerContacts`; return OK, or BAD_INPUT without a result.
 
-    Contacts of one pair strike together, those of different pairs blow by blow. `settings`: `MultipleSettings`;
-    `workspace` from `new_multiple_workspace`, `out` from `new_multiple_result`, for K >= k.
+    Contacts of one pair strike together, those of different pairs one after another. `settings` are
+    `MultipleSettings`, `workspace` and `out` from `new_multiple_workspace` and `new_multiple_result`, K >= k.
     """
     scale = _check(contacts)
     if not scale >= 0.0:
@@ -70,7 +70,7 @@ def resolve_contacts(contacts, settings, workspace, out):
         m = choose(contacts, ends, _TOUCHES * scale, blow, out)
         if m == 0:
             break
-        if ends and not together:  # without end: the rest is plastic
+        if ends and not together:  # the sequence does not end: the rest is plastic
             for a in range(m):
                 blow.given[BLOW_RESTITUTION, a] = 0.0
         part = by_reference(
@@ -94,7 +94,7 @@ def resolve_contacts(contacts, settings, workspace, out):
 
 @kernel
 def _together(contacts, scale, settings, workspace, out):
-    """Resolve an impact of contacts that strike together; `scale`: greatest velocity of all that are closed."""
+    """Resolve an impact of contacts that strike together; `scale` is the greatest velocity of all contacts."""
     k, u, still, result = contacts.k, contacts.u, _TOUCHES * scale, out.summary[0]
     _clear(contacts, out)
     work = workspace.work
@@ -112,10 +112,10 @@ def _together(contacts, scale, settings, workspace, out):
     for g in range(groups if code == OK else 0):
         code = max(code, _group(g, acting, still, settings, workspace, out))
         if work.clock[0].left < 0:
-            return  # broken off: there is no result
+            return  # it was stopped: there is no result
     if code == OK:
         _finish(contacts, out)
-    exact = (result.marks & EXACT) != 0  # that of one contact may gain energy, by Newton's law
+    exact = (result.marks & EXACT) != 0  # a single contact may gain energy with Newton's law
     if code != OK or (not exact and unsound(k, u, scale, out)):
         result.marks, result.miss, result.plastic_change = AT_ONCE, 0.0, 0.0
         solve_at_once(contacts, workspace, out)
@@ -124,7 +124,7 @@ def _together(contacts, scale, settings, workspace, out):
 
 @kernel
 def _check(contacts):
-    """Return the greatest velocity, or NaN where the input is unsound."""
+    """Return the greatest velocity, or NaN if the input is invalid."""
     k, W, u, total, scale = contacts.k, contacts.W, contacts.u, 0.0, 0.0
     for a in range(3 * k):
         row = W[a]
@@ -143,7 +143,7 @@ def _check(contacts):
 
 @kernel
 def _clear(contacts, out):
-    """Write the result of contacts of which none strikes."""
+    """Write the result for contacts none of which strikes."""
     result = out.summary[0]
     result.energy_change, result.plastic_change = 0.0, 0.0
     result.error, result.miss = 0.0, 0.0
@@ -187,7 +187,7 @@ def _group(g, contacts, still, settings, workspace, out):
 
 @kernel
 def _gather(g, contacts, still, classes, work):
-    """List the classes of group `g` and write W between them; return how many, 0 if none of them strikes."""
+    """List the classes of group `g` and write W between them; return their number, 0 if none strikes."""
     index, n, strikes = work.index, 0, False
     for q in range(classes):
         if index[GROUP, q] == g:
@@ -209,7 +209,7 @@ def _gather(g, contacts, still, classes, work):
 
 @kernel
 def _fill(n, contacts, still, exponent, work):
-    """Scale the group and fill in its contacts; return the scales of W and u, and a positive rate."""
+    """Scale the group and write its contacts; return the scales of W and u, and the scale of the rate."""
     u, mu, kappa = contacts.u, contacts.friction, contacts.stiffness
     index, W = work.index, work.matrix[MASS]
     mass, speed, most, stiff = 0.0, 0.0, 0.0, 0.0
@@ -245,11 +245,11 @@ def _fill(n, contacts, still, exponent, work):
 
 @kernel
 def _exactly(contacts, still, work, out):
-    """Resolve a group of one class as one contact; NOT_RESOLVED if nothing stops it.
+    """Resolve a group of one class as one contact; return OK or NOT_RESOLVED.
 
-    If it parts others, or strikes in a sequence of blows, it gives back no more than it took, as each of
-    several contacts; and if it parts others and gives nothing back, all of them are one plastic event, which is
-    left to others.
+    If its forces separate other contacts, or it is one impact of a sequence, it returns no more energy than it
+    has absorbed, like each of several contacts. If it separates others and e = 0, the result is NOT_RESOLVED:
+    all of them are one plastic event.
     """
     index, W, before = work.index, work.matrix[SINGLE], work.vector[TRY]
     q = index[MEMBER, 0]
@@ -288,7 +288,7 @@ def _exactly(contacts, still, work, out):
 
 @kernel
 def _finish(contacts, out):
-    """Write u+ = u + W P and the energy; take back what round-off added to it."""
+    """Write u+ = u + W P and the energy; remove what round-off changed in it."""
     k, W, u = contacts.k, contacts.W, contacts.u
     n, result = 3 * k, out.summary[0]
     P_, after = out.impulse, out.velocity
@@ -320,7 +320,7 @@ def _finish(contacts, out):
 
 @kernel
 def _keeps_energy(contacts, out):
-    """Return whether all contacts with an impulse are elastic and without friction, and none was trapped."""
+    """Return whether all contacts with an impulse are elastic and without friction, and no body was trapped."""
     if (out.summary[0].marks & (PLASTIC | MISSED | AT_ONCE)) != 0:
         return False
     for i in range(contacts.k):
@@ -334,9 +334,9 @@ def _keeps_energy(contacts, out):
 def close_ledger(k, out):
     """Make the works of all contacts add up to the change of energy.
 
-    Friction has what the normal forces have not. Where that is nothing (there is no friction, or a plastic
-    event, which has no path, and whose tangential impulses may add to the energy) the work of compression
-    takes it.
+    Friction gets the difference between the work of the normal forces and the change of energy. If it cannot
+    (without friction, or if tangential impulses of a plastic event, which has no path, added energy), the work
+    of compression is changed.
     """
     loaded, work, loss = 0.0, 0.0, 0.0
     for i in range(k):

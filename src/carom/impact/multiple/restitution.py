@@ -1,9 +1,9 @@
 """Newton's and Poisson's law for several contacts: an outer iteration on the whole event (§2.4).
 
-Each law enters through an energetic coefficient e_* of each contact, with which Newton's target
-u_n+ = e v0, or Poisson's p_r = e p_c, is met. Logarithms x = ln e_* are iterated by Broyden's method, which
-begins as the fixed point e_* <- e_* target/reached. e_* <= 1 always: each contact gives back at most what it
-took, so that energy cannot grow for any law; where that is not enough the target is not met.
+An energetic coefficient e_* of each contact is sought with which Newton's target u_n+ = e v0, or Poisson's
+p_r = e p_c, is reached. Broyden's method iterates the logarithms x = ln e_*; it begins as the fixed point
+iteration e_* <- e_* target/reached. Always e_* <= 1: each contact returns at most the energy it has absorbed,
+so that energy cannot grow with any law; a target that requires more is not reached.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ _FARTHEST = 1.5  # greatest |ln(target/reached)| and step that is believed
 
 @kernel
 def energetic(k, work):
-    """Set e_*: that of laws of work, (A_r/-A_c)^1/2, and e as the first guess for the others."""
+    """Set e_*: (A_r/-A_c)^1/2 for laws of work, and e as the first guess for other laws."""
     for i in range(k):
         c = work.contact[i]
         e = c.restitution
@@ -42,7 +42,7 @@ def energetic(k, work):
 
 @kernel
 def has_target(c):
-    """Return whether the contact has a law of its own to meet."""
+    """Return whether the contact has a target to reach."""
     if c.law in laws.BY_WORK or not c.restitution > 0.0:
         return False
     return c.law in laws.BY_IMPULSE or c.approach > 0.0
@@ -50,7 +50,7 @@ def has_target(c):
 
 @kernel
 def any_targets(k, work):
-    """Return whether any contact has a law of its own to meet."""
+    """Return whether any contact has a target to reach."""
     for i in range(k):
         if has_target(work.contact[i]):
             return True
@@ -59,12 +59,12 @@ def any_targets(k, work):
 
 @kernel
 def misses(k, work, out):
-    """Write ln(target/reached) of each contact; return the greatest that counts, and whether one is capped."""
+    """Write ln(target/reached) of each contact; return the greatest magnitude, and whether an e_* is capped."""
     worst, capped = 0.0, False
     for i in range(k):
         out[i] = 0.0
         c = work.contact[i]
-        if not has_target(c) or c.wedged == 1:  # no e_* would part what friction holds
+        if not has_target(c) or c.wedged == 1:  # no e_* separates a wedged contact
             continue
         target = laws.goal(c.law, c.restitution, c.approach, c.loading, 0.0)
         reached = work.vector[U, 3 * i] if c.law in laws.BY_SPEED else c.unloading
@@ -85,7 +85,7 @@ def misses(k, work, out):
 
 @kernel
 def begin(k, work, gain):
-    """Begin at the e_* in use, with the inverse Jacobian -gain: the plain fixed point, damped."""
+    """Begin at the e_* in use, with the inverse Jacobian -gain: a damped fixed point iteration."""
     for i in range(k):
         work.vector[OUT_X, i] = math.log(work.contact[i].e)
         for j in range(k):
@@ -94,7 +94,7 @@ def begin(k, work, gain):
 
 @kernel
 def keep_best(k, work):
-    """Remember the e_* in use and their misses as the best so far."""
+    """Save the e_* in use and their misses as the best so far."""
     for i in range(k):
         work.vector[OUT_BEST, i] = work.vector[OUT_X, i]
         work.vector[OUT_BEST_F, i] = work.vector[OUT_F, i]
@@ -102,7 +102,7 @@ def keep_best(k, work):
 
 @kernel
 def back_to_best(k, work):
-    """Take the best e_* so far."""
+    """Return to the best e_* so far."""
     for i in range(k):
         work.vector[OUT_X, i] = work.vector[OUT_BEST, i]
         work.contact[i].e = math.exp(work.vector[OUT_BEST, i])
@@ -117,7 +117,7 @@ def improve(k, work):
         step = 0.0
         for j in range(k):
             step -= H[i, j] * o[OUT_F, j]
-        if o[OUT_F, i] == 0.0:  # met, capped, or without an aim
+        if o[OUT_F, i] == 0.0:  # on target, capped, or without a target
             step = 0.0
         step = min(_FARTHEST, max(-_FARTHEST, step))
         x = min(0.0, max(math.log(E_MIN), o[OUT_X, i] + step))
@@ -128,7 +128,7 @@ def improve(k, work):
 
 @kernel
 def learn(k, work):
-    """Broyden's rank-one update of the inverse Jacobian (the good one), from OUT_DX and OUT_NEW - OUT_F."""
+    """Make Broyden's (good) rank-one update of the inverse Jacobian, from OUT_DX and OUT_NEW - OUT_F."""
     o, H = work.vector, work.matrix[INVERSE]
     for i in range(k):
         o[OUT_DF, i] = o[OUT_NEW, i] - o[OUT_F, i]

@@ -8,10 +8,10 @@ from carom.impact.multiple.adaptive import ENDED, pass_layer, resume, start
 from carom.impact.multiple.fixed import pass_fixed
 from carom.impact.multiple.layout import CAPPED, MISSED, OUT_F, OUT_NEW
 
-_GAIN = 0.8  # a round is a gain if it leaves at most this part of the greatest miss
-_PATIENCE = 4  # rounds without gain before the iteration begins again, damped; twice that: it ends
-_COARSE = 1e-4  # greatest tolerance of a passage; less as the misses fall
-_NEAR = 0.1  # greatest ln(target/reached) at which the nearest found is taken
+_GAIN = 0.8  # a round is a gain if it reduces the greatest miss to this part or less
+_PATIENCE = 4  # rounds without gain until it begins again, damped; after twice as many it ends
+_COARSE = 1e-4  # greatest tolerance of a passage; it decreases with the misses
+_NEAR = 0.1  # greatest ln(target/reached) at which the nearest result is used
 
 
 @kernel
@@ -33,10 +33,10 @@ def run(k, work, settings, rtol, fixed, anew):
 
 @kernel
 def iterate_restitution(k, work, settings, fixed, result):
-    """Iterate the energetic coefficients until each contact meets its own law.
+    """Iterate the energetic coefficients until each contact satisfies its own law.
 
-    Where they do not converge (two corners of one rigid edge cannot always both do), the nearest found is
-    taken if it is near, else Stronge's law with the same e.
+    If they do not converge (two corners of one rigid edge cannot always both satisfy it), the nearest result is
+    used if it is near enough, otherwise Stronge's law with the same e.
     """
     o = work.vector
     tolerance = 1e-3 if fixed > 0 else max(3.0 * settings.rtol, 1e-10)
@@ -82,6 +82,6 @@ def iterate_restitution(k, work, settings, fixed, result):
 
 @kernel
 def again(k, work, settings, rtol, fixed):
-    """Pass the layer with other coefficients, from the first unloading on if the state there was saved."""
+    """Pass the layer with other coefficients, from the first unloading if its state was saved."""
     anew = fixed > 0 or work.clock[0].branched == 0
     return run(k, work, settings, rtol, fixed, anew)

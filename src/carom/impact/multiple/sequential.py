@@ -1,8 +1,8 @@
 """A sequence of impacts: the pair that approaches fastest strikes alone, until none approaches (§2.6).
 
 Points of one pair of bodies strike together, and so do pairs that approach equally fast, so that symmetric
-motions stay symmetric. Exact for Newton's cradle with e = 1. In general the result depends on the order of the
-blows, as it does for all such rules.
+motions stay symmetric. The rule is exact for Newton's cradle with e = 1. In general the result depends on the
+order of the impacts, as for all such rules.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from carom.impact.multiple.layout import (
 
 @kernel
 def strikes_at_once(contacts):
-    """Return whether all contacts are of one pair, or none gives anything back: one plastic event then."""
+    """Return whether all contacts belong to one pair, or all e are 0, which is one plastic event."""
     one, plastic = True, True
     for i in range(contacts.k):
         one = one and contacts.pair[i] == contacts.pair[0]
@@ -29,10 +29,10 @@ def strikes_at_once(contacts):
 
 @kernel
 def choose(contacts, every, least, blow, out):
-    """Gather the contacts of the next blow; return how many, 0 if none approaches faster than `least`.
+    """Gather the contacts of the next impact; return their number, 0 if none approaches faster than `least`.
 
-    They are those of the pair that approaches fastest, and of all pairs that do equally fast; or `every` one.
-    Velocities are those of `out`.
+    They belong to the pair that approaches fastest and to pairs that approach equally fast; if `every`, they
+    are all contacts. `out` has the velocities.
     """
     k, pair, member, u, fastest = contacts.k, contacts.pair, blow.member, out.velocity, 0.0
     for i in range(k):
@@ -64,7 +64,7 @@ def choose(contacts, every, least, blow, out):
 
 @kernel
 def take(contacts, m, blow, out):
-    """Add what the blow of `m` contacts did to the result of all."""
+    """Add the result of the impact of `m` contacts to the result of all contacts."""
     member, part, u, W = blow.member, blow.result, out.velocity, contacts.W
     for a in range(m):
         i = member[a]

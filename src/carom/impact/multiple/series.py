@@ -1,9 +1,9 @@
 """A step of high order: the Taylor series of the layer between changes of mode, for p = 1.
 
 Normal forces are linear in the depth, friction of sticking contacts is linear in the other forces, and that
-of slipping ones follows order by order from q = u_t.u_t, r r = q, F r = mu N, T = -F u_t. Where slip may
-end soon time is stretched, dt = sigma dtau with 1/sigma = 1 + sum c_i/|u_t,i|: in tau slip fades like an
-exponential, and the series reaches far. Changes of mode are found on the series, without another step.
+of slipping contacts follows order by order from q = u_t.u_t, r r = q, F r = mu N, T = -F u_t. If slip may end
+soon, time is stretched: dt = sigma dtau with 1/sigma = 1 + sum c_i/|u_t,i|. In tau slip decays exponentially,
+so the series reaches far. Changes of mode are found on the series, without another step.
 """
 
 from __future__ import annotations
@@ -52,12 +52,12 @@ from carom.impact.multiple.layout import (
     U,
 )
 
-_NEAR = 0.3  # slip may end within this time: stretch
+_NEAR = 0.3  # a time ahead, for the force of a contact that is closing
 
 
 @kernel
 def degree_for(rtol):
-    """Return the degree at which a step costs least per length."""
+    """Return the degree for which a step costs least per unit of its length."""
     return min(24, max(9, int(4.0 - 0.55 * math.log(rtol))))
 
 
@@ -69,14 +69,14 @@ def slips(c):
 
 @kernel
 def likely_force(c, d, u_n):
-    """Return the normal force of contact `c`, or of a moment later where it is only closing."""
+    """Return the normal force of contact `c`, or a bound for a moment later if its depth still grows."""
     force = c.slope * (d - c.rest)
     return max(force, max(0.0, force) + _NEAR * c.slope * max(0.0, -u_n))
 
 
 @inlined
 def stretch_weights(k, work):
-    """Write c_i, the rate at which a contact's own friction can change its slip; return if it matters."""
+    """Write c_i, the rate at which a contact's own friction can change its slip; return if any matters."""
     stretched = False
     u, d, weights = work.vector[U], work.vector[D], work.vector[WEIGHT]
     for i in range(k):
@@ -93,7 +93,7 @@ def stretch_weights(k, work):
 
 @inlined
 def begin(k, work, stretched):
-    """Write order 0 of the series, and the numbers of each contact; return how many are closed."""
+    """Write order 0 of the series, and the data of each contact; return the number of closed contacts."""
     S, vector, closed = work.series, work.vector, 0
     lane = S[S_LANE]
     for b in range(blocks(k)):
@@ -131,7 +131,7 @@ def begin(k, work, stretched):
 def expand(k, z, closed, work, first, degree, stretched):
     """Write the series of velocity, impulse and depth of orders `first` + 1 to `degree`.
 
-    Those up to `first` are there; `z` contacts stick (see `grip`).
+    Orders up to `first` are known; `z` contacts stick (see `grip`).
     """
     S, lane = work.series, work.series[S_LANE]
     line = S.shape[2] * LANES
@@ -210,7 +210,7 @@ def _stretch(k, line, S, n):
 @inlined
 def _answer(k, closed, line, S, columns, slot, n):
     """Write order `n` of the velocities: W times the impulses of the closed contacts."""
-    row, b0 = 3 * line, n * line  # of a column of W
+    row, b0 = 3 * line, n * line  # `row`: length of a column of W
     for b in range(blocks(k)):
         p = LANES * b
         un, u1, u2 = same(0.0), same(0.0), same(0.0)
@@ -245,7 +245,7 @@ def _hold(k, z, work, n):
 
 @kernel
 def stick(k, z, work, impulse, velocity):
-    """Add to `impulse` the friction that keeps `z` sticking contacts at rest, and its effect to `velocity`."""
+    """Add to `impulse` the friction that keeps `z` contacts at rest, and its effect to `velocity`."""
     hold, slot, t = work.matrix[HOLDING], work.index[STUCK], work.vector[STICK_T]
     for a in range(2 * z):
         s, row = 0.0, hold[a]

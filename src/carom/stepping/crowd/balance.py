@@ -12,14 +12,14 @@ from carom.kinematics.contact_point import contact_velocity
 from carom.persistent.middle_state import spin_momentum
 from carom.persistent.step_control import kinetic, lost_by, weigh
 
-# of a group: what a piece may gain, and what it may be off by besides, as parts of the kinetic energy and of
-# m g times the size of its bodies
+# greatest gain of energy of a group in a piece, and greatest difference from the work of its impulses, relative
+# to the kinetic energy plus m g times the size of its bodies
 GAINS, OFF = 1e-7, 1e-4
 
 
 @kernel
 def energy_gained(model, data, h, loaded):
-    """Return what the bodies have gained, kinetic and potential."""
+    """Return the gain of kinetic and potential energy of the bodies."""
     system, start, end, clock = model.system, data.state, data.work.trial, data.clocks[0]
     if not loaded:
         return gained_in_flight(system, start, end)
@@ -31,7 +31,7 @@ def energy_gained(model, data, h, loaded):
 
 @kernel
 def gained_in_flight(system, start, end):
-    """Return what bodies that only gravity acts on have gained."""
+    """Return the gain of energy of bodies on which only gravity acts."""
     gained = 0.0
     for b in range(start.shape[0]):
         gained -= lost_by(system, b, start, end)
@@ -40,7 +40,7 @@ def gained_in_flight(system, start, end):
 
 @kernel
 def off(model, data, k, gained):
-    """Return whether a group gains, or loses or gains by the way back to the surfaces, too much in a piece."""
+    """Return whether a group gains too much energy, or the return to the surfaces changes it too much."""
     system, start, end, crowd = model.system, data.state, data.work.trial, data.crowd
     size, work = 0.0, 0.0
     for b in range(start.shape[0]):
@@ -55,9 +55,9 @@ def off(model, data, k, gained):
 
 @kernel
 def take_out(system, gained, flight, end):
-    """Take an energy that was gained out of the impulses of all bodies that move; return what was taken.
+    """Remove the energy `gained` by scaling the impulses of all moving bodies; return the energy removed.
 
-    All by one factor, so that each keeps its direction, if that is possible.
+    One factor scales all of them, so that their directions do not change; if no factor does, return 0.
     """
     if not gained > 0.0:
         return 0.0
@@ -91,10 +91,10 @@ def moves(state):
 
 @kernel
 def take_over(gained, impacts, friction, bounces, clock):
-    """Put what has no name into the lines of a piece that began with these: none rises by it; return the rest.
+    """Assign an energy error to the entries of a piece, which began with these; return the rest.
 
-    A body that stops within a piece comes back to the surface from where it would have sunk to: its impact has
-    taken less.
+    No entry rises in the piece. The error has a reason: a body that stops within a piece comes back to the
+    surface from the depth to which it would have sunk, so that its impact has lost less.
     """
     if gained < 0.0:
         clock.bounces += gained
@@ -110,9 +110,9 @@ def take_over(gained, impacts, friction, bounces, clock):
 
 @kernel
 def slow_down(system, gained, end):
-    """Take energy out of the motion of a body, all of it by one factor: points keep sticking and sliding so.
+    """Remove energy from the motion of a body by one factor, so that its points continue to stick and slide.
 
-    What a body gains that turns far within a piece, as it comes back to the surface.
+    A body that turns far within a piece gains this energy when it comes back to the surface.
     """
     energy = kinetic(system.bodies[0], end)
     if not gained > 0.0 or not energy > 0.0:

@@ -17,12 +17,12 @@ from carom.persistent.active_set import begin_point
 from carom.persistent.step_control import MANY, POORLY, rest_speed
 from carom.stepping.crowd.response import block_of_point
 
-ASIDE = 1e-9  # of its size: a body that has moved so far in a step was pushed
+ASIDE = 1e-9  # of its size: a body at rest that has moved further in a step was pushed
 
 
 @kernel
 def finish(model, data, k, h, fall, residual):
-    """Write what the step has done, and put to rest what moves no more; return the energy that has a name."""
+    """Write the results of the step, and set still bodies to rest; return the energy in the ledger."""
     system, controls = model.system, model.controls
     active, start, end, crowd, clock, records = (
         data.active,
@@ -33,7 +33,7 @@ def finish(model, data, k, h, fall, residual):
         data.records,
     )
     tolerance = rest_speed(controls, fall * h, residual, k, POORLY)
-    blows, pressing, rubbing = 0.0, 0.0, 0.0
+    impacts, pressing, rubbing = 0.0, 0.0, 0.0
     for i in range(k):
         spot, point = crowd.spots[i], crowd.points[0][i]
         p, u = spot.impulse, spot.before
@@ -41,20 +41,20 @@ def finish(model, data, k, h, fall, residual):
         normal = 0.5 * p[0] * (u[0] + w[0]) if spot.turns == 0 else 0.0
         tangential = 0.5 * (p[1] * (u[1] + w[1]) + p[2] * (u[2] + w[2]))
         if spot.turns == 0 and p[0] > 0.0 and spot.strikes == 1:
-            blows += normal + tangential
+            impacts += normal + tangential
             write_impact(model, data, i, k, w, normal, tangential)
             note_event(system, spot.contact, spot.feature, IMPACT, 0, clock, records)
         else:
             pressing += normal
             rubbing += tangential
-    # none gains: where slip has turned within the step friction has done less than these products, and where
-    # rows turn what presses has; the caller sees to the rest (`carom.stepping.crowd.step.take_over`)
+    # no entry gains energy: if slip or rows turn within the step, the work of friction or of normal forces is
+    # less than these products; the caller assigns the rest (`carom.stepping.crowd.balance.take_over`)
     pressing, rubbing = min(0.0, pressing + max(0.0, rubbing)), min(0.0, rubbing)
-    blows = min(0.0, blows)
+    impacts = min(0.0, impacts)
     if k > 0 and clock.whole_at != clock.step + 1:
         clock.whole += 1
         clock.whole_at = clock.step + 1
-    clock.impacts += blows
+    clock.impacts += impacts
     clock.friction += rubbing
     clock.bounces += pressing
     count = list_active(model, data, k, h, tolerance)
@@ -68,15 +68,15 @@ def finish(model, data, k, h, fall, residual):
         if active.points[i].touches == 0:
             active.carries[active.points[i].feature] = 1
     active.count[0] = count
-    for i in range(k):  # in a smaller island it is looked at first
+    for i in range(k):  # in event-driven steps these contacts are checked first
         active.contact_states[crowd.spots[i].contact].near = 1
         active.contact_states[crowd.spots[i].contact].leaving = 0
-    return blows + pressing + rubbing
+    return impacts + pressing + rubbing
 
 
 @kernel
 def write_impact(model, data, i, k, w, pressure, rubbing):
-    """Write the row of an impact; it has no duration, and its point is one of all that press."""
+    """Write the row of an impact without duration; k points share the impulses of the step."""
     end, crowd, clock, records = data.work.trial, data.crowd, data.clocks[0], data.records
     spot, point = crowd.spots[i], crowd.points[0][i]
     row, x, contact = (
@@ -97,7 +97,7 @@ def write_impact(model, data, i, k, w, pressure, rubbing):
 
 @kernel
 def list_active(model, data, k, h, tolerance):
-    """Write the points that press without a strike into `crowd.active`, and their events; return how many."""
+    """Write the loaded points that do not strike to `crowd.active`, and their events; return their number."""
     system = model.system
     active, end, crowd, clock, records = (
         data.active,
@@ -108,7 +108,7 @@ def list_active(model, data, k, h, tolerance):
     )
     count = 0
     for i in range(active.count[0]):
-        crowd.follows[i] = 0  # 1 where a point goes on
+        crowd.follows[i] = 0  # 1 if a point stays active
     for i in range(k):
         spot, point = crowd.spots[i], crowd.points[1][i]
         p, c = spot.impulse, spot.contact
@@ -148,7 +148,7 @@ def list_active(model, data, k, h, tolerance):
 
 @kernel
 def take_torque(crowd, spot, factor):
-    """Put the torque of rolling or of pivoting into the list."""
+    """Write the torque of rolling or of pivoting friction to its active point."""
     place, p = crowd.spots[spot.parent].place, spot.impulse
     if place < 0:
         return
@@ -161,7 +161,7 @@ def take_torque(crowd, spot, factor):
 
 @kernel
 def root(parent, b):
-    """Return the body that the set of b is named after."""
+    """Return the body that represents the set of b."""
     while parent[b] != b:
         parent[b] = parent[parent[b]]
         b = parent[b]
@@ -170,7 +170,7 @@ def root(parent, b):
 
 @kernel
 def way(start, end, size):
-    """Return how far a body has moved, and turned by its size [m]."""
+    """Return the displacement of a body plus its rotation times its size [m]."""
     moved, turned = 0.0, 0.0
     for j in range(3):
         moved += (end.x[j] - start.x[j]) ** 2
@@ -181,10 +181,10 @@ def way(start, end, size):
 
 @kernel
 def come_to_rest(system, tolerance, count, start, end, crowd):
-    """Stop bodies that press on each other or are joined, exactly, where all of them are slower than that.
+    """Stop sets of bodies in contact or with joints exactly if all of their speeds are below the tolerance.
 
-    Those that did not move at the start are where they were, and rest from now on; unless one was pushed aside,
-    as something has sunk into it, or has loads or joints.
+    Sets that were at rest at the start get their old positions, and rest from now on; except if a body was
+    pushed, because another had penetrated it, or has loads or joints.
     """
     parent, speed, n, joined = crowd.parent, crowd.speed, end.shape[0], -1
     for b in range(n):
@@ -208,7 +208,7 @@ def come_to_rest(system, tolerance, count, start, end, crowd):
                 copy_state(start[b], end[b])
             for j in range(3):
                 end[b].v[j], end[b].w[j] = 0.0, 0.0
-    for b in range(n):  # what acts on it may change with time: it is stopped only
+    for b in range(n):  # loads may change with time: such a body stops, but does not rest
         if system.bodies[b].ballistic == 0:
             speed[0, root(parent, b)] = math.inf
     for i in range(count):

@@ -13,7 +13,7 @@ from carom.persistent.middle_state import halfway
 from carom.persistent.step_control import plain_step
 from carom.stepping.energy_balance import unbalanced
 
-MISSED = -1  # a piece that is too long
+MISSED = -1  # the piece is too long
 
 
 @kernel
@@ -27,9 +27,9 @@ def is_loaded(system):
 
 @kernel
 def fly(model, data, method, h, loaded, cut):
-    """Write the motion without contacts into `crowd.flight`, of loaded bodies its middle too; return a code.
+    """Write the motion without contacts to `crowd.flight`, and its middle for loaded bodies; return a code.
 
-    With `cut` a piece in which that motion gains energy, or loses more than a step may, is `MISSED`.
+    With `cut` the code is `MISSED` if the energy error of this motion is larger than a step may have.
     """
     system, active, now, crowd, work = model.system, data.active, data.state, data.crowd, data.work
     clock, search, code = data.clocks[0], work.search[0], 0
@@ -42,7 +42,7 @@ def fly(model, data, method, h, loaded, cut):
         for b in range(now.shape[0]):
             copy_state(work.trial[b], crowd.flight[b])
             halfway(now[b], crowd.flight[b], work.middle[b])
-        if code == 0 and cut:  # what is too stiff for a step of this length
+        if code == 0 and cut:  # forces may be too stiff for a step of this length
             named, watch = applied + friction, data.watch[0]
             off, grows = unbalanced(
                 system, active, now, work.trial, named, work.result[0].start, h, watch
@@ -68,9 +68,9 @@ def greatest_change(system, start, end):
 
 @kernel
 def follow_path(system, h, start, end, crowd, work):
-    """Give the flight what loads do on the path that is taken, less on the one without contacts.
+    """Add to the flight the effect of loads on the actual path minus their effect on the path without contacts.
 
-    A damper sees the speed that contacts leave it. Returns whether that is anything.
+    A damper then acts on the speed with contacts. Return whether there is a difference.
     """
     for b in range(start.shape[0]):
         halfway(start[b], end[b], work.stage[b])
@@ -90,7 +90,7 @@ def follow_path(system, h, start, end, crowd, work):
 
 @kernel
 def mean_power(system, start, end, work):
-    """Return the power of loads on the path that is taken, less that on the one without contacts."""
+    """Return the power of loads on the actual path minus their power on the path without contacts."""
     for b in range(start.shape[0]):
         halfway(start[b], end[b], work.stage[b])
     taken = applied_wrenches(system, work.stage, False, work)

@@ -1,20 +1,20 @@
 """The order in which the bodies of a crowd are eliminated; it is computed again when other bodies touch.
 
-Bodies are neighbours where they may touch, or joints pass an impulse on from one to the other. The one with
-fewest neighbours goes first, and makes those that it leaves neighbours of each other (least degree; rows of
-bits). A plain form in Python, to compare with, is in the tests (`references.island_graph`).
+Bodies are neighbours if they may touch, or if joints transfer an impulse from one to the other. The body with
+the fewest neighbours is eliminated first; its neighbours become neighbours of each other (minimum degree, with
+rows of bits). The tests have a simple form in Python for comparison (`references.island_graph`).
 """
 
 from __future__ import annotations
 
 from carom._compiled.decorators import entry, kernel
 
-WORD = 63  # bits of a row that an int64 takes
+WORD = 63  # bits of a row in one int64
 
 
 @entry
 def find_order(n, k, crowd):
-    """Write the lists for the bodies and points at hand, unless they are known; return False without room."""
+    """Write the lists for the present bodies and points, unless they are known; return False without room."""
     graph, link = crowd.graph, crowd.problem.link
     known = graph.count[0] == n and graph.count[1] == k
     for i in range(k):
@@ -56,7 +56,7 @@ def begin(n, k, crowd):
 
 @kernel
 def meet(graph, a, b):
-    """Note that two bodies are neighbours; either may be -1, the ground."""
+    """Mark two bodies as neighbours; either may be -1, the ground."""
     near, degree = graph.near, graph.degree
     if a >= 0 and b >= 0 and a != b and near[a, b // WORD] >> (b % WORD) & 1 == 0:
         near[a, b // WORD] |= 1 << (b % WORD)
@@ -67,7 +67,7 @@ def meet(graph, a, b):
 
 @kernel
 def eliminate(n, crowd):
-    """Write the order, and of each body the neighbours that come later; return False if there is no room."""
+    """Write the order, and for each body its later neighbours; return False if there is no room."""
     graph, place, later = crowd.graph, crowd.problem.place, crowd.problem.later
     near, degree, rank, words, pairs = graph.near, graph.degree, graph.rank, n // WORD + 1, 0
     for t in range(n):
@@ -111,7 +111,7 @@ def merge(graph, i, b, words):
 
 @kernel
 def block_of(n, i, j, crowd):
-    """Return the block of bodies i and j: right of the diagonal where i goes first, else below it."""
+    """Return the block of bodies i and j: right of the diagonal if i comes first, otherwise below it."""
     if i == j:
         return i
     graph, later = crowd.graph, crowd.problem.later

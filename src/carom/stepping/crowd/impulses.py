@@ -24,9 +24,9 @@ from carom.stepping.crowd.solve import solve
 from carom.stepping.crowd.spots import gather, gather_sunk, place_all
 from carom.stepping.crowd.surface import onto_surfaces
 
-FINE = 0.1  # of the speed below which bodies rest: to be reached, or they never would
-NOTHING = 1e-9  # of the work of all impulses: that is not given
-LIFTS = 4  # times that what has sunk in besides is looked for
+FINE = 0.1  # tolerance of the solver, relative to the speed below which bodies rest
+NOTHING = 1e-9  # of the work of all impulses: less counts as zero
+LIFTS = 4  # greatest number of searches for other penetrating features
 
 
 @kernel
@@ -51,10 +51,9 @@ def find_points(model, data, h, fall, wide):
 
 @kernel
 def find_impulses(model, data, k, h, fall, patient):
-    """Solve the contact problem of the piece; the velocities at its end go to the trial state.
+    """Solve the contact problem of the piece, write its end velocities to the trial state, return the residual.
 
-    Where impacts with restitution would give energy, they have as much of it as gives none. Returns the
-    residual.
+    If impacts with restitution would add energy, their restitution is reduced until they add none.
     """
     system, controls, active, now = model.system, model.controls, data.active, data.state
     crowd, work, clock, n = data.crowd, data.work, data.clocks[0], data.state.shape[0]
@@ -87,7 +86,7 @@ def work_of(i, p, before, after):
 
 @kernel
 def bounces_give(k, crowd, end):
-    """Return whether impulses give energy, and some of them strike."""
+    """Return whether the impulses add energy and some point strikes."""
     total, size, strikes = 0.0, 0.0, False
     for i in range(k):
         one = work_of(i, crowd.p, crowd.spots[i].before, contact_velocity(crowd.points[0][i], end))
@@ -98,15 +97,15 @@ def bounces_give(k, crowd, end):
 
 @kernel
 def limit_bounces(system, k, n, tolerance, effort, crowd, work, clock):
-    """Let all impacts of the piece bounce less, by one factor, so that together they give no energy.
+    """Reduce the restitution of all impacts of the piece by one factor, so that together they add no energy.
 
-    With the impulses p_0 without restitution, which lose energy, p = p_0 + s (p_e - p_0): in the cones, and no
-    point approaches. The work of p is quadratic in s, its zero the greatest s that gives nothing.
+    The impulses p_0 without restitution lose energy. p = p_0 + s (p_e - p_0) is in the cones, and with it no
+    point approaches. The work of p is quadratic in s, and its root is the greatest s without a gain of energy.
     """
     full, end, problem = crowd.bouncing, work.trial, crowd.problem
     for i in range(3 * k):
         full[i] = crowd.p[i]
-    for i in range(k):  # no bound is left, and w with restitution is kept
+    for i in range(k):  # remove the bounds of restitution, and store w with restitution
         spot = crowd.spots[i]
         w = contact_velocity(crowd.points[0][i], end)
         if spot.strikes == 1 and spot.bound + spot.drift[0] > 0.0:
@@ -115,7 +114,7 @@ def limit_bounces(system, k, n, tolerance, effort, crowd, work, clock):
     gamma, residual = solve(system, crowd, k, n, tolerance, effort, clock)
     answer(system, k, gamma, crowd, work)
     gain(crowd, work)
-    a, b, c = 0.0, 0.0, 0.0  # of the work a + b s + c s^2
+    a, b, c = 0.0, 0.0, 0.0  # coefficients of the work a + b s + c s^2
     for i in range(k):
         u, w = crowd.spots[i].before, contact_velocity(crowd.points[0][i], end)
         for j in range(3):
@@ -138,7 +137,7 @@ def limit_bounces(system, k, n, tolerance, effort, crowd, work, clock):
 
 @kernel
 def gain(crowd, work):
-    """Write the velocities after the flight with what the impulses give to the trial state, at its places."""
+    """Write the flight with the velocities that the impulses give it to the trial state; positions stay."""
     for b in range(work.trial.shape[0]):
         copy_state(crowd.flight[b], work.trial[b])
         end, motion = work.trial[b], work.body[b].motion
@@ -149,9 +148,9 @@ def gain(crowd, work):
 
 @kernel
 def impose(model, data, k, h):
-    """Move the bodies on by half of the velocities that they have gained, and back to surfaces and joints.
+    """Move the bodies by half of the velocities gained times the step, and back to surfaces and joints.
 
-    Returns the work of what is prescribed in answer to the impulses, and whether joints hold at the end.
+    Return the work of prescribed motions by the impulses, and whether the joints are closed at the end.
     """
     system, crowd, work, end = model.system, data.crowd, data.work, data.work.trial
     driven, joined = 0.0, system.joints.shape[0] > 0
@@ -159,7 +158,7 @@ def impose(model, data, k, h):
     if joined:
         note_rates(system, crowd.flight)
         add_rates(system, crowd.flight, work)
-        driven += driven_power(system, crowd.flight, work)  # of an impulse: its work
+        driven += driven_power(system, crowd.flight, work)  # the work of an impulse
     for b in range(end.shape[0]):
         motion = work.body[b].motion
         for j in range(6):
@@ -175,10 +174,10 @@ def impose(model, data, k, h):
 
 @kernel
 def lift_others(system, k, depth, crowd, work):
-    """Bring out what is deeper than that and was not looked at, with what was; angular momenta are kept.
+    """Move bodies apart where other features are inside by more than `depth`; keep angular momenta.
 
-    The piece has found no impulses for it: it is another feature of what touches, as a corner that has come
-    over an edge of a face. Returns whether there was room, and whether joints hold.
+    Such a feature was no candidate and has no impulse, for example a corner that has come over an edge of a
+    face. Return whether there was room, and whether the joints are closed.
     """
     end, holds = work.trial, True
     for b in range(end.shape[0]):
@@ -200,10 +199,10 @@ def lift_others(system, k, depth, crowd, work):
 
 @kernel
 def deepest_of_others(system, end, work):
-    """Return how deep a feature that was not looked at is in the ground or a body at the end, by its size.
+    """Return the greatest depth of a feature at the end, relative to the size of the smaller body.
 
-    What was looked at is on the surface. Of two bodies another feature may be inside: one that there was not
-    at the start, as a corner that has come over the edge of a face.
+    The candidates are on the surface. Another feature of two bodies may be inside, which did not exist at the
+    start, for example a corner that has come over the edge of a face.
     """
     deepest = 0.0
     for c in range(system.contacts.shape[0]):
@@ -216,7 +215,7 @@ def deepest_of_others(system, end, work):
 
 @kernel
 def respin(system, flight, end):
-    """Keep angular momenta as the bodies are turned on: w = J(q_1)^-1 J(q_f) w."""
+    """Keep the angular momenta of the bodies as they turn from q_f to q_1: w = J(q_1)^-1 J(q_f) w."""
     for b in range(end.shape[0]):
         if system.bodies[b].isotropic == 1:
             continue

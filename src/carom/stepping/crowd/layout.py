@@ -1,4 +1,4 @@
-"""Workspace of a step of a crowd: made for the first one, and made larger for one with more points."""
+"""Workspace of a step of a crowd: made for the first step, and enlarged for a step with more points."""
 
 from __future__ import annotations
 
@@ -28,68 +28,68 @@ from carom.stepping.crowd.mixing import Mixing, new_mixing
 SPOT = [
     ("contact", "i8"),
     ("feature", "i8"),
-    ("point", "f8", 3),  # of the first body, its axes
-    ("turns", "i8"),  # of its POINT
-    ("parent", "i8"),  # of rolling and pivoting: the spot whose normal impulse bounds the torque
-    ("place", "i8"),  # among the active points after the step, -1 where it is none
-    ("active", "i8"),  # its place among the active points, -1 where it is open
-    ("gap", "f8"),  # at the start
-    ("left", "f8"),  # at the end, without contacts
-    ("before", "f8", 3),  # velocity at the start, by the rows of the middle of the step
+    ("point", "f8", 3),  # point of the first body, in its axes
+    ("turns", "i8"),  # as in its POINT
+    ("parent", "i8"),  # for rolling and pivoting: the spot whose normal impulse bounds the torque
+    ("place", "i8"),  # its place among the active points after the step, -1 if it is not active
+    ("active", "i8"),  # its place among the active points before, -1 if it is not active
+    ("gap", "f8"),  # gap at the start
+    ("left", "f8"),  # gap at the end, without contacts
+    ("before", "f8", 3),  # velocity at the start, with the rows of the middle of the step
     (
         "drift",
         "f8",
         3,
-    ),  # the part of it that is due to rows that turn, of an active point of several bodies; else 0
-    ("bound", "f8"),  # least normal velocity after
+    ),  # its part from rows that turn, for an active point of several bodies; otherwise 0
+    ("bound", "f8"),  # least normal velocity after the step
     ("after", "f8", 3),  # velocity with restitution
     ("impulse", "f8", 3),
-    ("strikes", "i8"),  # 1 for an impact, 0 for what stays, or is far
+    ("strikes", "i8"),  # 1 for an impact, 0 for a persistent or far point
 ]
 
 
 class Graph(NamedTuple):
-    """What finding an order of elimination needs (`carom.stepping.crowd.graph`)."""
+    """Workspace to find an order of elimination (`carom.stepping.crowd.graph`)."""
 
     count: np.ndarray  # (4,) bodies, points, updates (-1: no room), pairs
     body: np.ndarray  # (K, 3) bodies of each point, and the last of its others
-    other: np.ndarray  # (R,) bodies that impulses move by way of joints
-    near: np.ndarray  # (N, words) neighbours, a bit each
-    degree: np.ndarray  # (N,) how many, -1 once eliminated
+    other: np.ndarray  # (R,) bodies that impulses move through joints
+    near: np.ndarray  # (N, words) neighbours, one bit each
+    degree: np.ndarray  # (N,) number of neighbours, -1 after elimination
     rank: np.ndarray  # (N,) place in the order
 
 
-MOST_TIED = 64  # bodies with joints that are eliminated: of more there are sweeps only
+MOST_TIED = 64  # bodies with joints in the elimination: with more there are only sweeps
 
-#: of a body, to begin with: points that may touch
+#: initial room per body for points that may touch
 SPOTS = 8
 
 
 class Crowd(NamedTuple):
-    """K points at most, of N bodies; P points are held at most. Vectors have rows n, t1, t2 a point."""
+    """Up to K points of N bodies, and up to P active points. Vectors have rows n, t1, t2 for each point."""
 
     spots: np.recarray  # (K,) SPOT
     points: np.recarray  # (2, K) POINT: in the middle of the step; at its end
-    c: np.ndarray  # (3K,) velocities without impulses, less their bounds
+    c: np.ndarray  # (3K,) velocities without impulses minus their bounds
     p: np.ndarray  # (3K,) impulses
-    lift: np.ndarray  # (K,) scaled multipliers of the way back to the surfaces
-    bouncing: np.ndarray  # (3K,) impulses with all of their restitution
+    lift: np.ndarray  # (K,) scaled multipliers of the return to the surfaces
+    bouncing: np.ndarray  # (3K,) impulses with full restitution
     problem: ContactWork
     mixing: Mixing
     graph: Graph
     flight: np.recarray  # (N,) STATE at the end of the step without contacts
-    active: np.recarray  # (P,) ACTIVE_POINT, as it will be
+    active: np.recarray  # (P,) ACTIVE_POINT after the step
     follows: np.ndarray  # (P,) next active point of the same contact, -1 after the last
-    parent: np.ndarray  # (N,) of the union-find of what touches
-    speed: np.ndarray  # (2, N) greatest speed of such a set, at the start and at the end
+    parent: np.ndarray  # (N,) in the union-find of bodies in contact
+    speed: np.ndarray  # (2, N) greatest speed in such a set, at the start and at the end
 
 
 def new_crowd(bodies: int, active: int, points: int, joined: int = 0) -> Crowd:
-    """Return the workspace for `points` points that may touch, and `active` that may be held.
+    """Return the workspace for `points` points that may touch, and `active` active points.
 
-    Each impulse on one of the `joined` bodies, those with joints, may move all others of them.
+    Each impulse on one of the `joined` bodies, which have joints, may move all others of them.
     """
-    # what 500 spheres in a box need is half of this; where it is not enough there are sweeps only
+    # 500 spheres in a box need half of this; if it is not enough, there are only sweeps
     tied = min(joined, MOST_TIED)
     pairs, updates = 4 * points + tied * tied, 128 * points + tied**3
     others = points * max(0, joined - 1)
@@ -137,7 +137,7 @@ def no_crowd() -> Crowd:
 
 
 def roomier_crowd(crowd: Crowd) -> Crowd:
-    """Return the workspace for twice as many points, with what is compiled for it."""
+    """Return the workspace for twice as many points."""
     points = len(crowd.spots)
     joined = 1 + len(crowd.problem.other) // points
     return new_crowd(len(crowd.flight), len(crowd.active), 2 * points, joined)

@@ -1,9 +1,9 @@
-"""Anderson mixing of sweeps: the next start is the combination of the last few results with least change.
+"""Anderson mixing of sweeps: the next start is the combination of the last results with the least change.
 
 Two sweeps map impulses p to g(p); a solution has f(p) = g(p) - p = 0. With the differences of the last f and g
-as columns of F and H, the next start is g - H theta, theta that of least |f - F theta| (Anderson 1965; Walker
-and Ni 2011). On a set of contacts that does not change this is GMRES for the sweeps: a wall that 200 sweeps
-leave at 1e-4 of its speeds is solved to 1e-12 by as many. It knows nothing of joints or kinds of contacts.
+as columns of F and H, the next start is g - H theta, where theta minimizes |f - F theta| (Anderson 1965; Walker
+and Ni 2011). While the set of contacts does not change, this is GMRES for the sweeps: 200 sweeps of a wall
+reach a residual of 1e-12 of its speeds, and 1e-4 without mixing. Joints and kinds of contacts have no effect.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from carom._compiled.decorators import kernel
 from carom.friction.cone import project
 from carom.friction.layout import P
 
-WINDOW = 8  # differences that are kept
-ASTRAY = 2.0  # times the last |f|: what is known does not fit any more
-INDEPENDENT = 1e-10  # added to the squares of the columns, relative: they may depend on each other
+WINDOW = 8  # number of stored differences
+ASTRAY = 2.0  # relative to the last |f|: with more the stored differences are dropped
+INDEPENDENT = 1e-10  # relative addition to the squares of the columns, which may be dependent
 
 
 class Mixing(NamedTuple):
-    """What is known of the last sweeps of 3K impulses."""
+    """Results of the last sweeps of 3K impulses."""
 
     start: np.ndarray  # (3K,) impulses before the last two sweeps
     change: np.ndarray  # (3K,) f
@@ -32,12 +32,12 @@ class Mixing(NamedTuple):
     gram: np.ndarray  # (WINDOW, WINDOW) F F^T
     factor: np.ndarray  # (WINDOW, WINDOW)
     theta: np.ndarray  # (WINDOW,)
-    count: np.ndarray  # (2,) differences at hand, and place of the next
+    count: np.ndarray  # (2,) number of stored differences, and place of the next one
     size: np.ndarray  # (1,) |f|, infinite before the first
 
 
 def new_mixing(points: int) -> Mixing:
-    """Return what mixing needs for up to `points` contacts."""
+    """Return the workspace of mixing for up to `points` contacts."""
     n = 3 * points
     return Mixing(
         start=np.zeros(n), change=np.zeros(n), reached=np.zeros(n),
@@ -49,13 +49,13 @@ def new_mixing(points: int) -> Mixing:
 
 @kernel
 def forget(mixing):
-    """Begin anew: nothing is known of any sweep."""
+    """Drop the results of all sweeps."""
     mixing.count[0], mixing.count[1], mixing.size[0] = 0, 0, np.inf
 
 
 @kernel
 def note_start(work, k, mixing):
-    """Note the impulses before two sweeps."""
+    """Store the impulses before two sweeps."""
     p, start = work.vector[P], mixing.start
     for i in range(3 * k):
         start[i] = p[i]
@@ -63,7 +63,7 @@ def note_start(work, k, mixing):
 
 @kernel
 def note_end(work, k, mixing):
-    """Note what two sweeps have made of the impulses that were noted, and how that differs from the last."""
+    """Store the result of two sweeps from the stored impulses, and its differences from the last result."""
     p, start, change, reached = work.vector[P], mixing.start, mixing.change, mixing.reached
     n, size, known = 3 * k, 0.0, mixing.size[0] < np.inf
     at = mixing.count[1]
@@ -86,7 +86,7 @@ def note_end(work, k, mixing):
 
 @kernel
 def extrapolate(work, k, mixing):
-    """Replace the impulses that were reached by the combination of least change, brought to the cones."""
+    """Replace the impulses by the combination of least change, projected onto the cones."""
     p, theta, n = work.vector[P], mixing.theta, 3 * k
     if mixing.count[0] == 0 or not solve_least(n, mixing):
         return
@@ -101,7 +101,7 @@ def extrapolate(work, k, mixing):
 
 @kernel
 def solve_least(n, mixing):
-    """Write theta of least |f - F theta|, by the factor L D L^T of F F^T; return whether that is possible."""
+    """Write the theta that minimizes |f - F theta|, by the factors L D L^T of F F^T; return if it exists."""
     L, theta, m = mixing.factor, mixing.theta, mixing.count[0]
     for j in range(m):
         theta[j] = product(n, mixing.F[j], mixing.change)
@@ -124,7 +124,7 @@ def solve_least(n, mixing):
 
 @kernel
 def product(n, a, b):
-    """Return the scalar product, by four sums side by side."""
+    """Return the scalar product, computed as four sums, which is faster."""
     s0, s1, s2, s3 = 0.0, 0.0, 0.0, 0.0
     whole = n - n % 4
     for i in range(0, whole, 4):

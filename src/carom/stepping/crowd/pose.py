@@ -8,14 +8,14 @@ from carom.friction.layout import CONE, DISC
 from carom.kinematics.contact_point import contact_velocity
 from carom.stepping.crowd.response import write_responses
 
-LEAVES = 1e-6  # of what gravity gives in the step: what is slower at the start only trembles
+LEAVES = 1e-6  # of the speed that gravity gives in the step: a slower point does not leave
 
 
 @kernel
 def pose(system, active, k, h, fall, start, crowd, work):
-    """Write the problem of k points whose rows are in `crowd.points[0]`; start from the last forces.
+    """Write the problem of k points whose rows are in `crowd.points[0]`; the first guess is the last forces.
 
-    A body that is alone strikes with -p in the cone's law for w + e u, tangents too: p . (w + u)/2 is then
+    For an impact of a single body the law of the cone holds for w + e u, tangents too: p . (w + u)/2 is then
     (p . (w + e u) - (1 - e)/2 p . W p)/(1 + e), which is never positive, and 0 without friction if e = 1.
     """
     alone = start.shape[0] == 1
@@ -51,11 +51,11 @@ def pose(system, active, k, h, fall, start, crowd, work):
 
 @kernel
 def note_drift(active, k, several, start, crowd):
-    """Write what rows that turn give an active point at the start: G_m v_0 - G_0 v_0, tangents where it sticks.
+    """Write the velocity of an active point from rows that turn: G_m v_0 - G_0 v_0, with tangents if it sticks.
 
-    Of several bodies, whose rows at the start are in `crowd.points[1]`. A point that stays at the end has
-    G_1 v_1 = 0, which is G_m v_1 = -(G_m - G_0) v_0 up to terms of the second order, and gains nothing: so the
-    step is of order 2 as long as nothing strikes and points stay what they are.
+    It is for several bodies; their rows at the start are in `crowd.points[1]`. A point that stays closed has
+    G_1 v_1 = 0 at the end, which is G_m v_1 = -(G_m - G_0) v_0 up to second order, and adds no energy. So the
+    step has order 2 as long as there are no impacts and modes do not change.
     """
     for i in range(k):
         spot = crowd.spots[i]
@@ -72,11 +72,10 @@ def note_drift(active, k, several, start, crowd):
 def set_bound(spot, contact, h, fall):
     """Write the least normal velocity after the step, and whether the point strikes.
 
-    An impact leaves with e times the approach at the start (Moreau 1988), unless all its bounces, which last
-    2 e|u|/(g (1 - e)), end within the step: then it stays. What is open at the end without contacts
-    may close no faster than its gap allows. What leaves at the start, and is pressed on within the step, comes
-    back as fast as it left: (u + w)/2 = 0, so that it gains nothing. All that without what is due to rows that
-    turn.
+    After an impact a point leaves with e times its approach at the start (Moreau 1988), unless all its bounces,
+    which last 2 e|u|/(g (1 - e)), end within the step: then it stays closed. A point that is open at the end
+    without contacts must not close faster than its gap allows. A point that leaves at the start, and is pressed
+    back within the step, returns as fast as it left: (u + w)/2 = 0, without a gain. All this excludes `drift`.
     """
     u, e = spot.before[0] - spot.drift[0], contact.restitution
     spot.bound, spot.strikes = 0.0, 0

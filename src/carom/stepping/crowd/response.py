@@ -1,8 +1,8 @@
 """The response of bodies to impulses at the points of a crowd: of single bodies, or of joined bodies.
 
-The Delassus operator W = G P G^T is never formed: rows G stand with each point, and the answers P G^T of the
-bodies that an impulse moves. Those are the two of the point and, where these have joints, what joints tie to
-them (`OTHER`): motions that the back end finds for unit impulses. (Mathematics page, §3.9.)
+The Delassus operator W = G P G^T is never formed: each point has its rows G, and the responses P G^T of the
+bodies that its impulse moves. These are the two bodies of the point and, if they have joints, the bodies
+connected to them (`OTHER`): motions that the back end finds for unit impulses. (Mathematics page, §3.9.)
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from carom.geometry.rotation import cross, rotate, rotate_back
 
 @kernel
 def write_responses(system, first, k, crowd, work):
-    """Write rows and answers of points `first` to k in `crowd.points[0]`, with the masses after the flight."""
+    """Write rows and responses of points `first` to k in `crowd.points[0]`, with masses after the flight."""
     problem, points = crowd.problem, crowd.points[0]
     last = problem.link[first - 1].others_end if first > 0 else 0
     for i in range(first, k):
@@ -39,13 +39,13 @@ def write_responses(system, first, k, crowd, work):
             for r in range(6):
                 for a in range(3):
                     problem.other[e].response[r, a] *= s
-        if point.turns >= 3:  # without tangents: what these are given does not matter
+        if point.turns >= 3:  # it has no tangents: any positive number does
             link.local[3] = link.local[5] = link.local[0]
 
 
 @kernel
 def answer(system, k, gamma, crowd, work):
-    """Write the impulses `crowd.p` of the scaled ones at hand, and the motion of all bodies that they cause."""
+    """Write `crowd.p` from the present scaled impulses, and the motion of all bodies that they cause."""
     problem = crowd.problem
     for i in range(3 * k):
         crowd.p[i] = gamma * problem.contact[i // 3].scale * problem.vector[o.P, i]
@@ -60,7 +60,7 @@ def answer(system, k, gamma, crowd, work):
 
 @kernel
 def spread_impulses(system, k, crowd, work):
-    """Write the motion of all bodies that the impulses `crowd.p` cause, with the joints between them."""
+    """Write the motion of all bodies from the impulses `crowd.p`, with the joints between bodies."""
     clear_wrenches(work)
     for i in range(k):
         p = crowd.p
@@ -90,10 +90,10 @@ def write_rows(point, link):
 
 @kernel
 def row_of(point, sign, r, arm):
-    """Return row r of a point for one body: linear part, angular part.
+    """Return row r of a point for one body: its linear part and its angular part.
 
-    Of rolling and pivoting the angular part is a direction times a length, and the normal row is none. A stop
-    has a normal row alone: of an angle (`turns` = 3) that is a torque.
+    For rolling and pivoting the angular part is a direction times a length, and the normal row is zero. A stop
+    has only a normal row, which is a torque for a stop of an angle (`turns` = 3).
     """
     E, none = point.axes, (0.0, 0.0, 0.0)
     x, y, z = sign * E[r, 0], sign * E[r, 1], sign * E[r, 2]
@@ -125,9 +125,9 @@ def answer_alone(body, state, link, side):
 
 @kernel
 def answer_joined(system, point, crowd, link, first, work):
-    """Write P G^T: of both bodies, and of all that joints tie to them from row `first` of the others on.
+    """Write P G^T of both bodies, and of all bodies connected to them by joints; return the end of their rows.
 
-    Returns the end of these rows.
+    These rows of `OTHER` begin at `first`.
     """
     other, last = crowd.problem.other, first
     for b in range(system.bodies.shape[0]):
@@ -157,7 +157,7 @@ def answer_joined(system, point, crowd, link, first, work):
 
 @kernel
 def answers(other):
-    """Return whether a body moves at all: what joints do not tie to the point has zeros."""
+    """Return whether a body moves: the response of a body without connection to the point is zero."""
     for j in range(6):
         for r in range(3):
             if other.response[j, r] != 0.0:

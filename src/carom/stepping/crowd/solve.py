@@ -1,9 +1,9 @@
 """The contact problem of a crowd: mixed sweeps, and steps of Newton's method on the graph of the bodies.
 
-Sweeps go on well from the last step's impulses where bodies move about, and hardly get on where one stands on
-the other (a tower of twenty boxes: 1e-2 of g h after 200, and it falls). A step of Newton's method spreads what
-is left over all of them at once, for the contacts that stick, slide and open at hand; the sweeps after it mend
-what it has put wrong. So both take turns, until the problem is solved or the work is done that it may take.
+Sweeps from the impulses of the last step converge well if bodies move about, but slowly if they stand on each
+other (a tower of twenty boxes: 1e-2 of g h after 200 sweeps, and it falls). A step of Newton's method
+distributes the residual over all bodies at once, for the present modes of the contacts; the sweeps after it
+correct the modes. Both alternate until the problem is solved or the allowed work is done.
 """
 
 from __future__ import annotations
@@ -18,27 +18,27 @@ from carom.stepping.crowd.graph import find_order
 from carom.stepping.crowd.splitting import split_until
 from carom.stepping.crowd.sweeps import sweep_until
 
-FIRST, BETWEEN, MOST = 40, 30, 150  # sweeps: at first, after a step, and what all may cost
-# weights of the proximal term, in turn: points are more than bodies can follow (four corners of a box). With
-# 1e-8 a step goes anywhere in what they do not determine
+FIRST, BETWEEN, MOST = 40, 30, 150  # sweeps: at first, after a step; allowed cost of all, in sweeps
+# weights of the proximal term, in turn: impulses are often not unique (four corners of a box), and with 1e-8 a
+# step changes the undetermined part arbitrarily
 PROXIMAL, LAST_DIGITS = (1e-2, 1e-3, 1e-4), 1e-8
-PRECISE, AGREED = 1e-10, 1e-8  # of the largest velocity: wanted, and good enough if that is hard
-HARD = 0.1  # of the residual before: with less a turn has helped
-WRONG = 1e-2  # of the largest velocity: no result, whatever it takes
-AT_REST = 1e3  # times the tolerance: good enough for bodies to come to rest, and no result at rest if it is not
-IDLE = 4  # turns that do not halve the residual: another start, and then there will be no better
-# cost [us] of a contact in a sweep and of a body that joints tie to it, of factors and of their assembly
+PRECISE, AGREED = 1e-10, 1e-8  # residual relative to the largest velocity: goal, and enough if slow
+HARD = 0.1  # convergence is slow if a turn leaves more than this part of the residual
+WRONG = 1e-2  # relative to the largest velocity: more is no result, whatever the cost
+AT_REST = 1e3  # relative to the tolerance: enough for bodies to come to rest; more is no rest
+IDLE = 4  # turns that do not halve the residual until a start from 0, and again until the end
+# cost [us] of a contact in a sweep, of a body connected to it by joints, of factors and of their assembly
 SWEEP, TIE, UPDATE, CONTACT = 0.13, 0.015, 0.1, 0.45
-PATIENT = 4  # times as much while the step can afford it
-# iterations of alternating directions: usual, and most where the step can afford them; by what they cost more
+PATIENT = 4  # factor of the allowed cost if the step can afford it
+# iterations of alternating directions: usual, and most if the step can afford them; their cost in sweeps
 SPLIT, LONG_SPLIT, DEARER = 100, 1000, 1.3
 
 
 @kernel
 def solve(system, crowd, k, n, tolerance, effort, clock):
-    """Solve for the scaled impulses; return the factor that they are to have, and the residual [m/s].
+    """Solve for the scaled impulses; return their scale, and the residual [m/s].
 
-    `effort`: whether it may take more than usual, and the work [us] that the step can afford.
+    `effort` is whether more than the usual work is allowed, and the work [us] that the step can afford.
     """
     patient, left = effort
     work = crowd.problem
@@ -57,7 +57,7 @@ def solve(system, crowd, k, n, tolerance, effort, clock):
     copy(k, p, kept)
     while not least <= enough and spent < most and idle < 2 * IDLE:
         before = least
-        if idle == IDLE and n > 1:  # from nothing: the last impulses may be a poor start
+        if idle == IDLE and n > 1:  # start from 0: the last impulses may be a poor first guess
             for i in range(3 * k):
                 p[i] = 0.0
         spent += newton_step(crowd, k, n, PROXIMAL[turn % 3])
@@ -78,7 +78,7 @@ def solve(system, crowd, k, n, tolerance, effort, clock):
         least, more = split_until(ordered, k, enough, at_least, allowed)
         done, spent = done + more, spent + DEARER * more * each
         copy(k, p, kept)
-    if goal < least <= good:  # once more for the last digits
+    if goal < least <= good:  # one more step for the last digits
         spent += newton_step(crowd, k, n, LAST_DIGITS)
         r, _, _ = residual(work, k)
         if r < least:
@@ -112,7 +112,7 @@ def has_discs(work, k):
 
 @kernel
 def newton_step(crowd, k, n, eps):
-    """Make one step of Newton's method, if there is room for it; return what it costs [us]."""
+    """Make one step of Newton's method, if there is room for it; return its cost [us]."""
     if not find_order(n, k, crowd):
         return 0.0
     work, updates = by_reference(at_hand(crowd, n)), crowd.graph.count[2]
@@ -122,7 +122,7 @@ def newton_step(crowd, k, n, eps):
 
 @kernel
 def at_hand(crowd, n):
-    """Return the problem with its arrays as long as the bodies and blocks at hand are many."""
+    """Return the problem with arrays cut to the present numbers of bodies and blocks."""
     work, pairs, updates = crowd.problem, crowd.graph.count[3], crowd.graph.count[2]
     return ContactWork(
         work.kind,

@@ -1,13 +1,13 @@
 """The contact problem by alternating directions: one linear system, then projection onto the friction cones.
 
-Two copies of the impulses, p without the cones and z in them, are brought together by u (scaled):
+Two copies of the impulses, p without the cones and z in the cones, are made equal by u (scaled):
 
     (W + rho) p = rho (z - u) - c - s,   z = project(p' + u),   u = u + p' - z,   p' = a p + (1 - a) z,
 
 with the projection on the cones, and s = mu |w_t| of the normal rows (de Saxce), w_t = -rho u_t (ADMM: Boyd et
-al. 2011). W + rho is factored once, and an iteration costs little more than a sweep. Where a wall is struck at
+al. 2011). W + rho is factored once, and an iteration costs little more than a sweep. If a wall is struck at
 3 m/s and bricks are wedged, with impulses a hundred times those of a free impact, sweeps and steps of Newton's
-method are left at .1 m/s, and a thousand iterations at 1e-6.
+method leave a residual of .1 m/s, and a thousand iterations of this method 1e-6.
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ from carom.friction.cone import nearest, shift
 from carom.friction.operators import factor_shifted, solve_shifted
 from carom.friction.strategy import copy, residual
 
-RHO = 0.05  # of the mean of the diagonal of W
-AHEAD = 1.6  # a
-EACH = 25  # iterations between looks at the residual
+RHO = 0.05  # relative to the mean of the diagonal of W
+AHEAD = 1.6  # over-relaxation a
+EACH = 25  # iterations between two checks of the residual
 
 
 @kernel
 def split_until(work, k, tolerance, at_least, most):
-    """Iterate until the scaled residual is small, from the impulses at hand; return it, and how often.
+    """Iterate from the present impulses until the scaled residual is small; return it, and the iterations.
 
-    `at_least` so often, and on to `most` while as many more halve it. `work`: the problem, without rolling and
-    pivoting, its bodies in an order of elimination. The best impulses that were met are kept.
+    `at_least` iterations are made, and more, up to `most`, while as many again halve the residual. `work` is
+    the problem without rolling and pivoting, with an order of elimination. The best impulses are returned.
     """
     z, u, best = work.vector[o.P], work.vector[o.CENTRE], work.vector[o.BEST]
     least, goal, _ = residual(work, k)
@@ -54,7 +54,7 @@ def split_until(work, k, tolerance, at_least, most):
 
 @kernel
 def begin(work, k):
-    """Write u of the velocities at hand."""
+    """Write u from the present velocities."""
     u, w = work.vector[o.CENTRE], work.vector[o.VELOCITY]
     for i in range(k):
         n = 3 * i

@@ -22,12 +22,12 @@ from carom.geometry.rotation import norm
 from carom.kinematics.contact_point import contact_velocity, place
 from carom.model.arrays import STOP
 
-PARALLEL = 1e-3  # normals of two points of a pair that differ by less are one
+PARALLEL = 1e-3  # normals of two points of a pair that differ by less are made equal
 
 
 @kernel
 def closing_speed(contact, state):
-    """Return a bound of the speed at which the two approach each other [m/s]."""
+    """Return a bound of the speed at which the two bodies approach each other [m/s]."""
     a, b = state[contact.body], contact.other
     s, v0, v1, v2 = contact.extent * norm(a.w), a.v[0], a.v[1], a.v[2]
     if b >= 0:
@@ -38,11 +38,11 @@ def closing_speed(contact, state):
 
 @kernel
 def gather(system, active, h, fall, wide, state, crowd, work):
-    """List the points that may touch within a time h; return how many, -1 if there is no room.
+    """List the points that may touch within a time h; return their number, -1 if there is no room.
 
-    A pair comes no nearer than by its speeds, and by what impulses of others may add: twice g h is allowed for.
-    A body that is alone may turn so that its other end comes down at twice its speed: thrice is allowed for.
-    All that `wide` times, where less has missed a point.
+    The distance of a pair decreases at most by its speeds and by impulses of other bodies, for which twice g h
+    is allowed. A single body may turn so that its other end falls at twice its speed; three times is allowed.
+    If a point was missed, the distances are multiplied by `wide`.
     """
     k, quicker, flight = 0, wide * (3.0 if state.shape[0] == 1 else 1.0), crowd.flight
     chain(system, active, crowd)
@@ -57,7 +57,7 @@ def gather(system, active, h, fall, wide, state, crowd, work):
                 find_active(active, crowd.spots[first], crowd)
             continue
         speed = max(closing_speed(contact, state), closing_speed(contact, flight))
-        if wide > 1.0:  # by velocities with the impulses that were found before
+        if wide > 1.0:  # also with the velocities from the impulses found before
             speed = max(speed, closing_speed(contact, work.trial))
         reach = h * (quicker * speed + 2.0 * wide * fall * h)
         if apart(contact, state, reach):
@@ -79,9 +79,9 @@ def gather(system, active, h, fall, wide, state, crowd, work):
 
 @kernel
 def gather_sunk(system, k, depth, end, crowd, work):
-    """Add to the k spots what is inside the ground or a body by more than `depth` of the smaller body.
+    """Add to the k spots the points of contacts that penetrate by more than `depth` of the smaller body.
 
-    Returns the new count, -1 if there is no room.
+    Return the new count, -1 if there is no room.
     """
     last = k
     for c in range(system.contacts.shape[0]):
@@ -101,7 +101,7 @@ def gather_sunk(system, k, depth, end, crowd, work):
 
 @kernel
 def add_turning(contact, first, k, crowd):
-    """Add rolling and pivoting of the spots from `first`; return the new count, -1 if there is no room."""
+    """Add rolling and pivoting friction of the spots from `first`; return the new count, -1 without room."""
     last = k
     for i in range(first, last):
         for turns in range(1, 3):
@@ -115,7 +115,7 @@ def add_turning(contact, first, k, crowd):
 
 @kernel
 def add_vertices(system, contact, c, reach, state, k, crowd, work):
-    """Add the vertices that may come to a half-space; return the new count, -1 if there is no room."""
+    """Add the vertices that may reach a half-space; return the new count, -1 if there is no room."""
     point = work.point[0]
     for i in range(contact.first, contact.last):
         place(contact, system.vertices[i], state, point)
@@ -130,7 +130,7 @@ def add_vertices(system, contact, c, reach, state, k, crowd, work):
 
 @kernel
 def add_stop(system, c, h, fall, state, k, crowd, work):
-    """Add a stop that may be met; return the new count, -1 if there is no room."""
+    """Add a stop if it may be reached; return the new count, -1 if there is no room."""
     contact, point = system.contacts[c], work.point[0]
     place_stop(system, contact, crowd.flight, point)
     after, rate = point.gap, abs(contact_velocity(point, crowd.flight)[0])
@@ -177,7 +177,7 @@ def take_turning(parent, spot, i, turns):
 
 @kernel
 def chain(system, active, crowd):
-    """Chain the active points of each contact; `seen` of the contact is 1 + its first."""
+    """Link the active points of each contact in a chain; `seen` of the contact is 1 + its first point."""
     for c in range(system.contacts.shape[0]):
         active.contact_states[c].seen = 0
     for i in range(active.count[0] - 1, -1, -1):
@@ -188,7 +188,7 @@ def chain(system, active, crowd):
 
 @kernel
 def find_active(active, spot, crowd):
-    """Note which active point a spot is."""
+    """Find the active point of a spot."""
     i = active.contact_states[spot.contact].seen - 1
     while i >= 0:
         active_point = active.points[i]
@@ -200,7 +200,7 @@ def find_active(active, spot, crowd):
 
 @kernel
 def place_all(system, first_spot, k, state, crowd, points, work):
-    """Write the points from `first_spot` to k as they are in a state."""
+    """Write the points from `first_spot` to k in a state."""
     i = first_spot
     while i < k:
         c = crowd.spots[i].contact
@@ -228,10 +228,10 @@ def place_all(system, first_spot, k, state, crowd, points, work):
 
 @kernel
 def share_plane(points, first, last, state):
-    """Let the points of two bodies act in one plane, with one normal, where their normals are nearly equal.
+    """Move points of two bodies with nearly equal normals to one plane, with one normal.
 
-    Each acts half-way between the two surfaces. Four corners of a face then ask for no more than two bodies
-    can follow; with normals that differ by 1e-7 no impulses of moderate size would give what all of them ask.
+    Each acts half-way between the two surfaces. Two bodies can then satisfy the conditions of all four corners
+    of a face; with normals that differ by 1e-7 no impulses of moderate size would satisfy them.
     """
     nearest = first
     for i in range(first + 1, last):

@@ -7,7 +7,7 @@ With rows G of the middle of the free flight from (q_0, v_0) to (q_f, v_f), and 
 
 with b = e |u_n| for a contact that strikes, and 0 for a persistent contact (`pose.set_bound`). So q_1 follows
 the mean of the velocities, and the energy changes by p . (G v_0 + G v_1)/2, except for the return to the
-surfaces. Order 1. (Mathematics page, §3.9.)
+surfaces. The step has order 1. (Mathematics page, §3.9.)
 """
 
 from __future__ import annotations
@@ -45,19 +45,19 @@ from carom.stepping.crowd.layout import SPOTS
 from carom.stepping.crowd.solve import greatest_speed
 from carom.stepping.record import grow
 
-# of its ball: a body goes no further in a piece of the step; alone it turns no more [rad]. Several go no
-# further than this part of their thickness either, or THIN of the way before where that is more
+# greatest displacement of a body in a piece of the step, relative to its ball, and rotation of a single body
+# [rad]. Several bodies also move at most FAR of their thickness, but THIN of the first limit is always allowed
 FAR, THIN = 0.25, 1.0 / 32.0
-# pieces of a step that may be cut for that, where it can afford them; of the step: none is shorter
+# greatest number of tries with pieces that may be cut; shortest piece, relative to the step
 CAREFUL, SHORTEST = 300, 1e-4
-DEAR = 70.0  # work [us] by the points that are held: that a step must still afford if a piece may be cut
-WIDER, WIDEST = 4.0, 16.0  # how much further is looked for points where some were missed
-# of the smaller body: by so much a feature that was no candidate may be in the other; more, and the candidates
-# are looked for further off, or the step is cut, down to that part of it
+DEAR = 70.0  # work [us] per active point that a step must still afford if a piece may be cut
+WIDER, WIDEST = 4.0, 16.0  # factors of the search distance after points were missed
+# depth of a feature that was no candidate, relative to the smaller body: beyond SUNK candidates are sought at a
+# larger distance; beyond DEEP the piece is then cut, down to SHORTER of the step
 SUNK, DEEP, SHORTER = 1e-9, 1e-5, 1.0 / 16.0
-POOR = 1e-3  # of the greatest speed: contacts that are not solved to it
-AGAIN = 16  # times at most that points are looked for: each time a row of bodies pushes on one more
-ALONE = 16  # pieces of a step of a body that is alone: they cost little
+POOR = 1e-3  # greatest residual of contacts, relative to the greatest speed
+AGAIN = 16  # greatest number of searches for points: a row of bodies pushes one more each time
+ALONE = 16  # number of pieces of a step of a single body, which are cheap
 
 
 @unit
@@ -82,8 +82,8 @@ def step_crowd(model, data, method):
         dt = min(piece(system, now, controls.interval, clock.length - clock.spent), search.pace)
         while True:
             clock.tries += 1
-            dear = clock.effort + DEAR * data.active.count[0] > affordable(controls, clock)
-            patient = clock.tries <= CAREFUL and not dear
+            expensive = clock.effort + DEAR * data.active.count[0] > affordable(controls, clock)
+            patient = clock.tries <= CAREFUL and not expensive
             careful = patient and dt > SHORTEST * controls.interval
             result.code = move_on(model, data, method, dt, patient, careful)
             if result.code == CONSTRAINTS_LOST and dt > SHORTEST * controls.interval:
@@ -103,26 +103,26 @@ def step_crowd(model, data, method):
 
 @kernel
 def piece(system, now, step, left):
-    """Return the length of the next piece: equal parts of the rest, in which no body moves too far."""
+    """Return the length of the next piece: an equal part of the rest, in which no body moves too far."""
     g, n = norm(system.gravity), now.shape[0]
     parts = math.ceil(ALONE * left / step) if n == 1 else 1.0
     for b in range(n):
         body, turn = system.bodies[b], norm(now[b].w) * left
-        if not body.ball > 0.0:  # nothing that could touch
+        if not body.ball > 0.0:  # the body has no shape
             continue
-        way, far = (norm(now[b].v) + g * left) * left, FAR * body.ball
+        distance, far = (norm(now[b].v) + g * left) * left, FAR * body.ball
         if n == 1:
             parts = max(parts, math.ceil(turn / FAR))
         else:
-            way += turn * body.ball
+            distance += turn * body.ball
             far = max(THIN * far, min(far, FAR * thickness(body)))
-        parts = max(parts, math.ceil(way / far))
+        parts = max(parts, math.ceil(distance / far))
     return min(left, max(left / parts, SHORTEST * step))
 
 
 @kernel
 def thickness(body):
-    """Return the least of the lengths of a box that has the moments of the body: 6 (J_1 + J_2 - J_3)/m."""
+    """Return the shortest edge of a box with the body's moments of inertia, (6 (J_1 + J_2 - J_3)/m)^1/2."""
     J = body.inertia
     least = J[0] + J[1] + J[2] - 2.0 * max(J[0], max(J[1], J[2]))
     return math.sqrt(6.0 * max(0.0, least) / body.mass)
@@ -130,7 +130,7 @@ def thickness(body):
 
 @kernel
 def move_on(model, data, method, h, patient, careful):
-    """Make one piece of the step; return 0 or a code: MISSED if it was to be `careful` and is too long."""
+    """Make one piece of the step; return 0 or a code, MISSED if `careful` and the piece is too long."""
     system, now, crowd, work = model.system, data.state, data.crowd, data.work
     clock, n, end, loaded = data.clocks[0], now.shape[0], work.trial, is_loaded(system)
 
@@ -148,7 +148,7 @@ def move_on(model, data, method, h, patient, careful):
     if code != 0:
         return code
 
-    # the work of loads and of friction in joints, on the path that is taken
+    # the work of loads and of friction in joints, on the actual path
     applied, rubbed = 0.0, 0.0
     if loaded:
         search = work.search[0]
@@ -159,13 +159,13 @@ def move_on(model, data, method, h, patient, careful):
     if careful and n > 1 and off(model, data, k, gained):
         return MISSED
 
-    # its balance, and what stays closed from now on
+    # the energy balance, and the persistent contacts from now on
     clock.residual = max(clock.residual, residual)
     clock.now = clock.begin + clock.spent + h
     impacts, friction, bounces = clock.impacts, clock.friction, clock.bounces
     named = finish(model, data, k, h, fall, residual)
     if k > 0:
-        # once more: some may have come to rest
+        # compute the gain again, because bodies may have come to rest
         gained = energy_gained(model, data, h, loaded) - applied - rubbed
         taken = take_out(system, gained - (named if n == 1 else 0.0), crowd.flight, end)
         if taken > 0.0:
@@ -184,9 +184,9 @@ def move_on(model, data, method, h, patient, careful):
 
 @kernel
 def collide(model, data, h, fall, patient, careful):
-    """Find the impulses of all points that may touch in the piece, once more where others have sunk in.
+    """Find the impulses of all points that may touch in the piece, and again if other points have penetrated.
 
-    Returns a code, the number of points, the residual, and the work of what is prescribed.
+    Return a code, the number of points, the residual, and the work of prescribed motions.
     """
     system, crowd, work, clock = model.system, data.crowd, data.work, data.clocks[0]
     wide, n, times, before = 1.0, data.state.shape[0], 0, -1
@@ -199,7 +199,7 @@ def collide(model, data, h, fall, patient, careful):
             return grow(clock, r.FULL_EVENTS), k, 0.0, 0.0
         residual = find_impulses(model, data, k, h, fall, patient)
         if careful and residual > POOR * greatest_speed(crowd, k) + POOR * fall * h:
-            return MISSED, k, residual, 0.0  # a shorter piece is another problem
+            return MISSED, k, residual, 0.0  # a shorter piece is a different problem
         if careful and misses_bounce(system, k, h, fall, crowd):
             return MISSED, k, residual, 0.0
         driven, holds = impose(model, data, k, h)
@@ -221,7 +221,7 @@ def collide(model, data, h, fall, patient, careful):
 
 @kernel
 def misses_bounce(system, k, h, fall, crowd):
-    """Return whether a point that was open is struck within the piece and would bounce: no blow was written."""
+    """Return whether a point closes within the piece and would bounce, so that an impact is missing."""
     for i in range(k):
         spot = crowd.spots[i]
         contact = system.contacts[spot.contact]

@@ -1,6 +1,6 @@
 """Penetrating points return to the surfaces: 0 <= lam _|_ phi + W_nn lam >= 0, xi = P G_n^T lam.
 
-Sweeps over the normal rows, phi the gaps; repeated, as gaps are not linear.
+phi are the gaps. It is solved by sweeps over the normal rows, and repeated because gaps are not linear.
 """
 
 from __future__ import annotations
@@ -11,17 +11,18 @@ from carom.dynamics.project import project_position, shift
 from carom.stepping.crowd.response import spread_impulses
 from carom.stepping.crowd.spots import place_all
 
-TINY = 1e-11  # of the smaller body
-# sweeps: least and most, and how many times a point in a pass. To place all points anew costs thirty of them
+TINY = 1e-11  # allowed depth, relative to the smaller body
+# passes; least and greatest number of sweeps of a pass, and number of sweeps times points. To place all points
+# again costs as much as thirty sweeps
 PASSES, SWEEPS, WORK = 8, (100, 1000), 20000
-BETTER = 0.01  # in one pass: gaps are not linear, more would be lost
+BETTER = 0.01  # part of the depth that a pass leaves: gaps are not linear, so less is no gain
 
 
 @kernel
 def onto_surfaces(system, k, count, end, crowd, work):
-    """Move bodies to the joints, and apart where points have sunk in; `crowd.points[1]` are those at the end.
+    """Move bodies to their joints, and apart where points penetrate; return the relative error of the joints.
 
-    Returns the relative error of the joints that is left.
+    `crowd.points[1]` are the points at the end.
     """
     missed = project_position(system, end, True, 1e-14, work)
     for _ in range(PASSES):
@@ -43,7 +44,7 @@ def onto_surfaces(system, k, count, end, crowd, work):
 
 @kernel
 def lift(system, k, tolerance, crowd, work):
-    """Write the motion of all bodies that brings the points out, to a tolerance [m]."""
+    """Write the motion of all bodies that removes the penetration of the points, to a tolerance [m]."""
     problem, lam, joined = crowd.problem, crowd.lift, system.joints.shape[0] > 0
     for b in range(problem.body.shape[0]):
         for j in range(6):
@@ -72,7 +73,7 @@ def lift(system, k, tolerance, crowd, work):
 
 @kernel
 def lift_one(problem, i, gap, lam):
-    """Bring one point out, the others as they are; return by how much its gap changes. All rows are scaled."""
+    """Remove the penetration of one point, the others fixed; return the change of its gap. Rows are scaled."""
     link, s = problem.link[i], problem.contact[i].scale
     for side in range(2):
         if link.body[side] >= 0:

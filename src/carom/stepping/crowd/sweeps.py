@@ -1,6 +1,6 @@
 """The contact problem by Gauss-Seidel sweeps: each contact is solved exactly with the others fixed.
 
-A sweep costs 60 ns a contact, and goes on from the last step's impulses; sweeps are mixed
+A sweep costs 60 ns per contact. The first one begins with the impulses of the last step; sweeps are mixed
 (`carom.stepping.crowd.mixing`).
 """
 
@@ -12,15 +12,15 @@ from carom.friction.operators import sweep
 from carom.friction.strategy import copy, residual
 from carom.stepping.crowd.mixing import extrapolate, forget, note_end, note_start
 
-EACH = 10  # sweeps between looks at the residual
+EACH = 10  # sweeps between two checks of the residual
 
 
 @kernel
 def sweep_until(system, crowd, k, tolerance, most):
-    """Sweep until the scaled residual is small; return it, what round-off makes of it, and how often.
+    """Sweep until the scaled residual is small; return it, its round-off, and the number of sweeps.
 
-    Both ways in turn. With friction sweeps may diverge, above all where joints tie the points: the best
-    impulses that were met are kept.
+    Sweeps run forward and backward in turn. With friction they may diverge, above all if joints connect the
+    points, so the best impulses found are the result.
     """
     work, mixing, done = crowd.problem, crowd.mixing, 0
     p, best = work.vector[P], work.vector[BEST]
@@ -47,7 +47,7 @@ def sweep_until(system, crowd, k, tolerance, most):
 
 @kernel
 def bound_torques(system, crowd, k):
-    """Write the bounds d N of rolling and pivoting friction, from the normal impulses at hand."""
+    """Write the bounds d N of rolling and pivoting friction from the present normal impulses."""
     row, q = crowd.problem.contact, crowd.problem.vector[P]
     for i in range(k):
         spot = crowd.spots[i]

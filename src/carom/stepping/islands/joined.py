@@ -1,9 +1,9 @@
-"""Bodies with joints and loads: they are all in one island, are its first bodies, and have own numbers.
+"""Bodies with joints and loads: all of them are in one island, as its first bodies, with their own numbers.
 
-Springs, joints and functions of the user's speak of bodies by number, and the back ends have a row for each.
-So all this is kept a second time for the island of the joined and loaded bodies, whatever else is in it: these
-have the numbers 0 .. K - 1 in each step, free bodies the numbers after them. What carries over from step to
-step stays with the scene: it is copied when a step begins, and back when it has ended.
+Springs, joints and functions of the user refer to bodies by number, and the back ends have a row for each body.
+So the island of the joined and loaded bodies has its own copy of all these: in each step these bodies have the
+numbers 0 .. K - 1, and free bodies the numbers after them. State of joints that lasts from step to step belongs
+to the scene: it is copied when a step begins, and copied back when it has ended.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from carom.model.solvers import no_joints
 
 
 class Joined(NamedTuple):
-    """What joints and loads there are between K bodies: the fields of a `System` of the same names."""
+    """The joints and loads of K bodies; fields are those of a `System` with the same names."""
 
     body: np.ndarray  # (K,) their numbers in the scene
     stops: np.ndarray  # (S,) contacts that are stops in joints
@@ -39,7 +39,7 @@ def joined_bodies(system: System) -> Joined:
     if not body.size:
         return no_bodies(system)
     order = np.append(body, np.flatnonzero(~loaded))
-    place = np.append(np.argsort(order), -1)  # that of the ground is -1, as its number
+    place = np.append(np.argsort(order), -1)  # the ground has place -1, like its number
     relations, ends = system.relations, ("parent", "child")
     return Joined(
         body,
@@ -59,7 +59,7 @@ def joined_bodies(system: System) -> Joined:
 
 
 def no_bodies(system: System) -> Joined:
-    """Return joints and loads of islands that have none."""
+    """Return the empty joints and loads of islands without any."""
     none, relations = np.zeros(0, dtype=np.int64), system.relations
     empty = {name: a[:0].copy() for name, a in relations._asdict().items() if name != "there"}
     return Joined(
@@ -69,12 +69,12 @@ def no_bodies(system: System) -> Joined:
 
 
 def _none(rows: np.recarray) -> np.recarray:
-    """Return no rows of the same kind."""
+    """Return an empty table of the same type."""
     return rows[:0].copy().view(Columns)
 
 
 def _moved(rows: np.recarray, place: np.ndarray, ends: tuple[str, ...]) -> np.recarray:
-    """Return rows that speak of bodies by their place."""
+    """Return the rows with each number of a body replaced by its place."""
     out = rows.copy()
     for end in ends:
         out[end] = place[out[end]]
@@ -82,7 +82,7 @@ def _moved(rows: np.recarray, place: np.ndarray, ends: tuple[str, ...]) -> np.re
 
 
 def _solver(solver: Solver, order: np.ndarray, place: np.ndarray, count: int) -> Solver:
-    """Return the back end for bodies in this order, with a factor of its own."""
+    """Return the back end for bodies in this order, with its own factor."""
     own = {name: a.copy() for name, a in solver._asdict().items() if isinstance(a, np.ndarray)}
     own |= {"usual": solver.usual, "sides": _moved(solver.sides, place, ("body",))}
     out = solver._replace(**own)
@@ -96,7 +96,7 @@ def _solver(solver: Solver, order: np.ndarray, place: np.ndarray, count: int) ->
 
 @kernel
 def enter_joined(system, joined):
-    """Take over what joints have kept; forget the factor, which may be of other bodies."""
+    """Copy the state of joints from the scene; drop the factor, which may belong to other bodies."""
     here, there, solver = joined.relations, system.relations, joined.solver
     for i in range(here.coordinates.shape[0]):
         here.coordinates[i].reference = there.coordinates[i].reference
@@ -110,7 +110,7 @@ def enter_joined(system, joined):
 
 @kernel
 def end_joined(system, joined):
-    """Hand back what joints keep for the next step."""
+    """Copy the state of joints back to the scene."""
     here, there = joined.relations, system.relations
     for i in range(here.coordinates.shape[0]):
         there.coordinates[i].reference = here.coordinates[i].reference

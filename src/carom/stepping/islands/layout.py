@@ -1,4 +1,4 @@
-"""Arrays of the islands of a step: made before the loop, and made larger when a step needs more room."""
+"""Arrays of the islands of a step: made before the loop, and enlarged when a step needs more room."""
 
 from __future__ import annotations
 
@@ -19,25 +19,25 @@ ASLEEP, FLIES, IN_ISLAND = range(3)
 
 PLAN = [
     ("count", "i8"),  # islands in this step
-    ("at", "i8"),  # the one that is being moved
-    ("entered", "i8"),  # 1 from when its bodies were taken until they are put back
-    ("planned", "i8"),  # 1 while a step is going on
-    ("widen", "f8"),  # how much more room than expected bodies are given
-    ("pairs", "i8"),  # balls that overlap
+    ("at", "i8"),  # the island that is being moved
+    ("entered", "i8"),  # 1 while its bodies are copied out
+    ("planned", "i8"),  # 1 during a step
+    ("widen", "f8"),  # factor of the room around bodies
+    ("pairs", "i8"),  # pairs of balls that overlap
     ("used", "i8"),  # contacts in all islands
-    ("kept", "i8"),  # active points after the step, so far
-    ("open", "i8"),  # 1 where bodies that are no partners may touch, and get a contact then
+    ("kept", "i8"),  # active points so far of the state after the step
+    ("open", "i8"),  # 1 if bodies that are no partners get a contact when they may touch
     ("fixed", "i8"),  # contacts from the start, in their order; others follow by their bodies
-    ("noted", "i8"),  # pairs of bodies, at the beginning of `pair`, that contacts are asked for
+    ("noted", "i8"),  # pairs of bodies, at the beginning of `pair`, that need contacts
     ("joined", "i8"),  # the island of the joined and loaded bodies, -1 for none
 ]
 
-#: a body, while islands are sought
+#: a body during the search for islands
 MEMBER = [
-    ("parent", "i8"),  # of the union-find; roots are the lowest of their set
+    ("parent", "i8"),  # in the union-find; the root is the lowest body of its set
     ("awake", "i8"),  # of a root: 1 if a body of the set moves
-    ("bodies", "i8"),  # of a root: how many are in the set
-    ("speed", "f8"),  # of a root: greatest of the set
+    ("bodies", "i8"),  # of a root: number of bodies in the set
+    ("speed", "f8"),  # of a root: greatest speed in the set
     ("island", "i8"),  # of a root: number of the island, -1 for none
     ("kind", "i8"),
     ("place", "i8"),  # slot of the body
@@ -45,12 +45,12 @@ MEMBER = [
 
 
 class SingleIsland(NamedTuple):
-    """All bodies as one island: a single body, or joined ones alone. The start of a step is kept.
+    """The start of a step with all bodies in one island: a single body, or only joined bodies.
 
-    No state is kept where a step is not done in another way: nothing touches, and no joint sticks.
+    Without contacts and dry friction the step is never repeated in another way, and no state is stored.
     """
 
-    begun: np.ndarray  # (1,) 1 while a step is going on
+    begun: np.ndarray  # (1,) 1 during a step
     state: np.recarray  # (N,) STATE
     contact_states: np.recarray  # (M,) CONTACT_STATE
     points: np.recarray  # (P,) ACTIVE_POINT
@@ -61,13 +61,13 @@ class SingleIsland(NamedTuple):
 class Islands(NamedTuple):
     """N bodies in slots, island by island, and M contacts that may act in the step.
 
-    Where all bodies move together the slots are empty.
+    If all bodies move together, the slots are empty.
     """
 
-    apart: int  # 1 where bodies may move apart from each other, in islands of their own
+    apart: int  # 1 if bodies may move in separate islands
     single: SingleIsland
-    joined: Joined  # the bodies that joints and loads act on
-    others: Joined  # the same of islands of other bodies: there is nothing
+    joined: Joined  # the bodies with joints and loads
+    others: Joined  # the same for islands of other bodies: empty
 
     plan: np.recarray  # (1,) PLAN
     member: np.recarray  # (N,) MEMBER
@@ -77,18 +77,18 @@ class Islands(NamedTuple):
     state: np.recarray  # (N,) STATE
     memory: np.recarray  # (N,) BODY_WORK
     which: np.ndarray  # (M,) contact in a slot
-    contacts: np.recarray  # (M,) CONTACT, of bodies by their place in the island
+    contacts: np.recarray  # (M,) CONTACT, with bodies numbered by their place in the island
     contact_states: np.recarray  # (M,) CONTACT_STATE
     active_of: np.ndarray  # (P,) active points, island by island
-    points: np.recarray  # (2, P) ACTIVE_POINT: of the island at hand; of all after the step
-    carried: np.ndarray  # (1,) number of active points of the island at hand
+    points: np.recarray  # (2, P) ACTIVE_POINT: of the present island; of all after the step
+    carried: np.ndarray  # (1,) number of active points of the present island
     clock: np.recarray  # (1,) CLOCK at the start of the step
     centre: np.ndarray  # (N, 3)
     radius: np.ndarray  # (N,)
-    pair: np.ndarray  # (2, M, 2): of balls that overlap; workspace to sort them
-    pair_first: np.ndarray  # (N + 1,) and this
+    pair: np.ndarray  # (2, M, 2): pairs of balls that overlap; workspace to sort them
+    pair_first: np.ndarray  # (N + 1,) workspace to sort them
     sweep: SweepWork
-    # (2, P) other body and contact, sorted, body by body; contact -1 where the two never touch
+    # (2, P) other body and contact, sorted, body by body; contact -1 if the two never touch
     partner: np.ndarray
     partner_first: np.ndarray  # (N + 1,)
     plane: np.ndarray  # (Q,) contacts with half-spaces, body by body
@@ -96,15 +96,15 @@ class Islands(NamedTuple):
 
 
 def has_events(system: System, more: bool = False) -> bool:
-    """Return whether steps may have events, which could follow each other too fast: contacts, dry friction.
+    """Return whether steps may have events, from contacts or dry friction, which may follow too fast.
 
-    With `more` contacts may come.
+    `more` says that contacts may be added.
     """
     return more or system.contacts.size > 0 or system.relations.frictions.size > 0
 
 
 def new_single_island(system: System, active: ActiveSet) -> SingleIsland:
-    """Return the workspace for bodies that are stepped together."""
+    """Return the workspace for bodies that move together."""
     keeps = has_events(system)
     return SingleIsland(
         begun=np.zeros(1, dtype=np.int64),
@@ -127,7 +127,7 @@ _NOWHERE = SingleIsland(
 
 
 def no_islands(system: System, active: ActiveSet) -> Islands:
-    """Return the workspace for bodies that are stepped together."""
+    """Return the workspace for bodies that move together."""
     none = np.zeros(0, dtype=np.int64)
     return _islands(system, 0, (none, none, none), (none, none), 0, 0)._replace(
         single=new_single_island(system, active)
@@ -135,9 +135,9 @@ def no_islands(system: System, active: ActiveSet) -> Islands:
 
 
 def new_islands(system: System, active: ActiveSet, later: Defaults | None = None) -> Islands:
-    """Return the workspace for a scene whose bodies may move apart from each other.
+    """Return the workspace for a scene whose bodies may move in separate islands.
 
-    Where there is `later`, its pairs of bodies get contacts when they come near each other (`with_partners`).
+    If `later` is given, its pairs of bodies get contacts when they come near each other (`with_partners`).
     """
     n = system.bodies.size
     if n == 1 or not system.bodies["ballistic"].any():
@@ -155,7 +155,7 @@ def new_islands(system: System, active: ActiveSet, later: Defaults | None = None
 
 
 def with_partners(islands: Islands, system: System, later: Defaults) -> Islands:
-    """Return the workspace for a scene that has got contacts between further bodies."""
+    """Return the workspace for a scene with new contacts between further bodies."""
     low, high, rows = _partners(system, later)
     return islands._replace(
         partner=np.stack([high, rows]),
@@ -164,7 +164,7 @@ def with_partners(islands: Islands, system: System, later: Defaults) -> Islands:
 
 
 def _partners(system: System, later: Defaults | None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return two bodies i < j and their contact, rising; -1 for those of `later` that never touch."""
+    """Return pairs i < j and their contacts, sorted; contact -1 for pairs of `later` that never touch."""
     n, contacts = system.bodies.size, system.contacts
     rows = np.flatnonzero((contacts["other"] >= 0) & (contacts["touches"] != STOP))
     body, other = contacts["body"][rows], contacts["other"][rows]
@@ -180,9 +180,9 @@ def _partners(system: System, later: Defaults | None) -> tuple[np.ndarray, np.nd
 def _islands(
     system: System, n: int, partners: tuple, grounded: tuple, room: int, points: int
 ) -> Islands:
-    """Return islands of `n` bodies, all free.
+    """Return islands of `n` free bodies.
 
-    `partners`: two bodies and their row of contacts; `grounded`: a body and its row with a half-space.
+    `partners` are pairs of bodies and their contacts; `grounded`: bodies and their contacts with half-spaces.
     """
     (low, high, pairs), (body, planes) = partners, grounded
     numbers = np.arange(n + 1)

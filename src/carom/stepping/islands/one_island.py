@@ -19,7 +19,7 @@ def begin_single(system, active, now, clocks, work, start):
     clock.first_touch, clock.tries, clock.effort = 0, 0, 0.0
     work.pair.state[0].searches = 0
     clock.before = clock.impacts
-    if start.state.shape[0] == 0:  # it is not done in another way
+    if start.state.shape[0] == 0:  # the step is never repeated in another way
         return
     for c in range(active.contact_states.shape[0]):
         active.contact_states[c].blows = 0
@@ -35,7 +35,7 @@ def begin_single(system, active, now, clocks, work, start):
 
 @kernel
 def give_up_single(step, work):
-    """Have all bodies take this step and some more whole; return False if they do."""
+    """Give all bodies time-stepping steps, this one and some more; return False if they have them already."""
     if work.body[0].whole_until > step:
         return False
     for b in range(work.body.shape[0]):
@@ -45,7 +45,7 @@ def give_up_single(step, work):
 
 @kernel
 def forget_single(system, active, now, clocks, work, start):
-    """Go back to the start of the step, as if nothing had happened in it."""
+    """Go back to the start of the step and drop all its results."""
     mark_vertices(active, 0)
     for c in range(active.contact_states.shape[0]):
         active.contact_states[c] = start.contact_states[c]
@@ -65,7 +65,7 @@ def forget_single(system, active, now, clocks, work, start):
 
 @kernel
 def mark_vertices(active, carries):
-    """Note for the vertices that are active whether they carry."""
+    """Write `carries` for the vertices that are active."""
     for i in range(active.count[0]):
         if active.points[i].touches == 0:
             active.carries[active.points[i].feature] = carries

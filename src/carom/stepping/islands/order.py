@@ -1,7 +1,7 @@
-"""The order of pairs and contacts in an island: that of the scene, however late their rows were made.
+"""The order of pairs and contacts in an island: that of the scene, independent of when their rows were made.
 
-Contacts that have rows from the start are in the order of these. Those that came later follow, by their bodies:
-as all pairs would be had they been made at the start. So a motion does not depend on when they came.
+Contacts with rows from the start have the order of these rows. Contacts added later follow in the order of
+their bodies, as if all pairs had been made at the start. So the time of their addition has no effect.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ def comes_before(fixed, a, pair_a, b, pair_b):
 
 @kernel
 def sort_contacts(system, islands):
-    """Put the contacts of each island into order: by insertion, as they nearly are."""
+    """Sort the contacts of each island by insertion, because they are nearly sorted."""
     fixed, which, contacts = islands.plan[0].fixed, islands.which, system.contacts
     for island in range(islands.plan[0].count):
         first = islands.first[1, island]
@@ -39,7 +39,7 @@ def sort_contacts(system, islands):
 
 @kernel
 def sort_pairs(islands):
-    """Put the pairs of balls into rising order, by counting: by the second body, then by the first."""
+    """Sort the pairs of balls by counting: by the second body, then by the first."""
     first, n, count = islands.pair_first, islands.pair_first.shape[0] - 1, islands.plan[0].pairs
     for turn in range(2):
         source, target, side = islands.pair[turn], islands.pair[1 - turn], 1 - turn

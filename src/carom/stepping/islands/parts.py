@@ -13,14 +13,14 @@ from carom.stepping.islands.layout import ASLEEP, FLIES
 from carom.stepping.islands.order import comes_before
 from carom.stepping.islands.plan import READY, number, root, seek
 
-# closed points from which on bodies that lie on each other are a crowd, and how many for each of them, on
-# average: a group that goes from event to event is solved with W whole, which takes the cube of its points
+# least number of active points of a crowd, and least average number per body: a group that moves from event to
+# event is solved with a full matrix W, which costs the cube of the number of points
 MANY, EACH = 24, 2
 
 
 @kernel
 def begin_step(system, active, now, length, clocks, work, islands):
-    """Find the islands of a step and fill their slots; return what is to grow before that, else `READY`."""
+    """Find the islands of a step and fill their slots; return `READY`, or the arrays that must grow first."""
     plan, member = islands.plan[0], islands.member
     mark_active(system, active, work)
     code = seek(system, active, now, length, work, islands)
@@ -45,7 +45,7 @@ def begin_step(system, active, now, length, clocks, work, islands):
             contact.other = local(islands, contact.other)
         islands.contact_states[slot] = active.contact_states[c]
         contact_state.blows = 0
-        if contact_state.step != clocks[0].step:  # nothing was near it in the step before
+        if contact_state.step != clocks[0].step:  # in the last step nothing was near
             contact_state.leaving = 0
     plan.kept = 0
     for i in range(active.count[0]):
@@ -75,7 +75,7 @@ def joints_of(islands, i):
 
 @kernel
 def part_solver(islands, i):
-    """Return the back end of island i: that of its joints, for as many bodies as it has."""
+    """Return the back end of island i: the back end of its joints, for its number of bodies."""
     s, n = joints_of(islands, i).solver, islands.first[0, i + 1] - islands.first[0, i]
     return Solver(
         s.kind, s.links[:n], s.rotor[:n], s.workspace[:n], s.order, s.column, s.row, s.update, s.triple, s.term,
@@ -138,7 +138,7 @@ def part_work(work, islands, i):
 
 @kernel
 def enter(part, own, active, work, islands, begin, clock):
-    """Begin with island `plan.at`: take its active points, label its groups, set its clock back."""
+    """Begin with island `plan.at`: copy its active points, label its groups, and reset its clock."""
     i = islands.plan[0].at
     own.count[0] = 0
     for k in range(islands.first[2, i], islands.first[2, i + 1]):
@@ -157,7 +157,7 @@ def enter(part, own, active, work, islands, begin, clock):
 
 @kernel
 def slot_of(islands, i, active_point):
-    """Return the number within island i of the contact of an active point; its bodies are the island's."""
+    """Return the number in island i of the contact of an active point, whose bodies have local numbers."""
     first, last, fixed = islands.first[1, i], islands.first[1, i + 1], islands.plan[0].fixed
     low, high, c = first, last, active_point.contact
     while low < high:
@@ -171,10 +171,10 @@ def slot_of(islands, i, active_point):
 
 @kernel
 def is_crowd(part, active, step, work):
-    """Return whether an island takes its step whole: it is large, or event by event made no progress lately.
+    """Return whether an island takes a time-stepping step: it is large, or the event-driven step failed lately.
 
-    It is large where bodies lie on each other at many points, two each or more: what rolls on a table or is
-    struck in flight goes from event to event.
+    It is large if bodies lie on each other at many points, two per body or more. Bodies that roll on a table or
+    strike in flight move from event to event.
     """
     n = part.bodies.shape[0]
     crowd = active.count[0] >= max(MANY, EACH * n)
@@ -185,9 +185,9 @@ def is_crowd(part, active, step, work):
 
 @kernel
 def give_up(islands, step, work):
-    """Have the bodies of the island at hand take this step and some more whole; return False if they do.
+    """Give the bodies of the present island time-stepping steps, this and some more; return False if they have.
 
-    The more often in a row, the more of them: 1, 2, 4, ... 128.
+    The number doubles with each call in a row: 1, 2, 4, ... 128.
     """
     first, at, new = islands.first, islands.plan[0].at, True
     for slot in range(first[0, at], first[0, at + 1]):
@@ -199,14 +199,14 @@ def give_up(islands, step, work):
 
 @kernel
 def give_up_body(memory, step):
-    """Have a body take this step and some more whole."""
+    """Give a body time-stepping steps: this one and some more."""
     memory.whole_for = min(128, max(1, 2 * memory.whole_for))
     memory.whole_until = step + memory.whole_for
 
 
 @kernel
 def recover(part, step, work):
-    """Note that an island has gone from event to event."""
+    """Record that an island moves from event to event."""
     for b in range(part.bodies.shape[0]):
         if work.body[b].whole_until < step:
             work.body[b].whole_for //= 2
@@ -214,7 +214,7 @@ def recover(part, step, work):
 
 @kernel
 def leave(own, islands):
-    """End with island `plan.at`: keep its active points for after the step."""
+    """End with island `plan.at`: store its active points for the state after the step."""
     plan, first = islands.plan[0], islands.first
     bodies, contacts = first[0, plan.at], first[1, plan.at]
     for k in range(own.count[0]):
@@ -256,7 +256,7 @@ def end_step(system, active, now, length, clock, work, islands):
 
 @kernel
 def forget_step(active, clocks, islands):
-    """Go back to the start of the step, as if nothing had happened in it."""
+    """Go back to the start of the step and drop all its results."""
     plan = islands.plan[0]
     for k in range(2):
         for i in range(plan.kept if k == 1 else islands.carried[0]):

@@ -1,9 +1,9 @@
 """The bodies that may meet in a step: each has a ball around its path, and overlapping balls form an island.
 
-A body moves no further in a step h than v h + g h^2, v a bound of the speed of its points, as long as it meets
-nothing. In a set that meets, none moves further than at twice the greatest speed of it, unless light bodies
-are thrown by heavy ones: then one leaves its ball, which is seen, and the step is done again with more room. So
-islands are exact: bodies of different ones have not met.
+As long as a body meets nothing, it moves at most v h + g h^2 in a step h, where v is a bound of the speed of
+its points. In a set of bodies that meet, none moves faster than twice the greatest speed, unless a heavy body
+throws a light one: then a body leaves its ball, which is detected, and the step is repeated with more room. So
+islands are exact: bodies of different islands have not met.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from carom.model.workspace import FREE, RESTS
 from carom.stepping.islands.layout import ASLEEP, FLIES, IN_ISLAND
 from carom.stepping.islands.order import sort_contacts, sort_pairs
 
-SLACK = 1e-6  # of a ball: what touches overlaps
-READY = -1  # nothing is to grow
-# contacts are made for bodies that may meet within so many steps more, but not for those that are further away
-# than this part of their balls
+SLACK = 1e-6  # relative growth of balls, so that balls in contact overlap
+READY = -1  # no array must grow
+# contacts are made for bodies that may meet within AHEAD more steps, but only within a distance of WIDE times
+# their balls
 AHEAD, WIDE = 8.0, 1.0
 
 
@@ -35,7 +35,7 @@ def root(member, b):
 
 @kernel
 def join(member, a, b):
-    """Make the sets of two bodies one; return whether they were two."""
+    """Join the sets of two bodies; return whether they were different sets."""
     a, b = root(member, a), root(member, b)
     if a == b:
         return False
@@ -49,13 +49,13 @@ def join(member, a, b):
 
 @kernel
 def seek(system, active, now, length, work, islands):
-    """Find the sets of bodies that may meet; return `READY`, or what is to grow before that."""
+    """Find the sets of bodies that may meet; return `READY`, or the arrays that must grow first."""
     member, plan, fall = islands.member, islands.plan[0], norm(system.gravity)
     for b in range(system.bodies.shape[0]):
         v, w, memory, m = now[b].v, now[b].w, work.body[b], member[b]
         m.parent, m.bodies, m.awake = b, 1, 0 if memory.status == RESTS else 1
         m.speed = norm(v) + norm(w) * system.bodies[b].ball
-        if system.bodies[b].ballistic == 0:  # as in the step before, and it never sleeps
+        if system.bodies[b].ballistic == 0:  # it never sleeps; `bound` is of the last step
             m.awake, m.speed = 1, m.speed + memory.bound[0] * length
         memory.room = m.awake * plan.widen * (m.speed + fall * length) * length
         for k in range(3):
@@ -103,9 +103,9 @@ def is_new(islands, i, j):
 
 @kernel
 def note_new(system, work, islands):
-    """Note pairs of bodies that have no contact yet and may meet in this step or soon; return what is to grow.
+    """List pairs of bodies without a contact that may meet in this step or soon; return the array to grow.
 
-    Those of some further steps at once, as the loop is left for them.
+    Pairs of some further steps are included, because the loop is left to make their contacts.
     """
     plan, pair = islands.plan[0], islands.pair[0]
     for b in range(system.bodies.shape[0]):
@@ -125,7 +125,7 @@ def note_new(system, work, islands):
 
 @kernel
 def join_pairs(islands):
-    """Join the sets of all pairs that may touch, unless both are asleep; return whether any were two."""
+    """Join the sets of all pairs that may touch, unless both are asleep; return whether any set was joined."""
     member, any_joined, more = islands.member, False, True
     while more:
         more = False
@@ -139,14 +139,14 @@ def join_pairs(islands):
 
 @kernel
 def may_touch(islands, i, j):
-    """Return whether two bodies i < j may touch, with a contact or with one that is to come."""
+    """Return whether two bodies i < j may touch: they have a contact, or can get one."""
     q = first_contact(islands, i, j)
     return islands.partner[1, q] >= 0 if q >= 0 else islands.plan[0].open == 1
 
 
 @kernel
 def first_contact(islands, i, j):
-    """Return the place among partners of the first contact of bodies i < j, -1 if they are none."""
+    """Return the place among partners of the first contact of bodies i < j, -1 if they are not partners."""
     low, high = islands.partner_first[i], islands.partner_first[i + 1]
     end = high
     while low < high:
@@ -160,7 +160,7 @@ def first_contact(islands, i, j):
 
 @kernel
 def near_plane(system, c, now, work):
-    """Return whether a body may come to a half-space, or to a static body, in the step."""
+    """Return whether a body may reach a half-space or a static body in the step."""
     contact, x = system.contacts[c], now[system.contacts[c].body].x
     if contact.static == 1:
         y, reach = contact.centre, (1.0 + SLACK) * (contact.extent + contact.other_extent)
@@ -172,13 +172,13 @@ def near_plane(system, c, now, work):
 
 @kernel
 def number(system, active, now, work, islands):
-    """Give islands numbers, and bodies, contacts, active points slots; return `READY`, or what is to grow."""
+    """Give numbers to islands, and slots to bodies, contacts and active points; return as `seek` does."""
     member, plan, n = islands.member, islands.plan[0], system.bodies.shape[0]
     for b in range(n):
         member[b].island = -1
         member[b].kind = kind_of(system, b, now, work, islands)
     plan.count = 0
-    for b in range(n):  # roots are the lowest of their sets
+    for b in range(n):  # the root is the lowest body of its set
         if member[b].kind == IN_ISLAND and root(member, b) == b:
             member[b].island = plan.count
             plan.count += 1
@@ -219,7 +219,7 @@ def kind_of(system, b, now, work, islands):
 
 @kernel
 def list_contacts(system, now, work, islands, phase):
-    """Count (phase 0) or write (1) the contacts of islands; half-spaces first, as they are numbered."""
+    """Count (phase 0) or write (1) the contacts of islands; contacts with half-spaces come first."""
     member, plan = islands.member, islands.plan[0]
     for k in range(islands.joined.stops.shape[0]):
         put(islands, 1, phase, plan.joined, islands.joined.stops[k])
@@ -256,7 +256,7 @@ def list_bodies(system, active, islands, phase):
 
 @kernel
 def ranges(islands, s):
-    """Turn the counts of the islands into first places; the last one is the sum."""
+    """Convert the counts of the islands to first places; the last entry is the sum."""
     total = 0
     for i in range(islands.plan[0].count):
         count = islands.first[s, i]
@@ -267,7 +267,7 @@ def ranges(islands, s):
 
 @kernel
 def back(islands, s):
-    """Turn the last places, where filling has ended, back into first places."""
+    """Convert the places at which filling has ended back to first places."""
     for i in range(islands.plan[0].count - 1, 0, -1):
         islands.first[s, i] = islands.first[s, i - 1]
     if islands.plan[0].count > 0:
@@ -276,7 +276,7 @@ def back(islands, s):
 
 @kernel
 def put(islands, s, phase, island, i):
-    """Count a body, a contact or an active point (s = 0, 1, 2) of an island, or write it into the next slot."""
+    """Count a body, contact or active point (s = 0, 1, 2) of an island, or write it to the next slot."""
     if island < 0:
         return
     if phase == 1:

@@ -1,7 +1,7 @@
 """A run that is set up once and started many times, each time like a new run.
 
 To set up a run takes as long as hundreds of its steps: the scene is compiled, arrays are made, compiled code is
-looked up. Instead, all data that a run changes are reset to their values before the first step, so that no run
+loaded. Here all data that a run changes are reset to their values before the first step instead, so that no run
 depends on the runs before it.
 """
 
@@ -25,7 +25,7 @@ class Again:
         self.scene, self.settings, self.targets = scene, settings, targets
         projected = (
             settings.options.project_start and len(scene.joints) > 0
-        )  # a start of its own each time
+        )  # each run has its own projected start
         self.light = all(target.light for target in targets) and not projected
         if self.light:
             self.run = Run(scene, settings)
@@ -34,7 +34,7 @@ class Again:
             self.kept = Kept(self.run.memory)
 
     def start(self, values: dict[str, np.ndarray]) -> Run:
-        """Return the run, ready to start with these values, one for each name.
+        """Return the run, prepared to start with these values, one for each name.
 
         Raises
         ------
@@ -44,7 +44,7 @@ class Again:
         if not self.light:
             return Run(changed(self.scene, self.targets, values), self.settings)
         run = self.run
-        # contacts may have come, or room for them, while it ran
+        # during a run contacts, or room for them, may have been added
         if self.kept.is_of(run.memory):
             self.kept.restore()
         else:
@@ -52,7 +52,7 @@ class Again:
             run.renew()
             self.kept = Kept(run.memory)
         run.clock.saved = 0
-        run.compiled.functions.failed = None  # what a function of the user's raised in the last run
+        run.compiled.functions.failed = None  # the error of a user-defined function in the last run
         self.write(values)
         check_start(run.scene, run.compiled, run.now, run.work, run.options)
         check_stops(run.scene, run.compiled, run.now, run.work, run.options)

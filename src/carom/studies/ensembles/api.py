@@ -24,8 +24,8 @@ from carom.studies.ensembles.outcome import PENDING
 from carom.studies.ensembles.result import Ensemble
 from carom.studies.ensembles.sampling import draw
 
-CHUNK = 64  # runs in a part
-NEVER = 10**15  # states of a run that are saved: only the last
+CHUNK = 64  # default number of runs in a part
+NEVER = 10**15  # `save_every` of runs that save only the first and the last state
 
 
 @arguments.known
@@ -150,7 +150,7 @@ def ensemble(
     if workers is not None:
         workers = checks.integer("workers", workers, least=1)
     settings = checked_settings(duration, step, method, rtol=rtol, atol=atol, options=options)
-    if observe is None:  # nothing is read but the end
+    if observe is None:  # only the end is read
         settings = settings._replace(save_every=NEVER)
     inputs = draw(vary, runs, checks.integer("seed", seed, least=0), sampling)
     plan = _plan(scene, settings, inputs, observe)

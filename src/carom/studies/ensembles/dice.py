@@ -43,8 +43,8 @@ class Fairness(NamedTuple):
     share: np.ndarray  # (6,)
     low: np.ndarray  # (6,) 95 % confidence intervals (Wilson 1927)
     high: np.ndarray
-    chi_square: float  # of the hypothesis that all are as likely
-    p_value: float  # how likely so much, or more, is if they are
+    chi_square: float  # chi-square statistic of the hypothesis that all faces are equally likely
+    p_value: float  # probability of this statistic, or a greater one, under the hypothesis
 
 
 def fairness(faces: ArrayLike) -> Fairness:

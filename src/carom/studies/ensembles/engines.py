@@ -15,7 +15,7 @@ from itertools import islice
 from carom import checks
 
 NAMES = ("threads", "processes", "serial")
-TRIES = 5  # of a part whose worker is lost
+TRIES = 5  # greatest number of times that a part is submitted, if its worker is lost
 
 
 def check_engine(executor) -> None:

@@ -1,4 +1,4 @@
-"""The digest that identifies a saved ensemble: of its scene, functions, settings and inputs."""
+"""The digest of scene, functions, settings and inputs that identifies a saved ensemble."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def digest(plan: Plan, inputs: dict[str, np.ndarray]) -> str:
 
 
 class _Marker(Encoder):
-    """User-defined functions by a mark of their code; a file has only their names."""
+    """An encoder that adds a mark of their code to user-defined functions; a file has only their names."""
 
     def function(self, value: Any, where: str) -> dict:
         """Return the name of a function and its mark."""

@@ -21,16 +21,16 @@ def outcome_type(bodies: int) -> np.dtype:
     return np.dtype(
         [
             ("status", "i8"),  # a `Status`, or PENDING, or REFUSED
-            ("t", "f8"),  # reached
-            ("rest_time", "f8"),  # end of the first step after which nothing moves, else NaN
+            ("t", "f8"),  # time reached
+            ("rest_time", "f8"),  # end of the first step after which nothing moves, or NaN
             ("impacts", "i8"),
-            ("first_impact", "f8"),  # time, else NaN
+            ("first_impact", "f8"),  # time of the first impact, or NaN
             ("kinetic_energy", "f8"),  # at the end
-            ("impact_loss", "f8"),  # energy that impacts, friction and bounces have taken
+            ("impact_loss", "f8"),  # this and the next two: energy dissipated
             ("friction_loss", "f8"),
             ("bounce_loss", "f8"),
             ("load_work", "f8"),
-            ("energy_error", "f8"),  # worst without a name, as a part of what was exchanged
+            ("energy_error", "f8"),  # greatest energy error, relative to the energy exchanged
             ("position", "f8", (bodies, 3)),
             ("orientation", "f8", (bodies, 4)),
             ("velocity", "f8", (bodies, 3)),

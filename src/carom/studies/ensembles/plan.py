@@ -1,4 +1,4 @@
-"""The plan of an ensemble, and the runs of a part of it: results do not depend on worker and order."""
+"""The plan of an ensemble, and the runs of a part of it; results are independent of worker and order."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def do(plan: Plan, first: int, values: dict[str, np.ndarray]) -> Part:
         own = {name: array[k] for name, array in values.items()}
         try:
             one(plan, own, k, part)
-        except Exception as error:  # whatever a run does, the others go on
+        except Exception as error:  # after any error the other runs continue
             part.outcomes[k] = no_outcomes(1, plan.bodies)[0]
             part.outcomes[k]["status"] = REFUSED
             part.failures[first + k] = f"{type(error).__name__}: {error}"

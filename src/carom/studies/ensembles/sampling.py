@@ -18,7 +18,7 @@ class UniformOrientation:
     Three uniform numbers give an orientation: Shoemake, *Uniform random rotations*, Graphics Gems III (1992).
     """
 
-    columns = 3  #: numbers that it takes of each point
+    columns = 3  #: uniform numbers used for each orientation
 
     def ppf(self, u: np.ndarray) -> np.ndarray:
         """Return the quaternions (n, 4) for points `u` (n, 3) of the unit cube."""
@@ -115,7 +115,7 @@ def _points(runs: int, total: int, seed: int, sampling: str) -> np.ndarray:
         engine = engines[sampling](total, rng=np.random.default_rng(seed))
         if (
             sampling == "sobol"
-        ):  # balanced in powers of two: draw one, and use as many as are asked for
+        ):  # balanced for powers of two: draw the next power, and use the first points
             points = engine.random_base2(max(0, (runs - 1).bit_length()))[:runs]
         else:
             points = engine.random(runs)

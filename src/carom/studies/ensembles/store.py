@@ -22,8 +22,8 @@ from carom.studies.ensembles.outcome import PENDING, no_outcomes, outcome_type
 from carom.studies.ensembles.plan import Part
 
 FORMAT = "carom ensemble 2"
-MAKING = ".making"  # is there while a store is made
-NEW = ".new"  # an array that is made
+MAKING = ".making"  # file that exists while a store is created
+NEW = ".new"  # array that is being created
 MARKS = "parts"
 OWN = (NEW, "zarr.json", "inputs", "outcomes", "observed", MARKS)
 
@@ -128,7 +128,7 @@ class Store:
             for name, values in part.observed.items():
                 self._observed(name, values)[rows] = values
             names = part.outcomes.dtype.names or ()
-            for name in sorted(names, key="status".__eq__):  # that last, for other readers
+            for name in sorted(names, key="status".__eq__):  # status last, for other readers
                 self.group[f"outcomes/{name}"][rows] = part.outcomes[name]
             put(self.path / MARKS / f"{part.first}.json", [text.encode()])
         except OSError as error:
@@ -163,7 +163,7 @@ class Store:
         try:
             values = {name: np.asarray(a[:]) for name, a in sorted(self.group["inputs"].arrays())}
             whole = _digest(values) == self.group.attrs["inputs"]
-        except Exception as error:  # whatever a decoder makes of a damaged file
+        except Exception as error:  # a damaged file may cause any error of a decoder
             raise ValueError(
                 f"{self.path} is damaged: its inputs cannot be read ({error})"
             ) from error
@@ -205,11 +205,11 @@ class Store:
                 )
 
     def _column(self, key: str) -> np.ndarray:
-        """Return an array, with zeros where it cannot be read: an incomplete part has no mark."""
+        """Return an array, with zeros for chunks that cannot be read: an incomplete part has no mark."""
         array = self.group[key]
         try:
             return np.asarray(array[:])
-        except Exception:  # whatever a decoder makes of half of what it wrote
+        except Exception:  # an incomplete file may cause any error of a decoder
             out = np.zeros(array.shape, array.dtype)
         for first in range(0, self.runs, self.chunk):
             try:

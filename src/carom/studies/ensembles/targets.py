@@ -25,9 +25,9 @@ class Target:
     """The destination of the values of one name."""
 
     name: str
-    part: str  # name of the body or contact; "" for the scene
+    part: str  # name of the body or contact; "" if it is the scene
     field: str
-    index: int  # of the body or contact
+    index: int  # index of the body or contact
     light: bool  # whether the compiled scene can be used again
 
 

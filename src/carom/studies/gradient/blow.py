@@ -1,4 +1,4 @@
-"""Derivatives of one frictional impact: of its impulse, with respect to W, u, mu and e.
+"""Derivatives of the impulse of one frictional impact with respect to W, u, mu and e.
 
 The impact solver has an error of 1e-14, so its differences of order 6 have an error of 1e-11 (mathematics page,
 §5.2). Steps are halved until all points of the stencil have the same phases of slip and stick, and until the
@@ -15,26 +15,26 @@ from carom.impact import layout as o
 from carom.impact.laws import BY_SPEED
 
 UPPER = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
-INPUTS = 11  # the six of W, u, mu, e
+INPUTS = 11  # six numbers of W, three of u, mu, e
 CENTRAL = ((-3, -1 / 60), (-2, 3 / 20), (-1, -3 / 4), (1, 3 / 4), (2, -3 / 20), (3, 1 / 60))
 FORWARD = ((0, -49 / 20), (1, 6), (2, -15 / 2), (3, 20 / 3), (4, -15 / 4), (5, 6 / 5), (6, -1 / 6))
-FIRST = 2.0**-6  # step, as a part of what an input is measured by
+FIRST = 2.0**-6  # first step, relative to the unit of an input
 HALVINGS = 14
 ROUND_OFF = 1e-13
 ENOUGH = 1e-11
-AT_REST = 1e-9  # slip below this part of the speed of impact is none
+AT_REST = 1e-9  # slip below this part of the speed of impact counts as zero
 
 
 class Blow(NamedTuple):
     """The result of an impact, and its derivatives."""
 
     impulse: np.ndarray  # (3,)
-    slip_end: float  # normal impulse at which slip stops, -1 where it does not
-    slip_end_rate: float  # normal velocity there
+    slip_end: float  # normal impulse at which slip stops, -1 if it does not
+    slip_end_rate: float  # normal velocity at which slip stops
     phases: int
-    d: np.ndarray  # (4, 11) of the impulse and of slip_end
-    error: float  # of d, relative to its largest entry, each in the units of its input
-    kink: str  # why there is no derivative, or ""
+    d: np.ndarray  # (4, 11) derivatives of the impulse and of slip_end
+    error: float  # of the impulse in d, in units of the inputs, relative to its size
+    kink: str  # reason why there is no derivative, or ""
 
 
 def blow(W: np.ndarray, u: np.ndarray, mu: float, e: float, law: int) -> Blow | None:
@@ -61,7 +61,7 @@ def blow(W: np.ndarray, u: np.ndarray, mu: float, e: float, law: int) -> Blow | 
 
 
 def _units(W, u, slips) -> np.ndarray:
-    """Return what each input is measured by: changes of this size change much."""
+    """Return the unit of each input: a change of this size changes the impact considerably."""
     least = float(np.linalg.eigvalsh(W)[0])
     weight = max(least, 1e-6 * W[0, 0])
     tangential = float(np.hypot(u[1], u[2])) if slips else -u[0]
@@ -69,8 +69,8 @@ def _units(W, u, slips) -> np.ndarray:
 
 
 def _column(z, k, unit, law, base, size):
-    """Return the derivative by input k, times nothing, and an estimate of its error in units; or None."""
-    bound = k >= 9  # mu and e do not go below 0
+    """Return the derivative by input k, or None, and an estimate of its error in units."""
+    bound = k >= 9  # mu and e must not be below 0
     best, least, before, step = None, np.inf, None, FIRST * unit
     for _ in range(HALVINGS):
         one_sided = bound and z[k] < 3.0 * step
@@ -89,7 +89,7 @@ def _column(z, k, unit, law, base, size):
 
 
 def _stencil(z, k, step, law, base, weights):
-    """Return the difference quotient (4,), or None where not all points take the same course."""
+    """Return the difference quotient (4,), or None if not all points have the same phases."""
     total = np.zeros(4)
     for at, weight in weights:
         here = z.copy()
@@ -107,19 +107,19 @@ def _stencil(z, k, step, law, base, weights):
 
 
 def _same_course(found, base, z, law) -> bool:
-    """Return whether two impacts pass the same phases, in compression and in restitution."""
-    if z[9] == 0.0:  # without friction there is no course
+    """Return whether two impacts have the same phases, in compression and in restitution."""
+    if z[9] == 0.0:  # without friction the phases have no effect
         return True
-    if not int(base[5]) & o.SLIP:  # it sticks from the start: others slip a little before they do
+    if not int(base[5]) & o.SLIP:  # it sticks from the start; changed impacts slip slightly first
         return bool(int(found[5]) & ~o.SLIP == int(base[5]))
     same = found[5] == base[5] and (found[3] >= 0.0) == (base[3] >= 0.0)
-    if z[10] == 0.0 or law in BY_SPEED:  # what e = 0 ends with compression, they do not look at
+    if z[10] == 0.0 or law in BY_SPEED:  # the phase of the end of slip has no effect
         return bool(same)
     return bool(same and (found[4] < 0.0) == (base[4] < 0.0))
 
 
 def _resolve(W, u, mu, e, law):
-    """Return impulse (3), where slip ends (impulse, velocity) and phases; None if it is not resolved."""
+    """Return impulse (3), end of slip (impulse, velocity) and phases; None if it is not resolved."""
     from carom.impact.resolve import resolve
 
     out = np.zeros(o.SIZE)

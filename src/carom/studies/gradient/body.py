@@ -1,11 +1,11 @@
-"""One body on its way: its state, and the derivative of that state, carried along free flight.
+"""The state of one body and its derivative along free flight.
 
 Tangents are (dx, dtheta, dv, dw) in world axes, 12 numbers, with R -> exp(dtheta) R. In flight the spatial
-angular momentum L = R J R^T w is constant, and the change phi = R^T dtheta of attitude follows
+angular momentum L = R J R^T w is constant, and the change of attitude phi = R^T dtheta satisfies
 
     dphi/dt = -W x phi - J^-1 (phi x l) + J^-1 R^T dL - J^-1 dJ J^-1 l,    l = R^T L,  W = J^-1 l
 
-(mathematics page, §5.1). With equal moments that do not change it is closed: exp and its differential.
+(mathematics page, §5.1). With constant equal moments the solution is closed: exp and its differential.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ from scipy.integrate import solve_ivp
 
 from carom.geometry import quaternion
 
-ACCURACY = 1e-12  # of the variational equation, relative
-#: changes of the six components of a symmetric matrix
+ACCURACY = 1e-12  # relative accuracy of the variational equation
+#: unit changes of the six components of a symmetric matrix
 UNITS = np.zeros((6, 3, 3))
 for _k, (_i, _j) in enumerate(((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))):
     UNITS[_k, _i, _j] = UNITS[_k, _j, _i] = 1.0
 
 
 def hat(a: np.ndarray) -> np.ndarray:
-    """Return the matrix of a x; of columns (3, P) as (3, 3, P)."""
+    """Return the matrix of the cross product a x; for columns (3, P) as (3, 3, P)."""
     o = np.zeros_like(a[0])
     return np.array([[o, -a[2], a[1]], [a[2], o, -a[0]], [-a[1], a[0], o]])
 
@@ -45,7 +45,7 @@ def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 class Moving:
     """A body at a time, with the tangents X (12, P) of its state.
 
-    `inertia` are principal moments, R (3, 3) takes principal axes to the world; dm (P,), dJ (3, 3, P) and
+    `inertia` has the principal moments, R (3, 3) turns principal axes to the world; dm (P,), dJ (3, 3, P) and
     dg (3, P) are the changes of mass, of inertia in principal axes, and of gravity.
     """
 
@@ -64,22 +64,22 @@ class Moving:
 
     @property
     def inverse_inertia(self) -> np.ndarray:
-        """R J^-1 R^T (3, 3)."""
+        """The inverse inertia R J^-1 R^T (3, 3)."""
         return (self.R / self.inertia) @ self.R.T
 
     @property
     def momentum(self) -> np.ndarray:
-        """L = R J R^T w (3,)."""
+        """The angular momentum L = R J R^T w (3,)."""
         return self.R @ (self.inertia * (self.R.T @ self.w))
 
     @property
     def spin_rate(self) -> np.ndarray:
-        """dw/dt = -I^-1 (w x L) of free flight (3,)."""
+        """The rate dw/dt = -I^-1 (w x L) of free flight (3,)."""
         return -self.inverse_inertia @ np.cross(self.w, self.momentum)
 
     @property
     def d_momentum(self) -> np.ndarray:
-        """Return dL (3, P)."""
+        """The change dL of the angular momentum (3, P)."""
         d, w, L = self.X, self.w, self.momentum
         spin = self.R.T @ w
         return (
@@ -117,7 +117,7 @@ def path(body: Moving, times: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _turn_closed(body: Moving, h: float):
-    """Return attitude, angular velocity and their tangents where the moments are equal."""
+    """Return attitude, angular velocity and their tangents for equal moments."""
     turn = h * body.w
     step = quaternion.matrix(quaternion.exp(turn))
     d = body.X
@@ -134,7 +134,7 @@ def _left(a: np.ndarray) -> np.ndarray:
 
 
 def _turn(body: Moving, h: float, accuracy: float):
-    """Return the same for any moments: the motion in closed form, its variation integrated along with it."""
+    """Return the same for any moments: the motion is in closed form, its variation is integrated."""
     from carom.kinematics.flight_arrays import torque_free
 
     i, L, dL = 1.0 / body.inertia, body.momentum, body.d_momentum
@@ -152,7 +152,7 @@ def _turn(body: Moving, h: float, accuracy: float):
     start = np.zeros((3, 12))
     start[:, :3] = np.eye(3)
     y0 = np.append(quaternion.from_matrix(body.R), start.ravel())
-    # phi per unit of dL is of the order h / J: tolerances by its size
+    # phi per unit of dL is of the order h / J, so tolerances have this scale
     size = np.concatenate(
         [np.ones(3), h * i.max() * np.ones(3), h * i.max() * np.linalg.norm(i * L) * np.ones(6)]
     )

@@ -27,10 +27,10 @@ from carom.studies.gradient.parameters import Parameters
 from carom.studies.gradient.result import Sensitivities
 from carom.studies.gradient.tangents import Steps
 
-# changes of the state, as a part of its size: where the larger one meets other contacts, the smaller
+# changes of the state, relative to its size: if the first one changes the contacts, the second is tried
 CHANGES = (3e-4, 1e-5)
-LONGEST = 100  # steps of a piece
-CONVERGED = 1e-3  # by which the two differences may differ, as a part of the greatest derivative
+LONGEST = 100  # greatest number of steps of a piece
+CONVERGED = 1e-3  # allowed difference of the two differences, relative to the greatest derivative
 ROWS = ("time", "point", "before", "after", "impulse")
 
 
@@ -40,7 +40,7 @@ def differentiate(solution: Solution, parameters: Parameters) -> Sensitivities:
     Raises
     ------
     ValueError
-        If steps vary, for crowds, and for parameters that have no neighbours on both sides.
+        If steps vary, there are crowds, or a parameter cannot have values on both sides.
     """
     given, run = solution.settings, solution._run
     if given["step"] == "auto":
@@ -76,7 +76,7 @@ class Pieces:
         settings = settings._replace(step=grid.interval, save_at=None, save_every=1)
         self.labels, self.parameters = parameters.labels, parameters
         self.base, self.near = Run(solution.scene, settings), Run(solution.scene, settings)
-        if run.found is not None:  # so that contacts have the numbers that they have there
+        if run.found is not None:  # so that contacts have the same numbers as in the run
             for again in (self.base, self.near):
                 again.add_pairs(run.found)
         system = self.near.compiled.system
@@ -215,7 +215,7 @@ class Pieces:
                 "other bodies come near each other there"
             )
         restore(run, start, self.base.records)
-        for array, kept in self.fresh:  # what it remembers of poses holds for other numbers
+        for array, kept in self.fresh:  # its data for earlier poses belong to other values
             array[...] = kept
         for (array, D), given in zip(self.numbers, self.given):
             array[...] = given + e * D[..., p]
@@ -266,7 +266,7 @@ class Pieces:
 
 
 def ends_of(solution: Solution, step: float, steps: int) -> list[int]:
-    """Return the last steps of the pieces: steps of events, and more so that no piece is too long."""
+    """Return the last steps of the pieces: steps of events, and others so that no piece is too long."""
     events = solution._run.records.event[: solution._run.clock[0].event]
     after = np.floor(events["time"] / step * (1.0 - 1e-12)).astype(int) + 1
     ends: list[int] = []

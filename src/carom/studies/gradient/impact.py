@@ -14,16 +14,16 @@ class ByInputs(NamedTuple):
 
     #: (3, 3, 3): a symmetric change dW changes the vector by einsum("ijk,jk", D, dW)
     inverse_mass: np.ndarray
-    velocity: np.ndarray  #: (3, 3)
-    friction: np.ndarray  #: (3,); one-sided (from above) if friction is 0
-    restitution: np.ndarray  #: (3,); one-sided (from above) if restitution is 0
+    velocity: np.ndarray  #: (3, 3) derivatives by the velocity
+    friction: np.ndarray  #: (3,) derivatives by mu; one-sided (from above) if it is 0
+    restitution: np.ndarray  #: (3,) derivatives by e; one-sided (from above) if it is 0
 
 
 class ImpactDerivative(NamedTuple):
     """Derivatives of an impact."""
 
-    impulse: ByInputs  #: of the impulse
-    velocity_after: ByInputs  #: of the relative velocity after the impact
+    impulse: ByInputs  #: derivatives of the impulse
+    velocity_after: ByInputs  #: derivatives of the relative velocity after the impact
     error: float  #: estimate of the relative error of `impulse`
 
 

@@ -13,10 +13,10 @@ from carom.studies.gradient.body import Moving, cross, fly, path
 from carom.studies.gradient.result import Margin
 from carom.studies.gradient.saltation import Strike
 
-FEWEST = 24  # looks at a flight, and looks a turn
+FEWEST = 24  # samples of a flight; to these are added A_TURN samples for each rotation
 A_TURN = 12
-MISSES = 6  # of a flight
-ROUGHLY = 1e-8  # accuracy of what is only a warning
+MISSES = 6  # greatest number of near misses of a flight
+ROUGHLY = 1e-8  # accuracy of near misses, which are only warnings
 
 
 def half_space_rows(system, b: int):
@@ -42,7 +42,7 @@ def gap_gradient(n: np.ndarray, arm: np.ndarray, pose: np.ndarray) -> np.ndarray
 
 
 def of_impact(system, row, place, tied, bodies, done: Strike, hit: Blow, u, W, k, d_mu):
-    """Return the margins of an impact: approach, course of slip, other vertices, time since the last one."""
+    """Return the margins of an impact: of the approach, of the phases of slip, and of other vertices."""
     t, speed = bodies[0].t, float(np.linalg.norm(u))
     found = [
         Margin(t, k, "speed of approach: at 0 the body grazes or misses", float(-u[0]), "m/s",
@@ -61,7 +61,7 @@ def of_impact(system, row, place, tied, bodies, done: Strike, hit: Blow, u, W, k
             skip = np.zeros(len(cores), dtype=bool)
             if own:
                 skip = np.any(np.all(cores[:, None] == tied[None], axis=2), axis=1)
-            # those that go away do not strike next
+            # vertices that move away do not strike next
             gaps = np.where(skip | (rates >= 0.0), np.inf, gaps)
             i = int(np.argmin(gaps))
             if np.isfinite(gaps[i]):
@@ -117,7 +117,7 @@ def of_end(k: int, d_time: np.ndarray, time: float, end: float) -> list[Margin]:
 
 
 def of_flight(system, b: int, body: Moving, until: float, at_end: bool) -> list[Margin]:
-    """Return the margins of the near misses of a flight: least gaps within it, and at the end of the run."""
+    """Return the margins of near misses: least gaps within a flight, and gaps at the end of the run."""
     rows = half_space_rows(system, b)
     if not len(rows) or not until > body.t:
         return []
@@ -130,7 +130,7 @@ def of_flight(system, b: int, body: Moving, until: float, at_end: bool) -> list[
         cores = system.vertices[row.first : row.last]
         heights = x @ row.axes[0] - row.offset - row.radius
         gaps = heights[:, None] + np.einsum("i,tik,vk->tv", row.axes[0], R, cores)
-        # within the flight where it is least there, and at the end of the run while it falls
+        # minima within the flight, and the end of the run if the gap decreases there
         inner = (gaps[1:-1] < gaps[:-2]) & (gaps[1:-1] <= gaps[2:])
         look = np.full(gaps.shape, np.inf)
         look[1:-1][inner] = gaps[1:-1][inner]
@@ -146,7 +146,7 @@ def of_flight(system, b: int, body: Moving, until: float, at_end: bool) -> list[
 
 
 def _miss(system, body: Moving, size: float, times, i: int, v: int, row, gaps) -> Margin:
-    """Return the margin of a vertex that is nearest at the sample i, within the flight or at its end."""
+    """Return the margin of a vertex with the least gap at sample i, within the flight or at its end."""
     n, core, time, how = (
         row.axes[0],
         system.vertices[row.first + v],
@@ -155,7 +155,7 @@ def _miss(system, body: Moving, size: float, times, i: int, v: int, row, gaps) -
     )
     if i == len(times) - 1:
         how = "falls as the run ends"
-    else:  # the least of the parabola through three samples; an error of the time does not count
+    else:  # minimum of the parabola through three samples; the time need not be exact
         bend = gaps[i + 1] - 2.0 * gaps[i] + gaps[i - 1]
         time -= 0.5 * (gaps[i + 1] - gaps[i - 1]) / bend * (times[1] - times[0])
     there = fly(body, float(time), ROUGHLY)

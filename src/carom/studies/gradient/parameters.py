@@ -13,7 +13,7 @@ from carom.scene.contacts import Contact
 
 VECTORS = ("position", "orientation", "velocity", "angular_velocity")
 AXES = ("x", "y", "z")
-#: components of a symmetric matrix, and the changes that one unit of each is
+#: components of a symmetric matrix, and the indices of each
 MOMENTS = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "xz": (0, 2), "yz": (1, 2)}
 OF_BODY = (*VECTORS, "mass", "inertia")
 OF_CONTACT = ("restitution", "friction")
@@ -55,8 +55,8 @@ class Parameters:
 def make_parameters(scene, names, contacts: int, to_principal: np.ndarray) -> Parameters:
     """Return the parameters of a scene with these `names`.
 
-    `contacts` is the number of its pairs, those by default included; `to_principal` (N, 4) turns principal
-    axes to those of the scene's bodies.
+    `contacts` is the number of its pairs, including default pairs; `to_principal` (N, 4) turns principal axes
+    to the axes of the scene's bodies.
     """
     if isinstance(names, str):
         names = (names,)

@@ -1,4 +1,4 @@
-"""Where two touch, and how that point moves with the poses of the bodies."""
+"""The contact point of two bodies, and its derivatives by the poses of the bodies."""
 
 from __future__ import annotations
 
@@ -9,8 +9,8 @@ import numpy as np
 from carom.geometry import quaternion
 from carom.studies.gradient.body import Moving, hat
 
-STEP = 2.0**-9  # of the size of the smaller body, for differences of order 4
-AGREE = 1e-6  # how far two such differences may be from each other, relative to the size
+STEP = 2.0**-9  # step of differences of order 4, relative to the size of the smaller body
+AGREE = 1e-6  # allowed difference of two such differences, relative to the size
 
 
 class Place(NamedTuple):
@@ -28,7 +28,7 @@ class Place(NamedTuple):
 
 
 def vertex_place(row, core: np.ndarray, body: Moving) -> Place:
-    """Return the point of a vertex, `core` in principal axes, that a ball swells, on a half-space."""
+    """Return the contact point, on a half-space, of a ball around a vertex, `core` in principal axes."""
     n = row.axes[0]
     c = body.R @ core
     arm = c - row.radius * n
@@ -41,10 +41,10 @@ def vertex_place(row, core: np.ndarray, body: Moving) -> Place:
 
 
 def found_place(system, row, bodies: list[Moving]) -> Place | None:
-    """Return the nearest point of two solids, or of a curved one and a half-space.
+    """Return the nearest point of two solids, or of a curved solid and a half-space.
 
-    Its derivatives are differences of order 4, made with two steps. None where these do not agree: at an edge
-    or face from which the point may go over to another.
+    Its derivatives are differences of order 4, with two steps. If these do not agree, the result is None: at an
+    edge or face from which the point may jump to another.
     """
     finder = _Finder(system, row)
     size = float(row.extent if row.other < 0 else min(row.extent, row.other_extent))
@@ -66,7 +66,7 @@ def found_place(system, row, bodies: list[Moving]) -> Place | None:
 
 
 def _differences(finder, bodies, steps):
-    """Return the derivatives of what `finder` gives by all poses, (values, 6 B)."""
+    """Return the derivatives of the values of `finder` by all poses, (values, 6 B)."""
     columns = []
     for k, step in enumerate(steps):
         total = 0.0
@@ -82,7 +82,7 @@ def _differences(finder, bodies, steps):
 
 
 class _Finder:
-    """The nearest point of a contact of changed poses: gap, axes and arms in one array."""
+    """The nearest point of a contact for changed poses: gap, axes and arms in one array."""
 
     def __init__(self, system, row):
         from carom.collision.layout import new_pair_work, new_points
@@ -123,7 +123,7 @@ class _Finder:
 
 
 def tangents(n: np.ndarray) -> np.ndarray:
-    """Return rows n, t1, t2 as runs have them: t1 world x made tangent, or y where n is near x."""
+    """Return rows n, t1, t2 as in runs: t1 is world x made tangent, or y if n is near x."""
     e = np.array([1.0, 0.0, 0.0]) if abs(n[0]) < 0.8 else np.array([0.0, 1.0, 0.0])
     t1 = e - (e @ n) * n
     t1 = t1 / np.linalg.norm(t1)

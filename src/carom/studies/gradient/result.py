@@ -16,9 +16,9 @@ NEAR = 0.05  # margins below this part of their scale are shown as near
 class Derivative(NamedTuple):
     """Derivatives of the state of N bodies by P parameters, world axes; for several times with a first axis."""
 
-    position: np.ndarray  #: (N, 3, P)
+    position: np.ndarray  #: (N, 3, P) mass centres
     rotation: np.ndarray  #: (N, 3, P) rotation vector d: the attitude R becomes exp(d) R
-    velocity: np.ndarray  #: (N, 3, P)
+    velocity: np.ndarray  #: (N, 3, P) velocities of the mass centres
     angular_velocity: np.ndarray  #: (N, 3, P)
 
 

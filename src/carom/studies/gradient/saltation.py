@@ -1,11 +1,11 @@
 """The saltation of an impact: the change of the motion after it by a change of the motion before it.
 
-The impact of a changed motion happens at another time, t* + dt, with the gap zero there:
+The impact of a changed motion happens at another time, t* + dt, at which its gap is zero:
 
     dt = -(dg/dq . dq)/gdot,   dq(t* + dt) = dq + v- dt,   dv(t* + dt) = dv + a- dt.
 
-There the map of the impact is differentiated, W and u with the point and the axes of contact, and what follows
-is carried back to t*, so that all tangents belong to the same time (mathematics page, §5.2).
+At this time the map of the impact is differentiated, including W and u with the point and the axes of contact.
+The results are converted back to t*, so that all tangents belong to the same time (mathematics page, §5.2).
 """
 
 from __future__ import annotations
@@ -23,15 +23,15 @@ from carom.studies.gradient.place import Place
 class Strike(NamedTuple):
     """An impact of one or two bodies with its derivatives by P parameters; contact axes as in the run."""
 
-    bodies: list[Moving]  # after it
-    time: np.ndarray  # (P,)
-    point: np.ndarray  # (3, P), where it is, in the world
-    before: np.ndarray  # (3, P) relative velocity
+    bodies: list[Moving]  # bodies after the impact
+    time: np.ndarray  # (P,) time of the impact
+    point: np.ndarray  # (3, P) its point, in the world
+    before: np.ndarray  # (3, P) relative velocity before it
     after: np.ndarray
     impulse: np.ndarray  # (3, P)
-    inputs: np.ndarray  # (11, P) of W, u, mu, e
-    poses: np.ndarray  # (6 B, P) of the poses at the impact
-    velocities: list[np.ndarray]  # (6, P) of each body at the impact, before it
+    inputs: np.ndarray  # (11, P) W, u, mu, e
+    poses: np.ndarray  # (6 B, P) poses at the impact
+    velocities: list[np.ndarray]  # (6, P) velocities of each body at the impact, before it
 
 
 def relative_velocity(place: Place, bodies: list[Moving]) -> np.ndarray:
@@ -55,7 +55,7 @@ def arrival(place: Place, bodies: list[Moving]):
 
 
 def strike(place: Place, bodies: list[Moving], blow: Blow, d_mu, d_e) -> Strike:
-    """Pass an impact: `bodies` are just before it, d_mu and d_e (P,) change its coefficients."""
+    """Pass an impact; `bodies` are just before it, d_mu and d_e (P,) are the changes of mu and e."""
     dt, poses, velocities = arrival(place, bodies)
     axes, P = place.axes, dt.size
     d_axes = np.einsum("ijk,kp->ijp", place.d_axes, poses)
@@ -93,7 +93,7 @@ def strike(place: Place, bodies: list[Moving], blow: Blow, d_mu, d_e) -> Strike:
             np.einsum("ijp,j->ip", d_inverse[k], angular) + inverse @ turned
         )
         hit = replace(b, v=v, w=w)
-        X = np.concatenate([poses[6 * k : 6 * k + 6], dv, dw])  # at t* + dt: back to t*
+        X = np.concatenate([poses[6 * k : 6 * k + 6], dv, dw])  # at t* + dt; next, at t*
         X -= np.outer(np.concatenate([v, w, b.gravity, hit.spin_rate]), dt)
         out.append(replace(hit, X=X))
     return Strike(
@@ -117,11 +117,11 @@ def _mobility(body: Moving, arm) -> np.ndarray:
 
 
 def _d_inverse(body: Moving, turn: np.ndarray) -> np.ndarray:
-    """Return the change (3, 3, P) of R J^-1 R^T with the attitude and the moments."""
+    """Return the change (3, 3, P) of R J^-1 R^T by the attitude and the moments."""
     inverse, T = body.inverse_inertia, hat(turn)
     C = (body.R / body.inertia) @ np.eye(3)
     change = np.einsum("ijp,jk->ikp", T, inverse)
-    change = change + change.transpose(1, 0, 2)  # T I - I T, for T is skew
+    change = change + change.transpose(1, 0, 2)  # T I - I T, because T is skew
     return change - np.einsum("ia,abp,jb->ijp", C, body.dJ, C)
 
 

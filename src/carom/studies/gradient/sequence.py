@@ -1,4 +1,4 @@
-"""The sequence of contact of a run, by which two runs can be compared."""
+"""The sequence of contact of a run, for the comparison of two runs."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ class Step(NamedTuple):
 
     event: Any
     kind: str
-    shots: np.recarray  # of the bodies that it concerns
-    impact: int  # row in `Solution.impacts`, -1 where there is none
-    row: Any  # of that impact
+    shots: np.recarray  # states of its bodies
+    impact: int  # row in `Solution.impacts`, -1 if there is none
+    row: Any  # record of that impact
 
 
 def steps_of(solution: Solution) -> list[Step]:
@@ -51,7 +51,7 @@ def steps_of(solution: Solution) -> list[Step]:
 
 
 def _impact_of(event, impacts, used) -> int:
-    """Return the first impact of an event that was not another's; those of its other points are used too."""
+    """Return the first unused impact of an event; mark it, and those of its other points, as used."""
     own = np.flatnonzero(~used & (impacts["time"] == event.time))
     of_contact = own[impacts["contact"][own] == event.contact]
     if len(of_contact) == 0:
@@ -79,7 +79,7 @@ def contact_sequence(solution: Solution) -> tuple[ImpactKind, ...]:
     for step in steps_of(solution):
         row, event = step.row, step.event
         phases = () if row is None else phase_names(int(row.phases))
-        # slip goes over to no slip, before it sticks or without friction, with no change of sequence
+        # slip may vanish, before stick or without friction, without a change of the sequence
         phases = tuple(name for name in phases if name != "slip")
         together = 0 if row is None else int(row.together)
         found.append(

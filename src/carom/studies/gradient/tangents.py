@@ -1,4 +1,4 @@
-"""The tangents of all bodies at any time of a run: along free flight, or at the ends of its steps."""
+"""The tangents of all bodies at times of a run: along free flight, or at the ends of its steps."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ class Steps:
         Raises
         ------
         ValueError
-            If one does not.
+            If a time is not the end of a step.
         """
         k = np.clip(np.searchsorted(self.t, times), 1, len(self.t) - 1)
         k -= np.abs(self.t[k - 1] - times) < np.abs(self.t[k] - times)

@@ -18,9 +18,9 @@ from carom.studies.gradient.saltation import Strike, inverse_mass, relative_velo
 from carom.studies.gradient.sequence import Step, steps_of
 from carom.studies.gradient.tangents import Flights
 
-SAME = 1e-8  # how far the impact of the record may be from the one that is differentiated, relative
-TIED = 1e-9  # changes by which tied points part that are round-off, relative
-SURE = 1e-5  # error up to which the derivative of an impact counts
+SAME = 1e-8  # allowed relative difference of the recorded impact from the differentiated one
+TIED = 1e-9  # smaller relative changes of the distance of joined points are round-off
+SURE = 1e-5  # greatest error of an accepted derivative of an impact
 WHY = {
     "held": "begins a persistent contact",
     "slips": "changes from stick to slip in a persistent contact",
@@ -31,7 +31,7 @@ WHY = {
 
 
 class Walk:
-    """The derivatives of a run by `parameters`, gathered from its first event to its last."""
+    """The derivatives of a run by `parameters`, computed from its first event to its last."""
 
     def __init__(self, solution: Solution, parameters: Parameters):
         self.solution, self.parameters = solution, parameters
@@ -89,7 +89,7 @@ class Walk:
     def lose(
         self, b: int, time: float, why: str, columns: np.ndarray | bool = True, stays_free=True
     ) -> None:
-        """Record that the motion of a body has no derivative from now on, by the parameters that change it."""
+        """Record that from now on the motion of a body has no derivative by the parameters that change it."""
         body, rows = self.bodies[b], self.system.contacts
         own = np.unique(rows.number[(rows.body == b) | (rows.other == b)])
         p = self.parameters
@@ -106,10 +106,10 @@ class Walk:
             self.notes.append(f"{self.scene.bodies[b].name!r} {why} at t = {time:.6g} s{which}")
 
     def pass_event(self, step: Step) -> None:
-        """Carry the bodies of an event to its time and through it."""
+        """Move the bodies of an event to its time and through the event."""
         time = float(step.event.time)
         if len(step.shots) == 0:
-            return  # of a crowd: lost already
+            return  # an event of a crowd, which has no derivatives
         for shot in step.shots:
             self.meet(int(shot.body), shot, time)
         struck = step.kind == "impact" and self.pass_impact(step, time)
@@ -123,7 +123,7 @@ class Walk:
             self.flies[b].append(self.free[b])
 
     def meet(self, b: int, shot, time: float) -> None:
-        """Let a body fly to an event, and continue from the recorded state there."""
+        """Move a body in free flight to an event, and continue from its recorded state."""
         body = self.bodies[b]
         if self.free[b]:
             self.look_between(b, body, time)
@@ -180,7 +180,7 @@ class Walk:
             a[k] = value
 
     def place_of(self, step: Step):
-        """Return (row, place, tied vertices) of the point that struck; None if it is not one."""
+        """Return (row, place, tied vertices) of the point that struck; None if there is not exactly one."""
         contacts = self.system.contacts
         rows = contacts[contacts.number == step.event.contact]
         candidates = []
@@ -203,7 +203,7 @@ class Walk:
         return candidates[0] if len(candidates) == 1 else None
 
     def parted(self, row, tied: np.ndarray, body: Moving, done: Strike) -> np.ndarray:
-        """Return which parameters (P,) separate points that strike as one, by gaps or velocities."""
+        """Return which parameters (P,) separate points that strike together, by gaps or velocities."""
         P = done.time.size
         apart = np.zeros(P, dtype=bool)
         turn, after = done.poses[3:6], done.bodies[0]
@@ -213,7 +213,7 @@ class Walk:
             shift = cross(turn, arm)
             length = float(np.linalg.norm(arm))
             if not length > 0.0:
-                continue  # two pieces that share the vertex
+                continue  # two pieces of the shape share the vertex
             size = np.linalg.norm(turn, axis=0) + np.linalg.norm(done.poses[:3], axis=0) / length
             apart |= ~(np.abs(row.axes[0] @ shift) <= TIED * length * size)
             for w, dw in ((body.w, done.velocities[0][3:]), (after.w, spin)):

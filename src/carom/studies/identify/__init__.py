@@ -1,4 +1,4 @@
-"""Identification: parameters of a scene from recorded motion, initial states from recorded free flight.
+"""Identification of parameters of a scene from recorded motion, and of initial states from free flight.
 
 Make a `Recording`, fit its initial state to its free flight (`fit_free_flight`), and fit restitution, friction
 and other parameters to the motion after that (`identify`).

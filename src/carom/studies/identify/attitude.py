@@ -1,4 +1,4 @@
-"""Least squares of attitudes: Gauss and Newton's method on rotation vectors."""
+"""Least squares of attitudes by Gauss and Newton's method on rotation vectors."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ import numpy as np
 from carom.geometry import quaternion
 
 ITERATIONS = 50
-DIFFERENCE = 1e-5  # [rad], for slopes
+DIFFERENCE = 1e-5  # [rad], for difference quotients
 
 
 class Turn(NamedTuple):
     """A fitted rotation."""
 
     orientation: np.ndarray  # (4,) at the first time
-    angular_velocity: np.ndarray  # (3,) there, world
+    angular_velocity: np.ndarray  # (3,) at the first time, world
     error: np.ndarray  # (6,) standard errors of both
-    residual: np.ndarray  # (n, 3) from fitted to recorded
-    noise: float  # of one component
+    residual: np.ndarray  # (n, 3) rotations from fitted to recorded attitudes
+    noise: float  # standard deviation of one component
 
 
 def fit_attitude(t, q, inertia=None) -> Turn:
@@ -28,12 +28,12 @@ def fit_attitude(t, q, inertia=None) -> Turn:
     spin = constant_spin if moments is None else _torque_free(moments)
     to_principal = np.array([1.0, 0.0, 0.0, 0.0]) if axes is None else axes
     q = quaternion.multiply(q, to_principal)
-    # unknowns: a turn of R0 about the world axes, and the turn w t[-1] over the whole flight
+    # unknowns: a rotation of R0 about the world axes, and the rotation w t[-1] in the whole flight
     R0, turn = q[0], _first_guess(t, q) * t[-1]
     changes = np.concatenate([np.zeros((1, 6)), DIFFERENCE * np.eye(6), -DIFFERENCE * np.eye(6)])
 
     def residuals():
-        """Return residuals (13, 3 n): at the present unknowns, and with each slightly larger and smaller."""
+        """Return residuals (13, 3 n): at the present unknowns, and with each unknown larger and smaller."""
         starts = quaternion.multiply(quaternion.exp(changes[:, :3]), R0)
         model = spin(t, starts, (turn + changes[:, 3:]) / t[-1])
         off = quaternion.log(quaternion.multiply(q, quaternion.conjugate(model)))
@@ -46,7 +46,7 @@ def fit_attitude(t, q, inertia=None) -> Turn:
         change = np.linalg.lstsq(slope, -here[0], rcond=None)[0]
         R0 = quaternion.normalize(quaternion.multiply(quaternion.exp(change[:3]), R0))
         turn, length = turn + change[3:], float(np.max(np.abs(change)))
-        # at round-off it no longer shrinks; the slopes are good to 1e-10
+        # at round-off it no longer decreases; the slopes have errors of 1e-10
         if length < 1e-12 or (length < 1e-7 and length > 0.5 * before):
             break
         before = length
@@ -70,16 +70,16 @@ def constant_spin(t, starts, w) -> np.ndarray:
 
 
 def _first_guess(t, q) -> np.ndarray:
-    """Return the median of the angular velocities from sample to sample, but for the sense of slow ones.
+    """Return the median of the angular velocities from sample to sample.
 
-    The turn from the first sample to the last may be many revolutions, so it cannot be taken.
+    The rotation from the first sample to the last is not used, because it may be many revolutions.
     """
     steps = quaternion.log(quaternion.multiply(q[1:], quaternion.conjugate(q[:-1])))
     return np.median(steps / np.diff(t)[:, None], axis=0)
 
 
 def principal_axes(inertia):
-    """Return principal moments (3,) and quaternion principal to body axes; (None, None) where w is constant."""
+    """Return principal moments (3,) and quaternion principal to body axes; (None, None) if w is constant."""
     if inertia is None:
         return None, None
     from carom.scene.inertia import inertia_matrix
@@ -94,7 +94,7 @@ def principal_axes(inertia):
 
 
 def _torque_free(moments):
-    """Return a function like `constant_spin` for a body with these principal moments."""
+    """Return the function that replaces `constant_spin` for a body with these principal moments."""
     from carom.kinematics.flight_arrays import torque_free
 
     def spin(t, starts, w):

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 class TrajectoryError(NamedTuple):
     """Errors of a simulated motion: means over all samples and bodies."""
 
-    position: float  #: distance of the mass centres, as a part of `length`
+    position: float  #: distance of the mass centres, relative to `length`
     rotation: float  #: angle from one attitude to the other [rad], 0 to pi
 
 

@@ -15,7 +15,7 @@ from carom.studies.identify.varied import varied
 
 
 class Evaluator:
-    """Runs all recordings at given parameters; each set of parameters once."""
+    """The objective as a function of the parameters; each set of parameters is simulated once."""
 
     def __init__(
         self, scene, recordings: Sequence[Recording], space: Space, objective, progress, **settings
@@ -45,7 +45,7 @@ class Evaluator:
         return roll_outs(make, self.recordings, **self.settings)
 
     def number(self, point: np.ndarray) -> int:
-        """Return the number of an evaluation, made if it is new; points are moved into the bounds."""
+        """Return the number of the evaluation at a point, moved into the bounds; evaluate it if it is new."""
         point = self.space.clip(np.asarray(point, dtype=np.float64)) + 0.0  # no -0.0
         key = point.tobytes()
         if key not in self._known:

@@ -119,7 +119,7 @@ def identify(
             uncertainty = bootstrap(evaluate, resamples, seed)
             evaluate.number(uncertainty.centre)
         best = evaluate.best
-        # the design around the best point saw a way on: the search had stopped at a plateau or in a rough place
+        # if points around the best one are better, the search had stopped on a plateau or a rough surface
         if not converged or before - evaluate.mean(best) <= LEAST_GAIN * before:
             break
     return Identification(

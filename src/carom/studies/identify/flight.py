@@ -1,4 +1,4 @@
-"""The state of a freely flying body, from recorded poses: least squares over its free flight."""
+"""The state of a body in free flight from recorded poses, by least squares."""
 
 from __future__ import annotations
 
@@ -145,7 +145,7 @@ def fit_free_flight(
 
 
 def _fit_positions(t, x, gravity) -> dict:
-    """Least squares of x0 + v0 t + g t^2/2, in time over its length so that the columns are alike."""
+    """Fit x0 + v0 t + g t^2/2 by least squares, with times divided by their length for equal columns."""
     length = t[-1]
     s = t / length
     powers = np.stack([np.ones_like(s), s, 0.5 * s * s], axis=1)

@@ -51,13 +51,13 @@ class Parameter:
 
 
 def _bound(name: str, value) -> float:
-    """Return a bound: a number, or infinite."""
+    """Return a bound, a finite or infinite number."""
     infinite = isinstance(value, (float, np.floating)) and np.isinf(value)
     return float(value) if infinite else checks.number(name, value)
 
 
 class Space:
-    """All parameters of a fit in order, and the units in which their steps are 1."""
+    """All parameters of a fit in order: starts, steps and bounds."""
 
     def __init__(self, parameters: Mapping, known: bool):
         if not isinstance(parameters, Mapping) or not parameters:

@@ -19,8 +19,8 @@ class State(NamedTuple):
 
     position: np.ndarray  #: (N, 3) mass centres [m]
     orientation: np.ndarray  #: (N, 4) unit quaternions (w, x, y, z), body to world
-    velocity: np.ndarray  #: (N, 3) [m/s]
-    angular_velocity: np.ndarray  #: (N, 3) [rad/s]
+    velocity: np.ndarray  #: (N, 3) velocities of the mass centres [m/s]
+    angular_velocity: np.ndarray  #: (N, 3) angular velocities [rad/s]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -79,7 +79,7 @@ class Recording:
 
 
 def checked_recordings(recordings) -> list[Recording]:
-    """Return at least one recording."""
+    """Return a list of at least one recording; refuse anything else."""
     found = checks.listed("recordings", recordings, "Recording")
     if not found:
         raise ValueError("recordings must be at least one Recording, got none")
@@ -117,7 +117,7 @@ def poses(name: str, value: ArrayLike, n: int, components: int) -> np.ndarray:
 
 
 def unit(name: str, q: np.ndarray) -> np.ndarray:
-    """Return recorded quaternions (..., 4), normalised; refuse an error of the length above 1e-3."""
+    """Return recorded quaternions (..., 4), normalised; refuse an error of their length above 1e-3."""
     length = np.linalg.norm(q, axis=-1)
     if not np.all(np.abs(length - 1.0) <= ROUNDED):
         k = np.unravel_index(np.argmax(np.abs(length - 1.0)), length.shape)

@@ -14,15 +14,15 @@ from carom.options import Options
 from carom.scene.scene import Scene
 from carom.studies.identify.recording import Recording, checked_recordings
 
-UNIFORM = 1e-6  # of the sampling time: what clocks write down as rounded
+UNIFORM = 1e-6  # of the sampling time: smaller differences are rounding of recorded times
 
 
 class RollOut(NamedTuple):
     """Simulated poses of the N recorded bodies at the n times of a recording."""
 
-    position: np.ndarray  #: (n, N, 3) [m]
-    orientation: np.ndarray  #: (n, N, 4)
-    message: str  #: empty, or why the run stopped early: it stays where it stopped
+    position: np.ndarray  #: (n, N, 3) mass centres [m]
+    orientation: np.ndarray  #: (n, N, 4) unit quaternions
+    message: str  #: empty, or the reason why the run stopped early; poses then stay the last ones
     residual: float  #: largest energy that no entry of the ledger explains [J]
     speed: float  #: largest component of the velocities [m/s], [rad/s] at the last sample
 
@@ -118,7 +118,7 @@ def roll_outs(
         return roll_out(scene, recording, step=step, options=options)
 
     threads = cores() if threads is None else threads
-    first = [one(recording) for recording in recordings[:1]]  # what is to be compiled is, once
+    first = [one(recording) for recording in recordings[:1]]  # compiles all code, once
     if threads == 1 or len(recordings) < 3:
         return first + [one(recording) for recording in recordings[1:]]
     with ThreadPoolExecutor(threads) as pool:

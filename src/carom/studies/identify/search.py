@@ -50,7 +50,7 @@ def search(
 
 
 def simplex(z: np.ndarray, bounds: np.ndarray, size: float) -> np.ndarray:
-    """Return a simplex (p + 1, p) at z with edges of `size`, turned where a bound is in the way."""
+    """Return a simplex (p + 1, p) at z with edges of `size`; an edge that leaves the bounds is reversed."""
     corners = np.repeat(z[None], z.size + 1, axis=0)
     for i in range(z.size):
         there = z[i] + size

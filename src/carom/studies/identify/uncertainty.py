@@ -1,4 +1,4 @@
-"""Uncertainty of fitted parameters: bootstrap over recordings on a quadratic surface."""
+"""Uncertainty of fitted parameters, by bootstrap over recordings on a quadratic surface."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from carom.studies.identify.evaluate import Evaluator
 
 ROUNDS = 6
-ROUGH = 1e-9  # relative to the largest curvature: below it a surface has no minimum of its own
+ROUGH = 1e-9  # least curvature, relative to the largest, of a surface with a minimum
 
 
 class Uncertainty(NamedTuple):
@@ -17,8 +17,10 @@ class Uncertainty(NamedTuple):
 
     centre: np.ndarray  #: (p,) minimum of the surface of all recordings
     samples: np.ndarray  #: (B, p) minima of the resampled surfaces
-    reach: np.ndarray  #: (p,) half width of the region that the surface is fitted to
-    at_edge: np.ndarray  #: (p,) share of samples at the edge of the region: the spread is larger
+    reach: np.ndarray  #: (p,) half width of the region in which the surface is fitted
+    at_edge: (
+        np.ndarray
+    )  #: (p,) part of the samples at the edge of the region; the true spread is larger
 
 
 def bootstrap(evaluate: Evaluator, resamples: int, seed: int) -> Uncertainty:
@@ -51,7 +53,7 @@ def bootstrap(evaluate: Evaluator, resamples: int, seed: int) -> Uncertainty:
 
 
 def design(p: int) -> np.ndarray:
-    """Return points (2 p^2 + 1, p) that fix a quadratic: the centre, each axis, each pair of axes."""
+    """Return points (2 p^2 + 1, p) that fix a quadratic: the centre, on each axis, and on each pair of axes."""
     points = [np.zeros(p)]
     for i in range(p):
         for s in (1.0, -1.0):
@@ -67,7 +69,7 @@ def quadratic_terms(z: np.ndarray) -> np.ndarray:
 
 
 def _minima(coefficients: np.ndarray, resamples: int, seed: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the minimum of all recordings, (p,), and of each draw, (B, p); within [-1, 1]."""
+    """Return the minima, within [-1, 1], for all recordings, (p,), and for each draw, (B, p)."""
     generator = np.random.default_rng(seed)
     count = coefficients.shape[1]
     draws = generator.multinomial(count, np.full(count, 1.0 / count), size=resamples) / count
@@ -77,7 +79,7 @@ def _minima(coefficients: np.ndarray, resamples: int, seed: int) -> tuple[np.nda
 
 
 def minimum(c: np.ndarray) -> np.ndarray:
-    """Return the least point of a quadratic with coefficients c in the cube [-1, 1]^p."""
+    """Return the minimum of a quadratic with coefficients c in the cube [-1, 1]^p."""
     from scipy.optimize import minimize
 
     p = int((np.sqrt(8.0 * c.size + 1.0) - 3.0) / 2.0)

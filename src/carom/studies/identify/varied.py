@@ -12,7 +12,7 @@ from carom.scene.scene import Scene
 from carom.scene.shapes import Box
 from carom.studies.identify.recording import State, checked_state
 
-#: parameters of `varied`: lower and upper bound, and a step that is large enough for the start of a search
+#: parameters of `varied`: lower and upper bound, and a step large enough for the start of a search
 KNOWN: dict[str, tuple[float, float, float]] = {
     "restitution": (0.0, 1.0, 0.1),
     "friction": (0.0, np.inf, 0.05),
@@ -89,7 +89,7 @@ def varied(
     for contact in scene.contacts:
         law = {name: getattr(contact, name) for name in asdict(ContactLaw())}
         if contact.friction_held == contact.friction and "friction" in given:
-            law["friction_held"] = None  # the same as friction again
+            law["friction_held"] = None  # then it equals the new friction
         law.update(given)
         copy.add_contact(parts[contact.body], parts[contact.other], name=contact.name, **law)
     for joint in scene.joints:
@@ -106,7 +106,7 @@ def _state(body) -> State:
 
 
 def _rounded(shape, radius):
-    """Return a box with another radius of its rounding; any other shape as it is."""
+    """Return a box with another radius of its rounding; other shapes are returned unchanged."""
     if radius is not None:
         radius = checks.length("corner_radius", radius, zero=True)
     if radius is None or not isinstance(shape, Box):
