@@ -47,10 +47,10 @@ function showInside(run, k) {
   const { inside } = impacts, i = inside.number.indexOf(impacts.number[k]);
   if (i < 0) {
     words.textContent = impacts.together[k] > 1
-      ? `Resolved together with others, ${impacts.together[k]} points in all: it has no course of its own.`
+      ? `Part of a multiple impact with ${impacts.together[k]} points, resolved together: it has no course of its own.`
       : "One of the weaker impacts: its course is not in this file.";
     if (!impacts.located[k]) {
-      words.textContent += " Its time is the end of a step in which a crowd was taken whole.";
+      words.textContent += " This impact was resolved in a time-stepping step: its time is the end of that step.";
     }
     return;
   }

@@ -8,7 +8,7 @@ const motion = new Motion(run);
 run.span = motion.end - motion.start || 1;
 const state = {
   time: motion.start, playing: false, again: false, speed: run.speed, follow: -1, chosen: -1,
-  arrows: true, ways: true, labels: false, length: 1,
+  arrows: true, paths: true, labels: false, length: 1,
   get fading() { return Math.max(FADE * this.speed, 1e-9); },
 };
 let stale = true; // something has changed since the last picture
