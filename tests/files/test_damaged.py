@@ -136,12 +136,12 @@ def test_no_scene(path):
 
 
 @pytest.mark.parametrize("column", ["impact_contact", "event_contact", "records/snapshot_body"])
-def test_numbers_of_what_is_not_there(column, path):
+def test_numbers_that_do_not_exist(column, path):
     body, index = parts_of(path)
     start = index["arrays"][column][1]
     broken = body[:start] + (10**6).to_bytes(8, "little") + body[start + 8 :]
     rewrite(path, lambda index: None, broken)
-    with pytest.raises(ValueError, match="numbers outside 0 to 0, of what is not there"):
+    with pytest.raises(ValueError, match="numbers outside 0 to 0, which do not exist"):
         carom.Solution.load(path)
 
 

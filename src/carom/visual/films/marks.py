@@ -33,7 +33,7 @@ class Marks:
         # as the root: the first impulse is often ten times those that follow
         scale = LONGEST * length * np.sqrt(size / greatest) / np.where(size > 0.0, size, 1.0)
         self.arrow = np.where((size > LEAST * greatest)[:, None], push * scale[:, None], 0.0)
-        self.saved, self.held = solution.forces.saved, solution.forces.point
+        self.saved, self.points = solution.forces.saved, solution.forces.point
 
     def draw(self, pen, camera, depth, t: float) -> None:
         """Draw the arrows and points at a time."""
@@ -41,8 +41,8 @@ class Marks:
         k = int(np.clip(np.searchsorted(self.solution.t, t, side="right") - 1, 0, None))
         low, high = np.searchsorted(self.saved, [k, k + 1])
         dot = 2.6 * unit
-        if high - low <= 60:  # in a heap they would hide what they belong to
-            for x, y, near in camera.project(self.held[low:high]):
+        if high - low <= 60:  # in a pile they would hide the bodies
+            for x, y, near in camera.project(self.points[low:high]):
                 if _visible(x, y, near, depth):
                     pen.ellipse((x - dot, y - dot, x + dot, y + dot), fill="#202020")
         for row in np.flatnonzero((self.time <= t) & (self.time > t - self.linger)):
@@ -69,11 +69,11 @@ def pair_axes(normal: np.ndarray) -> np.ndarray:
 
 def _arrow(pen, start, end, unit: float) -> None:
     """Draw an arrow, its head no longer than itself."""
-    way = end - start
-    length = float(np.hypot(*way))
+    line = end - start
+    length = float(np.hypot(*line))
     if not length > 2.0 * unit:
         return
-    along = way / length
+    along = line / length
     across = np.array([-along[1], along[0]])
     head = min(HEAD * length, 16.0 * unit)
     neck = end - head * along

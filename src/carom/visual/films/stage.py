@@ -98,8 +98,8 @@ class Stage:
         self.all = Model(*(np.concatenate(columns) for columns in zip(*made)))
         self.still = [placed_model(solid) for solid in self.solution.scene.statics]
         scene = self.solution.scene
-        held = [j for j in scene.joints if isinstance(j.definition, Distance)]
-        self.links = anchors([*held, *(f for f in scene.forces if f.kind == "Spring")])
+        rods = [j for j in scene.joints if isinstance(j.definition, Distance)]
+        self.links = anchors([*rods, *(f for f in scene.forces if f.kind == "Spring")])
         rod = model_of(*surface(Cylinder(1.0, 1.0), 12), None)
         self.rod = rod._replace(colours=rod.colours + LINK, edges=0 * rod.edges)
 
@@ -276,9 +276,9 @@ def pillow() -> tuple[Any, Any, Any]:
 
 
 def _steps(apart, directions, spacing: float) -> np.ndarray:
-    """Return the whole steps of a grid that are nearest to a way."""
-    way = [spacing * np.round(apart @ e / spacing) * e for e in directions]
-    return np.sum(way, axis=0)
+    """Return the displacement nearest to `apart` that moves a grid onto itself."""
+    steps = [spacing * np.round(apart @ e / spacing) * e for e in directions]
+    return np.sum(steps, axis=0)
 
 
 def _round(length: float) -> float:
