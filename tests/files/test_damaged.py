@@ -117,7 +117,7 @@ def changed(place, value):
         (("attributes", "options"), '{"heaps": 3}', "heaps"),
         (("attributes", "status"), "FINE", "FINE"),
         (("attributes", "stats"), '{"steps": "many"}', "steps must be a number"),
-        (("checkpoint",), {"found": {}, "arrays": {"x": ["|O", [1], 0, 8]}}, "is no array"),
+        (("checkpoint",), {"found": {}, "arrays": {"x": ["|O", [1], 0, 8]}}, "is not an array"),
         (("checkpoint",), {"found": {"spots": -1}, "arrays": {}}, "spots must be"),
         (("scene",), "{", "its scene is broken: the text"),
         (("scene",), None, "its scene is broken: the text"),

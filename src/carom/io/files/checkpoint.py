@@ -121,7 +121,7 @@ def from_index(note: dict, data: memoryview) -> Checkpoint:
         dtype = np.dtype(kind)
         sizes = [*shape, start, length]
         if dtype.hasobject or not all(type(n) is int and n >= 0 for n in sizes):
-            raise ValueError(f"checkpoint: {name!r} is no array")
+            raise ValueError(f"checkpoint: {name!r} is not an array")
         arrays[name] = Packed(dtype, tuple(shape), bytes(data[start : start + length]))
     found = {str(name): checks.integer(name, n, least=0) for name, n in note["found"].items()}
     return Checkpoint(found, arrays)

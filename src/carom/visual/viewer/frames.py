@@ -123,7 +123,7 @@ def _up(gravity: np.ndarray, position: np.ndarray) -> np.ndarray:
 
 
 def _view(position: np.ndarray, up: np.ndarray) -> tuple[np.ndarray, float]:
-    """Return from where to look, and how steeply: across an upright plane, or down on a level one."""
+    """Return direction and elevation of the view: across a vertical plane, or down on a horizontal one."""
     east = np.eye(3)[np.argmin(np.abs(up))]
     east -= (east @ up) * up
     east /= np.linalg.norm(east)

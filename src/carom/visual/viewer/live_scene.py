@@ -59,7 +59,7 @@ class LiveScene:
         self.forces = self._arrows("/forces", FORCE)
 
     def move(self, t: float, fading: float) -> None:
-        """Bring all to a time; impulses are seen for `fading` [s]."""
+        """Show everything at time `t`; impulses are visible for `fading` [s]."""
         x, Q = poses_at(self.show.frames, t)
         for part, handle in zip(self.show.parts, self.bodies):
             if part.look == "static":

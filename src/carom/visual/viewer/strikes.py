@@ -21,7 +21,9 @@ class Strikes(NamedTuple):
     number: np.ndarray  #: (K',) which of `Solution.impacts`
     arrow: np.ndarray  #: (K', 3) impulse on the body, world axes [N s]; 0 of stops
     contact: list[str]  #: (K',) names
-    turning: np.ndarray  #: (K',) whether it is the stop of an angle: [rad/s], [N m s]
+    turning: (
+        np.ndarray
+    )  #: (K',) whether it is an impact at the stop of an angle, in [rad/s] and [N m s]
 
 
 class PersistentForces(NamedTuple):
@@ -72,7 +74,7 @@ def persistent_forces(solution, times: np.ndarray, rows: int = ROWS) -> Persiste
 
 
 def inside_of(solution, k: int) -> Inside | None:
-    """Return impact `k` from within; None where several points were resolved together."""
+    """Return the course of impact `k` in its layer; None if it is part of a multiple impact."""
     if solution.impacts.together[k] > 1:
         return None
     history = solution.impact_history(k, steps=STEPS)

@@ -2,7 +2,7 @@
 
 const PATHS = 20; // up to so many bodies have their paths drawn; with more, only the followed body has
 const STILL = { x: [0, 0, 0], Q: [1, 0, 0, 0] }; // the pose of what never moves
-const DOTS = 400; // impacts that are marked
+const DOTS = 400; // at most so many impacts are marked
 
 const rgba = (hex, alpha = 1) => [1, 3, 5].map((k) => parseInt(hex.slice(k, k + 2), 16) / 255).concat(alpha);
 
@@ -84,7 +84,7 @@ class Painter {
     return { mesh, colour, model: frame([size, 0, 0], [0, size, 0], [0, 0, size], at) };
   }
 
-  /** Marks where impacts are and will be; of many, some. */
+  /** Marks at past and future impacts; if there are many, at some of them. */
   marks(t) {
     const { time, point } = this.run.impacts, every = Math.max(1, Math.ceil(time.length / DOTS)), out = [];
     const size = 0.008 * this.run.place.radius;

@@ -1,7 +1,7 @@
 // ---- The page: what is shown now, and how it changes ----
 
 const find = (id) => document.getElementById(id);
-const FADE = 0.35; // an impact is seen that long [s of the clock on the wall]
+const FADE = 0.35; // time for which an impact is shown [s of real time]
 
 const run = await unpacked();
 const motion = new Motion(run);
@@ -11,7 +11,7 @@ const state = {
   arrows: true, paths: true, labels: false, length: 1,
   get fading() { return Math.max(FADE * this.speed, 1e-9); },
 };
-let stale = true; // something has changed since the last picture
+let stale = true; // whether something has changed since the last picture
 
 const camera = new Camera(find("space"), run.place, () => (stale = true));
 let painter = null;
