@@ -41,7 +41,7 @@ release-check: $(VENV)/installed-test ## build wheel and sdist, look inside, ins
 	$(BIN)/python -m pip install --quiet build
 	$(BIN)/python tools/check_release.py
 
-wheel: $(VENV)/installed-test ## a wheel for this platform with everything compiled: its first run compiles nothing
+wheel: $(VENV)/installed-test ## a wheel for this platform with everything compiled; checks that its first run compiles nothing
 	$(BIN)/python -m pip install --quiet build wheel
 	$(BIN)/python tools/build_wheel.py
 

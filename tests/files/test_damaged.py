@@ -117,7 +117,7 @@ def changed(place, value):
         (("attributes", "options"), '{"heaps": 3}', "heaps"),
         (("attributes", "status"), "FINE", "FINE"),
         (("attributes", "stats"), '{"steps": "many"}', "steps must be a number"),
-        (("checkpoint",), {"found": {}, "arrays": {"x": ["|O", [1], 0, 8]}}, "is no array"),
+        (("checkpoint",), {"found": {}, "arrays": {"x": ["|O", [1], 0, 8]}}, "is not an array"),
         (("checkpoint",), {"found": {"spots": -1}, "arrays": {}}, "spots must be"),
         (("scene",), "{", "its scene is broken: the text"),
         (("scene",), None, "its scene is broken: the text"),
@@ -136,12 +136,12 @@ def test_no_scene(path):
 
 
 @pytest.mark.parametrize("column", ["impact_contact", "event_contact", "records/snapshot_body"])
-def test_numbers_of_what_is_not_there(column, path):
+def test_numbers_that_do_not_exist(column, path):
     body, index = parts_of(path)
     start = index["arrays"][column][1]
     broken = body[:start] + (10**6).to_bytes(8, "little") + body[start + 8 :]
     rewrite(path, lambda index: None, broken)
-    with pytest.raises(ValueError, match="numbers outside 0 to 0, of what is not there"):
+    with pytest.raises(ValueError, match="numbers outside 0 to 0, which do not exist"):
         carom.Solution.load(path)
 
 

@@ -227,7 +227,7 @@ def test_a_file_with_contacts_of_no_pair_is_refused(tmp_path, monkeypatch, pair)
         return found
 
     monkeypatch.setattr(reading, "_found", spoiled)
-    with pytest.raises(ValueError, match="contacts of bodies that do not touch"):
+    with pytest.raises(ValueError, match="contacts of bodies that may not touch"):
         carom.Solution.load(tmp_path / "run.nc")
 
 

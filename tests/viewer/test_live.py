@@ -58,9 +58,9 @@ def test_an_impact_shows_its_arrow_and_inside(live, thrown):
     assert live.time == thrown.impacts.time[0]
     assert live.stage.impulses.visible
     start, end = live.stage.impulses.points[0]
-    way = thrown.velocity[-1, 0] - thrown.velocity[0, 0]
+    change = thrown.velocity[-1, 0] - thrown.velocity[0, 0]
     assert np.allclose(start, thrown.impacts.point[0], atol=1e-6)
-    assert (end - start) @ way > 0
+    assert (end - start) @ change > 0
     assert "slip" in live.panel.words.content
     assert live.panel.velocity.visible
     assert np.allclose(

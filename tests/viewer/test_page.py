@@ -169,4 +169,4 @@ def test_held_forces_and_shapeless_bodies_are_drawn(slid, swung, browser, tmp_pa
     assert "rad/s" in browser.run("inside.textContent")
     browser.open((tmp_path / "slid.html").as_uri())
     browser.wait_for("window.carom !== undefined")
-    assert "force of held contact" in browser.run("legend.textContent")
+    assert "force of persistent contact" in browser.run("legend.textContent")

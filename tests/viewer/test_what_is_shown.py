@@ -43,10 +43,10 @@ def test_between_frames_nobody_sees_a_difference(thrown):
 
 def test_a_motion_in_a_plane_is_seen_from_across_it():
     up, place = np.array([0, 0, 1.0]), np.random.default_rng(1).normal(size=(40, 1, 3))
-    way = np.array([0.6, 0.8, 0.0])
-    flat = place[..., :1] * way + place[..., 2:] * up
+    along = np.array([0.6, 0.8, 0.0])
+    flat = place[..., :1] * along + place[..., 2:] * up
     side, lift = frames._view(flat, up)
-    assert abs(side @ way) < 1e-12
+    assert abs(side @ along) < 1e-12
     assert np.cross(up, side)[0] > 0.5  # x goes to the right
     assert abs(frames._view(place, up)[0] @ up) < 1e-12
     level = place - place[..., 2:] * up
@@ -194,15 +194,15 @@ def test_stops_are_listed_without_an_arrow(swung):
     assert not np.any(shown.arrow)
 
 
-def test_held_forces_carry_the_weight_and_brake(slid):
+def test_persistent_forces_carry_the_weight_and_brake(slid):
     shown = show_of(slid)
-    held = shown.held
-    last = slice(held.first[-2], held.first[-1])
-    assert held.time[-1] == slid.t[-1]
-    way = slid.velocity[-1, 0] / np.linalg.norm(slid.velocity[-1, 0])
-    expected = 0.5 * G * (np.array([0, 0, 1.0]) - 0.3 * way)  # it slides with mu = 0.3
-    assert np.allclose(np.sum(held.force[last], axis=0), expected, atol=1e-6)
-    fewer = strikes.held_of(slid, shown.frames.time, rows=20)
+    forces = shown.persistent
+    last = slice(forces.first[-2], forces.first[-1])
+    assert forces.time[-1] == slid.t[-1]
+    along = slid.velocity[-1, 0] / np.linalg.norm(slid.velocity[-1, 0])
+    expected = 0.5 * G * (np.array([0, 0, 1.0]) - 0.3 * along)  # it slides with mu = 0.3
+    assert np.allclose(np.sum(forces.force[last], axis=0), expected, atol=1e-6)
+    fewer = strikes.persistent_forces(slid, shown.frames.time, rows=20)
     assert 0 < len(fewer.point) <= 20 + 4
     assert fewer.first[-1] == len(fewer.point)
 

@@ -171,8 +171,8 @@ def near_fixed(
         rows = np.flatnonzero(pairs.plane == h)
         body = pairs.body[rows]
         if isinstance(plane, StaticBody):
-            way = np.linalg.norm(places[body] - plane.position, axis=1)
-            reach[rows] = way <= sizes[body] + plane.shape.size
+            distance = np.linalg.norm(places[body] - plane.position, axis=1)
+            reach[rows] = distance <= sizes[body] + plane.shape.size
             continue
         reach[rows] = (places[body] - plane.point) @ plane.normal <= sizes[body]
     return np.flatnonzero(reach)

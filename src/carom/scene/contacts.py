@@ -94,12 +94,12 @@ def _far(body: Body, other: HalfSpace | StaticBody | Body) -> bool:
     if isinstance(other, HalfSpace):
         return float((body.position - other.point) @ other.normal) > body.shape.size
     assert other.shape is not None
-    way = body.position - other.position
-    return float(way @ way) > (body.shape.size + other.shape.size) ** 2
+    apart = body.position - other.position
+    return float(apart @ apart) > (body.shape.size + other.shape.size) ** 2
 
 
 def overlap(body: Body, other: HalfSpace | StaticBody | Body) -> tuple[float, np.ndarray]:
-    """Return the depth [m] of a body in the other at the start, 0 if it is rounding, and the way out (3,)."""
+    """Return the depth [m] of a body in the other at the start, 0 if it is rounding, and the normal (3,)."""
     assert body.shape is not None
     gap, normal = _gap(body, other)
     if isinstance(other, HalfSpace):

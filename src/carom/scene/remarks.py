@@ -27,15 +27,15 @@ def _of_untouched(scene: Scene) -> list[str]:
     if not (scene.fixed or scene.contacts):
         return []
     touched = _touched(scene)
-    held = {id(part) for joint in scene.joints for part in (joint.parent, joint.child)}
-    held |= {id(part) for constraint in scene.constraints for part in constraint.parts}
+    attached = {id(part) for joint in scene.joints for part in (joint.parent, joint.child)}
+    attached |= {id(part) for constraint in scene.constraints for part in constraint.parts}
     for force in scene.forces:
         if not isinstance(
             force.definition, (Force, Torque)
         ):  # springs and what the user writes may hold it
-            held |= {id(part) for part in (force.parent, force.child)}
-            held |= {id(part) for part in getattr(force.definition, "bodies", ())}
-    free = [b for b in scene.bodies if not touched[b.index] and id(b) not in held]
+            attached |= {id(part) for part in (force.parent, force.child)}
+            attached |= {id(part) for part in getattr(force.definition, "bodies", ())}
+    free = [b for b in scene.bodies if not touched[b.index] and id(b) not in attached]
     if not free:
         return []
     bare = [b for b in free if b.shape is None]

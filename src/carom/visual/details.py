@@ -20,7 +20,7 @@ DIE = re.compile(r"(?<![a-z])(die|dice)(?![a-z])")  # in the name of a die
 #: by the edge of a die: radius of a pip, distance from the middle, height above the face
 PIP, AWAY, ABOVE = 0.09, 0.25, 0.004
 SIDES = 20  # of the polygon of a pip
-STILL = 0.02  # part of the greatest way, or a turn [rad], up to which a body counts as resting
+STILL = 0.02  # fraction of the greatest displacement, or a rotation [rad], up to which a body counts as resting
 PIN = 0.15  # of the size of a body: a pin is no thicker
 
 
@@ -34,8 +34,10 @@ def moving(position: np.ndarray, orientation: np.ndarray) -> np.ndarray:
 
     `position` (T, N, 3), `orientation` (T, N, 4).
     """
-    ways = np.ptp(position, axis=0).max(axis=1)
-    return (ways > STILL * ways.max()) | (np.ptp(orientation, axis=0).max(axis=1) > STILL)
+    displacements = np.ptp(position, axis=0).max(axis=1)
+    return (displacements > STILL * displacements.max()) | (
+        np.ptp(orientation, axis=0).max(axis=1) > STILL
+    )
 
 
 def pip_colour(colour: str) -> str:

@@ -114,14 +114,14 @@ def packed(checkpoint: Checkpoint, add: Callable[[bytes], int]) -> dict:
 
 
 def from_index(note: dict, data: memoryview) -> Checkpoint:
-    """Return a checkpoint: what `packed` has written."""
+    """Return the checkpoint that `packed` has written."""
     arrays = {}
     for name, (kind, shape, start, length) in note["arrays"].items():
         kind = [(f[0], f[1], *map(tuple, f[2:])) for f in kind] if isinstance(kind, list) else kind
         dtype = np.dtype(kind)
         sizes = [*shape, start, length]
         if dtype.hasobject or not all(type(n) is int and n >= 0 for n in sizes):
-            raise ValueError(f"checkpoint: {name!r} is no array")
+            raise ValueError(f"checkpoint: {name!r} is not an array")
         arrays[name] = Packed(dtype, tuple(shape), bytes(data[start : start + length]))
     found = {str(name): checks.integer(name, n, least=0) for name, n in note["found"].items()}
     return Checkpoint(found, arrays)
@@ -146,7 +146,7 @@ def _type_of(array: np.ndarray | Packed) -> str:
 
 
 def arrays_of(run) -> Iterator[tuple[str, np.ndarray]]:
-    """Go through the arrays of a run that are its state, by name."""
+    """Yield the arrays that are the state of a run, with their names."""
     system = run.compiled.system
     roots = {
         "now": run.now, "clock": run.clock, "active": run.active, "work": run.work,

@@ -112,7 +112,7 @@ class KeptRun:
         Raises
         ------
         ValueError
-            If bodies that came near each other are none that may touch.
+            If the file names a contact of two bodies that may not touch in the scene.
         """
         if self.found is None:
             return touching_pairs(self.scene)
@@ -125,5 +125,5 @@ class KeptRun:
         keys = keys[np.append(first.other, other) >= 0]
         once = len(np.unique(keys)) == len(keys)
         if not (once and inside.all() and may_touch(later, body, other).all()):
-            raise ValueError("it has contacts of bodies that do not touch")
+            raise ValueError("it has contacts of bodies that may not touch")
         return joined_tables(first, some_pairs(later, body, other))

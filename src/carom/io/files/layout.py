@@ -26,14 +26,14 @@ LABELS = {
     "axis": (AXIS, "axes of the world"),
     "quaternion": (QUATERNION, "components of a unit quaternion, scalar first"),
     "contact_axis": (CONTACT_AXIS, "axes of a contact"),
-    "contact_axis_2": (CONTACT_AXIS, "axes of a contact, once more"),
+    "contact_axis_2": (CONTACT_AXIS, "axes of a contact, second index"),
 }
 
 #: columns of the table of impacts: dimensions beyond the first, units, meaning
 IMPACT = {
     "time": ((), "s", "time of the impact"),
     "contact": ((), "1", "place of the contact among all contacts, from 0"),
-    "point": (("axis",), "m", "where, world axes"),
+    "point": (("axis",), "m", "point of contact, world axes"),
     "normal": (("axis",), "1", "unit normal from the other into the body, world axes"),
     "relative_velocity_before": (
         ("contact_axis",), "m s-1", "relative velocity before, approach negative",
@@ -77,7 +77,7 @@ HELD = {
     "body": ((), "1", "place of its body among all bodies, from 0"),
     "other": ((), "1", "place of the other body, -1 for a half-space"),
     "mode": ((), None, "slipping or sticking (or rolling, or at rest)"),
-    "point": (("axis",), "m", "where, world axes"),
+    "point": (("axis",), "m", "point of contact, world axes"),
     "force": (("contact_axis",), "N", "force on the body, contact axes"),
     "vector": (("axis",), "N", "force on the body, world axes"),
 }

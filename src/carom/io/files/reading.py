@@ -106,13 +106,13 @@ def _fields(file: Sealed, scene, missing: list[str]) -> dict[str, Any]:
 
 
 def _impacts(arrays: _Arrays, scene, pairs) -> ImpactTable:
-    """Return the table of impacts, with the names of what strikes what."""
+    """Return the table of impacts, with the names of the bodies that strike each other."""
     columns = arrays.table("impact", IMPACT)
     return ImpactTable(**columns, **named(columns["contact"], scene, pairs))
 
 
 def _found(arrays: _Arrays, count: int | None, stops: int) -> np.ndarray | None:
-    """Return the bodies (K, 2) of contacts that came with the run; None where it had all from the start."""
+    """Return the bodies (K, 2) of contacts found during the run; None if all existed at its start."""
     if count is None:
         return None
     if count == 0:
@@ -228,12 +228,12 @@ def check_numbers(records: r.Records, contacts: int) -> None:
             column = getattr(records, table)[name]
             if column.size and not (column.min() >= least and column.max() < end):
                 raise ValueError(
-                    f"{table}_{name} has numbers outside {least} to {end - 1}, of what is not there"
+                    f"{table}_{name} has numbers outside {least} to {end - 1}, which do not exist"
                 )
 
 
 def _cached(arrays: _Arrays) -> dict[str, Any]:
-    """Return what the file of a finished run holds of reactions, empty where there are none of a kind."""
+    """Return the reactions in the file of a finished run; a kind that the run does not have is empty."""
     if "position_error" not in arrays:
         return {}
     saved = arrays.sizes["time"]

@@ -69,11 +69,11 @@ def resume(
         )
     elif solution.status.ended:
         return solution
-    going_on = solution.status is Status.INTERRUPTED or solution.status.ended
-    if not going_on or kept.checkpoint is None:
+    can_continue = solution.status is Status.INTERRUPTED or solution.status.ended
+    if not can_continue or kept.checkpoint is None:
         why = (
             "it has no checkpoint, which simulate(save=...) writes"
-            if going_on
+            if can_continue
             else f"it ended by itself: {solution.message}"
         )
         raise ValueError(
@@ -104,7 +104,7 @@ def go_on(solution, duration: float, progress, throw: bool):
     checkpoint, kept = state_at_end(solution), solution._run
     if hasattr(kept, "history"):
         raise ValueError(
-            "the solution must be one of simulate to go on; take a Run on by Run.advance"
+            "only a solution of simulate can be continued; continue a Run with Run.advance"
         )
     if not solution.status.ended or checkpoint is None:
         raise ValueError(

@@ -36,7 +36,7 @@ def check_record(record: Any) -> None:
     Raises
     ------
     TypeError, ValueError
-        With the field.
+        With the name of the field.
     """
     kind = type(record)
     if kind in _LOOKS:
@@ -50,12 +50,12 @@ def check_record(record: Any) -> None:
 
 
 def check_part(scene: Scene, part: Any) -> None:
-    """Refuse a part that the scene, with the parts before it, would not have taken.
+    """Raise an error if the scene, with the parts before this one, would have refused this part.
 
     Raises
     ------
     TypeError, ValueError
-        With the field.
+        With the name of the field.
     """
     parts = scene._parts
     if not isinstance(part.name, str):

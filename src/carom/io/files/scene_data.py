@@ -56,7 +56,7 @@ class MissingFunction:
         self.name, self.was = name, was
 
     def __call__(self, *arguments):
-        """Say that it is missing."""
+        """Raise an error with the name of the missing function."""
         raise RuntimeError(
             f"the function {self.name!r} ({self.was}) is not in the file, which has only data; give it: "
             f"functions={{{self.name!r}: ...}}"

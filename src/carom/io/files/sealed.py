@@ -27,7 +27,7 @@ ALLOWED = "give a file that Solution.save or simulate(save=...) has written"
 
 
 class Sealed(NamedTuple):
-    """A file that is whole: all its bytes, and its index."""
+    """A complete file: all its bytes, and its index."""
 
     data: memoryview
     index: dict[str, Any]

@@ -21,7 +21,7 @@ class Names:
         self._taken = set(reserved)
 
     def new(self, wanted: str, kind: str) -> str:
-        """Return `wanted`, with its kind and a number where it is taken."""
+        """Return `wanted`, or this name with its kind and a number if another part has it."""
         name, number = wanted, 1
         while name in self._taken:
             name = f"{wanted} ({kind})" if number == 1 else f"{wanted} ({kind} {number})"

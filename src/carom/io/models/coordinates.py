@@ -110,8 +110,8 @@ def _mount(build: Build, j: int, link: Link, parent, child, moves: bool) -> None
         quaternion.between(model.qpos_spring[turn : turn + 4], data.qpos[turn : turn + 4])
     )
     if moves:
-        way = model.qpos_spring[first : first + 3] - data.qpos[first : first + 3]
-        apart = max(apart, np.linalg.norm(way) / model.stat.extent)
+        shift = model.qpos_spring[first : first + 3] - data.qpos[first : first + 3]
+        apart = max(apart, np.linalg.norm(shift) / model.stat.extent)
     if stiffness > 0.0 and apart > RELAXED:
         build.report.add(called, "its spring is not relaxed at the start", "without this spring")
         stiffness = 0.0

@@ -35,7 +35,7 @@ class Group(NamedTuple):
 
 
 def join(build: Build, link: Link) -> None:
-    """Join a link to what carries it."""
+    """Add the joint of a link with its parent."""
     model, kinds = build.model, need_mujoco().mjtJoint
     first, count = int(model.body_jntadr[link.body]), int(model.body_jntnum[link.body])
     numbers = list(range(first, first + count))

@@ -77,7 +77,7 @@ def parsed(data: bytes | str, what: str) -> ET.Element:
 
 
 def drop_sizes(spec) -> None:
-    """Have a specification ask for no memory that carom has no use for."""
+    """Set the sizes of memory that carom does not use to their defaults."""
     for name, value in UNUSED.items():
         if hasattr(spec, name):
             setattr(spec, name, value)

@@ -21,7 +21,7 @@ Covers = dict[int, tuple[Shape | None, list[int]]]
 def lift_out(build: Build, links: list[Link], covers: Covers, standing: list[Solid], rules: Filter):
     """Move bodies with free joints out of fixed parts, each time by the deepest overlap.
 
-    MuJoCo's contacts are soft: a body at rest is inside the floor. Here none may be.
+    MuJoCo's contacts are soft: a body at rest penetrates the floor. carom allows no penetration.
     """
     model, data = build.model, build.data
     for root in links:
@@ -29,34 +29,36 @@ def lift_out(build: Build, links: list[Link], covers: Covers, standing: list[Sol
         if model.jnt_type[joint] != need_mujoco().mjtJoint.mjJNT_FREE:
             continue
         tree = [one for one in links if model.body_rootid[one.body] == root.body]
-        first, way = int(model.jnt_qposadr[joint]), np.zeros(3)
+        first, shift = int(model.jnt_qposadr[joint]), np.zeros(3)
         for _ in range(ROUNDS):
             depth, normal = _deepest(build, tree, covers, standing, rules)
             if depth <= 0.0:
                 break
-            way += depth * (1.0 + 1e-9) * normal
+            shift += depth * (1.0 + 1e-9) * normal
             data.qpos[first : first + 3] += depth * (1.0 + 1e-9) * normal
             place(model, data)
-        if np.any(way):
-            text = f"starts {np.linalg.norm(way):.3g} m inside fixed parts"
-            build.report.add(f"body {root.name!r}", text, f"moved by {way.round(9).tolist()} m")
+        if np.any(shift):
+            text = f"starts {np.linalg.norm(shift):.3g} m inside fixed parts"
+            build.report.add(f"body {root.name!r}", text, f"moved by {shift.round(9).tolist()} m")
 
 
 def _deepest(build: Build, tree, covers: Covers, standing, rules: Filter):
-    """Return the depth of the deepest overlap of a tree with fixed parts, and the way out."""
-    deepest, way = 0.0, np.zeros(3)
+    """Return the depth of the deepest overlap of a tree with fixed parts, and the direction out of it."""
+    deepest, out, still = 0.0, np.zeros(3), np.zeros(3)
     for link in tree:
         shape, geoms = covers[link.body]
         if not geoms:
             continue
-        body = make_body(0, link.name, shape, 1.0, None, (1, 1, 1), *pose(build, link), way, way)
+        body = make_body(
+            0, link.name, shape, 1.0, None, (1, 1, 1), *pose(build, link), still, still
+        )
         for solid in standing:
             if rules.between(geoms, solid.geoms).friction is None or not near(body, solid.part):
                 continue
             depth, normal = overlap(body, solid.part)
             if depth > deepest:
-                deepest, way = depth, normal
-    return deepest, way
+                deepest, out = depth, normal
+    return deepest, out
 
 
 def pose(build: Build, link: Link) -> tuple[np.ndarray, np.ndarray]:
@@ -66,7 +68,7 @@ def pose(build: Build, link: Link) -> tuple[np.ndarray, np.ndarray]:
 
 
 def near(body: Body, other) -> bool:
-    """Return whether the balls around the two meet."""
+    """Return whether the bounding spheres of the two overlap."""
     assert body.shape is not None
     if not isinstance(other, Body):
         return float((body.position - other.point) @ other.normal) <= body.shape.size

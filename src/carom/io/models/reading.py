@@ -49,7 +49,7 @@ def compiled_model(source, free_root: bool, package_dirs, report: Report) -> Any
         raise ValueError(f"{what} does not compile: {_line(error)}") from None
     for warning in said:
         report.add(
-            "MuJoCo", f"warns: {_line(warning.message)}", "it compiled the model in this way"
+            "MuJoCo", f"warns: {_line(warning.message)}", "it compiled the model with this warning"
         )
     pairs = zip(model.eq_type, model.eq_obj1id)
     coupled = {model.joint(j).name for kind, j in pairs if kind == mujoco.mjtEq.mjEQ_JOINT}

@@ -1,4 +1,4 @@
-"""Where a picture is taken from."""
+"""The camera of a picture: position, directions and distance."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ import numpy as np
 from carom import checks
 
 VIEWS = {"oblique": (-65.0, 18.0), "front": (-90.0, 8.0), "side": (0.0, 8.0), "top": (-90.0, 90.0)}
-OPENING = math.tan(math.radians(13.0))  # half the height of the picture by its distance
-MARGIN = 1.14  # of the picture around what moves
-NEAR = 1.3  # least distance of the camera, by that of the nearest point from the middle
+OPENING = math.tan(math.radians(13.0))  # half the height of the picture divided by its distance
+MARGIN = 1.14  # size of the picture divided by that of the moving bodies
+#: least distance of the camera divided by the distance of the nearest point from the centre
+NEAR = 1.3
 
 
 class Axes(NamedTuple):
@@ -34,7 +35,7 @@ class Camera(NamedTuple):
 
     @property
     def eye(self) -> np.ndarray:
-        """Where it is (3,) [m]."""
+        """Position of the camera (3,) [m]."""
         return self.centre + self.distance * self.axes.towards
 
     @property
@@ -105,5 +106,5 @@ def fitted(axes: Axes, places, radii, size: tuple[int, int]) -> Camera:
 
 
 def _before(camera: Camera, places, radii) -> float:
-    """Return the distance from which all balls are well before the camera."""
+    """Return a distance from which all balls are in front of the camera."""
     return NEAR * float(np.max((places - camera.centre) @ camera.axes.towards + radii))

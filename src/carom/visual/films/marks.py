@@ -7,11 +7,13 @@ import numpy as np
 from carom.geometry.frames import contact_axes
 from carom.visual.plots import style
 
-LINGER = 0.15  # how long an arrow is seen [s of the film]
-LONGEST = 0.20  # of the arrow of the greatest impulse, by the height of what is seen
-LEAST = 0.03  # impulse, by the greatest, below which none is drawn
-HEAD = 0.35  # of an arrow
-GRAZE = 0.004  # of the distance, by which a point may lie below a surface and be seen
+LINGER = 0.15  # time for which an arrow is shown [s of the film]
+#: length of the arrow of the greatest impulse, as a fraction of the height of the view
+LONGEST = 0.20
+LEAST = 0.03  # fraction of the greatest impulse; smaller impulses are not drawn
+HEAD = 0.35  # length of the head, as a fraction of an arrow
+#: a point that lies below a surface by at most this fraction of the distance is visible
+GRAZE = 0.004
 
 
 class Marks:
@@ -30,10 +32,10 @@ class Marks:
             push[row] = table.impulse[k] @ (contact_axes(n) if flat else pair_axes(n))
         size = np.linalg.norm(push, axis=1)
         greatest = float(size.max(initial=0.0)) or 1.0
-        # as the root: the first impulse is often ten times those that follow
+        # lengths grow with the square root: the first impulse is often ten times the later ones
         scale = LONGEST * length * np.sqrt(size / greatest) / np.where(size > 0.0, size, 1.0)
         self.arrow = np.where((size > LEAST * greatest)[:, None], push * scale[:, None], 0.0)
-        self.saved, self.held = solution.forces.saved, solution.forces.point
+        self.saved, self.points = solution.forces.saved, solution.forces.point
 
     def draw(self, pen, camera, depth, t: float) -> None:
         """Draw the arrows and points at a time."""
@@ -41,8 +43,8 @@ class Marks:
         k = int(np.clip(np.searchsorted(self.solution.t, t, side="right") - 1, 0, None))
         low, high = np.searchsorted(self.saved, [k, k + 1])
         dot = 2.6 * unit
-        if high - low <= 60:  # in a heap they would hide what they belong to
-            for x, y, near in camera.project(self.held[low:high]):
+        if high - low <= 60:  # in a pile they would hide the bodies
+            for x, y, near in camera.project(self.points[low:high]):
                 if _visible(x, y, near, depth):
                     pen.ellipse((x - dot, y - dot, x + dot, y + dot), fill="#202020")
         for row in np.flatnonzero((self.time <= t) & (self.time > t - self.linger)):
@@ -52,7 +54,7 @@ class Marks:
 
 
 def _visible(x: float, y: float, near: float, depth) -> bool:
-    """Return whether nothing is before a point; it may be hidden by the surface that it lies on."""
+    """Return whether a point is visible; a point just below the surface on which it lies is visible too."""
     height, width = depth.shape
     if not (near > 0.0 and 0.0 <= x < width and 0.0 <= y < height):
         return False
@@ -69,11 +71,11 @@ def pair_axes(normal: np.ndarray) -> np.ndarray:
 
 def _arrow(pen, start, end, unit: float) -> None:
     """Draw an arrow, its head no longer than itself."""
-    way = end - start
-    length = float(np.hypot(*way))
+    line = end - start
+    length = float(np.hypot(*line))
     if not length > 2.0 * unit:
         return
-    along = way / length
+    along = line / length
     across = np.array([-along[1], along[0]])
     head = min(HEAD * length, 16.0 * unit)
     neck = end - head * along

@@ -64,8 +64,8 @@ def split(model: Model, longest: float) -> Model:
     A triangle much larger than the picture reaches behind the camera and cannot be drawn, but its parts can.
     """
     while len(model.corners) < MOST:
-        ways = np.roll(model.corners, -1, axis=1) - np.roll(model.corners, 1, axis=1)
-        sides = np.linalg.norm(ways, axis=2)  # opposite each corner
+        edges = np.roll(model.corners, -1, axis=1) - np.roll(model.corners, 1, axis=1)
+        sides = np.linalg.norm(edges, axis=2)  # opposite each corner
         large = sides.max(axis=1) > longest
         if not np.any(large):
             break

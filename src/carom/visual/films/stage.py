@@ -1,4 +1,4 @@
-"""A motion set up to be drawn at any of its times."""
+"""A motion, prepared so that each of its times can be drawn."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ BACKGROUND = rgb("#ffffff")
 PLANE, GRID, LINK = rgb("#ededed"), rgb("#cfcfcf"), rgb("#6b6b6b")
 SHADOW = 0.80  # brightness in it
 DIM = 0.85  # brightness of a plane that turns away from the light
-FINER = 2  # pixels of the buffer by those of the picture, in each direction
-LINE = 0.0022  # width of an edge by the height of the picture
-RECENT = 0.01  # part of the run over which an impulse is seen in a single picture
-SAMPLES = 400  # times at which a camera looks where the bodies will be
+FINER = 2  # pixels of the buffer per pixel of the picture, in each direction
+LINE = 0.0022  # width of an edge, as a fraction of the height of the picture
+RECENT = 0.01  # fraction of the run for which a single picture shows an impulse
+SAMPLES = 400  # times at which the positions of bodies are used to place the camera
 
 
 class Stage:
@@ -60,7 +60,7 @@ class Stage:
         )
         self.axes = axes_of(view, scene)
         self.camera = self._camera(places, turns)
-        self.length = self.camera.distance * 0.46  # height of what is seen, about
+        self.length = self.camera.distance * 0.46  # approximate height of the view
         self._place_models()
         self._place_planes(places)
         self.marks = marks.Marks(solution, self.length)
@@ -98,8 +98,8 @@ class Stage:
         self.all = Model(*(np.concatenate(columns) for columns in zip(*made)))
         self.still = [placed_model(solid) for solid in self.solution.scene.statics]
         scene = self.solution.scene
-        held = [j for j in scene.joints if isinstance(j.definition, Distance)]
-        self.links = anchors([*held, *(f for f in scene.forces if f.kind == "Spring")])
+        rods = [j for j in scene.joints if isinstance(j.definition, Distance)]
+        self.links = anchors([*rods, *(f for f in scene.forces if f.kind == "Spring")])
         rod = model_of(*surface(Cylinder(1.0, 1.0), 12), None)
         self.rod = rod._replace(colours=rod.colours + LINK, edges=0 * rod.edges)
 
@@ -114,7 +114,7 @@ class Stage:
         for half_space in self.solution.scene.half_spaces:
             n = half_space.normal
             if not n @ (self.camera.eye - half_space.point) > 0.0:
-                continue  # seen from behind: what is before it is to be seen
+                continue  # seen from behind: it would hide the motion
             middle = self.camera.centre - ((self.camera.centre - half_space.point) @ n) * n
             reach = float(np.linalg.norm(flat - self.camera.centre, axis=1).max()) + self.length
             begin, end = 0.35 * reach, 1.6 * reach
@@ -167,7 +167,7 @@ class Stage:
         return Buffer(*(one.copy() for one in self._kept))
 
     def _world(self, x, Q) -> Model:
-        """Return all triangles where they are."""
+        """Return all triangles at their present positions."""
         turn = quaternion.matrix(Q).reshape(-1, 3, 3)[self.owner]
         corners = np.einsum("fij,fkj->fki", turn, self.all.corners) + x[self.owner][:, None]
         normals = np.einsum("fij,fkj->fki", turn, self.all.normals)
@@ -204,7 +204,7 @@ class Stage:
 
     @property
     def digits(self) -> int:
-        """Decimals of the clock: so that a hundredth of the run can be read."""
+        """Decimals of the clock, enough to read a hundredth of the run."""
         span = float(self.solution.t[-1] - self.solution.t[0])
         return int(np.clip(np.ceil(2.0 - np.log10(max(span, 1e-9))), 0, 9))
 
@@ -253,7 +253,7 @@ def still(
 
 
 def checked_size(size) -> tuple[int, int]:
-    """Return width and height, even: a rule of the films' code."""
+    """Return width and height, which must be even for the encoder of films."""
     if (
         not isinstance(size, (list, tuple, np.ndarray))
         or len(checks.listed("size", size, "two")) != 2
@@ -276,9 +276,9 @@ def pillow() -> tuple[Any, Any, Any]:
 
 
 def _steps(apart, directions, spacing: float) -> np.ndarray:
-    """Return the whole steps of a grid that are nearest to a way."""
-    way = [spacing * np.round(apart @ e / spacing) * e for e in directions]
-    return np.sum(way, axis=0)
+    """Return the displacement nearest to `apart` that moves a grid onto itself."""
+    steps = [spacing * np.round(apart @ e / spacing) * e for e in directions]
+    return np.sum(steps, axis=0)
 
 
 def _round(length: float) -> float:

@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from carom.visual.plots.balance import energy
-    from carom.visual.plots.blows import impacts
     from carom.visual.plots.errors import constraint_errors
     from carom.visual.plots.glance import overview
+    from carom.visual.plots.impacts_over_time import impacts
     from carom.visual.plots.layer import impact_inside
     from carom.visual.plots.paths import trajectory
     from carom.visual.plots.plane import phase
@@ -40,7 +40,7 @@ _WHERE = {
     "energy": "balance",
     "hodograph": "slip",
     "impact_inside": "layer",
-    "impacts": "blows",
+    "impacts": "impacts_over_time",
     "overview": "glance",
     "phase": "plane",
     "trajectory": "paths",

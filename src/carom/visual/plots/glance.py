@@ -30,9 +30,9 @@ def overview(solution) -> dict:
         "motion", "energy", "error" (of the energy) and, if drawn, "contacts" and "constraints".
     """
     whole = figure.is_bodies(solution)
-    held = solution.scene if whole else None
+    scene = solution.scene if whole else None
     touched = len(solution.impacts) > 0 or len(solution.events.time) > 0
-    kept = bool(held.joints or held.constraints) if held else np.any(solution.constraint_errors)
+    kept = bool(scene.joints or scene.constraints) if scene else np.any(solution.constraint_errors)
     rows = [["motion", "energy"], ["motion", "error"]]
     heights = [2.3, 1.1]  # [in]
     below = [name for name, there in (("contacts", touched), ("constraints", kept)) if there]

@@ -64,7 +64,7 @@ def trajectory(
             path = x[:, body.index][:, seen]
             drawn.plot(*path.T, line, color=colour, lw=0.6 if many else 1.2, label=body.name)
             drawn.plot(*path[0], "s", color=colour, ms=2 if many else 3.5)
-            struck = np.isin(t, _blows(solution, body))
+            struck = np.isin(t, _impact_times(solution, body))
             drawn.plot(*path[struck].T, "o", color=colour, ms=1.5 if many else 2.5)
             if body.shape is not None:
                 _outlines(drawn, solution, body, times, seen, colour)
@@ -97,7 +97,7 @@ def _plane(plane, solution, x) -> tuple[int, int]:
     return max((k for k in range(3) if k != up), key=lambda k: moved[k] * (1 - 1e-9 * k)), up
 
 
-def _blows(solution, body) -> np.ndarray:
+def _impact_times(solution, body) -> np.ndarray:
     """Return the times of the impacts of a body."""
     pairs = solution.pairs
     mine = np.flatnonzero((pairs.body == body.index) | (pairs.other == body.index))

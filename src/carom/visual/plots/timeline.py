@@ -40,10 +40,10 @@ def contacts(solution, *, contacts=None, most: int = 40, ax=None):
     names = figure.contact_names(solution)
     most = checks.integer("most", most, least=1)
     chosen = figure.named("contacts", contacts, names)
-    held = intervals(solution)
+    spans = intervals(solution)
     struck = solution.impacts
     busy = np.bincount(struck.contact.astype(int), minlength=len(names))
-    busy = busy + np.bincount(np.array([row[0] for row in held], dtype=int), minlength=len(names))
+    busy = busy + np.bincount(np.array([row[0] for row in spans], dtype=int), minlength=len(names))
     if contacts is None:
         chosen = [c for c in chosen if busy[c]]
         chosen = sorted(sorted(chosen, key=lambda c: -busy[c])[:most])
@@ -52,10 +52,12 @@ def contacts(solution, *, contacts=None, most: int = 40, ax=None):
     with figure.drawing(ax, 1, (style.PAGE, 0.75 + 0.22 * min(len(chosen), 40))) as axes:
         for mode, colour, width in MODES:
             for row, c in enumerate(chosen):
-                bars = [(a, b - a) for contact, a, b, what in held if contact == c and what == mode]
+                bars = [
+                    (a, b - a) for contact, a, b, what in spans if contact == c and what == mode
+                ]
                 if bars:
                     axes.broken_barh(bars, (row - width / 2, width), color=colour, lw=0)
-            if any(row[0] in chosen and row[3] == mode for row in held):
+            if any(row[0] in chosen and row[3] == mode for row in spans):
                 axes.barh([0], [0], color=colour, label=mode)
         for row, c in enumerate(chosen):
             t = struck.time[struck.contact == c]

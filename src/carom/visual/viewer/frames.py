@@ -101,11 +101,11 @@ def place_of(solution, frames: Frames, outlines: list[Outline], fixed: list[np.n
 
 def _box(frames: Frames, b: int, outline: Outline) -> tuple[np.ndarray, np.ndarray]:
     """Return the lowest and the highest coordinates (3,) of a body over the run."""
-    ways = [
+    reached = [
         frames.position[:, b] + quaternion.rotate(frames.orientation[:, b], point)
         for point in outline.points
     ]
-    return np.min(ways, axis=(0, 1)) - outline.size, np.max(ways, axis=(0, 1)) + outline.size
+    return np.min(reached, axis=(0, 1)) - outline.size, np.max(reached, axis=(0, 1)) + outline.size
 
 
 def _up(gravity: np.ndarray, position: np.ndarray) -> np.ndarray:
@@ -113,8 +113,8 @@ def _up(gravity: np.ndarray, position: np.ndarray) -> np.ndarray:
     pull = float(np.linalg.norm(gravity))
     if pull > 0.0:
         return -gravity / pull
-    ways = (position - position[0]).reshape(-1, 3)
-    turns, axes = np.linalg.eigh(ways.T @ ways)
+    shifts = (position - position[0]).reshape(-1, 3)
+    turns, axes = np.linalg.eigh(shifts.T @ shifts)
     flat = turns[1] > 0.0 and turns[0] < FLAT * turns[1]
     normal = axes[:, 0] if flat else np.array([1.0, 0.0, 0.0])
     up = np.array([0.0, 1.0, 0.0] if abs(normal[2]) > 0.7 else [0.0, 0.0, 1.0])
@@ -123,19 +123,19 @@ def _up(gravity: np.ndarray, position: np.ndarray) -> np.ndarray:
 
 
 def _view(position: np.ndarray, up: np.ndarray) -> tuple[np.ndarray, float]:
-    """Return from where to look, and how steeply: across an upright plane, or down on a level one."""
+    """Return direction and elevation of the view: across a vertical plane, or down on a horizontal one."""
     east = np.eye(3)[np.argmin(np.abs(up))]
     east -= (east @ up) * up
     east /= np.linalg.norm(east)
     north = np.cross(up, east)
-    ways = (position - position[0]).reshape(-1, 3)
-    level = np.stack([ways @ east, ways @ north])
+    shifts = (position - position[0]).reshape(-1, 3)
+    level = np.stack([shifts @ east, shifts @ north])
     turns, axes = np.linalg.eigh(level @ level.T)
     if turns[1] > 0.0 and turns[0] < FLAT * turns[1]:
         across = axes[0, 0] * east + axes[1, 0] * north
         front = -north + 0.01 * east  # of the two sides the one from which x goes to the right
         return (across if across @ front > 0.0 else -across), 0.3
-    down = np.sum((ways @ up) ** 2) < 0.01 * np.sum(turns)
+    down = np.sum((shifts @ up) ** 2) < 0.01 * np.sum(turns)
     return 0.6 * east - 0.8 * north, 0.9 if down else 0.3
 
 
@@ -147,7 +147,7 @@ def poses_at(frames: Frames, t: float) -> tuple[np.ndarray, np.ndarray]:
     s = float(np.clip((t - time[k]) / (time[n] - time[k]), 0.0, 1.0)) if n > k else 0.0
     p, q = frames.orientation[k], frames.orientation[n]
     cosine = np.sum(p * q, axis=1, keepdims=True)
-    q = np.where(cosine < 0.0, -q, q)  # the same attitude, by the shorter way
+    q = np.where(cosine < 0.0, -q, q)  # the same attitude, by the smaller rotation
     angle = np.arccos(np.clip(np.abs(cosine), 0.0, 1.0))
     sine = np.where(angle > 1e-4, np.sin(angle), 1.0)
     first = np.where(angle > 1e-4, np.sin((1.0 - s) * angle) / sine, 1.0 - s)

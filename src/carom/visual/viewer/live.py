@@ -17,8 +17,8 @@ from carom.visual.viewer.frames import poses_at
 from carom.visual.viewer.show import Show, body_number, playing_speed
 
 RATE = 30.0  # pictures a second
-SAID = 0.1  # slider and energies follow so often while it plays [s]
-FADE = 0.35  # an impact is seen that long [s of the clock on the wall]
+SAID = 0.1  # interval between updates of slider and energies during play [s]
+FADE = 0.35  # time for which an impact is shown [s of real time]
 
 
 def need_viser() -> None:
@@ -27,7 +27,7 @@ def need_viser() -> None:
         import viser  # noqa: F401
     except ImportError as error:
         if error.name is not None and error.name.split(".")[0] != "viser":
-            raise  # it is there, and lacks something itself
+            raise  # viser is installed, but a package that it needs is missing
         what = 'a live view (not a page: carom.view(solution, export="run.html"))'
         raise checks.missing_package(what, "viser", "view") from None
 
@@ -59,7 +59,7 @@ class LiveView:
         self.speed = speed or playing_speed(self.end - self.start)
         self._followed, self._change = follow, threading.RLock()
         self._stopped, self._marked = threading.Event(), 0.0
-        with redirect_stdout(io.StringIO()):  # its banner; `wait` says where it is
+        with redirect_stdout(io.StringIO()):  # hide the banner of viser; `wait` prints the address
             self.server = viser.ViserServer(
                 host, port or free_port(host), label=show.title, verbose=False
             )
@@ -172,7 +172,7 @@ class LiveView:
         return f"<LiveView of {self.show.title!r} at {self.url}, t = {self.time:g} s{ended}>"
 
     def _run(self) -> None:
-        """Move on while it plays."""
+        """Advance the shown time during play."""
         last = time.monotonic()
         while not self._stopped.wait(1.0 / RATE):
             now = time.monotonic()
@@ -189,7 +189,7 @@ class LiveView:
         return poses_at(self.show.frames, self.time)[0][self._followed]
 
     def _move_eyes(self, before: np.ndarray | None) -> None:
-        """Move the eyes of all who look on as the followed body has moved."""
+        """Move the cameras of all clients by the displacement of the followed body."""
         after = self._place_followed()
         if before is None or after is None or np.array_equal(before, after):
             return

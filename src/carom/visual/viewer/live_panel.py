@@ -50,7 +50,7 @@ class LivePanel:
         self._connect()
 
     def show_time(self, t: float) -> None:
-        """Move the slider, and say the energies."""
+        """Move the slider, and write the energies."""
         self.time.value = t
         k = int(np.searchsorted(self.show.solution.t, t, side="right")) - 1
         solution = self.show.solution
@@ -113,7 +113,7 @@ class LivePanel:
         return [body.name for body in self.show.solution.scene.bodies]
 
     def _impacts(self) -> list[str]:
-        """Return a label for each impact that is shown."""
+        """Return a label for each shown impact."""
         strikes, impacts = self.show.strikes, self.show.solution.impacts
         rows = zip(strikes.number, strikes.contact)
         return [f"{k + 1}: {impacts.time[k]:.6g} s, {name}" for k, name in rows]

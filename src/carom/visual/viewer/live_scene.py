@@ -25,8 +25,8 @@ class LiveScene:
         self.length = 1.0  #: factor of all arrows
         self.arrows_on = True
         self.strongest = np.max(np.linalg.norm(show.strikes.arrow, axis=1), initial=0.0)
-        forces = np.linalg.norm(show.held.force, axis=1)
-        self.pressed = float(np.quantile(forces, 0.99)) if len(forces) else 0.0
+        forces = np.linalg.norm(show.persistent.force, axis=1)
+        self.largest_force = float(np.quantile(forces, 0.99)) if len(forces) else 0.0
         self.stage = stage = server.scene
         stage.configure_default_lights(enabled=False)
         up, side = show.place.up, show.place.side
@@ -59,7 +59,7 @@ class LiveScene:
         self.forces = self._arrows("/forces", FORCE)
 
     def move(self, t: float, fading: float) -> None:
-        """Bring all to a time; impulses are seen for `fading` [s]."""
+        """Show everything at time `t`; impulses are visible for `fading` [s]."""
         x, Q = poses_at(self.show.frames, t)
         for part, handle in zip(self.show.parts, self.bodies):
             if part.look == "static":
@@ -74,10 +74,11 @@ class LiveScene:
         longest = self.show.longest * self.length
         point = self.show.solution.impacts.point[number[seen]]
         self._point(self.impulses, point, self.show.strikes.arrow[seen], longest, self.strongest)
-        held = self.show.held
-        s = max(int(np.searchsorted(held.time, t, side="right")) - 1, 0)
-        rows = slice(held.first[s], held.first[s + 1])
-        self._point(self.forces, held.point[rows], held.force[rows], 0.7 * longest, self.pressed)
+        persistent = self.show.persistent
+        s = max(int(np.searchsorted(persistent.time, t, side="right")) - 1, 0)
+        rows = slice(persistent.first[s], persistent.first[s + 1])
+        point, force = persistent.point[rows], persistent.force[rows]
+        self._point(self.forces, point, force, 0.7 * longest, self.largest_force)
 
     def see_through(self, on: bool) -> None:
         """Make bodies transparent, so that arrows in them are seen."""
@@ -112,14 +113,14 @@ class LiveScene:
         position = self.show.frames.position
         if position.shape[1] > PATHS:
             return []
-        ways = [
+        paths = [
             np.stack([position[:-1, b], position[1:, b]], axis=1) for b in range(position.shape[1])
         ]
         return [
             self.stage.add_line_segments(
-                f"/paths/{b}", way.astype(np.float32), FAINT, thickness=2e-3 * self.radius
+                f"/paths/{b}", path.astype(np.float32), FAINT, thickness=2e-3 * self.radius
             )
-            for b, way in enumerate(ways)
+            for b, path in enumerate(paths)
         ]
 
     def show_paths(self, on: bool) -> None:

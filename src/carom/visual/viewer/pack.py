@@ -11,16 +11,18 @@ import numpy as np
 
 
 class Packer:
-    """Collects arrays; each becomes a small note in the header: where it begins, its type and its shape."""
+    """Collects arrays; each gets an entry in the header: its start, its type and its shape."""
 
     def __init__(self):
         self._bytes, self._length = [], 0
 
     def add(self, array, kind: str = "f4") -> dict[str, Any]:
-        """Keep an array as `kind` ("f4", "f8" or "i4"); return its note."""
+        """Store an array as `kind` ("f4", "f8" or "i4"); return its entry of the header."""
         array = np.ascontiguousarray(array)
         data = array.astype(f"<{kind}").tobytes()
-        data += bytes(-len(data) % 8)  # each array begins where any type may
+        data += bytes(
+            -len(data) % 8
+        )  # each array starts at a multiple of 8 bytes, as typed arrays need
         note = {"at": self._length, "kind": kind, "shape": list(array.shape)}
         self._bytes.append(data)
         self._length += len(data)
@@ -32,6 +34,6 @@ class Packer:
 
 
 def header_text(header: dict) -> str:
-    """Return JSON that may stand inside a script element, whatever names are in it."""
+    """Return JSON that is safe inside a script element, with any names in it."""
     text = json.dumps(header, ensure_ascii=True, allow_nan=False)
     return text.replace("<", "\\u003c")

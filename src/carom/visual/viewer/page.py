@@ -110,11 +110,11 @@ def header(show: Show, packer: Packer) -> dict:
         "links": [_link(link, place.centre) for link in show.links],
         "energy": _energy(solution, packer),
         "impacts": _impacts(show, packer),
-        "held": {
-            "time": packer.add(show.held.time, "f8"),
-            "first": packer.add(show.held.first, "i4"),
-            "point": packer.add(show.held.point - place.centre),
-            "force": packer.add(show.held.force),
+        "persistent": {
+            "time": packer.add(show.persistent.time, "f8"),
+            "first": packer.add(show.persistent.first, "i4"),
+            "point": packer.add(show.persistent.point - place.centre),
+            "force": packer.add(show.persistent.force),
         },
     }  # fmt: skip
 

@@ -30,7 +30,7 @@ class Show(NamedTuple):
     planes: list[solids.Plane]
     links: list[solids.Link]
     strikes: strikes.Strikes
-    held: strikes.Held
+    persistent: strikes.PersistentForces
 
     @property
     def longest(self) -> float:
@@ -48,9 +48,9 @@ class Show(NamedTuple):
             words.append(f"{shown} of {saved} saved times")
         if len(self.strikes.number) < impacts:
             words.append(f"the {len(self.strikes.number)} strongest of {impacts} impacts")
-        if len(self.held.point) < len(solution.forces.point):
+        if len(self.persistent.point) < len(solution.forces.point):
             words.append(
-                f"{len(self.held.point)} of {len(solution.forces.point)} forces of persistent contacts"
+                f"{len(self.persistent.point)} of {len(solution.forces.point)} forces of persistent contacts"
             )
         return words
 
@@ -73,7 +73,7 @@ def show_of(what, title: str | None = None, most: int = frames.MOST) -> Show:
         solids.planes_of(scene, place, moments.position),
         links,
         strikes.strikes_of(solution),
-        strikes.held_of(solution, moments.time),
+        strikes.persistent_forces(solution, moments.time),
     )  # fmt: skip
 
 

@@ -17,10 +17,11 @@ from carom.visual import surfaces
 from carom.visual.details import is_die, pins, pips, turn_to
 from carom.visual.viewer.frames import Outline
 
-ROD = 0.012  # radius of rods of bodies without a shape, by that of the whole place
-TOP = 0.15  # how far walls go above the motion, by the radius of the place
+ROD = 0.012  # radius of rods of bodies without a shape, as a fraction of the radius of the region
+TOP = 0.15  # height of walls above the motion, as a fraction of the radius of the region
 LEVEL = 0.9  # cosine of the slope from which a half-space is a wall
-WIDE = 1.5  # half a side of the part of a half-space that is drawn, by the radius of the place
+#: half a side of the drawn part of a half-space, as a multiple of the radius of the region
+WIDE = 1.5
 
 
 class Part(NamedTuple):
@@ -51,9 +52,9 @@ class Link(NamedTuple):
 
 
 def parts_of(scene, radius: float) -> list[Part]:
-    """Return the surfaces of all bodies; equal ones once. `radius` is that of the whole place [m]."""
+    """Return the surfaces of all bodies; equal ones once. `radius` is that of the region [m]."""
     parts: dict[tuple, Part] = {}
-    known: dict = {}  # one shape may be that of many bodies
+    known: dict = {}  # many bodies may have one shape
     fineness = 32 if len(scene.bodies) < 100 else 16
     for body in scene.bodies:
         shape = body.shape
@@ -95,7 +96,7 @@ def size_of(outline: Outline) -> float:
 
 def _without_shape(scene, body: Body, thick: float) -> list[tuple[np.ndarray, np.ndarray, str]]:
     """Return rods from the mass centre to the anchors of joints and springs, and a ball at each end."""
-    for joint in scene.joints:  # what rolls has a radius
+    for joint in scene.joints:  # rolling bodies have a radius
         d = joint.definition
         if joint.child is body and isinstance(d, RollingSphere):
             return [(*surfaces.surface(Sphere(d.radius)), "round")]
@@ -126,7 +127,7 @@ def _without_shape(scene, body: Body, thick: float) -> list[tuple[np.ndarray, np
 
 
 def _anchors(scene, body: Body) -> list[np.ndarray]:
-    """Return the points (3,) of a body, in its axes, at which joints and springs hold it."""
+    """Return the anchors (3,) of joints and springs on a body, in its axes."""
     joints = [_anchor(j, body) for j in scene.joints if body in (j.parent, j.child)]
     links = [k for k in links_of(scene) if body.index in (k.parent, k.child)]
     ends = [k.parent_anchor if k.parent == body.index else k.child_anchor for k in links]
@@ -134,7 +135,7 @@ def _anchors(scene, body: Body) -> list[np.ndarray]:
 
 
 def _anchor(joint: Joint, body: Body) -> np.ndarray:
-    """Return where a joint holds a body, in its axes."""
+    """Return the anchor of a joint on a body, in its axes."""
     if joint.frames is not None:
         position, orientation = joint.frames[1 if joint.child is body else 0]
         return position + quaternion.rotate(orientation, joint.anchor())

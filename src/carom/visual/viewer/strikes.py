@@ -12,7 +12,7 @@ from carom.scene.constraints import coordinate_kind
 LISTED = 1000  # impacts in the list: the strongest
 OPENED = 200  # impacts whose inside is kept: the strongest
 STEPS = 24  # spline steps through a layer
-ROWS = 100_000  # arrows of persistent contacts, of all moments together
+ROWS = 100_000  # arrows of persistent contacts, of all times together
 
 
 class Strikes(NamedTuple):
@@ -21,11 +21,13 @@ class Strikes(NamedTuple):
     number: np.ndarray  #: (K',) which of `Solution.impacts`
     arrow: np.ndarray  #: (K', 3) impulse on the body, world axes [N s]; 0 of stops
     contact: list[str]  #: (K',) names
-    turning: np.ndarray  #: (K',) whether it is the stop of an angle: [rad/s], [N m s]
+    turning: (
+        np.ndarray
+    )  #: (K',) whether it is an impact at the stop of an angle, in [rad/s] and [N m s]
 
 
-class Held(NamedTuple):
-    """Forces of contacts that stay, at S moments: those from `first[s]` up to `first[s + 1]`."""
+class PersistentForces(NamedTuple):
+    """Forces of persistent contacts at S times: time s has the rows from `first[s]` up to `first[s + 1]`."""
 
     time: np.ndarray  #: (S,) [s]
     first: np.ndarray  #: (S + 1,)
@@ -59,7 +61,7 @@ def strikes_of(solution, listed: int = LISTED) -> Strikes:
     return Strikes(chosen, arrow, names, np.array(turning, dtype=bool))
 
 
-def held_of(solution, times: np.ndarray, rows: int = ROWS) -> Held:
+def persistent_forces(solution, times: np.ndarray, rows: int = ROWS) -> PersistentForces:
     """Return the forces of persistent contacts at the saved times among `times`, or fewer of them."""
     table = solution.forces
     saved = np.unique(np.searchsorted(solution.t, times, side="right") - 1)
@@ -68,11 +70,11 @@ def held_of(solution, times: np.ndarray, rows: int = ROWS) -> Held:
     saved, first, last = saved[::every], first[::every], last[::every]
     chosen = np.concatenate([np.arange(a, b) for a, b in zip(first, last)] or [[]]).astype(int)
     starts = np.concatenate([[0], np.cumsum(last - first)])
-    return Held(solution.t[saved], starts, table.point[chosen], table.vector[chosen])
+    return PersistentForces(solution.t[saved], starts, table.point[chosen], table.vector[chosen])
 
 
 def inside_of(solution, k: int) -> Inside | None:
-    """Return impact `k` from within; None where several points were resolved together."""
+    """Return the course of impact `k` in its layer; None if it is part of a multiple impact."""
     if solution.impacts.together[k] > 1:
         return None
     history = solution.impact_history(k, steps=STEPS)

@@ -40,8 +40,8 @@ class Camera {
   pan(dx, dy) {
     const back = unit(sub(this.eye, this.target)), right = unit(cross(this.up, back));
     const perPixel = (2 * this.distance * Math.tan(ANGLE / 2)) / this.element.clientHeight;
-    const way = add(times(-dx * perPixel, right), times(dy * perPixel, cross(back, right)));
-    this.target = add(this.target, way);
+    const shift = add(times(-dx * perPixel, right), times(dy * perPixel, cross(back, right)));
+    this.target = add(this.target, shift);
   }
 
   zoom(factor) {

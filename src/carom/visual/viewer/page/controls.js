@@ -14,9 +14,10 @@ const legend = (colour, text) => {
   find("legend").append(item);
 };
 if (painter) {
-  const { strongest, pressed, cell } = painter;
+  const { strongest, largestForce, cell } = painter;
   if (strongest > 0) legend(run.colours.impulse, `impulse, greatest ${withUnit(strongest, "N s")}`);
-  if (pressed > 0) legend(run.colours.force, `force of held contact, greatest ${withUnit(pressed, "N")}`);
+  if (largestForce > 0)
+    legend(run.colours.force, `force of persistent contact, greatest ${withUnit(largestForce, "N")}`);
   if (run.planes.length) legend("#b9c3cb", `grid ${withUnit(cell, "m")}`);
 }
 
@@ -32,7 +33,7 @@ find("slider").addEventListener("input", (event) => {
 });
 find("speed").addEventListener("change", (event) => (state.speed = Number(event.target.value)));
 find("follow").addEventListener("change", (event) => follow(Number(event.target.value)));
-for (const name of ["arrows", "ways", "labels"])
+for (const name of ["arrows", "paths", "labels"])
   find(name).addEventListener("change", (event) => change(name, event.target.checked));
 find("length").addEventListener("input", (event) => change("length", 10 ** Number(event.target.value)));
 function resetView() {

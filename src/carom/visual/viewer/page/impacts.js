@@ -1,8 +1,8 @@
-// ---- The list of impacts, and what went on inside the chosen one ----
+// ---- The list of impacts, and the course of the chosen one in its layer ----
 
 const INK = "#1d252c", BLUE = "#0072B2", ORANGE = "#E69F00", GREEN = "#009E73";
 
-/** Decimals with which times of impacts can be told apart, up to three more than the run needs. */
+/** Decimals that distinguish the times of impacts, at most three more than the run needs. */
 function decimals(run) {
   const { time } = run.impacts, least = Math.max(3, 3 - Math.floor(Math.log10(run.span)));
   let gap = run.span;
@@ -10,7 +10,7 @@ function decimals(run) {
   return clamp(1 - Math.floor(Math.log10(gap)), least, least + 3);
 }
 
-/** Fill the table; `choose(k)` is called with the place of the row that was clicked. */
+/** Fill the table; a click on row k calls `choose(k)`. */
 function listImpacts(run, choose) {
   const { impacts } = run, body = document.querySelector("#list tbody"), digits = decimals(run);
   const cells = (k) => [
@@ -36,7 +36,7 @@ function listImpacts(run, choose) {
   return rows;
 }
 
-/** Show impact k in the time of its layer, or say why it has none. */
+/** Show the course of impact k in its layer, or say why there is none. */
 function showInside(run, k) {
   const place = document.getElementById("inside"), { impacts } = run;
   place.replaceChildren();
@@ -47,10 +47,10 @@ function showInside(run, k) {
   const { inside } = impacts, i = inside.number.indexOf(impacts.number[k]);
   if (i < 0) {
     words.textContent = impacts.together[k] > 1
-      ? `Resolved together with others, ${impacts.together[k]} points in all: it has no course of its own.`
+      ? `Part of a multiple impact with ${impacts.together[k]} points, resolved together: it has no course of its own.`
       : "One of the weaker impacts: its course is not in this file.";
     if (!impacts.located[k]) {
-      words.textContent += " Its time is the end of a step in which a crowd was taken whole.";
+      words.textContent += " This impact was resolved in a time-stepping step: its time is the end of that step.";
     }
     return;
   }

@@ -24,8 +24,8 @@ class Motion {
     return poses;
   }
 
-  /** The way of a body: its places (3 numbers each) in all frames. */
-  way(b) {
+  /** The path of a body: its positions (3 numbers each) in all frames. */
+  path(b) {
     const places = new Float32Array(3 * this.time.length);
     for (let k = 0; k < this.time.length; k++)
       places.set(this.position.subarray(3 * (this.count * k + b), 3 * (this.count * k + b) + 3), 3 * k);

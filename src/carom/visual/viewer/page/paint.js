@@ -1,8 +1,8 @@
 // ---- From the run and a time to what is drawn ----
 
-const WAYS = 20; // bodies whose ways are drawn all at once; of more only that of the followed one
+const PATHS = 20; // up to so many bodies have their paths drawn; with more, only the followed body has
 const STILL = { x: [0, 0, 0], Q: [1, 0, 0, 0] }; // the pose of what never moves
-const DOTS = 400; // impacts that are marked
+const DOTS = 400; // at most so many impacts are marked
 
 const rgba = (hex, alpha = 1) => [1, 3, 5].map((k) => parseInt(hex.slice(k, k + 2), 16) / 255).concat(alpha);
 
@@ -16,11 +16,11 @@ class Painter {
       Object.entries(furniture()).map(([name, numbers]) => [name, this.canvas.mesh(numbers)]));
     this.cell = this.round(run.place.radius / 9);
     this.planes = run.planes.map((plane) => this.plane(plane));
-    this.ways = new Map();
+    this.paths = new Map();
     const lengths = (array) => Array.from({ length: array.length / 3 }, (_, k) => norm(row(array, k)));
     this.strongest = Math.max(...lengths(run.impacts.arrow), 0);
-    const forces = lengths(run.held.force).sort((a, b) => a - b);
-    this.pressed = forces.length ? forces[Math.floor(0.99 * (forces.length - 1))] : 0;
+    const forces = lengths(run.persistent.force).sort((a, b) => a - b);
+    this.largestForce = forces.length ? forces[Math.floor(0.99 * (forces.length - 1))] : 0;
     const { up, side } = run.place; // light comes from above, behind the eye to the right
     this.light = unit(add(times(0.85, up), add(times(0.45, side), times(0.35, cross(up, side)))));
   }
@@ -60,19 +60,19 @@ class Painter {
     const thick = 0.02 * this.run.place.radius;
     for (const { bodies, anchors, kind } of this.run.links) {
       const [from, to] = anchors.map((a, k) => (bodies[k] < 0 ? a : carried(poses[bodies[k]], a)));
-      const way = sub(to, from), [a, b] = across(unit(way)), wide = kind === "rod" ? 0.35 * thick : thick;
+      const along = sub(to, from), [a, b] = across(unit(along)), wide = kind === "rod" ? 0.35 * thick : thick;
       const mesh = kind === "rod" ? this.furniture.shaft : this.furniture.coil;
-      out.push({ mesh, colour: rgba("#5b6873"), model: frame(times(wide, a), times(wide, b), way, from) });
+      out.push({ mesh, colour: rgba("#5b6873"), model: frame(times(wide, a), times(wide, b), along, from) });
     }
     return out;
   }
 
   /** An arrow as shaft and head. */
-  arrow(from, way, colour) {
-    const length = norm(way);
+  arrow(from, vector, colour) {
+    const length = norm(vector);
     if (!(length > 1e-3 * this.run.place.radius)) return [];
     const thick = Math.min(0.025 * this.run.longest, 0.07 * length), head = Math.min(7 * thick, 0.6 * length);
-    const along = unit(way), [a, b] = across(along), neck = add(from, times(length - head, along));
+    const along = unit(vector), [a, b] = across(along), neck = add(from, times(length - head, along));
     const stretched = (wide, long, at) => frame(times(wide, a), times(wide, b), times(long, along), at);
     return [
       { mesh: this.furniture.shaft, colour, model: stretched(thick, length - head, from) },
@@ -84,7 +84,7 @@ class Painter {
     return { mesh, colour, model: frame([size, 0, 0], [0, size, 0], [0, 0, size], at) };
   }
 
-  /** Marks where impacts are and will be; of many, some. */
+  /** Marks at past and future impacts; if there are many, at some of them. */
   marks(t) {
     const { time, point } = this.run.impacts, every = Math.max(1, Math.ceil(time.length / DOTS)), out = [];
     const size = 0.008 * this.run.place.radius;
@@ -95,32 +95,32 @@ class Painter {
     return out;
   }
 
-  /** Impulses, which fade during `fading` [s], and forces of contacts that stay. */
+  /** Impulses, which fade during `fading` [s], and forces of persistent contacts. */
   arrows(t, fading, length) {
-    const { impacts, held, colours } = this.run, out = [], longest = this.run.longest * length;
+    const { impacts, persistent, colours } = this.run, out = [], longest = this.run.longest * length;
     const impact = (k, alpha) => {
       const point = row(impacts.point, k), colour = rgba(colours.impulse, alpha);
-      const way = times(longest / (this.strongest || 1), row(impacts.arrow, k));
-      out.push(this.ball(point, 0.03 * this.run.longest, colour), ...this.arrow(point, way, colour));
+      const vector = times(longest / (this.strongest || 1), row(impacts.arrow, k));
+      out.push(this.ball(point, 0.03 * this.run.longest, colour), ...this.arrow(point, vector, colour));
     };
     for (let k = 0; k < impacts.time.length; k++) {
       const age = t - impacts.time[k];
       if (age >= -1e-12 && age < fading) impact(k, 1 - age / fading);
     }
-    const s = lastBefore(held.time, t);
-    for (let k = held.first[s]; k < held.first[s + 1]; k++) {
-      const force = row(held.force, k), least = Math.min(1, this.pressed / (norm(force) || 1));
-      const way = times((0.7 * longest * least) / (this.pressed || 1), force);
-      out.push(...this.arrow(row(held.point, k), way, rgba(colours.force)));
+    const s = lastBefore(persistent.time, t);
+    for (let k = persistent.first[s]; k < persistent.first[s + 1]; k++) {
+      const force = row(persistent.force, k), least = Math.min(1, this.largestForce / (norm(force) || 1));
+      const vector = times((0.7 * longest * least) / (this.largestForce || 1), force);
+      out.push(...this.arrow(row(persistent.point, k), vector, rgba(colours.force)));
     }
     return out;
   }
 
   lines(t, followed) {
     const all = Array.from({ length: this.motion.count }, (_, b) => b), out = [];
-    for (const b of this.motion.count <= WAYS ? all : followed >= 0 ? [followed] : []) {
-      if (!this.ways.has(b)) this.ways.set(b, this.canvas.mesh(this.motion.way(b), false));
-      const mesh = this.ways.get(b), now = lastBefore(this.motion.time, t);
+    for (const b of this.motion.count <= PATHS ? all : followed >= 0 ? [followed] : []) {
+      if (!this.paths.has(b)) this.paths.set(b, this.canvas.mesh(this.motion.path(b), false));
+      const mesh = this.paths.get(b), now = lastBefore(this.motion.time, t);
       out.push({ mesh, first: 0, count: now + 1, colour: [0.25, 0.31, 0.36, 0.8] });
       out.push({ mesh, first: now, count: mesh.count - now, colour: [0.25, 0.31, 0.36, 0.22] });
     }
@@ -137,7 +137,7 @@ class Painter {
     this.canvas.draw({
       view, sun, eye: camera.eye, light: this.light, up,
       solids: this.solids(poses), planes: this.planes,
-      lines: state.ways ? this.lines(state.time, state.follow) : [],
+      lines: state.paths ? this.lines(state.time, state.follow) : [],
       marks: state.arrows ? this.marks(state.time) : [],
       arrows: state.arrows ? this.arrows(state.time, state.fading, state.length) : [],
     });

@@ -1,17 +1,17 @@
 // ---- The page: what is shown now, and how it changes ----
 
 const find = (id) => document.getElementById(id);
-const FADE = 0.35; // an impact is seen that long [s of the clock on the wall]
+const FADE = 0.35; // time for which an impact is shown [s of real time]
 
 const run = await unpacked();
 const motion = new Motion(run);
 run.span = motion.end - motion.start || 1;
 const state = {
   time: motion.start, playing: false, again: false, speed: run.speed, follow: -1, chosen: -1,
-  arrows: true, ways: true, labels: false, length: 1,
+  arrows: true, paths: true, labels: false, length: 1,
   get fading() { return Math.max(FADE * this.speed, 1e-9); },
 };
-let stale = true; // something has changed since the last picture
+let stale = true; // whether something has changed since the last picture
 
 const camera = new Camera(find("space"), run.place, () => (stale = true));
 let painter = null;

@@ -19,10 +19,10 @@ function across(n) {
   return [a, cross(n, a)];
 }
 
-/** The turn from `p` to `q` at the part `s` of its way, with steady angular velocity. */
+/** The rotation between `p` (s = 0) and `q` (s = 1), with constant angular velocity. */
 function slerp(p, q, s) {
   let c = p[0] * q[0] + p[1] * q[1] + p[2] * q[2] + p[3] * q[3];
-  const sign = c < 0 ? -1 : 1; // q and -q are the same attitude: the shorter way
+  const sign = c < 0 ? -1 : 1; // q and -q are the same attitude: the smaller rotation
   c *= sign;
   let a = 1 - s, b = s;
   if (c < 0.9999999) {

@@ -92,7 +92,7 @@ def _one(axes, table, rows, colour, mark, label) -> None:
 
 
 def _above(values, greatest: float) -> np.ndarray:
-    """Return values with nothing in the place of those too small for a logarithmic axis."""
+    """Return values with NaN in place of those that are too small for a logarithmic axis."""
     return np.where(values > 1e-12 * greatest, values, np.nan)
 
 
