@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom import checks
+from carom import arguments, checks
 from carom.geometry import quaternion
 from carom.results.constraint_rows import ConstraintRows, constraint_rows
 from carom.results.dense_output import curves, flights
@@ -26,7 +26,7 @@ from carom.status import Status
 
 if TYPE_CHECKING:
     from carom.results.assemble import Written
-    from carom.results.state import SystemState
+    from carom.results.state import BodyState, SystemState
     from carom.run import Run
     from carom.scene.all_pairs import PairTable
     from carom.scene.scene import Scene
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 SIDES = ("right", "left")
 
 
+@arguments.attributes()
 @dataclass(frozen=True, eq=False)
 class Solution(Portable, Drawn):
     """The motion of N bodies at T saved times, with K impacts.
@@ -104,6 +105,8 @@ class Solution(Portable, Drawn):
     >>> x, Q, v, w = solution.evaluate(0.1)  # between saved times, too
     >>> print(v.round(6) + 0.0)
     [[ 0.     0.    -0.981]]
+    >>> solution["body1"].velocity.shape  # the motion of one body
+    (201, 3)
     >>> print(solution.contact_force[-1, 0].round(9) + 0.0)  # it rests
     [9.81 0.   0.  ]
     >>> bool(abs(solution.ledger.residual).max() < 1e-13)
@@ -184,6 +187,12 @@ class Solution(Portable, Drawn):
         from carom.results.assemble import ledger
 
         return ledger(self)
+
+    def __getitem__(self, name: str) -> BodyState:
+        """Return the motion of a body by its name: arrays (T, 3) and (T, 4) in a `BodyState`."""
+        from carom.results.state import state_of_body
+
+        return state_of_body(self, self.scene, name, "solution")
 
     @property
     def success(self) -> bool:

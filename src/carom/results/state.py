@@ -3,28 +3,44 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from carom import checks
+from carom import arguments, checks
 from carom.geometry import quaternion
 from carom.results.joint_coordinates import Motion, coordinates_of, of_scene
 from carom.results.joint_now import Quick, coordinates, quick
 from carom.scene.bodies import Body
 
+if TYPE_CHECKING:
+    from carom.scene.scene import Scene
+
 _NONE = np.array([1.0, 0.0, 0.0, 0.0])
 
 
+@arguments.attributes()
 class BodyState(NamedTuple):
-    """Place and motion of one body at one time, in world axes."""
+    """Place and motion of one body, in world axes: at one time, or at the T saved times of a `Solution`."""
 
-    position: np.ndarray  #: (3,) mass centre [m]
-    orientation: np.ndarray  #: (4,) unit quaternion (w, x, y, z), body to world
-    velocity: np.ndarray  #: (3,) [m/s]
-    angular_velocity: np.ndarray  #: (3,) [rad/s]
+    position: np.ndarray  #: (3,) or (T, 3): mass centre [m]
+    orientation: np.ndarray  #: (4,) or (T, 4): unit quaternion (w, x, y, z), body to world
+    velocity: np.ndarray  #: (3,) or (T, 3) [m/s]
+    angular_velocity: np.ndarray  #: (3,) or (T, 3) [rad/s]
 
 
+def state_of_body(states, scene: Scene, name: str, whose: str) -> BodyState:
+    """Return the part of `states` that belongs to the body with this name; `whose` is for messages."""
+    try:
+        part = scene[name]
+    except KeyError as error:
+        raise KeyError(f"{whose}: {error.args[0]}") from None
+    if not isinstance(part, Body):
+        raise KeyError(f"{whose}: {name!r} must be a body, got {checks.shown(part)}")
+    return BodyState(*(getattr(states, field)[..., part.index, :] for field in BodyState._fields))
+
+
+@arguments.attributes()
 class SystemState:
     """The N bodies of a scene at one time; ``state["die"]`` is one of them, a `BodyState`. Read only.
 
@@ -77,16 +93,7 @@ class SystemState:
 
     def __getitem__(self, name: str) -> BodyState:
         """Return the state of a body, by its name."""
-        try:
-            part = self._scene[name]
-        except KeyError as error:
-            raise KeyError(f"state: {error.args[0]}") from None
-        if not isinstance(part, Body):
-            raise KeyError(f"state: {name!r} must be a body, got {checks.shown(part)}")
-        k = part.index
-        return BodyState(
-            self.position[k], self.orientation[k], self.velocity[k], self.angular_velocity[k]
-        )
+        return state_of_body(self, self._scene, name, "state")
 
     def joint_coordinates(self, joint) -> tuple[np.ndarray, np.ndarray]:
         """Return coordinates and rates (n,) of a joint, as `Solution.joint_coordinates` does.
