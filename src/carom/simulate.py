@@ -162,8 +162,9 @@ def simulate(
     -----
     MistakeWarning
         For an input that is nearly always a mistake: a free body that cannot touch anything although other
-        bodies can, a contact without a stated restitution and friction, a step that is longer than the run or
-        far too long for the motion.
+        bodies can, a contact without a stated restitution and friction, gravity that points away from the only
+        half-space, a stop at an angle that is probably in degrees, a step that is longer than the run or far
+        too long for the motion.
     AccuracyWarning
         If the energy changes without an explanation in the ledger, or a body penetrates another body or a
         half-space.
