@@ -65,11 +65,12 @@ class Solution(Portable, Drawn):
         rho``, where P_K is the projection onto the friction cone and rho the effective mass of the point. For a
         single contact point it is the velocity that the contact forbids.
     pairs : PairTable
-        The pairs that may touch; tables refer to them by their number `contact`. Columns: `body`, `other` (-1
-        for a half-space), `plane` (-1 for a body), `law` (an index in `laws`). First come the contacts of
-        `Scene.contacts`, then those of `set_contact_default`: pairs with half-spaces, body by body, then pairs
-        of two bodies (with more than 64 bodies on which only gravity acts: only the pairs that came near each
-        other, in the order in which they did). Stops of joints have the numbers after these.
+        The pairs that may touch; tables refer to them by their number `contact`, and ``pairs[k]`` is pair k.
+        Columns: `body`, `other` (-1 for a half-space), `plane` (-1 for a body), `law` (an index in the list
+        `laws`). First come the contacts of `Scene.contacts`, then those of `set_contact_default`: pairs with
+        half-spaces, body by body, then pairs of two bodies (with more than 64 bodies on which only gravity
+        acts: only the pairs that came near each other, in the order in which they did). Stops of joints have
+        the numbers after these.
     ledger : Ledger
         Energy balance of the run.
     status : Status

@@ -175,7 +175,7 @@ class TouchingPairs:
         ...             for y in (0, 5))
         >>> scene.ignore_contact(one)
         >>> scene.ignore_contact(one, two)
-        >>> len(scene.pairs_by_default().body)  # of two with each other
+        >>> len(scene.pairs_by_default())  # of two with each other
         3
         """
         first = self._some("body", body)
