@@ -210,8 +210,8 @@ def simulate(
         found = None if events is None else conditions(events, scene)
         if found is not None and save is not None:
             raise ValueError(
-                f"save must be left out with events, which no file holds, got {checks.shown(save)}; save the "
-                "solution: solution.save(path)"
+                "save must be left out with events, because such a run cannot be resumed, got "
+                f"{checks.shown(save)}; save the solution at its end: solution.save(path)"
             )
 
         from carom.run import Run

@@ -92,7 +92,7 @@ class Solution(Portable, Drawn):
     t_events : list of (n,), or None
         For each of the `events` that `simulate` was given the times [s] at which it happened.
     state_events : list of lists of SystemState, or None
-        The states at these times. (Files have neither.)
+        The states at these times.
 
     Examples
     --------

@@ -9,6 +9,7 @@ import numpy as np
 
 from carom import arguments, checks
 from carom.geometry import quaternion
+from carom.model.arrays import STATE
 from carom.results.joint_coordinates import Motion, coordinates_of, of_scene
 from carom.results.joint_now import Quick, coordinates, quick
 from carom.scene.bodies import Body
@@ -60,6 +61,17 @@ class SystemState:
         self.t = float(clock["now"][0])
         self.kinetic_energy = float(clock["kinetic"][0])
         self.potential_energy = float(clock["potential"][0])
+
+    @classmethod
+    def _of_file(cls, scene, t: float, kinetic: float, potential: float, motion) -> SystemState:
+        """Return a state; `motion`: position, orientation, velocity and angular velocity (N, ...)."""
+        state = cls.__new__(cls)
+        rows = np.zeros(len(scene.bodies), STATE)
+        rows["x"], rows["Q"], rows["v"], rows["w"] = motion
+        rows.flags.writeable = False
+        state._joints, state._rows, state._scene, state._to_principal = {}, rows, scene, _NONE
+        state.t, state.kinetic_energy, state.potential_energy = t, kinetic, potential
+        return state
 
     @property
     def position(self) -> np.ndarray:
