@@ -91,6 +91,7 @@ def test_wrong_arguments_are_one_line_and_code_2(arguments, words, capsys):
         (["-d", "1", "--step", "soon"], ("--step", "soon")),
         (["-d", "1", "--method", "rk3"], ("rk3", "rk8")),
         (["-d", "1", "--friction", "0.2"], ("--friction", ".xml")),
+        (["-d", "1", "--until", "rest"], ("at rest", "got 'rest'")),
         ([], ("--duration",)),
     ],
 )
@@ -120,6 +121,20 @@ def test_simulate_saves_at_times_and_to_a_tolerance(made):
     assert main(["simulate", str(made / "finer.h5"), "--step", "0.01", *out]) == OK
     found = carom.Solution.load(made / "finer.h5").settings
     assert (found["step"], found["method"], "rtol" in found) == (0.01, "rk4", False)
+
+
+def test_simulate_until_an_event(made, capsys):
+    out, until = made / "until.h5", "first impact of die and half_space1"
+    command = ["simulate", str(made / "die.py"), "-d", "9", "-o", str(out), "--until", until]
+    assert main([*command, "--until", "at rest"]) == OK
+    assert f'That was events[0] ("{until}") at t = ' in capsys.readouterr().out
+    found = carom.Solution.load(out)
+    assert found.status is carom.Status.STOPPED
+    assert found.t[-1] == found.t_events[0][0]
+    assert abs(found.t[-1] - found.impacts.time[0]) < 1e-15  # round-off of the search for it
+    assert [len(t) for t in found.t_events] == [1, 0]
+    assert main(["simulate", "--resume", str(out), "--until", "at rest"]) == USAGE
+    assert "--until must be left out with --resume" in one_line(capsys)
 
 
 def test_simulate_does_not_write_over_a_result(made, capsys):

@@ -1,4 +1,4 @@
-"""Messages about unknown and missing arguments, with the name that is probably meant."""
+"""Messages about unknown and missing arguments and attributes, with the name that is probably meant."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from functools import wraps
 from typing import Any, TypeVar
 
 F = TypeVar("F", bound=Callable)
+T = TypeVar("T")
 
-#: other names of arguments: in formulas, and in other engines
+#: other names of arguments and attributes: in formulas, and in other engines
 ELSEWHERE = {
     "friction": "mu mu_s mus friction_coefficient coefficient_of_friction lateralFriction",
     "friction_held": "mu_held",
@@ -30,6 +31,9 @@ ELSEWHERE = {
     "point": "anchor origin position offset",
     "normal": "n axis up direction",
     "name": "label id",
+    "t": "time times",
+    "time": "t",
+    "total_energy": "energy",
     "duration": "T time t tf t_end t_final end tspan t_span",
     "step": "dt h timestep time_step step_size stepsize max_step",
     "save_at": "t_eval saveat output_times",
@@ -57,6 +61,19 @@ _OTHER_PLACE = {
                    "set_contact_default(restitution=), or in a Material",
     "fixed": "a body that never moves is made by add_static",
     "static": "a body that never moves is made by add_static",
+}  # fmt: skip
+#: what other engines have a method for
+_OTHER_METHOD = {
+    "add_motor": "a motor is made by add_constraint(carom.constraints.Driver(...)), which prescribes the "
+                 "motion of a joint, or by add_force(carom.forces.JointForce(...)), which applies a force",
+    "add_spring": "a spring is made by add_force(carom.forces.Spring(...))",
+    "add_gear": "a gear is made by add_constraint(carom.constraints.Gear(...))",
+    "add_limit": "a limit of a joint is made by add_stop",
+    **dict.fromkeys(("add_floor", "add_ground", "add_plane"), "a floor is made by add_half_space"),
+    **dict.fromkeys(("add_box", "add_sphere", "add_cylinder", "add_capsule"),
+                    "a body with a shape is made by add_body(carom.Box(...), mass=...)"),
+    **dict.fromkeys(("simulate", "run", "step"),
+                    "a scene is simulated by carom.simulate(scene, duration), a carom.Run by advance()"),
 }  # fmt: skip
 ALIKE = 0.7  # of two names, from 0 to 1, where one may be a slip for the other
 _MEANT: dict[str, list[str]] = {}
@@ -112,6 +129,46 @@ def _unknown(shown: str, names: list[str], given, has) -> str:
     meant = meant or get_close_matches(unknown, names, n=1, cutoff=ALIKE)
     hint = f"it is called {meant[0]}=" if meant else f"it has {', '.join(names)}"
     return f"{shown} has no argument {unknown}=; {hint}"
+
+
+def attributes(setting: str = "") -> Callable[[type[T]], type[T]]:
+    """Return a decorator of classes whose errors about attributes say what to do.
+
+    The message about an unknown attribute has the name that is probably meant; `setting` is the end of the
+    message about an attribute that cannot be set.
+    """
+
+    def decorate(made: type[T]) -> type[T]:
+        refuse = made.__setattr__
+
+        def set_attribute(self, name: str, value) -> None:
+            try:
+                refuse(self, name, value)
+            except AttributeError as error:
+                raise type(error)(f"{error}; {setting}") from None
+
+        def get_attribute(self, name: str):
+            if name[:1] == "_" or hasattr(
+                made, name
+            ):  # a property may have raised an AttributeError
+                return object.__getattribute__(self, name)
+            raise AttributeError(_no_attribute(self, name))
+
+        if setting:
+            made.__setattr__ = set_attribute
+        made.__getattr__ = get_attribute  # pyright: ignore[reportAttributeAccessIssue]
+        return made
+
+    return decorate
+
+
+def _no_attribute(thing, name: str) -> str:
+    has = [one for one in dir(thing) if one[:1] != "_"]
+    near = [one for one in _MEANT.get(name, ()) if one in has]
+    near = near or get_close_matches(name, has, n=1, cutoff=ALIKE)
+    suggested = f"did you mean {near[0]!r}?" if near else ""
+    hint = _OTHER_METHOD.get(name) or _OTHER_PLACE.get(name) or suggested
+    return f"{type(thing).__name__} has no attribute {name!r}" + (f"; {hint}" if hint else "")
 
 
 def unknown_member(module: str, name: str, members, elsewhere: dict[str, str]) -> AttributeError:

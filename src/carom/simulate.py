@@ -162,8 +162,9 @@ def simulate(
     -----
     MistakeWarning
         For an input that is nearly always a mistake: a free body that cannot touch anything although other
-        bodies can, a contact without a stated restitution and friction, a step that is longer than the run or
-        far too long for the motion.
+        bodies can, a contact without a stated restitution and friction, gravity that points away from the only
+        half-space, a stop at an angle that is probably in degrees, a step that is longer than the run or far
+        too long for the motion.
     AccuracyWarning
         If the energy changes without an explanation in the ledger, or a body penetrates another body or a
         half-space.
@@ -209,8 +210,8 @@ def simulate(
         found = None if events is None else conditions(events, scene)
         if found is not None and save is not None:
             raise ValueError(
-                f"save must be left out with events, which no file holds, got {checks.shown(save)}; save the "
-                "solution: solution.save(path)"
+                "save must be left out with events, because such a run cannot be resumed, got "
+                f"{checks.shown(save)}; save the solution at its end: solution.save(path)"
             )
 
         from carom.run import Run

@@ -7,6 +7,8 @@ from pathlib import Path
 import matplotlib as mpl
 import pytest
 
+from carom.arguments import attributes
+
 mpl.use("agg")
 TEXT = (Path(__file__).parent / "newcomer.txt").read_text(encoding="utf-8")
 HEAD, *ENTRIES = re.split(r"^>>> ", TEXT, flags=re.M)
@@ -30,6 +32,17 @@ def printed(line):
 @pytest.mark.parametrize(("line", "sentence"), MISTAKES, ids=[line for line, _ in MISTAKES])
 def test_a_mistake_is_answered_by_this_sentence(line, sentence):
     assert printed(line).split() == sentence.split()
+
+
+def test_an_error_within_a_property_keeps_its_own_sentence():
+    @attributes()
+    class Broken:
+        @property
+        def value(self):
+            return self.values
+
+    with pytest.raises(AttributeError, match="no attribute 'values'; did you mean 'value'"):
+        Broken().value  # noqa: B018
 
 
 def test_there_are_mistakes_enough_and_none_twice():

@@ -67,6 +67,28 @@ def test_a_mechanism_that_strikes(vary):
         assert len({e.position[k].tobytes() for k in range(3)}) == 3
 
 
+@pytest.mark.parametrize("balls", [3, 70], ids=["few", "pairs come as they near"])
+def test_a_contact_of_its_own_where_all_pairs_touch(balls):
+    scene = carom.Scene()
+    floor = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1), name="floor")
+    for k in range(balls):
+        speed = 4.0 if k == 0 else 0.0
+        scene.add_body(
+            carom.Sphere(0.1),
+            mass=1,
+            position=(0.5 * k, 0, 0.5),
+            velocity=(speed, 0, 0),
+            name=f"ball{k}",
+        )
+    scene.set_contact_default(restitution=0.5, friction=0.1)
+    scene.add_contact("ball0", floor)
+    e = carom.ensemble(
+        scene, 0.5, step=0.01, vary={"ball0-floor.restitution": [0.2, 0.9, 0.2]}, executor="serial"
+    )
+    assert all(agrees(e, k) for k in range(3))
+    assert e.velocity[0].tobytes() == e.velocity[2].tobytes() != e.velocity[1].tobytes()
+
+
 @pytest.mark.plain
 @pytest.mark.skipif(
     not numba.config.DISABLE_JIT, reason="a minute of compiling for the same arrays"

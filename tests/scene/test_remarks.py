@@ -137,3 +137,35 @@ def test_flight_and_impacts_are_exact_at_any_step():
     scene.add_stop(scene.joints[0].name, upper=0.9, restitution=1.0)
     scene.add_stop(scene.joints[0].name, lower=-0.9, restitution=1.0)
     assert warned(scene, 2.0, step=0.1) == []
+
+
+def test_stops_beyond_a_turn_that_may_be_meant():
+    # multiples of pi, whole numbers within a turn, metres of a slide, and turns of a screw
+    scene = pendulum(0.2)
+    slide = (
+        carom.joints.Prismatic((0, 0, 1)),
+        carom.joints.Screw((0, 0, 0), (0, 0, 1), 0.1),
+    )
+    for k, joint in enumerate(slide):
+        body = scene.add_body(carom.Sphere(0.05), mass=1, position=(5 + k, 0, 0))
+        scene.add_stop(scene.add_joint(joint, carom.GROUND, body), upper=90)
+    for end in (3 * np.pi, -4 * np.pi, 6, -3):
+        side = "upper" if end > 0 else "lower"
+        scene.add_stop(scene.joints[0], **{side: end})
+    assert scene.check().remarks == ()
+    scene.add_stop(scene.joints[0], lower=-45)
+    assert len(scene.check().remarks) == 1
+
+
+@pytest.mark.parametrize("case", ["ceiling", "ramp", "wall", "spring", "weightless"])
+def test_gravity_that_may_be_meant(case):
+    velocity = (0, 0, 5) if case == "ceiling" else (0, 0, 0)
+    normal = {"ceiling": (0, 0, -1), "wall": (1, 0, 0), "spring": (0, 0, -1)}.get(case, (0, 0, 1))
+    gravity = {"ramp": (9, 0, -3), "weightless": (0, 0, 0)}.get(case, (0, 0, -9.81))
+    scene = carom.Scene(gravity=gravity)
+    floor = scene.add_half_space(point=-np.array(normal), normal=normal)
+    ball = scene.add_body(carom.Sphere(0.1), mass=1, velocity=velocity)
+    scene.add_contact(ball, floor, restitution=0.5)
+    if case == "spring":
+        scene.add_force(carom.forces.Spring(10, (0, 0, 1), (0, 0, 0)), carom.GROUND, ball)
+    assert scene.check().remarks == ()

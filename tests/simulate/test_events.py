@@ -294,8 +294,49 @@ def test_a_stopped_run_in_a_file(tmp_path):
     stopped.save(tmp_path / "run.nc")
     loaded = carom.Solution.load(tmp_path / "run.nc")
     assert loaded.status is carom.Status.STOPPED
-    assert loaded.t_events is None
+    assert loaded.message == stopped.message
     assert_same(loaded.simulate(0.3), stopped.simulate(0.3))
+
+
+@pytest.mark.parametrize("turned", [False, True], ids=["principal axes", "other axes"])
+def test_events_in_a_file_are_those_of_the_run(turned, tmp_path):
+    pytest.importorskip("h5netcdf")
+    scene = carom.Scene()
+    inertia = np.array([[0.01, 0.004, 0], [0.004, 0.02, 0], [0, 0, 0.025]])
+    link = scene.add_body(
+        mass=1.0,
+        inertia=inertia if turned else (0.01, 0.02, 0.025),
+        position=(0.5, 0, 0),
+        name="link",
+    )
+    scene.add_joint(carom.joints.Revolute((0, 0, 0), (0, 1, 0)), carom.GROUND, link, name="hinge")
+    level = event(lambda t, state: state["link"].position[2] + 0.3)
+    solution = carom.simulate(scene, 1.5, events=[level, "at rest"])
+    assert len(solution.t_events[0]) > 1
+    assert len(solution.t_events[1]) == 0
+    solution.save(tmp_path / "run.nc")
+    loaded = carom.Solution.load(tmp_path / "run.nc")
+    assert loaded.message == solution.message
+    for mine, own in zip(loaded.t_events, solution.t_events, strict=True):
+        np.testing.assert_array_equal(mine, own)
+    for mine, own in zip(loaded.state_events[0], solution.state_events[0], strict=True):
+        assert (mine.t, mine.kinetic_energy, mine.total_energy) == (
+            own.t, own.kinetic_energy, own.total_energy,
+        )  # fmt: skip
+        for name, values in own["link"]._asdict().items():
+            np.testing.assert_array_equal(getattr(mine["link"], name), values)
+        np.testing.assert_array_equal(
+            mine.joint_coordinates("hinge"), own.joint_coordinates("hinge")
+        )
+    again = loaded.to_xarray()
+    assert again.user_event_position.dims == ("user_event", "body", "axis")
+    np.testing.assert_array_equal(again.user_event_time, solution.t_events[0])
+    plain = carom.simulate(scene, 0.1)
+    plain.save(tmp_path / "plain.nc")
+    assert carom.Solution.load(tmp_path / "plain.nc").t_events is None
+    none = carom.simulate(scene, 0.1, events=[level])
+    none.save(tmp_path / "none.nc")
+    assert [len(t) for t in carom.Solution.load(tmp_path / "none.nc").t_events] == [0]
 
 
 def test_saved_states_need_not_be_all():

@@ -31,6 +31,20 @@ def on_a_slab():
     return carom.simulate(scene, 0.21, step=1e-3)
 
 
+def test_pairs_are_a_table_with_rows(on_a_slab):
+    pairs = on_a_slab.pairs
+    assert len(pairs) == len(pairs.body) == len(list(pairs))
+    assert pairs[0] == {
+        "body": pairs.body[0],
+        "other": pairs.other[0],
+        "plane": pairs.plane[0],
+        "law": 0,
+    }
+    assert repr(pairs).startswith(f"<PairTable: {len(pairs)} rows\n  body = ")
+    with pytest.raises(IndexError, match="there is no row"):
+        pairs[len(pairs)]
+
+
 def test_pairs_by_default_have_names(on_a_slab):
     blow = on_a_slab.impacts[0]
     assert (blow.name, blow.body, blow.other) == ("slab-cube", "slab", "cube")

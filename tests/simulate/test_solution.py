@@ -46,6 +46,18 @@ def test_evaluate_at_saved_times(bounce):
     np.testing.assert_array_equal(w, bounce.angular_velocity)
 
 
+def test_the_motion_of_one_body_by_its_name():
+    scene = carom.Scene()
+    for k in range(2):
+        scene.add_body(carom.Sphere(0.1), mass=1, position=(k, 0, 0), name=f"ball {k}")
+    run = carom.simulate(scene, 0.1, step=0.05)
+    one = run["ball 1"]
+    for name, columns in one._asdict().items():
+        np.testing.assert_array_equal(columns, getattr(run, name)[:, 1])
+    with pytest.raises(KeyError, match="no part called 'ball'; did you mean"):
+        run["ball"]
+
+
 def test_evaluate_at_impacts(bounce):
     # Left: before the impact, right (the default): after it; the position is the same.
     hits = bounce.impacts

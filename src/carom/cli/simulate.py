@@ -33,6 +33,14 @@ def run(
         float | None,
         typer.Option("--duration", "-d", metavar="S", help="Time to simulate [s].", show_default=False),
     ] = None,
+    until: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="EVENT", show_default=False,
+            help="End the run at an event: 'at rest', or 'first impact of A and B' with the names of two parts."
+            " May be given several times. The file is then written at the end only.",
+        ),
+    ] = None,
     step: Annotated[
         str | None,
         typer.Option(
@@ -98,6 +106,7 @@ def run(
 
     For example:
       carom simulate die.py -o die.h5 --duration 2
+      carom simulate die.py -o die.h5 --duration 9 --until "at rest"
       carom simulate die.py -o die.h5 --duration 2 --rtol 1e-10 --save-at 0.001
       carom simulate --resume die.h5
       carom simulate --resume die.h5 --duration 4        continue to 4 s
@@ -116,7 +125,7 @@ def run(
     }  # fmt: skip
     given = {
         "duration": duration, "step": _step(step), "method": method, "impact_location": impact_location,
-        "rtol": rtol, "atol": atol, "save_every": save_every, "save_at": save_at,
+        "rtol": rtol, "atol": atol, "save_every": save_every, "save_at": save_at, "until": until or None,
     }  # fmt: skip
     begin = time.perf_counter()
     if resume is not None:
@@ -166,13 +175,14 @@ def _start(scene, out, given: dict[str, Any], model, save_seconds: float, force:
     settings = {**kept, **given}
     if "duration" not in settings:
         raise Refused("--duration must be given [s]")
-    duration = settings.pop("duration")
+    duration, until = settings.pop("duration"), settings.pop("until", None)
+    at_end = out is not None and (tables or until is not None)
     with show.progress("simulate") as bar:
         solution, lost = _with_its_loss(
-            carom.simulate, found.scene, duration, progress=bar, save=None if tables else out,
-            save_seconds=save_seconds, **settings,
+            carom.simulate, found.scene, duration, progress=bar, save=None if at_end else out,
+            save_seconds=save_seconds, events=until, **settings,
         )  # fmt: skip
-    if out is not None and tables:
+    if at_end:
         solution.save(out)
     return solution, lost
 
@@ -236,13 +246,17 @@ def _end(solution, out: Path | None, scene: Path | None, seconds: float, json: b
             f"t = 0 to {facts['reached']:g} s in {facts['saved_steps']} saved steps, "
             f"{facts['impacts']} impacts, {seconds:.1f} s{place}"
         )
+        if solution.success and getattr(solution, "t_events", None) is not None:
+            print(solution.message)
     if solution.success:
         return 0
     if solution.status is not Status.INTERRUPTED:
         warn("simulate", solution.message)
         return FAILED
     more = "the run cannot be continued, because it has no file: use -o FILE.nc"
-    if out is not None and out.suffix.lower() not in TABLES:
+    if getattr(solution, "t_events", None) is not None:
+        more = "a run with --until cannot be continued"
+    elif out is not None and out.suffix.lower() not in TABLES:
         also = f" {scene}" if scene is not None and _has_functions(solution) else ""
         more = f"continue with: carom simulate --resume {out}{also}"
     warn("simulate", f"interrupted at t = {facts['reached']:g} s; {more}")

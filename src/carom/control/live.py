@@ -21,6 +21,7 @@ from carom.status import MistakeWarning, SimulationError, Status
 from carom.stepping.settings import check_scene, checked_settings, mistakes
 
 
+@arguments.attributes()
 @arguments.known
 class Run:
     """A motion that you take on step by step, in a loop of your own.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import warnings
 from functools import reduce
 from typing import TYPE_CHECKING, Any
 
@@ -10,6 +12,7 @@ from numpy.typing import ArrayLike
 
 from carom import checks
 from carom.geometry import quaternion
+from carom.status import MistakeWarning
 
 if TYPE_CHECKING:
     from scipy.spatial.transform import Rotation
@@ -38,6 +41,11 @@ def euler(axes: str, angles: ArrayLike) -> np.ndarray:
     ndarray (4,) or (..., 4)
         Quaternion (w, x, y, z), body to world, for `orientation` of `Scene.add_body`.
 
+    Warns
+    -----
+    MistakeWarning
+        As for `axis_angle`.
+
     Examples
     --------
     >>> carom.euler("z", 90).round(3)
@@ -55,8 +63,9 @@ def euler(axes: str, angles: ArrayLike) -> np.ndarray:
     if len(axes) == 1 and given.ndim == 0:
         given = given[None]
     given = checks.vectors("angles", given, len(axes))
+    _warn_of_radians("angles", given)
     units = [np.eye(3)["xyz".index(letter)] for letter in axes.lower()]
-    turns = [axis_angle(unit, given[..., k]) for k, unit in enumerate(units)]
+    turns = [_about(unit, given[..., k]) for k, unit in enumerate(units)]
     if axes == axes.lower():
         turns.reverse()
     return reduce(quaternion.multiply, turns)
@@ -77,6 +86,11 @@ def axis_angle(axis: ArrayLike, angle: ArrayLike) -> np.ndarray:
     ndarray (4,) or (..., 4)
         Quaternion (w, x, y, z), body to world, for `orientation` of `Scene.add_body`.
 
+    Warns
+    -----
+    MistakeWarning
+        For an angle that is a whole number of half degrees in radians, such as pi / 2.
+
     Examples
     --------
     >>> carom.axis_angle((0, 0, 2), 180).round(12)
@@ -86,8 +100,33 @@ def axis_angle(axis: ArrayLike, angle: ArrayLike) -> np.ndarray:
     degrees = checks.real_array("angle", angle, "() or (...) [deg]")
     if not np.all(np.isfinite(degrees)):
         raise ValueError(f"angle must be finite [deg], got {checks.shown(angle)}")
+    _warn_of_radians("angle", degrees)
+    return _about(unit, degrees)
+
+
+def _about(unit: np.ndarray, degrees: np.ndarray) -> np.ndarray:
+    """Return the quaternions (..., 4) of rotations about a unit vector (3,)."""
     half = 0.5 * np.deg2rad(np.fmod(degrees, 720.0))[..., None]
     return np.concatenate([np.cos(half), np.sin(half) * unit], axis=-1)
+
+
+def _warn_of_radians(name: str, degrees: np.ndarray) -> None:
+    """Warn of an angle that is, to round-off, a whole number of half degrees in radians, such as pi / 2."""
+    halves = 360.0 / math.pi * degrees
+    whole = np.round(halves)
+    suspect = (
+        (whole != 0.0)
+        & (np.abs(whole) <= 720.0)
+        & (np.abs(halves - whole) <= 1e-12 * np.abs(whole))
+    )
+    if suspect.any():
+        angle, meant = float(degrees[suspect][0]), 0.5 * float(whole[suspect][0])
+        warnings.warn(
+            f"{name} has {angle!r}, which is {meant:g} degrees in radians; angles are given in degrees here: "
+            f"give {meant:g}",
+            MistakeWarning,
+            stacklevel=3,
+        )
 
 
 def attitude(name: str, value) -> np.ndarray:

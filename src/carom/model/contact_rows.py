@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -41,8 +42,9 @@ def first_pairs(scene: Scene, apart: bool) -> tuple[PairTable, Defaults | None]:
     solid = int(np.count_nonzero(default.solid))
     if apart and solid * (solid - 1) > 2 * FEW:
         added = _added(scene, default.grounded)
-        laws = default.grounded._replace(law=default.grounded.law + len(scene.contacts))
-        laws = laws._replace(laws=added.laws)
+        laws = replace(
+            default.grounded, law=default.grounded.law + len(scene.contacts), laws=added.laws
+        )
         return added, default._replace(grounded=laws, law=default.law + len(scene.contacts))
     return _added(scene, every_pair(default)), None
 
@@ -59,7 +61,7 @@ def _added(scene: Scene, rest: PairTable) -> PairTable:
     ]
     body, other, plane = np.array(ends, dtype=np.int64).reshape(-1, 3).T
     first = PairTable(body, other, plane, np.arange(len(added)), [*added, *rest.laws])
-    return joined_tables(first, rest._replace(law=rest.law + len(added)))
+    return joined_tables(first, replace(rest, law=rest.law + len(added)))
 
 
 def contact_rows(pairs: PairTable, grounded: Cores, single: Cores) -> Rows:

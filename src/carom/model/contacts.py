@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -73,7 +74,7 @@ def _with_statics(scene: Scene, pairs: PairTable) -> PairTable:
     """Return the pairs with static bodies as bodies, which come after those that move."""
     static = pairs.plane - len(scene.half_spaces)
     other = np.where(static >= 0, len(scene.bodies) + static, pairs.other)
-    return pairs._replace(other=other, plane=np.where(static >= 0, -1, pairs.plane))
+    return replace(pairs, other=other, plane=np.where(static >= 0, -1, pairs.plane))
 
 
 def _and_of_statics(scene: Scene, to_principal: np.ndarray) -> np.ndarray:

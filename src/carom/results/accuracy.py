@@ -97,7 +97,7 @@ def _of_contacts(watch: np.record) -> str:
 
 def _of_depth(watch: np.record, scene: Scene, pairs: PairTable | None) -> str:
     """Return the sentence about a body that penetrates another one, or a joint beyond its stop."""
-    number, pairs = int(watch.deep_contact), pairs or touching_pairs(scene)
+    number, pairs = int(watch.deep_contact), touching_pairs(scene) if pairs is None else pairs
     if number < len(pairs.body):
         other, plane = pairs.other[number], pairs.plane[number]
         what = scene.bodies[pairs.body[number]]

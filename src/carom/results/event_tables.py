@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from carom._compiled.record_arrays import Columns
+from carom.scene.table import Table, plain
 
 CURVED = 1 << 40  # features of curved pieces are above this number, vertices below
 
@@ -105,7 +106,7 @@ class ImpactTable:
     def __getitem__(self, k: int) -> ImpactRecord:
         if not -len(self) <= k < len(self):
             raise IndexError(f"there is no impact {k}: the table has {len(self)}, numbered from 0")
-        return ImpactRecord(*(_plain(getattr(self, name)[k]) for name in ImpactRecord._fields))
+        return ImpactRecord(*(plain(getattr(self, name)[k]) for name in ImpactRecord._fields))
 
     def __iter__(self) -> Iterator[ImpactRecord]:
         return (self[k] for k in range(len(self)))
@@ -121,31 +122,8 @@ class ImpactTable:
         return "\n".join([head, *rows, *more]) + ">"
 
 
-class _Rows:
-    """Number of rows, and one line for each of the first rows, of a table of columns."""
-
-    def __len__(self) -> int:
-        return len(next(iter(vars(self).values())))
-
-    def __getitem__(self, k: int) -> dict:
-        if not -len(self) <= k < len(self):
-            raise IndexError(f"there is no row {k}: the table has {len(self)}, numbered from 0")
-        return {name: _plain(column[k]) for name, column in vars(self).items()}
-
-    def __iter__(self) -> Iterator[dict]:
-        return (self[k] for k in range(len(self)))
-
-    def __repr__(self) -> str:
-        rows = [
-            "  " + "  ".join(f"{name} = {_brief(value)}" for name, value in self[k].items())
-            for k in range(min(len(self), 8))
-        ]
-        more = [f"  ... {len(self) - 8} more"] if len(self) > 8 else []
-        return "\n".join([f"<{type(self).__name__}: {len(self)} rows", *rows, *more]) + ">"
-
-
 @dataclass(frozen=True, eq=False, repr=False)
-class EventTable(_Rows):
+class EventTable(Table):
     """Events of contacts in the order of time: impacts, and changes of persistent contacts.
 
     The kind "held" means that a contact becomes persistent, "jams" that it reaches Painleve's paradox. As in
@@ -158,7 +136,7 @@ class EventTable(_Rows):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ContactTable(_Rows):
+class ContactTable(Table):
     """Intervals of persistent contact, in the order of their starts.
 
     An interval lasts as long as a contact point keeps slipping, or keeps sticking. When faces of two bodies
@@ -176,7 +154,7 @@ class ContactTable(_Rows):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ForceTable(_Rows):
+class ForceTable(Table):
     """Forces of persistent contacts, in the order of time: one row for each active point and saved time."""
 
     saved: np.ndarray  #: (M,) index of the saved time
@@ -239,13 +217,3 @@ def contact_table(event, kinds, first, end: float) -> ContactTable:
         np.array(columns[3], dtype=float),
         np.array(["open", "slipping", "sticking"])[np.array(columns[4], dtype=np.int64)],
     )
-
-
-def _plain(value):
-    return value.item() if isinstance(value, np.generic) else value
-
-
-def _brief(value) -> str:
-    if isinstance(value, float):
-        return f"{value:.9g}"
-    return np.array2string(value, precision=6) if isinstance(value, np.ndarray) else str(value)

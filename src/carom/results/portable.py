@@ -132,8 +132,8 @@ class Portable:
         """Return the whole run as an `xarray.Dataset`, as `save` writes it and `xarray.open_dataset` reads it.
 
         Its dimensions are time, body, axis, quaternion, contact, contact_axis; impact, event, interval and held
-        (for the tables); and joint, coordinate and row if there are any. Each variable has the attributes
-        ``units`` and ``long_name``.
+        (for the tables); and joint, coordinate, row and user_event (`t_events`) if there are any. Each variable
+        has the attributes ``units`` and ``long_name``.
 
         Raises
         ------

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from carom import checks
+from carom import arguments, checks
 from carom.geometry import quaternion
 from carom.results.constraint_rows import ConstraintRows, constraint_rows
 from carom.results.dense_output import curves, flights
@@ -26,7 +26,7 @@ from carom.status import Status
 
 if TYPE_CHECKING:
     from carom.results.assemble import Written
-    from carom.results.state import SystemState
+    from carom.results.state import BodyState, SystemState
     from carom.run import Run
     from carom.scene.all_pairs import PairTable
     from carom.scene.scene import Scene
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 SIDES = ("right", "left")
 
 
+@arguments.attributes()
 @dataclass(frozen=True, eq=False)
 class Solution(Portable, Drawn):
     """The motion of N bodies at T saved times, with K impacts.
@@ -64,11 +65,12 @@ class Solution(Portable, Drawn):
         rho``, where P_K is the projection onto the friction cone and rho the effective mass of the point. For a
         single contact point it is the velocity that the contact forbids.
     pairs : PairTable
-        The pairs that may touch; tables refer to them by their number `contact`. Columns: `body`, `other` (-1
-        for a half-space), `plane` (-1 for a body), `law` (an index in `laws`). First come the contacts of
-        `Scene.contacts`, then those of `set_contact_default`: pairs with half-spaces, body by body, then pairs
-        of two bodies (with more than 64 bodies on which only gravity acts: only the pairs that came near each
-        other, in the order in which they did). Stops of joints have the numbers after these.
+        The pairs that may touch; tables refer to them by their number `contact`, and ``pairs[k]`` is pair k.
+        Columns: `body`, `other` (-1 for a half-space), `plane` (-1 for a body), `law` (an index in the list
+        `laws`). First come the contacts of `Scene.contacts`, then those of `set_contact_default`: pairs with
+        half-spaces, body by body, then pairs of two bodies (with more than 64 bodies on which only gravity
+        acts: only the pairs that came near each other, in the order in which they did). Stops of joints have
+        the numbers after these.
     ledger : Ledger
         Energy balance of the run.
     status : Status
@@ -90,7 +92,7 @@ class Solution(Portable, Drawn):
     t_events : list of (n,), or None
         For each of the `events` that `simulate` was given the times [s] at which it happened.
     state_events : list of lists of SystemState, or None
-        The states at these times. (Files have neither.)
+        The states at these times.
 
     Examples
     --------
@@ -104,6 +106,8 @@ class Solution(Portable, Drawn):
     >>> x, Q, v, w = solution.evaluate(0.1)  # between saved times, too
     >>> print(v.round(6) + 0.0)
     [[ 0.     0.    -0.981]]
+    >>> solution["body1"].velocity.shape  # the motion of one body
+    (201, 3)
     >>> print(solution.contact_force[-1, 0].round(9) + 0.0)  # it rests
     [9.81 0.   0.  ]
     >>> bool(abs(solution.ledger.residual).max() < 1e-13)
@@ -184,6 +188,12 @@ class Solution(Portable, Drawn):
         from carom.results.assemble import ledger
 
         return ledger(self)
+
+    def __getitem__(self, name: str) -> BodyState:
+        """Return the motion of a body by its name: arrays (T, 3) and (T, 4) in a `BodyState`."""
+        from carom.results.state import state_of_body
+
+        return state_of_body(self, self.scene, name, "solution")
 
     @property
     def success(self) -> bool:

@@ -3,28 +3,45 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from carom import checks
+from carom import arguments, checks
 from carom.geometry import quaternion
+from carom.model.arrays import STATE
 from carom.results.joint_coordinates import Motion, coordinates_of, of_scene
 from carom.results.joint_now import Quick, coordinates, quick
 from carom.scene.bodies import Body
 
+if TYPE_CHECKING:
+    from carom.scene.scene import Scene
+
 _NONE = np.array([1.0, 0.0, 0.0, 0.0])
 
 
+@arguments.attributes()
 class BodyState(NamedTuple):
-    """Position, orientation and velocities of one body at one time, in world axes."""
+    """Position, orientation and velocities of one body, in world axes: at one time, or at T saved times."""
 
-    position: np.ndarray  #: (3,) mass centre [m]
-    orientation: np.ndarray  #: (4,) unit quaternion (w, x, y, z), body to world
-    velocity: np.ndarray  #: (3,) velocity of the mass centre [m/s]
-    angular_velocity: np.ndarray  #: (3,) angular velocity [rad/s]
+    position: np.ndarray  #: (3,) or (T, 3): mass centre [m]
+    orientation: np.ndarray  #: (4,) or (T, 4): unit quaternion (w, x, y, z), body to world
+    velocity: np.ndarray  #: (3,) or (T, 3) [m/s]
+    angular_velocity: np.ndarray  #: (3,) or (T, 3) [rad/s]
 
 
+def state_of_body(states, scene: Scene, name: str, whose: str) -> BodyState:
+    """Return the part of `states` that belongs to the body with this name; `whose` is for messages."""
+    try:
+        part = scene[name]
+    except KeyError as error:
+        raise KeyError(f"{whose}: {error.args[0]}") from None
+    if not isinstance(part, Body):
+        raise KeyError(f"{whose}: {name!r} must be a body, got {checks.shown(part)}")
+    return BodyState(*(getattr(states, field)[..., part.index, :] for field in BodyState._fields))
+
+
+@arguments.attributes()
 class SystemState:
     """The N bodies of a scene at one time; ``state["die"]`` is one of them, a `BodyState`. Read only.
 
@@ -44,6 +61,17 @@ class SystemState:
         self.t = float(clock["now"][0])
         self.kinetic_energy = float(clock["kinetic"][0])
         self.potential_energy = float(clock["potential"][0])
+
+    @classmethod
+    def _of_file(cls, scene, t: float, kinetic: float, potential: float, motion) -> SystemState:
+        """Return a state; `motion`: position, orientation, velocity and angular velocity (N, ...)."""
+        state = cls.__new__(cls)
+        rows = np.zeros(len(scene.bodies), STATE)
+        rows["x"], rows["Q"], rows["v"], rows["w"] = motion
+        rows.flags.writeable = False
+        state._joints, state._rows, state._scene, state._to_principal = {}, rows, scene, _NONE
+        state.t, state.kinetic_energy, state.potential_energy = t, kinetic, potential
+        return state
 
     @property
     def position(self) -> np.ndarray:
@@ -76,17 +104,8 @@ class SystemState:
         return self.kinetic_energy + self.potential_energy
 
     def __getitem__(self, name: str) -> BodyState:
-        """Return the state of the body with this name."""
-        try:
-            part = self._scene[name]
-        except KeyError as error:
-            raise KeyError(f"state: {error.args[0]}") from None
-        if not isinstance(part, Body):
-            raise KeyError(f"state: {name!r} must be a body, got {checks.shown(part)}")
-        k = part.index
-        return BodyState(
-            self.position[k], self.orientation[k], self.velocity[k], self.angular_velocity[k]
-        )
+        """Return the state of a body, by its name."""
+        return state_of_body(self, self._scene, name, "state")
 
     def joint_coordinates(self, joint) -> tuple[np.ndarray, np.ndarray]:
         """Return coordinates and rates (n,) of a joint, as `Solution.joint_coordinates` does.

@@ -8,18 +8,24 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from carom.scene.bodies import FIXED, Body, HalfSpace, StaticBody
 from carom.scene.materials import ContactLaw
+from carom.scene.table import Table
 
 MOST_AT_ONCE = 1 << 20  # balls whose distances are looked at in one go
 
 
-class PairTable(NamedTuple):
-    """Table of C pairs that may touch: each a body, and a half-space, static body or another body."""
+@dataclass(frozen=True, eq=False, repr=False)
+class PairTable(Table):
+    """Table of C pairs that may touch: each a body, and a half-space, static body or another body.
+
+    ``len`` is the number of pairs, and ``table[k]`` is pair k as a dict of all columns.
+    """
 
     body: np.ndarray  #: (C,) index of the body
     other: np.ndarray  #: (C,) index of the other body, -1 for a half-space or static body
@@ -48,8 +54,11 @@ def no_pairs() -> PairTable:
 
 def joined_tables(first: PairTable, second: PairTable) -> PairTable:
     """Return the pairs of two tables with the same laws."""
-    body, other, plane, law = (np.concatenate(pair) for pair in zip(first[:4], second[:4]))
-    return PairTable(body, other, plane, law, first.laws)
+    joined = {
+        name: np.concatenate([getattr(first, name), getattr(second, name)])
+        for name in ("body", "other", "plane", "law")
+    }
+    return PairTable(**joined, laws=first.laws)
 
 
 def defaults(

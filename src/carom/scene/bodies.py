@@ -13,9 +13,10 @@ from carom.scene.colors import hex_color
 from carom.scene.inertia import inertia_matrix
 from carom.scene.materials import Material
 from carom.scene.shapes import SHAPES, Shape
-from carom.scene.values import keep, point
+from carom.scene.values import in_scene, keep, point
 
 
+@in_scene
 @dataclass(frozen=True, eq=False, repr=False)
 class Body:
     """A rigid body with its initial state. `Scene.add_body` makes it; arrays are read-only.
@@ -58,6 +59,7 @@ class Body:
         return f"Body({self.name!r}, {self.shape!r}, mass={self.mass:g})"
 
 
+@in_scene
 @dataclass(frozen=True, eq=False, repr=False)
 class HalfSpace:
     """A fixed solid half-space behind a plane, such as a floor. `Scene.add_half_space` makes it.
@@ -85,6 +87,7 @@ class HalfSpace:
         return f"HalfSpace({self.name!r}, point={self.point}, normal={self.normal})"
 
 
+@in_scene
 @dataclass(frozen=True, eq=False, repr=False)
 class StaticBody:
     """A solid that never moves: a wall, a peg, a ramp, a mesh. `Scene.add_static` makes it.

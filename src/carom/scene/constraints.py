@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from carom import arguments, checks
 from carom.scene.bodies import Body
 from carom.scene.joints import Joint, JointDefinition
-from carom.scene.values import keep
+from carom.scene.values import in_scene, keep
 
 
 def coordinate_kind(joint: Joint, coordinate: int, name: str = "joint") -> str:
@@ -199,6 +199,7 @@ ConstraintDefinition = Coupling | Driver | Rows
 CONSTRAINTS = (Coupling, Driver, Rows)
 
 
+@in_scene
 @dataclass(frozen=True, eq=False, repr=False)
 class Constraint:
     """A constraint of a scene. `Scene.add_constraint` makes it.

@@ -9,12 +9,14 @@ import numpy as np
 from carom.geometry import quaternion
 from carom.scene.bodies import Body, HalfSpace, StaticBody
 from carom.scene.materials import IMPACT_LAWS, ContactLaw
+from carom.scene.values import in_scene
 
 __all__ = ["IMPACT_LAWS", "Contact", "check_gap", "check_overlap", "initial_gap", "make_contact"]
 
 TOUCH = 1e-12  # relative to the lengths at hand: rounding of a body placed on another
 
 
+@in_scene
 @dataclass(frozen=True, eq=False, repr=False, kw_only=True)
 class Contact(ContactLaw):
     """A pair that may touch. `Scene.add_contact` makes it; it also has the attributes of its `ContactLaw`.

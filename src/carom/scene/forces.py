@@ -21,7 +21,7 @@ from carom.scene.more_forces import (
     JointSpring,
     UserForce,
 )
-from carom.scene.values import apart, keep, optional_point
+from carom.scene.values import apart, in_scene, keep, optional_point
 
 
 @arguments.known
@@ -195,6 +195,7 @@ FORCES = (
 )  # fmt: skip
 
 
+@in_scene
 @dataclass(frozen=True, eq=False, repr=False)
 class AppliedForce:
     """A force of a scene, from `parent` on `child`. `Scene.add_force` makes it.

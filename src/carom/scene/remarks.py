@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from carom.scene.all_pairs import meeting
 from carom.scene.bodies import Body
+from carom.scene.constraints import coordinate_kind
 from carom.scene.forces import Force, Torque
 
 if TYPE_CHECKING:
@@ -18,8 +20,8 @@ MOST = 6  # names in a sentence
 
 
 def remarks(scene: Scene) -> tuple[str, ...]:
-    """Return sentences about bodies that cannot touch anything, and contacts without stated values."""
-    return (*_of_untouched(scene), *_of_unsaid(scene))
+    """Return sentences about bodies, contacts, gravity and stops that are nearly always a mistake."""
+    return (*_of_untouched(scene), *_of_unsaid(scene), *_of_gravity(scene), *_of_stops(scene))
 
 
 def _of_untouched(scene: Scene) -> list[str]:
@@ -72,6 +74,43 @@ def _of_unsaid(scene: Scene) -> list[str]:
     return [
         f"Restitution and friction are not given for {' and '.join(what)}: the defaults 0.5 and 0 are used. "
         "Give them, for example restitution=0.5, friction=0.3."
+    ]
+
+
+def _of_gravity(scene: Scene) -> list[str]:
+    """Return a sentence about gravity that points away from all half-spaces, if nothing else moves bodies."""
+    planes, gravity = scene.half_spaces, scene.gravity
+    if not planes or scene.statics or scene.joints or scene.constraints or scene.forces:
+        return []
+    normals = np.array([plane.normal for plane in planes])
+    away = normals @ gravity > 0.5 * np.linalg.norm(gravity)
+    velocities = np.array([body.velocity for body in scene.bodies]).reshape(-1, 3)
+    if not away.all() or (velocities @ normals.T < 0.0).any():  # thrown at a ceiling
+        return []
+    down = tuple((0.0 - gravity).tolist())
+    return [
+        f"Gravity {tuple(gravity.tolist())} points away from {_names(planes)}: bodies do not fall onto it. "
+        f"Give gravity={down}, or turn the normal."
+    ]
+
+
+def _of_stops(scene: Scene) -> list[str]:
+    """Return a sentence about stops whose angles are probably in degrees: whole numbers beyond one turn."""
+    found = [
+        stop
+        for stop in scene.stops
+        if stop.joint.kind != "Screw"  # which is made for many turns
+        and coordinate_kind(stop.joint, stop.coordinate) == "turn"
+        and abs(stop.end) > 2.0 * math.pi
+        and stop.end == round(stop.end)
+    ]
+    if not found:
+        return []
+    first = found[0]
+    side = "lower" if first.upper is None else "upper"
+    return [
+        f"The angle of {_names(found)} is beyond a whole turn ({side}={first.end:g} rad): it is in radians. If "
+        f"you mean degrees, give {side}=math.radians({first.end:g})."
     ]
 
 

@@ -28,11 +28,13 @@ from carom.scene.shapes import Shape
 from carom.scene.stops import Stop, make_stop
 from carom.scene.summary import counts, summary
 from carom.scene.touching import TouchingPairs
+from carom.scene.values import in_scene
 
 if TYPE_CHECKING:
     from carom.geometry.attitude import Orientation
 
 
+@in_scene
 @arguments.known
 class Scene(TouchingPairs):
     """A system of bodies, half-spaces, contacts, joints and forces, with its initial state.

@@ -8,8 +8,10 @@ from carom import checks
 from carom.scene.constraints import coordinate_kind
 from carom.scene.joints import Joint
 from carom.scene.materials import IMPACT_LAWS
+from carom.scene.values import in_scene
 
 
+@in_scene
 @dataclass(frozen=True, eq=False, repr=False)
 class Stop:
     """A limit of a joint coordinate: a unilateral constraint. `Scene.add_stop` makes it.

@@ -53,7 +53,8 @@ class TouchingPairs:
         restitution
             Coefficient of restitution e, from 0 (plastic) to 1 (elastic). Default 0.5.
         friction
-            Coulomb's friction coefficient mu, at least 0. Default 0.
+            Coulomb's friction coefficient mu, at least 0: the tangent of the greatest slope on which the body
+            rests. A large value (50) stands for a contact that does not slip. Default 0.
         friction_held
             mu in persistent contact, at least 0. Default: `friction`.
         impact_law : {"newton", "poisson", "stronge"}
@@ -174,7 +175,7 @@ class TouchingPairs:
         ...             for y in (0, 5))
         >>> scene.ignore_contact(one)
         >>> scene.ignore_contact(one, two)
-        >>> len(scene.pairs_by_default().body)  # of two with each other
+        >>> len(scene.pairs_by_default())  # of two with each other
         3
         """
         first = self._some("body", body)

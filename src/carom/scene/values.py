@@ -7,9 +7,15 @@ from typing import TypeVar
 
 import numpy as np
 
-from carom import checks
+from carom import arguments, checks
 
 T = TypeVar("T")
+
+#: decorator of a scene and its parts: the end of the message about an attribute that cannot be set
+in_scene = arguments.attributes(
+    "values of a scene and of its parts cannot be changed; make a new scene, or vary them from run to run by "
+    "carom.ensemble(scene, duration, vary=...)"
+)
 
 
 def keep(record, **fields) -> None:

@@ -61,6 +61,18 @@ EVENT = {
     "contact": ((), "1", "place of the contact among all contacts, from 0"),
 }
 
+#: events that `simulate` was given: a row for each time at which one happened
+USER_EVENT = {
+    "index": ((), "1", "place of the event among those that simulate was given, from 0"),
+    "time": ((), "s", "time of the event"),
+    "kinetic_energy": ((), "J", "of all bodies"),
+    "potential_energy": ((), "J", "gravity and springs"),
+    "position": (("body", "axis"), "m", "mass centre, world axes"),
+    "orientation": (("body", "quaternion"), "1", "unit quaternion, body to world"),
+    "velocity": (("body", "axis"), "m s-1", "of the mass centre, world axes"),
+    "angular_velocity": (("body", "axis"), "rad s-1", "world axes"),
+}  # fmt: skip
+
 #: intervals of persistent contact
 INTERVAL = {
     "contact": ((), "1", "place of the contact among all contacts, from 0"),

@@ -21,6 +21,7 @@ from carom.io.files.kept import KeptRun
 from carom.io.files.layout import EVENT, IMPACT, INTERVAL, LEDGER
 from carom.io.files.scene_parts import scene_from_text
 from carom.io.files.sealed import Sealed, refusal, unsealed
+from carom.io.files.user_events import from_file
 from carom.model import records as r
 from carom.options import Options
 from carom.results.assemble import named
@@ -94,6 +95,7 @@ def _fields(file: Sealed, scene, missing: list[str]) -> dict[str, Any]:
             for name, n in json.loads(attributes["stats"]).items()
         },
         "scene": scene, "settings": settings, "pairs": run.pairs, "_run": run, "_touch": records.touch,
+        **from_file(arrays, index.get("user_events"), scene),
         "cached": {
             **derived,
             "impacts": _impacts(arrays, scene, run.pairs),

@@ -22,6 +22,7 @@ from carom.io.files.layout import (
     table_variables,
 )
 from carom.io.files.scene_parts import scene_to_text
+from carom.io.files.user_events import user_events
 from carom.results.contact_names import contact_names
 from carom.scene.joints import Distance, Spherical
 
@@ -44,6 +45,7 @@ def labelled(solution, reactions: bool = True) -> list[Variable]:
     out += table_variables("event", "event", EVENT, solution.events)
     out += table_variables("interval", "interval", INTERVAL, solution.contacts)
     out += table_variables("held", "held", HELD, solution.forces)
+    out += user_events(solution)
     out += _contacts(solution)
     missing = getattr(solution._run, "missing", ())  # functions that a file could not hold
     if reactions and not (missing and "joint_reactions" not in vars(solution)):

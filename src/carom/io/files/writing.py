@@ -20,6 +20,7 @@ from carom.io.files.layout import Variable
 from carom.io.files.needs import need
 from carom.io.files.sealed import seal
 from carom.io.files.tables import is_table, write_tables
+from carom.io.files.user_events import index_of
 from carom.io.files.variables import attributes, labelled
 from carom.model import records as r
 
@@ -78,6 +79,7 @@ def file_of(solution, checkpoint: Checkpoint | None = None, whole: bool = True) 
         } | {dim: len(getattr(records, dim)) for dim in ("snapshot",)},
         "arrays": arrays,
         "words": {name: _coded(known[name], words) for name, words in raw.WORDS.items()},
+        "user_events": index_of(solution),
         "found": None if run.found is None else len(run.found),
         "checkpoint": None if checkpoint is None else packed(checkpoint, add),
     }  # fmt: skip

@@ -11,9 +11,10 @@ from carom.geometry.attitude import attitude
 from carom.scene.bodies import Body, Ground
 from carom.scene.joints.definition import JointDefinition
 from carom.scene.joints.rolling import KnifeEdge, RollingDisc, RollingSphere
-from carom.scene.values import point
+from carom.scene.values import in_scene, point
 
 
+@in_scene
 @dataclass(frozen=True, eq=False, repr=False)
 class Joint:
     """A joint of a scene, between `parent` and `child`. `Scene.add_joint` makes it.

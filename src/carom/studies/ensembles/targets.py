@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 from dataclasses import dataclass, replace
 from difflib import get_close_matches
+from itertools import product
 
 import numpy as np
 
@@ -83,9 +84,8 @@ def _light(scene: Scene, field: str) -> bool:
 def _known(scene: Scene) -> dict:
     fields = (*STATE_FIELDS, *BODY_FIELDS)
     found: dict = {f"{b.name}.{field}": (b, field) for b in scene.bodies for field in fields}
-    if scene.contact_default is None:
-        for contact in scene.contacts:
-            found.update({f"{contact.name}.{field}": (contact, field) for field in LAW_FIELDS})
+    for contact in scene.contacts:
+        found.update({f"{contact.name}.{field}": (contact, field) for field in LAW_FIELDS})
     return found
 
 
@@ -94,10 +94,13 @@ def _fields_of(scene: Scene, name: str) -> str:
     part, _, field = name.rpartition(".")
     if part in {body.name for body in scene.bodies}:
         return f"; a body has {', '.join((*STATE_FIELDS, *BODY_FIELDS))}"
-    if scene.contact_default is None and part in {contact.name for contact in scene.contacts}:
+    if part in {contact.name for contact in scene.contacts}:
         return f"; a contact has {', '.join(LAW_FIELDS)}"
-    if field in LAW_FIELDS and scene.contact_default is not None:
-        return "; to vary the law of a contact state it by add_contact, in a scene without set_contact_default"
+    pairs = product(scene.bodies, (*scene.fixed, *scene.bodies))
+    default = next(((a, b) for a, b in pairs if part == f"{a.name}-{b.name}"), None)
+    if field in LAW_FIELDS and default is not None:
+        a, b = (repr(one.name) for one in default)
+        return f"; to vary the law of these two give them a contact: scene.add_contact({a}, {b})"
     return ""
 
 

@@ -1,0 +1,81 @@
+"""The events that `simulate` was given, in a file: times, and the states at these times."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from carom import checks
+from carom.io.files.layout import LABELS, USER_EVENT, Variable
+from carom.results.state import SystemState
+
+DIM = "user_event"
+MOTION = ("position", "orientation", "velocity", "angular_velocity")
+
+
+def user_events(solution) -> list[Variable]:
+    """Return the states at all events, one event after the other; nothing for a run without events."""
+    if solution.state_events is None:
+        return []
+    states = [(k, state) for k, some in enumerate(solution.state_events) for state in some]
+    columns = {
+        "index": [k for k, _ in states],
+        "time": [state.t for _, state in states],
+        **{
+            name: [getattr(state, name) for _, state in states]
+            for name in USER_EVENT
+            if name not in ("index", "time")
+        },
+    }
+    sizes = {name: len(labels) for name, (labels, _) in LABELS.items()}
+    sizes["body"] = len(solution.scene.bodies)
+    return [
+        Variable(
+            f"{DIM}_{name}", (DIM, *dims),
+            np.array(columns[name], "i8" if name == "index" else "f8").reshape(
+                len(states), *(sizes[dim] for dim in dims)
+            ),
+            units, meaning,
+        )
+        for name, (dims, units, meaning) in USER_EVENT.items()
+    ]  # fmt: skip
+
+
+def index_of(solution) -> dict[str, Any] | None:
+    """Return the number of events that were asked for, and which has ended the run, for the index of a file."""
+    if solution.t_events is None:
+        return None
+    return {"count": len(solution.t_events), "stopped_by": solution._stopped_by}
+
+
+def from_file(arrays, index: dict[str, Any] | None, scene) -> dict[str, Any]:
+    """Return the fields of a solution about its events; none for a file of a run without events.
+
+    Raises
+    ------
+    ValueError, KeyError, TypeError
+        If the index and the arrays do not fit.
+    """
+    if index is None:
+        return {}
+    count = checks.integer("number of events", index["count"], least=0, most=len(arrays.data))
+    columns = {
+        name: arrays.array(f"{DIM}_{name}", (DIM, *dims), "i8" if name == "index" else "f8")
+        for name, (dims, _, _) in USER_EVENT.items()
+    }
+    which = columns["index"]
+    if which.size and not (which.min() >= 0 and which.max() < count):
+        raise ValueError(f"{DIM}_index has numbers outside 0 to {count - 1}")
+    numbers = (columns[name].tolist() for name in ("time", "kinetic_energy", "potential_energy"))
+    motion = zip(*(columns[name] for name in MOTION))
+    states = [
+        SystemState._of_file(scene, t, kinetic, potential, one)
+        for t, kinetic, potential, one in zip(*numbers, motion)
+    ]
+    own = [[state for k, state in zip(which, states) if k == event] for event in range(count)]
+    return {
+        "t_events": [np.array([state.t for state in some]) for some in own],
+        "state_events": own,
+        "_stopped_by": str(index["stopped_by"]),
+    }
