@@ -1,4 +1,4 @@
-"""A body thrown on a floor with rolling and pivoting friction: ten kinds of shapes, to rest or for two seconds."""
+"""A body thrown on a floor with rolling and pivoting friction: ten kinds of shapes, for two seconds."""
 
 from __future__ import annotations
 
