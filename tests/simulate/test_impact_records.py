@@ -45,6 +45,17 @@ def test_pairs_are_a_table_with_rows(on_a_slab):
         pairs[len(pairs)]
 
 
+def test_a_slice_of_a_table_is_a_table(on_a_slab):
+    for table in (on_a_slab.impacts, on_a_slab.events, on_a_slab.pairs, on_a_slab.forces):
+        part = table[1:3]
+        assert type(part) is type(table)
+        assert len(part) == min(2, len(table) - 1) > 0
+        for name, column in vars(table).items():
+            if isinstance(column, np.ndarray):
+                np.testing.assert_array_equal(getattr(part, name), column[1:3])
+    assert on_a_slab.impacts[1:3][0].time == on_a_slab.impacts.time[1]
+
+
 def test_pairs_by_default_have_names(on_a_slab):
     blow = on_a_slab.impacts[0]
     assert (blow.name, blow.body, blow.other) == ("slab-cube", "slab", "cube")

@@ -266,7 +266,7 @@ def test_a_solution_stays_as_it_is(tmp_path):
     assert np.allclose(two.t, [0, 0.04, 0.08, 0.1])
     assert np.allclose(run.solution.t[:4], [0, 0.04, 0.08, 0.12])
     assert run.solution.settings["duration"] == run.time
-    with pytest.raises(ValueError, match="take a Run on by Run"):
+    with pytest.raises(ValueError, match=r"continue a Run with Run\.advance"):
         two.simulate(1.0)
     pytest.importorskip("h5netcdf")
     last = run.solution

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -57,7 +56,7 @@ class ImpactRecord(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ImpactTable:
+class ImpactTable(Table[ImpactRecord]):
     """All K impacts of a run in the order of time; the columns (K, ...) are the fields of `ImpactRecord`.
 
     Examples
@@ -100,16 +99,10 @@ class ImpactTable:
     body: np.ndarray
     other: np.ndarray
 
-    def __len__(self) -> int:
-        return len(self.time)
+    _a_row = "impact"
 
-    def __getitem__(self, k: int) -> ImpactRecord:
-        if not -len(self) <= k < len(self):
-            raise IndexError(f"there is no impact {k}: the table has {len(self)}, numbered from 0")
+    def _row(self, k: int) -> ImpactRecord:
         return ImpactRecord(*(plain(getattr(self, name)[k]) for name in ImpactRecord._fields))
-
-    def __iter__(self) -> Iterator[ImpactRecord]:
-        return (self[k] for k in range(len(self)))
 
     def __repr__(self) -> str:
         head = f"<ImpactTable: {len(self)} impacts"
@@ -123,7 +116,7 @@ class ImpactTable:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class EventTable(Table):
+class EventTable(Table[dict]):
     """Events of contacts in the order of time: impacts, and changes of persistent contacts.
 
     The kind "held" means that a contact becomes persistent, "jams" that it reaches Painleve's paradox. As in
@@ -136,7 +129,7 @@ class EventTable(Table):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ContactTable(Table):
+class ContactTable(Table[dict]):
     """Intervals of persistent contact, in the order of their starts.
 
     An interval lasts as long as a contact point keeps slipping, or keeps sticking. When faces of two bodies
@@ -154,7 +147,7 @@ class ContactTable(Table):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ForceTable(Table):
+class ForceTable(Table[dict]):
     """Forces of persistent contacts, in the order of time: one row for each active point and saved time."""
 
     saved: np.ndarray  #: (M,) index of the saved time

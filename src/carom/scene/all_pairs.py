@@ -21,7 +21,7 @@ MOST_AT_ONCE = 1 << 20  # balls whose distances are looked at in one go
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PairTable(Table):
+class PairTable(Table[dict]):
     """Table of C pairs that may touch: each a body, and a half-space, static body or another body.
 
     ``len`` is the number of pairs, and ``table[k]`` is pair k as a dict of all columns.

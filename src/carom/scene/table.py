@@ -2,28 +2,51 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Iterator
+from typing import Any, Generic, Self, TypeVar, overload
 
 import numpy as np
 
+Row = TypeVar("Row")
 
-class Table:
-    """Base class of tables whose columns are arrays: ``len`` is the number of rows, ``table[k]`` is row k."""
+
+class Table(Generic[Row]):
+    """Base class of tables whose columns are arrays: ``len`` is the number of rows, ``table[k]`` is row k.
+
+    ``table[3:9]`` is a table of these rows.
+    """
+
+    _a_row = "row"  # what a row is called in messages
 
     def __len__(self) -> int:
         return len(next(iter(self._columns().values())))
 
-    def __getitem__(self, k: int) -> dict:
+    @overload
+    def __getitem__(self, k: int) -> Row: ...
+    @overload
+    def __getitem__(self, k: slice) -> Self: ...
+    def __getitem__(self, k):
+        if isinstance(k, slice):
+            part = copy.copy(self)
+            vars(part).update({name: column[k] for name, column in self._columns().items()})
+            return part
         if not -len(self) <= k < len(self):
-            raise IndexError(f"there is no row {k}: the table has {len(self)}, numbered from 0")
-        return {name: plain(column[k]) for name, column in self._columns().items()}
+            raise IndexError(
+                f"there is no {self._a_row} {k}: the table has {len(self)}, numbered from 0"
+            )
+        return self._row(k)
 
-    def __iter__(self) -> Iterator[dict]:
-        return (self[k] for k in range(len(self)))
+    def __iter__(self) -> Iterator[Row]:
+        return (self._row(k) for k in range(len(self)))
+
+    def _row(self, k: int) -> Any:
+        return {name: plain(column[k]) for name, column in self._columns().items()}
 
     def __repr__(self) -> str:
         rows = [
-            "  " + "  ".join(f"{name} = {_brief(value)}" for name, value in self[k].items())
+            "  "
+            + "  ".join(f"{name} = {_brief(value)}" for name, value in Table._row(self, k).items())
             for k in range(min(len(self), 8))
         ]
         more = [f"  ... {len(self) - 8} more"] if len(self) > 8 else []
