@@ -16,7 +16,8 @@ from carom.friction.residual import RELATIVE, ROUND_OFF
 _EPS = 1e-8  # weight of the proximal term
 _POLISH = 8  # greatest number of rounds, each with a new proximal centre
 _STARTS = 20  # greatest number of starting points
-_EXTRA = 2  # further starting points if the tolerance is satisfied, but not round-off
+_EXTRA = 2  # further starting points if the tolerance is satisfied, but not round-off; or a hundred times that
+_NEARLY = 100.0
 _SWEEPS = 25  # at first; twice as many each time, up to
 _MOST_SWEEPS = 200
 _ALTERNATIONS = 300
@@ -63,7 +64,8 @@ def search(work, k):
             break
         if spent(work):
             break
-        if least <= 0.9 * tolerance:
+        # where W is singular, round-off in c may be outside its range: then no start has a smaller residual
+        if least <= _NEARLY * tolerance:
             last = min(last, start + 1 + _EXTRA)
     for i in range(3 * k):
         p[i] = best[i]
