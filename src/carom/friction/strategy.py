@@ -18,6 +18,7 @@ _POLISH = 8  # greatest number of rounds, each with a new proximal centre
 _STARTS = 20  # greatest number of starting points
 _EXTRA = 2  # further starting points if the tolerance is satisfied, but not round-off; or a hundred times that
 _NEARLY = 100.0
+SETTLED = 1e-12  # relative to the impulses: |f| of equations that are solved
 _SWEEPS = 25  # at first; twice as many each time, up to
 _MOST_SWEEPS = 200
 _ALTERNATIONS = 300
@@ -65,6 +66,8 @@ def search(work, k):
         if spent(work):
             break
         # where W is singular, round-off in c may be outside its range: then no start has a smaller residual
+        if r <= 0.9 * tolerance and settled(work, k):
+            break
         if least <= _NEARLY * tolerance:
             last = min(last, start + 1 + _EXTRA)
     for i in range(3 * k):
@@ -174,6 +177,15 @@ def polished(work, k, least_norm, patient):
     for i in range(3 * k):
         p[i] = kept[i]
     return least, goal, tolerance
+
+
+@kernel
+def settled(work, k):
+    """Return whether the last equations of Newton's method are solved to round-off."""
+    most, p = 0.0, work.vector[o.P]
+    for i in range(3 * k):
+        most = max(most, abs(p[i]))
+    return work.mismatch[0] <= SETTLED * (1.0 + most)
 
 
 @kernel

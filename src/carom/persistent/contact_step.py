@@ -174,9 +174,9 @@ def step_once(model, data, k, count, loaded, h):
     friction = finish(model, data, k, h, count)
     work.result[0].friction += friction
     if loaded:
-        work.result[0].applied += driven + extra_work(system, h, start, end, group, work)
-        rubbed = slip_power(system, work.stage) - slip_power(system, work.middle)
-        work.result[0].friction += h * rubbed
+        applied, rubbed = extra_work(system, h, start, end, count, group, work)
+        work.result[0].applied += driven + applied
+        work.result[0].friction += rubbed
     else:
         over = unnamed(system, controls, start, end, friction, count, group.member)
         work.result[0].unnamed = max(work.result[0].unnamed, over)
@@ -374,9 +374,29 @@ def pose(k, start, group, work):
 
 
 @kernel
-def extra_work(system, h, start, end, group, work):
-    """Return the work of loads on the actual path minus that on the path without contacts."""
+def extra_work(system, h, start, end, count, group, work):
+    """Return the work of loads and of friction in joints on the actual path minus that without contacts.
+
+    Velocities are linear in time on both paths and equal at the start, so the power of dampers is quadratic:
+    Simpson's rule.
+    """
+    result = work.result[0]
     for b in range(start.shape[0]):
         halfway(start[b], end[b], work.stage[b])
-    taken = applied_wrenches(system, work.stage, False, work)
-    return h * (taken - applied_wrenches(system, work.middle, False, work))
+    result.time = result.start + 0.5 * h
+    loads, friction = extra_power(system, work.stage, work.middle, work)
+    for b in range(start.shape[0]):
+        copy_state(end[b], work.middle[b])
+    for m in range(count):
+        copy_state(group.flight[group.member[m]], work.middle[group.member[m]])
+    result.time = result.start + h
+    last, rubbed = extra_power(system, end, work.middle, work)
+    return h * (4.0 * loads + last) / 6.0, h * (4.0 * friction + rubbed) / 6.0
+
+
+@kernel
+def extra_power(system, taken, without, work):
+    """Return the power of loads and of friction in joints in one state minus that in another."""
+    loads, friction = applied_wrenches(system, taken, False, work), slip_power(system, taken)
+    loads -= applied_wrenches(system, without, False, work)
+    return loads, friction - slip_power(system, without)
