@@ -26,8 +26,7 @@ from carom.contact.groups import members
 from carom.dynamics.acceleration import SLIP
 from carom.dynamics.elements import driven_power
 from carom.dynamics.explicit import copy_state
-from carom.dynamics.forces import applied_wrenches, difference_of_loads
-from carom.dynamics.joint_friction import slip_power
+from carom.dynamics.forces import difference_of_loads
 from carom.dynamics.kick import add_momentum
 from carom.dynamics.project import carry_velocity, shift
 from carom.dynamics.rotors import add_rates, note_rates
@@ -49,7 +48,7 @@ from carom.model.allowance import affordable
 from carom.model.method import RUNGE_KUTTA
 from carom.persistent.error_bound import is_better_bounded, modes_change, note_bounds
 from carom.persistent.finish import finish, forces_at_end, gained
-from carom.persistent.middle_state import halfway, mean_velocity, spin_momentum
+from carom.persistent.middle_state import halfway, mean_velocity, power_of_path, spin_momentum
 from carom.persistent.return_to_surfaces import onto_surfaces
 from carom.persistent.rolling_friction import bound_turning, first_torque
 from carom.persistent.smooth_step import smooth_step
@@ -138,6 +137,7 @@ def step_once(model, data, k, count, loaded, h):
     system, controls, clock = model.system, model.controls, data.clocks[0]
     start, end, group, work = data.state, data.work.trial, data.group, data.work
     begin(model, data, k, h, count, loaded)
+    loads, rubbing = power_of_path(system, h, start, end, work) if loaded else (0.0, 0.0)
     before, single = math.inf, of_one_body(system, k, group.points[0])
     single = single and not any_turns(k, group.points[0])
     clock.contact_steps += 1
@@ -174,9 +174,9 @@ def step_once(model, data, k, count, loaded, h):
     friction = finish(model, data, k, h, count)
     work.result[0].friction += friction
     if loaded:
-        applied, rubbed = extra_work(system, h, start, end, count, group, work)
-        work.result[0].applied += driven + applied
-        work.result[0].friction += rubbed
+        taken, rubbed = power_of_path(system, h, start, end, work)
+        work.result[0].applied += driven + h / 6.0 * (taken - loads)
+        work.result[0].friction += h / 6.0 * (rubbed - rubbing)
     else:
         over = unnamed(system, controls, start, end, friction, count, group.member)
         work.result[0].unnamed = max(work.result[0].unnamed, over)
@@ -371,32 +371,3 @@ def pose(k, start, group, work):
             group.v[C][q + r] = s
     for i in range(3 * k):
         group.v[OLD][i] = group.v[P][i]
-
-
-@kernel
-def extra_work(system, h, start, end, count, group, work):
-    """Return the work of loads and of friction in joints on the actual path minus that without contacts.
-
-    Velocities are linear in time on both paths and equal at the start, so the power of dampers is quadratic:
-    Simpson's rule.
-    """
-    result = work.result[0]
-    for b in range(start.shape[0]):
-        halfway(start[b], end[b], work.stage[b])
-    result.time = result.start + 0.5 * h
-    loads, friction = extra_power(system, work.stage, work.middle, work)
-    for b in range(start.shape[0]):
-        copy_state(end[b], work.middle[b])
-    for m in range(count):
-        copy_state(group.flight[group.member[m]], work.middle[group.member[m]])
-    result.time = result.start + h
-    last, rubbed = extra_power(system, end, work.middle, work)
-    return h * (4.0 * loads + last) / 6.0, h * (4.0 * friction + rubbed) / 6.0
-
-
-@kernel
-def extra_power(system, taken, without, work):
-    """Return the power of loads and of friction in joints in one state minus that in another."""
-    loads, friction = applied_wrenches(system, taken, False, work), slip_power(system, taken)
-    loads -= applied_wrenches(system, without, False, work)
-    return loads, friction - slip_power(system, without)

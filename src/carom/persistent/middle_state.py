@@ -1,8 +1,10 @@
-"""The middle of a step of one body, and its angular momentum."""
+"""The middle of a step, angular momenta, and the power of loads over a step."""
 
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
+from carom.dynamics.forces import applied_wrenches
+from carom.dynamics.joint_friction import slip_power
 from carom.geometry.rotation import exp, log, multiply, normalize, rotate, rotate_back
 
 
@@ -34,3 +36,21 @@ def spin_momentum(body, q, w0, w1, w2):
     J = body.inertia
     a = rotate_back(q[0], q[1], q[2], q[3], w0, w1, w2)
     return rotate(q[0], q[1], q[2], q[3], J[0] * a[0], J[1] * a[1], J[2] * a[2])
+
+
+@kernel
+def power_of_path(system, h, start, end, work):
+    """Return 4 P_middle + P_end of loads, and of friction in joints, on a path with linear velocities.
+
+    The difference of the works on two paths from the same start is h/6 times the difference of these: the power
+    of dampers is quadratic in time (Simpson's rule).
+    """
+    result = work.result[0]
+    for b in range(start.shape[0]):
+        halfway(start[b], end[b], work.stage[b])
+    result.time = result.start + 0.5 * h
+    loads = 4.0 * applied_wrenches(system, work.stage, False, work)
+    friction = 4.0 * slip_power(system, work.stage)
+    result.time = result.start + h
+    loads += applied_wrenches(system, end, False, work)
+    return loads, friction + slip_power(system, end)

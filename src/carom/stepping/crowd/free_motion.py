@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.dynamics.explicit import copy_state
-from carom.dynamics.forces import applied_wrenches, difference_of_loads
+from carom.dynamics.forces import difference_of_loads
 from carom.dynamics.project import shift
 from carom.dynamics.solve import solve
 from carom.dynamics.step import step
 from carom.kinematics.flight import free_flight
-from carom.persistent.middle_state import halfway
+from carom.persistent.middle_state import halfway, power_of_path
 from carom.persistent.step_control import plain_step
 from carom.stepping.energy_balance import unbalanced
 
@@ -27,32 +27,34 @@ def is_loaded(system):
 
 @kernel
 def fly(model, data, method, h, loaded, cut):
-    """Write the motion without contacts to `crowd.flight`, and its middle for loaded bodies; return a code.
+    """Write the motion without contacts to `crowd.flight`, and its middle for loaded bodies.
 
+    Return a code, and the power of this path (`middle_state.power_of_path`) of loads and of friction in joints.
     With `cut` the code is `MISSED` if the energy error of this motion is larger than a step may have.
     """
     system, active, now, crowd, work = model.system, data.active, data.state, data.crowd, data.work
-    clock, search, code = data.clocks[0], work.search[0], 0
+    clock, search, code, loads, friction = data.clocks[0], work.search[0], 0, 0.0, 0.0
     if loaded:
         count, active.count[0] = active.count[0], 0
         work.result[0].start = clock.begin + clock.spent
-        applied, friction, code = step(method, system, active, now, h, work.trial, work)
-        search.applied, search.friction = applied, friction
+        applied, rubbed, code = step(method, system, active, now, h, work.trial, work)
+        search.applied, search.friction = applied, rubbed
         clock.effort += plain_step(system)
         for b in range(now.shape[0]):
             copy_state(work.trial[b], crowd.flight[b])
             halfway(now[b], crowd.flight[b], work.middle[b])
         if code == 0 and cut:  # forces may be too stiff for a step of this length
-            named, watch = applied + friction, data.watch[0]
+            named, watch = applied + rubbed, data.watch[0]
             off, grows = unbalanced(
                 system, active, now, work.trial, named, work.result[0].start, h, watch
             )
             code = MISSED if grows or off > 1.0 else 0
+        loads, friction = power_of_path(system, h, now, crowd.flight, work)
         active.count[0] = count
     else:
         for b in range(now.shape[0]):
             free_flight(system.bodies[b], system.gravity, h, now[b], crowd.flight[b], work.body[b])
-    return code
+    return code, loads, friction
 
 
 @kernel
@@ -86,12 +88,3 @@ def follow_path(system, h, start, end, crowd, work):
             motion[j] *= 0.5 * h
         shift(motion, flight)
     return True
-
-
-@kernel
-def mean_power(system, start, end, work):
-    """Return the power of loads on the actual path minus their power on the path without contacts."""
-    for b in range(start.shape[0]):
-        halfway(start[b], end[b], work.stage[b])
-    taken = applied_wrenches(system, work.stage, False, work)
-    return taken - applied_wrenches(system, work.middle, False, work)

@@ -17,13 +17,13 @@ import math
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.dynamics.explicit import CONSTRAINTS_LOST, copy_state
-from carom.dynamics.joint_friction import slip_power
 from carom.dynamics.more_forces import note_turns
 from carom.dynamics.project import project_velocity
 from carom.geometry.rotation import norm
 from carom.model import records as r
 from carom.model.allowance import affordable
 from carom.persistent.joint_events import review_joints
+from carom.persistent.middle_state import power_of_path
 from carom.stepping.crowd.balance import energy_gained, off, slow_down, take_out, take_over
 from carom.stepping.crowd.finish import finish
 from carom.stepping.crowd.free_motion import (
@@ -32,7 +32,6 @@ from carom.stepping.crowd.free_motion import (
     follow_path,
     greatest_change,
     is_loaded,
-    mean_power,
 )
 from carom.stepping.crowd.impulses import (
     deepest_of_others,
@@ -136,7 +135,7 @@ def move_on(model, data, method, h, patient, careful):
 
     # the motion without contacts, then the impulses
     shortest = h <= SHORTEST * model.controls.interval
-    code = fly(model, data, method, h, loaded, not shortest)
+    code, loads, rubbing = fly(model, data, method, h, loaded, not shortest)
     if code != 0:
         return code
     fall = norm(system.gravity)
@@ -152,9 +151,9 @@ def move_on(model, data, method, h, patient, careful):
     applied, rubbed = 0.0, 0.0
     if loaded:
         search = work.search[0]
-        applied = search.applied + driven + h * mean_power(system, now, end, work)
-        rubbed = slip_power(system, work.stage) - slip_power(system, work.middle)
-        rubbed = search.friction + h * rubbed
+        taken, rubbed = power_of_path(system, h, now, end, work)
+        applied = search.applied + driven + h / 6.0 * (taken - loads)
+        rubbed = search.friction + h / 6.0 * (rubbed - rubbing)
     gained = energy_gained(model, data, h, loaded) - applied - rubbed
     if careful and n > 1 and off(model, data, k, gained):
         return MISSED
