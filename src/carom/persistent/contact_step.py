@@ -51,6 +51,7 @@ from carom.persistent.finish import finish, forces_at_end, gained
 from carom.persistent.middle_state import halfway, mean_velocity, power_of_path, spin_momentum
 from carom.persistent.return_to_surfaces import onto_surfaces
 from carom.persistent.rolling_friction import bound_turning, first_torque
+from carom.persistent.smooth_group import can_be_smooth, smooth_group_step
 from carom.persistent.smooth_step import smooth_step
 from carom.persistent.step_control import (
     charge_iterations,
@@ -108,18 +109,21 @@ def step_group(model, data, method, label, h):
     alone = alone and method.kind == RUNGE_KUTTA
     friction, over = result.friction, result.unnamed
     smooth = alone and smooth_step(model, data, method, k, h)
-    if smooth and controls.order > 0:
+    joined = loaded and can_be_smooth(system, method, k, count, group)
+    if joined:
+        smooth = smooth_group_step(model, data, method, k, count, h)
+    if smooth and alone and controls.order > 0:
         smooth = not is_better_bounded(system, controls, h, start, end, group.member[0], work)
     if not smooth:
         result.friction, result.unnamed = friction, over
         for m in range(count):
             copy_state(group.flight[group.member[m]], end[group.member[m]])
-        if alone:
+        if alone or joined:
             place_closed(system, k, start, group, group.points[0], work)
         step_once(model, data, k, count, loaded, h)
         if controls.order > 0:
             note_bounds(system, modes_change(active, k, group), h, start, end, count, group, work)
-    forces_at_end(model, data, k, smooth, end)
+    forces_at_end(model, data, k, smooth and alone, end)
 
 
 @kernel
