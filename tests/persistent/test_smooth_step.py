@@ -1,4 +1,4 @@
-"""One body on several points, by the method of the run as long as modes stay: errors as asked for, orders."""
+"""Bodies on several points, by the method of the run as long as modes stay: errors as asked for, orders."""
 
 import itertools
 
@@ -65,11 +65,25 @@ def coin(rolling, pivoting):
     return scene
 
 
+def carries_a_pendulum():
+    """A box that slides on a floor, with a pendulum on a spring and a damper."""
+    scene, ground = floor()
+    box = scene.add_body(
+        carom.Box(0.3, 0.2, 0.1), mass=2.0, position=(0, 0, 0.05), velocity=(1, 0.3, 0)
+    )
+    bob = scene.add_body(carom.Sphere(0.02), mass=0.2, position=(0, 0, 0.25), velocity=(1, 0.3, 0))
+    hinge = scene.add_joint(carom.joints.Revolute((0, 0, 0.1), (0, 1, 0)), box, bob)
+    scene.add_force(carom.forces.JointSpring(hinge, stiffness=2.0, damping=0.02, rest=0.5))
+    scene.add_contact(box, ground, restitution=0.0, friction=0.2)
+    return scene
+
+
 CASES = {  # and by how much errors grow until then: what tips is an inverted pendulum
     "slides": (lambda: slides(5.0), 0.2, 2e-4, 1.0),
     "incline": (incline, 0.5, 2e-4, 1.0),
     "tips": (tips, 0.1, 1e-4, 3.0),
     "coin": (lambda: coin(1e-4, 1e-4), 0.2, 1e-4, 1.0),
+    "carries a pendulum": (carries_a_pendulum, 0.3, 2e-4, 1.0),
     "coin that does not pivot": (lambda: coin(1e-4, 0.02), 0.2, 1e-4, 5.0),
 }
 
@@ -93,7 +107,7 @@ def test_errors_are_those_asked_for(case):
         assert np.linalg.norm(s.position[-1, 0] - known) < 10.0 * grows * asked + 1e-11, rtol
         assert s.stats["whole_steps"] == 0
         z = s.position[-1, 0, 2]
-        if case in ("slides", "incline"):
+        if case in ("slides", "incline", "carries a pendulum"):
             assert z == pytest.approx(0.05, abs=1e-15)  # on the floor to round-off
 
 
@@ -107,14 +121,17 @@ def test_few_steps():
     assert steps[1] < 120
 
 
-def test_a_rolling_coin_has_the_order_of_the_method():
-    """Rolling and pivoting friction are forces like others while the coin turns: order 4 by rk4."""
+@pytest.mark.parametrize(
+    ("make", "step"), [(lambda: coin(1e-4, 1e-4), 2e-3), (carries_a_pendulum, 2.5e-3)]
+)
+def test_order_of_what_rolls_and_of_what_is_joined(make, step):
+    """Rolling and pivoting friction, joints and springs do not lower the order of rk4."""
     ends = [
-        carom.simulate(coin(1e-4, 1e-4), 0.2, step=h, save_every=10**9).position[-1, 0]
-        for h in (2e-3, 1e-3, 5e-4)
+        carom.simulate(make(), 0.2, step=h, save_every=10**9).position[-1].ravel()
+        for h in (step, step / 2, step / 4)
     ]
     coarse, fine = (np.linalg.norm(a - b) for a, b in itertools.pairwise(ends))
-    assert np.log2(coarse / fine) > 3.7
+    assert np.log2(coarse / fine) > 3.5
 
 
 @pytest.mark.parametrize(("method", "order"), [("rk4", 4.0), ("rk5", 5.0), ("rk8", 8.0)])

@@ -49,7 +49,7 @@ def test_a_slice_of_a_table_is_a_table(on_a_slab):
     for table in (on_a_slab.impacts, on_a_slab.events, on_a_slab.pairs, on_a_slab.forces):
         part = table[1:3]
         assert type(part) is type(table)
-        assert len(part) == min(2, len(table) - 1) > 0
+        assert len(part) == len(range(len(table))[1:3])
         for name, column in vars(table).items():
             if isinstance(column, np.ndarray):
                 np.testing.assert_array_equal(getattr(part, name), column[1:3])
