@@ -103,7 +103,8 @@ class Portable:
         """Continue the run from its end; the result is bit for bit that of one longer run.
 
         This solution is not changed. The settings of the run stay the same, and states are saved as often as
-        before.
+        before. If the run has no given ``step``, one longer run may choose other steps: then both agree within
+        their tolerances only.
 
         Parameters
         ----------

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from carom.arguments import known
 from carom.visual.plots import figure, style
 
 ORDER = ("m", "rad", "")  # of the units
 
 
+@known
 def constraint_errors(solution, *, ax=None):
     """Draw the greatest errors of position and velocity of joints and constraints over time.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from carom.arguments import known
 from carom.visual.plots import figure, style
 from carom.visual.plots.balance import energy
 from carom.visual.plots.errors import constraint_errors
@@ -13,6 +14,7 @@ from carom.visual.plots.timeline import contacts, touching
 ROWS = 8  # contacts to draw
 
 
+@known
 def overview(solution) -> dict:
     """Draw an overview of a run: motion, energies, contacts, and errors of joints.
 

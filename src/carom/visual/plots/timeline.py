@@ -5,11 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from carom import checks
+from carom.arguments import known
 from carom.visual.plots import figure, style
 
 MODES = (("slipping", style.ORANGE, 0.62), ("sticking", style.BLUE, 0.34))  # width of the bar
 
 
+@known
 def contacts(solution, *, contacts=None, most: int = 40, ax=None):
     """Draw the state of each contact over time: ticks at impacts, bars for slip and stick.
 
