@@ -73,7 +73,7 @@ def contacts(solution, *, contacts=None, most: int = 40, ax=None):
             xlabel="time [s]",
         )
         axes.tick_params(axis="y", length=0)
-        axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3)
+        axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, columnspacing=1.0)
     return axes
 
 
