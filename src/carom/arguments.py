@@ -148,9 +148,8 @@ def attributes(setting: str = "") -> Callable[[type[T]], type[T]]:
                 raise type(error)(f"{error}; {setting}") from None
 
         def get_attribute(self, name: str):
-            if name[:1] == "_" or hasattr(
-                made, name
-            ):  # a property may have raised an AttributeError
+            # a property may have raised an AttributeError
+            if name[:1] == "_" or hasattr(type(self), name):
                 return object.__getattribute__(self, name)
             raise AttributeError(_no_attribute(self, name))
 

@@ -10,10 +10,12 @@ from typing import Any, Generic, Self, TypeVar, overload
 import numpy as np
 
 from carom import checks
+from carom.arguments import attributes
 
 Row = TypeVar("Row")
 
 
+@attributes()
 class Table(Generic[Row]):
     """Base class of tables whose columns are arrays: ``len`` is the number of rows, ``table[k]`` is row k.
 
