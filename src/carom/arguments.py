@@ -59,6 +59,8 @@ _OTHER_PLACE = {
                 "or in a Material",
     "restitution": "state it for a contact, add_contact(..., restitution=) or "
                    "set_contact_default(restitution=), or in a Material",
+    "rtol": "it is an argument of carom.simulate",
+    "atol": "it is an argument of carom.simulate",
     "fixed": "a body that never moves is made by add_static",
     "static": "a body that never moves is made by add_static",
 }  # fmt: skip
