@@ -26,6 +26,7 @@ def ensemble(run):
         ("viser", "view", lambda run: carom.view(run)),
         ("mujoco", "models", lambda run: carom.load_model("<mujoco/>")),
         ("h5netcdf", "files", lambda run: run.save("run.nc")),
+        ("pyarrow", "parquet", lambda run: run.save("run.parquet")),
         ("xarray", "ensemble", lambda run: ensemble(run).to_xarray()),
         (
             "sympy",

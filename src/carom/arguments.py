@@ -59,6 +59,8 @@ _OTHER_PLACE = {
                 "or in a Material",
     "restitution": "state it for a contact, add_contact(..., restitution=) or "
                    "set_contact_default(restitution=), or in a Material",
+    "rtol": "it is an argument of carom.simulate",
+    "atol": "it is an argument of carom.simulate",
     "fixed": "a body that never moves is made by add_static",
     "static": "a body that never moves is made by add_static",
 }  # fmt: skip
@@ -148,9 +150,8 @@ def attributes(setting: str = "") -> Callable[[type[T]], type[T]]:
                 raise type(error)(f"{error}; {setting}") from None
 
         def get_attribute(self, name: str):
-            if name[:1] == "_" or hasattr(
-                made, name
-            ):  # a property may have raised an AttributeError
+            # a property may have raised an AttributeError
+            if name[:1] == "_" or hasattr(type(self), name):
                 return object.__getattribute__(self, name)
             raise AttributeError(_no_attribute(self, name))
 

@@ -140,10 +140,10 @@ def test_constraint_errors(swung):
     ax = plots.constraint_errors(swung)
     unit = swung.constraint_rows.unit
     assert set(unit) == {"m", "rad"}
-    for of, errors, per in zip(("positions", "velocities"), swung.constraint_errors, ("", "/s")):
+    for of, errors, per in zip(("position", "velocity"), swung.constraint_errors, ("", "/s")):
         for one in ("m", "rad"):
             greatest = errors[:, unit == one].max(axis=1)
-            shown = line(ax, f"of {of} [{one}{per}]")[1]
+            shown = line(ax, f"{of} [{one}{per}]")[1]
             assert np.array_equal(shown[greatest > 0], greatest[greatest > 0])
 
 
@@ -201,6 +201,30 @@ def test_a_run_at_a_glance(run, request):
     assert ("constraints" in axes) == bool(solution.scene.joints)
     for ax in axes.values():
         assert ax.get_ylabel() or ax is axes.get("contacts")
+
+
+def test_an_overview_with_long_names_has_room_for_all_of_it():
+    """Contacts and joints side by side: no legend is cut off, and long names do not narrow the plots."""
+    scene = carom.Scene()
+    scene.add_half_space((0, 0, 0), (0, 0, 1), name="ground")
+    names = ("egg", "a ball with a very long name", "arm")
+    for k, name in enumerate(names):
+        scene.add_body(carom.Sphere(0.05), mass=1, position=(k, 0, 0.2 + 0.5 * (k == 2)), name=name)
+    for name in names[:2]:
+        scene.add_contact(name, "ground", restitution=0.5, friction=0.2)
+    scene.add_joint(carom.joints.Revolute((1.8, 0, 0.7), (0, 1, 0)), carom.GROUND, "arm")
+    axes = carom.simulate(scene, 0.5, step=0.005).plot()
+    figure = axes["motion"].figure
+    figure.canvas.draw()
+    for ax in axes.values():
+        legend = ax.get_legend()
+        if legend is not None:
+            box = legend.get_window_extent()
+            assert box.x0 >= 0
+            assert box.x1 <= figure.bbox.width
+        assert ax.get_window_extent().width > 0.3 * figure.bbox.width
+    labels = [label.get_text() for label in axes["contacts"].get_yticklabels()]
+    assert labels == ["egg-ground", "a ball wit\u2026me-ground"]
 
 
 def test_a_run_from_a_file_looks_the_same(thrown, tmp_path):

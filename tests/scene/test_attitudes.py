@@ -121,3 +121,12 @@ def test_what_is_no_orientation(given, message):
 def test_what_are_no_euler_angles(axes, angles, message):
     with pytest.raises(ValueError, match=message):
         carom.euler(axes, angles)
+
+
+@pytest.mark.parametrize(
+    "turn", [lambda: carom.euler("x", np.pi / 2), lambda: carom.axis_angle((0, 0, 1), np.pi / 2)]
+)
+def test_a_warning_of_radians_points_to_the_call(turn):
+    with pytest.warns(carom.MistakeWarning) as caught:
+        turn()
+    assert [one.filename for one in caught] == [__file__]

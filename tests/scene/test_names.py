@@ -24,6 +24,7 @@ def test_a_contact_in_either_order(order, by_name):
     assert contact.name == "die-ground"
     assert (contact.body, contact.other) == (scene["die"], scene["ground"])
     assert scene["die-ground"] is contact
+    assert scene["ground-die"] is contact
 
 
 def test_joints_forces_and_stops_by_name():

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from carom import checks
+from carom.arguments import known
 from carom.geometry import quaternion
 from carom.status import MistakeWarning
 
@@ -24,6 +25,7 @@ ROUNDED = 1e-3
 KINDS = "a unit quaternion (w, x, y, z), a (3, 3) rotation matrix or a SciPy Rotation"
 
 
+@known
 def euler(axes: str, angles: ArrayLike) -> np.ndarray:
     """Return the unit quaternion of successive rotations about coordinate axes (Euler angles).
 
@@ -71,6 +73,7 @@ def euler(axes: str, angles: ArrayLike) -> np.ndarray:
     return reduce(quaternion.multiply, turns)
 
 
+@known
 def axis_angle(axis: ArrayLike, angle: ArrayLike) -> np.ndarray:
     """Return the unit quaternion of a rotation about an axis.
 
@@ -125,7 +128,7 @@ def _warn_of_radians(name: str, degrees: np.ndarray) -> None:
             f"{name} has {angle!r}, which is {meant:g} degrees in radians; angles are given in degrees here: "
             f"give {meant:g}",
             MistakeWarning,
-            stacklevel=3,
+            stacklevel=4,  # of who called `euler` or `axis_angle`, which have a guard
         )
 
 

@@ -6,7 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from carom.arguments import attributes
 
+
+@attributes()
 @dataclass(frozen=True, eq=False)
 class Ledger:
     """Energy balance at each saved time, arrays (T,) [J]; all except the first two are sums since the start.

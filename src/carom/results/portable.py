@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 class Portable:
     """Methods that save, load, continue and convert a `Solution`; they need ``carom[files]``."""
 
+    @arguments.known
     def save(self, path: str | os.PathLike) -> None:
         """Write the run to a file: the whole run or its tables, depending on the suffix.
 
@@ -49,6 +50,7 @@ class Portable:
         save(path, self)
 
     @classmethod
+    @arguments.known
     def load(
         cls, path: str | os.PathLike, *, functions: Mapping[str, Callable] | None = None
     ) -> Self:
@@ -103,7 +105,8 @@ class Portable:
         """Continue the run from its end; the result is bit for bit that of one longer run.
 
         This solution is not changed. The settings of the run stay the same, and states are saved as often as
-        before.
+        before. If the run has no given ``step``, one longer run may choose other steps: then both agree within
+        their tolerances only.
 
         Parameters
         ----------

@@ -8,6 +8,7 @@ from typing import Any
 
 from carom import checks
 from carom.scene.bodies import Body, Ground
+from carom.scene.contacts import Contact
 
 
 class Registry:
@@ -57,8 +58,12 @@ class Registry:
         return len(self._kinds.get(kind, ()))
 
     def __getitem__(self, name: str):
+        """Return the part with this name; of a contact, its two bodies may be named in either order."""
         if isinstance(name, str) and name in self._parts:
             return self._parts[name]
+        for part in self._parts.values():
+            if isinstance(part, Contact) and name == f"{part.other.name}-{part.body.name}":
+                return part
         raise KeyError(f"the scene has no part {self._called(name)}")
 
     def member(self, argument: str, part, kinds: tuple[type, ...], hint: str = "") -> Any:

@@ -411,7 +411,10 @@ class Scene(TouchingPairs):
         return self._parts.parts(Stop)
 
     def __getitem__(self, name: str):
-        """Return the part with this name; the message of a `KeyError` suggests the nearest name."""
+        """Return the part with this name; the message of a `KeyError` suggests the nearest name.
+
+        A contact is found as ``"die-ground"`` and as ``"ground-die"``.
+        """
         return self._parts[name]
 
     def validate(self) -> None:

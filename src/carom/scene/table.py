@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import copy
+import operator
 from collections.abc import Iterator
 from typing import Any, Generic, Self, TypeVar, overload
 
 import numpy as np
 
+from carom import checks
+from carom.arguments import attributes
+
 Row = TypeVar("Row")
 
 
+@attributes()
 class Table(Generic[Row]):
     """Base class of tables whose columns are arrays: ``len`` is the number of rows, ``table[k]`` is row k.
 
@@ -31,6 +36,13 @@ class Table(Generic[Row]):
             part = copy.copy(self)
             vars(part).update({name: column[k] for name, column in self._columns().items()})
             return part
+        try:
+            k = operator.index(k)
+        except TypeError:
+            raise TypeError(
+                f"{self._a_row}s are found by number, from 0, or by a slice, got {checks.shown(k)}; "
+                "columns are attributes"
+            ) from None
         if not -len(self) <= k < len(self):
             raise IndexError(
                 f"there is no {self._a_row} {k}: the table has {len(self)}, numbered from 0"

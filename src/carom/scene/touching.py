@@ -165,6 +165,11 @@ class TouchingPairs:
             Each is a body, half-space or static body, its name, or a sequence of these. No part of `body`
             touches a part of `other`. Without `other`, no two parts of `body` touch each other.
 
+        Raises
+        ------
+        ValueError
+            If a part is not of this scene, or one part is given alone or twice.
+
         Examples
         --------
         The links of a chain pass through each other and through a second chain:
@@ -183,6 +188,10 @@ class TouchingPairs:
             pairs = list(combinations(first, 2))
         else:
             pairs = [(a, b) for a in first for b in self._some("other", other) if a is not b]
+        if not pairs and isinstance(body, (str, Body, *FIXED)):
+            raise ValueError(
+                f"body and other must be two parts or sequences of parts, got {checks.shown(body)} alone"
+            )
         for a, b in pairs:
             self._pairs.ignore(a, b)
 

@@ -8,8 +8,8 @@ from typing import Any
 from carom import checks
 
 
-def need(package: str, what: str) -> Any:
-    """Return an optional package; `what` needs it.
+def need(package: str, what: str, extra: str = "files") -> Any:
+    """Return an optional package of an `extra` of carom; `what` needs it.
 
     Raises
     ------
@@ -21,4 +21,4 @@ def need(package: str, what: str) -> Any:
     except ImportError as error:
         if error.name is not None and error.name.split(".")[0] != package:
             raise  # it is there, and lacks something itself
-        raise checks.missing_package(what, package, "files") from None
+        raise checks.missing_package(what, package, extra) from None

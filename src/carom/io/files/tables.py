@@ -29,7 +29,7 @@ def write_tables(path: Path, solution) -> None:
     """Write the motion of the bodies to `path`, and the other tables beside it: ``run.impacts.csv``, ..."""
     kind = path.suffix.lower()
     if kind == ".parquet":
-        need("pyarrow", "saving as .parquet")
+        need("pyarrow", "saving as .parquet", "parquet")
     for name, frame in to_pandas(solution)._asdict().items():
         if name in ("bodies", "energy"):  # the time is a column as others are
             frame = frame.reset_index()

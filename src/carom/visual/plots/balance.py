@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from carom.arguments import known
 from carom.visual.plots import figure, style
 
 _ENTRIES = {
@@ -15,6 +16,7 @@ _ENTRIES = {
 NOTHING = 1e-6  # of the greatest energy: an entry that stays below cannot be seen
 
 
+@known
 def energy(solution, *, ax=None):
     """Draw the energies, the entries of the ledger, and the error of the energy balance.
 

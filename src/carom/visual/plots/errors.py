@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from carom.arguments import known
 from carom.visual.plots import figure, style
 
 ORDER = ("m", "rad", "")  # of the units
 
 
+@known
 def constraint_errors(solution, *, ax=None):
     """Draw the greatest errors of position and velocity of joints and constraints over time.
 
@@ -41,15 +43,15 @@ def constraint_errors(solution, *, ax=None):
     with figure.drawing(ax, 1, (style.COLUMN, 2.0)) as axes:
         for unit, dashes in zip(sorted(set(units.tolist()), key=ORDER.index), ("-", "--", ":")):
             for of, error, colour, end in (
-                ("positions", position, style.BLUE, ""),
-                ("velocities", velocity, style.RED, "/s"),
+                ("position", position, style.BLUE, ""),
+                ("velocity", velocity, style.RED, "/s"),
             ):
                 greatest = error.reshape(len(solution.t), -1)[:, units == unit].max(axis=1)
                 shown = np.where(greatest > 0.0, greatest, np.nan)
-                label = f"of {of} [{unit}{end}]" if unit else f"of {of}"
+                label = f"{of} [{unit}{end}]" if unit else of
                 axes.plot(solution.t, shown, dashes, color=colour, lw=0.9, label=label)
         axes.set(xlabel="time [s]", ylabel="error", xlim=solution.t[[0, -1]])
         if np.any(position > 0.0) or np.any(velocity > 0.0):
             axes.set_yscale("log")
-        axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2)
+        axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, columnspacing=1.0)
     return axes

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from carom.arguments import known
 from carom.visual.plots import figure, style
 from carom.visual.plots.balance import energy
 from carom.visual.plots.errors import constraint_errors
@@ -11,8 +12,10 @@ from carom.visual.plots.paths import trajectory
 from carom.visual.plots.timeline import contacts, touching
 
 ROWS = 8  # contacts to draw
+LETTERS = 20  # of the name of a contact
 
 
+@known
 def overview(solution) -> dict:
     """Draw an overview of a run: motion, energies, contacts, and errors of joints.
 
@@ -48,9 +51,18 @@ def overview(solution) -> dict:
         axes["energy"].tick_params(labelbottom=False)
         if "contacts" in axes:
             contacts(solution, most=ROWS, ax=axes["contacts"])
+            labels = [_short(label.get_text()) for label in axes["contacts"].get_yticklabels()]
+            axes["contacts"].set_yticks(axes["contacts"].get_yticks(), labels)
         if "constraints" in axes:
             constraint_errors(solution, ax=axes["constraints"])
     return axes
+
+
+def _short(name: str) -> str:
+    """Return a name without its middle if it is long: the labels of one plot narrow all others."""
+    return (
+        name if len(name) <= LETTERS else f"{name[: LETTERS // 2]}\u2026{name[-LETTERS // 2 + 1 :]}"
+    )
 
 
 def _coordinates(solution, axes) -> None:

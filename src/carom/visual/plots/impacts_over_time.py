@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from carom.arguments import known
 from carom.visual.plots import figure, style
 
 _MARKS = "osD^v<>P"
 
 
+@known
 def impacts(solution, *, contacts=None, ax=None):
     """Draw all impacts over time: normal velocity, slip, impulse and energy loss.
 

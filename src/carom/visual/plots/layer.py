@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from carom.arguments import known
 from carom.visual.plots import figure, style
 
 KNOTS = 64  # steps of the spline: so many that a force, given at its knots, is a curve
 
 
+@known
 def impact_inside(solution, k: int = 0, *, steps: int = KNOTS, ax=None):
     """Draw one impact inside its boundary layer: normal coordinate, velocities and forces.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from carom import checks
+from carom.arguments import known
 from carom.geometry import quaternion
 from carom.visual.plots import figure, style
 
@@ -13,6 +14,7 @@ FLAT = 0.02  # height by width of motion on a level table
 MOST = 200  # outlines: more would cover each other
 
 
+@known
 def trajectory(
     solution, bodies=None, *, plane: str | None = None, outlines=None, ground=True, ax=None
 ):

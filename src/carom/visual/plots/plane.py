@@ -5,9 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from carom import checks
+from carom.arguments import known
 from carom.visual.plots import figure, style
 
 
+@known
 def phase(solution, of=None, *, axis: str = "z", number: int = 0, ax=None):
     """Draw the phase plane of one coordinate: its rate over its value.
 

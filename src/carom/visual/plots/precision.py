@@ -7,11 +7,13 @@ from collections.abc import Mapping
 import numpy as np
 
 from carom import checks
+from carom.arguments import known
 from carom.visual.plots import figure, style
 
 _MARKS = "osD^v<>P"
 
 
+@known
 def work_precision(series: Mapping, *, error: str = "error", ax=None):
     """Draw errors of several methods over wall time, both on logarithmic axes.
 

@@ -5,12 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from carom import checks
+from carom.arguments import known
 from carom.visual.plots import figure, style
 
 STEPS = 128  # of the spline through the impact
 FLOW = 0.7  # density of the lines of the flow
 
 
+@known
 def hodograph(solution, k: int = 0, *, flow: bool = True, ax=None):
     """Draw the slip velocity during one impact, and the friction force.
 

@@ -5,11 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from carom import checks
+from carom.arguments import known
 from carom.visual.plots import figure, style
 
 MODES = (("slipping", style.ORANGE, 0.62), ("sticking", style.BLUE, 0.34))  # width of the bar
 
 
+@known
 def contacts(solution, *, contacts=None, most: int = 40, ax=None):
     """Draw the state of each contact over time: ticks at impacts, bars for slip and stick.
 
@@ -71,7 +73,7 @@ def contacts(solution, *, contacts=None, most: int = 40, ax=None):
             xlabel="time [s]",
         )
         axes.tick_params(axis="y", length=0)
-        axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3)
+        axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, columnspacing=1.0)
     return axes
 
 
