@@ -103,9 +103,9 @@ def onto_surfaces(system, active, k, count, state, group, work):
 
 
 @kernel
-def onto_tangents(system, k, state, group, work):
-    """Remove the velocities of a body along the given rows."""
-    b, x = group.member[0], group.v[U]
+def onto_tangents(system, k, count, state, group, work):
+    """Remove the velocities of the bodies of the group in the rows that are given."""
+    x = group.v[U]
     factor_given(k, group)
     velocities(k, group.points[0], state, x)
     for i in range(3 * k):
@@ -113,11 +113,13 @@ def onto_tangents(system, k, state, group, work):
     substitute(3 * k, group.m[1], x)
     for i in range(3 * k):
         x[i] = x[i] if given(group, i) else 0.0
-    spread_all(system, k, group.points[0], x, 1, group.member, work.stage, work)
-    motion = work.body[b].motion
-    for i in range(3):
-        state[b].v[i] += motion[i]
-        state[b].w[i] += motion[3 + i]
+    spread_all(system, k, group.points[0], x, count, group.member, work.stage, work)
+    for m in range(count):
+        b = group.member[m]
+        motion = work.body[b].motion
+        for i in range(3):
+            state[b].v[i] += motion[i]
+            state[b].w[i] += motion[3 + i]
 
 
 @kernel

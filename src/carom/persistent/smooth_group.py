@@ -20,7 +20,7 @@ from carom.contact.closed_points import place_closed
 from carom.contact.place import drift_of
 from carom.dynamics.acceleration import accelerate, accelerations
 from carom.dynamics.adapt import note_miss
-from carom.dynamics.explicit import bound_accelerations_of, combine_body, copy_state, node
+from carom.dynamics.explicit import bound_accelerations_of, combine_body, node
 from carom.dynamics.project import LOST, project_position, project_velocity
 from carom.dynamics.several_points import (
     accelerations as accelerations_of_points,
@@ -29,7 +29,6 @@ from carom.dynamics.several_points import (
     any_turns,
     inverse_masses,
     spread_all,
-    substitute,
     velocities,
     yields,
 )
@@ -40,8 +39,8 @@ from carom.model.method import RUNGE_KUTTA
 from carom.model.solvers import LOOPS
 from carom.persistent.finish import finish
 from carom.persistent.known_modes import CORRECTIONS, EPS, FITS, PULL
-from carom.persistent.return_to_surfaces import factor_given, onto_surfaces
-from carom.persistent.smooth_step import STIFF, begin, set_direction
+from carom.persistent.return_to_surfaces import onto_surfaces, onto_tangents
+from carom.persistent.smooth_step import STIFF, begin, place_at, set_direction
 
 
 @kernel
@@ -222,10 +221,10 @@ def finish_smoothly(model, data, k, count, h):
         return False
     for row in range(3 * k):
         group.v[BACK][row] = 0.0
-    place_at(system, k, end, group, work)
+    place_at(system, k, count, end, group, work)
     onto_surfaces(system, active, k, count, end, group, work)
     project_velocity(system, end, work)
-    place_at(system, k, end, group, work)
+    place_at(system, k, count, end, group, work)
     for i in range(k):
         if group.closed[i].rows > 0 and group.kind[i] != SLIDING:
             group.closed[i].rows = 3
@@ -251,32 +250,3 @@ def finish_smoothly(model, data, k, count, h):
                 worst = max(worst, abs(group.v[U][q + r]))
     work.result[0].residual = max(work.result[0].residual, worst)
     return True
-
-
-@kernel
-def place_at(system, k, state, group, work):
-    """Write the points in a state, and their W."""
-    for b in range(state.shape[0]):
-        copy_state(state[b], work.stage[b])
-    place_closed(system, k, state, group, group.points[0], work)
-    inverse_masses(system, k, group.points[0], state, work, group.m[0])
-
-
-@kernel
-def onto_tangents(system, k, count, state, group, work):
-    """Remove the velocities of the bodies in the rows that are given."""
-    x = group.v[U]
-    factor_given(k, group)
-    velocities(k, group.points[0], state, x)
-    for i in range(3 * k):
-        x[i] = -x[i] if group.closed[i // 3].rows > i % 3 and yields(group.m[0], i) else 0.0
-    substitute(3 * k, group.m[1], x)
-    for i in range(3 * k):
-        x[i] = x[i] if group.closed[i // 3].rows > i % 3 and yields(group.m[0], i) else 0.0
-    spread_all(system, k, group.points[0], x, count, group.member, work.stage, work)
-    for m in range(count):
-        b = group.member[m]
-        motion = work.body[b].motion
-        for i in range(3):
-            state[b].v[i] += motion[i]
-            state[b].w[i] += motion[3 + i]

@@ -223,15 +223,15 @@ def finish_smoothly(model, data, k, h):
     b = group.member[0]
     for row in range(3 * k):
         group.v[BACK][row] = 0.0
-    place_at(system, k, end, group, work)
+    place_at(system, k, 1, end, group, work)
     onto_surfaces(system, active, k, 1, end, group, work)
-    place_at(system, k, end, group, work)
+    place_at(system, k, 1, end, group, work)
     for i in range(k):  # points of rolling and pivoting come after all others
         if group.closed[i].turns > 0:
             group.closed[i].rows = turning_rows_given(k, i, group)
         elif group.closed[i].rows > 0 and group.kind[i] != SLIDING:
             group.closed[i].rows = 3
-    onto_tangents(system, k, end, group, work)
+    onto_tangents(system, k, 1, end, group, work)
     velocities(k, group.points[0], end, group.v[U])
     for row in range(3 * k):
         group.v[P][row] *= h
@@ -273,9 +273,9 @@ def turns_on(active, i, group):
 
 
 @kernel
-def place_at(system, k, state, group, work):
-    """Write the points of the body in a state, and their W."""
-    b = group.member[0]
-    copy_state(state[b], work.stage[b])
+def place_at(system, k, count, state, group, work):
+    """Write the points of the bodies of the group in a state, and their W."""
+    for m in range(count):
+        copy_state(state[group.member[m]], work.stage[group.member[m]])
     place_closed(system, k, state, group, group.points[0], work)
     inverse_masses(system, k, group.points[0], state, work, group.m[0])
