@@ -26,7 +26,6 @@ from carom.dynamics.several_points import (
     accelerations as accelerations_of_points,
 )
 from carom.dynamics.several_points import (
-    any_turns,
     inverse_masses,
     spread_all,
     velocities,
@@ -35,8 +34,8 @@ from carom.dynamics.several_points import (
 from carom.friction import lu
 from carom.friction.layout import SLIDING
 from carom.impact.workspace import BACK, OLD, C, P, U
+from carom.model.arrays import LOOPS, STOP
 from carom.model.method import RUNGE_KUTTA
-from carom.model.solvers import LOOPS
 from carom.persistent.finish import finish
 from carom.persistent.known_modes import CORRECTIONS, EPS, FITS, PULL
 from carom.persistent.return_to_surfaces import onto_surfaces, onto_tangents
@@ -45,13 +44,16 @@ from carom.persistent.smooth_step import STIFF, begin, place_at, set_direction
 
 @kernel
 def can_be_smooth(system, method, k, count, group):
-    """Return whether this step is for the group: all loaded bodies are in it, on half-spaces, in trees."""
-    if method.kind != RUNGE_KUTTA or system.solver.kind == LOOPS or any_turns(k, group.points[0]):
+    """Return whether all loaded bodies are in the group, in trees, on the ground or at stops of joints."""
+    if method.kind != RUNGE_KUTTA or system.solver.kind == LOOPS:
         return False
     if system.relations.frictions.shape[0] > 0:
         return False
     for i in range(k):
-        if group.points[0][i].b >= 0:
+        between = (
+            group.points[0][i].b >= 0 and system.contacts[group.closed[i].contact].touches != STOP
+        )
+        if between or group.closed[i].turns > 0:
             return False
     inside = 0
     for m in range(count):
