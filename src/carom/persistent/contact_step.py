@@ -109,7 +109,7 @@ def step_group(model, data, method, label, h):
     alone = alone and method.kind == RUNGE_KUTTA
     friction, over = result.friction, result.unnamed
     smooth = alone and smooth_step(model, data, method, k, h)
-    joined = loaded and can_be_smooth(system, method, k, count, group)
+    joined = loaded and can_be_smooth(system, active, method, k, count, group)
     if joined:
         smooth = smooth_group_step(model, data, method, k, count, h)
     if smooth and alone and controls.order > 0:

@@ -43,8 +43,11 @@ from carom.persistent.smooth_step import STIFF, begin, place_at, set_direction
 
 
 @kernel
-def can_be_smooth(system, method, k, count, group):
-    """Return whether all loaded bodies are in the group, in trees, on the ground or at stops of joints."""
+def can_be_smooth(system, active, method, k, count, group):
+    """Return whether all loaded bodies are in the group, in trees, on the ground or at stops of joints.
+
+    No other body may be in contact at one point: its forces and their work belong to the step before.
+    """
     if method.kind != RUNGE_KUTTA or system.solver.kind == LOOPS:
         return False
     if system.relations.frictions.shape[0] > 0:
@@ -54,6 +57,9 @@ def can_be_smooth(system, method, k, count, group):
             group.points[0][i].b >= 0 and system.contacts[group.closed[i].contact].touches != STOP
         )
         if between or group.closed[i].turns > 0:
+            return False
+    for i in range(active.count[0]):
+        if active.points[i].several == 0 and active.points[i].rest == 0:
             return False
     inside = 0
     for m in range(count):
