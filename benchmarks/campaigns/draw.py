@@ -56,6 +56,16 @@ def attitude(rng, special: float = 0.15) -> np.ndarray:
     return q / np.linalg.norm(q)
 
 
+def thrown(scene: carom.Scene, shape, height: float, rng) -> carom.Body:
+    """Add a body at this height, with velocities of its fall, and a spin that turns it up to ten times."""
+    speed = np.sqrt(2.0 * 9.81 * height)
+    return scene.add_body(
+        shape, mass=10.0 ** rng.uniform(-3, 1), position=(0, 0, height), orientation=attitude(rng),
+        velocity=speed * rng.normal(size=3) * (1, 1, 0.3),
+        angular_velocity=rng.normal(size=3) * rng.uniform(0.0, 10.0) * speed / height,
+    )  # fmt: skip
+
+
 def contact(rng, law: str | None = None) -> dict:
     """Return restitution, friction and law: also the ends of their ranges."""
     e = (0.0, 1.0, rng.uniform(0.0, 1.0), rng.uniform(0.0, 1.0))[rng.integers(4)]

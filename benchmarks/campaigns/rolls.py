@@ -16,7 +16,6 @@ def case(seed: int) -> Case:
     step = draw.STEPS[seed // len(draw.SHAPES) % 3]
     body = draw.shape(kind, 10.0 ** rng.uniform(-2.3, -0.5), rng)
     height = body.size * rng.uniform(1.05, 3.0)
-    speed = np.sqrt(2.0 * 9.81 * height)
     contact = draw.contact(rng) | {"restitution": rng.uniform(0.0, 0.8)}
     # one of the two is absent in some scenes; both are lengths
     turning = body.size * 10.0 ** rng.uniform(-4.0, -1.0, 2) * (rng.random(2) < 0.8)
@@ -24,10 +23,5 @@ def case(seed: int) -> Case:
     scene = carom.Scene(gravity=(0, 0, -9.81))
     tilt = rng.uniform(0.0, 0.2) * (rng.random() < 0.3)  # a ramp
     ground = scene.add_half_space((0, 0, 0), (np.sin(tilt), 0, np.cos(tilt)))
-    thrown = scene.add_body(
-        body, mass=10.0 ** rng.uniform(-3, 1), position=(0, 0, height),
-        orientation=draw.attitude(rng), velocity=speed * rng.normal(size=3) * (1, 1, 0.3),
-        angular_velocity=rng.normal(size=3) * rng.uniform(0.0, 10.0) * speed / height,
-    )  # fmt: skip
-    scene.add_contact(thrown, ground, **contact)
+    scene.add_contact(draw.thrown(scene, body, height, rng), ground, **contact)
     return Case(scene, 2.0, step, {"kind": kind, "step": step, **contact})

@@ -17,16 +17,9 @@ def case(seed: int, kind: str | None = None, step: float | None = None) -> Case:
     law = draw.LAWS[seed // (3 * len(draw.SHAPES)) % 3]
     size = 10.0 ** rng.uniform(-2.3, -0.5)
     body = draw.shape(kind, size, rng)
-    # a fall of some sizes, and a spin that turns it up to ten times on the way
     height = body.size * rng.uniform(1.05, 8.0)
-    speed = np.sqrt(2.0 * 9.81 * height)
     contact = draw.contact(rng, law)
     scene = carom.Scene(gravity=(0, 0, -9.81))
     ground = scene.add_half_space((0, 0, 0), (0, 0, 1))
-    thrown = scene.add_body(
-        body, mass=10.0 ** rng.uniform(-3, 1), position=(0, 0, height),
-        orientation=draw.attitude(rng), velocity=speed * rng.normal(size=3) * (1, 1, 0.3),
-        angular_velocity=rng.normal(size=3) * rng.uniform(0.0, 10.0) * speed / height,
-    )  # fmt: skip
-    scene.add_contact(thrown, ground, **contact)
+    scene.add_contact(draw.thrown(scene, body, height, rng), ground, **contact)
     return Case(scene, 1.0, step, {"kind": kind, "step": step, **contact})
