@@ -49,14 +49,14 @@ def newton(work, k, eps, patient):
                 break
         elif not _mismatch(work, k, t) < _CHORD * size:
             work.count[o.ROWS] = -1
-            if size < _FLOOR * _magnitude(work, k):
+            if size < _FLOOR * largest_impulse(work, k):
                 break
             continue
         for i in range(3 * k):
             p[i] += t * step[i]
         before1, before2, before3 = size, before1, before2
         size = _arrive(work, k, eps)
-        if size < _FLOOR * _magnitude(work, k) and not size < 0.5 * before1:
+        if size < _FLOOR * largest_impulse(work, k) and not size < 0.5 * before1:
             break
         if not size < _CHORD * before1:
             work.count[o.ROWS] = -1
@@ -115,7 +115,7 @@ def velocity(work, k):
 
 
 @kernel
-def _magnitude(work, k):
+def largest_impulse(work, k):
     """Return 1 + the greatest scaled impulse: the scale of round-off."""
     most, p = 0.0, work.vector[o.P]
     for i in range(3 * k):

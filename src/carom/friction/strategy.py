@@ -9,7 +9,7 @@ from carom._compiled.units import unit
 from carom.friction import layout as o
 from carom.friction.alternating import alternate
 from carom.friction.cone import nearest, project, shift
-from carom.friction.newton import newton, velocity
+from carom.friction.newton import largest_impulse, newton, velocity
 from carom.friction.operators import magnitude, sweep
 from carom.friction.residual import RELATIVE, ROUND_OFF
 
@@ -18,7 +18,7 @@ _POLISH = 8  # greatest number of rounds, each with a new proximal centre
 _STARTS = 20  # greatest number of starting points
 _EXTRA = 2  # further starting points if the tolerance is satisfied, but not round-off; or a hundred times that
 _NEARLY = 100.0
-SETTLED = 1e-12  # relative to the impulses: |f| of equations that are solved
+_SETTLED = 1e-12  # relative to the impulses: |f| of equations that are solved
 _SWEEPS = 25  # at first; twice as many each time, up to
 _MOST_SWEEPS = 200
 _ALTERNATIONS = 300
@@ -182,10 +182,7 @@ def polished(work, k, least_norm, patient):
 @kernel
 def settled(work, k):
     """Return whether the last equations of Newton's method are solved to round-off."""
-    most, p = 0.0, work.vector[o.P]
-    for i in range(3 * k):
-        most = max(most, abs(p[i]))
-    return work.mismatch[0] <= SETTLED * (1.0 + most)
+    return work.mismatch[0] <= _SETTLED * largest_impulse(work, k)
 
 
 @kernel
