@@ -147,16 +147,21 @@ def shorter(dt, error, controls, clock, work):
 def plan_next(dt, error, again, controls, work):
     """Store the length of the next step after one of length dt; `again` is true if a trial was rejected before.
 
-    A short step (the rest of the time after an event) does not shorten the next.
+    A short step (the rest of the time after an event) does not shorten the next. If the length that fits the
+    tolerance has shrunk since the last step, as it does before slip stops, it is expected to shrink by as much
+    again (Gustafsson 1994).
     """
     factor = MOST
     if error > 0.0:
         factor = min(MOST, SAFETY * error ** (-1.0 / controls.order))
-    if again:
-        factor = min(1.0, factor)
     for b in range(work.body.shape[0]):
-        memory = work.body[b]
-        ahead = dt * factor if factor < MOST else max(memory.ahead, MOST * dt)
+        memory, fits = work.body[b], factor * dt
+        trend = fits / memory.fits if memory.fits > fits else 1.0
+        memory.fits = fits
+        if factor == MOST:
+            ahead = max(memory.ahead, fits)
+        else:
+            ahead = min(dt if again else fits, max(LEAST, trend) * fits)
         memory.ahead = min(ahead, controls.interval)
 
 

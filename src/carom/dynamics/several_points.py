@@ -10,13 +10,14 @@ from carom.dynamics.contact_impulse import (
     spread,
 )
 from carom.dynamics.solve import free_body, solve
-from carom.geometry.rotation import cross, rotate, rotate_back
+from carom.geometry.rotation import cross
 from carom.kinematics.contact_point import (
     contact_acceleration,
     contact_motion,
     contact_velocity,
     in_axes,
 )
+from carom.kinematics.rows import inverse_inertia, symmetric_times
 
 ROUND_OFF = 1e-12  # of the trace of W of one point
 
@@ -105,24 +106,18 @@ def any_turns(k, points):
 @kernel
 def inverse_masses_of_one(body, k, points, state, W):
     """Write W of points of one body: e.(d/m + (J^-1 (r x d)) x s) of directions d, e at arms r, s."""
-    q, J = state[points[0].a].Q, body.inertia
+    inverse, g = inverse_inertia(body, state[points[0].a].Q), 1.0 / body.mass
     for j in range(k):
         r, E = points[j].arm_a, points[j].axes
         for a in range(3):
-            d = (E[a, 0], E[a, 1], E[a, 2])
-            t = cross(r[0], r[1], r[2], d[0], d[1], d[2])
-            t = rotate_back(q[0], q[1], q[2], q[3], t[0], t[1], t[2])
-            w = rotate(q[0], q[1], q[2], q[3], t[0] / J[0], t[1] / J[1], t[2] / J[2])
+            d = (g * E[a, 0], g * E[a, 1], g * E[a, 2])
+            t = cross(r[0], r[1], r[2], E[a, 0], E[a, 1], E[a, 2])
+            w = symmetric_times(inverse, t[0], t[1], t[2])
             n = 3 * j + a
             for i in range(j + 1):
                 s = points[i].arm_a
                 v = cross(w[0], w[1], w[2], s[0], s[1], s[2])
-                v = in_axes(
-                    points[i],
-                    v[0] + d[0] / body.mass,
-                    v[1] + d[1] / body.mass,
-                    v[2] + d[2] / body.mass,
-                )
+                v = in_axes(points[i], v[0] + d[0], v[1] + d[1], v[2] + d[2])
                 for b in range(3):
                     W[3 * i + b, n] = W[n, 3 * i + b] = v[b]
 

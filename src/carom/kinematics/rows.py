@@ -68,10 +68,26 @@ def direction(joint, r, state):
 def inverse_inertias(system, state, work):
     """Write the inverse inertia (xx, xy, xz, yy, yz, zz) of each body in world axes."""
     for b in range(system.bodies.shape[0]):
-        J, q, inverse = system.bodies[b].inertia, state[b].Q, work.body[b].inverse
-        i = (1.0 / J[0], 1.0 / J[1], 1.0 / J[2])
-        t = spin_tensor(matrix(q[0], q[1], q[2], q[3]), i)
+        inverse, t = work.body[b].inverse, inverse_inertia(system.bodies[b], state[b].Q)
         inverse[0], inverse[1], inverse[2], inverse[3], inverse[4], inverse[5] = t
+
+
+@kernel
+def inverse_inertia(body, q):
+    """Return the inverse inertia (xx, xy, xz, yy, yz, zz) of a body in world axes."""
+    J = body.inertia
+    i = (1.0 / J[0], 1.0 / J[1], 1.0 / J[2])
+    return spin_tensor(matrix(q[0], q[1], q[2], q[3]), i)
+
+
+@kernel
+def symmetric_times(i, x, y, z):
+    """Return the product of a symmetric matrix (xx, xy, xz, yy, yz, zz) with a vector."""
+    return (
+        i[0] * x + i[1] * y + i[2] * z,
+        i[1] * x + i[3] * y + i[4] * z,
+        i[2] * x + i[4] * y + i[5] * z,
+    )
 
 
 @kernel
@@ -79,9 +95,7 @@ def times_inverse_mass(mass, i, f, out):
     """Write M^-1 of a body (mass, inverse inertia i) times a wrench f (force, torque)."""
     g = 1.0 / mass
     out[0], out[1], out[2] = g * f[0], g * f[1], g * f[2]
-    out[3] = i[0] * f[3] + i[1] * f[4] + i[2] * f[5]
-    out[4] = i[1] * f[3] + i[3] * f[4] + i[4] * f[5]
-    out[5] = i[2] * f[3] + i[4] * f[4] + i[5] * f[5]
+    out[3], out[4], out[5] = symmetric_times(i, f[3], f[4], f[5])
 
 
 @kernel

@@ -192,7 +192,7 @@ def new_work(system: System, stages: int) -> Work:
     return Work(
         body=body,
         joint=table(JOINT_WORK, j),
-        stages=table(STAGE, stages, n),
+        stages=table(STAGE, stages + 1, n),
         stage=table(STATE, n),
         trial=table(STATE, n),
         middle=table(STATE, n),

@@ -43,6 +43,9 @@ ACTIVE_POINT = [
     ("turn_stop", "f8", 2),  # as `stop`, of rolling and of pivoting
     ("torque", "f8", 3),  # of rolling and pivoting friction, contact axes
     ("W", "f8", (3, 3)),  # effective inverse mass of the last solve
+    # `force`, and `stop` with both `turn_stop`, at the start of the step: all its trial steps begin with these
+    ("first_force", "f8", 3),
+    ("first_stop", "f8", 3),
 ]
 
 #: a contact point in one state
@@ -86,6 +89,7 @@ BODY_WORK = [
     ("bound", "f8", 3),  # greatest linear, angular acceleration and spin of the last step
     ("miss", "f8", 3),  # two estimates of the error of a step [m], and their scale
     ("ahead", "f8"),  # with tolerances: length of the next step of its island
+    ("fits", "f8"),  # length of a step whose error fits the tolerance, by the last step
     ("inverse", "f8", 6),  # inverse inertia, world axes
     ("label", "i8"),  # bodies with the same label move each other, by joints or active contacts
     ("n_active", "i8"),  # of the body with the number of a label: active points of the group
@@ -192,7 +196,7 @@ class Work(NamedTuple):
 
     body: np.recarray  # (N,) BODY_WORK
     joint: np.recarray  # (J,) JOINT_WORK
-    stages: np.recarray  # (S, N) STAGE
+    stages: np.recarray  # (S + 1, N) STAGE: of the S stages of a step; of a single state
     stage: np.recarray  # (N,) STATE
     trial: np.recarray  # (N,) STATE
     middle: np.recarray  # (N,) STATE

@@ -52,7 +52,7 @@ from carom.persistent.middle_state import halfway, mean_velocity, power_of_path,
 from carom.persistent.return_to_surfaces import onto_surfaces
 from carom.persistent.rolling_friction import bound_turning, first_torque
 from carom.persistent.smooth_group import can_be_smooth, smooth_group_step
-from carom.persistent.smooth_step import smooth_step
+from carom.persistent.smooth_step import note_error, smooth_step
 from carom.persistent.step_control import (
     charge_iterations,
     iterations_left,
@@ -112,8 +112,14 @@ def step_group(model, data, method, label, h):
     joined = loaded and can_be_smooth(system, active, method, k, count, group)
     if joined:
         smooth = smooth_group_step(model, data, method, k, count, h)
-    if smooth and alone and controls.order > 0:
-        smooth = not is_better_bounded(system, controls, h, start, end, group.member[0], work)
+    if smooth and alone:
+        forces_at_end(model, data, k, True, end)
+        if controls.order == 0:
+            return
+        note_error(model, data, method, k, h, result.friction - friction)
+        if not is_better_bounded(system, controls, active, k, h, start, end, group, work):
+            return
+        smooth = False
     if not smooth:
         result.friction, result.unnamed = friction, over
         for m in range(count):
@@ -122,8 +128,9 @@ def step_group(model, data, method, label, h):
             place_closed(system, k, start, group, group.points[0], work)
         step_once(model, data, k, count, loaded, h)
         if controls.order > 0:
-            note_bounds(system, modes_change(active, k, group), h, start, end, count, group, work)
-    forces_at_end(model, data, k, smooth and alone, end)
+            changes = modes_change(active, k, group)
+            note_bounds(system, changes, k, h, start, end, count, group, work)
+    forces_at_end(model, data, k, False, end)
 
 
 @kernel
@@ -262,12 +269,13 @@ def begin(model, data, k, h, count, loaded):
         if closed_point.turns == 0:
             group.mu[i] = system.contacts[active_point.contact].friction_held
             for r in range(3):
-                group.v[P][3 * i + r] = h * active_point.force[r]
-            slips, stop = active_point.mode == SLIP and speed > 0.0, active_point.stop
+                group.v[P][3 * i + r] = h * active_point.first_force[r]
+            slips = active_point.mode == SLIP and speed > 0.0
         else:
             group.mu[i] = 1.0
             first_torque(system, active_point, i, h, group)
-            slips, stop = speed > still, active_point.turn_stop[closed_point.turns - 1]
+            slips = speed > still
+        stop = active_point.first_stop[closed_point.turns]
         group.heading[i, 0] = u1 / speed if slips else 0.0
         group.heading[i, 1] = u2 / speed if slips else 0.0
         group.kind[i] = CONE

@@ -8,6 +8,7 @@ from carom._compiled.decorators import kernel
 from carom.dynamics.acceleration import SLIP
 from carom.dynamics.adapt import allowed_error
 from carom.geometry.rotation import norm
+from carom.impact.workspace import P, U
 
 
 @kernel
@@ -46,24 +47,59 @@ def change_of_velocity(L, start, end):
 
 
 @kernel
-def note_bounds(system, changes, h, start, end, count, group, work):
+def bound_of_slip(heading, slip, impulse, h):
+    """Return the error, times the mass [kg m], of friction whose direction turns within a step, h p_t |d' - d|/12.
+
+    A corner about which a body nearly turns changes its direction of slip, though the body does not.
+    """
+    speed = math.hypot(slip[0], slip[1])
+    if not (speed > 0.0 and heading[0] ** 2 + heading[1] ** 2 > 0.0):
+        return 0.0
+    turn = math.hypot(slip[0] / speed - heading[0], slip[1] / speed - heading[1])
+    return abs(h) * impulse * turn / 12.0
+
+
+@kernel
+def note_bounds(system, changes, k, h, start, end, count, group, work):
     """Store the errors of the bodies of a group in a step of order 2, and their sizes."""
     for m in range(count):
         b = group.member[m]
         L, miss = system.bodies[b].extent, work.body[b].miss
         miss[0] = max(miss[0], bound_of_step(L, changes, start[b], h, end[b]))
         miss[2] = max(miss[2], L)
+    u, p = group.v[U], group.v[P]
+    for i in range(k):
+        point, q = group.points[0][i], 3 * i
+        if group.closed[i].turns > 0:
+            continue
+        slip, friction = (u[q + 1], u[q + 2]), math.hypot(p[q + 1], p[q + 2])
+        error = bound_of_slip(group.heading[i], slip, friction, h)
+        work.body[point.a].miss[0] += error / system.bodies[point.a].mass
+        if point.b >= 0:
+            work.body[point.b].miss[0] += error / system.bodies[point.b].mass
 
 
 @kernel
-def is_better_bounded(system, controls, h, start, end, b, work):
-    """Return whether for body b the error of a step of order 2 is allowed, and that of its method is not.
+def is_better_bounded(system, controls, active, k, h, start, end, group, work):
+    """Return whether for the body of k points a step of order 2 has an allowed error, and its method has not.
 
-    This happens just before a body stops, when the directions of slip turn faster and faster.
+    This happens just before a body stops, when the directions of slip turn faster and faster. U and P have the
+    velocities and the forces at the end.
     """
+    b, u, p = group.member[0], group.v[U], group.v[P]
     L, miss = system.bodies[b].extent, work.body[b].miss
     allowed = allowed_error(controls.rtol, controls.atol, L, miss[2])
-    if miss[0] <= allowed or bound_of_step(L, True, start[b], h, end[b]) > allowed:
+    if miss[0] <= allowed:
+        return False
+    bound = bound_of_step(L, True, start[b], h, end[b])
+    for i in range(k):
+        active_point, q = active.points[group.closed[i].active], 3 * i
+        if group.closed[i].turns == 0:
+            slip, friction = (u[q + 1], u[q + 2]), math.hypot(p[q + 1], p[q + 2])
+            bound += (
+                bound_of_slip(active_point.heading, slip, h * friction, h) / system.bodies[b].mass
+            )
+    if bound > allowed:
         return False
     miss[0], miss[1] = 0.0, 0.0
     return True

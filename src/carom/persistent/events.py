@@ -42,6 +42,17 @@ def contact_event_value(system, active_point, kind, d1, d2, state, work):
 
 
 @inlined
+def note_first_forces(active):
+    """Keep what the active points have at the start of a step: its trial steps write those of their ends."""
+    for i in range(active.count[0]):
+        active_point = active.points[i]
+        first, turns = active_point.first_stop, active_point.turn_stop
+        first[0], first[1], first[2] = active_point.stop, turns[0], turns[1]
+        for r in range(3):
+            active_point.first_force[r] = active_point.force[r]
+
+
+@inlined
 def end_forces(system, active, state, work):
     """Write the forces at `state` of points that are the only active points of their bodies, if any moves."""
     for i in range(active.count[0]):

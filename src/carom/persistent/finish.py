@@ -9,6 +9,7 @@ from carom.contact.closed_points import place_closed
 from carom.contact.gap import slow
 from carom.dynamics.acceleration import OPEN, SLIP, STICK
 from carom.dynamics.explicit import copy_state
+from carom.dynamics.several_points import inverse_masses
 from carom.impact.workspace import P, U
 from carom.kinematics.contact_point import contact_velocity
 from carom.persistent.forces import pose_forces, solve_forces, take_forces
@@ -104,13 +105,18 @@ def come_to_rest(system, tolerance, start, end, count, group):
 
 @kernel
 def forces_at_end(model, data, k, known, end):
-    """Write the forces at the end to the active points, by the `known` modes if these are still valid."""
+    """Write the forces at the end to the active points, by the `known` modes if these are still valid.
+
+    If modes are known, the points are placed and W is written for the end.
+    """
     system, active, group, work = model.system, data.active, data.group, data.work
     for i in range(k):
         closed_point = group.closed[i]
         active_point = active.points[closed_point.active]
         closed_point.stays = 1 if active_point.next != OPEN else 0
-    place_closed(system, k, end, group, group.points[0], work)
+    if not known:
+        place_closed(system, k, end, group, group.points[0], work)
+        inverse_masses(system, k, group.points[0], end, work, group.m[0])
     pose_forces(system, model.controls, active, k, end, group, work)
     status = 0
     if known and as_known(k, group) and solve_given(system, k, end, group, work):

@@ -16,7 +16,6 @@ from carom.contact.place import drift_of
 from carom.dynamics.acceleration import acceleration
 from carom.dynamics.several_points import (
     accelerations,
-    inverse_masses,
     of_one_body,
     velocities,
 )
@@ -30,18 +29,14 @@ from carom.persistent.step_control import charge_iterations, iterations_left
 
 @kernel
 def pose_forces(system, controls, active, k, state, group, work):
-    """Write W, u, c = du/dt without contact forces, and the direction of slip, of the k points of the group."""
-    if (
-        of_one_body(system, k, group.points[0])
-        and system.bodies[group.points[0][0].a].ballistic == 1
-    ):
-        b = group.points[0][0].a
-        free_rates(system.bodies[b], system.gravity, state[b], work.stages[0][b].rate)
+    """Write u, c = du/dt without contact forces, and the direction of slip, of the k points of the group."""
+    b, rates = group.points[0][0].a, work.stages[work.stages.shape[0] - 1]
+    if of_one_body(system, k, group.points[0]) and system.bodies[b].ballistic == 1:
+        free_rates(system.bodies[b], system.gravity, state[b], rates[b].rate)
     else:
-        acceleration(system, state, active, work, work.stages[0])
-    inverse_masses(system, k, group.points[0], state, work, group.m[0])
+        acceleration(system, state, active, work, rates)
     velocities(k, group.points[0], state, group.v[U])
-    accelerations(k, group.points[0], state, work.stages[0], group.v[C])
+    accelerations(k, group.points[0], state, rates, group.v[C])
     for i in range(k):
         closed_point = group.closed[i]
         contact = system.contacts[closed_point.contact]

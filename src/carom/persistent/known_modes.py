@@ -17,9 +17,10 @@ import math
 from carom._compiled.decorators import kernel
 from carom.friction import lu
 from carom.friction.layout import SLIDING
-from carom.geometry.rotation import cross, rotate, rotate_back
+from carom.geometry.rotation import cross
 from carom.impact.workspace import OLD, C, P
 from carom.kinematics.contact_point import contact_motion
+from carom.kinematics.rows import inverse_inertia, symmetric_times
 
 # weight of S; number of corrections of the forces; their error, relative to the accelerations without forces
 EPS, CORRECTIONS, FITS = 1e-5, 12, 1e-12
@@ -55,30 +56,74 @@ def solve_given(system, k, state, group, work):
     """
     A, L, rows, x = group.m[1], group.cone.matrix, group.cone.active, group.v[OLD]
     b = group.points[0][0].a
-    p, c, motion, body = group.v[P], group.v[C], work.body[b].motion, system.bodies[b]
-    n, push = write_rows(system, k, state, group), 0.0
-    for row in range(3 * k):
-        p[row], push = 0.0, max(push, abs(c[row]))
+    inverse = inverse_inertia(system.bodies[b], state[b].Q)
+    n, push = write_rows(system, inverse, k, group), largest_acceleration(k, group)
     for i in range(n):
         for j in range(n):
             A[i, j] = L[i, j] = dot(group.rows[0, i], group.rows[1, j])
-        L[i, i] += EPS * scale_of(body, state, group.points[0][rows[i] // 3])
+        L[i, i] += EPS * scale_of(system.bodies[b].mass, inverse, group.points[0][rows[i] // 3])
     lu.factor(L, n, group.cone.pivot, 0.0)
-    for r in range(6):
-        motion[r] = 0.0
+    forget_forces(k, group, work.body[b].motion)
     for _ in range(CORRECTIONS):
-        wrong = 0.0
-        for i in range(n):
-            x[i] = -c[rows[i]] - dot(group.rows[0, i], motion)
-            wrong = max(wrong, abs(x[i]))
-        if wrong <= FITS * push:
+        if not missed(n, group, work.body[b].motion) > FITS * push:
             return obeys(system, k, push, group, work)
         lu.substitute(L, n, group.cone.pivot, x)
-        for i in range(n):
-            add_force(system, k, group, rows[i], x[i])
-            for r in range(6):
-                motion[r] += group.rows[1, i, r] * x[i]
+        add_forces(system, k, n, group, work.body[b].motion)
     return False
+
+
+@kernel
+def solve_as_known(system, k, state, group, work):
+    """Take the forces in P if they satisfy the given rows, as those of this state do; else solve for them."""
+    b, rows, x, p = group.points[0][0].a, group.cone.active, group.v[OLD], group.v[P]
+    motion = work.body[b].motion
+    n = write_rows(system, inverse_inertia(system.bodies[b], state[b].Q), k, group)
+    push = largest_acceleration(k, group)
+    for i in range(n):
+        x[i] = p[rows[i]]
+    forget_forces(k, group, motion)
+    add_forces(system, k, n, group, motion)
+    if not missed(n, group, motion) > FITS * push:
+        return obeys(system, k, push, group, work)
+    return solve_given(system, k, state, group, work)
+
+
+@kernel
+def largest_acceleration(k, group):
+    """Return the greatest acceleration of the points without their forces."""
+    push = 0.0
+    for row in range(3 * k):
+        push = max(push, abs(group.v[C][row]))
+    return push
+
+
+@kernel
+def forget_forces(k, group, motion):
+    """Zero the forces, and the acceleration that they give."""
+    for row in range(3 * k):
+        group.v[P][row] = 0.0
+    for r in range(6):
+        motion[r] = 0.0
+
+
+@kernel
+def missed(n, group, motion):
+    """Write what is missing in each given row; return the greatest."""
+    x, wrong = group.v[OLD], 0.0
+    for i in range(n):
+        x[i] = -group.v[C][group.cone.active[i]] - dot(group.rows[0, i], motion)
+        wrong = max(wrong, abs(x[i]))
+    return wrong
+
+
+@kernel
+def add_forces(system, k, n, group, motion):
+    """Add forces along the given rows, and the acceleration that they give."""
+    x = group.v[OLD]
+    for i in range(n):
+        add_force(system, k, group, group.cone.active[i], x[i])
+        for r in range(6):
+            motion[r] += group.rows[1, i, r] * x[i]
 
 
 @kernel
@@ -101,11 +146,10 @@ def turning_axis(point, turns, d):
 
 
 @kernel
-def write_rows(system, k, state, group):
+def write_rows(system, inverse, k, group):
     """Write the given rows, and the motions from forces along them; return their number."""
     n, points = 0, group.points[0]
-    body, q = system.bodies[points[0].a], state[points[0].a].Q
-    J = body.inertia
+    g = 1.0 / system.bodies[points[0].a].mass
     for i in range(k):
         point, d, turns = points[i], group.heading[i], group.closed[i].turns
         r, E = point.arm_a, point.axes
@@ -124,10 +168,9 @@ def write_rows(system, k, state, group):
                 t = cross(r[0], r[1], r[2], Y[0], Y[1], Y[2])
                 if a == 0:
                     t = with_turning(system, k, i, t, group)
-            t = rotate_back(q[0], q[1], q[2], q[3], t[0], t[1], t[2])
-            t = rotate(q[0], q[1], q[2], q[3], t[0] / J[0], t[1] / J[1], t[2] / J[2])
+            t = symmetric_times(inverse, t[0], t[1], t[2])
             for b in range(3):
-                Y[b], Y[3 + b] = Y[b] / body.mass, t[b]
+                Y[b], Y[3 + b] = g * Y[b], t[b]
             group.cone.active[n], n = 3 * i + a + (1 if turns > 0 else 0), n + 1
     return n
 
@@ -151,14 +194,15 @@ def dot(a, b):
 
 
 @kernel
-def scale_of(body, state, point):
-    """Return a third of the trace of W of a point."""
-    q, J, r = state[point.a].Q, body.inertia, point.arm_a
+def scale_of(mass, inverse, point):
+    """Return a third of the trace of W of a point: 1/m + (tr(J^-1) r^2 - r J^-1 r)/3."""
+    trace, r = inverse[0] + inverse[3] + inverse[5], point.arm_a
     if point.turns > 0:
-        return point.length**2 * (1.0 / J[0] + 1.0 / J[1] + 1.0 / J[2]) / 3.0
-    x, y, z = rotate_back(q[0], q[1], q[2], q[3], r[0], r[1], r[2])
-    turning = (y * y + z * z) / J[0] + (z * z + x * x) / J[1] + (x * x + y * y) / J[2]
-    return 1.0 / body.mass + turning / 3.0
+        return point.length**2 * trace / 3.0
+    a = symmetric_times(inverse, r[0], r[1], r[2])
+    turning = trace * (r[0] * r[0] + r[1] * r[1] + r[2] * r[2])
+    turning -= r[0] * a[0] + r[1] * a[1] + r[2] * a[2]
+    return 1.0 / mass + turning / 3.0
 
 
 @kernel

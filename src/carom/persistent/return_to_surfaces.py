@@ -18,7 +18,7 @@ from carom.contact.place import place_any
 from carom.dynamics.acceleration import STICK
 from carom.dynamics.project import project_position, shift
 from carom.dynamics.several_points import factor, spread_all, substitute, velocities, yields
-from carom.impact.workspace import BACK, P, U
+from carom.impact.workspace import BACK, OLD, P, U
 from carom.kinematics.contact_point import in_axes
 
 DROP = 1e-10  # relative to its row: a smaller pivot is round-off of a redundant row
@@ -62,14 +62,29 @@ def given(group, row):
 
 @kernel
 def factor_given(k, group):
-    """Write the factor of W for the given rows."""
-    n, L = 3 * k, group.m[1]
+    """Write the given rows and the factor of W for them; return their number."""
+    n, L, rows = 0, group.m[1], group.cone.active
+    for i in range(3 * k):
+        if given(group, i):
+            rows[n], n = i, n + 1
     for i in range(n):
-        row = given(group, i)
         for j in range(n):
-            both = row and given(group, j)
-            L[i, j] = group.m[0][i, j] if both else 1.0 if i == j else 0.0
+            L[i, j] = group.m[0][rows[i], rows[j]]
     factor(n, DROP, L)
+    return n
+
+
+@kernel
+def solve_given(k, n, group, x):
+    """Replace x, in the given rows, by the impulses that remove it; zero the others."""
+    rows, y = group.cone.active, group.v[OLD]
+    for i in range(n):
+        y[i] = -x[rows[i]]
+    substitute(n, group.m[1], y)
+    for i in range(3 * k):
+        x[i] = 0.0
+    for i in range(n):
+        x[rows[i]] = y[i]
 
 
 @kernel
@@ -78,22 +93,18 @@ def onto_surfaces(system, active, k, count, state, group, work):
     place_closed(system, k, state, group, group.points[1], work)
     if not mark_rows(system, active, k, group):
         return
-    n, L = 3 * k, group.m[1]
-    factor_given(k, group)
-    x, total = group.v[U], group.v[BACK]
+    n, x, total = factor_given(k, group), group.v[U], group.v[BACK]
     known = False
-    for i in range(n):
+    for i in range(3 * k):
         x[i] = total[i] if given(group, i) else 0.0
         total[i], known = 0.0, known or x[i] != 0.0
     for _ in range(11):
         if not known:
             if errors(system, active, k, state, group, x, work):
                 break
-            substitute(n, L, x)
-            for i in range(n):
-                x[i] = -x[i] if given(group, i) else 0.0
+            solve_given(k, n, group, x)
         known = False
-        for i in range(n):
+        for i in range(3 * k):
             total[i] += x[i]
         spread_all(system, k, group.points[0], x, count, group.member, work.stage, work)
         for m in range(count):
@@ -105,14 +116,9 @@ def onto_surfaces(system, active, k, count, state, group, work):
 @kernel
 def onto_tangents(system, k, count, state, group, work):
     """Remove the velocities of the bodies of the group in the rows that are given."""
-    x = group.v[U]
-    factor_given(k, group)
+    n, x = factor_given(k, group), group.v[U]
     velocities(k, group.points[0], state, x)
-    for i in range(3 * k):
-        x[i] = -x[i] if given(group, i) else 0.0
-    substitute(3 * k, group.m[1], x)
-    for i in range(3 * k):
-        x[i] = x[i] if given(group, i) else 0.0
+    solve_given(k, n, group, x)
     spread_all(system, k, group.points[0], x, count, group.member, work.stage, work)
     for m in range(count):
         b = group.member[m]

@@ -16,7 +16,7 @@ from carom.dynamics.contact_impulse import (
 )
 from carom.dynamics.elements import driven_power
 from carom.dynamics.energy import energies
-from carom.dynamics.several_points import factor, substitute, yields
+from carom.dynamics.several_points import factor, inverse_masses, substitute, yields
 from carom.friction.layout import CONE, SLIDING
 from carom.impact.workspace import BACK, OLD, C, P, U
 from carom.kinematics.contact_point import contact_velocity
@@ -46,6 +46,7 @@ def activate_several(model, data, k, label, horizon):
         data.clocks[0],
         data.records,
     )
+    inverse_masses(system, k, group.points[0], state, work, group.m[0])
     pose_forces(system, controls, active, k, state, group, work)
     judge(model, data, k, horizon)
     new, stay = -1, False
@@ -292,6 +293,7 @@ def first_forces(model, data, label):
     for i in range(k):
         active.points[group.closed[i].active].several = 1
         group.closed[i].stays = 1
+    inverse_masses(system, k, group.points[0], state, work, group.m[0])
     pose_forces(system, controls, active, k, state, group, work)
     status = solve_forces(model, data, k)
     for i in range(k):

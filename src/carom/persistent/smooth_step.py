@@ -36,7 +36,7 @@ from carom.kinematics.contact_point import contact_velocity
 from carom.kinematics.flight import free_rates
 from carom.persistent.finish import finish
 from carom.persistent.forces import solve_forces
-from carom.persistent.known_modes import note_given, rows_of, solve_given
+from carom.persistent.known_modes import note_given, rows_of, solve_as_known, solve_given
 from carom.persistent.return_to_surfaces import onto_surfaces, onto_tangents
 from carom.persistent.step_control import kinetic, unnamed
 
@@ -54,14 +54,10 @@ def smooth_step(model, data, method, k, h):
     u, p = group.v[U], group.v[P]
     if not begin(model, data, k):
         return False
-    stages, friction = method.b.size, 0.0
+    stages, friction = stages_within(method), 0.0
     for s in range(stages):
-        stage, rates = work.stage[b], work.stages[s, b]
-        combine_body(method.A[s], s, h, start[b], work.stages, b, stage)
-        for r in range(3):
-            rates.speed[r], rates.speed[3 + r] = stage.v[r], stage.w[r]
-        for r in range(4):
-            rates.attitude[r] = stage.Q[r]
+        combine_body(method.A[s], s, h, start[b], work.stages, b, work.stage[b])
+        note_velocity(work.stage[b], work.stages[s, b])
         if not add_forces(model, data, k, s):
             return False
         for i in range(k):
@@ -72,14 +68,42 @@ def smooth_step(model, data, method, k, h):
     combine_body(method.b, stages, h, start[b], work.stages, b, end[b])
     if not finish_smoothly(model, data, k, h):
         return False
-    if method.E.shape[0] > 0:
-        work.body[b].bound[:3] = 0.0
-        bound_accelerations_of(work, b, stages)
-        note_miss(system, method.E, h, lasting(model, data, k, h, friction), b, work)
     result.friction += friction
     over = unnamed(system, controls, start, end, friction, 1, group.member)
     result.unnamed = max(result.unnamed, over)
     return True
+
+
+@kernel
+def stages_within(method):
+    """Return the number of stages without one that has no weight, which is at the end of the step."""
+    stages = method.b.size
+    return stages - 1 if method.b[stages - 1] == 0.0 else stages
+
+
+@kernel
+def note_velocity(state, rates):
+    """Write the velocity and the attitude of a body in a stage to its rates."""
+    for r in range(3):
+        rates.speed[r], rates.speed[3 + r] = state.v[r], state.w[r]
+    for r in range(4):
+        rates.attitude[r] = state.Q[r]
+
+
+@kernel
+def note_error(model, data, method, k, h, friction):
+    """Write the error of the step by its stages; a last one at its end has the forces that were found there."""
+    system, group, work = model.system, data.group, data.work
+    b, end, stages = group.member[0], work.trial, method.b.size
+    if stages_within(method) < stages:
+        rates = work.stages[stages - 1, b]
+        note_velocity(end[b], rates)
+        free_rates(system.bodies[b], system.gravity, end[b], rates.rate)
+        spread_all(system, k, group.points[0], group.v[P], 1, group.member, end, work)
+        accelerate(work.body[b].motion, rates.rate)
+    work.body[b].bound[:3] = 0.0
+    bound_accelerations_of(work, b, stages)
+    note_miss(system, method.E, h, lasting(model, data, k, h, friction), b, work)
 
 
 @kernel
@@ -106,7 +130,7 @@ def begin(model, data, k):
         slides = slips or mu == 0.0
         closed_point.stays, group.mu[i] = 1, mu
         group.kind[i] = SLIDING if slides else CONE
-        closed_point.rows = rows_of(active_point.force[0], slides)
+        closed_point.rows = rows_of(active_point.first_force[0], slides)
         heading, part = active_point.heading, 1.0 / speed if slips and speed > still else 0.0
         heading[0], heading[1], active_point.speed = part * u1, part * u2, speed
     return True
@@ -183,7 +207,7 @@ def add_forces(model, data, k, s):
                 group.v[C][3 * i + r] += d[r]
         if not set_direction(active.points[closed_point.active], i, group):
             return False
-    if not solve_given(system, k, state, group, work):
+    if not forces_of_stage(system, active, k, s, group, work):
         if group.closed[k - 1].turns > 0 or (s > 0 and model.controls.order == 0):
             return False
         inverse_masses_of_one(system.bodies[b], k, points, state, group.m[0])
@@ -193,6 +217,18 @@ def add_forces(model, data, k, s):
         spread_all(system, k, points, group.v[P], 1, group.member, state, work)
     accelerate(work.body[b].motion, rates[b].rate)
     return True
+
+
+@kernel
+def forces_of_stage(system, active, k, s, group, work):
+    """Write the forces of stage s by the given rows; the first stage has those of the end of the last step."""
+    if s > 0:
+        return solve_given(system, k, work.stage, group, work)
+    for i in range(k):
+        active_point, q = active.points[group.closed[i].active], 3 * i
+        for r in range(3):
+            group.v[P][q + r] = active_point.first_force[r] if group.closed[i].turns == 0 else 0.0
+    return solve_as_known(system, k, work.stage, group, work)
 
 
 @kernel

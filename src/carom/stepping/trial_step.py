@@ -16,7 +16,7 @@ from carom.model.actions import STRIKE
 from carom.model.allowance import affordable
 from carom.model.controls import LOCATE
 from carom.persistent.contact_step import contact_step
-from carom.persistent.events import GAP, end_forces
+from carom.persistent.events import GAP, end_forces, note_first_forces
 from carom.persistent.joint_events import STOPS
 from carom.persistent.margins import note_due
 from carom.persistent.step_control import plain_step, too_long
@@ -44,6 +44,7 @@ def propose_step(model, data):
     if clock.paused == 1:
         clock.paused = 0
         return
+    note_first_forces(data.active)
     dt = min(search.left, search.pace)
     if model.controls.order > 0:
         dt = min(dt, allowed_step(search.left, data.work))
