@@ -48,7 +48,7 @@ def change_of_velocity(L, start, end):
 
 @kernel
 def bound_of_slip(heading, slip, impulse, h):
-    """Return the error, times the mass [kg m], of friction whose direction turns within a step, h p_t |d' - d|/12.
+    """Return the error, times the mass, of friction whose direction turns within a step: h p_t |d' - d|/12.
 
     A corner about which a body nearly turns changes its direction of slip, though the body does not.
     """
