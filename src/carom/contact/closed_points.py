@@ -208,6 +208,8 @@ def gather_active(system, active, label, state, group, work):
     for i in range(k):
         closed_point = group.closed[i]
         turning = system.contacts[closed_point.contact].turning
+        if active.points[closed_point.active].bounces > 0.0:
+            continue  # impacts have no friction of this kind
         for turns in range(1, 3):
             if turning[turns - 1] > 0.0 and k < group.closed.shape[0]:
                 write_closed(
@@ -248,6 +250,6 @@ def write_closed(c, feature, p, closed_point):
         -1,
         0,
     )
-    closed_point.turns = 0
+    closed_point.turns, closed_point.bounces = 0, 0.0
     for k in range(3):
         closed_point.point[k] = p[k]

@@ -28,6 +28,7 @@ CLOSED_POINT = [
     ("feature", "i8"),
     ("active", "i8"),  # its place among the active points, -1 if it is not active
     ("stays", "i8"),  # 1 if its contact is to persist
+    ("bounces", "f8"),  # time that its bounces would still take
     ("point", "f8", 3),  # point of the core, body axes
     ("rows", "i8"),  # number of rows that the return to the surface uses
     ("stopped", "i8"),  # 1 where slip has stopped within the step

@@ -32,7 +32,7 @@ def begin_point(active_point, contact, c, feature, mode):
     )
     active_point.mode, active_point.next, active_point.rest, active_point.several = mode, mode, 0, 1
     active_point.jams, active_point.due, active_point.lift, active_point.grip = 0, 0, 1.0, 1.0
-    active_point.comes_to_rest, active_point.stop = 0, math.inf
+    active_point.comes_to_rest, active_point.stop, active_point.bounces = 0, math.inf, 0.0
     active_point.turn_stop[0], active_point.turn_stop[1] = math.inf, math.inf
     active_point.heading[0], active_point.heading[1] = 0.0, 0.0
     for k in range(3):
@@ -93,7 +93,7 @@ def copy(a, b):
     b.contact, b.feature, b.body, b.other, b.mode = a.contact, a.feature, a.body, a.other, a.mode
     b.next, b.several, b.rest, b.stop = a.next, a.several, a.rest, a.stop
     b.comes_to_rest, b.jams, b.due, b.lift, b.grip = a.comes_to_rest, a.jams, a.due, a.lift, a.grip
-    b.touches = a.touches
+    b.touches, b.bounces = a.touches, a.bounces
     for k in range(3):
         b.point[k], b.anchor[k], b.force[k] = a.point[k], a.anchor[k], a.force[k]
         for j in range(3):
@@ -107,7 +107,13 @@ def copy(a, b):
 def always_several(contact):
     """Return whether a point of a contact is always stepped as one of several."""
     own = contact.touches == 0 or (contact.touches == 1 and on_half_space(contact))
-    return not own or contact.turning[0] > 0.0 or contact.turning[1] > 0.0
+    return not own or any_turning(contact)
+
+
+@kernel
+def any_turning(contact):
+    """Return whether a contact has rolling or pivoting friction."""
+    return contact.turning[0] > 0.0 or contact.turning[1] > 0.0
 
 
 @kernel

@@ -86,8 +86,14 @@ def bounces_end(contact, rate, g, still, horizon):
     """Return whether the bounces of a contact with exit speed `rate` and acceleration g end by `horizon`."""
     if not (g > 0.0 and rate >= -still):
         return False
+    return rate <= still or time_of_bounces(contact, rate, g) < horizon
+
+
+@kernel
+def time_of_bounces(contact, rate, g):
+    """Return the time 2 u/(g (1 - e)) that bounces take."""
     e = contact.restitution
-    return rate <= still or (e < 1.0 and 2.0 * rate < g * (1.0 - e) * horizon)
+    return 2.0 * rate / (g * (1.0 - e)) if e < 1.0 else math.inf
 
 
 @kernel

@@ -22,10 +22,10 @@ from carom.impact.workspace import BACK, OLD, C, P, U
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.event_rows import begin_event, end_event
 from carom.model.records import OPENS, PERSIST, SLIPS, STICKS
-from carom.persistent.active_set import activate, deactivate, set_anchor
+from carom.persistent.active_set import activate, any_turning, deactivate, set_anchor
 from carom.persistent.forces import pose_forces, solve_forces, take_forces, time_to_stop
 from carom.persistent.jam import jams_among, note_jam
-from carom.persistent.one_point import bounces_end, name_work, spare
+from carom.persistent.one_point import bounces_end, name_work, spare, time_of_bounces
 from carom.persistent.return_to_surfaces import onto_surfaces
 
 LAID = 1e-9  # of the size of a body: the gap of a point that is on its surface
@@ -95,6 +95,8 @@ def judge(model, data, k, horizon):
             if group.closed[i].stays == 0:
                 if bounces_end(contact, u, -a, slow(contact, state), horizon):
                     group.closed[i].stays, more = 1, True
+                    if any_turning(contact) and u > slow(contact, state):
+                        group.closed[i].bounces = time_of_bounces(contact, u, -a)
             elif turn == 0 and not a <= 1e-10 * push:
                 group.closed[i].stays = 0
         if not more:
@@ -273,7 +275,11 @@ def set_modes(model, data, k):
         end_event(system, PERSIST, state, clock, records)
     for i in range(k):
         closed_point = group.closed[i]
-        if closed_point.stays == 0 or closed_point.active >= before:
+        if closed_point.stays == 0:
+            continue
+        lasts = closed_point.bounces > model.controls.rest * model.controls.step
+        active.points[closed_point.active].bounces = closed_point.bounces if lasts else 0.0
+        if closed_point.active >= before:
             continue
         active_point, mode = active.points[closed_point.active], mode_of(system, i, state, group)
         if mode == STICK:  # from where it has slid to, before the impact

@@ -168,9 +168,11 @@ def accept_step(model, data):
 @inlined
 def accept(data, search):
     """Make the trial state the present one, and add the work done in the step."""
-    now, trial, clock = data.state, data.work.trial, data.clocks[0]
+    now, trial, clock, active = data.state, data.work.trial, data.clocks[0], data.active
     for b in range(now.shape[0]):
         copy_state(trial[b], now[b])
+    for i in range(active.count[0]):
+        active.points[i].bounces = max(0.0, active.points[i].bounces - search.dt)
     before = clock.now
     clock.spent += search.dt
     clock.now = clock.begin + clock.spent

@@ -49,7 +49,7 @@ def propose_step(model, data):
     if model.controls.order > 0:
         dt = min(dt, allowed_step(search.left, data.work))
     if data.active.count[0] > 0:
-        dt = until_stop(model.controls, data.active, dt, clock)
+        dt = until_bounces_end(data.active, until_stop(model.controls, data.active, dt, clock))
     search.dt, search.cuts, search.again, search.active = dt, 0, 0, 0
     search.effort = clock.effort
     search.eager = 1 if clock.in_step < 20 else 0
@@ -67,6 +67,15 @@ def until_stop(controls, active, dt, clock):
     # except if stops follow each other without end, or the difference is round-off of the step
     inside = first > controls.rest * dt and first < (1.0 - 1e-12) * dt
     return first if inside and clock.in_step < 20 else dt
+
+
+@inlined
+def until_bounces_end(active, dt):
+    """Return dt, or the time at which rolling or pivoting friction of an active point begins."""
+    for i in range(active.count[0]):
+        if active.points[i].bounces > 0.0:
+            dt = min(dt, active.points[i].bounces)
+    return dt
 
 
 @inlined
