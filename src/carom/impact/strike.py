@@ -14,7 +14,7 @@ from carom.dynamics.forces import potential_energy
 from carom.dynamics.project import project_velocity
 from carom.impact import layout
 from carom.impact.driven import BLOCKED, blocked, driven_work
-from carom.impact.effective_restitution import effective_restitution
+from carom.impact.effective_restitution import count_blow, effective_restitution
 from carom.impact.equal_contacts import as_one
 from carom.impact.layer import traverse
 from carom.impact.record import write_impact
@@ -132,12 +132,12 @@ def strike_one(model, data, method, c):
     system, controls = model.system, model.controls
     active, state, work, clock = data.active, data.state, data.work, data.clocks[0]
     contact, hit, point = system.contacts[c], work.hit[0], work.point[0]
-    hit.restitution = effective_restitution(contact, active.contact_states[c])
     hit.out[layout.STILL] = slow(contact, state)
     if blocked(system, point, hit.W[0, 0]):
         hit.code = BLOCKED
         return
-    active.contact_states[c].blows += 1
+    count_blow(system, controls, contact, active.contact_states[c], -hit.u[0], clock.now)
+    hit.restitution = effective_restitution(contact, active.contact_states[c])
     if collide(method, controls, contact, hit, work.history) != layout.OK:
         hit.code = IMPACT_FAILED
         return

@@ -10,7 +10,7 @@ from carom.contact.gap import slow, speed_of
 from carom.dynamics.contact_impulse import add_velocity, spread
 from carom.dynamics.several_points import inverse_masses, velocities
 from carom.impact.driven import BLOCKED, blocked
-from carom.impact.effective_restitution import effective_restitution
+from carom.impact.effective_restitution import count_blow, effective_restitution
 from carom.impact.layout import WEDGED
 from carom.impact.multiple.layout import OK, SEQUENTIAL, CornerContacts, MultipleSettings
 from carom.impact.multiple.resolve import resolve_contacts
@@ -81,6 +81,7 @@ def strike_several(model, data, c, k):
     hit, u = work.hit[0], group.v[U]
     inverse_masses(system, k, group.points[0], state, work, group.m[0])
     velocities(k, group.points[0], state, u)
+    count_blows(model, data, k)
     for i in range(k):
         contact = system.contacts[group.closed[i].contact]
         if abs(u[3 * i]) <= slow(contact, state):
@@ -108,7 +109,6 @@ def strike_several(model, data, c, k):
     if passage.code != OK or passage.left < 0:
         hit.code = IMPACT_FAILED
         return
-    count_blows(active, k, group)
     P = multiple.result.impulse
     for i in range(k):
         n, t1, t2 = P[3 * i], P[3 * i + 1], P[3 * i + 2]
@@ -145,14 +145,19 @@ def stop_round_off(system, b, most, state):
 
 
 @kernel
-def count_blows(active, k, group):
+def count_blows(model, data, k):
     """Count the impact for each contact that has a striking point."""
-    last = -1
+    system, group, last, now = model.system, data.group, -1, data.clocks[0].now
     for i in range(k):
-        c = group.closed[i].contact
-        if group.v[U][3 * i] < 0.0 and c != last:
-            active.contact_states[c].blows += 1
-            last = c
+        c, approach = group.closed[i].contact, 0.0
+        if c == last:
+            continue
+        for j in range(i, k):
+            if group.closed[j].contact == c:
+                approach = max(approach, -group.v[U][3 * j])
+        contact, contact_state, last = system.contacts[c], data.active.contact_states[c], c
+        if approach > slow(contact, data.state):
+            count_blow(system, model.controls, contact, contact_state, approach, now)
 
 
 @kernel

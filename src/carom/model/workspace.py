@@ -14,7 +14,8 @@ CONTACT_STATE = [
     ("near", "i8"),  # 1 if the last event concerns it: it is checked before the next step
     ("jams", "i8"),  # 1 if an active point of it jams: an impact without collision must follow
     ("leaving", "i8"),  # 1 if the body lifts off without speed: it may touch at the start
-    ("blows", "i8"),  # impacts in this step
+    ("blows", "i8"),  # impacts in a row, after low bounces
+    ("struck", "f8"),  # time of the last
     ("step", "i8"),  # last step in which the two were near each other, plus 1
 ]
 

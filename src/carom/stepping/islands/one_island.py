@@ -22,7 +22,6 @@ def begin_single(system, active, now, clocks, work, start):
     if start.state.shape[0] == 0:  # the step is never repeated in another way
         return
     for c in range(active.contact_states.shape[0]):
-        active.contact_states[c].blows = 0
         start.contact_states[c] = active.contact_states[c]
     for b in range(now.shape[0]):
         copy_state(now[b], start.state[b])

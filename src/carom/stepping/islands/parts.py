@@ -44,7 +44,6 @@ def begin_step(system, active, now, length, clocks, work, islands):
         if contact.other >= 0:
             contact.other = local(islands, contact.other)
         islands.contact_states[slot] = active.contact_states[c]
-        contact_state.blows = 0
         if contact_state.step != clocks[0].step:  # in the last step nothing was near
             contact_state.leaving = 0
     plan.kept = 0
