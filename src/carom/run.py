@@ -20,7 +20,7 @@ from carom.model.data import Data, Model
 from carom.model.method import IMPLICIT, THREE_FIELD
 from carom.options import Options
 from carom.persistent.joint_events import first_modes
-from carom.results.accuracy import judge
+from carom.results.accuracy import inaccurate
 from carom.results.solution import Solution
 from carom.scene.all_pairs import PairTable
 from carom.scene.joints import Joint
@@ -93,7 +93,9 @@ class Run:
             rtol=self.tolerances[0] if self.tolerances else 0.0,
             atol=self.tolerances[1] if self.tolerances else 0.0,
         )
-        self.begin()
+        self.make_arrays()
+        check_answers(scene)
+        self.start()
 
     def make_grid(self) -> Grid:
         """Return the steps of the run; a resumed run has the steps that it had, and then more."""
@@ -120,11 +122,9 @@ class Run:
         grid = make_grid(duration, longest, 1, duration / STATES)
         return grid._replace(save_every=grid.save_every * save_every)
 
-    def begin(self) -> None:
-        """Make all arrays that the run changes, and check the initial state."""
-        self.compiled = self.at_start
-        scene, options, system = self.scene, self.options, self.compiled.system
-        later = self.compiled.later
+    def make_arrays(self) -> None:
+        """Make all arrays that the run changes."""
+        options, system, later = self.options, self.compiled.system, self.compiled.later
         self.now = self.compiled.start
         self.active = r.new_active_set(system)
         self.work = r.new_work(system, self.method.b.size)
@@ -151,23 +151,21 @@ class Run:
                     "the initial positions must be near positions that satisfy the joints, got positions from "
                     f"which Newton's method leaves an error of {error:.3g}; start nearer"
                 )
-        check_answers(scene)
-        check_start(scene, self.compiled, self.now, self.work, options)
-        check_stops(scene, self.compiled, self.now, self.work, options)
         if system.contacts.size or later is not None:
             self.work.body["label"] = system.bodies["component"]
+
+    def start(self) -> None:
+        """Check the initial state, and save it."""
+        initial = self.scene, self.compiled, self.now, self.work, self.options
+        check_start(*initial)
+        check_stops(*initial)
         self.note_modes()
         self.save_now()
 
     def note_modes(self) -> None:
         """Note which joints with friction stick at the start."""
-        if not self.compiled.system.bodies["ballistic"].all():
+        if self.compiled.system.relations.there:
             first_modes(self.compiled.system, self.active, self.now, self.work)
-
-    def renew(self) -> None:
-        """Make all arrays that the run changes once again; nothing is saved."""
-        self.begin()
-        self.clock[:] = r.new_clock()
 
     @property
     def settings(self) -> dict:
@@ -302,7 +300,8 @@ class Run:
 
     def judged(self, status: Status) -> Status:
         """Return the status at the end of the run, after the check of energy, gaps and contact problems."""
-        return judge(self.watch[0]) if status is Status.SUCCESS else status
+        bad = status is Status.SUCCESS and inaccurate(self.watch[0])
+        return Status.INACCURATE if bad else status
 
     def go_back(self) -> None:
         """Return to the start of the step in which the run was interrupted."""

@@ -241,7 +241,7 @@ def test_runs_of_an_ensemble_do_not_know_of_each_other(monkeypatch):
     again = Again(scene, settings, find_targets(scene, speeds))
     numbers = []
     for k in range(3):
-        run = again.start({name: values[k] for name, values in speeds.items()})
+        run = again.start(speeds, k)
         run.go_on(100)
         numbers.append([run.pairs.body.tolist(), run.pairs.other.tolist(), run.clock.struck[0]])
     assert numbers[0] == numbers[2]

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from carom.control.conditions import Condition, Look
-from carom.control.snapshot import Snapshot
+from carom.model.kept import Snapshot
 from carom.model.records import room_for_one
 from carom.results.solution import Solution
 from carom.results.state import SystemState

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from types import SimpleNamespace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from carom.model.contact_rows import touching_pairs
 from carom.results.ledger import Ledger
-from carom.status import Status
 from carom.stepping.energy_balance import (
     ALL,
     BOUNCES,
@@ -51,23 +49,16 @@ _WHAT = {
 }
 
 
-def numbers(watch) -> SimpleNamespace:
-    """Return the fields of a record as Python numbers, because reading them one by one is slow."""
-    return SimpleNamespace(**dict(zip(watch.dtype.names, watch.item())))
+def beyond(i: int, watch: np.record | np.ndarray, times: float = 1.0):
+    """Return whether the energy error of a kind exceeds `times` the tolerance; for one record, or an array."""
+    allowed = watch["tolerance"] * watch["exchanged"] * times + ROUND_OFF * watch["size"]
+    return ~(np.abs(watch["amount"][..., i]) <= allowed)
 
 
-def beyond(i: int, watch: SimpleNamespace | np.record, times: float = 1.0) -> bool:
-    """Return whether the energy error of a kind exceeds `times` the tolerance."""
-    allowed = watch.tolerance * watch.exchanged * times + ROUND_OFF * watch.size
-    return not abs(watch.amount[i]) <= allowed
-
-
-def judge(watch: np.record) -> Status:
-    """Return SUCCESS or INACCURATE for a run at its end, by its energy, its gaps and its contact problems."""
-    known = numbers(watch)
-    off = beyond(ALL, known, INACCURATE) or not known.depth <= TOO_DEEP
-    off = off or not known.unsolved <= TOO_POOR * known.speed
-    return Status.INACCURATE if off else Status.SUCCESS
+def inaccurate(watch: np.record | np.ndarray):
+    """Return whether runs are no success by energy, gaps and contact problems; for one record, or an array."""
+    solved = watch["unsolved"] <= TOO_POOR * watch["speed"]
+    return beyond(ALL, watch, INACCURATE) | ~(watch["depth"] <= TOO_DEEP) | ~solved
 
 
 def sentences(
@@ -142,13 +133,12 @@ def watched(t, ledger: Ledger, given, tolerance: float) -> np.record:
     return watch
 
 
-def energy_error(watch: np.record) -> float:
-    """Return the largest energy error as a fraction of the largest energy exchanged; round-off counts as 0."""
-    known = numbers(watch)
-    amount, of = abs(float(known.amount[ALL])), known.exchanged
-    if amount <= ROUND_OFF * known.size:
-        return 0.0
-    return amount / of if of > 0.0 else np.inf
+def energy_error(watch: np.ndarray) -> np.ndarray:
+    """Return largest energy errors as fractions of the largest energies exchanged; round-off counts as 0."""
+    amount, of = np.abs(watch["amount"][..., ALL]), watch["exchanged"]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        error = np.where(of > 0.0, amount / of, np.inf)
+    return np.where(amount <= ROUND_OFF * watch["size"], 0.0, error)
 
 
 def taken_whole(stats: dict) -> tuple[str, ...]:

@@ -107,10 +107,14 @@ def intervals(solution) -> ContactTable:
 
 
 def to_scene_axes(Q: np.ndarray, to_principal: np.ndarray) -> np.ndarray:
-    """Return attitudes (T, N, 4) of the scene's body axes, from those of the principal axes."""
-    if np.all(to_principal == np.array([1.0, 0.0, 0.0, 0.0])):
+    """Return attitudes (T, N, 4) of the scene's body axes, from those of the principal axes.
+
+    `to_principal` has a row for each body, or one for each body and state.
+    """
+    same = np.all(to_principal == np.array([1.0, 0.0, 0.0, 0.0]), axis=-1, keepdims=True)
+    if np.all(same):
         return Q.copy()
-    return quaternion.multiply(Q, quaternion.conjugate(to_principal)[None])
+    return np.where(same, Q, quaternion.multiply(Q, quaternion.conjugate(to_principal)))
 
 
 def first_vertices(contacts) -> np.ndarray:

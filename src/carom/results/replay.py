@@ -14,7 +14,7 @@ import numpy as np
 
 from carom.dynamics.reactions import saved_turns
 from carom.model import records as r
-from carom.model.kept import Kept
+from carom.model.kept import Snapshot
 from carom.results.dense_output import curves
 from carom.status import Status
 from carom.stepping.grid import part_of_grid
@@ -43,7 +43,7 @@ class Replay:
         self.turns = np.zeros((len(written.state), len(relations.coordinates)))
         if self.turns.size:
             saved_turns(self.run.compiled.system, written.series.t, written.state, self.turns)
-        self.kept = Kept(self.run.memory)
+        self.first = Snapshot(self.run)
         self.size = self.run.bodies["extent"]
         rtol, atol = self.run.tolerances or (RTOL, RTOL * float(np.min(self.size)))
         self.allowed = FACTOR * (atol + rtol * self.size)
@@ -83,11 +83,7 @@ class Replay:
     def go(self, i: int, until: float) -> bool:
         """Continue from saved state i to a time; return whether it was reached."""
         run, begin = self.run, self.solution.t[i]
-        if self.kept.is_of(run.memory):
-            self.kept.restore()
-        else:  # contacts have been added, or room for them
-            run.renew()
-            self.kept = Kept(run.memory)
+        self.first.put_back()
         run.now[:] = self.states[i]
         run.clock["now"] = begin
         if self.turns.size:

@@ -79,7 +79,7 @@ def check_gap(contact: Contact) -> None:
 
 def check_overlap(what: str, body: Body, other: HalfSpace | StaticBody | Body) -> None:
     """Refuse a pair that overlaps at the start by more than rounding; `what` is its name."""
-    if _far(body, other):
+    if far(body, other, body.position, place(other)):
         return
     depth, normal = overlap(body, other)
     if not depth <= 0.0:
@@ -90,14 +90,21 @@ def check_overlap(what: str, body: Body, other: HalfSpace | StaticBody | Body) -
         )
 
 
-def _far(body: Body, other: HalfSpace | StaticBody | Body) -> bool:
-    """Return whether the bounding ball of a body does not reach the other: then no gap is computed."""
+def place(part: HalfSpace | StaticBody | Body) -> np.ndarray:
+    """Return the position of a body, or a point of a half-space."""
+    return part.point if isinstance(part, HalfSpace) else part.position
+
+
+def far(body: Body, other: HalfSpace | StaticBody | Body, x: np.ndarray, y: np.ndarray):
+    """Return whether the bounding ball of a body at x (..., 3) does not reach the other at y (..., 3).
+
+    Then no gap is computed.
+    """
     assert body.shape is not None
     if isinstance(other, HalfSpace):
-        return float((body.position - other.point) @ other.normal) > body.shape.size
+        return (x - y) @ other.normal > body.shape.size
     assert other.shape is not None
-    apart = body.position - other.position
-    return float(apart @ apart) > (body.shape.size + other.shape.size) ** 2
+    return np.sum((x - y) ** 2, axis=-1) > (body.shape.size + other.shape.size) ** 2
 
 
 def overlap(body: Body, other: HalfSpace | StaticBody | Body) -> tuple[float, np.ndarray]:

@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
-import math
+from typing import NamedTuple
 
 import numpy as np
 
+from carom._compiled.record_arrays import table
 from carom.model import records as r
-from carom.results.accuracy import energy_error
+from carom.model.arrays import STATE
+from carom.results.accuracy import energy_error, inaccurate, sentences
 from carom.results.assemble import to_scene_axes
 from carom.run import Run
+from carom.scene.all_pairs import PairTable
+from carom.scene.scene import Scene
 from carom.status import Status
+from carom.stepping.energy_balance import WATCH
 
 #: status of runs that have not been made, and of runs that could not start
 PENDING, REFUSED = -1, -2
@@ -49,24 +54,71 @@ def no_outcomes(runs: int, bodies: int) -> np.ndarray:
     return rows
 
 
-def outcome(run: Run, status: Status) -> tuple:
-    """Return the row of a run at its end, in the order of `outcome_type`."""
-    now, clock, watch = run.now, r.as_numbers(run.clock), run.watch[0]
-    struck, still = clock["struck"], clock["still"]
-    return (
-        int(status),
-        clock["now"],
-        still if math.isfinite(still) else math.nan,
-        struck,
-        float(run.records.impact["time"][:struck].min()) if struck else math.nan,
-        clock["kinetic"],
-        -clock["impacts"],
-        -clock["friction"],
-        -clock["bounces"],
-        clock["loads"],
-        energy_error(watch),
-        now["x"],
-        to_scene_axes(now["Q"][None], run.compiled.to_principal)[0],
-        now["v"],
-        now["w"],
-    )
+class End(NamedTuple):
+    """What a run has left behind when the next one begins. `write` makes rows of many of them together."""
+
+    status: Status
+    first_impact: float
+    state: bytes  # (N,) STATE
+    clock: bytes  # (1,) CLOCK
+    watch: bytes  # (1,) WATCH
+    to_principal: np.ndarray
+    scene: Scene
+    pairs: PairTable
+
+
+def end_of(run: Run, status: Status) -> End:
+    """Return what a run that ended with this status leaves behind."""
+    struck = run.clock["struck"][0]
+    times = run.records.impact["time"][:struck]
+    return End(
+        status, np.minimum.reduce(times) if struck else np.nan,
+        run.now.tobytes(), run.clock.tobytes(), run.watch.tobytes(),
+        run.to_principal, run.scene, run.pairs,
+    )  # fmt: skip
+
+
+def write(ends: dict[int, End], rows: np.ndarray) -> dict[int, str]:
+    """Write the rows of runs, by number; return a message for each run that is no success."""
+    at, found = list(ends), list(ends.values())
+    now = _joined(STATE, [end.state for end in found]).reshape(len(at), -1)
+    clock = _joined(r.CLOCK, [end.clock for end in found])
+    watch = _joined(WATCH, [end.watch for end in found])
+    status = np.array([end.status for end in found], dtype=int)
+    done = np.flatnonzero(status == Status.SUCCESS)
+    status[done[inaccurate(watch[done])]] = Status.INACCURATE
+    to_principal = np.array([end.to_principal for end in found]).reshape(*now.shape, 4)
+    columns = {
+        "status": status,
+        "t": clock["now"],
+        "rest_time": np.where(np.isfinite(clock["still"]), clock["still"], np.nan),
+        "impacts": clock["struck"],
+        "first_impact": [end.first_impact for end in found],
+        "kinetic_energy": clock["kinetic"],
+        "impact_loss": -clock["impacts"],
+        "friction_loss": -clock["friction"],
+        "bounce_loss": -clock["bounces"],
+        "load_work": clock["loads"],
+        "energy_error": energy_error(watch),
+        "position": now["x"],
+        "orientation": to_scene_axes(now["Q"], to_principal),
+        "velocity": now["v"],
+        "angular_velocity": now["w"],
+    }
+    for name, values in columns.items():
+        rows[name][at] = values
+    return {
+        at[i]: _message(Status(status[i]), found[i], clock["now"][i], watch[i])
+        for i in np.flatnonzero(status != Status.SUCCESS)
+    }
+
+
+def _joined(fields: list, rows: list[bytes]) -> np.ndarray:
+    """Return rows that were copied as bytes, which takes a tenth of the time of a copy by fields."""
+    return np.frombuffer(b"".join(rows), table(fields, 0).dtype)
+
+
+def _message(status: Status, end: End, reached: float, watch: np.record) -> str:
+    if status.ended:
+        return " ".join((status.message, *sentences(watch, end.scene, end.pairs)))
+    return f"{status.message} (reached t = {reached:.9g} s)"

@@ -11,7 +11,7 @@ import numpy as np
 
 from carom.geometry.attitude import ROUNDED
 from carom.scene.bodies import Body
-from carom.scene.contacts import Contact, check_overlap
+from carom.scene.contacts import Contact, check_overlap, far, place
 from carom.scene.scene import Scene
 from carom.scene.values import keep
 
@@ -137,7 +137,7 @@ def changed(scene: Scene, targets: list[Target], values: dict[str, np.ndarray]) 
             if target.field == "inertia" and value.ndim == 1:
                 value = np.diag(value)
             if target.field == "orientation":
-                value = value / np.linalg.norm(value)
+                value = units(value)
             keep(part, **{target.field: float(value) if value.ndim == 0 else value})
         else:
             assert isinstance(part, Contact)
@@ -150,10 +150,26 @@ def changed(scene: Scene, targets: list[Target], values: dict[str, np.ndarray]) 
     return scene
 
 
+def units(q: np.ndarray) -> np.ndarray:
+    """Return q (..., 4) divided by its length, each with the same bits as if it were alone."""
+    return q / np.sqrt(np.vecdot(q, q))[..., None]
+
+
+def may_overlap(scene: Scene, targets: list[Target], values: dict[str, np.ndarray]) -> np.ndarray:
+    """Return for which runs (K,) bodies may penetrate each other at the start, so that this is checked."""
+    moved = {target.part for target in targets if target.field in POSES}
+    places = {target.part: values[target.name] for target in targets if target.field == "position"}
+    runs = len(next(iter(values.values())))
+    near = np.full(runs, bool(moved) and scene.contact_default is not None)
+    for contact in scene.contacts:
+        if moved & {contact.body.name, contact.other.name}:
+            x, y = (places.get(part.name, place(part)) for part in (contact.body, contact.other))
+            near |= ~far(contact.body, contact.other, x, y)
+    return near
+
+
 def check_places(scene: Scene, targets: list[Target], values: dict[str, np.ndarray]) -> None:
-    """Refuse bodies that penetrate each other at the start, if poses vary."""
-    if not any(target.field in POSES for target in targets):
-        return
+    """Refuse bodies that penetrate each other at the start of a run in which poses vary."""
     if scene.contact_default is not None:
         changed(scene, targets, values)
         return
@@ -162,7 +178,7 @@ def check_places(scene: Scene, targets: list[Target], values: dict[str, np.ndarr
         if target.field in POSES:
             value = np.array(values[target.name])
             if target.field == "orientation":
-                value = value / np.linalg.norm(value)
+                value = units(value)
             body = bodies.get(target.part, scene[target.part])
             bodies[target.part] = replace(body, **{target.field: value})
     for contact in scene.contacts:
