@@ -173,11 +173,7 @@ def constrained_step(tableau, system, active, start, care, h, end, work):
         elif care:
             return_stage(system, stage, work)
         for b in range(stage.shape[0]):
-            speed, attitude = work.stages[s, b].speed, work.stages[s, b].attitude
-            for k in range(3):
-                speed[k], speed[3 + k] = stage[b].v[k], stage[b].w[k]
-            for k in range(4):
-                attitude[k] = stage[b].Q[k]
+            note_velocity(stage[b], work.stages[s, b])
         if s == 0 and keeps and recall(stage, work.stages[0], work):
             applied += h * weight[0] * work.result[0].power
             continue
@@ -226,6 +222,16 @@ def return_to_joints(system, active, state, end, work):
 
 
 @kernel
+def note_velocity(state, rates):
+    """Write the velocity of a body in a stage, and the rate of its attitude, dQ/dt = 1/2 (0, w) Q."""
+    speed, turn, v, w, Q = rates.speed, rates.turn, state.v, state.w, state.Q
+    for k in range(3):
+        speed[k], speed[3 + k] = v[k], w[k]
+    d = multiply(0.0, 0.5 * w[0], 0.5 * w[1], 0.5 * w[2], Q[0], Q[1], Q[2], Q[3])
+    turn[0], turn[1], turn[2], turn[3] = d
+
+
+@kernel
 def node(weights, count):
     """Return the time of a stage within the step, from 0 to 1."""
     total = 0.0
@@ -244,24 +250,22 @@ def combine(weight, count, h, start, stages, out):
 @kernel
 def combine_body(weight, count, h, start, stages, b, out):
     """Write the same for one body."""
-    x0, v0, w0, q = start.x, start.v, start.w, start.Q
-    x, v, w = out.x, out.v, out.w
-    for k in range(3):
-        x[k], v[k], w[k] = x0[k], v0[k], w0[k]
-    q0, q1, q2, q3 = q[0], q[1], q[2], q[3]
+    x, v, w, Q = start.x, start.v, start.w, start.Q
+    x0, x1, x2, v0, v1, v2, w0, w1, w2 = x[0], x[1], x[2], v[0], v[1], v[2], w[0], w[1], w[2]
+    q0, q1, q2, q3 = Q[0], Q[1], Q[2], Q[3]
     for r in range(count):
         a = h * weight[r]
         if a != 0.0:
-            u, rate, p = stages[r, b].speed, stages[r, b].rate, stages[r, b].attitude
-            for k in range(3):
-                x[k] += a * u[k]
-                v[k] += a * rate[k]
-                w[k] += a * rate[3 + k]
-            f = 0.5 * a  # dQ/dt = 1/2 (0, w) Q
-            d = multiply(0.0, f * u[3], f * u[4], f * u[5], p[0], p[1], p[2], p[3])
-            q0, q1, q2, q3 = q0 + d[0], q1 + d[1], q2 + d[2], q3 + d[3]
-    Q = out.Q
-    Q[0], Q[1], Q[2], Q[3] = normalize(q0, q1, q2, q3) if count > 0 else (q0, q1, q2, q3)
+            u, d, c = stages[r, b].speed, stages[r, b].turn, stages[r, b].rate
+            x0, x1, x2 = x0 + a * u[0], x1 + a * u[1], x2 + a * u[2]
+            q0, q1, q2, q3 = q0 + a * d[0], q1 + a * d[1], q2 + a * d[2], q3 + a * d[3]
+            v0, v1, v2 = v0 + a * c[0], v1 + a * c[1], v2 + a * c[2]
+            w0, w1, w2 = w0 + a * c[3], w1 + a * c[4], w2 + a * c[5]
+    if count > 0:
+        q0, q1, q2, q3 = normalize(q0, q1, q2, q3)
+    x, v, w, Q = out.x, out.v, out.w, out.Q
+    x[0], x[1], x[2], v[0], v[1], v[2], w[0], w[1], w[2] = x0, x1, x2, v0, v1, v2, w0, w1, w2
+    Q[0], Q[1], Q[2], Q[3] = q0, q1, q2, q3
 
 
 @kernel

@@ -1,11 +1,11 @@
 """Accelerations at the end of a step, kept for the first stage of the next one.
 
-A last stage without weight is at the end of the step, after the return to the joints. It serves for the estimate
-of the error, and is the first stage of the step that starts there ("first same as last"). Its accelerations are
-kept where they depend on the state alone: without active contacts, and without what `Relations` contains
-(friction in joints, functions of the user, motors, forces along coordinates). They are used if all bodies are
-in that state, bit by bit, and are forgotten when the loop is entered, because loads may be set between its
-calls. Worked out anew they are the same numbers.
+A last stage without weight is at the end of the step, after the return to the joints. It serves for the
+estimate of the error, and is the first stage of the step that starts there ("first same as last"). Its
+accelerations are kept where they depend on the state alone: without active contacts, and without what
+`Relations` contains (friction in joints, functions of the user, motors, forces along coordinates). They are
+used if all bodies are in that state, bit by bit, and are forgotten when the loop is entered, because loads may
+be set between its calls. Worked out anew they are the same numbers.
 """
 
 from __future__ import annotations

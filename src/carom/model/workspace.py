@@ -113,7 +113,11 @@ JOINT_WORK = [
 ]
 
 #: one stage of a Runge-Kutta step, for one body
-STAGE = [("speed", "f8", 6), ("rate", "f8", 6), ("attitude", "f8", 4)]
+STAGE = [
+    ("speed", "f8", 6),  # linear, angular
+    ("turn", "f8", 4),  # rate of the attitude, dQ/dt
+    ("rate", "f8", 6),  # acceleration: linear, angular
+]
 
 #: accelerations of a body in a state (`carom.dynamics.known_end`)
 KNOWN = [*STATE, ("rate", "f8", 6)]

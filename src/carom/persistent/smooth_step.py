@@ -25,6 +25,7 @@ from carom.dynamics.explicit import (
     bound_accelerations_of,
     combine_body,
     copy_state,
+    note_velocity,
     stages_within,
 )
 from carom.dynamics.several_points import (
@@ -77,15 +78,6 @@ def smooth_step(model, data, method, k, h):
     over = unnamed(system, controls, start, end, friction, 1, group.member)
     result.unnamed = max(result.unnamed, over)
     return True
-
-
-@kernel
-def note_velocity(state, rates):
-    """Write the velocity and the attitude of a body in a stage to its rates."""
-    for r in range(3):
-        rates.speed[r], rates.speed[3 + r] = state.v[r], state.w[r]
-    for r in range(4):
-        rates.attitude[r] = state.Q[r]
 
 
 @kernel
