@@ -25,7 +25,7 @@ import math
 import numpy as np
 
 from carom._compiled.decorators import kernel
-from carom.geometry.rotation import multiply, norm
+from carom.geometry.rotation import norm
 from carom.model.workspace import ONE
 
 SAFETY, LEAST, MOST = 0.9, 0.2, 10.0
@@ -75,20 +75,15 @@ def greatest_error(weight, h, L, T, b, work):
     x0, x1, x2, v0, v1, v2, w0, w1, w2 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     q0, q1, q2, q3 = 0.0, 0.0, 0.0, 0.0
     for s in range(weight.size):
-        f, u, a, p = (
-            weight[s],
-            work.stages[s, b].speed,
-            work.stages[s, b].rate,
-            work.stages[s, b].attitude,
-        )
+        f, stage = weight[s], work.stages[s, b]
+        u, d, a = stage.speed, stage.turn, stage.rate
         x0, x1, x2 = x0 + f * u[0], x1 + f * u[1], x2 + f * u[2]
         v0, v1, v2 = v0 + f * a[0], v1 + f * a[1], v2 + f * a[2]
         w0, w1, w2 = w0 + f * a[3], w1 + f * a[4], w2 + f * a[5]
-        d = multiply(0.0, f * u[3], f * u[4], f * u[5], p[0], p[1], p[2], p[3])  # 2 f dQ/dt
-        q0, q1, q2, q3 = q0 + d[0], q1 + d[1], q2 + d[2], q3 + d[3]
+        q0, q1, q2, q3 = q0 + f * d[0], q1 + f * d[1], q2 + f * d[2], q3 + f * d[3]
     displacement = max(
         math.sqrt(x0 * x0 + x1 * x1 + x2 * x2),
-        L * math.sqrt(q0 * q0 + q1 * q1 + q2 * q2 + q3 * q3),
+        2.0 * L * math.sqrt(q0 * q0 + q1 * q1 + q2 * q2 + q3 * q3),  # half of the angle
     )
     rate = max(math.sqrt(v0 * v0 + v1 * v1 + v2 * v2), L * math.sqrt(w0 * w0 + w1 * w1 + w2 * w2))
     return abs(h) * (displacement + T * rate)

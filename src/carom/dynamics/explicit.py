@@ -14,6 +14,7 @@ from carom._compiled.units import unit
 from carom.dynamics.acceleration import accelerations, note_slip_directions
 from carom.dynamics.adapt import forget_misses, note_misses
 from carom.dynamics.joint_friction import stay_stuck
+from carom.dynamics.known_end import keep_end, of_state_alone, recall
 from carom.dynamics.loops import dropped_rows
 from carom.dynamics.project import LOST, project_position, project_velocity
 from carom.dynamics.return_to_surface import return_active, stay_active
@@ -152,25 +153,30 @@ def mark_active(system, active, work):
 def constrained_step(tableau, system, active, start, care, h, end, work):
     """Step the bodies that are joined, loaded or in contact from `result.begin`; the others have reached `end`.
 
-    With `care` the stages return to the joints first, and `pass_round` treats those in singular positions.
-    Return the work of loads, of friction, a status, and the least and the greatest number of rows that stages
-    left out, or nearly left out.
+    With `care` the stages return to the joints first, and `pass_round` treats those in singular positions. A
+    last stage without weight is at the end of the step (`known_end`). Return the work of loads, of friction, a
+    status, and the least and the greatest number of rows that stages left out, or nearly left out.
     """
     A, weight, E, t0 = tableau.A, tableau.b, tableau.E, work.result[0].begin
-    stages, stage = weight.size, work.stage
+    stages, last, stage = weight.size, stages_within(tableau), work.stage
     applied, friction = 0.0, 0.0
     least, most = MANY, 0
-    for s in range(stages):
-        combine(A[s], s, h, start, work.stages, stage)
-        work.result[0].time = t0 + h * node(A[s], s)
-        if care:
+    keeps = last < stages and not care and of_state_alone(system, active)
+    for s in range(last + 1):
+        combine(weight if s == last else A[s], s, h, start, work.stages, stage)
+        work.result[0].time = t0 + h if s == last else t0 + h * node(A[s], s)
+        if s == last:
+            if not return_to_joints(system, active, stage, end, work):
+                return applied, friction, CONSTRAINTS_LOST, least, most
+            if s == stages:
+                break
+        elif care:
             return_stage(system, stage, work)
         for b in range(stage.shape[0]):
-            speed, attitude = work.stages[s, b].speed, work.stages[s, b].attitude
-            for k in range(3):
-                speed[k], speed[3 + k] = stage[b].v[k], stage[b].w[k]
-            for k in range(4):
-                attitude[k] = stage[b].Q[k]
+            note_velocity(stage[b], work.stages[s, b])
+        if s == 0 and keeps and recall(stage, work.stages[0], work):
+            applied += h * weight[0] * work.result[0].power
+            continue
         accelerations(system, stage, active, work, work.stages[s])
         dropped = dropped_rows(system, SINGULAR)
         least, most = min(least, dropped), max(most, dropped)
@@ -178,8 +184,8 @@ def constrained_step(tableau, system, active, start, care, h, end, work):
             pass_round(system, stage, active, end, work, work.stages[s])
         applied += h * weight[s] * work.result[0].power
         friction += h * weight[s] * work.result[0].drag
-    combine(weight, stages, h, start, work.stages, stage)
-    work.result[0].time = t0 + h
+    if keeps:
+        keep_end(stage, work.stages[last], work)
     if system.contacts.shape[0] > 0 or E.shape[0] > 0:
         bound_accelerations(work, stages)
     if E.shape[0] > 0:
@@ -187,13 +193,42 @@ def constrained_step(tableau, system, active, start, care, h, end, work):
     for b in range(stage.shape[0]):
         if steps(system, b, work):
             copy_state(stage[b], end[b])
-    if not (project_position(system, end, True, 1e-14, work) <= LOST):
-        return applied, friction, CONSTRAINTS_LOST, least, most
-    return_active(system, active, end, work)
-    project_velocity(system, end, work)
-    stay_stuck(system, end, work)
-    stay_active(system, active, end, work)
     return applied, friction, 0, least, most
+
+
+@kernel
+def stages_within(method):
+    """Return the number of stages without one that has no weight, which is at the end of the step."""
+    stages = method.b.size
+    return stages - 1 if method.b[stages - 1] == 0.0 else stages
+
+
+@kernel
+def return_to_joints(system, active, state, end, work):
+    """Bring the end of a step to the joints and surfaces, beside bodies that have reached theirs in `end`.
+
+    Return whether the joints could be closed.
+    """
+    for b in range(state.shape[0]):
+        if not steps(system, b, work):
+            copy_state(end[b], state[b])
+    if not (project_position(system, state, True, 1e-14, work) <= LOST):
+        return False
+    return_active(system, active, state, work)
+    project_velocity(system, state, work)
+    stay_stuck(system, state, work)
+    stay_active(system, active, state, work)
+    return True
+
+
+@kernel
+def note_velocity(state, rates):
+    """Write the velocity of a body in a stage, and the rate of its attitude, dQ/dt = 1/2 (0, w) Q."""
+    speed, turn, v, w, Q = rates.speed, rates.turn, state.v, state.w, state.Q
+    for k in range(3):
+        speed[k], speed[3 + k] = v[k], w[k]
+    d = multiply(0.0, 0.5 * w[0], 0.5 * w[1], 0.5 * w[2], Q[0], Q[1], Q[2], Q[3])
+    turn[0], turn[1], turn[2], turn[3] = d
 
 
 @kernel
@@ -215,24 +250,22 @@ def combine(weight, count, h, start, stages, out):
 @kernel
 def combine_body(weight, count, h, start, stages, b, out):
     """Write the same for one body."""
-    x0, v0, w0, q = start.x, start.v, start.w, start.Q
-    x, v, w = out.x, out.v, out.w
-    for k in range(3):
-        x[k], v[k], w[k] = x0[k], v0[k], w0[k]
-    q0, q1, q2, q3 = q[0], q[1], q[2], q[3]
+    x, v, w, Q = start.x, start.v, start.w, start.Q
+    x0, x1, x2, v0, v1, v2, w0, w1, w2 = x[0], x[1], x[2], v[0], v[1], v[2], w[0], w[1], w[2]
+    q0, q1, q2, q3 = Q[0], Q[1], Q[2], Q[3]
     for r in range(count):
         a = h * weight[r]
         if a != 0.0:
-            u, rate, p = stages[r, b].speed, stages[r, b].rate, stages[r, b].attitude
-            for k in range(3):
-                x[k] += a * u[k]
-                v[k] += a * rate[k]
-                w[k] += a * rate[3 + k]
-            f = 0.5 * a  # dQ/dt = 1/2 (0, w) Q
-            d = multiply(0.0, f * u[3], f * u[4], f * u[5], p[0], p[1], p[2], p[3])
-            q0, q1, q2, q3 = q0 + d[0], q1 + d[1], q2 + d[2], q3 + d[3]
-    Q = out.Q
-    Q[0], Q[1], Q[2], Q[3] = normalize(q0, q1, q2, q3) if count > 0 else (q0, q1, q2, q3)
+            u, d, c = stages[r, b].speed, stages[r, b].turn, stages[r, b].rate
+            x0, x1, x2 = x0 + a * u[0], x1 + a * u[1], x2 + a * u[2]
+            q0, q1, q2, q3 = q0 + a * d[0], q1 + a * d[1], q2 + a * d[2], q3 + a * d[3]
+            v0, v1, v2 = v0 + a * c[0], v1 + a * c[1], v2 + a * c[2]
+            w0, w1, w2 = w0 + a * c[3], w1 + a * c[4], w2 + a * c[5]
+    if count > 0:
+        q0, q1, q2, q3 = normalize(q0, q1, q2, q3)
+    x, v, w, Q = out.x, out.v, out.w, out.Q
+    x[0], x[1], x[2], v[0], v[1], v[2], w[0], w[1], w[2] = x0, x1, x2, v0, v1, v2, w0, w1, w2
+    Q[0], Q[1], Q[2], Q[3] = q0, q1, q2, q3
 
 
 @kernel

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from carom.collision.layout import PairWork
+from carom.model.arrays import STATE
 
 #: state of a contact between events
 CONTACT_STATE = [
@@ -117,7 +118,14 @@ JOINT_WORK = [
 ]
 
 #: one stage of a Runge-Kutta step, for one body
-STAGE = [("speed", "f8", 6), ("rate", "f8", 6), ("attitude", "f8", 4)]
+STAGE = [
+    ("speed", "f8", 6),  # linear, angular
+    ("turn", "f8", 4),  # rate of the attitude, dQ/dt
+    ("rate", "f8", 6),  # acceleration: linear, angular
+]
+
+#: accelerations of a body in a state (`carom.dynamics.known_end`)
+KNOWN = [*STATE, ("rate", "f8", 6)]
 
 #: results of a step of bodies that are joined, loaded or in contact
 RESULT = [
@@ -126,6 +134,7 @@ RESULT = [
     ("code", "i8"),
     ("power", "f8"),  # of loads, and of friction, with the last accelerations
     ("drag", "f8"),
+    ("known_power", "f8"),  # of loads, with the accelerations that are kept
     ("residual", "f8"),  # greatest of the groups in contact at several points
     ("unnamed", "f8"),  # greatest of these: unexplained loss of energy, relative to the tolerance
     ("parts", "i8"),  # additional parts of steps in which bodies turned far
@@ -202,6 +211,7 @@ class Work(NamedTuple):
     body: np.recarray  # (N,) BODY_WORK
     joint: np.recarray  # (J,) JOINT_WORK
     stages: np.recarray  # (S + 1, N) STAGE: of the S stages of a step; of a single state
+    known: np.recarray  # (N,) KNOWN, of the end of the last step
     stage: np.recarray  # (N,) STATE
     trial: np.recarray  # (N,) STATE
     middle: np.recarray  # (N,) STATE

@@ -20,7 +20,12 @@ from carom.contact.closed_points import place_closed
 from carom.contact.place import drift_of
 from carom.dynamics.acceleration import accelerate, accelerations
 from carom.dynamics.adapt import note_miss
-from carom.dynamics.explicit import bound_accelerations_of, combine_body, node
+from carom.dynamics.explicit import (
+    bound_accelerations_of,
+    combine_body,
+    node,
+    note_velocity,
+)
 from carom.dynamics.project import LOST, project_position, project_velocity
 from carom.dynamics.several_points import (
     accelerations as accelerations_of_points,
@@ -86,12 +91,8 @@ def smooth_group_step(model, data, method, k, count, h) -> bool:
     for s in range(stages):
         for m in range(count):
             b = group.member[m]
-            stage, rates = work.stage[b], work.stages[s, b]
-            combine_body(method.A[s], s, h, start[b], work.stages, b, stage)
-            for r in range(3):
-                rates.speed[r], rates.speed[3 + r] = stage.v[r], stage.w[r]
-            for r in range(4):
-                rates.attitude[r] = stage.Q[r]
+            combine_body(method.A[s], s, h, start[b], work.stages, b, work.stage[b])
+            note_velocity(work.stage[b], work.stages[s, b])
         result.time = result.start + h * node(method.A[s], s)
         accelerations(system, work.stage, active, work, work.stages[s])
         applied += h * method.b[s] * result.power

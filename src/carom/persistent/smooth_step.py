@@ -21,7 +21,13 @@ from carom.contact.place import drift_of
 from carom.contact.place_of_other import on_half_space
 from carom.dynamics.acceleration import OPEN, SLIP, accelerate
 from carom.dynamics.adapt import note_miss
-from carom.dynamics.explicit import bound_accelerations_of, combine_body, copy_state
+from carom.dynamics.explicit import (
+    bound_accelerations_of,
+    combine_body,
+    copy_state,
+    note_velocity,
+    stages_within,
+)
 from carom.dynamics.several_points import (
     accelerations,
     inverse_masses,
@@ -72,22 +78,6 @@ def smooth_step(model, data, method, k, h):
     over = unnamed(system, controls, start, end, friction, 1, group.member)
     result.unnamed = max(result.unnamed, over)
     return True
-
-
-@kernel
-def stages_within(method):
-    """Return the number of stages without one that has no weight, which is at the end of the step."""
-    stages = method.b.size
-    return stages - 1 if method.b[stages - 1] == 0.0 else stages
-
-
-@kernel
-def note_velocity(state, rates):
-    """Write the velocity and the attitude of a body in a stage to its rates."""
-    for r in range(3):
-        rates.speed[r], rates.speed[3 + r] = state.v[r], state.w[r]
-    for r in range(4):
-        rates.attitude[r] = state.Q[r]
 
 
 @kernel

@@ -7,6 +7,7 @@ import math
 from carom._compiled.decorators import by_reference, entry, inlined, kernel
 from carom._compiled.units import unit
 from carom.contact.depth import watch_depth
+from carom.dynamics.known_end import forget_end
 from carom.impact.driven import BLOCKED
 from carom.model import records as r
 from carom.model.allowance import EACH, SAVED
@@ -33,6 +34,7 @@ def run(model, data, method, islands, grid, until):
     """
     controls, clock = model.controls, data.clocks[0]
     clock.since = 0.0
+    forget_end(data.work)
     while clock.step < until:
         if clock.since > r.LONG:
             return r.PAUSE

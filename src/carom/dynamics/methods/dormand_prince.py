@@ -32,7 +32,7 @@ def _tableau(chosen) -> Method:
 
 
 def rk5_with_error() -> Method:
-    """Return those of order 5 with a seventh stage, at the end, and the weights of the error."""
+    """Return those of order 5 with a seventh stage at the end, without weight, and the weights of the error."""
     from scipy.integrate import RK45
 
     method, A = rk5(), np.zeros((7, 7))

@@ -119,6 +119,7 @@ def part_work(work, islands, i):
         islands.memory[a:b],
         work.joint,
         work.stages,
+        work.known[:n],
         work.stage[:n],
         work.trial[:n],
         work.middle[:n],
