@@ -42,6 +42,7 @@ def end_event(system, kind, state, clock, records):
     clock.snapped = k
     clock.event += 1
     clock.in_step += 1
+    clock.in_moment += 1
     clock.at_once += 1
 
 

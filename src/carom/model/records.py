@@ -52,6 +52,8 @@ CLOCK = [
     ("first_touch", "i8"),  # rows of touches when the island began with the step
     ("concerns", "i8"),  # contact of the event that is being written
     ("in_step", "i8"),  # impacts and events in the present step
+    ("in_moment", "i8"),  # impacts and events since `moment`, a time less than `Controls.step` ago
+    ("moment", "f8"),
     ("at_once", "i8"),  # impacts and events at the present time
     ("cuts", "i8"),
     ("trials", "i8"),

@@ -156,6 +156,7 @@ def accept_step(model, data):
     if search.kind >= STOPS:
         turn_joint(system, search.kind, search.contact, active, now, work)
         clock.in_step += 1
+        clock.in_moment += 1
         clock.at_once += 1
         return 0, NOTHING
     if met:

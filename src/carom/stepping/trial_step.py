@@ -35,6 +35,7 @@ STEP_TOO_SMALL, UNSTABLE = 12, 14
 TRIES = 3000  # trial steps after which a step is given up
 SEARCH = 4.0  # approximate time for the distance of two solids of any kind [us]
 ONCE_MORE = -1  # another trial step is needed
+MANY = 20  # events in a time that counts as zero: after so many they wait for the end of a step
 
 
 @inlined
@@ -45,6 +46,8 @@ def propose_step(model, data):
         clock.paused = 0
         return
     note_first_forces(data.active)
+    if clock.now - clock.moment > model.controls.step:
+        clock.moment, clock.in_moment = clock.now, 0
     dt = min(search.left, search.pace)
     if model.controls.order > 0:
         dt = min(dt, allowed_step(search.left, data.work))
@@ -52,7 +55,7 @@ def propose_step(model, data):
         dt = until_bounces_end(data.active, until_stop(model.controls, data.active, dt, clock))
     search.dt, search.cuts, search.again, search.active = dt, 0, 0, 0
     search.effort = clock.effort
-    search.eager = 1 if clock.in_step < 20 else 0
+    search.eager = 1 if clock.in_moment < MANY else 0
 
 
 @inlined
@@ -66,7 +69,7 @@ def until_stop(controls, active, dt, clock):
             first = min(first, min(active_point.turn_stop[0], active_point.turn_stop[1]))
     # except if stops follow each other without end, or the difference is round-off of the step
     inside = first > controls.rest * dt and first < (1.0 - 1e-12) * dt
-    return first if inside and clock.in_step < 20 else dt
+    return first if inside and clock.in_moment < MANY else dt
 
 
 @inlined
