@@ -46,7 +46,12 @@ from carom.impact.workspace import BACK, OLD, C, P, U
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.allowance import affordable
 from carom.model.method import RUNGE_KUTTA
-from carom.persistent.error_bound import is_better_bounded, modes_change, note_bounds
+from carom.persistent.error_bound import (
+    is_better_bounded,
+    modes_change,
+    note_bounds,
+    turns_too_far,
+)
 from carom.persistent.finish import finish, forces_at_end, gained
 from carom.persistent.middle_state import halfway, mean_velocity, power_of_path, spin_momentum
 from carom.persistent.return_to_surfaces import onto_surfaces
@@ -124,6 +129,9 @@ def step_group(model, data, method, label, h):
         result.friction, result.unnamed = friction, over
         for m in range(count):
             copy_state(group.flight[group.member[m]], end[group.member[m]])
+        free = controls.order > 0 and work.search[0].active == 0  # to choose the length of the step
+        if free and turns_too_far(system, controls, start, h, count, group, work):
+            return
         if alone or joined:
             place_closed(system, k, start, group, group.points[0], work)
         step_once(model, data, k, count, loaded, h)

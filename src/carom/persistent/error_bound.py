@@ -80,6 +80,22 @@ def note_bounds(system, changes, k, h, start, end, count, group, work):
 
 
 @kernel
+def turns_too_far(system, controls, start, h, count, group, work):
+    """Return whether the rotation at the start alone gives a step of order 2 an error that is not allowed.
+
+    The error is noted: the step is repeated with a shorter length, without its contact problem being solved.
+    """
+    far = False
+    for m in range(count):
+        b = group.member[m]
+        L, miss = system.bodies[b].extent, work.body[b].miss
+        bound = L * (abs(h) * norm(start[b].w)) ** 3 / 12.0
+        miss[0], miss[2] = max(miss[0], bound), max(miss[2], L)
+        far = far or bound > allowed_error(controls.rtol, controls.atol, L, miss[2])
+    return far
+
+
+@kernel
 def is_better_bounded(system, controls, active, k, h, start, end, group, work):
     """Return whether for the body of k points a step of order 2 has an allowed error, and its method has not.
 

@@ -10,7 +10,7 @@ from carom.contact.depth import watch_depth
 from carom.dynamics.known_end import forget_end
 from carom.impact.driven import BLOCKED
 from carom.model import records as r
-from carom.model.allowance import EACH, SAVED
+from carom.model.allowance import SAVED, of_step
 from carom.model.controls import LOCATE
 from carom.model.data import Data, Model
 from carom.persistent.active_set import regroup
@@ -125,7 +125,7 @@ def finish_step(model, data, grid):
     charge_impacts(clock)
     clock.step += 1
     clock.in_step = 0
-    earn(state, clock, data.work)
+    earn(controls, state, clock, data.work)
     clock.now = end_of(grid, controls.duration, clock.step)
     clock.still = min(clock.still, clock.now) if still(state) else math.inf
     if not finite(state):
@@ -152,12 +152,12 @@ def charge_impacts(clock):
 
 
 @kernel
-def earn(now, clock, work):
+def earn(controls, now, clock, work):
     """Add the credit of one step, unless a body takes it as a time-stepping (Moreau) step."""
     for b in range(now.shape[0]):
         if work.body[b].whole_until >= clock.step:
             return
-    clock.credit = min(SAVED, clock.credit + EACH)
+    clock.credit = min(SAVED, clock.credit + of_step(controls))
 
 
 @inlined
