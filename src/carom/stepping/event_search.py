@@ -1,9 +1,10 @@
 """Search for the first event inside a step: examination of a trial step, and the root of an event function.
 
 For a gap the rate is known: the next trial is the root of the cubic through the last two values and rates, if
-it is inside the bracket (this is exact for a falling ball), otherwise Newton's method. For persistent contacts:
-regula falsi with the Illinois rule. Every trial is a step of the method from the start of the step, so an event
-is as accurate as the method.
+it is inside the bracket (this is exact for a falling ball), otherwise Newton's method. The first trial is the
+least root of the cubics of the vertices that are inside at the end: the lowest at the start may be another. For
+persistent contacts: regula falsi with the Illinois rule. Every trial is a step of the method from the start of
+the step, so an event is as accurate as the method.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from carom._compiled.decorators import inlined, kernel
 from carom.contact.closed_points import round_off_of_both
 from carom.contact.continuous_detection import AGAIN, BELOW, CLEAR, FLAT_RIM, UNSURE, passage
 from carom.contact.continuous_detection_pair import lowest_pair, passage_pair
-from carom.contact.gap import lowest, round_off
+from carom.contact.gap import gap_and_rate, lowest, plane_in_body, round_off
 from carom.contact.pair_point import smaller
 from carom.contact.stop import passage_stop, stop_gap
 from carom.model.arrays import STOP
@@ -118,14 +119,14 @@ def update_bracket(search, t, f, rate):
 
 
 @kernel
-def cubic_root(search):
-    """Return a root of the cubic through the last two values and rates by Newton's method from the last."""
-    a, h = search.before, search.t - search.before
-    if search.rate_before == 0.0 or h == 0.0:  # no earlier value
+def cubic_root(a, f, r, b, f_last, r_last):
+    """Return a root of the cubic with values f and rates r at a and b, by Newton's method from b."""
+    h = b - a
+    if r == 0.0 or h == 0.0:  # no earlier value
         return math.inf
-    f, r, slope = search.f_before, search.rate_before, (search.f - search.f_before) / h
-    c = (3.0 * slope - 2.0 * r - search.rate) / h
-    d = (r + search.rate - 2.0 * slope) / (h * h)
+    slope = (f_last - f) / h
+    c = (3.0 * slope - 2.0 * r - r_last) / h
+    d = (r + r_last - 2.0 * slope) / (h * h)
     x = h
     for _ in range(NEWTON):
         value, rate = f + x * (r + x * (c + x * d)), r + x * (2.0 * c + x * 3.0 * d)
@@ -136,10 +137,24 @@ def cubic_root(search):
 
 
 @kernel
+def first_through(contact, vertices, active, start, search, end):
+    """Return a guess of the time when the first vertex passes a half-space, by the cubic of each one inside."""
+    before, after, first = plane_in_body(contact, start), plane_in_body(contact, end), math.inf
+    for i in range(contact.first, contact.last):
+        z, rate = gap_and_rate(after, vertices[i])
+        if z < -search.tolerance and active.carries[i] == 0:
+            z0, rate0 = gap_and_rate(before, vertices[i])
+            first = min(first, cubic_root(0.0, z0, rate0, search.dt, z, rate))
+    return first
+
+
+@kernel
 def next_trial(search):
     """Return the next time to try, by a cubic, Newton's method or regula falsi, otherwise the middle."""
     if search.kind == GAP and search.rate < 0.0:
-        t = cubic_root(search)
+        t = cubic_root(
+            search.before, search.f_before, search.rate_before, search.t, search.f, search.rate
+        )
         if not (search.low < t < search.high):
             t = search.t - search.f / search.rate
     else:

@@ -25,6 +25,7 @@ from carom.stepping.event_search import (
     begin_search,
     detect_event,
     event_value,
+    first_through,
     next_trial,
     update_bracket,
 )
@@ -243,11 +244,12 @@ def bracket(model, data):
     if search.kind == GAP and controls.location != LOCATE:
         search.found = 1
         return 0
-    if (
-        search.kind == GAP and system.contacts[search.contact].touches == 0
-    ):  # the value at the start is known
-        search.f, search.rate = event_value(system, controls, data.active, search, data.state, work)
     f, rate = event_value(system, controls, data.active, search, work.trial, work)
     update_bracket(search, search.dt, f, rate)
-    search.dt = next_trial(search)
+    dt = next_trial(search)
+    if search.kind == GAP and system.contacts[search.contact].touches == 0:
+        contact = system.contacts[search.contact]
+        guess = first_through(contact, system.vertices, data.active, data.state, search, work.trial)
+        dt = guess if search.low < guess < search.high else dt
+    search.dt = dt
     return ONCE_MORE

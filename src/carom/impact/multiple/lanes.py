@@ -30,22 +30,6 @@ def product(line, x, p, y, q, first, n):
 
 
 @kernel
-def square(line, x, p, first, n):
-    """Return the sums over j = first .. n - first of x_j x_(n-j); equal products are computed once."""
-    s = same(0.0)
-    i, j = p + first * line, p + (n - first) * line
-    while i < j:
-        s = add(s, multiply(load(x, i), load(x, j)))
-        i += line
-        j -= line
-    s = add(s, s)
-    if i == j:
-        v = load(x, i)
-        s = add(s, multiply(v, v))
-    return s
-
-
-@kernel
 def values(line, x, p, degree, h):
     """Return the values at `h` of the four polynomials of a block."""
     f, i = same(h), p + degree * line

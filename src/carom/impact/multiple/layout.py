@@ -125,7 +125,7 @@ class PassageWork(NamedTuple):
     clock: np.recarray  # (1,) CLOCK
     index: np.ndarray  # (11, 3K) rows below
     matrix: np.ndarray  # (9, 3K, 3K) below
-    vector: np.ndarray  # (37, 3K) rows below
+    vector: np.ndarray  # (39, 3K) rows below
     series: np.ndarray  # (18, ORDERS, B, 4) below; contact i is lane i % 4 of block i // 4
     columns: (
         np.ndarray
@@ -175,6 +175,8 @@ FRICTION = 33
 WEIGHT, SCALE, LEFT, STICK_T = range(20, 24)
 #: of the outer iteration: ln e_*, misses, new misses, step, change of misses, a product, best e_*, its misses
 OUT_X, OUT_F, OUT_NEW, OUT_DX, OUT_DF, OUT_H, OUT_BEST, OUT_BEST_F = range(24, 32)
+#: the step before the last, and the direction of the update
+OUT_LAST, OUT_V = 37, 38
 #: of a new order of the series: impulses and velocities
 ORDER_P, ORDER_U = 34, 35
 #: at the first unloading: times of the changes of mode
@@ -239,7 +241,7 @@ def new_multiple_workspace(capacity: int) -> MultipleWorkspace:
         clock=table(CLOCK, 1),
         index=np.zeros((11, n), dtype=np.int64),
         matrix=np.zeros((9, n, n)),
-        vector=np.zeros((37, 3 * LANES * blocks)),
+        vector=np.zeros((39, 3 * LANES * blocks)),
         series=np.zeros((18, ORDERS, blocks, LANES)),
         columns=np.zeros((n, 3 * blocks, LANES)),
         stage=np.zeros((2, 6, n)),

@@ -1,9 +1,9 @@
 """Newton's and Poisson's law for several contacts: an outer iteration on the whole event (§2.4).
 
 An energetic coefficient e_* of each contact is sought with which Newton's target u_n+ = e v0, or Poisson's
-p_r = e p_c, is reached. Broyden's method iterates the logarithms x = ln e_*; it begins as the fixed point
-iteration e_* <- e_* target/reached. Always e_* <= 1: each contact returns at most the energy it has absorbed,
-so that energy cannot grow with any law; a target that requires more is not reached.
+p_r = e p_c, is reached. Broyden's method with projected updates iterates the logarithms x = ln e_*; it begins
+as the fixed point iteration e_* <- e_* target/reached. Always e_* <= 1: each contact returns at most the energy
+it has absorbed, so that energy cannot grow with any law; a target that requires more is not reached.
 """
 
 from __future__ import annotations
@@ -21,12 +21,15 @@ from carom.impact.multiple.layout import (
     OUT_DX,
     OUT_F,
     OUT_H,
+    OUT_LAST,
     OUT_NEW,
+    OUT_V,
     OUT_X,
     U,
 )
 
 _FARTHEST = 1.5  # greatest |ln(target/reached)| and step that is believed
+_PARALLEL = 0.01  # squared sine of the least angle between two steps of which both are kept
 
 
 @kernel
@@ -87,7 +90,7 @@ def misses(k, work, out):
 def begin(k, work, gain):
     """Begin at the e_* in use, with the inverse Jacobian -gain: a damped fixed point iteration."""
     for i in range(k):
-        work.vector[OUT_X, i] = math.log(work.contact[i].e)
+        work.vector[OUT_X, i], work.vector[OUT_LAST, i] = math.log(work.contact[i].e), 0.0
         for j in range(k):
             work.matrix[INVERSE, i, j] = -gain if i == j else 0.0
 
@@ -128,27 +131,38 @@ def improve(k, work):
 
 @kernel
 def learn(k, work):
-    """Make Broyden's (good) rank-one update of the inverse Jacobian, from OUT_DX and OUT_NEW - OUT_F."""
+    """Update the inverse Jacobian H from the last step s (OUT_DX) and the change of misses y, so that H y = s.
+
+    H <- H + (s - H y) v^T H / (v^T H y): Broyden's update, with v = s less its part along the step before, for
+    which H stays right (Gay and Schnabel 1978).
+    """
     o, H = work.vector, work.matrix[INVERSE]
+    size, along, before = 0.0, 0.0, 0.0
     for i in range(k):
         o[OUT_DF, i] = o[OUT_NEW, i] - o[OUT_F, i]
         o[OUT_F, i] = o[OUT_NEW, i]
+        size += o[OUT_DX, i] * o[OUT_DX, i]
+        along += o[OUT_DX, i] * o[OUT_LAST, i]
+        before += o[OUT_LAST, i] * o[OUT_LAST, i]
+    share = along / before if before > 0.0 else 0.0
+    left = size - share * along
+    if not left > _PARALLEL * size:
+        share, left = 0.0, size
     bottom = 0.0
     for i in range(k):
         total = 0.0
         for j in range(k):
             total += H[i, j] * o[OUT_DF, j]
         o[OUT_H, i] = total
-        bottom += o[OUT_DX, i] * total
-    size = 0.0
-    for i in range(k):
-        size += o[OUT_DX, i] * o[OUT_DX, i]
-    if not abs(bottom) > 0.05 * size:
+        o[OUT_V, i] = o[OUT_DX, i] - share * o[OUT_LAST, i]
+        o[OUT_LAST, i] = o[OUT_DX, i]
+        bottom += o[OUT_V, i] * total
+    if not abs(bottom) > 0.05 * left:
         return
     for j in range(k):
         row = 0.0
         for i in range(k):
-            row += o[OUT_DX, i] * H[i, j]
+            row += o[OUT_V, i] * H[i, j]
         o[OUT_NEW, j] = row / bottom
     for i in range(k):
         correction = o[OUT_DX, i] - o[OUT_H, i]

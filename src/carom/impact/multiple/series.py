@@ -12,7 +12,7 @@ import math
 
 from carom._compiled.decorators import inlined, kernel
 from carom._compiled.simd import add, load, multiply, same, store, subtract
-from carom.impact.multiple.lanes import blocks, product, square
+from carom.impact.multiple.lanes import blocks, product
 from carom.impact.multiple.law import OPEN
 from carom.impact.multiple.layout import (
     CLOSED,
@@ -136,7 +136,7 @@ def expand(k, z, closed, work, first, degree, stretched):
     S, lane = work.series, work.series[S_LANE]
     line = S.shape[2] * LANES
     un, u1, u2, d, normal = S[S_U], S[S_U1], S[S_U2], S[S_D], S[S_N]
-    pn, p1, p2, q, loss, sigma = S[S_P], S[S_P1], S[S_P2], S[S_Q], S[S_LOSS], S[S_SIGMA]
+    q, sigma = S[S_Q], S[S_SIGMA]
     f = S[S_FS] if stretched else S[S_F]
     for n in range(first, degree):
         step = same(1.0 / (n + 1))
@@ -151,22 +151,33 @@ def expand(k, z, closed, work, first, degree, stretched):
             i, o = n * line + p, (n + 1) * line + p
             force, speed = load(normal, i), load(un, i)
             if stretched:
-                force = product(line, normal, p, sigma, 0, 0, n)
-                speed = product(line, un, p, sigma, 0, 0, n)
+                force, speed, grip = same(0.0), same(0.0), same(0.0)
+                j, m = p, n * line
+                for _ in range(n + 1):
+                    rate = load(sigma, m)
+                    force = add(force, multiply(load(normal, j), rate))
+                    speed = add(speed, multiply(load(un, j), rate))
+                    grip = add(grip, multiply(load(S[S_F], j), rate))
+                    j += line
+                    m -= line
+                store(f, i, grip)
             depth = multiply(back, speed)
-            store(pn, o, multiply(step, force))
+            store(S[S_P], o, multiply(step, force))
             store(d, o, depth)
             store(normal, o, multiply(load(lane, SLOPE * line + p), depth))
             x, y, heat = same(0.0), same(0.0), same(0.0)
             if lane[SLIPPING, b, 0] > 0.0:
-                if stretched:
-                    store(f, i, product(line, S[S_F], p, sigma, 0, 0, n))
-                x = product(line, f, p, u1, p, 0, n)
-                y = product(line, f, p, u2, p, 0, n)
-                heat = product(line, f, p, q, p, 0, n)
-            store(p1, o, multiply(back, x))
-            store(p2, o, multiply(back, y))
-            store(loss, o, multiply(step, heat))
+                j, m = p, i
+                for _ in range(n + 1):
+                    friction = load(f, j)
+                    x = add(x, multiply(friction, load(u1, m)))
+                    y = add(y, multiply(friction, load(u2, m)))
+                    heat = add(heat, multiply(friction, load(q, m)))
+                    j += line
+                    m -= line
+            store(S[S_P1], o, multiply(back, x))
+            store(S[S_P2], o, multiply(back, y))
+            store(S[S_LOSS], o, multiply(step, heat))
         _answer(k, closed, line, S, work.columns, work.index[CLOSED], n + 1)
         if z > 0:
             _hold(k, z, work, n + 1)
@@ -174,16 +185,30 @@ def expand(k, z, closed, work, first, degree, stretched):
 
 @inlined
 def _forces(line, S, p, n):
-    """Write order `n` of |u_t|^2, |u_t| and mu N/|u_t| of the block at `p`."""
-    r, f, lane, i = S[S_R], S[S_F], S[S_LANE], n * line + p
-    g = load(lane, ONE_OVER * line + p)
-    q = add(square(line, S[S_U1], p, 0, n), square(line, S[S_U2], p, 0, n))
-    store(S[S_Q], i, q)
-    if n > 0:
-        q = subtract(q, square(line, r, p, 1, n))
-        store(r, i, multiply(multiply(same(0.5), q), g))
+    """Write order `n` of |u_t|^2, |u_t| and mu N/|u_t| of the block at `p`; its sums in one loop."""
+    u1, u2, r, f, lane, i = S[S_U1], S[S_U2], S[S_R], S[S_F], S[S_LANE], n * line + p
+    x, y, g = load(u1, p), load(u2, p), load(lane, ONE_OVER * line + p)
     force = multiply(load(lane, ROUGH * line + p), load(S[S_N], i))
-    store(f, i, multiply(subtract(force, product(line, r, p, f, p, 1, n)), g))
+    if n == 0:
+        store(S[S_Q], i, add(multiply(x, x), multiply(y, y)))
+        store(f, i, multiply(force, g))
+        return
+    q, rr, rf = same(0.0), same(0.0), same(0.0)
+    j, m = p + line, i - line
+    for _ in range(1, n):
+        speed = load(r, j)
+        q = add(q, add(multiply(load(u1, j), load(u1, m)), multiply(load(u2, j), load(u2, m))))
+        rr = add(rr, multiply(speed, load(r, m)))
+        rf = add(rf, multiply(speed, load(f, m)))
+        j += line
+        m -= line
+    ends = add(multiply(x, load(u1, i)), multiply(y, load(u2, i)))
+    q = add(q, add(ends, ends))
+    speed = multiply(multiply(same(0.5), subtract(q, rr)), g)
+    rf = add(rf, multiply(speed, load(f, p)))
+    store(S[S_Q], i, q)
+    store(r, i, speed)
+    store(f, i, multiply(subtract(force, rf), g))
 
 
 @kernel
