@@ -112,3 +112,24 @@ def test_a_ball_that_sticks_rolls_on_with_its_angular_momentum():
     scene.add_contact(ball, ground, restitution=0.4, friction=0.15)
     s = carom.simulate(scene, 3.0, step=5e-3)
     assert s.velocity[-1, 0, 0] == pytest.approx(5 / 7 * (2.0 - 0.4 * 0.1 * 10), abs=1e-12)
+
+
+@pytest.mark.parametrize("how", [{"rtol": 1e-6}, {"rtol": 1e-10}, {"step": 1e-2}])
+def test_rolling_friction_begins_when_the_bounces_have_ended(how):
+    # A ball on ice (no friction of slip) keeps its spin in impacts. Its bounces end at
+    # t = t0 + 2 e u0/(g (1 - e)), u0 = g t0, t0 = sqrt(2 h/g); from then on w = w0 - d m g (t - t_end)/J.
+    e, h, d, m, J, w0, end = 0.4, 0.05, 1e-3, 1.0, 4e-3, 5.0, 0.5
+    scene = carom.Scene(gravity=(0, 0, -G))
+    ground = scene.add_half_space((0, 0, 0), (0, 0, 1))
+    ball = scene.add_body(
+        carom.Sphere(0.1),
+        mass=m,
+        inertia=[J] * 3,
+        position=(0, 0, 0.1 + h),
+        angular_velocity=(0, w0, 0),
+    )
+    scene.add_contact(ball, ground, restitution=e, friction=0.0, rolling_friction=d)
+    s = carom.simulate(scene, end, **how)
+    first = np.sqrt(2 * h / G)
+    left = end - first * (1 + 2 * e / (1 - e))
+    assert s.angular_velocity[-1, 0, 1] == pytest.approx(w0 - d * m * G * left / J, abs=1e-10)

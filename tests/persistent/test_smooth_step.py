@@ -111,6 +111,20 @@ def test_errors_are_those_asked_for(case):
             assert z == pytest.approx(0.05, abs=1e-15)  # on the floor to round-off
 
 
+@pytest.mark.parametrize("rtol", [1e-6, 1e-8])
+def test_error_where_a_corner_turns_its_slip(rtol):
+    # The pole of the motion of this slab passes near a corner, whose slip turns by 180 degrees in a moment.
+    scene, ground = floor()
+    slab = scene.add_body(
+        carom.Box(0.265, 0.262, 0.07), mass=1.0, position=(0, 0, 0.035), velocity=(0.858, 0.942, 0),
+        angular_velocity=(0, 0, 6.995),
+    )  # fmt: skip
+    scene.add_contact(slab, ground, restitution=0.0, friction=0.257)
+    exact = carom.simulate(scene, 1.0, rtol=1e-12, save_at=1.0).position[-1, 0]
+    s = carom.simulate(scene, 1.0, rtol=rtol, save_at=1.0)
+    assert np.linalg.norm(s.position[-1, 0] - exact) < 10.0 * rtol * 2.0 * 0.38
+
+
 def test_few_steps():
     """A hundredth of the tolerance, some 2.5 times the steps: order 5. (Order 2 would need 4.6 times.)"""
     steps = [

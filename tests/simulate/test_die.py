@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import carom
+from carom.bench.problems import planar_die
 from simulate.scenes import ball, die
 
 PLANE, SPACE = (0, 10, 0), (10, 10, 0)
@@ -148,3 +149,18 @@ def test_layer_time_on_the_clock():
     assert a.impacts.time[0] == b.impacts.time[0]
     late = a.impacts.time[1] - b.impacts.time[1]
     assert late == pytest.approx(a.impacts.duration[0], rel=1e-9)
+
+
+@pytest.mark.parametrize("how", [{}, {"save_at": 2.0}, {"step": 1e-3}])
+def test_every_impact_has_its_restitution(how):
+    # A die that rattles strikes some hundred times, often within a few saved times. What strikes alone leaves
+    # with e times its speed, by Newton's law, however many times it has struck before.
+    scene = planar_die.scene(spin=(10, 10, 0))
+    s = carom.simulate(scene, 2.0, **how)
+    single = (s.impacts.together == 1) & (s.impacts.relative_velocity_before[:, 0] < -1e-6)
+    assert single.sum() > 30
+    before, after = (
+        s.impacts.relative_velocity_before[single, 0],
+        s.impacts.relative_velocity_after[single, 0],
+    )
+    assert after == pytest.approx(-0.5 * before, abs=1e-9)

@@ -146,7 +146,7 @@ class GeneralizedSolution(Drawn):
     def _from_run(cls, run: GeneralizedRun, status: Status) -> GeneralizedSolution:
         """Make the solution from the records of a run."""
         from carom.generalized.loop import energies
-        from carom.results.accuracy import judge, sentences, watched
+        from carom.results.accuracy import inaccurate, sentences, watched
 
         saved, n = int(run.clock[0].saved), run.n
         series: Any = run.series[:saved]
@@ -168,7 +168,8 @@ class GeneralizedSolution(Drawn):
         if steady:  # energies that depend on time are not conserved
             watch = watched(t, ledger, given_by_law(t, impacts), run.options.energy_tolerance)
             warnings = sentences(watch)
-            status = judge(watch) if status is Status.SUCCESS else status
+            if status is Status.SUCCESS and inaccurate(watch):
+                status = Status.INACCURATE
         events = run.contacts.events
         columns = [np.array(column) for column in zip(*events)]
         return cls(
