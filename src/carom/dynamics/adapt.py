@@ -98,17 +98,16 @@ def allowed_error(rtol, atol, extent, scale):
 @kernel
 def step_error(system, rtol, atol, work):
     """Return the greatest error of the bodies in a step, relative to the tolerance."""
-    first, second = 0.0, 0.0
+    greatest = 0.0
     for b in range(work.body.shape[0]):
         miss = work.body[b].miss
         allowed = allowed_error(rtol, atol, system.bodies[b].extent, miss[2])
-        a = miss[0] / allowed
-        if not a <= first:
-            first = a
-        second = max(second, miss[1] / allowed)
-    if second > 0.0:
-        return first * first / math.sqrt(first * first + 0.01 * second * second)
-    return first
+        error, second = miss[0] / allowed, miss[1] / allowed
+        if second > 0.0:
+            error = error * error / math.sqrt(error * error + 0.01 * second * second)
+        if not error <= greatest:  # NaN too
+            greatest = error
+    return greatest
 
 
 @kernel

@@ -61,12 +61,12 @@ def bound_of_slip(heading, slip, impulse, h):
 
 @kernel
 def note_bounds(system, changes, k, h, start, end, count, group, work):
-    """Store the errors of the bodies of a group in a step of order 2, and their sizes."""
+    """Store the errors of the bodies of a group in a step of order 2, as their only estimate, and their sizes."""
     for m in range(count):
         b = group.member[m]
         L, miss = system.bodies[b].extent, work.body[b].miss
         miss[0] = max(miss[0], bound_of_step(L, changes, start[b], h, end[b]))
-        miss[2] = max(miss[2], L)
+        miss[1], miss[2] = 0.0, max(miss[2], L)
     u, p = group.v[U], group.v[P]
     for i in range(k):
         point, q = group.points[0][i], 3 * i
@@ -90,7 +90,7 @@ def turns_too_far(system, controls, start, h, count, group, work):
         b = group.member[m]
         L, miss = system.bodies[b].extent, work.body[b].miss
         bound = L * (abs(h) * norm(start[b].w)) ** 3 / 12.0
-        miss[0], miss[2] = max(miss[0], bound), max(miss[2], L)
+        miss[0], miss[1], miss[2] = max(miss[0], bound), 0.0, max(miss[2], L)
         far = far or bound > allowed_error(controls.rtol, controls.atol, L, miss[2])
     return far
 
