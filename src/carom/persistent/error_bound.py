@@ -61,7 +61,7 @@ def bound_of_slip(heading, slip, impulse, h):
 
 @kernel
 def note_bounds(system, changes, k, h, start, end, count, group, work):
-    """Store the errors of the bodies of a group in a step of order 2, as their only estimate, and their sizes."""
+    """Store the errors of bodies of a group in a step of order 2, as their only estimate, and their sizes."""
     for m in range(count):
         b = group.member[m]
         L, miss = system.bodies[b].extent, work.body[b].miss
