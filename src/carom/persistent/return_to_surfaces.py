@@ -75,7 +75,7 @@ def factor_given(k, group):
 
 
 @kernel
-def solve_given(k, n, group, x):
+def solve_rows(k, n, group, x):
     """Replace x, in the given rows, by the impulses that remove it; zero the others."""
     rows, y = group.cone.active, group.v[OLD]
     for i in range(n):
@@ -102,7 +102,7 @@ def onto_surfaces(system, active, k, count, state, group, work):
         if not known:
             if errors(system, active, k, state, group, x, work):
                 break
-            solve_given(k, n, group, x)
+            solve_rows(k, n, group, x)
         known = False
         for i in range(3 * k):
             total[i] += x[i]
@@ -118,7 +118,7 @@ def onto_tangents(system, k, count, state, group, work):
     """Remove the velocities of the bodies of the group in the rows that are given."""
     n, x = factor_given(k, group), group.v[U]
     velocities(k, group.points[0], state, x)
-    solve_given(k, n, group, x)
+    solve_rows(k, n, group, x)
     spread_all(system, k, group.points[0], x, count, group.member, work.stage, work)
     for m in range(count):
         b = group.member[m]

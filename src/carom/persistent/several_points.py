@@ -277,8 +277,8 @@ def set_modes(model, data, k):
         closed_point = group.closed[i]
         if closed_point.stays == 0:
             continue
-        lasts = closed_point.bounces > model.controls.rest * model.controls.step
-        active.points[closed_point.active].bounces = closed_point.bounces if lasts else 0.0
+        if closed_point.bounces > model.controls.rest * model.controls.step:
+            active.points[closed_point.active].bounces = closed_point.bounces
         if closed_point.active >= before:
             continue
         active_point, mode = active.points[closed_point.active], mode_of(system, i, state, group)
