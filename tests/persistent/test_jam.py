@@ -58,11 +58,12 @@ def test_slides_below_the_critical_friction(tips, part):
     # N = g/k, k = 1.75 - 1.299038 mu > 0: large, as friction brakes the tip and so presses it down.
     mu = part * CRITICAL
     s = slide(mu, 0.5, tips)
-    assert "jams" not in s.events.kind
-    assert len(s.impacts) == 0
+    # where slip stops, round-off of the nearly singular W may let two tips jump, by some 1e-8 m/s
+    assert list(s.events.kind[: tips + 1]) == tips * ["held"] + ["sticks"]
+    assert np.all(np.abs(s.impacts.relative_velocity_before[:, 0]) < 1e-6)
     N = G / (1.75 - 1.299038105677 * mu)
     np.testing.assert_allclose(s.contact_force[0, 0], (N, -mu * N, 0), rtol=1e-5, atol=1e-9)
-    assert np.max(s.total_energy) == s.total_energy[0]
+    assert np.max(s.total_energy) <= s.total_energy[0] * (1.0 + 1e-12)
 
 
 def test_jams_by_the_friction_of_contact_that_stays():

@@ -47,16 +47,26 @@ def change_of_velocity(L, start, end):
 
 
 @kernel
-def bound_of_slip(heading, slip, impulse, h):
-    """Return the error, times the mass, of friction whose direction turns within a step: h p_t |d' - d|/12.
+def bound_of_slip(heading, slip, impulse, h, lasts):
+    """Return the error, times the mass, of friction whose direction turns within a step.
 
-    A corner about which a body nearly turns changes its direction of slip, though the body does not.
+    That is h p_t |d' - d|/12, and of the velocity p_t |d' - d|^2/8, which lasts for some time: a corner about
+    which a body nearly turns changes its direction of slip at an unknown time in the step.
     """
     speed = math.hypot(slip[0], slip[1])
     if not (speed > 0.0 and heading[0] ** 2 + heading[1] ** 2 > 0.0):
         return 0.0
     turn = math.hypot(slip[0] / speed - heading[0], slip[1] / speed - heading[1])
-    return abs(h) * impulse * turn / 12.0
+    return impulse * (abs(h) * turn / 12.0 + lasts * turn * turn / 8.0)
+
+
+@kernel
+def time_of_error(L, start, h, end):
+    """Return how long an error of the velocity lasts: while a body moves by its size, or until it stops."""
+    speed, change = norm(end.v) + L * norm(end.w), change_of_velocity(L, start, end)[0]
+    if not speed > 0.0:
+        return 0.0
+    return min(L / speed, abs(h) * speed / change if change > 0.0 else math.inf)
 
 
 @kernel
@@ -67,13 +77,16 @@ def note_bounds(system, changes, k, h, start, end, count, group, work):
         L, miss = system.bodies[b].extent, work.body[b].miss
         miss[0] = max(miss[0], bound_of_step(L, changes, start[b], h, end[b]))
         miss[1], miss[2] = 0.0, max(miss[2], L)
-    u, p = group.v[U], group.v[P]
+    u, p, lasts = group.v[U], group.v[P], 0.0
+    if count == 1:  # of several bodies corners turn all the time
+        b = group.member[0]
+        lasts = time_of_error(system.bodies[b].extent, start[b], h, end[b])
     for i in range(k):
         point, q = group.points[0][i], 3 * i
         if group.closed[i].turns > 0:
             continue
         slip, friction = (u[q + 1], u[q + 2]), math.hypot(p[q + 1], p[q + 2])
-        error = bound_of_slip(group.heading[i], slip, friction, h)
+        error = bound_of_slip(group.heading[i], slip, friction, h, lasts)
         work.body[point.a].miss[0] += error / system.bodies[point.a].mass
         if point.b >= 0:
             work.body[point.b].miss[0] += error / system.bodies[point.b].mass
@@ -108,13 +121,13 @@ def is_better_bounded(system, controls, active, k, h, start, end, group, work):
     if miss[0] <= allowed:
         return False
     bound = bound_of_step(L, True, start[b], h, end[b])
+    lasts = time_of_error(L, start[b], h, end[b])
     for i in range(k):
         active_point, q = active.points[group.closed[i].active], 3 * i
         if group.closed[i].turns == 0:
             slip, friction = (u[q + 1], u[q + 2]), math.hypot(p[q + 1], p[q + 2])
-            bound += (
-                bound_of_slip(active_point.heading, slip, h * friction, h) / system.bodies[b].mass
-            )
+            error = bound_of_slip(active_point.heading, slip, h * friction, h, lasts)
+            bound += error / system.bodies[b].mass
     if bound > allowed:
         return False
     miss[0], miss[1] = 0.0, 0.0
