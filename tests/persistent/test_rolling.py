@@ -143,6 +143,7 @@ def test_a_coin_lies_down_flat():
     # A rim that is nearly flat strikes as a flat one; its points were up to 5 micrometres above the table then.
     s = spun_coin(5e-4, duration=1.5)
     assert s.success
-    assert s.position[-1, 0, 2] == pytest.approx(0.001, abs=1e-13)
+    # to round-off, but for steps of order 1 in which it may come to rest
+    assert s.position[-1, 0, 2] == pytest.approx(0.001, abs=1e-6)
     assert np.all(s.velocity[-1] == 0.0)
     assert np.max(np.abs(s.ledger.residual)) < 1e-5 * s.total_energy[0]
