@@ -164,7 +164,7 @@ def egg() -> carom.Scene:
 
 PROBLEMS = (
     Problem("ball that bounces", ball, 2.0),
-    Problem("die, to its second blow", die_scene, 0.25),
+    Problem("die, to its second impact", die_scene, 0.25),
     Problem("rod, swinging", lambda: chain_scene(1), 5.0),
     Problem("three rods, chaotic", lambda: chain_scene(3), 2.0),
     Problem("heavy top, 150 rad/s", top, 0.2),
