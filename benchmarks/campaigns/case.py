@@ -74,7 +74,9 @@ def run(case: Case, tolerances: bool = False) -> Outcome:
         "friction": s.ledger.friction,
         "bounces": s.ledger.bounces,
     }
-    if case.label.get("impact_law") == "newton" and case.label["friction"] > 0.0:
+    newton = case.label.get("impact_law") == "newton" and case.label["friction"] > 0.0
+    laws = case.scene.contacts
+    if newton or any(law.impact_law == "newton" and law.friction > 0.0 for law in laws):
         del energies["impacts"]  # Newton's law may gain energy by itself
     speed = float(np.max(np.linalg.norm(s.velocity, axis=2), initial=0.0))
     speed = max(speed, case.step * float(np.linalg.norm(case.scene.gravity)))
