@@ -34,13 +34,15 @@ class Contacts:
         self.friction = np.array([one.friction for one in contacts])
         self.law = np.array([NUMBERS[one.impact_law] for one in contacts], dtype=np.int64)
         self.blows = np.zeros(len(contacts), dtype=np.int64)
+        self.struck = np.zeros(len(contacts))  # time of the last impact
         self.events: list[tuple[float, str, int]] = []
         self.strike = Strike(self)
         self.cones: Any = None  # workspace of the contact problem, made when it is first needed
 
     def new_step(self) -> None:
-        """Forget the impacts of the last step."""
-        self.blows[:] = 0
+        """Forget the impacts of the last step, if its length was given."""
+        if self.run.plan.order == 0:
+            self.blows[:] = 0
 
     # --- quantities of the state ---------------------------------------------------------------
 

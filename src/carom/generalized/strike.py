@@ -46,8 +46,16 @@ class Strike:
         return Status.TOO_MANY_IMPACTS
 
     def restitution(self, c: int) -> float:
-        """Return e of the next impact; 0 if hardly any speed is left after many impacts in one step."""
-        here = self.contacts
+        """Return e of the next impact; 0 if hardly any speed is left after many impacts in one step.
+
+        With tolerances it is many impacts in a row, each after a bounce lower than these.
+        """
+        here, plan = self.contacts, self.contacts.run.plan
+        now = float(here.run.clock[0].now)
+        bounce = -float(here.u[c, 0]) * (now - here.struck[c])
+        if plan.order > 0 and bounce > plan.atol + plan.rtol:
+            here.blows[c] = 0
+        here.struck[c] = now
         e, count = float(here.restitution[c]), float(here.blows[c])
         here.blows[c] += 1
         return 0.0 if e < 1.0 and e**count <= SPENT else e

@@ -43,10 +43,8 @@ ACTIVE_POINT = [
     ("grip", "f8"),  # the same before slip
     ("due", "i8"),  # 1 if the event of the search may be its own, too
     ("turn_stop", "f8", 2),  # as `stop`, of rolling and of pivoting
-    (
-        "bounces",
-        "f8",
-    ),  # time until the bounces left out would end: then rolling and pivoting friction begin
+    # time that bounces left out would still take: rolling and pivoting friction begin at its end
+    ("bounces", "f8"),
     ("torque", "f8", 3),  # of rolling and pivoting friction, contact axes
     ("W", "f8", (3, 3)),  # effective inverse mass of the last solve
     # `force`, and `stop` with both `turn_stop`, at the start of the step: all its trial steps begin with these

@@ -48,7 +48,6 @@ from carom.model.allowance import affordable
 from carom.model.method import RUNGE_KUTTA
 from carom.persistent.error_bound import (
     is_better_bounded,
-    modes_change,
     note_bounds,
     turns_too_far,
 )
@@ -122,7 +121,7 @@ def step_group(model, data, method, label, h):
         if controls.order == 0:
             return
         note_error(model, data, method, k, h, result.friction - friction)
-        if not is_better_bounded(system, controls, active, k, h, start, end, group, work):
+        if not is_better_bounded(model, data, k, h):
             return
         smooth = False
     if not smooth:
@@ -130,14 +129,13 @@ def step_group(model, data, method, label, h):
         for m in range(count):
             copy_state(group.flight[group.member[m]], end[group.member[m]])
         free = controls.order > 0 and work.search[0].active == 0  # to choose the length of the step
-        if free and turns_too_far(system, controls, start, h, count, group, work):
+        if free and turns_too_far(model, data, count, h):
             return
         if alone or joined:
             place_closed(system, k, start, group, group.points[0], work)
         step_once(model, data, k, count, loaded, h)
         if controls.order > 0:
-            changes = modes_change(active, k, group)
-            note_bounds(system, changes, k, h, start, end, count, group, work)
+            note_bounds(model, data, k, count, h)
     forces_at_end(model, data, k, False, end)
 
 

@@ -70,8 +70,10 @@ def time_of_error(L, start, h, end):
 
 
 @kernel
-def note_bounds(system, changes, k, h, start, end, count, group, work):
+def note_bounds(model, data, k, count, h):
     """Store the errors of bodies of a group in a step of order 2, as their only estimate, and their sizes."""
+    system, start, end = model.system, data.state, data.work.trial
+    group, work, changes = data.group, data.work, modes_change(data.active, k, data.group)
     for m in range(count):
         b = group.member[m]
         L, miss = system.bodies[b].extent, work.body[b].miss
@@ -93,12 +95,13 @@ def note_bounds(system, changes, k, h, start, end, count, group, work):
 
 
 @kernel
-def turns_too_far(system, controls, start, h, count, group, work):
+def turns_too_far(model, data, count, h):
     """Return whether the rotation at the start alone gives a step of order 2 an error that is not allowed.
 
     The error is noted: the step is repeated with a shorter length, without its contact problem being solved.
     """
-    far = False
+    system, controls, start = model.system, model.controls, data.state
+    group, work, far = data.group, data.work, False
     for m in range(count):
         b = group.member[m]
         L, miss = system.bodies[b].extent, work.body[b].miss
@@ -109,12 +112,14 @@ def turns_too_far(system, controls, start, h, count, group, work):
 
 
 @kernel
-def is_better_bounded(system, controls, active, k, h, start, end, group, work):
+def is_better_bounded(model, data, k, h):
     """Return whether for the body of k points a step of order 2 has an allowed error, and its method has not.
 
     This happens just before a body stops, when the directions of slip turn faster and faster. U and P have the
     velocities and the forces at the end.
     """
+    system, controls, active = model.system, model.controls, data.active
+    start, end, group, work = data.state, data.work.trial, data.group, data.work
     b, u, p = group.member[0], group.v[U], group.v[P]
     L, miss = system.bodies[b].extent, work.body[b].miss
     allowed = allowed_error(controls.rtol, controls.atol, L, miss[2])

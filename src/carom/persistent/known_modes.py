@@ -108,7 +108,7 @@ def forget_forces(k, group, motion):
 
 @kernel
 def missed(n, group, motion):
-    """Write what is missing in each given row; return the greatest."""
+    """Write the error of each given row, and return the greatest."""
     x, wrong = group.v[OLD], 0.0
     for i in range(n):
         x[i] = -group.v[C][group.cone.active[i]] - dot(group.rows[0, i], motion)

@@ -95,12 +95,18 @@ def judge(model, data, k, horizon):
             if group.closed[i].stays == 0:
                 if bounces_end(contact, u, -a, slow(contact, state), horizon):
                     group.closed[i].stays, more = 1, True
-                    if any_turning(contact) and u > slow(contact, state):
-                        group.closed[i].bounces = time_of_bounces(contact, u, -a)
+                    group.closed[i].bounces = time_without_torque(contact, u, -a, state)
             elif turn == 0 and not a <= 1e-10 * push:
                 group.closed[i].stays = 0
         if not more:
             break
+
+
+@kernel
+def time_without_torque(contact, rate, g, state):
+    """Return the time of bounces that are left out, in which rolling and pivoting friction do not act."""
+    bounces = any_turning(contact) and rate > slow(contact, state)
+    return time_of_bounces(contact, rate, g) if bounces else 0.0
 
 
 @kernel
