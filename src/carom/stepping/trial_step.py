@@ -110,7 +110,7 @@ def trial_step(model, data, method):
     """
     system, controls, active, now = model.system, model.controls, data.active, data.state
     work, clock, search = data.work, data.clocks[0], data.work.search[0]
-    work.result[0].start = clock.now
+    work.result[0].start, work.result[0].until = clock.now, math.inf
     applied, friction, code = step(method, system, active, now, search.dt, work.trial, work)
     search.applied, search.friction, search.code = applied, friction, code
     search.alone = friction  # of points that are the only active ones of their bodies
@@ -152,6 +152,9 @@ def fits(model, data):
         error = math.inf
         if code == 0:
             error = step_error(system, controls.rtol, controls.atol, work)
+        if error <= 1.0 and work.result[0].until < dt:
+            search.dt = work.result[0].until
+            return ONCE_MORE
         if error <= 1.0:
             plan_next(dt, error, search.again == 1, controls, work)
             return 0
