@@ -50,13 +50,24 @@ def propose_step(model, data):
     if clock.now - clock.moment > model.controls.step:
         clock.moment, clock.in_moment = clock.now, 0
     dt = min(search.left, search.pace)
-    if model.controls.order > 0:
+    if model.controls.order > 0 and may_err(model.system, data.active):
         dt = min(dt, allowed_step(search.left, data.work))
     if data.active.count[0] > 0:
         dt = until_bounces_end(data.active, until_stop(model.controls, data.active, dt, clock))
     search.dt, search.cuts, search.again, search.active = dt, 0, 0, 0
     search.effort = clock.effort
     search.eager = 1 if clock.in_moment < MANY else 0
+
+
+@inlined
+def may_err(system, active):
+    """Return whether a body is in contact, joined or loaded: the error of free flight is zero at any step."""
+    if active.count[0] > 0:
+        return True
+    for b in range(system.bodies.shape[0]):
+        if system.bodies[b].ballistic == 0:
+            return True
+    return False
 
 
 @inlined
@@ -156,7 +167,8 @@ def fits(model, data):
             search.dt = work.result[0].until
             return ONCE_MORE
         if error <= 1.0:
-            plan_next(dt, error, search.again == 1, controls, work)
+            if may_err(system, data.active):
+                plan_next(dt, error, search.again == 1, controls, work)
             return 0
         if not dt > NOTHING_LEFT * controls.duration:
             return code if code != 0 else STEP_TOO_SMALL
