@@ -4,9 +4,10 @@ A module here is a family of scenes: it has a function ``case(seed) -> Case``. `
 them by the thousand; the tests run a few of each.
 """
 
-from campaigns import crowds, forced, mechanisms, piles, robots, rolls, strikes, throws
+from campaigns import crowds, forced, mechanisms, piles, robots, rolls, slides, strikes, throws
 
 FAMILIES = {
     "throws": throws.case, "strikes": strikes.case, "mechanisms": mechanisms.case, "forced": forced.case,
     "piles": piles.case, "crowds": crowds.case, "robots": robots.case, "rolls": rolls.case,
+    "slides": slides.case,
 }  # fmt: skip
