@@ -46,13 +46,12 @@ def poured(shapes, side=0.08, seed=0, **law):
 
 
 def deepest(scene, solution, row):
-    """Return the least gap of all pairs and planes at a saved time."""
+    """Return the least gap of all planes, and of pairs that are near enough to touch, at a saved time."""
     poses = list(zip(solution.position[row], solution.orientation[row]))
-    pairs = combinations(range(len(poses)), 2)
-    gap = min(
-        nearest_points(scene.bodies[i].shape, poses[i], scene.bodies[j].shape, poses[j]).gap
-        for i, j in pairs
-    )
+    shapes, gap = [body.shape for body in scene.bodies], np.inf
+    for i, j in combinations(range(len(poses)), 2):
+        if np.linalg.norm(poses[i][0] - poses[j][0]) < shapes[i].size + shapes[j].size:
+            gap = min(gap, nearest_points(shapes[i], poses[i], shapes[j], poses[j]).gap)
     corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
     for body, (x, q) in zip(scene.bodies, poses):
         R = quaternion.matrix(q)
