@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import ast
+from functools import cache
 from pathlib import Path
+from typing import NamedTuple
 
 import carom
 
@@ -29,6 +31,7 @@ DOORS = {
 LOOSE = 8
 
 
+@cache
 def modules() -> dict[str, Path]:
     """All modules, by their names below carom."""
     found = {}
@@ -38,28 +41,48 @@ def modules() -> dict[str, Path]:
     return found
 
 
+class Import(NamedTuple):
+    """An import statement of a file."""
+
+    node: ast.Import | ast.ImportFrom
+    inside: bool  # a function
+    for_types: bool  # only
+
+
+def imports_below(node: ast.AST, inside: bool = False, for_types: bool = False):
+    """Yield all imports below a node: statements are looked at, not what they are made of."""
+    for_types = for_types or (
+        isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test)
+    )
+    inside = inside or isinstance(node, ast.FunctionDef)
+    for below in ast.iter_child_nodes(node):
+        if isinstance(below, (ast.Import, ast.ImportFrom)):
+            yield Import(below, inside, for_types)
+        elif isinstance(below, (ast.stmt, ast.ExceptHandler, ast.match_case)):
+            yield from imports_below(below, inside, for_types)
+
+
+@cache
+def statements(path: Path) -> list[Import]:
+    """All imports of a file."""
+    return list(imports_below(ast.parse(path.read_text())))
+
+
 def imports(path: Path, known) -> list[tuple[str, bool]]:
     """Modules of carom that a file imports, and whether inside a function; not those for types only."""
-    tree = ast.parse(path.read_text())
-    for_types, inside = set(), set()
-    for node in ast.walk(tree):
-        if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
-            for_types |= {id(inner) for inner in ast.walk(node)}
-        if isinstance(node, ast.FunctionDef):
-            inside |= {id(inner) for inner in ast.walk(node)}
     found = []
-    for node in ast.walk(tree):
-        if id(node) in for_types:
-            continue
+    for node, inside, for_types in statements(path):
         names = []
+        if for_types:
+            continue
         if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "carom":
             base = (node.module or "")[6:]
             for alias in node.names:
                 full = f"{base}.{alias.name}" if base else alias.name
                 names.append(full if full in known else base)
-        elif isinstance(node, ast.Import):
+        else:
             names = [alias.name[6:] for alias in node.names if alias.name.startswith("carom.")]
-        found += [(name, id(node) in inside) for name in names if name]
+        found += [(name, inside) for name in names if name]
     return found
 
 
@@ -111,8 +134,9 @@ def test_only_compiled_code_knows_numba():
     for name, path in modules().items():
         if name.split(".")[0] == "_compiled":
             continue
-        for node in ast.walk(ast.parse(path.read_text())):
-            names = [a.name for a in node.names] if isinstance(node, ast.Import) else []
-            if isinstance(node, ast.ImportFrom):
-                names.append(node.module or "")
+        for node, *_ in statements(path):
+            if isinstance(node, ast.Import):
+                names = [a.name for a in node.names]
+            else:
+                names = [node.module or ""]
             assert not {one.split(".")[0] for one in names} & {"numba", "llvmlite"}, name

@@ -12,13 +12,17 @@ EXAMPLES = sorted((Path(__file__).parents[1] / "examples").rglob("*.py"))
 HEAPS = pytest.mark.filterwarnings("ignore::carom.AccuracyWarning")
 
 
+#: less of what takes long
+LESS = {"heap": {"count": 30}}
+
+
 @pytest.mark.parametrize(
     "path",
     [pytest.param(p, marks=[HEAPS] if p.stem == "heap" else [], id=p.stem) for p in EXAMPLES],
 )
 def test_example(path, tmp_path, capsys):
     main = runpy.run_path(str(path))["main"]
-    main(tmp_path)
+    main(tmp_path, **LESS.get(path.stem, {}))
     assert capsys.readouterr().out
     assert (tmp_path / f"{path.stem}.png").stat().st_size > 5000
     lines = path.read_text().splitlines()

@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from functools import cache
 
 import pytest
 
@@ -26,6 +27,7 @@ MISSING = {
 }
 
 
+@cache  # as it is with what is known, for all
 def told(hide: str) -> tuple[list[str], str]:
     """Throw a die in a process of its own; return what it printed, and what it was warned of."""
     done = subprocess.run(

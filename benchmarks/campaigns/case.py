@@ -142,10 +142,12 @@ def depth(scene: carom.Scene, s: carom.Solution) -> float:
         shape, ground = scene.bodies[b].shape, scene.half_spaces[plane]
         if shape is None:
             continue
-        down = quaternion.rotate_back(s.orientation[:, b], -np.asarray(ground.normal, dtype=float))
+        height = (s.position[:, b] - ground.point) @ ground.normal
+        near = height < shape.size  # others are above it as they are
+        normal = np.asarray(ground.normal, dtype=float)
+        down = quaternion.rotate_back(s.orientation[near, b], -normal)
         reach = np.array([shape.support(d) @ d for d in down])
-        gap = (s.position[:, b] - ground.point) @ ground.normal - reach
-        worst = max(worst, float(-np.min(gap)) / shape.size)
+        worst = max(worst, float(np.max(reach - height[near], initial=0.0)) / shape.size)
     return worst
 
 
@@ -159,7 +161,7 @@ def overlap(scene: carom.Scene, s: carom.Solution) -> float:
         if None in shapes:
             continue
         smaller = min(shape.size for shape in shapes)
-        reach = 2.0 * sum(shape.size for shape in shapes)
+        reach = sum(shape.size for shape in shapes)
         for k in rows:
             x, q = s.position[k], s.orientation[k]
             if np.linalg.norm(x[a] - x[b]) < reach:

@@ -110,7 +110,7 @@ def test_moved_and_turned_together(first, second, u, q, turn, shift):
         np.testing.assert_allclose(two.normal, quaternion.rotate(turn, one.normal), atol=1e-9)
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=50, deadline=None)
 @given(
     st.sampled_from(NAMES), st.sampled_from(NAMES), directions, rotations, directions, directions
 )

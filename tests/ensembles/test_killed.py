@@ -50,9 +50,9 @@ def python(*arguments):
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
 def test_killed_at_any_operation(tmp_path):
     # some 850 operations: half of them make the store
-    told = python(str(TESTS / "ensembles" / "kills.py"), str(tmp_path), "5", "97", "12").split()
+    told = python(str(TESTS / "ensembles" / "kills.py"), str(tmp_path), "5", "172", "5").split()
     assert len(told) == 2, told
-    assert int(told[0]) >= 6
+    assert int(told[0]) >= 4
 
 
 def test_killed_while_it_is_made(tmp_path):
@@ -99,7 +99,7 @@ def test_damaged_inputs_are_refused(tmp_path):
 def test_a_signal_at_any_time(tmp_path):
     """Killed by the clock, again and again, until it is done."""
     code = "import sys; from ensembles.test_killed import throw; print(1, flush=True); throw(sys.argv[1])"
-    for delay in (0.02, 0.1, 0.3):
+    for delay in (0.02, 0.2):
         command = [sys.executable, "-c", code, str(tmp_path / "e.zarr")]
         child = subprocess.Popen(command, env=ENVIRONMENT, stdout=subprocess.PIPE)
         assert child.stdout is not None

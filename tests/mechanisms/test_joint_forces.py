@@ -237,12 +237,15 @@ def test_slip_turns_where_a_loop_passes_its_dead_centres():
     scene.add_force(forces.JointFriction(way, force))
     solution = carom.simulate(scene, 1.5, step=5e-4)
     x = solution.position[:, 2, 0]
-    turns = np.count_nonzero(np.diff(np.sign(np.diff(x))))
-    assert turns >= 6
+    # in the step of a dead centre it goes to .4 or .2 m, where crank and rod are in line, and back
+    rate = solution.velocity[:, 2, 0]
+    turned = rate[:-1] * rate[1:] < 0.0
+    assert np.count_nonzero(turned) >= 6
     assert solution.stats["whole_steps"] == 0
-    gone = solution.evaluate(np.linspace(0.0, 1.5, 200_001))[0][:, 2, 0]
-    way_gone = np.sum(np.abs(np.diff(gone)))
-    assert solution.ledger.friction[-1] == pytest.approx(-force * way_gone, rel=1e-6)
+    dead = np.where(rate[:-1] > 0.0, 0.3 + 0.1, 0.3 - 0.1)
+    passed = np.abs(dead - x[:-1]) + np.abs(dead - x[1:])
+    way_gone = np.sum(np.where(turned, passed, np.abs(np.diff(x))))
+    assert solution.ledger.friction[-1] == pytest.approx(-force * way_gone, rel=1e-9)
     assert np.max(np.abs(solution.ledger.residual)) < 1e-8 * solution.kinetic_energy[0]
 
 

@@ -167,7 +167,7 @@ def test_momentum_of_what_floats_is_kept():
     for coordinate in (0, 1):
         scene.add_force(forces.JointInertia(bent, 0.3, coordinate))
         scene.add_force(forces.JointForce(bent, 0.1 + coordinate, coordinate))
-    solution = carom.simulate(scene, 1.0, step=2e-3)
+    solution = carom.simulate(scene, 1.0, step=5e-3)
     m, J = np.array([1.0, 2.0]), np.array([b.inertia for b in bodies])
     R = quaternion.matrix(solution.orientation)
     spin = np.einsum("tbij,bjk,tblk,tbl->ti", R, J, R, solution.angular_velocity)

@@ -50,7 +50,7 @@ def exact(duration, lean, rate, loops):
 def test_a_step_may_meet_the_position_anywhere(method):
     """At any part of the step, and at its ends. The order of rk4 leaves 1.1e-10 J, of the others round-off."""
     h = 2.2e-3
-    for part in np.linspace(-0.05, 1.05, 221):
+    for part in np.linspace(-0.05, 1.05, 111):
         run = carom.simulate(four_bars(np.pi / 2 - part * h * RATE), h, step=h, method=method)
         assert np.ptp(run.total_energy) < 5e-10  # of 12 J
         rates = -run.angular_velocity[-1, :3, 2]
@@ -59,8 +59,11 @@ def test_a_step_may_meet_the_position_anywhere(method):
         )  # in such a position what bars differ by is round-off over their angle
 
 
-@pytest.mark.parametrize("loops", [2, 5])
-@pytest.mark.parametrize("step", [1.436e-3, 2e-3, 2.2014e-3, 3.1425e-3, 5.1721e-3])
+@pytest.mark.parametrize(
+    ("step", "loops"),
+    [(1.436e-3, 2), (2e-3, 2), (2.2014e-3, 2), (3.1425e-3, 2), (5.1721e-3, 2)]
+    + [(2.2014e-3, 5), (5.1721e-3, 5)],
+)
 def test_order_8_for_ten_seconds(step, loops):
     """Some twenty passages; with 0.3 m as the worst where stages in singular positions were taken as others."""
     run = carom.simulate(four_bar.scene(loops), 10.0, step=step, method="rk8", save_every=10**9)

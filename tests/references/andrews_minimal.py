@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from references.andrews import PARAMETERS, closures
+from references.andrews import PARAMETERS, _c, _s, closures
 
 P = PARAMETERS["params"]
 
@@ -69,10 +69,17 @@ def force(q, v):
 
 
 def jacobian(q):
-    """Return dg/dq (6, 7), by complex steps: exact to round-off."""
-    return np.array(
-        [np.imag(closures(q + 1e-30j * unit)) / 1e-30 for unit in np.eye(7)]
-    ).T  # fmt: skip
+    """Return dg/dq (6, 7); c' = -s and s' = c."""
+    p, (beta, theta, gamma, phi, delta, omega, epsilon) = P, q
+    G = np.zeros((3, 2, 7))
+    G[:, :, 1] = p["d"] * _s(beta + theta)
+    G[:, :, 0] = G[:, :, 1] - p["rr"] * _s(beta)
+    G[0, :, 2] = -p["ss"] * _c(gamma)
+    G[1, :, 3] = -p["e"] * _c(phi + delta)
+    G[1, :, 4] = G[1, :, 3] + p["zt"] * _s(delta)
+    G[2, :, 5] = p["zf"] * _s(omega + epsilon)
+    G[2, :, 6] = G[2, :, 5] - p["u"] * _c(epsilon)
+    return G.reshape(6, 7)
 
 
 def accelerations(q, v):

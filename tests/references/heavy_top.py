@@ -28,11 +28,17 @@ def rotation(Q):
     return np.eye(3) + 2.0 * w * hat + 2.0 * hat @ hat
 
 
+def cross(a, b):
+    """Return a x b."""
+    (x, y, z), (u, v, w) = a.tolist(), b.tolist()
+    return np.array([y * w - z * v, z * u - x * w, x * v - y * u])
+
+
 def rates(t, y):
     """Return dQ/dt and dW/dt."""
     Q, W = y[:4], y[4:]
-    torque = np.cross(ABOUT_POINT * W, W) + np.cross(CENTRE, MASS * rotation(Q).T @ GRAVITY)
-    half = 0.5 * np.array([-Q[1:] @ W, *(Q[0] * W + np.cross(Q[1:], W))])
+    torque = cross(ABOUT_POINT * W, W) + cross(CENTRE, MASS * rotation(Q).T @ GRAVITY)
+    half = 0.5 * np.array([-Q[1:] @ W, *(Q[0] * W + cross(Q[1:], W))])
     return np.concatenate([half, torque / ABOUT_POINT])
 
 

@@ -24,6 +24,13 @@ def test_andrews_absolute_model_has_the_published_mass_matrix():
         np.testing.assert_allclose(M, andrews_minimal.mass(q), atol=1e-9 * np.abs(M).max())
 
 
+def test_andrews_jacobian_is_that_of_the_closures():
+    """By complex steps, which are exact to round-off."""
+    for q in np.random.default_rng(1).normal(size=(3, 7)):
+        steps = [np.imag(andrews.closures(q + 1e-30j * unit)) / 1e-30 for unit in np.eye(7)]
+        np.testing.assert_allclose(andrews_minimal.jacobian(q), np.transpose(steps), atol=1e-16)
+
+
 def test_andrews_published_end():
     """t = 0.03: the angles of the IVP test set to 1e-7, the rates to 1e-6 of themselves."""
     data = andrews.andrews_data()
