@@ -55,7 +55,7 @@ from carom.persistent.finish import finish, forces_at_end, gained
 from carom.persistent.middle_state import halfway, mean_velocity, power_of_path, spin_momentum
 from carom.persistent.return_to_surfaces import onto_surfaces
 from carom.persistent.rolling_friction import bound_turning, first_torque
-from carom.persistent.slide import forget_stops, slide_step
+from carom.persistent.slide import GOES_ON, NOT, forget_stops, slide_step
 from carom.persistent.smooth_group import can_be_smooth, smooth_group_step
 from carom.persistent.smooth_step import note_error, smooth_step
 from carom.persistent.step_control import (
@@ -113,16 +113,16 @@ def step_group(model, data, method, label, h):
     alone = of_one_body(system, k, group.points[0]) and not loaded
     alone = alone and method.kind == RUNGE_KUTTA
     friction, over = result.friction, result.unnamed
-    slid = alone and slide_step(model, data, method, k, h)
-    smooth = slid or (alone and smooth_step(model, data, method, k, h))
+    slid = slide_step(model, data, method, k, h) if alone else NOT
+    smooth = slid != NOT or (alone and smooth_step(model, data, method, k, h))
     joined = loaded and can_be_smooth(system, active, method, k, count, group)
     if joined:
         smooth = smooth_group_step(model, data, method, k, count, h)
     if smooth and alone:
         forces_at_end(model, data, k, True, end)
-        if slid:
+        if slid == GOES_ON:
             forget_stops(active, k, group)
-        if slid or controls.order == 0:
+        if slid != NOT or controls.order == 0:
             return
         note_error(model, data, method, k, h, result.friction - friction)
         if not is_better_bounded(model, data, k, h):

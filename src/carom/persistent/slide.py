@@ -40,11 +40,12 @@ FLAT = 1e-9
 REST = 0.1
 #: of the time to the stop at the present deceleration: a longer step is stiff at the end of a straight slide
 AHEAD = 2.0 / 3.0
-#: least force, and slip, of the greatest, with which a slide goes on; it begins with twice that
-PART = 1e-3
+#: least force, and slip, of the greatest, with which a slide goes on; TWICE that with which it begins
+PART, TWICE = 1e-3, 2.0
 TINY = 1e-6  # of the time to the stop, or of the whole step: a shorter one finds nothing new
 SAME = 1.0 - 1e-12  # times that agree to this part are one
 MANY = 500  # steps of one slide
+NOT, ENDS, GOES_ON = range(3)
 
 
 class Figure(NamedTuple):
@@ -72,29 +73,34 @@ class Motion(NamedTuple):
 
 @kernel
 def slide_step(model, data, method, k, h):
-    """Write the end of a step of the only body of a group, if it slides on a face; return whether it does.
+    """Write the end of a step of the only body of a group, if it slides on a face; return NOT, ENDS or GOES_ON.
 
-    If the body stops within the step, `until` of the result is that time: the step is repeated up to there.
+    If the slide ends within the step, `until` of the result is that time: the step is repeated up to there.
     """
     system, start, end, group, work = (
         model.system, data.state, data.work.trial, data.group, data.work,
     )  # fmt: skip
     b, result = group.member[0], work.result[0]
     if not (lies_flat(model, data, k) and begin(model, data, k) and all_slip(k, group)):
-        return False
+        return NOT
     figure = draw(system, start[b], k, group)
     if not is_face(figure, group):
-        return False
-    motion, time = slide(model, data, method, figure, h)
-    if not time > 0.0 or (time < h and work.search[0].active == 1):
-        return False
-    result.until = min(result.until, time)
+        return NOT
+    motion, time, part, stop = slide(model, data, method, figure, h)
+    if time < h and work.search[0].active == 1:
+        return NOT
+    if time > 0.0:
+        result.until = min(result.until, time if time < h else math.inf)
+    elif h > AHEAD * stop:  # a step that is longer than the motion is none for others, either
+        result.until = min(result.until, AHEAD * stop)
+    else:
+        return NOT
     write_end(figure, motion, start[b], group.points[0][0].axes, end[b])
     back_to_plane(model, data, k, h)
     result.friction += motion.work
     over = unnamed(system, model.controls, start, end, motion.work, 1, group.member)
     result.unnamed = max(result.unnamed, over)
-    return True
+    return GOES_ON if part >= TWICE * PART else ENDS
 
 
 @kernel
@@ -174,16 +180,17 @@ def is_face(figure, group):
 
 @kernel
 def slide(model, data, method, figure, h):
-    """Slide for a time h, or until the body stops or a point is not loaded; return the motion and the time.
+    """Slide for a time h, or until the body stops, or a point is not loaded or does not slip.
 
-    The bounds of the accelerations and of the spin of the body are written.
+    Return the motion, the time, the least part (`note_rates`) and the time to the stop there. The bounds of the
+    accelerations and of the spin of the body are written.
     """
     controls, stages, order = model.controls, data.work.stages, model.controls.order
     b, first = figure.body, stages[0, figure.body]
     motion = motion_at(data.state[b], data.group.points[0][0])
     t, spin = 0.0, abs(motion.w)
     part, longest = note_rates(figure, motion, first, data.group)
-    part *= 0.5
+    part /= TWICE
     stop = time_to_stop(figure, motion, first)
     dt = min(h, AHEAD * stop)
     for _ in range(MANY):
@@ -210,7 +217,7 @@ def slide(model, data, method, figure, h):
         stop = time_to_stop(figure, motion, first)
         dt, spin = min(factor * dt, AHEAD * stop), max(spin, abs(motion.w))
     write_bounds(figure, spin, data.group, data.work.body[b].bound)
-    return motion, t
+    return motion, t, part, stop
 
 
 @kernel
