@@ -13,7 +13,7 @@ from carom.impact.multiple.layout import LANES, S_SIGMA, S_U1, S_U2, WEIGHT, WHE
 AT_REST = 1e-10  # slip below this velocity, or below 0.1 rtol, has ended
 _MORE = 3  # orders that are added to the series until it reaches a change of mode
 _SAFE = 0.01  # of the tolerance, for a series of low order: its last terms do not bound the error
-_STIFF = 100.0  # rate at which a slow direction relaxes, in units of the fastest contact
+_STIFF = 3000.0  # rate of a slow direction above which stages cost less, per time of the fastest
 
 
 @inlined
