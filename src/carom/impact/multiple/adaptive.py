@@ -19,7 +19,7 @@ WEDGED = 1e-11  # greatest velocity of a group that is wedged at rest
 _LASTING = 0.01
 _FINE = 1e-10  # least useful tolerance of steps by stages (order four)
 _FIRST_STEP = 0.05
-_STIFF_STEPS = 4  # steps by stages before series are tried again
+_STIFF_STEPS = 2  # steps by stages before series are tried again
 
 
 @kernel
@@ -132,15 +132,17 @@ def wedged(k, work, h, p):
 
 
 @kernel
-def traverse(k, work, rtol, p, max_events, max_steps):
-    """Continue to the end of the event; return ENDED, or TRAPPED after too many changes of mode or steps."""
+def traverse(k, work, rtol, later, p, max_events, max_steps):
+    """Continue to the end of the event; return ENDED, or TRAPPED after too many changes of mode or steps.
+
+    The tolerance is `rtol`, and `later` once the state at the first unloading is saved.
+    """
     clock = work.clock[0]
     when = work.vector[WHEN]
     set_velocity(k, work)
-    apart = max(APART, 1e-4 * rtol)
     first_events, first_steps, h = clock.events, clock.steps, 0.0
     while True:
-        if drift(k, work, apart, p) == 1 or wedged(k, work, h, p):
+        if drift(k, work, max(APART, 1e-4 * rtol), p) == 1 or wedged(k, work, h, p):
             set_velocity(k, work)
             return ENDED
         if (
@@ -163,11 +165,12 @@ def traverse(k, work, rtol, p, max_events, max_steps):
             clock.idle = clock.idle + 1 if h <= events.SAME_TIME else 0
             if clock.branched == 0 and events.would_unload(k, work, when, latest):
                 branch(k, work, latest)
+                rtol = later
             events.change_modes(k, work, when, latest, p, clock.idle > 2 * k)
             clock.events += 1
 
 
 @unit
-def pass_layer(k, work, rtol, p, max_events, max_steps):
+def pass_layer(k, work, rtol, later, p, max_events, max_steps):
     """Traverse the layer; the clock gets the code."""
-    work.clock[0].code = traverse(k, work, rtol, p, max_events, max_steps)
+    work.clock[0].code = traverse(k, work, rtol, later, p, max_events, max_steps)

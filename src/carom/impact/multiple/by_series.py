@@ -11,9 +11,9 @@ from carom.impact.multiple.grip import first_slip, gather_stuck, halt
 from carom.impact.multiple.layout import LANES, S_SIGMA, S_U1, S_U2, WEIGHT, WHEN, U
 
 AT_REST = 1e-10  # slip below this velocity, or below 0.1 rtol, has ended
-_MORE = 3  # orders that are added to the series until it reaches a change of mode
+_FEWER = 2  # orders of the series that are left out if it reaches a change of mode without them
 _SAFE = 0.01  # of the tolerance, for a series of low order: its last terms do not bound the error
-_STIFF = 100.0  # rate at which a slow direction relaxes, in units of the fastest contact
+_STIFF = 3000.0  # rate of a slow direction above which stages cost less, per time of the fastest
 
 
 @inlined
@@ -43,7 +43,7 @@ def series_step(k, work, rtol):
     clock.stretched = 1 if stretched else 0
     clock.steps += 1
     most = taylor.degree_for(rtol)
-    known, degree, h = 0, most // 2, 0.0
+    known, degree, h = 0, most - _FEWER, 0.0
     while True:  # only as many orders as the next change of mode needs
         taylor.expand(k, z, closed, work, known, degree, stretched)
         if known == 0 and stretched and _stiff(k, work):
@@ -52,7 +52,7 @@ def series_step(k, work, rtol):
         h = along.reach(k, work, degree, stretched, _SAFE * rtol if degree < most else 0.1 * rtol)
         if degree == most or events.any_change(k, work, degree, h):
             break
-        degree = min(most, degree + _MORE)
+        degree = most
     first = events.find_changes(k, work, degree, h, when)
     changes, end = first <= h, min(first, h)
     if z > 0:

@@ -8,7 +8,7 @@ from carom.impact.multiple.adaptive import ENDED, start
 from carom.impact.multiple.layout import FIXED, PLASTIC, TRY, U
 from carom.impact.multiple.motion import into_lanes
 from carom.impact.multiple.plastic import end_plastically
-from carom.impact.multiple.restitution_iteration import iterate_restitution, run
+from carom.impact.multiple.restitution_iteration import COARSE, iterate_restitution, run
 
 
 @kernel
@@ -36,11 +36,13 @@ def pass_group(k, work, cones, settings, result):
         return
     into_lanes(k, work)
     fixed = 0 if k <= settings.adaptive_up_to else settings.fixed_steps
-    ended = run(k, work, settings, settings.rtol, fixed, True)
+    iterates = r.any_targets(k, work)
+    rtol = max(settings.rtol, COARSE) if iterates else settings.rtol
+    ended = run(k, work, settings, rtol, fixed, True)
     if ended != ENDED and fixed == 0 and work.clock[0].steps >= settings.max_steps * k:
         fixed = settings.fixed_steps
         ended = run(k, work, settings, settings.rtol, fixed, True)
-    if r.any_targets(k, work) and ended == ENDED:
+    if iterates and ended == ENDED:
         ended = iterate_restitution(k, work, settings, fixed, result)
     if fixed > 0:
         result.marks |= FIXED

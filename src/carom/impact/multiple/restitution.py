@@ -29,6 +29,7 @@ from carom.impact.multiple.layout import (
 )
 
 _FARTHEST = 1.5  # greatest |ln(target/reached)| and step that is believed
+_DIFFERING = 3.0  # part of a first step in which contacts differ, if some have no target
 _PARALLEL = 0.01  # squared sine of the least angle between two steps of which both are kept
 
 
@@ -88,11 +89,19 @@ def misses(k, work, out):
 
 @kernel
 def begin(k, work, gain):
-    """Begin at the e_* in use, with the inverse Jacobian -gain: a damped fixed point iteration."""
+    """Begin at the e_* in use; the inverse Jacobian is -gain for equal misses, and more for differences.
+
+    Contacts without a target, such as an edge at rest, respond to the others and make their u_n+ more equal.
+    """
+    m = 0
+    for i in range(k):
+        m += 1 if has_target(work.contact[i]) else 0
+    differing = _DIFFERING if m < k else 1.0
     for i in range(k):
         work.vector[OUT_X, i], work.vector[OUT_LAST, i] = math.log(work.contact[i].e), 0.0
         for j in range(k):
-            work.matrix[INVERSE, i, j] = -gain if i == j else 0.0
+            mean = (1.0 - differing) / m if has_target(work.contact[j]) else 0.0
+            work.matrix[INVERSE, i, j] = -gain * (mean + (differing if i == j else 0.0))
 
 
 @kernel

@@ -10,13 +10,13 @@ from carom.impact.multiple.layout import CAPPED, MISSED, OUT_F, OUT_NEW
 
 _GAIN = 0.8  # a round is a gain if it reduces the greatest miss to this part or less
 _PATIENCE = 4  # rounds without gain until it begins again, damped; after twice as many it ends
-_COARSE = 1e-4  # greatest tolerance of a passage; it decreases with the misses
+COARSE = 1e-4  # greatest tolerance of a passage; it decreases with the misses
 _NEAR = 0.1  # greatest ln(target/reached) at which the nearest result is used
 
 
 @kernel
 def run(k, work, settings, rtol, fixed, anew):
-    """Pass the layer with the coefficients e_* as they are."""
+    """Pass the layer with the coefficients e_* as they are; `rtol` holds from the first unloading."""
     p, most_events = settings.exponent, settings.max_events * k
     if anew:
         start(k, work)
@@ -27,7 +27,7 @@ def run(k, work, settings, rtol, fixed, anew):
     if not anew:
         resume(k, work, p)
     most = settings.max_steps * k
-    pass_layer(k, work, rtol, p, most_events, most)
+    pass_layer(k, work, settings.rtol if anew else rtol, rtol, p, most_events, most)
     return work.clock[0].code
 
 
@@ -41,13 +41,16 @@ def iterate_restitution(k, work, settings, fixed, result):
     o = work.vector
     tolerance = 1e-3 if fixed > 0 else max(3.0 * settings.rtol, 1e-10)
     r.begin(k, work, 1.0)
+    ended = ENDED
     worst, capped = r.misses(k, work, o[OUT_F])
+    if not worst > tolerance and fixed == 0:  # the first passage was coarse
+        ended = again(k, work, settings, settings.rtol, fixed)
+        worst, capped = r.misses(k, work, o[OUT_F])
     r.keep_best(k, work)
-    best, stale, ended, rounds = worst, 0, ENDED, 0
-    rtol = settings.rtol
+    best, stale, rounds = worst, 0, 0
     while worst > tolerance and rounds < settings.max_rounds and ended == ENDED:
         r.improve(k, work)
-        rtol = max(settings.rtol, min(_COARSE, 0.01 * worst))
+        rtol = max(settings.rtol, min(COARSE, 0.01 * worst))
         ended = again(k, work, settings, rtol, fixed)
         rounds += 1
         worst, capped = r.misses(k, work, o[OUT_NEW])
