@@ -52,6 +52,7 @@ CASES = {
         lambda: block((0.2, 0.1, 0.04), (0.5, -0.4), 6.0, 0.3, INERTIA, (4.0, 0.0, -9.0)), 0.4,
     ),
     "without friction": (lambda: block((0.2, 0.1, 0.04), (0.5, -0.4), 6.0, 0.0), 0.4),
+    "a corner without load": (lambda: block((0.05, 0.06, 0.15), (1.0, 1.0), 6.0, 0.27), 0.2),
     "tips": (lambda: block((0.04, 0.1, 0.3), (1.0, 0.0), 3.0, 0.2), 0.12),
 }  # fmt: skip
 

@@ -7,7 +7,8 @@ Rolling or pivoting friction of a point that rotates about the axis e is the tor
 not rotate, the rows of that rotation are given, too.
 
 Forces need not be unique (four corners of a face). The forces of a face of equal springs are used, the limit of
-(A + eps S) lam = -c for eps -> 0, with S the scales of the points, as in `carom.friction.newton`.
+(A + eps S) lam = -c for eps -> 0, with S the scales of the points, as in `carom.friction.newton`. With eps the
+loaded points give way by eps S lam; a point without load must not be deeper, or its spring would press too.
 """
 
 from __future__ import annotations
@@ -64,11 +65,13 @@ def solve_given(system, k, state, group, work):
         L[i, i] += EPS * scale_of(system.bodies[b].mass, inverse, group.points[0][rows[i] // 3])
     lu.factor(L, n, group.cone.pivot, 0.0)
     forget_forces(k, group, work.body[b].motion)
-    for _ in range(CORRECTIONS):
+    for turn in range(CORRECTIONS):
         if not missed(n, group, work.body[b].motion) > FITS * push:
             return obeys(system, k, push, group, work)
         lu.substitute(L, n, group.cone.pivot, x)
         add_forces(system, k, n, group, work.body[b].motion)
+        if turn == 0 and not stays_away(k, push, group, work):
+            return False  # it is on the face of the others, and its spring would press
     return False
 
 
@@ -238,15 +241,15 @@ def note_accelerations(k, group, work):
 def obeys(system, k, push, group, work):
     """Return whether no force pulls or leaves its cone, and no point without force approaches."""
     p, most = group.v[P], 0.0
+    if not stays_away(k, push, group, work):
+        return False
     for i in range(k):
         most = max(most, p[3 * i])
     for i in range(k):
         q = 3 * i
         if group.closed[i].rows == 0:
-            a = contact_motion(group.points[0][i], work)
-            if group.v[C][q] + a[0] < -PULL * push:
-                return False
             if group.kind[i] != SLIDING and pivots_or_rolls(i, group):
+                a = contact_motion(group.points[0][i], work)
                 gain = max(abs(group.v[C][q + 1] + a[1]), abs(group.v[C][q + 2] + a[2]))
                 if gain > PULL * push:
                     return False
@@ -255,6 +258,17 @@ def obeys(system, k, push, group, work):
         if group.closed[i].turns > 0 or group.closed[i].rows == 3:
             friction = math.sqrt(p[q + 1] * p[q + 1] + p[q + 2] * p[q + 2])
             if friction > bound_of(system, i, group) + PULL * most:
+                return False
+    return True
+
+
+@kernel
+def stays_away(k, push, group, work):
+    """Return whether no point without force approaches; `motion` is the acceleration that the forces give."""
+    for i in range(k):
+        if group.closed[i].rows == 0:
+            a = contact_motion(group.points[0][i], work)
+            if group.v[C][3 * i] + a[0] < -PULL * push:
                 return False
     return True
 

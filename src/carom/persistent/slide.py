@@ -1,16 +1,16 @@
 """A body that slides on a face: it keeps its height and its tilt, and moves like a plane figure.
 
-While all points of a face are loaded and slip, only the velocity v = (v_1, v_2) and the spin w about the
-normal n change. In axes (1, 2, n) that turn with the body, with r_i = (X_i, Y_i, -H_i) from its centre to its
-points, u_i = (v_1 - w Y_i, v_2 + w X_i) and f_i = -mu_i N_i u_i/|u_i|:
+While all points of a face slip and its forces are not on one line, only the velocity v = (v_1, v_2) and the
+spin w about the normal n change. In axes (1, 2, n) that turn with the body, with r_i = (X_i, Y_i, -H_i) from
+its centre to its points, u_i = (v_1 - w Y_i, v_2 + w X_i) and f_i = -mu_i N_i u_i/|u_i|:
 
     m (dv/dt + w n x v) = sum f_i + m g_t,      sum N_i = -m g_n,
     (J_1n, J_2n, J_nn) dw/dt + w^2 (-J_2n, J_1n, 0) = sum r_i x (f_i + N_i n).
 
 Forces are those of a face on equal springs (`carom.persistent.known_modes`),
-N_i = (y_0 + y_1 X_i + y_2 Y_i)/S_i: three unknowns. The method of the run integrates these equations in steps
-of their own, to the tolerance of the run, and to the stop, where v and w vanish together. (Mathematics page,
-§3.1.)
+N_i = max(0, y_0 + y_1 X_i + y_2 Y_i)/S_i: three unknowns. The method of the run integrates these equations in
+steps of their own, to the tolerance of the run, and to the stop, where v and w vanish together. (Mathematics
+page, §3.1.)
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from carom.impact.workspace import BACK, OLD, C, P, U
 from carom.kinematics.contact_point import in_axes
 from carom.kinematics.rows import inverse_inertia, symmetric_times
 from carom.persistent.finish import finish
-from carom.persistent.known_modes import scale_of
+from carom.persistent.known_modes import rows_of, scale_of
 from carom.persistent.return_to_surfaces import onto_surfaces, onto_tangents
 from carom.persistent.smooth_step import STIFF, begin, place_at
 from carom.persistent.step_control import unnamed
@@ -40,11 +40,11 @@ FLAT = 1e-9
 REST = 0.1
 #: of the time to the stop at the present deceleration: a longer step is stiff at the end of a straight slide
 AHEAD = 2.0 / 3.0
-#: least force, and slip, of the greatest, with which a slide goes on; TWICE that with which it begins
+#: least part (`note_rates`) with which a slide goes on; TWICE that with which it begins
 PART, TWICE = 1e-3, 2.0
 TINY = 1e-6  # of the time to the stop, or of the whole step: a shorter one finds nothing new
 SAME = 1.0 - 1e-12  # times that agree to this part are one
-MANY = 500  # steps of one slide
+MANY, ROUNDS = 500, 20  # steps of one slide; sets of points that press
 NOT, ENDS, GOES_ON = range(3)
 
 
@@ -57,6 +57,7 @@ class Figure(NamedTuple):
     size: float
     gravity: tuple[float, float, float]  # normal, and in the plane along the axes at the start
     inertia: tuple[float, float, float]  # J_nn, J_1n, J_2n
+    area: float  # square of that which the points spread over
 
 
 class Motion(NamedTuple):
@@ -84,7 +85,7 @@ def slide_step(model, data, method, k, h):
     if not (lies_flat(model, data, k) and begin(model, data, k) and all_slip(k, group)):
         return NOT
     figure = draw(system, start[b], k, group)
-    if not is_face(figure, group):
+    if not figure.area > FLAT * figure.size**4:
         return NOT
     motion, time, part, stop = slide(model, data, method, figure, h)
     if time < h and work.search[0].active == 1:
@@ -130,9 +131,9 @@ def lies_flat(model, data, k):
 
 @kernel
 def all_slip(k, group):
-    """Return whether all points are loaded and slip."""
+    """Return whether all points slip."""
     for i in range(k):
-        if group.closed[i].rows != 1 or group.kind[i] != SLIDING:
+        if group.kind[i] != SLIDING:
             return False
     return True
 
@@ -155,7 +156,8 @@ def draw(system, start, k, group):
     about = symmetric_times(J, n[0], n[1], n[2])
     jn, j1, j2 = in_axes(points[0], about[0], about[1], about[2])
     gn, g1, g2 = in_axes(points[0], g[0], g[1], g[2])
-    return Figure(b, k, body.mass, body.extent, (gn, g1, g2), (jn, j1, j2))
+    spread = area(k, group, False)
+    return Figure(b, k, body.mass, body.extent, (gn, g1, g2), (jn, j1, j2), spread)
 
 
 @kernel
@@ -167,20 +169,8 @@ def motion_at(start, point):
 
 
 @kernel
-def is_face(figure, group):
-    """Return whether the points span an area."""
-    k, c, x, y, xx, xy, yy = figure.points, group.v[C], 0.0, 0.0, 0.0, 0.0, 0.0
-    for i in range(k):
-        x, y = x + c[3 * i] / k, y + c[3 * i + 1] / k
-    for i in range(k):
-        dx, dy = c[3 * i] - x, c[3 * i + 1] - y
-        xx, xy, yy = xx + dx * dx, xy + dx * dy, yy + dy * dy
-    return xx * yy - xy * xy > FLAT * figure.size**4
-
-
-@kernel
 def slide(model, data, method, figure, h):
-    """Slide for a time h, or until the body stops, or a point is not loaded or does not slip.
+    """Slide for a time h, or until the body stops, begins to tip, or a point stops before the others.
 
     Return the motion, the time, the least part (`note_rates`) and the time to the stop there. The bounds of the
     accelerations and of the spin of the body are written.
@@ -261,59 +251,85 @@ def copy_rates(source, target):
 def note_rates(figure, motion, stage, group):
     """Write the rates of a motion to a stage, and N to P; return the least part, and the longest step.
 
-    The least part is that of forces and slips, relative to the greatest. In a longer step than the longest
-    friction changes the slip of a point by more than `STIFF` times its speed.
-    `rate` has dv/dt in turning axes and dw/dt, `speed` the velocity in fixed axes, w and the power of friction.
+    The part is that of the slowest slip, of the speed of the body, or of the area that the forces spread over
+    (0: on a line, about which the body tips). In a longer step friction changes the slip of a point by more
+    than `STIFF` times its speed. `rate` has dv/dt in turning axes and dw/dt, `speed` the velocity in fixed
+    axes, w and the power of friction.
     """
     v1, v2, w = motion.v1, motion.v2, motion.w
     cos, sin = math.cos(motion.turn), math.sin(motion.turn)
-    y, f1, f2, torque, power = pressures(figure, v1, v2, w, group), 0.0, 0.0, 0.0, 0.0
-    least, most, slowest = math.inf, 0.0, math.inf
+    c, slip, N = group.v[C], group.v[U], group.v[P]
+    slowest = note_slips(figure, motion, group)
+    find_forces(figure, w, group)
+    f1, f2, torque, power = 0.0, 0.0, 0.0, 0.0
     for i in range(figure.points):
-        X, Y, _, d1, d2, u = at_point(i, v1, v2, w, group)
-        N = (y[0] + y[1] * X + y[2] * Y) * group.v[OLD][3 * i]
-        group.v[P][3 * i] = N
-        least, most, mu = min(least, N), max(most, N), group.v[OLD][3 * i + 1]
-        slowest = min(slowest, math.hypot(u[0], u[1]) / mu if mu > 0.0 else math.inf)
-        a1, a2 = -N * d1, -N * d2
-        f1, f2, torque = f1 + a1, f2 + a2, torque + X * a2 - Y * a1
-        power += a1 * u[0] + a2 * u[1]
+        q = 3 * i
+        a1, a2 = -N[q] * slip[q + 1], -N[q] * slip[q + 2]
+        f1, f2, torque = f1 + a1, f2 + a2, torque + c[q] * a2 - c[q + 1] * a1
+        power -= N[q] * slip[q] * math.hypot(slip[q + 1], slip[q + 2])
     _, g1, g2 = figure.gravity
-    stage.rate[0] = f1 / figure.mass + cos * g1 + sin * g2 + w * v2
-    stage.rate[1] = f2 / figure.mass - sin * g1 + cos * g2 - w * v1
+    g1, g2 = cos * g1 + sin * g2, cos * g2 - sin * g1
+    stage.rate[0], stage.rate[1] = f1 / figure.mass + g1 + w * v2, f2 / figure.mass + g2 - w * v1
     stage.rate[2] = torque / figure.inertia[0]
-    stage.rate[3] = power / figure.mass + v1 * (cos * g1 + sin * g2) + v2 * (cos * g2 - sin * g1)
+    stage.rate[3] = power / figure.mass + v1 * g1 + v2 * g2
     stage.speed[0], stage.speed[1] = cos * v1 - sin * v2, sin * v1 + cos * v2
     stage.speed[2], stage.speed[3] = w, power
     speed = speed_of(figure, motion)
-    part = min(least / most, slowest / speed if speed > 0.0 else 0.0)
+    part = min(
+        area(figure.points, group, True) / figure.area, slowest / speed if speed > 0.0 else 0.0
+    )
     return part, STIFF * slowest / -figure.gravity[0]
 
 
 @kernel
-def at_point(i, v1, v2, w, group):
-    """Return (X, Y, H) of a point, mu u/|u| with the slip u, and u."""
-    X, Y, H = group.v[C][3 * i], group.v[C][3 * i + 1], group.v[C][3 * i + 2]
-    u1, u2 = v1 - w * Y, v2 + w * X
-    speed = math.sqrt(u1 * u1 + u2 * u2)
-    part = group.v[OLD][3 * i + 1] / speed if speed > 0.0 else 0.0
-    return X, Y, H, part * u1, part * u2, (u1, u2)
+def note_slips(figure, motion, group):
+    """Write |u| and mu u/|u| of the slip of each point to U; return the least |u|/mu."""
+    c, slip, slowest = group.v[C], group.v[U], math.inf
+    for i in range(figure.points):
+        q, mu = 3 * i, group.v[OLD][3 * i + 1]
+        u1, u2 = motion.v1 - motion.w * c[q + 1], motion.v2 + motion.w * c[q]
+        speed = math.sqrt(u1 * u1 + u2 * u2)
+        part = mu / speed if speed > 0.0 else 0.0
+        slip[q], slip[q + 1], slip[q + 2] = speed, part * u1, part * u2
+        slowest = min(slowest, speed / mu if mu > 0.0 else math.inf)
+    return slowest
 
 
 @kernel
-def pressures(figure, v1, v2, w, group):
-    """Return y: the forces (y_0 + y_1 X_i + y_2 Y_i)/S_i keep the height and the tilt of the body.
+def find_forces(figure, w, group):
+    """Write N_i = max(0, y_0 + y_1 X_i + y_2 Y_i)/S_i of each point to P: springs that do not pull."""
+    c, N = group.v[C], group.v[P]
+    for i in range(figure.points):
+        N[3 * i] = 1.0
+    for _ in range(ROUNDS):
+        y, same = springs(figure, w, group), True
+        for i in range(figure.points):
+            q = 3 * i
+            force = max(0.0, (y[0] + y[1] * c[q] + y[2] * c[q + 1]) * group.v[OLD][q])
+            same = same and (N[q] > 0.0) == (force > 0.0)
+            N[q] = force
+        if same:
+            return
+
+
+@kernel
+def springs(figure, w, group):
+    """Return y, with which the points that press (N > 0) keep the height and the tilt of the body.
 
     Its rows are the sum of the forces, and the torques about 1 and 2 less those parts that the spin takes:
     (t_1 - J_1n/J_nn t_n, t_2 - J_2n/J_nn t_n) = w^2 (-J_2n, J_1n).
     """
     jn, j1, j2 = figure.inertia
+    arms, slip, N = group.v[C], group.v[U], group.v[P]
     a, b, c = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
     for i in range(figure.points):
-        X, Y, H, d1, d2, _ = at_point(i, v1, v2, w, group)
+        q = 3 * i
+        if not N[q] > 0.0:
+            continue
+        X, Y, H, d1, d2 = arms[q], arms[q + 1], arms[q + 2], slip[q + 1], slip[q + 2]
         turning = (Y * d1 - X * d2) / jn
         t1, t2 = Y - H * d2 - j1 * turning, H * d1 - X - j2 * turning
-        s = group.v[OLD][3 * i]
+        s = group.v[OLD][q]
         a = (a[0] + s, a[1] + s * X, a[2] + s * Y)
         b = (b[0] + s * t1, b[1] + s * t1 * X, b[2] + s * t1 * Y)
         c = (c[0] + s * t2, c[1] + s * t2 * X, c[2] + s * t2 * Y)
@@ -325,6 +341,19 @@ def pressures(figure, v1, v2, w, group):
         p * bc[1] + q * ca[1] + r * ab[1],
         p * bc[2] + q * ca[2] + r * ab[2],
     )
+
+
+@kernel
+def area(k, group, pressed):
+    """Return the square of the area that the points spread over, or their forces: 0 if these are on a line."""
+    c, m, x, y, xx, xy, yy = group.v[C], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for i in range(k):
+        f = group.v[P][3 * i] if pressed else 1.0
+        m, x, y = m + f, x + f * c[3 * i], y + f * c[3 * i + 1]
+    for i in range(k):
+        f, dx, dy = group.v[P][3 * i] if pressed else 1.0, c[3 * i] - x / m, c[3 * i + 1] - y / m
+        xx, xy, yy = xx + f / m * dx * dx, xy + f / m * dx * dy, yy + f / m * dy * dy
+    return xx * yy - xy * xy
 
 
 @kernel
@@ -418,6 +447,8 @@ def back_to_plane(model, data, k, h):
     for i in range(k):
         group.closed[i].rows = 1
     onto_tangents(system, k, 1, end, group, work)
+    for i in range(k):
+        group.closed[i].rows = rows_of(group.v[P][3 * i], True)
     velocities(k, group.points[0], end, group.v[U])
     bound = work.body[group.member[0]].bound
     linear, angular, spin = bound[0], bound[1], bound[2]
