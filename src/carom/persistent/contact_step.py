@@ -280,7 +280,7 @@ def begin(model, data, k, h, count, loaded):
             group.mu[i] = system.contacts[active_point.contact].friction_held
             for r in range(3):
                 group.v[P][3 * i + r] = h * active_point.first_force[r]
-            slips = active_point.mode == SLIP and speed > 0.0
+            slips, active_point.speed = active_point.mode == SLIP and speed > 0.0, speed
         else:
             group.mu[i] = 1.0
             first_torque(system, active_point, i, h, group)

@@ -18,6 +18,8 @@ from carom.persistent.known_modes import as_known, note_accelerations, solve_giv
 from carom.persistent.margins import greatest_push, set_margins
 from carom.persistent.step_control import POORLY, rest_speed
 
+FULL = 1e-9  # of the greatest friction: what is less than it by so little is all of it
+
 
 @kernel
 def gained(start, count, group):
@@ -62,7 +64,9 @@ def finish(model, data, k, h, count):
         if p[3 * i] <= 0.0 and u[3 * i] > max(still, away):
             active_point.next = OPEN
         else:
-            active_point.next = SLIP if math.sqrt(s1 * s1 + s2 * s2) > still else STICK
+            slips = math.sqrt(s1 * s1 + s2 * s2) > still
+            slips = slips or begins(active_point, i, math.hypot(s1, s2), group)
+            active_point.next = SLIP if slips else STICK
         if at_rest:
             active_point.next = STICK
         active_point.comes_to_rest = 1 if at_rest else 0
@@ -77,6 +81,19 @@ def finish(model, data, k, h, count):
         bound[0], bound[1] = 2.0 * math.sqrt(linear) / h, 2.0 * math.sqrt(angular) / h
         bound[2] = math.sqrt(spin)
     return min(0.0, friction)
+
+
+@kernel
+def begins(active_point, i, speed, group):
+    """Return whether slip has just begun: however slow it is, it grows against all the friction there is."""
+    p, q = group.v[P], 3 * i
+    most = group.mu[i] * p[q]
+    return (
+        active_point.mode == SLIP
+        and most > 0.0
+        and math.hypot(p[q + 1], p[q + 2]) >= (1.0 - FULL) * most
+        and speed > active_point.speed
+    )
 
 
 @kernel
