@@ -1,7 +1,9 @@
 """A short form of `benchmarks/campaign.py`: every kind of shape, law and step, thrown on a floor."""
 
+import numpy as np
 import pytest
 
+import carom
 from campaigns import crowds, forced, piles, rolls, strikes, throws
 from campaigns.case import run
 
@@ -96,3 +98,15 @@ def test_slip_that_comes_to_a_jam_keeps_its_energy():
     found = run(strikes.case(50527))
     assert found.reached == 1.0
     assert found.residual <= 1e-2
+
+
+@pytest.mark.parametrize("seed", [7014, 7077])  # a capsule and an ellipsoid that grip, then slip
+def test_slip_that_has_just_begun_goes_on_at_any_tolerance(seed):
+    ends = []
+    for rtol in (1e-8, 1e-11):
+        case = throws.case(seed)
+        s = carom.simulate(case.scene, 0.3, rtol=rtol, save_at=0.3)
+        assert s.stats["whole_steps"] == 0
+        ends.append(s.position[-1, 0])
+    size = case.scene.bodies[0].shape.size
+    assert np.linalg.norm(ends[0] - ends[1]) < 2e-7 * size
