@@ -31,7 +31,7 @@ from carom.kinematics.rows import inverse_inertia, symmetric_times
 from carom.persistent.finish import finish
 from carom.persistent.known_modes import rows_of, scale_of
 from carom.persistent.return_to_surfaces import onto_surfaces, onto_tangents
-from carom.persistent.smooth_step import STIFF, begin, place_at
+from carom.persistent.smooth_step import begin, place_at
 from carom.persistent.step_control import unnamed
 
 #: greatest velocity out of the plane, of the speed; least area of the points, of the fourth power of the size
@@ -42,6 +42,7 @@ REST = 0.1
 AHEAD = 2.0 / 3.0
 #: least part (`note_rates`) with which a slide goes on; TWICE that with which it begins
 PART, TWICE = 1e-3, 2.0
+STIFF = 2.5  # least length of the real axis on which steps of our methods are stable, with a margin
 TINY = 1e-6  # of the time to the stop, or of the whole step: a shorter one finds nothing new
 SAME = 1.0 - 1e-12  # times that agree to this part are one
 MANY, ROUNDS = 500, 20  # steps of one slide; sets of points that press
@@ -252,18 +253,21 @@ def note_rates(figure, motion, stage, group):
     """Write the rates of a motion to a stage, and N to P; return the least part, and the longest step.
 
     The part is that of the slowest slip, of the speed of the body, or of the area that the forces spread over
-    (0: on a line, about which the body tips). In a longer step friction changes the slip of a point by more
-    than `STIFF` times its speed. `rate` has dv/dt in turning axes and dw/dt, `speed` the velocity in fixed
-    axes, w and the power of friction.
+    (0: on a line, about which the body tips). A longer step would be stiff: friction turns slips with rates
+    that are at most the sum of mu N W_i/|u_i|, with W_i across the slip of a point. `rate` has dv/dt in turning
+    axes and dw/dt, `speed` the velocity in fixed axes, w and the power of friction.
     """
     v1, v2, w = motion.v1, motion.v2, motion.w
     cos, sin = math.cos(motion.turn), math.sin(motion.turn)
     c, slip, N = group.v[C], group.v[U], group.v[P]
     slowest = note_slips(figure, motion, group)
     find_forces(figure, w, group)
-    f1, f2, torque, power = 0.0, 0.0, 0.0, 0.0
+    f1, f2, torque, power, stiff = 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(figure.points):
-        q = 3 * i
+        q, mu = 3 * i, group.v[OLD][3 * i + 1]
+        if mu > 0.0 and slip[q] > 0.0:
+            arm = (c[q] * slip[q + 1] + c[q + 1] * slip[q + 2]) / mu
+            stiff += mu * N[q] / slip[q] * (1.0 / figure.mass + arm * arm / figure.inertia[0])
         a1, a2 = -N[q] * slip[q + 1], -N[q] * slip[q + 2]
         f1, f2, torque = f1 + a1, f2 + a2, torque + c[q] * a2 - c[q + 1] * a1
         power -= N[q] * slip[q] * math.hypot(slip[q + 1], slip[q + 2])
@@ -278,7 +282,7 @@ def note_rates(figure, motion, stage, group):
     part = min(
         area(figure.points, group, True) / figure.area, slowest / speed if speed > 0.0 else 0.0
     )
-    return part, STIFF * slowest / -figure.gravity[0]
+    return part, STIFF / stiff if stiff > 0.0 else math.inf
 
 
 @kernel
