@@ -93,7 +93,7 @@ def slide_step(model, data, method, k, h):
         return NOT
     if time > 0.0:
         result.until = min(result.until, time if time < h else math.inf)
-    elif h > AHEAD * stop:  # a step that is longer than the motion is none for others, either
+    elif h > AHEAD * stop > TINY * model.controls.step:  # too long a step for others, too
         result.until = min(result.until, AHEAD * stop)
     else:
         return NOT
@@ -339,6 +339,8 @@ def springs(figure, w, group):
         c = (c[0] + s * t2, c[1] + s * t2 * X, c[2] + s * t2 * Y)
     bc, ca, ab = cross(*b, *c), cross(*c, *a), cross(*a, *b)
     weight, det = -figure.mass * figure.gravity[0], a[0] * bc[0] + a[1] * bc[1] + a[2] * bc[2]
+    if det == 0.0:  # they press on a line
+        return 0.0, 0.0, 0.0
     p, q, r = weight / det, -w * w * j2 / det, w * w * j1 / det
     return (
         p * bc[0] + q * ca[0] + r * ab[0],
@@ -354,6 +356,8 @@ def area(k, group, pressed):
     for i in range(k):
         f = group.v[P][3 * i] if pressed else 1.0
         m, x, y = m + f, x + f * c[3 * i], y + f * c[3 * i + 1]
+    if not m > 0.0:
+        return 0.0
     for i in range(k):
         f, dx, dy = group.v[P][3 * i] if pressed else 1.0, c[3 * i] - x / m, c[3 * i + 1] - y / m
         xx, xy, yy = xx + f / m * dx * dx, xy + f / m * dx * dy, yy + f / m * dy * dy
