@@ -65,7 +65,8 @@ def finish(model, data, k, h, count):
             active_point.next = OPEN
         else:
             slips = math.sqrt(s1 * s1 + s2 * s2) > still
-            slips = slips or begins(active_point, i, math.hypot(s1, s2), group)
+            if controls.order > 0:  # steps may be as short as the tolerance asks for
+                slips = slips or begins(active_point, i, math.hypot(s1, s2), group)
             active_point.next = SLIP if slips else STICK
         if at_rest:
             active_point.next = STICK
