@@ -1,5 +1,7 @@
 """Compounds and meshes: one contact of the scene, whatever it is made of."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -112,7 +114,11 @@ def test_all_pairs_of_a_scene_with_all_kinds_of_shapes(step, moved):
             shape, density=1000.0, position=(0.05 * k, 0, 0.2 + 0.25 * k + (k == 1) * moved)
         )
     scene.set_contact_default(restitution=0.2, friction=0.3)
-    s = carom.simulate(scene, 0.3, step=step)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", carom.AccuracyWarning)
+        s = carom.simulate(scene, 0.3, step=step)
+    # on some paths the three end in a step that is taken whole, 2e-7 of a size in each other, and say so
+    assert all("penetrates" in said for said in s.warnings)
     assert s.contact_mode.shape == (len(s.t), 6)
     assert np.all(s.impacts.contact < 6)
     # Edges that are nearly parallel push each other for 1e-4 s: steps over all of that lost up to 1.3e-3, by
