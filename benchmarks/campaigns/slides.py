@@ -30,7 +30,10 @@ def case(seed: int) -> Case:
     )  # fmt: skip
     scene.add_contact(moving, ground, restitution=rng.uniform(0.0, 0.9), friction=mu)
     return Case(
-        scene, DURATION, step, {"corners": corners, "step": step, "friction": mu, "tilt": tilt}
+        scene,
+        DURATION,
+        step,
+        {"kind": f"{corners} corners", "step": step, "friction": mu, "tilt": tilt},
     )
 
 

@@ -1,5 +1,6 @@
 """Compounds and meshes: one contact of the scene, whatever it is made of."""
 
+import re
 import warnings
 
 import numpy as np
@@ -118,7 +119,8 @@ def test_all_pairs_of_a_scene_with_all_kinds_of_shapes(step, moved):
         warnings.simplefilter("ignore", carom.AccuracyWarning)
         s = carom.simulate(scene, 0.3, step=step)
     # on some paths the three end in a step that is taken whole, 2e-7 of a size in each other, and say so
-    assert all("penetrates" in said for said in s.warnings)
+    for said in s.warnings:
+        assert float(re.search(r"penetrates 'body2' by (\S+) of its size", said)[1]) < 1e-6
     assert s.contact_mode.shape == (len(s.t), 6)
     assert np.all(s.impacts.contact < 6)
     # Edges that are nearly parallel push each other for 1e-4 s: steps over all of that lost up to 1.3e-3, by

@@ -135,10 +135,8 @@ RESULT = [
     ("known_power", "f8"),  # of loads, with the accelerations that are kept
     ("residual", "f8"),  # greatest of the groups in contact at several points
     ("unnamed", "f8"),  # greatest of these: unexplained loss of energy, relative to the tolerance
-    (
-        "until",
-        "f8",
-    ),  # time within the trial step at which a slide stops: the step is repeated up to there
+    # time within the trial step at which a slide ends: the step is repeated up to there
+    ("until", "f8"),
     ("parts", "i8"),  # additional parts of steps in which bodies turned far
     ("fallen", "i8"),  # steps of a symplectic method that the explicit method took instead
     ("start", "f8"),  # time at which the trial step starts

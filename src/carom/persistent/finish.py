@@ -47,10 +47,10 @@ def finish(model, data, k, h, count):
         data.work,
     )
     friction = 0.0
-    speed = gained(start, count, group)
-    tolerance = rest_speed(controls, speed, work.result[0].residual, k, POORLY)
+    gain = gained(start, count, group)
+    tolerance = rest_speed(controls, gain, work.result[0].residual, k, POORLY)
     at_rest = come_to_rest(system, tolerance, start, end, count, group)
-    stop, away = tolerance * controls.step / h, 1e-6 * gained(start, count, group)
+    stop, away = tolerance * controls.step / h, 1e-6 * gain
     for i in range(k):
         active_point, p, u = active.points[group.closed[i].active], group.v[P], group.v[U]
         contact = system.contacts[active_point.contact]
@@ -64,9 +64,10 @@ def finish(model, data, k, h, count):
         if p[3 * i] <= 0.0 and u[3 * i] > max(still, away):
             active_point.next = OPEN
         else:
-            slips = math.sqrt(s1 * s1 + s2 * s2) > still
+            speed = math.sqrt(s1 * s1 + s2 * s2)
+            slips = speed > still
             if controls.order > 0:  # steps may be as short as the tolerance asks for
-                slips = slips or begins(active_point, i, math.hypot(s1, s2), group)
+                slips = slips or begins(active_point, i, speed, group)
             active_point.next = SLIP if slips else STICK
         if at_rest:
             active_point.next = STICK
