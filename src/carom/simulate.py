@@ -83,8 +83,8 @@ def simulate(
         this length, except that the last one is shorter if `duration` is not a multiple of it.
     method : {"rk4", "rk5", "rk8", "rattle", "rattle4", "rattle6", "implicit", "paper", "paper-ode"}
         Time integrator of the smooth motion. Default: ``"rk4"`` if `step` is a number; otherwise ``"rk5"``, or
-        ``"rk8"`` if `rtol` is 1e-9 or smaller. All methods except ``"rk5"`` and ``"rk8"`` need a number as
-        `step`. ``"rk4"``: explicit, order 4; constraints are exact, free flight is in closed form, impacts are
+        ``"rk8"`` if `rtol` is at most 1e-9 (1e-6 in scenes without contacts, stops and dry friction in joints).
+        All methods except ``"rk5"`` and ``"rk8"`` need a number as `step`. ``"rk4"``: explicit, order 4; constraints are exact, free flight is in closed form, impacts are
         solved to round-off. ``"rk5"``, ``"rk8"``: the same with order 5 (6 stages) and order 8 (12 stages), for
         joints, loads and persistent contact at one point. ``"rattle"``, ``"rattle4"``, ``"rattle6"``:
         symplectic, order 2, 4 and 6, for joints and loads over long times: the energy has no trend, and the
@@ -188,7 +188,7 @@ def simulate(
     check_handling(progress, throw, save_seconds)
     settings = checked_settings(
         duration, step, method, impact_location, save_every=save_every, save_at=save_at, rtol=rtol,
-        atol=atol, options=options,
+        atol=atol, options=options, scene=scene,
     )  # fmt: skip
     if isinstance(scene, GeneralizedSystem):
         if save is not None:

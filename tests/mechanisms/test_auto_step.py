@@ -11,6 +11,7 @@ from test_rattle import on_a_wall
 
 import carom
 from carom import GROUND, Scene, forces, joints
+from carom.bench.problems import chain
 
 
 def auto(scene, duration, rtol, method="rk5", **more):
@@ -95,13 +96,18 @@ def test_fewer_evaluations_where_motion_is_uneven():
 
 
 def test_default_method_and_tolerances():
-    """Order 5, and 8 from 1e-9 on; `atol` is `rtol` of the smallest body, which is half a metre here."""
+    """Order 8 from 1e-6 on where nothing strikes or sticks, else from 1e-9 on; `atol` is `rtol` of a size."""
     s = carom.simulate(pendulum(), 1.0)
-    assert (s.settings["method"], s.settings["step"]) == ("rk5", "auto")
+    assert (s.settings["method"], s.settings["step"]) == ("rk8", "auto")
     assert s.settings["rtol"] == 1e-8
     assert s.settings["atol"] == 1e-8 * s._run.bodies["extent"].min()
-    tight = carom.simulate(pendulum(), 1.0, rtol=1e-9)
-    assert tight.settings["method"] == "rk8"
+    for rtol, smooth, else_ in ((1e-5, "rk5", "rk5"), (1e-6, "rk8", "rk5"), (1e-9, "rk8", "rk8")):
+        for scene, method in ((pendulum(), smooth), (on_a_wall(), else_)):
+            assert carom.simulate(scene, 0.01, rtol=rtol).settings["method"] == method
+    stops = chain.scene()
+    assert carom.simulate(stops, 0.01).settings["method"] == "rk8"
+    stops.add_stop(stops.joints[0], upper=1.0)
+    assert carom.simulate(stops, 0.01).settings["method"] == "rk5"
 
 
 def test_bodies_have_steps_of_their_own():

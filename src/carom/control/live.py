@@ -73,7 +73,14 @@ class Run:
         if not isinstance(scene, Scene):
             raise TypeError(f"scene must be a carom.Scene, got {type(scene).__name__}")
         settings = checked_settings(
-            1.0, step, method, save_every=save_every, rtol=rtol, atol=atol, options=options
+            1.0,
+            step,
+            method,
+            save_every=save_every,
+            rtol=rtol,
+            atol=atol,
+            options=options,
+            scene=scene,
         )
         check_scene(scene, settings)
         if settings.step is not None:

@@ -149,7 +149,9 @@ def ensemble(
     chunk = checks.integer("chunk", chunk, least=1)
     if workers is not None:
         workers = checks.integer("workers", workers, least=1)
-    settings = checked_settings(duration, step, method, rtol=rtol, atol=atol, options=options)
+    settings = checked_settings(
+        duration, step, method, rtol=rtol, atol=atol, options=options, scene=scene
+    )
     if observe is None:  # only the end is read
         settings = settings._replace(save_every=NEVER)
     inputs = draw(vary, runs, checks.integer("seed", seed, least=0), sampling)
