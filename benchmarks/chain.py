@@ -104,8 +104,8 @@ def precision() -> None:
         report(
             "chain_ratio", "MuJoCo's work over carom's at equal error in energy",
             ["links", "error", *METHODS, DEFAULT], ratios,
-            "Between the points of both curves, in logarithms; a dash where MuJoCo's does not reach the error. By "
-            "tolerance: the default, with 100 states saved.",
+            "Between the points of both curves, in logarithms; a dash where MuJoCo's does not reach the error. "
+            "By tolerance: the default, with 100 states saved.",
         )  # fmt: skip
 
 

@@ -84,16 +84,17 @@ def simulate(
     method : {"rk4", "rk5", "rk8", "rattle", "rattle4", "rattle6", "implicit", "paper", "paper-ode"}
         Time integrator of the smooth motion. Default: ``"rk4"`` if `step` is a number; otherwise ``"rk5"``, or
         ``"rk8"`` if `rtol` is at most 1e-9 (1e-6 in scenes without contacts, stops and dry friction in joints).
-        All methods except ``"rk5"`` and ``"rk8"`` need a number as `step`. ``"rk4"``: explicit, order 4; constraints are exact, free flight is in closed form, impacts are
-        solved to round-off. ``"rk5"``, ``"rk8"``: the same with order 5 (6 stages) and order 8 (12 stages), for
-        joints, loads and persistent contact at one point. ``"rattle"``, ``"rattle4"``, ``"rattle6"``:
-        symplectic, order 2, 4 and 6, for joints and loads over long times: the energy has no trend, and the
-        momenta of floating systems are conserved. Steps with persistent contacts or across a singular position
-        then use ``"rk4"`` (with ``"rattle6"``: ``"rk8"``). ``"implicit"``: order 2 and L-stable, for springs
-        and dampers of any stiffness, which are rows of the linear system. ``"paper"``: the method of the paper,
-        with three fields of order 2, exact constraints, and impacts integrated through the boundary layer by
-        cubic splines. ``"paper-ode"``: the same, with the paper's second-order equations for the multipliers
-        instead of exact constraints.
+        All methods except ``"rk5"`` and ``"rk8"`` need a number as `step`. ``"rk4"``: explicit, order 4;
+        constraints are exact, free flight is in closed form, impacts are solved to round-off. ``"rk5"``,
+        ``"rk8"``: the same with order 5 (6 stages) and order 8 (12 stages), for joints, loads and persistent
+        contact at one point. ``"rattle"``, ``"rattle4"``, ``"rattle6"``: symplectic, order 2, 4 and 6, for
+        joints and loads over long times: the energy has no trend, and the momenta of floating systems are
+        conserved. Steps with persistent contacts or across a singular position then use ``"rk4"`` (with
+        ``"rattle6"``: ``"rk8"``). ``"implicit"``: order 2 and L-stable, for springs and dampers of any
+        stiffness, which are rows of the linear system. ``"paper"``: the method of the paper, with three fields
+        of order 2, exact constraints, and impacts integrated through the boundary layer by cubic splines.
+        ``"paper-ode"``: the same, with the paper's second-order equations for the multipliers instead of exact
+        constraints.
     rtol, atol : float, optional
         Relative and absolute tolerance, for ``step="auto"``: at the end of the run the position error of each
         body should be at most about ``atol + rtol * size`` [m], where `size` is the size of the body; an error
