@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import functools
+from collections.abc import Callable
 from typing import Any
+
+KEPT = 100  # functions for which `once` keeps what was made
 
 
 def is_compiled(function) -> bool:
@@ -19,3 +23,14 @@ def joined(function, *parts) -> Any:
     from numba import njit
 
     return njit(function)
+
+
+def once(make: Callable) -> Callable:
+    """Decorate a function that makes something of a user's function: of a compiled one it is made once."""
+    kept = functools.lru_cache(maxsize=KEPT)(make)
+
+    @functools.wraps(make)
+    def made(function, *shapes):
+        return (kept if is_compiled(function) else make)(function, *shapes)
+
+    return made

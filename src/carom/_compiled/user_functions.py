@@ -1,9 +1,9 @@
 """User-defined functions, called from compiled code through an address.
 
 All have one form: ``f(t, x, out)`` reads a time and an array of numbers and writes an array of numbers. A
-function compiled by Numba is called directly (50 ns, with a new array for the result); a plain Python function
-is called through `ctypes` with the interpreter's lock (13 microseconds). The address is a number in the data of
-a run, so a new function does not cause a new compile of the loop.
+function compiled by Numba is called directly (50 ns, with a new array for the result); a plain Python
+function is called through `ctypes` with the interpreter's lock (1 to 2 microseconds). The address is a number
+in the data of a run, so a new function does not cause a new compile of the loop.
 
 An error in a plain function cannot pass through compiled code: it is stored, the result is NaN, the run stops,
 and then the error is raised (`Functions.failed`).
@@ -12,6 +12,7 @@ and then the error is raised (`Functions.failed`).
 from __future__ import annotations
 
 import ctypes
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -20,11 +21,11 @@ from numba import carray, cfunc  # pyright: ignore[reportPrivateImportUsage]
 from numba.core import types
 from numba.extending import intrinsic, overload
 
-from carom._compiled.composed import is_compiled
+from carom._compiled.composed import is_compiled, once
 from carom._compiled.decorators import COMPILES, OPTIONS
 
-_NUMBERS = ctypes.POINTER(ctypes.c_double)
-_FORM = ctypes.CFUNCTYPE(None, ctypes.c_double, _NUMBERS, _NUMBERS)
+_FORM = ctypes.CFUNCTYPE(None, ctypes.c_double, ctypes.c_void_p, ctypes.c_void_p)
+MOST_PLACES = 100  # arrays that are kept
 _SIGNATURE = types.void(types.float64, types.CPointer(types.float64), types.CPointer(types.float64))
 
 
@@ -63,20 +64,38 @@ class Functions:
         return made.address
 
     def _plain(self, function, inside, outside):
+        inputs, outputs = Arrays(inside), Arrays(outside)
+
         def call(t, read, write):
-            out = np.ctypeslib.as_array(write, outside)
+            out = outputs[write]
             out[...] = np.nan
             if self.failed is not None:
                 return
-            x = np.ctypeslib.as_array(read, inside)
             try:
-                out[...] = function(t, x)
+                out[...] = function(t, inputs[read])
             except BaseException as error:  # errors cannot pass through the compiled loop
                 self.failed = error
 
         return call
 
 
+class Arrays(dict):
+    """Arrays of one shape by the address of their numbers, made once: a run has few places for them."""
+
+    def __init__(self, shape: tuple[int, ...]):
+        super().__init__()
+        self.shape = shape
+
+    def __missing__(self, address: int) -> np.ndarray:
+        """Make the array."""
+        if len(self) >= MOST_PLACES:
+            self.clear()
+        numbers = (ctypes.c_double * math.prod(self.shape)).from_address(address)
+        self[address] = np.ctypeslib.as_array(numbers).reshape(self.shape)
+        return self[address]
+
+
+@once
 def _compiled(function, inside, outside):
     """Compile the wrapper of a function that Numba has compiled."""
 
@@ -89,7 +108,7 @@ def _compiled(function, inside, outside):
 
 def call_function(address, t, x, out):
     """Call the function at `address` from a kernel: out = f(t, x), both arrays contiguous."""
-    _FORM(int(address))(t, x.ctypes.data_as(_NUMBERS), out.ctypes.data_as(_NUMBERS))
+    _FORM(int(address))(t, x.ctypes.data, out.ctypes.data)
 
 
 _options: Any = OPTIONS

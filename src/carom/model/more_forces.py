@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom._compiled.composed import is_compiled, joined
+from carom._compiled.composed import is_compiled, joined, once
 from carom._compiled.record_arrays import Columns, table
 from carom._compiled.user_functions import Functions
 from carom.model.arrays import FRICTION, PIECE, PUSH, USER_FORCE
@@ -88,6 +88,7 @@ def _friction(d, coordinates):
     return made
 
 
+@once
 def _of_coordinate(function):
     """Return a function of (t, x), x = (q, q'), from a function of t, q and q'."""
     if not is_compiled(function):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from carom._compiled.composed import is_compiled, joined
+from carom._compiled.composed import is_compiled, joined, once
 from carom._compiled.record_arrays import Columns, table
 from carom._compiled.user_functions import Functions
 from carom.model.arrays import (
@@ -227,6 +227,7 @@ def _joined(fields, rows) -> np.recarray:
     return np.concatenate([table(fields, 0), *rows]).view(Columns)
 
 
+@once
 def _of_time(function):
     """Return a function of (t, x) from a function of t."""
     if not is_compiled(function):
