@@ -118,10 +118,12 @@ def longest_step(
 ) -> float:
     """Return the longest step of a run with tolerances: `most`, or a bound by the time until bodies may meet.
 
-    `more` means that contacts of any of the bodies may appear later.
+    `more` means that contacts of any of the bodies may appear later. With contacts a run has no fewer steps than
+    saved states by default: a step with too much work is replaced by one of order 1, which must not be long.
     """
     if most is not None or not (system.contacts.size or more):
         return min(duration, most or duration)
+    duration /= STATES
     extent = system.bodies.extent
     size = float(np.min(extent if more else extent[system.contacts.body]))
     several, g = len(system.bodies) > 1, float(np.linalg.norm(system.gravity))
