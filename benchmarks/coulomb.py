@@ -5,9 +5,9 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-import numba
 import numpy as np
 
+from carom._compiled.decorators import entry
 from carom.friction.layout import new_contact_work
 from carom.friction.solve import solve_cones
 from common import clock, report, seconds, spread
@@ -40,20 +40,22 @@ def scenes():
     yield "100 towers of 5", stack(5, towers=100)
 
 
-@numba.njit
+@entry
 def many_dense(times, k, W, c, mu, kind, heading, start, p, work):
     """Solve `times` times from `start`."""
     for _ in range(times):
-        p[:] = start
+        for i in range(3 * k):
+            p[i] = start[i]
         found = solve_cones(k, W, c, mu, kind, heading, p, work)
     return found
 
 
-@numba.njit
+@entry
 def many_sparse(times, k, island, mu, kind, heading, start, p, work):
     """Solve `times` times from `start`."""
     for _ in range(times):
-        p[:] = start
+        for i in range(3 * k):
+            p[i] = start[i]
         found = solve_island(k, island, mu, kind, heading, p, work)
     return found
 

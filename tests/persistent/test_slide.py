@@ -104,3 +104,36 @@ def test_a_mirrored_slide_is_the_mirror_image():
         scene = block((0.2, 0.1, 0.04), (1.0, 0.3 * sign), 5.0 * sign, 0.2)
         ends.append(carom.simulate(scene, 1.0, save_at=1.0).position[-1, 0])
     assert ends[1] == pytest.approx(ends[0] * [1, -1, 1], abs=1e-9)
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-8])
+@pytest.mark.parametrize("side", [1e-3, 1e-4])
+def test_a_slope_is_slid_up_and_down_again(side, rtol):
+    """A slab thrown nearly straight up a slope on which it cannot rest turns sharply, and slides down.
+
+    With A = g sin alpha, B = mu g cos alpha and the angle psi from downhill to the velocity v,
+
+        v' = A cos psi - B,     v psi' = -A sin psi,
+
+    so that v sin psi / tan(psi/2)^(B/A) and B v + A v cos psi - (A^2 - B^2) t are constant. It nearly stops,
+    at a ten-thousandth of its speed; but what its velocity is off by there it keeps.
+    """
+    A, B = 9.81 * np.sin(0.3), 0.5 * 9.81 * np.sin(0.3)
+    made = carom.Scene(gravity=(A, 0, -9.81 * np.cos(0.3)))
+    slope = made.add_half_space((0, 0, 0), (0, 0, 1))
+    slab = made.add_body(
+        carom.Box(0.2, 0.2, 0.02), mass=1.0, position=(0, 0, 0.01), velocity=(-0.01, side, 0)
+    )
+    made.add_contact(slab, slope, friction=0.5 * np.tan(0.3), restitution=0.0)
+    s = carom.simulate(made, 0.3, rtol=rtol)
+    down, across = s.velocity[:, 0, 0], s.velocity[:, 0, 1]
+    v = np.hypot(down, across)
+    line = (B * v + A * down - (A * A - B * B) * s.t) / (A + B)
+    tangent = across / (v + down)  # of psi/2
+    known = across[0] * (tangent / tangent[0]) ** (B / A)
+    size = slab.shape.size
+    most = (
+        rtol * 2.0 * size / np.sqrt(size / 9.81)
+    )  # what moves it by the tolerance while it falls by its size
+    assert np.max(np.abs(line - line[0])) < most
+    assert np.max(np.abs(across - known)) < most

@@ -22,8 +22,9 @@ SEED = 1e-7  # speed of approach given to a point that jams, relative to its sli
 ROUND_OFF = 1e-14  # relative to the greatest speed in a multiple impact
 #: exponents of the normal force: if all points are on round bodies, and otherwise
 HERTZ, LINEAR = 1.5, 1.0
-#: cost per point of a step through the layers [us]: by series, and with the many short steps of other exponents
-STEP, STAGES = 30.0, 5.0
+#: cost per point of a step through the layers [us]: by series, of up to eight points and of many, and with the
+#: many short steps of other exponents
+FEW, MANY, STAGES = 1.0, 30.0, 5.0
 
 
 @unit
@@ -99,7 +100,8 @@ def strike_several(model, data, c, k):
         all_by_pairs = multiple.settings.multiple == SEQUENTIAL
         multiple.pair[i] = pair_of(i, system.contacts, group.closed, all_by_pairs)
     passage = multiple.workspace.work.clock[0]
-    each = k * (STEP if exponent_of(k, multiple) == LINEAR else STAGES)
+    linear = exponent_of(k, multiple) == LINEAR
+    each = k * (min(MANY, max(FEW, (k / 8.0) ** 3)) if linear else STAGES)
     if model.controls.retry == 1:  # the group can take a time-stepping step instead
         passage.left = int(max(0.0, affordable(model.controls, clock) - clock.effort) / each)
     resolve_group(k, group.m[0], u, group.mu, multiple)

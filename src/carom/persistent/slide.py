@@ -188,9 +188,9 @@ def slide(model, data, method, figure, h):
         if not (t < h and part >= PART):
             break
         left = h - t
-        if stop * speed_of(figure, motion) <= REST * allowed_error(
-            controls.rtol, controls.atol, figure.size, 0.0
-        ):
+        if lasting(figure, motion, first, data.group) * speed_of(
+            figure, motion
+        ) <= REST * allowed_error(controls.rtol, controls.atol, figure.size, 0.0):
             motion = slow_down(figure, motion, left, stop)
             t = h if stop >= SAME * left else t + stop
             break
@@ -378,6 +378,23 @@ def time_to_stop(figure, motion, stage):
 
 
 @kernel
+def lasting(figure, motion, stage, group):
+    """Return how long an error of velocity counts: while the body moves by its size, or until it stops.
+
+    It stops for good only if friction holds it there; on a steeper slope it slides on.
+    """
+    size, rate, holds = figure.size, stage.rate, 0.0
+    pull = math.hypot(rate[0], rate[1]) + size * abs(rate[2])
+    pace = max(speed_of(figure, motion), math.sqrt(size * pull))
+    lasts = size / pace if pace > 0.0 else 0.0
+    for i in range(figure.points):
+        holds += group.v[OLD][3 * i + 1] * group.v[P][3 * i]
+    if holds > figure.mass * math.hypot(figure.gravity[1], figure.gravity[2]):
+        lasts = min(lasts, time_to_stop(figure, motion, stage))
+    return lasts
+
+
+@kernel
 def slow_down(figure, motion, left, stop):
     """Return the motion after the time `left`, or at its end if it stops before, with constant deceleration."""
     time = min(left, stop)
@@ -396,10 +413,7 @@ def slow_down(figure, motion, left, stop):
 def relative_error(model, data, method, figure, motion, dt):
     """Return the error of a step, relative to the tolerance (`carom.dynamics.adapt`)."""
     controls, stages, b, size = model.controls, data.work.stages, figure.body, figure.size
-    speed, acceleration = speed_of(figure, motion), stages[0, b].rate
-    stop = time_to_stop(figure, motion, stages[0, b])
-    pull = math.hypot(acceleration[0], acceleration[1]) + size * abs(acceleration[2])
-    lasts = min(stop, size / max(speed, math.sqrt(size * pull)))
+    speed, lasts = speed_of(figure, motion), lasting(figure, motion, stages[0, b], data.group)
     found = (0.0, 0.0)
     for e in range(method.E.shape[0]):
         miss = combine(

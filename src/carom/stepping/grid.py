@@ -18,6 +18,7 @@ STATES = 200  # default number of saved states after the first
 # longest step of a run with tolerances, relative to the time of a fall through the least size of a body. With
 # several bodies it is short, because nearness is checked once a step; one body has no neighbours
 ONE_BODY, SEVERAL_BODIES = 4.0, 0.015
+PART = 0.1  # of a run with contacts: its longest step
 ALIKE = 1e-12  # relative error allowed when a duration is a whole number of spacings
 FEW = 1e4  # greatest number of steps by speed in a scene without gravity
 
@@ -118,22 +119,24 @@ def longest_step(
 ) -> float:
     """Return the longest step of a run with tolerances: `most`, or a bound by the time until bodies may meet.
 
-    `more` means that contacts of any of the bodies may appear later.
+    `more` means that contacts of any of the bodies may appear later. With contacts a step is a part of the run,
+    even if only its end is saved: a step with too much work is replaced by one of order 1.
     """
     if most is not None or not (system.contacts.size or more):
         return min(duration, most or duration)
+    longest = PART * duration
     extent = system.bodies.extent
     size = float(np.min(extent if more else extent[system.contacts.body]))
     several, g = len(system.bodies) > 1, float(np.linalg.norm(system.gravity))
     if g > 0.0:
         part = SEVERAL_BODIES if several else ONE_BODY
-        return min(duration, part * math.sqrt(2.0 * size / g))
+        return min(longest, part * math.sqrt(2.0 * size / g))
     speed = float(
         np.max(np.linalg.norm(start.v, axis=-1) + extent * np.linalg.norm(start.w, axis=-1))
     )
     if not several or speed == 0.0:
-        return duration
-    return min(duration, max(0.5 * size / speed, duration / FEW))
+        return longest
+    return min(longest, max(0.5 * size / speed, duration / FEW))
 
 
 def part_of_grid(grid: Grid, begin: float, end: float) -> Grid:
