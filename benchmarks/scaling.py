@@ -99,7 +99,7 @@ def runs() -> dict[str, Curve]:
     found = {}
     for workers in (1, 2):
         found[f"throws, {workers} thread{'s' * (workers > 1)}"] = [
-            (n, spread([1e3 * n / spatial_die.rate(2e-3, n, k, workers) for k in range(3)]))
+            (n, spread([1e3 * n / spatial_die.rate(n, k, workers, step=2e-3) for k in range(3)]))
             for n in some(10, 30, 100, 300)
         ]
     return found

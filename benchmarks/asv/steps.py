@@ -65,8 +65,8 @@ class Throws:
     timeout = 900
 
     def track_rate(self):
-        spatial_die.rate(1e-3, 10)
-        return statistics.median(spatial_die.rate(1e-3, 60, seed) for seed in range(3))
+        spatial_die.rate(10, step=1e-3)
+        return statistics.median(spatial_die.rate(60, seed, step=1e-3) for seed in range(3))
 
     track_rate.unit = "throws/s"
 

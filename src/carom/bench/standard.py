@@ -83,7 +83,7 @@ def _rate(of: Callable[[int], float], rounds: int) -> Spread:
 
 def _throws() -> Problem:
     def ours(rounds: int) -> Side:
-        rate = _rate(lambda seed: spatial_die.rate(1e-3, 40, seed, timer=clock), rounds)
+        rate = _rate(lambda seed: spatial_die.rate(40, seed, timer=clock, step=1e-3), rounds)
         return Side(rate, spatial_die.ours(1e-3).error())
 
     def theirs(module, rounds: int) -> Side:

@@ -55,22 +55,22 @@ def mujoco(module, step: float, duration: float = DURATION) -> Task:
     return Task("MuJoCo", step, run, lambda: float(np.linalg.norm(run(END) - centre())))
 
 
-def throws(step: float, runs: int, seed: int = 0, workers: int = 1):
-    """Return an ensemble of throws with random orientation."""
+def throws(runs: int, seed: int = 0, workers: int = 1, **how):
+    """Return an ensemble of throws with random orientation; `how` has its step or its tolerance."""
     import carom
 
     made = planar_die.scene()
     vary = {f"{made.bodies[0].name}.orientation": carom.UniformOrientation()}
     return carom.ensemble(
-        made, DURATION, step=step, vary=vary, runs=runs, seed=seed, workers=workers,
-        chunk=max(1, min(25, runs // (4 * workers))),
+        made, DURATION, vary=vary, runs=runs, seed=seed, workers=workers,
+        chunk=max(1, min(25, runs // (4 * workers))), **how,
     )  # fmt: skip
 
 
-def rate(step: float, runs: int, seed: int = 0, workers: int = 1, timer=perf_counter) -> float:
+def rate(runs: int, seed: int = 0, workers: int = 1, timer=perf_counter, **how) -> float:
     """Return the number of throws of carom per second, by default of wall time."""
     begin = timer()
-    throws(step, runs, seed, workers)
+    throws(runs, seed, workers, **how)
     return runs / (timer() - begin)
 
 
