@@ -104,10 +104,16 @@ def test_default_method_and_tolerances():
     for rtol, smooth, else_ in ((1e-5, "rk5", "rk5"), (1e-6, "rk8", "rk5"), (1e-9, "rk8", "rk8")):
         for scene, method in ((pendulum(), smooth), (on_a_wall(), else_)):
             assert carom.simulate(scene, 0.01, rtol=rtol).settings["method"] == method
-    stops = chain.scene()
-    assert carom.simulate(stops, 0.01).settings["method"] == "rk8"
-    stops.add_stop(stops.joints[0], upper=1.0)
-    assert carom.simulate(stops, 0.01).settings["method"] == "rk5"
+    changes = (
+        (lambda made: None, "rk8"),
+        (lambda made: made.add_stop(made.joints[0], upper=1.0), "rk5"),
+        (lambda made: made.set_contact_default(restitution=0.5, friction=0.2), "rk5"),
+        (lambda made: made.add_force(forces.JointFriction(made.joints[0], 0.1)), "rk5"),
+    )
+    for change, method in changes:
+        made = chain.scene()
+        change(made)
+        assert carom.simulate(made, 0.01).settings["method"] == method
 
 
 def test_bodies_have_steps_of_their_own():

@@ -16,8 +16,8 @@ from carom.scene.scene import Scene
 
 LOCATIONS = ("locate", "project", "work")
 RTOL = 1e-8  # default
-TIGHT = 1e-9  # at this tolerance or below the default is the method of order 8,
-SMOOTH = 1e-6  # in scenes in which nothing strikes or sticks: at this
+# at these tolerances or below the default is the method of order 8: SMOOTH where nothing strikes or sticks
+TIGHT, SMOOTH = 1e-9, 1e-6
 MOST_STEPS = 1e12
 _DEFAULT = Options()
 
@@ -120,10 +120,9 @@ def is_smooth(scene) -> bool:
     """Return whether nothing in the scene strikes, and no dry friction sticks."""
     if isinstance(scene, Scene):
         sticks = any(isinstance(f.definition, JointFriction) for f in scene.forces)
-        return not (scene.contacts or scene.stops or sticks)
-    return not getattr(
-        scene, "contacts", True
-    )  # of a system in coordinates; unknown for a function
+        return not (scene.contacts or scene.contact_default or scene.stops or sticks)
+    # of a system in coordinates; of a function that makes scenes it is not known
+    return not getattr(scene, "contacts", True)
 
 
 def check_save_at(save_at, duration: float) -> float | tuple[float, ...] | None:
